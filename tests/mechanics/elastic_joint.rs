@@ -198,7 +198,7 @@ fn the_stress_of_a_joint_is_that_of_its_parts() {
 
 /// A joint pressed beyond its strength carries the strength, gives back only the elastic energy, and dissipates the difference.
 #[test]
-fn a_joint_that_crushes_takes_its_strength_times_what_is_crushed() {
+fn a_crushing_joint_dissipates_strength_times_crushing() {
     for contact in [Contact::Continuous, Contact::Points(3)] {
         let strength_m = 1e-3;
         let structure = structure(contact, Some(strength_m), 0.0);

@@ -621,7 +621,7 @@ fn a_tied_arch_follows_its_energy_minimum() {
 /// Steps of a movement grow while blocks rotate steadily, but end where a tie yields. One long movement gives the yielding and
 /// the capacities of 1000 short ones, to a millionth of the radius, of the weight and of gravity.
 #[test]
-fn ties_yield_in_long_steps_as_in_short_ones() {
+fn yielding_of_ties_does_not_depend_on_step_length() {
     for (way, end_m) in [(OUT, 0.03), (DOWN, 0.24)] {
         let law = |yields_at| [75.0, 0.0, yields_at];
         let (row, _) = with_bars(16, |blocks| {
@@ -717,26 +717,26 @@ fn commands_report_an_arch_held_by_its_tie() {
     assert_eq!(hinges.len(), 4);
     let force_n = follower.stance.forces_n().next().unwrap();
 
-    let told = printed(folder.path(), &["limit", "a.toml", "--format", "json"]);
-    let told: serde_json::Value = serde_json::from_str(&told).unwrap();
+    let reported = printed(folder.path(), &["limit", "a.toml", "--format", "json"]);
+    let reported: serde_json::Value = serde_json::from_str(&reported).unwrap();
     let words = printed(folder.path(), &["limit", "a.toml"]);
     assert_eq!(
-        told["ties"],
+        reported["ties"],
         serde_json::json!({ "forces_at_rest_n": [force_n] })
     );
     let listed = hinges
         .iter()
         .map(|hinge| serde_json::json!({ "joint": hinge.joint, "edge": hinge.edge.name() }));
-    assert_eq!(told["hinges"], listed.collect::<serde_json::Value>());
+    assert_eq!(reported["hinges"], listed.collect::<serde_json::Value>());
     shows(&words, &[force_n / 1e3]);
     golden("limit-held-by-tie", &words);
     for sway in [Sway::Right, Sway::Left] {
         let side = sway.name();
         let [first_g, falls_g] = pushes_g(&follower, sway);
         assert_eq!(first_g, 0.0);
-        assert_eq!(told["incipient_acceleration_g"][side], first_g);
-        assert_eq!(told["capacity_g"][side], falls_g);
-        assert_eq!(told["mechanism"][side], serde_json::json!([]));
+        assert_eq!(reported["incipient_acceleration_g"][side], first_g);
+        assert_eq!(reported["capacity_g"][side], falls_g);
+        assert_eq!(reported["mechanism"][side], serde_json::json!([]));
         shows(&words, &[falls_g]);
     }
 
@@ -1188,8 +1188,8 @@ fn spread_reports_the_collapse_movement_and_the_remaining_push() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("arch.toml"), SEMICIRCLE).unwrap();
     let words = printed(folder.path(), &["--quiet", "spread", "arch.toml"]);
-    let told = json(&folder.path().join("results/arch/spread.json"));
-    let path = &told["paths"][0];
+    let reported = json(&folder.path().join("results/arch/spread.json"));
+    let path = &reported["paths"][0];
     let falls_at_m = path["falls_at_m"].as_f64().unwrap();
     assert!((falls_at_m - 0.558_230_9).abs() < 1e-6);
     shows(&words, &[falls_at_m, falls_at_m / 9.25, 9.25]);
@@ -1218,7 +1218,7 @@ fn spread_reports_the_collapse_movement_and_the_remaining_push() {
     }
     // The radius is 5 m; the thrust is relative to the weight of the ring.
     let half = &path["stages"][10];
-    let weight_n = told["weight_n"].as_f64().unwrap();
+    let weight_n = reported["weight_n"].as_f64().unwrap();
     let thrust = half["thrust_n"].as_f64().unwrap() / weight_n;
     assert!((thrust - 0.197_138).abs() < 2e-6, "{thrust}");
     let picture = std::fs::read_to_string(folder.path().join("results/arch/spread.svg")).unwrap();
@@ -1315,8 +1315,8 @@ fn an_unbounded_thrust_is_omitted() {
     let text = "[arch]\nmean_radius_m = 4.0\nthickness_ratio = 0.1\nembrace_deg = 40\nvoussoirs = 12\n[free_hinges]\n";
     std::fs::write(folder.path().join("flat.toml"), text).unwrap();
     let words = printed(folder.path(), &["spread", "flat.toml", "--angle", "0"]);
-    let told = json(&folder.path().join("results/flat/spread.json"));
-    let path = &told["paths"][0];
+    let reported = json(&folder.path().join("results/flat/spread.json"));
+    let path = &reported["paths"][0];
     let [before, last] = [19, 20].map(|stage: usize| &path["stages"][stage]);
     assert_eq!(path["falls_at_m"], last["movement_m"]);
     assert!((1.0..100.0).contains(&before["thrust_ratio"].as_f64().unwrap()));
@@ -1359,11 +1359,12 @@ fn a_push_that_is_not_found_is_omitted_with_its_reason() {
         ],
     );
     golden("spread", &words);
-    let told = json(&folder.path().join("results/flat/spread.json"));
-    let falls_at_m = [0, 1].map(|path: usize| told["paths"][path]["falls_at_m"].as_f64().unwrap());
+    let reported = json(&folder.path().join("results/flat/spread.json"));
+    let falls_at_m =
+        [0, 1].map(|path: usize| reported["paths"][path]["falls_at_m"].as_f64().unwrap());
     assert!((falls_at_m[0] - 0.358_811).abs() < 5e-7);
     shows(&words, &falls_at_m);
-    let stages = told["paths"][0]["stages"].as_array().unwrap();
+    let stages = reported["paths"][0]["stages"].as_array().unwrap();
     let mut missing = 0;
     for stage in stages {
         for side in ["right", "left"] {
@@ -1518,7 +1519,7 @@ fn a_settled_arch_is_at_rest() {
 /// The push that starts a settled arch of elastic joints agrees with the push of the first motion of its rigid twin. A symmetric
 /// arch translated as a whole is unchanged.
 #[test]
-fn the_push_that_starts_a_settled_arch_is_that_of_moved_hinges() {
+fn the_onset_of_a_settled_elastic_arch_agrees_with_its_rigid_twin() {
     let row = semicircle_of_5_m();
     let movements = spread_out(0.15);
     let mut follower = Follower::new(&row).unwrap();
@@ -1573,7 +1574,7 @@ fn a_scenario_can_give_the_movement_of_its_springings() {
         resolved.contains("spread_m = 0.15") && resolved.contains("settlement_m = 0.05"),
         "{resolved}"
     );
-    let told = printed(
+    let reported = printed(
         folder.path(),
         &[
             "--quiet",
@@ -1584,8 +1585,13 @@ fn a_scenario_can_give_the_movement_of_its_springings() {
             "json",
         ],
     );
-    let told: serde_json::Value = serde_json::from_str(&told).unwrap();
-    assert!(told["incipient_acceleration_g"]["right"].as_f64().unwrap() < 0.08);
+    let reported: serde_json::Value = serde_json::from_str(&reported).unwrap();
+    assert!(
+        reported["incipient_acceleration_g"]["right"]
+            .as_f64()
+            .unwrap()
+            < 0.08
+    );
     // The rigid twin has moved by the same amount.
     let said = printed(folder.path(), &["run", "arch.toml"]);
     assert!(

@@ -473,7 +473,7 @@ fn lines_of_thrust_pass_through_the_hinges_and_give_the_excess() {
                 .map(|ratio| ratio.unwrap().abs())
                 .fold(0.0, f64::max);
             let excess = (worst - 0.5).max(0.0);
-            // In a section with hardly any compression the excess is defined differently, and larger than anything drawn.
+            // In an almost unloaded section the excess is defined differently, and is larger than anything drawn.
             if worst < 3.0 {
                 let miss = (excess - sample.demand.excess_ratio).abs();
                 assert!(miss < 1e-6, "{} {worst} {:?}", sample.time_s, sample.demand);

@@ -475,9 +475,9 @@ fn a_tied_column_turns_about_its_toe() {
         ((rise + held) / sway - 0.339_366_718).abs() < 5e-10,
         "{right}"
     );
-    let told = page(&scenario, &check, "2026-01-01");
+    let reported = page(&scenario, &check, "2026-01-01");
     for words in ["F (kN)", "5.000", "0.33937"] {
-        assert!(told.contains(words), "{words}");
+        assert!(reported.contains(words), "{words}");
     }
 }
 

@@ -298,7 +298,7 @@ fn cuts_in_the_ground_motion_change_nothing() {
 }
 
 #[test]
-fn the_critical_rotation_is_where_it_turns_over() {
+fn beyond_the_critical_rotation_it_overturns() {
     // Released just above and just below, on ground that moves a little first, so that the end is not decided yet.
     let arch = four_links(8.0, 0.15, 157.5, HingeSites::Anywhere);
     let link = arch.link(0).unwrap();

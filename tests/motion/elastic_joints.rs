@@ -338,12 +338,12 @@ fn histories_side_by_side_have_the_bits_of_each_alone() {
             ControlFlow::Continue(())
         };
         let (ground, request) = &cases[3];
-        let told = model
+        let reported = model
             .simulate(ground, request, Some(&mut recorder))
             .unwrap();
         let alone = model.simulate(ground, request, None).unwrap();
-        assert_eq!(told.peak_rotations_rad, alone.peak_rotations_rad);
-        assert!(samples > 80 && told.cost == alone.cost);
+        assert_eq!(reported.peak_rotations_rad, alone.peak_rotations_rad);
+        assert!(samples > 80 && reported.cost == alone.cost);
     }
 }
 
@@ -464,7 +464,7 @@ fn the_energy_balance_closes_with_the_square_of_the_step() {
 /// Mirror images move as mirror images, up to the rounding that a second of chatter amplifies. If all lengths are four times as large,
 /// the stiffness per area a quarter and times twice as long, rotations change by rounding only.
 #[test]
-fn mirror_images_and_scaled_arches_move_alike() {
+fn mirror_images_and_scaled_arches_have_similar_motions() {
     let ring = Ring::new(0.15, PI).unwrap();
     let sections = [0.0, 0.3, 0.7, 1.0, 1.6, 2.1, 2.6, PI];
     let row = Row::annular(&ring, &sections, 5.0, 1.0, 2700.0).unwrap();

@@ -531,7 +531,7 @@ fn the_lowest_level_faces_stand_on_unlimited_ground() {
         intrados_m: Vector2::new(xi, yi),
         extrados_m: Vector2::new(xe, ye),
     };
-    let goes_on = |supports, joints: &[[f64; 4]]| {
+    let unlimited = |supports, joints: &[[f64; 4]]| {
         let given = GivenBlocks {
             joints_file: String::new(),
             outlines_file: None,
@@ -553,18 +553,18 @@ fn the_lowest_level_faces_stand_on_unlimited_ground() {
             [2.0, right, 3.0, right],
         ]
     };
-    assert_eq!(goes_on(Supports::Both, &frame(0.0, 0.0)), [true, true]);
-    assert_eq!(goes_on(Supports::Both, &frame(0.0, 1.0)), [true, false]);
-    assert_eq!(goes_on(Supports::Both, &frame(1.0, 0.0)), [false, true]);
+    assert_eq!(unlimited(Supports::Both, &frame(0.0, 0.0)), [true, true]);
+    assert_eq!(unlimited(Supports::Both, &frame(0.0, 1.0)), [true, false]);
+    assert_eq!(unlimited(Supports::Both, &frame(1.0, 0.0)), [false, true]);
     let mut inclined = frame(0.0, 0.0);
     inclined[0][3] = 0.1;
-    assert_eq!(goes_on(Supports::Both, &inclined), [false, true]);
+    assert_eq!(unlimited(Supports::Both, &inclined), [false, true]);
     let stack = [
         [-0.5, 0.0, 0.5, 0.0],
         [-0.5, 1.0, 0.5, 1.0],
         [-0.4, 2.0, 0.4, 2.0],
     ];
-    assert_eq!(goes_on(Supports::Left, &stack), [true, false]);
+    assert_eq!(unlimited(Supports::Left, &stack), [true, false]);
     // In a mirror image the supports are exchanged.
     let row = arch(157.5, 0.15, 7, 10.0);
     assert_eq!(row.supports_extend, [false; 2]);
@@ -968,7 +968,7 @@ fn long_arches_under_heavy_fill_near_their_least_friction_are_solved() {
 
 /// Reference velocities of the blocks after a step by Coulomb's law, as one linear complementarity problem with dense matrices:
 /// two unknowns for the ends of a joint, two for friction to either side, and a slip speed.
-fn judged(
+fn reference_velocities(
     row: &Row,
     contacts: &[Contact],
     faces: &[Faces],
@@ -1086,7 +1086,7 @@ fn every_step_solves_the_complementarity_problem() {
         program.load(|block| free[block]);
         let solution = program.solve(|joint| lags[joint], 1e-9 * (GRAVITY * step + fastest));
         assert!(solution.bound_error < 1e-9, "{count} {solution:?}");
-        let judge = judged(
+        let judge = reference_velocities(
             &row,
             &contacts,
             &faces,

@@ -111,7 +111,7 @@ fn four_seconds() -> GroundMotion {
 }
 
 #[test]
-fn a_settled_arch_stays_where_it_is() {
+fn a_settled_arch_stays_at_rest() {
     for (row, movements) in [
         (arch(180.0, 0.15, 36), right(0.0279, 0.0)),
         (arch(180.0, 0.15, 36), right(0.0, 0.13)),
@@ -412,17 +412,17 @@ fn a_run_on_moved_springings_reports_both_pushes() {
         std::fs::write(folder.path().join("arch.toml"), format!("{ARCH}{more}")).unwrap()
     };
     write("[free_hinges]\n");
-    let told = printed(folder.path(), &["limit", "arch.toml", "--format", "json"]);
-    let told: serde_json::Value = serde_json::from_str(&told).unwrap();
+    let reported = printed(folder.path(), &["limit", "arch.toml", "--format", "json"]);
+    let reported: serde_json::Value = serde_json::from_str(&reported).unwrap();
     for side in ["right", "left"] {
         // At a quarter of the movement capacity of this semicircle, by an independent program. Its numbers and the movement have
         // six digits.
-        let number = |key: &str| told[key][side].as_f64().unwrap();
+        let number = |key: &str| reported[key][side].as_f64().unwrap();
         assert!((number("incipient_acceleration_g") - 0.006_437_48).abs() < 2e-7);
         assert!((number("capacity_g") - 0.115_773).abs() < 1e-5);
     }
     assert_eq!(
-        told["hinges"],
+        reported["hinges"],
         serde_json::json!([
             { "joint": 6, "edge": "intrados" },
             { "joint": 18, "edge": "extrados" },
@@ -433,8 +433,10 @@ fn a_run_on_moved_springings_reports_both_pushes() {
     shows(&words, &[6.0, 18.0, 30.0]);
     let run = ["--quiet", "run", "arch.toml", "--no-repeat", "--no-report"];
     printed(folder.path(), &run);
-    let told = json(&folder.path().join("results/arch/summary.json"));
-    let told_g = told["incipient_acceleration_g"]["right"].as_f64().unwrap();
+    let reported = json(&folder.path().join("results/arch/summary.json"));
+    let told_g = reported["incipient_acceleration_g"]["right"]
+        .as_f64()
+        .unwrap();
     assert!((told_g - 0.006_437_48).abs() < 2e-7, "{told_g}");
     // The settled position, from which rotations count.
     let first = |table: &str, column: &str| {

@@ -565,7 +565,7 @@ fn a_run_reports_its_feet() {
     }
 }
 
-/// Asserts what a run prints and writes about the feet; returns its words.
+/// Asserts the printed and written output of a run about the feet; returns the printed output.
 fn assert_reports_feet(folder: &Path) -> String {
     let said = printed(
         folder,
@@ -590,8 +590,8 @@ fn assert_reports_feet(folder: &Path) -> String {
         .iter()
         .map(|apart_m| apart_m.abs())
         .fold(0.0, f64::max);
-    let told = summary["feet_farthest_apart_m"][0].as_f64().unwrap();
-    assert!((told.abs() - farthest).abs() < 1e-12 && farthest > 1e-3);
+    let reported = summary["feet_farthest_apart_m"][0].as_f64().unwrap();
+    assert!((reported.abs() - farthest).abs() < 1e-12 && farthest > 1e-3);
     let last = summary["feet_apart_at_end_m"][0].as_f64().unwrap();
     assert!((last - apart_m.last().unwrap()).abs() < 1e-12);
     assert!(summary["right_foot_j"].as_f64().unwrap().abs() > 1.0);

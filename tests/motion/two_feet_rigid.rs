@@ -56,14 +56,14 @@ fn in_steps_of(longest_step_s: f64, model: &FreeHinges) -> FreeHinges {
 
 /// Motion of the right foot by one sine of acceleration: its final displacement to the right and upwards, and its duration.
 #[derive(Clone, Copy)]
-struct Way {
-    way_m: [f64; 2],
+struct FootMotion {
+    displacement_m: [f64; 2],
     lasts_s: f64,
 }
 
-impl Way {
+impl FootMotion {
     fn ground(&self) -> GroundMotion {
-        let strong_m_s2 = Vector2::from(self.way_m) * (TAU / self.lasts_s.powi(2));
+        let strong_m_s2 = Vector2::from(self.displacement_m) * (TAU / self.lasts_s.powi(2));
         let right = Pulse::OneSine
             .lasting_s(self.lasts_s)
             .inclined_m_s2(strong_m_s2);
@@ -73,7 +73,7 @@ impl Way {
     /// Displacement of the foot at a time.
     fn at_m(&self, time_s: f64) -> Vector2<f64> {
         let part = (time_s / self.lasts_s).min(1.0);
-        Vector2::from(self.way_m) * (part - (TAU * part).sin() / TAU)
+        Vector2::from(self.displacement_m) * (part - (TAU * part).sin() / TAU)
     }
 }
 
@@ -127,9 +127,9 @@ impl<'a> ThreeHinges<'a> {
     }
 
     /// Kinetic and potential energy relative to the undeformed arch at rest.
-    fn energy_j(&self, way: &Way, time_s: f64) -> f64 {
+    fn energy_j(&self, foot: &FootMotion, time_s: f64) -> f64 {
         const H: f64 = 1e-4;
-        let [before, now, after] = [-H, 0.0, H].map(|by| self.blocks(way.at_m(time_s + by)));
+        let [before, now, after] = [-H, 0.0, H].map(|by| self.blocks(foot.at_m(time_s + by)));
         let energy_j = |block: usize| {
             let body = &self.row.blocks[block];
             let velocity = (after[block] - before[block]) / (2.0 * H);
@@ -150,7 +150,7 @@ fn open_joints(sample: &Sample) -> Vec<usize> {
 }
 
 /// Supports whose right springing has moved slowly to the right and upwards by these distances.
-fn gone([right_m, up_m]: [f64; 2]) -> Movements {
+fn moved_supports([right_m, up_m]: [f64; 2]) -> Movements {
     Movements {
         left: Movement::default(),
         right: Movement {
@@ -166,13 +166,16 @@ fn gone([right_m, up_m]: [f64; 2]) -> Movements {
 fn three_hinges_follow_the_foot() {
     let row = row(157.5, 0.15, 2);
     let three = ThreeHinges::new(&row);
-    for (way_m, lasts_s) in [([0.4, 0.0], 1.0), ([0.3, -0.2], 0.7)] {
-        let way = Way { way_m, lasts_s };
+    for (displacement_m, lasts_s) in [([0.4, 0.0], 1.0), ([0.3, -0.2], 0.7)] {
+        let foot = FootMotion {
+            displacement_m,
+            lasts_s,
+        };
         let request = sampled(1.2 * lasts_s, 0.02);
         for model in models(&row) {
-            let (history, samples) = run_sampled(&model, &way.ground(), &request);
+            let (history, samples) = run_sampled(&model, &foot.ground(), &request);
             for sample in &samples {
-                let apart_m = way.at_m(sample.time_s);
+                let apart_m = foot.at_m(sample.time_s);
                 // The program sums the displacements of the foot over all steps.
                 assert!((sample.feet_apart_m - apart_m).norm() < 1e-13);
                 let due = three.blocks(apart_m);
@@ -180,7 +183,7 @@ fn three_hinges_follow_the_foot() {
                     // With slip, each step corrects the position error of the previous one.
                     assert!((rotation_rad - due.z).abs() < 1e-10, "{rotation_rad} {due}");
                 }
-                let due_j = three.energy_j(&way, sample.time_s);
+                let due_j = three.energy_j(&foot, sample.time_s);
                 // The closed form uses differences over 0.1 ms; the program has an error of the square of its step.
                 assert!((sample.energy_j - due_j).abs() < 2e-3, "{due_j}");
             }
@@ -188,7 +191,7 @@ fn three_hinges_follow_the_foot() {
             assert_eq!(open_joints(last), [0, 1, 2]);
             // At the end, the work of the foot equals the energy.
             let row = history.summary.row().unwrap();
-            let due_j = three.energy_j(&way, 1.1 * lasts_s);
+            let due_j = three.energy_j(&foot, 1.1 * lasts_s);
             let work_j = row.right_foot_j;
             assert!((work_j / due_j - 1.0).abs() < 1e-8, "{work_j} {due_j}");
             assert_eq!((history.summary.impacts, row.ground_j), (0, 0.0));
@@ -197,11 +200,11 @@ fn three_hinges_follow_the_foot() {
         // On moved springings the motion is the same; rotations count from the settled position.
         let from_m = [0.1, -0.05];
         let model = FreeHinges::new(row.clone()).unwrap();
-        let settled = model.on_supports(&gone(from_m)).unwrap();
-        let (_, samples) = run_sampled(&settled, &way.ground(), &request);
+        let settled = model.on_supports(&moved_supports(from_m)).unwrap();
+        let (_, samples) = run_sampled(&settled, &foot.ground(), &request);
         let stood = three.blocks(from_m.into());
         for sample in samples {
-            let due = three.blocks(way.at_m(sample.time_s) + Vector2::from(from_m));
+            let due = three.blocks(foot.at_m(sample.time_s) + Vector2::from(from_m));
             for (block, rotation_rad) in sample.rotations_rad.iter().enumerate() {
                 let due_rad = due[block].z - stood[block].z;
                 assert!((rotation_rad - due_rad).abs() < 1e-12, "{rotation_rad}");
@@ -234,18 +237,18 @@ fn a_ground_tie_follows_the_foot() {
         breaks_at_strain: f64::INFINITY,
     };
     let tied = row.clone().with_ties(vec![tie], GRAVITY).unwrap();
-    let way = Way {
-        way_m: [0.3, 0.0],
+    let foot = FootMotion {
+        displacement_m: [0.3, 0.0],
         lasts_s: 1.0,
     };
     let force_n = |time_s: f64| {
-        let apart_m = way.at_m(time_s);
+        let apart_m = foot.at_m(time_s);
         let crown = middle_m(three.pins, three.pins[0], three.pins[2] + apart_m);
         let longer_m = (held_m[0] + apart_m - crown).norm() - (held_m[0] - held_m[1]).norm();
         1e3 + 1e5 * longer_m
     };
     for model in models(&tied) {
-        let (history, samples) = run_sampled(&model, &way.ground(), &sampled(1.1, 0.02));
+        let (history, samples) = run_sampled(&model, &foot.ground(), &sampled(1.1, 0.02));
         for sample in &samples {
             let due_n = force_n(sample.time_s);
             let [tie] = sample.ties[..] else {
@@ -257,7 +260,7 @@ fn a_ground_tie_follows_the_foot() {
         let [first_n, last_n] = [0.0, 1.05].map(force_n);
         assert!(last_n > 2.0 * first_n, "{last_n}");
         let stored_j = (last_n * last_n - first_n * first_n) / 2e5;
-        let due_j = three.energy_j(&way, 1.05) + stored_j;
+        let due_j = three.energy_j(&foot, 1.05) + stored_j;
         let work_j = history.summary.row().unwrap().right_foot_j;
         assert!((work_j - due_j).abs() < 1e-6 * stored_j, "{work_j} {due_j}");
     }
@@ -358,14 +361,14 @@ fn four_hinges_between_two_feet_obey_lagranges_equation() {
 #[test]
 fn the_energy_closes_with_the_square_of_the_step() {
     let row = row(157.5, 0.15, 2);
-    let way = Way {
-        way_m: [0.3, -0.2],
+    let foot = FootMotion {
+        displacement_m: [0.3, -0.2],
         lasts_s: 0.7,
     };
     for model in models(&row) {
         let defects = [4e-3, 2e-3, 1e-3].map(|longest_step_s| {
             let model = in_steps_of(longest_step_s, &model);
-            let (history, _) = run_sampled(&model, &way.ground(), &sampled(0.8, 0.02));
+            let (history, _) = run_sampled(&model, &foot.ground(), &sampled(0.8, 0.02));
             history.summary.energy_defect_ratio
         });
         assert!(defects[0] < 1e-6, "{defects:?}");
@@ -483,15 +486,17 @@ fn mirrored_feet_move_a_mirrored_arch() {
 #[test]
 fn a_slow_foot_ends_in_the_equilibrium_of_moved_supports() {
     let row = row(157.5, 0.15, 12);
-    let way = Way {
-        way_m: [0.25, -0.1],
+    let foot = FootMotion {
+        displacement_m: [0.25, -0.1],
         lasts_s: 10.0,
     };
     // Steps of 0.5 ms are fine enough for so slow a motion.
     for model in models(&row).map(|model| in_steps_of(5e-4, &model)) {
-        let (history, samples) = run_sampled(&model, &way.ground(), &sampled(12.0, 0.5));
+        let (history, samples) = run_sampled(&model, &foot.ground(), &sampled(12.0, 0.5));
         assert_eq!(history.summary.outcome, Outcome::Rest);
-        let rest = model.on_supports(&gone(way.way_m)).unwrap();
+        let rest = model
+            .on_supports(&moved_supports(foot.displacement_m))
+            .unwrap();
         let (_, there) = run_sampled(&rest, &GroundMotion::still(), &sampled(0.01, 0.01));
         let (there, here) = (&there[0], samples.last().unwrap());
         assert_eq!(open_joints(here).len(), 3);
@@ -515,18 +520,18 @@ fn a_slow_foot_ends_in_the_equilibrium_of_moved_supports() {
 fn an_arch_falls_when_a_slow_foot_passes_the_movement_capacity() {
     let row = row(157.5, 0.15, 20);
     let model = FreeHinges::new(row.clone()).unwrap();
-    for (way_m, part) in [([1.2, 0.0], 0.97), ([1.2, 0.0], 1.03), ([0.0, -3.0], 1.03)] {
+    for (displacement_m, part) in [([1.2, 0.0], 0.97), ([1.2, 0.0], 1.03), ([0.0, -3.0], 1.03)] {
         let mut follower = Follower::new(&row).unwrap();
-        let slowly = |part: f64| gone(way_m) * part;
+        let slowly = |part: f64| moved_supports(displacement_m) * part;
         let Some(falls) = follower.move_supports(slowly, 0.0, 1.0).unwrap() else {
             panic!("it falls");
         };
-        let way = Way {
-            way_m: way_m.map(|way_m| way_m * falls * part),
+        let foot = FootMotion {
+            displacement_m: displacement_m.map(|displacement_m| displacement_m * falls * part),
             lasts_s: 10.0,
         };
         let request = sampled(13.0, 0.5);
-        let summary = model.simulate(&way.ground(), &request, None).unwrap();
+        let summary = model.simulate(&foot.ground(), &request, None).unwrap();
         if part > 1.0 {
             assert!(matches!(summary.outcome, Outcome::Overturned(_)));
             // The last hundredths of the movement take a second or two.

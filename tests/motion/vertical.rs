@@ -216,7 +216,7 @@ fn ground_that_falls_freely_is_an_input_error() {
 
 /// The fixed columns stay the same; the vertical acceleration follows only if there is one.
 #[test]
-fn the_vertical_acceleration_is_the_last_column_where_there_is_one() {
+fn the_vertical_acceleration_is_the_last_column_if_present() {
     for vertical_g in [0.0, -0.15] {
         let scenario = parsed(&format!(
             "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n\

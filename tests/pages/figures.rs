@@ -561,7 +561,7 @@ fn height_text_panels_and_title_can_be_chosen() {
     );
     let title = "Semicircular arch";
     assert!(run(&[]).contains(title) && !run(&["--no-title"]).contains(title));
-    for (more, told) in [
+    for (more, reported) in [
         (&["--figure-width", "85"][..], "such as 85mm"),
         (&["--figure-height", "60mm"], "--figure-width"),
         (
@@ -581,7 +581,7 @@ fn height_text_panels_and_title_can_be_chosen() {
     ] {
         let arguments = [&["run", own], more].concat();
         let said = refusal(&archrock(folder.path(), &arguments));
-        assert!(said.contains(told), "{said}");
+        assert!(said.contains(reported), "{said}");
     }
 }
 

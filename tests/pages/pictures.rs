@@ -132,7 +132,7 @@ fn limit_shows_the_thrust_line_inside_the_ring_and_through_its_hinges() {
 }
 
 #[test]
-fn joints_are_drawn_where_there_are_voussoirs() {
+fn joints_are_drawn_for_voussoirs() {
     let arch = Arch::new(10.0, 0.15, 157.5).unwrap();
     let (arch, scene) = drawn(arch.with_voussoirs(7).unwrap());
     let chain = arch.chain();

@@ -55,9 +55,13 @@ fn four_links_are_a_rough_guide_in_every_study() {
             assert_eq!(said.contains(GUIDE), is_arch, "{command}: {said}");
             for file in files {
                 let file = json(&at.join(&out).join(file));
-                let told = warnings(&file);
-                assert_eq!(told.len(), usize::from(is_arch), "{command} {told:?}");
-                assert!(told.iter().all(|warning| warning.starts_with(GUIDE)));
+                let reported = warnings(&file);
+                assert_eq!(
+                    reported.len(),
+                    usize::from(is_arch),
+                    "{command} {reported:?}"
+                );
+                assert!(reported.iter().all(|warning| warning.starts_with(GUIDE)));
             }
         }
     }
@@ -74,13 +78,14 @@ fn the_summary_lists_the_warnings() {
     let said = String::from_utf8(output.stdout).unwrap();
     assert!(said.contains(GUIDE), "{said}");
     let summary = json(&at.join("o/summary.json"));
-    let told = warnings(&summary);
+    let reported = warnings(&summary);
     let wanted = format!("{GUIDE}: the thrust line leaves the arch by up to ");
-    assert!(told[0].starts_with(&wanted), "{told:?}");
+    assert!(reported[0].starts_with(&wanted), "{reported:?}");
     assert!(
-        told.iter()
+        reported
+            .iter()
             .any(|warning| warning.contains("needs a friction of ")),
-        "{told:?}"
+        "{reported:?}"
     );
     // Unlikely numbers, which the program prints as warnings.
     let text = text.replace("= 5.0", "= 500").replace("= 0.4", "= 30");
@@ -102,7 +107,7 @@ fn the_summary_lists_the_warnings() {
             "{command}: {said}"
         );
     }
-    // A column that hardly rocks has none.
+    // A column that barely rocks has none.
     fs::write(
         at.join("s.toml"),
         format!("{COLUMN}{}", PULSE.replace("0.4", "0.21")),

@@ -602,10 +602,10 @@ fn studies_and_checks_can_be_printed_as_json() {
     let json = |arguments: &[&str]| -> serde_json::Value {
         serde_json::from_str(&printed(folder.path(), arguments)).unwrap()
     };
-    let told = json(&["map", "s.toml", "--format", "json", "--quiet"]);
+    let reported = json(&["map", "s.toml", "--format", "json", "--quiet"]);
     let file = fs::read_to_string(folder.path().join("results/s/map.json")).unwrap();
     assert_eq!(
-        told,
+        reported,
         serde_json::from_str::<serde_json::Value>(&file).unwrap()
     );
     let checked = json(&["check", "s.toml", "--format", "json"]);

@@ -82,8 +82,11 @@ fn pages_have_the_scenario_line_by_line() {
 fn names_of_records_are_shown_escaped() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join(NAME), RECORD).unwrap();
-    let told = printed(folder.path(), &["check", NAME]);
-    assert!(told.starts_with(&format!("{SHOWN}: AT2 file")), "{told}");
+    let reported = printed(folder.path(), &["check", NAME]);
+    assert!(
+        reported.starts_with(&format!("{SHOWN}: AT2 file")),
+        "{reported}"
+    );
     let text = format!("{ARCH}[ground.record]\nfile = '{NAME}'\n");
     fs::write(folder.path().join("s.toml"), text).unwrap();
     let said = printed(folder.path(), &["run", "s.toml", "--out", "run"]);

@@ -64,7 +64,7 @@ fn the_readme_quotes_the_output_of_run() {
 
 /// Below a paragraph of these pages with a command on a scenario are lines that the command prints, in their order.
 #[test]
-fn pages_quote_what_their_commands_print() {
+fn pages_quote_the_output_of_their_commands() {
     for (page, outputs) in [("docs/example.md", 3), ("docs/models.md", 1)] {
         let page = fs::read_to_string(repository().join(page)).unwrap();
         let mut blocks = page.split("\n\n").peekable();

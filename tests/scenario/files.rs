@@ -354,7 +354,7 @@ fn an_empty_scenario_lists_what_is_missing() {
 }
 
 #[test]
-fn all_errors_in_one_go_in_the_order_of_the_file() {
+fn all_errors_are_reported_in_the_order_of_the_file() {
     let text = r#"
 title = 3
 [simulation]

@@ -28,7 +28,7 @@ fn scenario(folder: &Path, files: &[(&str, &str)], keys: &str) -> Result<Scenari
 /// The error of straight lines is h^2/8 times the second derivative: 7.7e-6 of the peak for h = 1 ms and a half sine
 /// of 0.4 s, and 5e-6 of the resulting velocity.
 #[test]
-fn a_sampled_half_sine_does_what_a_half_sine_does() {
+fn a_sampled_half_sine_gives_the_history_of_a_half_sine() {
     let arch = semicircle();
     let (peak, duration) = (-0.3 * G, 0.4);
     let samples: Vec<_> = (0..=400)

@@ -31,7 +31,7 @@ fn edited(old: &str, new: &str) -> Scenario {
 }
 
 #[test]
-fn an_assignment_does_what_an_edit_of_the_text_does() {
+fn an_assignment_equals_an_edit_of_the_text() {
     assert_eq!(
         read(&["arch.thickness_ratio=0.12"]).unwrap(),
         edited("0.15", "0.12")

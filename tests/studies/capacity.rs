@@ -159,10 +159,13 @@ fn the_command_writes_table_picture_and_summary() {
         .map(|line| line.split(',').collect())
         .collect();
     for (index, side) in own.iter().enumerate() {
-        let told = &json["capacity"][side.sway.name()];
-        assert_eq!(told["acceleration_g"], side.start().acceleration_g);
-        assert_eq!(told["ultimate_displacement_m"], side.end().displacement_m);
-        assert_eq!(told["oscillator"]["mass_fraction"], side.mass_fraction);
+        let reported = &json["capacity"][side.sway.name()];
+        assert_eq!(reported["acceleration_g"], side.start().acceleration_g);
+        assert_eq!(
+            reported["ultimate_displacement_m"],
+            side.end().displacement_m
+        );
+        assert_eq!(reported["oscillator"]["mass_fraction"], side.mass_fraction);
         for (point, row) in side.curve.iter().zip(&rows[1 + index * side.curve.len()..]) {
             assert_eq!(row[0], side.sway.name());
             assert_eq!(row[2].parse::<f64>().unwrap(), point.displacement_m);

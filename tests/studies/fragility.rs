@@ -240,7 +240,7 @@ impl Repeated {
 /// The scatter of 1000 samples is known to 1 / sqrt(2000) = 2.2 %, the coverage to 0.7 %. Three times these are
 /// allowed, plus 1 % because the errors are of first order.
 #[test]
-fn independent_cases_spread_and_lie_in_the_band_as_the_errors_say() {
+fn errors_and_bands_predict_the_scatter_of_independent_cases() {
     let (mut random, dispersion) = (Random(21), 0.5);
     // Every case has its own record.
     let repeated = Repeated::new(1000, || {
@@ -266,7 +266,7 @@ fn independent_cases_spread_and_lie_in_the_band_as_the_errors_say() {
 /// Cases of one record share most of their capacity. The scatter of 600 samples is known to 2.9 %, and with
 /// 100 records the errors are some percent too small.
 #[test]
-fn dependent_cases_spread_as_the_clustered_errors_say() {
+fn clustered_errors_predict_the_scatter_of_dependent_cases() {
     let (mut random, dispersion) = (Random(22), 0.5);
     let repeated = Repeated::new(600, || suite(&mut random, 100, dispersion, 0.45));
     for ratio in repeated.ratios(|fit| fit.clustered.unwrap()) {

@@ -139,8 +139,8 @@ fn uneven(folder: &Path) {
 }
 
 /// The output for the mirror image, mirrored back.
-fn seen_in_a_mirror(told: &Value, key: &str, last: u64) -> Value {
-    match told {
+fn seen_in_a_mirror(reported: &Value, key: &str, last: u64) -> Value {
+    match reported {
         Value::Object(map) => {
             let inside =
                 |(key, value): (&String, &Value)| (key.clone(), seen_in_a_mirror(value, key, last));
@@ -165,9 +165,11 @@ fn seen_in_a_mirror(told: &Value, key: &str, last: u64) -> Value {
             "left" => "right".into(),
             _ => "left".into(),
         },
-        _ if key == "joint" || key.ends_with("_joint") => (last - told.as_u64().unwrap()).into(),
-        _ if key == "x_n_s_per_m" => (-told.as_f64().unwrap()).into(),
-        _ => told.clone(),
+        _ if key == "joint" || key.ends_with("_joint") => {
+            (last - reported.as_u64().unwrap()).into()
+        }
+        _ if key == "x_n_s_per_m" => (-reported.as_f64().unwrap()).into(),
+        _ => reported.clone(),
     }
 }
 
@@ -283,10 +285,10 @@ fn impulses_of_the_ground_are_the_momentum_that_blocks_gain() {
                 .sum()
         };
         let sign = first.before(1).sign();
-        let told = Vector2::new(sign * total("x_n_s_per_m"), total("y_n_s_per_m")) * depth_m;
+        let reported = Vector2::new(sign * total("x_n_s_per_m"), total("y_n_s_per_m")) * depth_m;
         assert!(
-            (told - gained).norm() < 1e-10 * gained.norm(),
-            "{told} {gained}"
+            (reported - gained).norm() < 1e-10 * gained.norm(),
+            "{reported} {gained}"
         );
     }
 }
@@ -322,8 +324,8 @@ fn the_certificate_is_the_full_closure_of_free_hinges() {
         let options = ["--certificate", "--first", first.name()];
         let result = json(folder.path(), &[&["s.toml"], &options[..]].concat());
         let certificate = &result["certificate"];
-        let told = certificate["restitution_all_fields"].as_f64().unwrap();
-        assert!((told - kept).abs() < 1e-8, "{told} {kept}");
+        let reported = certificate["restitution_all_fields"].as_f64().unwrap();
+        assert!((reported - kept).abs() < 1e-8, "{reported} {kept}");
         assert_eq!(certificate["joints"], joints);
         // The same motion, joint by joint.
         let opened = certificate["opened_joints"].as_array().unwrap();
@@ -339,14 +341,14 @@ fn the_certificate_is_the_full_closure_of_free_hinges() {
                 Sway::Left => joints - 1 - from_left,
             };
             let turn = rate(Some(joint)) - rate(joint.checked_sub(1));
-            let told = opening["opening_rate_ratio"].as_f64().unwrap();
+            let reported = opening["opening_rate_ratio"].as_f64().unwrap();
             // The part to the right of a joint turns clockwise about the intrados, anticlockwise about the extrados.
             let sign = if opening["edge"] == "intrados" {
                 -1.0
             } else {
                 1.0
             };
-            assert!((sign * turn - told).abs() < 1e-4, "{turn} {opening}");
+            assert!((sign * turn - reported).abs() < 1e-4, "{turn} {opening}");
         }
     }
 }
@@ -410,7 +412,7 @@ fn requests_that_do_not_suit_the_structure_are_refused() {
         refused(folder, arguments, words);
     }
     assert!(!folder.join("p.svg").exists());
-    // A column sways alike to both sides.
+    // A column sways equally to both sides.
     let [left, right] =
         ["left", "right"].map(|side| printed(folder, &["impact", "column.toml", "--first", side]));
     let words =

@@ -414,7 +414,7 @@ fn critical_and_limit_rotations() {
 }
 
 /// The answer of the reference if it has one; otherwise another case is tried, which may happen only a few times.
-fn judged<T>(verdict: Option<T>) -> Result<T, TestCaseError> {
+fn reference_answer<T>(verdict: Option<T>) -> Result<T, TestCaseError> {
     verdict.ok_or_else(|| TestCaseError::reject("no verdict"))
 }
 
@@ -455,7 +455,7 @@ proptest! {
             Err(LimitError::CannotStand) => {
                 // No line fits, or only one that leaves the ring between sections. An arch that cannot stand
                 // may still stand while it is pushed.
-                let room = judged(room_for_a_line(&ring, &sections([0.0; 4])))?;
+                let room = reference_answer(room_for_a_line(&ring, &sections([0.0; 4])))?;
                 prop_assert!(room < 1e-5, "{room}");
                 if let Some(push) = static_limit_g(&ring, &sections([0.0; 4])) {
                     prop_assert!(push < 0.05, "{push}");
@@ -463,7 +463,7 @@ proptest! {
             }
             Err(LimitError::OtherMechanism(acceleration_g)) => {
                 // The programme of the test finds no starting corner in some of these rings.
-                let push = judged(static_limit_g(&ring, &sections([0.0; 4])))?;
+                let push = reference_answer(static_limit_g(&ring, &sections([0.0; 4])))?;
                 // Statics at 180 sections constrains the line less than the whole ring would, by the square of their
                 // distance; the mechanism is the best one even where its hinges merge.
                 prop_assert!(push <= acceleration_g * (1.0 + 1e-3), "{push} {acceleration_g}");
@@ -487,7 +487,7 @@ proptest! {
             let joints = even_sections(&ring, u32::try_from(voussoirs).unwrap());
             (HingeSites::Voussoirs(voussoirs), joints)
         };
-        let room = judged(room_for_a_line(&ring, &sections))?;
+        let room = reference_answer(room_for_a_line(&ring, &sections))?;
         // The tolerance covers how far the line may leave the ring between sections, and the error of the solver.
         if room.abs() > 1e-5 {
             prop_assert_eq!(carries_its_weight(&ring, sites), room > 0.0, "{}", room);
@@ -507,7 +507,7 @@ proptest! {
         for (factor, stands) in [(1.0 - 1e-3, false), (1.0 + 1e-3, true)] {
             let ring = ring(least * factor, embrace);
             let joints = even_sections(&ring, u32::try_from(voussoirs).unwrap());
-            let room = judged(room_for_a_line(&ring, &joints))?;
+            let room = reference_answer(room_for_a_line(&ring, &joints))?;
             prop_assert_eq!(room > 0.0, stands, "{}", room);
         }
     }
@@ -516,7 +516,7 @@ proptest! {
     #[test]
     fn no_mechanism_moves_earlier(t in 0.11_f64..0.3, embrace in 100.0_f64..180.0, seed in 0_u64..1 << 60) {
         let ring = ring(t, embrace);
-        let found = judged(incipient(&ring, HingeSites::Anywhere).ok())?;
+        let found = reference_answer(incipient(&ring, HingeSites::Anywhere).ok())?;
         let score = |angles: [f64; 4]| {
             let mechanism = FourLink::new(&ring, angles)?;
             let push = acceleration_g(&mechanism, &ring);

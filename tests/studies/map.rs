@@ -661,7 +661,7 @@ fn a_map_needs_a_ground_motion_and_a_column_has_no_radius() {
 }
 
 #[test]
-fn a_map_reads_back_as_it_is_written() {
+fn a_map_reads_back() {
     for map in [
         "restitution = [0.2, 0.5]\namplitude_g = { from = -3, to = -0.1, count = 5, spacing = 'logarithmic' }",
         "thickness_ratio = { from = 0.12, to = 0.2, count = 4 }\nembrace_deg = [160, 180]",

@@ -152,7 +152,7 @@ fn snapshots_are_to_scale() {
 }
 
 #[test]
-fn exaggerated_snapshots_move_so_many_times_as_far() {
+fn exaggerated_snapshots_scale_displacements() {
     let folder = tempfile::tempdir().unwrap();
     let corners = |more: &[&str]| {
         run(

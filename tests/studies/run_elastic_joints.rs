@@ -238,10 +238,13 @@ fn needed_friction_counts_loaded_joints() {
             }
         }
     }
-    let told = summary["largest_friction_demand"].as_f64().unwrap();
-    assert!((told / needed - 1.0).abs() < 1e-9, "{told} {needed}");
+    let reported = summary["largest_friction_demand"].as_f64().unwrap();
+    assert!(
+        (reported / needed - 1.0).abs() < 1e-9,
+        "{reported} {needed}"
+    );
     assert!(of_all > 10.0 && needed < 2.0, "{of_all} {needed}");
-    shows(&said, &[told]);
+    shows(&said, &[reported]);
 }
 
 /// Every study gives the threshold of the block in the table; with rigid joints the same block stands up to 0.5017 g.

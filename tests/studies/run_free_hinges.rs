@@ -374,7 +374,7 @@ fn events_name_the_joints_that_are_open() {
                         "extrados" => intrados_m > 0.0,
                         _ => intrados_m.max(extrados_m) > 0.0,
                     };
-                    // If joints slip, corners that are hardly apart shut without an impact.
+                    // If joints slip, corners with tiny gaps close without an impact.
                     assert!(
                         is_open || !options.is_empty(),
                         "joint {hinge:?} in row {row}"
@@ -900,7 +900,7 @@ fn requests_beyond_a_model_are_refused() {
 }
 
 #[test]
-fn a_column_of_one_block_moves_as_housner_s() {
+fn a_column_of_one_block_moves_as_housners_block() {
     let column = format!("[column]\n{SHAKEN_COLUMN}");
     let results = Results::of(&column, &["--hinges", "both", "--no-repeat"]);
     let [four, free] = ["four", "free"].map(|model| {

@@ -78,7 +78,7 @@ fn rectangular_pulses_on_slender_columns_agree_with_housner() {
     let (coarse, fine) = (miss(0.02), miss(0.01));
     for (index, p_t) in p_t.into_iter().enumerate() {
         assert!(fine[index].abs() < 1e-4, "{p_t}: {}", fine[index]);
-        // The longest pulse needs hardly more than the onset of the column, so the error is that of rounding.
+        // The longest pulse needs little more than the onset of the column, so the error is that of rounding.
         if p_t < 6.0 {
             let ratio = coarse[index] / fine[index];
             assert!((3.9..4.1).contains(&ratio), "{p_t}: {ratio}");
@@ -114,7 +114,7 @@ fn half_sines_on_slender_columns_agree_with_the_linear_solution() {
 
 /// Amplitudes in g from an independent integration (relative tolerance 1e-10), printed with three digits.
 #[test]
-fn step_pairs_overturn_an_arch_of_seven_voussoirs_as_computed_elsewhere() {
+fn step_pairs_overturn_seven_voussoirs_at_independently_computed_amplitudes() {
     let arch = "[arch]\nmean_radius_m = 10.0\nthickness_ratio = 0.15\nembrace_deg = 157.5\nvoussoirs = 7\n";
     let text = format!("{arch}{}", pulse("step_pair"));
     let found = without_impact(&text, "step_pair", &[0.2, 0.5, 1.0]);
@@ -159,7 +159,8 @@ fn narrow_windows_are_found() {
     }
 }
 
-/// An arch four times as large under pulses twice as long, and one on the moon: at the same acceleration over gravity they move alike.
+/// An arch four times as large under pulses twice as long, and one on the moon, have similar motions at the same ratio of
+/// acceleration to gravity.
 #[test]
 fn similar_structures_have_similar_thresholds() {
     let factors = Factors::new(0.1, 30.0, 0.3).unwrap();

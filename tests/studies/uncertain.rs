@@ -159,7 +159,7 @@ fn first_order_indices_are_those_of_ishigami() {
 }
 
 /// Total indices of the function of Ishigami and Homma are known as well: 0.5574, 0.4424, 0.2436. The design takes three further
-/// samples for each of 1,024; the samples themselves stay what they are without it.
+/// samples for each of 1,024; these samples are the same without the design.
 #[test]
 fn total_indices_are_those_of_ishigami() {
     let known = {
@@ -845,9 +845,9 @@ fn commands_print_the_output_shown_in_the_worked_case() {
             assert!(rest.ends_with("of 200 samples"));
             let (outcome, quoted) = beginning.trim().split_once(": ").unwrap();
             // An outcome without samples is not printed.
-            let told = said.split_once(&format!("\n  {outcome}: "));
-            let count = told.map_or(0, |(_, told)| {
-                let (_, count) = told.split_once("), ").unwrap();
+            let reported = said.split_once(&format!("\n  {outcome}: "));
+            let count = reported.map_or(0, |(_, reported)| {
+                let (_, count) = reported.split_once("), ").unwrap();
                 count.split(' ').next().unwrap().parse().unwrap()
             });
             let share = Share::of(count, 8).unwrap();

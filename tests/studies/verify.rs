@@ -1,5 +1,5 @@
-//! The whole check by the Circolare 7/2019: worked numbers computed independently of this program, both sides, on the
-//! ground and at a height; spectra from files; what cannot be checked, and why.
+//! The whole check by the Circolare 7/2019: worked numbers computed independently of this program, both sides, on the ground and
+//! at a height; spectra from files; refusals with their reasons.
 
 use crate::common::browser;
 use crate::common::parsed;
@@ -232,7 +232,7 @@ fn c8_7_1_6_to_9_a_column_that_is_free_to_vibrate() {
     assert!((ag_g(&known) / ag_g(&free) - 1.0).abs() < 1e-9);
 }
 
-/// A stout column has a displacement capacity that it reaches before motion starts: then the onset counts.
+/// The displacement capacity of a stout column is reached before motion starts: then the onset counts.
 #[test]
 fn c8_7_1_2_1_8_a_capacity_reached_before_onset_counts_as_the_onset() {
     let text = format!("[column]\nheight_m = 0.3\nwidth_m = 0.12\n{DEMAND}");
@@ -313,7 +313,7 @@ fn a_spectrum_of_points_names_no_clause() {
 }
 
 #[test]
-fn spectra_of_points_are_refused_where_they_end() {
+fn spectra_of_points_are_refused_beyond_their_range() {
     let short = POINTS.replace("2.6,0.08\n4,0.03\n", "");
     let early = POINTS.replace("0,0.29\n0.15", "0.15");
     for (points, demand, words) in [

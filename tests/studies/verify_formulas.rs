@@ -616,7 +616,7 @@ fn c8_7_1_2_1_3_a_linkage_that_locks_has_no_d0() {
 
 /// If the force first grows and then falls, the curve is followed along its own course to where the force vanishes.
 #[test]
-fn c8_7_1_2_1_3_a_curve_that_rises_first_ends_where_it_is_zero() {
+fn c8_7_1_2_1_3_a_curve_that_rises_first_ends_at_zero() {
     let law = |part: f64| (1.0 - part) * (0.1 + 0.4 * part);
     let displaced = |part: f64| Displaced {
         q_rad: part,

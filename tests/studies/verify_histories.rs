@@ -1,5 +1,5 @@
-//! The dynamic route of the check, C8.7.1.2.1.9: peaks compared with an integration and a geometry of this test's own, which peaks
-//! count, both sides, and what is refused.
+//! The dynamic route of the check, C8.7.1.2.1.9: peaks compared with an independent integration and geometry, the choice of the
+//! governing peak, both sides, and refusals.
 
 use std::fs;
 use std::path::Path;
@@ -601,7 +601,7 @@ for (const [index, state] of ['slv', 'slc'].entries()) {
     browser::assert_checked(&page, &script, &json, &[], 100);
 }
 
-/// The commands of docs/verify.md print what stands below them, and the rows of its table are those of the JSON.
+/// The commands in docs/verify.md print the output shown there, and the rows of its table equal those of the JSON.
 #[test]
 fn commands_print_the_output_shown_in_docs_verify() {
     let folder = tempfile::tempdir().unwrap();
