@@ -29,7 +29,7 @@ def masked(text: str) -> str:
 
 
 def end_of_group(text: str, start: int) -> int:
-    """The place behind the bracket that closes the one at `start`.
+    """The position after the bracket that closes the one at `start`.
 
     >>> end_of_group("a(b[c])d", 1)
     7
@@ -46,7 +46,7 @@ def end_of_group(text: str, start: int) -> int:
 
 
 def end_of_item(text: str, start: int) -> int:
-    """The place behind an item: behind its `;`, or behind its block.
+    """The position after an item: after its `;` or its block.
 
     >>> source = "fn a(b: [f64; 2]) { c; } d"
     >>> source[end_of_item(source, 0):]

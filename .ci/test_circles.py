@@ -1,4 +1,4 @@
-"""Which modules .ci/circles groups, on a small crate: `python3 .ci/test_circles.py`."""
+"""Tests the groups of .ci/circles on a small crate: `python3 .ci/test_circles.py`."""
 import pathlib
 import subprocess
 import sys

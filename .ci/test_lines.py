@@ -1,4 +1,4 @@
-"""What .ci/lines counts, on a package that keeps code in every place it may lie: `python3 .ci/test_lines.py`."""
+"""Tests the counts of .ci/lines on a package with code in every possible place: `python3 .ci/test_lines.py`."""
 import pathlib
 import subprocess
 import sys

@@ -40,13 +40,13 @@ fn alone(bencher: Bencher, stiffness_pa_m: f64) {
     bencher.counter(ItemsCount::new(steps)).bench(simulate);
 }
 
-/// The same with so many ties across it, slack until it moves: what each costs is what one joint costs, or less.
+/// The arch of `alone` with this number of ties across it, slack until it moves. A tie should cost no more than a joint.
 #[divan::bench(args = [0, 1, 4, 16])]
 fn tied(bencher: Bencher, count: usize) {
     let untied = model(1e10);
     let row = untied.row().clone();
     let tie = |index: usize| {
-        // Between voussoirs across, from the haunches up.
+        // Between opposite voussoirs, from the haunches up.
         let joint = 6 + index % 8;
         let end = |joint: usize, block: usize| Anchor {
             block: Some(block),
@@ -69,7 +69,7 @@ fn tied(bencher: Bencher, count: usize) {
     bencher.counter(ItemsCount::new(steps)).bench(simulate);
 }
 
-/// The same on feet of which the right one is late by 0.05 s.
+/// The arch of `alone` with a right foot delayed by 0.05 s.
 #[divan::bench]
 fn on_two_feet(bencher: Bencher) {
     let (model, (ground, request)) = (model(1e10), case(0.2));
@@ -80,7 +80,7 @@ fn on_two_feet(bencher: Bencher) {
     bencher.counter(ItemsCount::new(steps)).bench(simulate);
 }
 
-/// The same under 32 pulses from 0.10 to 0.22 g, like a row of a map.
+/// The arch of `alone` under 32 pulses from 0.10 to 0.22 g, like a row of a map.
 #[divan::bench(args = [1e10, 1e11])]
 fn side_by_side(bencher: Bencher, stiffness_pa_m: f64) {
     let model = model(stiffness_pa_m);

@@ -1,4 +1,4 @@
-//! Speed of free hinges: steps over a record, a history to rest, maps, the worst step of a long row.
+//! Speed of free hinges: steps over a record, a history to rest, maps, and the most expensive step of a long row.
 //!
 //! Run with `cargo bench --bench free_hinges`.
 
@@ -75,7 +75,7 @@ fn step_over_a_record(bencher: Bencher, voussoirs: usize) {
     steps_over_a_record(bencher, voussoirs, None);
 }
 
-/// The same with joints that slip.
+/// Mean time of a step with joints that slip.
 #[divan::bench(args = [7, 36, 144], sample_count = 3, sample_size = 1)]
 fn step_over_a_record_with_friction(bencher: Bencher, voussoirs: usize) {
     steps_over_a_record(bencher, voussoirs, Some(0.7));
@@ -128,8 +128,7 @@ fn map_of_pulses(bencher: Bencher, voussoirs: usize) {
     });
 }
 
-/// All four hinges of a long arch shut at once, starting from the active set of the motion before: the worst that a
-/// step has to do.
+/// All four hinges of a long arch close at once, starting from the active set of the previous motion: the most expensive step.
 #[divan::bench(args = [36, 200])]
 fn full_closure(bencher: Bencher, voussoirs: usize) {
     let ring = Ring::new(0.15, PI).expect("a ring");

@@ -15,7 +15,7 @@ use divan::counter::ItemsCount;
 
 const GRAVITY_M_S2: f64 = 9.81;
 
-/// The arch with its first links computed, which histories share.
+/// The arch with its first links computed, which all histories share.
 static ARCH: LazyLock<FourLinks> = LazyLock::new(|| {
     let arch = new_arch();
     let _ = arch.chain().link(30);

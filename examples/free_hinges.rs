@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         own.outcome_time_s,
         own.largest_rotation_rad()
     );
-    // Where repetitions computed in other ways disagree, the answer is unknown.
+    // If repetitions with other steps disagree, the outcome is uncertain.
     for other in model.repetitions() {
         let summary = other.model.simulate(&ground, &Request::default(), None)?;
         println!(

@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         end_s: 30.0,
         ..Request::default()
     };
-    // Samples can be used as they come, without keeping any; the history can be ended at any time.
+    // Samples can be used during the computation without storing any, and the history can be ended at any time.
     let mut largest_rad = 0.0_f64;
     let mut watch = |sample: &Sample| {
         largest_rad = largest_rad.max(sample.rotations_rad[0].abs());

@@ -2,14 +2,13 @@
 
 use archrock::scenario::{Contents, Layout};
 
-/// Reads the contents of a file: samples that a motion can be made of, or a fault on one of the lines, in
-/// words that a terminal can show.
+/// Reads the contents of a file. They give samples for a ground motion, or an error on one of the lines, in printable words.
 pub fn check(layout: &Layout, contents: &[u8]) {
     match layout.parse(contents) {
         Ok(Contents { samples, .. }) => {
             assert!((2..=1_800_000).contains(&samples.len()));
             assert!(samples.iter().all(|s| s.0.abs() <= 1e6 && s.1.is_finite()));
-            // Times that are computed as multiples of a step round.
+            // Times computed as multiples of a step are rounded.
             assert!(
                 samples
                     .windows(2)

@@ -27,10 +27,10 @@ fuzz_target!(|input: &[u8]| {
         } else {
             Decimal::Comma
         },
-        // Not for a second column, which is what is left where there are two.
+        // A second column is not named explicitly: it is the default in a table of two.
         acceleration_column: Some(column(*settings, [2, 1, 3], "a"))
             .filter(|column| *column != TableColumn::Number(2)),
-        // Counts where no column is chosen.
+        // Applies if no column is chosen.
         wrapped: settings & 4 != 0,
         ..Layout::table(times, Unit::Gravity)
     };

@@ -1,4 +1,4 @@
-//! The reader of files of K-NET.
+//! The reader of K-NET files.
 #![no_main]
 
 mod common;

@@ -1,4 +1,4 @@
-//! The scenario reader: any text is read, or said to be wrong in words that a terminal can show.
+//! The scenario reader: every text is read or refused, with an error in printable words.
 #![no_main]
 
 use archrock::scenario::{Scenario, shown};

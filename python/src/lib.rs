@@ -1,9 +1,9 @@
 //! The native part of the Python package `archrock`: the library's own types behind handles, text and arrays.
 //!
-//! It computes nothing itself. Structures, ground motions and scenarios come in as the TOML text of a scenario, so that
-//! the library's reader checks them and explains errors. Small results go out as the JSON of the program's
-//! results, tables as the program's files, and histories as arrays, which are moved out of Rust and not copied.
-//! The classes that people use are in `package/archrock`.
+//! It computes nothing itself. Structures, ground motions and scenarios come in as the TOML text of a scenario, so that the
+//! reader of the library checks them and explains errors. Small results are returned as the JSON of the program, tables as the
+//! files of the program, and histories as arrays that are moved out of Rust and not copied. The classes for users are in
+//! `package/archrock`.
 
 mod error;
 mod history;

@@ -73,7 +73,7 @@ impl Text {
         read(&self.source).map_err(|errors| {
             let words = in_words(&errors, self.placed);
             match &self.folder {
-                // The temporary folder of the files is of no interest.
+                // Messages should not name the temporary folder of the files.
                 Some(folder) => words.replace(&format!("{}/", folder.path().display()), ""),
                 None => words,
             }
@@ -84,9 +84,9 @@ impl Text {
 /// A scenario, with every default filled in.
 #[pyclass(frozen, module = "archrock._native")]
 pub struct Scenario {
-    /// It may hold enough for statics alone: see [`Scenario::moving`].
+    /// It may be complete enough for statics alone: see [`Scenario::moving`].
     pub inner: Arc<archrock::Scenario>,
-    /// Why the structure cannot be moved: the errors of the reader, if they do not concern statics.
+    /// Why the structure cannot be simulated: the errors of the reader, if they do not concern statics.
     unmovable: Option<String>,
     /// Its model of motion, built when first needed.
     model: OnceLock<Result<Arc<dyn Model>, String>>,
@@ -156,8 +156,10 @@ fn hinges(model: Option<&str>) -> PyResult<Option<Hinges>> {
 impl Scenario {
     /// Reads the text of a scenario, with the files that it names. Without such files, they are read from the folder of `name`.
     ///
-    /// Errors that do not concern statics are kept until the structure is to move. `unmovable` are those of a scenario that was read
-    /// before.
+    /// Reads the text of a scenario, with the files that it names. Without such files, they are read from the folder of `name`.
+    ///
+    /// Errors that do not concern statics are kept until the structure is simulated. `unmovable` are those of an earlier reading of the
+    /// scenario.
     #[new]
     #[pyo3(signature = (text, name, files, model, changes, unmovable=None))]
     fn read(
@@ -202,7 +204,7 @@ impl Scenario {
         })
     }
 
-    /// Why the structure cannot be moved; `None` if it can.
+    /// Why the structure cannot be simulated; `None` if it can.
     fn unmovable(&self) -> Option<&str> {
         self.unmovable.as_deref()
     }

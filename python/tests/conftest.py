@@ -1,4 +1,4 @@
-"""Shared by the tests: the program, whose results are compared with those of the package."""
+"""Fixtures of all tests, and the program with which the package is compared."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ ACCELERATION = np.round(np.sin(7.0 * TIME), 3)
 
 
 def unaligned(values: Any) -> Any:
-    """An array whose numbers lie at odd addresses, as frames off the wire do."""
+    """An array whose numbers lie at odd addresses, as in network frames."""
     data = b"x" + np.asarray(values, dtype=np.float64).tobytes()
     array = np.frombuffer(data, dtype=np.uint8)[1:].view(np.float64)
     assert not array.flags.aligned and not array.flags.writeable
@@ -72,7 +72,7 @@ def test_series_of_pandas_are_arrays() -> None:
 
 
 @pytest.mark.parametrize("wrong", ["text", ["a", "b"], [1 + 2j, 2.0], None, object(), [[1.0], [1.0, 2.0]], [None, 1.0]])
-def test_what_is_no_array_of_numbers_is_refused(wrong: Any) -> None:
+def test_values_that_are_not_numeric_arrays_are_refused(wrong: Any) -> None:
     with pytest.raises((TypeError, ValueError), match="`acceleration`"):
         Record([0.0, 1.0], wrong, unit="g")
 
@@ -84,7 +84,7 @@ def test_arrays_are_taken_and_not_copied(arch: Arch, pulse: Pulse) -> None:
         again = getattr(history, name)
         assert again.__array_interface__["data"] == array.__array_interface__["data"], name
         assert array.dtype == np.float64 and array.flags.c_contiguous and array.flags.aligned
-        # NumPy did not allocate it: its owner is the object that took it over from Rust.
+        # NumPy did not allocate the memory: its owner is the object that took it from Rust.
         owner = array
         while isinstance(owner.base, np.ndarray):
             owner = owner.base
@@ -99,7 +99,7 @@ def test_arrays_outlive_their_history(arch: Arch, pulse: Pulse) -> None:
     rotations, expected = history.rotations, history.rotations.tolist()
     del history
     gc.collect()
-    # Overwrites any memory that was freed.
+    # Reuses any memory that was freed.
     for _ in range(20):
         simulate(arch, pulse, duration_s=0.5)
     assert rotations.tolist() == expected

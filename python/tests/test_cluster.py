@@ -16,7 +16,7 @@ EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
 distributed = pytest.importorskip("distributed")
 
 
-def test_a_map_of_a_cluster_that_loses_a_worker_is_that_of_one_process(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_cluster_that_loses_a_worker_computes_the_map_of_one_process(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.syspath_prepend(str(EXAMPLES))
     monkeypatch.setenv("PYTHONPATH", str(EXAMPLES))
     import map_on_a_cluster as example

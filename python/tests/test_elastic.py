@@ -11,7 +11,7 @@ PULSE = Pulse("rectangular", amplitude_g=-0.3, duration_s=0.2)
 STACK = Column(height_m=4.0, width_m=0.8, drums=4, density_kg_m3=2000.0)
 
 
-def test_joints_bear_the_weight_at_first() -> None:
+def test_joint_forces_at_rest_equal_the_weight() -> None:
     history = simulate(
         STACK, PULSE, model="elastic_joints", normal_stiffness_gpa_m=10.0, duration_s=1.0
     )
@@ -23,7 +23,7 @@ def test_joints_bear_the_weight_at_first() -> None:
     assert np.all(history.joint_contacts[0] == 1.0)
     assert np.nanmax(np.abs(history.joint_eccentricities)) > 0.3
     assert history.joint_contacts.min() < 0.5
-    # Nothing counts the impacts of a contact that lasts.
+    # Elastic contact lasts, so impacts are not counted.
     assert repr(history) == f"<History: still rocking at 1.0000 s; {len(history)} samples>"
     assert "still rocking at 1.0000 s" in history.report_html()
 
@@ -39,7 +39,7 @@ def test_a_point_moves_with_its_block() -> None:
     assert simulate(STACK, PULSE, model="free_hinges", duration_s=0.1).point.shape[1] == 0
 
 
-def test_what_does_not_go_together_is_refused() -> None:
+def test_conflicting_arguments_are_refused() -> None:
     arch = Arch(mean_radius_m=5.0, thickness_ratio=0.15, embrace_deg=180.0, voussoirs=7)
     with pytest.raises(ValueError, match="is in no block"):
         simulate(arch, PULSE, point=(0.0, 1.0))
@@ -51,7 +51,7 @@ def test_what_does_not_go_together_is_refused() -> None:
         simulate(arch, PULSE, model="elastic_joints", normal_stiffness_gpa_m=10.0, shortest_step_s=1e-5)
 
 
-def test_ties_pull_as_in_the_table_of_joints() -> None:
+def test_tie_forces_equal_the_table_of_joints() -> None:
     text = """
         column = { height_m = 4.0, width_m = 0.8 }
         tie = [{ from_m = [-0.4, 3.5], to_m = [-3.4, 3.5], to_block = 0, stiffness_n_m = 1e7, prestress_n = 5000.0, yield_force_n = 12000.0 }]
@@ -63,7 +63,7 @@ def test_ties_pull_as_in_the_table_of_joints() -> None:
     forces_n, elongations_m = history.tie_forces[:, 0], history.tie_elongations[:, 0]
     assert history.tie_forces.shape == (len(history), 1)
     assert forces_n.max() == 12000.0
-    # What does not yet yield is elastic.
+    # Below yielding the tie is elastic.
     early = forces_n.argmax()
     np.testing.assert_allclose(forces_n[:early], 5000.0 + 1e7 * elongations_m[:early], rtol=1e-9)
     assert simulate(STACK, PULSE, model="free_hinges", duration_s=0.1).tie_forces.shape[1] == 0

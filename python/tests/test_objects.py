@@ -44,7 +44,7 @@ def test_the_arch_of_the_paper(arch: Arch, pulse: Pulse) -> None:
     assert repr(history) == "<History: came to rest at 3.3656 s after 78 impacts; 675 samples>"
 
 
-def test_overturning_tells_the_side(arch: Arch) -> None:
+def test_overturning_names_the_side(arch: Arch) -> None:
     history = simulate(arch, Pulse.one_cosine(amplitude_g=0.6, duration_s=0.8))
     assert history.outcome == "overturned" and history.overturning_sway in ("left", "right")
     assert str(history.overturning_sway) in repr(history)
@@ -86,7 +86,7 @@ def test_other_shapes_by_their_tables(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("path", sorted(SCENARIOS.glob("*.toml")), ids=lambda path: path.stem)
-def test_every_scenario_file_is_read_printed_and_sent(path: Path, program: Program) -> None:
+def test_every_scenario_file_can_be_read_printed_and_pickled(path: Path, program: Program) -> None:
     scenario = Scenario.read(path)
     # The program also prints notes, and when a history ends if the file leaves that open.
     checked = re.sub("^# .*\n", "", program("check", path).stdout, flags=re.MULTILINE)
@@ -99,7 +99,7 @@ def test_every_scenario_file_is_read_printed_and_sent(path: Path, program: Progr
     assert Scenario(scenario.tables, files=sent.files) == scenario
 
 
-def test_scenarios_change_as_by_the_program() -> None:
+def test_changes_of_a_scenario_equal_those_of_the_program() -> None:
     path = SCENARIOS / "semicircle-pulse.toml"
     changed = Scenario.read(path, changes=["arch.thickness_ratio=0.12", "impact.model=mirrored"])
     assert changed.tables["arch"]["thickness_ratio"] == 0.12
@@ -108,7 +108,7 @@ def test_scenarios_change_as_by_the_program() -> None:
     assert "free_hinges" in free.tables and pickle.loads(pickle.dumps(free)) == free
 
 
-def test_what_is_sent_does_not_need_its_files(tmp_path: Path) -> None:
+def test_pickled_objects_do_not_need_their_files(tmp_path: Path) -> None:
     """Pickles hold the files; read back on a machine without them, they are simulated with bit-identical results."""
     records = [tmp_path / f"{foot}-{way}.at2" for foot in ("left", "right") for way in ("x", "y")]
     for record in records:
@@ -130,7 +130,7 @@ def test_what_is_sent_does_not_need_its_files(tmp_path: Path) -> None:
     assert restored.report_html() == history.report_html()
 
 
-def test_units_are_those_of_the_header(tmp_path: Path) -> None:
+def test_units_come_from_the_header(tmp_path: Path) -> None:
     header = "SAMPLING_INTERVAL_S: 0.1\nUNITS: cm/s^2\n"
     (tmp_path / "r.asc").write_text(header + "0\n98.1\n-49.05\n")
     record = Record.read(tmp_path / "r.asc")
@@ -153,7 +153,7 @@ def test_rows_of_several_samples_are_read(tmp_path: Path) -> None:
     assert len(record.time) == 6
 
 
-def test_velocities_shake_as_the_accelerations_between_them() -> None:
+def test_a_record_of_velocities_equals_its_accelerations() -> None:
     """A triangle of velocity is a constant acceleration and its opposite: nearly so in steep lines."""
     velocities = Record([0.0, 0.3, 0.6], [0.0, 150.0, 0.0], unit="cm/s", quantity="velocity")
     assert velocities.unit == "cm/s" and velocities.velocity.tolist() == [0.0, 150.0, 0.0]
@@ -179,7 +179,7 @@ def test_velocities_shake_as_the_accelerations_between_them() -> None:
     ],
     ids=lambda described: type(described).__name__,
 )
-def test_descriptions_are_values(described: Any) -> None:
+def test_structures_grounds_and_scenarios_compare_by_value(described: Any) -> None:
     for same in (pickle.loads(pickle.dumps(described)), copy.copy(described), copy.deepcopy(described)):
         assert same == described and hash(same) == hash(described) and repr(same) == repr(described)
     tables = described.tables
@@ -188,12 +188,12 @@ def test_descriptions_are_values(described: Any) -> None:
     assert described != 3 and described is not None
 
 
-def test_reprs_say_how_to_make_them(arch: Arch, pulse: Pulse) -> None:
+def test_reprs_recreate_the_object(arch: Arch, pulse: Pulse) -> None:
     for one in (arch, Column(4.0, 0.8, drums=2), pulse):
         assert eval(repr(one), vars(archrock)) == one
 
 
-def test_different_things_differ(arch: Arch, pulse: Pulse) -> None:
+def test_different_objects_are_not_equal(arch: Arch, pulse: Pulse) -> None:
     assert arch != Arch(5.0, 0.16, 180.0) and pulse != Pulse.rectangular(-0.30, 0.21)
     assert simulate(arch, pulse, duration_s=1.0) != simulate(arch, pulse, duration_s=1.1)
     record = Record([0.0, 1.0], [1.0, 2.0], unit="g")
@@ -201,7 +201,7 @@ def test_different_things_differ(arch: Arch, pulse: Pulse) -> None:
     assert arch != Structure(arch={"mean_radius_m": 5.0, "thickness_ratio": 0.15, "embrace_deg": 180.0})
 
 
-def test_histories_are_sent_whole(arch: Arch, pulse: Pulse) -> None:
+def test_histories_can_be_pickled(arch: Arch, pulse: Pulse) -> None:
     history = simulate(arch, pulse)
     restored = pickle.loads(pickle.dumps(history))
     assert restored == history and repr(restored) == repr(history)
@@ -223,7 +223,7 @@ def test_a_trace_of_obspy_is_a_record() -> None:
         Record.from_obspy(trace, unit="m/s2")
 
 
-def test_records_are_read_as_by_the_program() -> None:
+def test_records_equal_those_of_the_program() -> None:
     record = Record.read(SCENARIOS / "records" / "wave-1.at2", scale=2.0)
     assert record.unit == "g" and record.name == "wave-1.at2"
     assert len(record.time) == len(record.acceleration) > 100
@@ -255,7 +255,7 @@ WRONG: list[tuple[Any, str]] = [
 
 
 @pytest.mark.parametrize(("make", "words"), WRONG, ids=lambda one: one if isinstance(one, str) else "")
-def test_what_is_not_allowed_is_said_in_the_words_of_the_library(make: Any, words: str) -> None:
+def test_errors_have_the_words_of_the_library(make: Any, words: str) -> None:
     with pytest.raises(ValueError) as caught:
         make()
     assert words in str(caught.value)
@@ -268,7 +268,7 @@ def test_numbers_of_numpy_are_numbers(arch: Arch, pulse: Pulse) -> None:
     assert Arch(np.int64(5), np.float64(0.15), 180) == arch
 
 
-def test_settings_that_are_not_allowed(arch: Arch, pulse: Pulse) -> None:
+def test_invalid_settings_are_refused(arch: Arch, pulse: Pulse) -> None:
     drums = Column(4.0, 0.8, drums=3)
     wrong: list[tuple[Any, str]] = [
         (lambda: simulate(arch, pulse, duration_s=-1.0), "`duration_s = -1.0` is out of range"),
@@ -294,7 +294,7 @@ def test_settings_that_are_not_allowed(arch: Arch, pulse: Pulse) -> None:
             make()
 
 
-def test_dimensions_are_those_that_were_given(pulse: Pulse, program: Program, tmp_path: Path) -> None:
+def test_dimensions_stay_as_given(pulse: Pulse, program: Program, tmp_path: Path) -> None:
     arch = Arch(span_m=4.2, rise_m=1.4, thickness_m=0.4, measured_at="intrados")
     given = "span_m=4.2, rise_m=1.4, measured_at='intrados'"
     assert given in repr(arch) and "mean_radius_m" not in repr(arch)
@@ -307,7 +307,7 @@ def test_dimensions_are_those_that_were_given(pulse: Pulse, program: Program, tm
     assert "span_m" in Scenario.of(arch, pulse).run().scenario.tables["arch"]
 
 
-def test_a_number_is_no_file() -> None:
+def test_a_file_descriptor_is_refused_as_a_file() -> None:
     # A number that is taken for an open file would close that file.
     with open(os.devnull, encoding="ascii") as file:
         for path in (file.fileno(), 1, 2.5, None):
@@ -316,7 +316,7 @@ def test_a_number_is_no_file() -> None:
         os.fstat(file.fileno())
 
 
-def test_errors_in_files_have_their_places(program: Program, tmp_path: Path) -> None:
+def test_errors_in_files_name_their_place(program: Program, tmp_path: Path) -> None:
     path = tmp_path / "wrong.toml"
     path.write_text("[arch]\nmean_radius_m = -5.0\nthicknes_ratio = 0.15\n[ground.half_sine]\namplitude_g = 1e9\n")
     with pytest.raises(ValueError) as caught:
@@ -337,11 +337,11 @@ def test_pictures(arch: Arch, pulse: Pulse, tmp_path: Path) -> None:
     ground, rotations = figure.axes
     assert [line.get_label() for line in rotations.get_lines()[:3]] == ["left", "middle", "right"]
     assert np.array_equal(rotations.get_lines()[2].get_ydata(), history.rotations[:, 2])
-    # It still has more than a quarter of the energy that overturns it.
+    # The arch still has more than a quarter of the energy that overturns it.
     assert ground.get_title() == "incomplete at 1.0000 s without impact"
     figure.savefig(tmp_path / "history.png")
     assert ground.get_legend() is not None and rotations.get_legend() is not None
-    # Into axes of one's own.
+    # Into given axes.
     from matplotlib.figure import Figure
 
     own = Figure()
@@ -407,7 +407,7 @@ def test_feet_springings_and_ties() -> None:
     assert np.array_equal(history.rotations, at_once.rotations) and np.array_equal(history.poses, at_once.poses)
     assert np.array_equal(history.feet_apart, at_once.feet_apart) and at_once.point is not None
     assert np.array_equal(history.tie_forces, at_once.tie_forces) and history.summary == at_once.summary
-    # Springings alone, and nothing that the structure keeps for other calls.
+    # Moved springings apply to this call only.
     settled = simulate(arch, ground, supports=supports, **joints)
     assert np.array_equal(settled.rotations, Scenario.of(arch, ground, supports=supports, **joints).run().rotations)
     built = simulate(arch, ground, **joints)
@@ -427,10 +427,10 @@ def test_feet_springings_and_ties() -> None:
     )
     both = Scenario.of(arch, left, right=right, **joints)
     assert both.tables["ground"]["right"]["record"]["vertical"]["file"] == "right-vertical-record"
-    # Straight lines up and down for 0.1 s each leave a way of the square of that times the peak.
+    # The acceleration rises and falls linearly for 0.1 s each: the displacement is the peak acceleration times 0.1 s squared.
     x_m, y_m = both.run().feet_apart[np.searchsorted(both.run().time, 0.2)]
     assert x_m == pytest.approx(-0.05 * 9.81 * 0.01, rel=1e-6) and y_m == pytest.approx(-0.05 * 9.81 * 0.01, rel=1e-6)
-    # Even if one is called as another would be then.
+    # Names stay unique even if a file has the name that another one would get.
     taken = Record(time, [0.0, 0.1, 0.0], unit="g", vertical=Record(time, time, unit="g", name="right-record"))
     assert set(Scenario.of(arch, taken, right=right, **joints).files) == {
         "record",

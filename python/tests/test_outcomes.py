@@ -37,7 +37,7 @@ def late() -> Record:
     return Record(time_s, push_g, unit="g")
 
 
-def test_a_late_record_lasts_until_after_its_shaking(late: Record, program: Program, tmp_path: Path) -> None:
+def test_a_run_lasts_until_a_late_record_has_ended(late: Record, program: Program, tmp_path: Path) -> None:
     scenario = Scenario.of(ARCH, late)
     histories = [simulate(ARCH, late), scenario.run()]
     for history in histories:
@@ -98,7 +98,7 @@ def test_elastic_joints_that_do_not_open_vibrate() -> None:
     assert "vibrated without opening" in history.report_html()
 
 
-def test_the_block_that_turns_most_is_that_of_the_program(program: Program, tmp_path: Path) -> None:
+def test_the_largest_body_is_that_of_the_program(program: Program, tmp_path: Path) -> None:
     pulse = Pulse.one_sine(amplitude_g=0.6, duration_s=0.5)
     drums = Column(height_m=4.0, width_m=0.8, drums=4)
     largest = set()

@@ -1,4 +1,4 @@
-"""Alongside other work: threads, Ctrl-C, memory, and arguments that nobody intends."""
+"""Threads, Ctrl-C, memory, and absurd arguments."""
 
 from __future__ import annotations
 
@@ -54,11 +54,11 @@ def test_the_lock_of_the_interpreter_is_free_while_computing() -> None:
     over.set()
     ticking.join()
     within = [at for at in ticks if begun <= at <= begun + took_s]
-    # If the lock were held, there would be none.
+    # If the lock were held, the other thread would not have run.
     assert took_s > 0.05 and len(within) > 5
 
 
-def test_histories_on_several_threads_are_those_of_one(arch: Arch) -> None:
+def test_histories_do_not_depend_on_threads(arch: Arch) -> None:
     pulses = [Pulse.half_sine(0.2 + 0.02 * index, 0.4) for index in range(24)]
     alone = [simulate(arch, pulse, duration_s=1.0).rotations.tobytes() for pulse in pulses]
     together: list[bytes] = [b""] * len(pulses)
@@ -168,7 +168,7 @@ ODD: list[Any] = [
 
 
 def refused(call: Callable[[], Any]) -> bool:
-    """Whether a call raises one of the promised exceptions; any other is let through."""
+    """Whether a call raises one of the documented exceptions; others propagate."""
     try:
         call()
     except (ValueError, TypeError, OSError, OverflowError, MemoryError):
@@ -178,7 +178,7 @@ def refused(call: Callable[[], Any]) -> bool:
     return False
 
 
-def test_arguments_that_nobody_means_are_exceptions(arch: Arch, pulse: Pulse) -> None:
+def test_absurd_arguments_raise_exceptions(arch: Arch, pulse: Pulse) -> None:
     rng = random.Random(1)
     calls: list[tuple[Callable[..., Any], dict[str, Any]]] = [
         (Arch, {"mean_radius_m": 5.0, "thickness_ratio": 0.15, "embrace_deg": 180.0, "voussoirs": 7, "depth_m": 1.0}),
@@ -230,7 +230,7 @@ def test_arguments_that_nobody_means_are_exceptions(arch: Arch, pulse: Pulse) ->
     assert outcomes[True] > 1500 and outcomes[False] > 50
 
 
-def test_numbers_at_the_edge_of_what_is_allowed_give_finite_histories() -> None:
+def test_limits_of_allowed_numbers_give_finite_histories() -> None:
     rng = random.Random(2)
     done = 0
     for _ in range(150):
@@ -253,7 +253,7 @@ def test_numbers_at_the_edge_of_what_is_allowed_give_finite_histories() -> None:
     assert done > 50
 
 
-def test_the_panic_of_a_thread_is_no_end(arch: Arch, pulse: Pulse) -> None:
+def test_an_exception_in_a_callback_leaves_the_package_usable(arch: Arch, pulse: Pulse) -> None:
     """An exception in the callback of a study leaves everything usable."""
     axes = {"duration_s": span(0.1, 1.0, 50), "amplitude_g": span(0.1, 1.0, 50)}
     for _ in range(5):

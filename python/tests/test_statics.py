@@ -1,4 +1,4 @@
-"""Statics need no motion: limit analysis and capacity answer although nothing can be moved."""
+"""Limit analysis and capacity of scenarios that cannot be simulated."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ FILES = {
 
 @pytest.fixture(params=list(FILES))
 def path(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
-    """A scenario whose structure cannot be moved."""
+    """A scenario that cannot be simulated."""
     path = tmp_path / f"{request.param}.toml"
     path.write_text(FILES[request.param])
     (tmp_path / "faulty.at2").write_text("no record\n")
@@ -72,7 +72,7 @@ def test_limit_and_capacity_are_those_of_the_program(path: Path, program: Progra
     assert sent == scenario and answers(sent) == (limit, curves)
 
 
-def test_whatever_moves_the_structure_raises_the_error_of_the_program(path: Path, program: Program, tmp_path: Path) -> None:
+def test_simulations_raise_the_error_of_the_program(path: Path, program: Program, tmp_path: Path) -> None:
     scenario = Scenario.read(path)
     sent = pickle.loads(pickle.dumps(scenario))
     printed = program("run", path, "--out", tmp_path / "o").stderr.removeprefix("error: ").strip()
@@ -93,7 +93,7 @@ def test_whatever_moves_the_structure_raises_the_error_of_the_program(path: Path
             assert str(caught.value) == printed
 
 
-def test_what_concerns_statics_is_refused_when_it_is_read(tmp_path: Path) -> None:
+def test_errors_that_concern_statics_are_raised_on_reading(tmp_path: Path) -> None:
     for wrong in ("thickness_ratio = 5.0", "thicknes_ratio = 0.15"):
         text = ARCH.replace("thickness_ratio = 0.15", wrong) + MISSING
         with pytest.raises(ValueError) as caught:
@@ -105,7 +105,7 @@ def test_what_concerns_statics_is_refused_when_it_is_read(tmp_path: Path) -> Non
             Scenario.parse(ARCH + MISSING + wrong)
 
 
-def test_objects_need_no_motion(pulse: Pulse) -> None:
+def test_statics_of_objects_need_no_motion(pulse: Pulse) -> None:
     drums = Column(height_m=4.0, width_m=0.8, drums=4)
     whole = Column(height_m=4.0, width_m=0.8)
     limit = drums.limit().right.acceleration_g
@@ -127,7 +127,7 @@ def test_objects_need_no_motion(pulse: Pulse) -> None:
 
 
 def test_moved_springings_are_not_ignored() -> None:
-    """Capacity and check are those of the undeformed structure."""
+    """Capacity and check apply to the undeformed structure only, so moved springings are an error."""
     moved = Scenario.parse(ARCH + SITE + "[free_hinges]\n[supports.right]\nspread_m = 0.02\n")
     answers: list[Callable[[Scenario], Any]] = [capacity, verify]
     for answer in answers:

@@ -181,7 +181,7 @@ def test_a_threshold_is_that_of_the_program(program: Program, tmp_path: Path) ->
     assert found.lowest_factor == found.bands[0]["from"] and found.gaps == found.summary["models"][0]["gaps"]
     with pytest.raises(ValueError, match="`stride = 0.0`"):
         threshold(column, pulse, stride=0.0)
-    # What overturns has no largest rotation, and is shaded.
+    # Overturned factors have no largest rotation and are shaded.
     (ax,) = found.plot().axes
     peak = np.asarray(ax.get_lines()[0].get_ydata(), dtype=float)
     assert np.array_equal(np.isnan(peak), found.columns()["outcome"] == "overturned")
@@ -231,7 +231,7 @@ def test_parts_join_to_the_bytes_of_the_whole(program: Program, tmp_path: Path, 
         compute_part(other, "map", (3, 3), tmp_path)
 
 
-def test_parts_of_a_map_under_a_record_join_where_its_file_is_not(tmp_path: Path) -> None:
+def test_parts_of_a_map_join_without_the_file_of_its_record(tmp_path: Path) -> None:
     record = Record.read(RECORDS / "wave-1.at2")
     axes = {"column.width_m": [0.6, 0.8], "peak_g": [0.3, 0.9]}
     column = Column(4.0, 0.8)
@@ -245,7 +245,7 @@ def test_parts_of_a_map_under_a_record_join_where_its_file_is_not(tmp_path: Path
         merge(parts)
 
 
-def test_progress_is_told_and_may_end_the_work(arch: Arch) -> None:
+def test_a_progress_callback_is_called_and_can_end_the_work(arch: Arch) -> None:
     seen: list[tuple[int, int]] = []
     overturning_map(arch, COSINE, AXES, duration_s=20.0, progress=lambda *at: seen.append(at))
     assert seen[-1] == (30, 30) and seen == sorted(seen)
@@ -266,7 +266,7 @@ def test_threads_do_not_change_results(arch: Arch) -> None:
             overturning_map(arch, COSINE, AXES, threads=threads)
 
 
-def test_studies_that_are_none(arch: Arch, pulse: Pulse) -> None:
+def test_invalid_studies_are_refused(arch: Arch, pulse: Pulse) -> None:
     plain = Scenario.of(arch, pulse)
     wrong: list[tuple[Any, str]] = [
         (lambda: overturning_map(plain), "no [map]"),

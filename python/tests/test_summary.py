@@ -97,7 +97,7 @@ def test_events_of_ties_have_their_number() -> None:
     assert [event.tie for event in history.events if event.kind == "tie_yields"] == [0]
 
 
-def test_parts_are_values() -> None:
+def test_parts_of_summaries_compare_by_value() -> None:
     (event, *_) = simulate(Arch(5.0, 0.15, 180.0), PULSE, duration_s=2.0).events
     limit = BLOCKS.limit()
     parts: list[Any] = [event, event.hinges[0], limit, limit.right, BLOCKS.chain(1)[0]]

@@ -17,7 +17,7 @@ from archrock._structure import Model
 PYTHON = Path(__file__).resolve().parents[1]
 
 
-def test_mypy_is_content() -> None:
+def test_mypy_reports_no_errors() -> None:
     command = [sys.executable, "-m", "mypy", "--strict", "package/archrock", "tests", "examples"]
     checked = subprocess.run(command, cwd=PYTHON, capture_output=True, text=True, check=False)
     assert checked.returncode == 0, checked.stdout + checked.stderr
@@ -27,7 +27,7 @@ def test_models_have_the_names_of_the_library() -> None:
     assert list(get_args(Model)) == MODELS
 
 
-def test_docstrings_say_what_is_true() -> None:
+def test_examples_in_docstrings_are_correct() -> None:
     attempted = 0
     for name in ("", "._structure", "._ground", "._studies"):
         module = importlib.import_module(f"archrock{name}")
@@ -38,7 +38,7 @@ def test_docstrings_say_what_is_true() -> None:
 
 
 def assert_typed(name: str, function: object) -> None:
-    """Every argument and what is returned has a type."""
+    """Asserts that every argument and the return value have a type."""
     assert callable(function), name
     signature = inspect.signature(function)
     assert signature.return_annotation is not inspect.Signature.empty, name

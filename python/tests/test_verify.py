@@ -75,7 +75,7 @@ def test_spectra_and_records_are_held_in_memory() -> None:
     assert [record["file"] for record in found["records"]] == sorted(one.name for one in records)
 
 
-def test_what_cannot_be_checked_is_refused(arch: Arch) -> None:
+def test_scenarios_that_cannot_be_checked_are_refused(arch: Arch) -> None:
     with pytest.raises(ValueError, match="needs a demand"):
         verify(arch)
     with pytest.raises(ValueError, match="2.2 \\(NTC 2018, § 3.2.1\\)"):

@@ -1,4 +1,4 @@
-"""Python issues the warnings that the program prints about unlikely numbers and about the trust in results."""
+"""Python issues the warnings of the program about unlikely numbers and about limits of the results."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ WEAK = Pulse.rectangular(amplitude_g=0.3, duration_s=0.2)
 STRONG = Pulse.rectangular(amplitude_g=30.0, duration_s=0.2)
 
 
-def test_unlikely_numbers_are_warned_of(program: Program, tmp_path: Path) -> None:
+def test_unlikely_numbers_cause_warnings(program: Program, tmp_path: Path) -> None:
     arch = Arch(mean_radius_m=500.0, thickness_ratio=0.15, embrace_deg=180.0)
     unlikely = [
         "the mean radius is 500 m: is it in centimetres?",
@@ -48,7 +48,7 @@ def test_unlikely_numbers_are_warned_of(program: Program, tmp_path: Path) -> Non
         assert warned[:3] == unlikely
         history = compute()
         assert history.summary["warnings"] == warned
-        # A history that is restored was warned of before.
+        # A restored history issues no second warning.
         assert issued(lambda: pickle.loads(pickle.dumps(history))) == []
     assert issued(lambda: threshold(arch, STRONG, from_factor=0.5, to_factor=1.0, stride=0.5))[:3] == unlikely
     assert issued(scenario.limit) == unlikely

@@ -12,7 +12,7 @@ const BROWSERS: [&str; 4] = [
     "google-chrome",
 ];
 
-/// The browser that there is.
+/// The installed browser, if any.
 fn browser() -> Option<&'static str> {
     let browser = BROWSERS.into_iter().find(|name| {
         let version = Command::new(name).arg("--version").output();
@@ -92,7 +92,7 @@ document.querySelectorAll('data').forEach((element) => {
 });
 ";
 
-/// How many sheets of paper a page is printed on; `None`, with a message, where there is no browser.
+/// Number of sheets of paper on which a page is printed; `None`, with a message, if there is no browser.
 pub fn sheets(page: &Path) -> Option<usize> {
     let pdf = page.with_extension("pdf");
     let output = Command::new(browser()?)

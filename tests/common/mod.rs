@@ -218,7 +218,7 @@ pub fn three(of_bodies: &[f64]) -> [f64; 3] {
     of_bodies.try_into().unwrap()
 }
 
-/// Numbers that a caller may get wrong, and valid ones.
+/// Valid numbers, and numbers that a caller may give by mistake.
 pub fn any_number() -> impl Strategy<Value = f64> {
     prop_oneof![
         3 => any::<f64>(),
@@ -238,7 +238,7 @@ pub fn number(fine: std::ops::Range<f64>) -> impl Strategy<Value = f64> {
     prop_oneof![4 => fine, 1 => any_number()]
 }
 
-/// The elements of both in pairs; there must be some, and as many of one as of the other.
+/// Pairs the elements of both; neither may be empty, and both must have the same length.
 #[track_caller]
 pub fn pairs<A, B>(
     a: impl IntoIterator<Item = A>,
@@ -430,7 +430,7 @@ pub fn random_history(random: &mut Random, most: usize, length_s: f64) -> (Row, 
     (row, ground)
 }
 
-/// The pushes to a side, in units of gravity, of the first motion of a row and at its fall.
+/// The pushes of the first motion of a row and at its fall, to one side and in units of gravity.
 pub fn pushes_g(follower: &Follower, sway: Sway) -> [f64; 2] {
     let first_g = follower.first_motion_g(sway).unwrap().unwrap();
     [

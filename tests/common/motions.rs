@@ -72,7 +72,7 @@ fn fortran(x: f64, digits: usize) -> String {
     format!("{sign}.{digits}E{sign_of_exponent}{:02}", exponent.abs())
 }
 
-/// A way of writing AT2 files.
+/// Layout of an AT2 file.
 pub struct Style {
     /// The line with `{npts}` and `{dt}`.
     pub counts: &'static str,

@@ -132,7 +132,7 @@ pub fn shown_commands(page: &str) -> Vec<(Vec<String>, Vec<String>)> {
     commands
 }
 
-/// The cells of the row of a table of docs/validation.md whose label begins so, with the numbers in each.
+/// The cells of the row of docs/validation.md whose label begins with `label`, as the numbers in each cell.
 #[track_caller]
 pub fn validated(label: &str) -> Vec<Vec<f64>> {
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/validation.md");
@@ -150,7 +150,7 @@ pub fn validated(label: &str) -> Vec<Vec<f64>> {
 /// Runs the commands of a page, as printed there, in a folder; each must print the lines shown, in their order. Returns
 /// the number of commands.
 #[track_caller]
-pub fn says_what_it_shows(page: &str, folder: &Path) -> usize {
+pub fn assert_shown_output_is_printed(page: &str, folder: &Path) -> usize {
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join(page);
     let commands = shown_commands(&fs::read_to_string(page).unwrap());
     for (command, shown) in &commands {

@@ -1,6 +1,6 @@
 //! Printed sentences: their numbers are compared with results, and the words of one text of each study with `tests/golden`.
 //!
-//! A better sentence breaks only its golden text: `ARCHROCK_GOLDEN=write cargo test` writes them anew.
+//! A changed sentence breaks only its golden text: `ARCHROCK_GOLDEN=write cargo test` writes the texts anew.
 
 use std::fs;
 use std::path::Path;
@@ -77,7 +77,7 @@ pub fn golden(name: &str, text: &str) {
 }
 
 #[test]
-fn numbers_leave_the_shape_of_a_sentence() {
+fn skeletons_of_sentences_have_no_numbers() {
     let (shape, numbers) = skeleton("tie_1 pulls 12.50 kN at -0.3 g, (-2 to 3 s), SLV 0.5.");
     assert_eq!(shape, "tie_1 pulls # kN at # g, (# to # s), SLV #.");
     assert_eq!(numbers, ["12.50", "-0.3", "-2", "3", "0.5"]);

@@ -94,7 +94,7 @@ pub fn data_of(page: &str) -> Value {
     serde_json::from_str(after.split_once("</script>").unwrap().0).unwrap()
 }
 
-/// The marks of a picture that have this name.
+/// The marks of this name in a picture.
 pub fn named<'a>(picture: &'a Document<'a>, name: &str) -> Vec<Node<'a, 'a>> {
     let marks = picture.descendants();
     marks

@@ -48,7 +48,7 @@ pub fn violations(schema: &Value, value: &Value, place: &str) -> Vec<String> {
                 }
                 true
             }
-            // All keys with a dot are of other tables.
+            // Keys with a dot belong to other tables.
             "patternProperties" => {
                 let entries = value.as_object().into_iter().flatten();
                 for (key, value) in entries.filter(|(key, _)| key.contains('.')) {

@@ -117,7 +117,7 @@ fn the_error_falls_with_the_square_of_the_number_of_joints() {
 }
 
 #[test]
-fn the_field_opens_joints_and_keeps_the_energy_that_is_told() {
+fn the_field_opens_joints_and_has_the_reported_energy() {
     for case in [
         Case::new(0.15, 180.0, ANYWHERE).unwrap(),
         Case::new(0.12, 180.0, ANYWHERE).unwrap(),
@@ -216,7 +216,7 @@ fn no_four_link_mechanism_keeps_more() {
         for case in [Some(first), second].iter().flatten() {
             let gap = case.project(180).restitution - case.next.restitution;
             count += 1;
-            // The cone contains the mechanism; any remaining gap is the tolerance of the solver.
+            // The cone contains the mechanism; the difference is the tolerance of the solver.
             assert!(gap > -1e-9, "{thickness_ratio} {embrace_deg}: {gap}");
             let extremes = case
                 .next
@@ -243,7 +243,7 @@ fn no_four_link_mechanism_keeps_more() {
 }
 
 #[test]
-fn where_four_joints_open_both_agree() {
+fn if_four_joints_open_both_methods_agree() {
     let (mut agree, mut differ) = (0, 0);
     for voussoirs in [5, 6, 7, 8, 9, 11, 13, 16, 21] {
         for (embrace_deg, thickness_ratio) in [

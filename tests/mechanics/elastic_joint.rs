@@ -114,7 +114,7 @@ fn a_joint_acts_by_its_energy_and_keeps_momenta() {
             let [x, y] = action.force_n.map(|part| part.0[0]);
             let [first, second] = action.moments_n_m.map(|part| part.0[0]);
             let size = x.hypot(y);
-            assert!(size > 1e3, "the joint presses");
+            assert!(size > 1e3, "the joint is in compression");
             let on = [-x, -y, first, x, y, second];
             for (axis, force) in on.into_iter().enumerate() {
                 let at = |step: f64| {
@@ -202,7 +202,7 @@ fn the_stress_of_a_joint_is_that_of_its_parts() {
 
 /// A joint pressed beyond its strength carries the strength, gives back only the elastic energy, and dissipates the difference.
 #[test]
-fn a_joint_that_crushes_takes_its_strength_times_what_is_crushed() {
+fn a_crushing_joint_dissipates_strength_times_crushing() {
     for contact in [Contact::Continuous, Contact::Points(3)] {
         let crushing_penetration_m = 1e-3;
         let structure = structure(contact, Some(crushing_penetration_m), 0.0);

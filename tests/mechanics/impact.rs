@@ -44,7 +44,7 @@ fn published_chain_of_the_semicircle() {
         // r is flat at its maximum: an error of 1e-16 in r allows 1e-8 rad, far below the digits.
         assert_hinges(seen, hinges, 0.5e-5);
     }
-    // The paper's own figure.
+    // The value printed in the paper.
     assert!((chain.link(1).unwrap().link.restitution - 0.6812).abs() <= 0.5e-4);
 }
 
@@ -241,7 +241,7 @@ proptest! {
 
     /// No mechanism keeps more energy than the one that `impact` finds, and energy never grows.
     #[test]
-    fn nothing_beats_the_impact_found(
+    fn no_mechanism_keeps_more_energy_than_the_impact_found(
         t in 0.11_f64..0.32, embrace in 120.0_f64..180.0, links in 0_usize..6, seed in 0_u64..1 << 60,
     ) {
         let ring = ring(t, embrace);
@@ -253,22 +253,22 @@ proptest! {
             let Some(next) = impact(&closing, &ring, sites, MAX) else { break };
             closing = next.mechanism;
         }
-        beaten_by_nothing(&closing, &ring, seed, 6)?;
+        assert_keeps_most_energy(&closing, &ring, seed, 6)?;
     }
 
-    /// The same for mechanisms to which no chain leads.
+    /// No mechanism keeps more energy after a random closing mechanism, also one that no chain reaches.
     #[test]
-    fn nothing_beats_the_impact_of_a_random_mechanism(
+    fn no_mechanism_keeps_more_energy_after_a_random_mechanism(
         t in 0.05_f64..0.4, embrace in 90.0_f64..180.0, seed in 0_u64..1 << 60,
     ) {
         let ring = ring(t, embrace);
         if let [closing] = mechanisms(&ring, &mut Random(seed), 1, 0.05)[..] {
-            beaten_by_nothing(&closing, &ring, seed ^ 1, 6)?;
+            assert_keeps_most_energy(&closing, &ring, seed ^ 1, 6)?;
         }
     }
 }
 
-fn beaten_by_nothing(
+fn assert_keeps_most_energy(
     closing: &FourLink,
     ring: &Ring,
     seed: u64,
@@ -363,7 +363,7 @@ fn the_better_of_two_maxima_beside_a_closing_section_is_found() {
             "{} {best}",
             found.restitution
         );
-        beaten_by_nothing(&closing, &ring, 3, 30).unwrap();
+        assert_keeps_most_energy(&closing, &ring, 3, 30).unwrap();
     }
 }
 
@@ -450,7 +450,7 @@ fn best_of_joints(
 }
 
 #[test]
-fn the_same_question_has_the_same_answer_to_the_last_bit() {
+fn equal_requests_have_bit_identical_results() {
     for sites in [HingeSites::Anywhere, HingeSites::Voussoirs(60)] {
         let answer = move || {
             let ring = ring(0.13, 171.0);

@@ -185,7 +185,7 @@ fn refined_extremes_are_not_below_fine_samples() {
 }
 
 #[test]
-fn voussoirs_are_asked_at_their_joints_only() {
+fn impulses_of_voussoirs_are_computed_at_joints_only() {
     let sites = HingeSites::Voussoirs(7);
     let arch = arch(0.15, 157.5, sites, ImpactModel::MaxRestitution);
     let chain = arch.chain();
@@ -322,10 +322,10 @@ fn impulses_models_and_certificate_as_json() {
         let impact = &result["impacts"][index - 1];
         let line = chain.link(index).unwrap().impulse_line.as_ref().unwrap();
         for (i, impulse) in line.hinge_impulses_from_left(sway).into_iter().enumerate() {
-            let told = &impact["impulses"][i];
-            assert_eq!(told["hinge"], ["a", "b", "c", "d"][i]);
-            assert!((told["x_n_s_per_m"].as_f64().unwrap() / unit - impulse.x).abs() < 1e-14);
-            assert!((told["y_n_s_per_m"].as_f64().unwrap() / unit - impulse.y).abs() < 1e-14);
+            let reported = &impact["impulses"][i];
+            assert_eq!(reported["hinge"], ["a", "b", "c", "d"][i]);
+            assert!((reported["x_n_s_per_m"].as_f64().unwrap() / unit - impulse.x).abs() < 1e-14);
+            assert!((reported["y_n_s_per_m"].as_f64().unwrap() / unit - impulse.y).abs() < 1e-14);
         }
     }
     let extremes = &result["impacts"][0]["impulse_line"];
@@ -341,9 +341,9 @@ fn impulses_models_and_certificate_as_json() {
     .into_iter()
     .enumerate()
     {
-        let told = &result["models"][i];
-        assert_eq!(told["model"], model);
-        assert!((told["impact"]["restitution"].as_f64().unwrap() - restitution).abs() < 0.5e-5);
+        let reported = &result["models"][i];
+        assert_eq!(reported["model"], model);
+        assert!((reported["impact"]["restitution"].as_f64().unwrap() - restitution).abs() < 0.5e-5);
     }
     assert!(result["models"].get(3).is_none());
     // With tension the eccentricity is infinite, and JSON has no infinity.

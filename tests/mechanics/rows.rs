@@ -47,7 +47,7 @@ fn check(row: Result<Row, RowError>, fine: bool) -> Result<(), TestCaseError> {
             return Ok(());
         }
     };
-    // Nobody asks for samples between, which would take steps of their own.
+    // No samples are requested in between; they would need steps of their own.
     let end_s = 0.03 * time_s;
     let request = Request {
         end_s,
@@ -149,7 +149,7 @@ proptest! {
                 Err(RowError::Dimension(_, value)) => {
                     prop_assert!(size.iter().any(|x| x == value || x.is_nan() && value.is_nan()));
                 }
-                // Next to the others a size, or its powers, may vanish.
+                // Relative to the other sizes, a size or its powers may vanish.
                 Err(RowError::Thickness(..) | RowError::Block(..) | RowError::Crossing(_) | RowError::Order { .. }) => {
                     prop_assert!(!usual);
                 }

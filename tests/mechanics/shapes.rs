@@ -126,7 +126,7 @@ fn an_equilateral_arch() {
 
 /// Fill up to a level has the weight between the extrados and that level, from the area under a circle.
 #[test]
-fn fill_weighs_what_lies_between_extrados_and_level() {
+fn fill_has_the_weight_between_extrados_and_level() {
     let outer = 5.375_f64;
     let with = |level| {
         let fill = Fill {
@@ -153,7 +153,7 @@ fn fill_weighs_what_lies_between_extrados_and_level() {
 }
 
 #[test]
-fn loads_are_where_they_are_put() {
+fn loads_act_at_their_given_position() {
     let with = |load| {
         let masonry = Masonry::new(circular(11), Piers::default(), None, vec![load]).unwrap();
         let row = masonry.row.clone();
@@ -228,7 +228,7 @@ fn an_arch_on_buttresses_given_as_blocks() {
             };
             assert_eq!(joints, expected);
         }
-        // Mirror images of each other.
+        // The two sides are mirror images of each other.
         let mirrored = row.mirrored().unwrap();
         let there = acceleration_g(&mirrored, Sway::Left);
         assert!((there / acceleration_g(&row, Sway::Right) - 1.0).abs() < 1e-12);
@@ -238,7 +238,7 @@ fn an_arch_on_buttresses_given_as_blocks() {
 /// Its motion under a step pair of 0.4 g and 0.2 s with free hinges: an independent prototype reaches 0.0581 rad, with a
 /// scatter of 1.4e-4 over its steps.
 #[test]
-fn the_arch_on_buttresses_rocks_as_elsewhere() {
+fn rocking_of_the_arch_on_buttresses_agrees_with_a_prototype() {
     let folder = tempfile::tempdir().unwrap();
     buttresses(folder.path(), 64);
     let scenario = parse(
@@ -261,7 +261,7 @@ fn the_arch_on_buttresses_rocks_as_elsewhere() {
 
 /// The least amplitude of that step pair that overturns it: the prototype stands below 0.70 g and overturns above.
 #[test]
-fn the_arch_on_buttresses_overturns_from_where_it_does_elsewhere() {
+fn overturning_of_the_arch_on_buttresses_agrees_with_a_prototype() {
     let folder = tempfile::tempdir().unwrap();
     buttresses(folder.path(), 64);
     for (amplitude_g, overturns) in [(0.69, false), (0.70, true)] {
@@ -435,7 +435,7 @@ fn assert_error(text: &str, place: &str, words: &str) {
 }
 
 #[test]
-fn what_is_wrong_is_told_with_its_place_and_the_remedy() {
+fn errors_of_shapes_name_their_place_and_remedy() {
     let arch =
         "[arch]\nmean_radius_m = 3.0\nthickness_ratio = 0.15\nembrace_deg = 180\nvoussoirs = 16\n";
     let pointed = |rise: &str, thickness: &str| {
@@ -478,7 +478,7 @@ fn what_is_wrong_is_told_with_its_place_and_the_remedy() {
 }
 
 #[test]
-fn what_is_wrong_with_blocks_is_told_with_the_line_of_their_file() {
+fn errors_of_blocks_name_the_line_of_their_file() {
     let folder = tempfile::tempdir().unwrap();
     let good = "xi,yi,xe,ye\n-1,0,-2,0\n-0.7,0.7,-1.4,1.4\n0.7,0.7,1.4,1.4\n1,0,2,0\n";
     let path = folder.path().join("s.toml");
@@ -568,7 +568,7 @@ fn what_is_wrong_with_blocks_is_told_with_the_line_of_their_file() {
 
 /// The constructor refuses the same faults as the reader of files.
 #[test]
-fn blocks_that_are_none_are_refused_by_their_type() {
+fn invalid_blocks_are_refused_by_the_type() {
     let joint = |x: f64| Joint {
         intrados_m: Vector2::new(x, 0.0),
         extrados_m: Vector2::new(x, 1.0),

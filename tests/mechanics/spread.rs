@@ -1,5 +1,5 @@
-//! Rows that follow supports that move slowly, beside a computation that shares nothing with the program: the least potential energy
-//! of all blocks, found by convex programmes over joints that may open anywhere.
+//! Rows on slowly moving supports, compared with an independent computation: the minimum of the potential energy of all blocks,
+//! found by convex programmes in which any joint may open.
 
 use archrock::ElasticJoints;
 use archrock::dynamics::ground::Pulse;
@@ -30,7 +30,7 @@ fn arch(embrace_deg: f64, thickness_ratio: f64, voussoirs: usize) -> Row {
     Row::arch(&ring, voussoirs, 1.0, 1.0, 1000.0).unwrap()
 }
 
-/// Of the right support, as parts outwards and down.
+/// Direction of a movement of the right support: components outwards and down.
 const OUT: [f64; 2] = [1.0, 0.0];
 const INWARDS: [f64; 2] = [-1.0, 0.0];
 const DOWN: [f64; 2] = [0.0, 1.0];
@@ -47,7 +47,7 @@ fn right([spread, settlement]: [f64; 2]) -> impl Fn(f64) -> Movements {
     }
 }
 
-/// Where an arch falls.
+/// Movement of the right support, in mean radii, at which an arch falls.
 fn falls_at(row: &Row, direction: [f64; 2]) -> f64 {
     let mut follower = Follower::new(row).unwrap();
     match follower.move_supports(right(direction), 0.0, 1.6).unwrap() {
@@ -56,7 +56,7 @@ fn falls_at(row: &Row, direction: [f64; 2]) -> f64 {
     }
 }
 
-/// An arch of annular voussoirs of unit mean radius: places of the blocks, `x`, `y` of the centre and rotation.
+/// An arch of annular voussoirs of unit mean radius.
 #[derive(Clone)]
 pub struct Blocks {
     masses: Vec<f64>,
@@ -65,20 +65,20 @@ pub struct Blocks {
     joints: Vec<[[f64; 2]; 2]>,
     moved: Vec<[f64; 3]>,
     bars: Vec<Bar>,
-    /// How far the right support went out and down.
+    /// Displacement of the right support, outwards and down.
     pub support: [f64; 2],
-    /// Forces on a unit of mass.
+    /// Horizontal push to the right per unit of mass, in units of gravity.
     push: f64,
 }
 
 type Triplets = (Vec<usize>, Vec<usize>, Vec<f64>);
 
-/// A bar that pulls two bodies together, counted as in [`Blocks::place`]; forces are parts of the weight.
+/// A bar that pulls two bodies together. Bodies are numbered as in [`Blocks::place`]; forces are in units of the weight.
 #[derive(Clone)]
 pub struct Bar {
     ends: [(usize, [f64; 2]); 2],
     stiffness: f64,
-    /// Its length without force, with what it has yielded.
+    /// Length without force, including the yielding so far.
     natural: f64,
     yields_at: f64,
 }
@@ -124,7 +124,8 @@ impl Blocks {
         }
     }
 
-    /// Where a point of a body is: 0 the left support, then the blocks, then the right support.
+    /// Position of a point of a body. Body 0 is the left support; the blocks follow, then the right support. `more` is an
+    /// additional displacement of the body.
     fn place(&self, body: usize, point: [f64; 2], more: [f64; 3]) -> [f64; 2] {
         let blocks = self.masses.len();
         if body == 0 {
@@ -142,8 +143,8 @@ impl Blocks {
         ]
     }
 
-    /// Of a joint: by how much it has slipped, and its gaps at intrados and extrados, measured along and across the mean of its faces,
-    /// where hinges at either corner are exact.
+    /// Slip of a joint and its gaps at intrados and extrados, measured along and across the mean of its faces. In this frame
+    /// hinges at either corner are exact.
     fn opening(&self, joint: usize, more: [[f64; 3]; 2]) -> [f64; 3] {
         let corners = |side: usize| {
             self.joints[joint].map(|corner| self.place(joint + side, corner, more[side]))
@@ -164,7 +165,8 @@ impl Blocks {
         ]
     }
 
-    /// The unit vector from the first end of a bar to its second, where a body has moved a little more, and its length.
+    /// Unit vector from the first end of a bar to the second, and the distance of the ends. Body `at` has an additional
+    /// displacement.
     fn line(&self, bar: &Bar, at: usize, more: [f64; 3]) -> ([f64; 2], f64) {
         let [first, second] = bar.ends.map(|(body, point)| {
             let more = if body == at { more } else { [0.0; 3] };
@@ -175,13 +177,14 @@ impl Blocks {
         (apart.map(|part| part / length), length)
     }
 
-    /// What a bar pulls with.
+    /// Force of a bar.
     fn pull(&self, bar: &Bar) -> f64 {
         let (_, length) = self.line(bar, 0, [0.0; 3]);
         (bar.stiffness * (length - bar.natural)).clamp(0.0, bar.yields_at)
     }
 
-    /// Slopes of the energy of the bars by the coordinates of the blocks; their curvature, but for their turning, as triplets.
+    /// Adds the gradient of the energy of the bars with respect to the block coordinates, and its elastic second derivatives as
+    /// triplets. The geometric stiffness is left out.
     fn add_bars(&self, slopes: &mut [f64], (rows, columns, values): &mut Triplets) {
         for bar in &self.bars {
             let pull = self.pull(bar);
@@ -212,7 +215,8 @@ impl Blocks {
         }
     }
 
-    /// Displacements that lower the energy most, against a resistance; by how much the farthest goes. `None`: it has fallen apart.
+    /// Moves the blocks down the energy, against a resistance to displacements. Returns the largest displacement; `None` if the
+    /// programme has no solution because the arch has collapsed.
     fn descend(&mut self, resistance: f64) -> Option<f64> {
         let blocks = self.masses.len();
         let joints = blocks + 1;
@@ -220,7 +224,7 @@ impl Blocks {
         let mut right = vec![0.0; 3 * joints];
         for joint in 0..joints {
             let here = self.opening(joint, [[0.0; 3]; 2]);
-            // Slip is none; gaps are not negative.
+            // The slip is zero, and gaps are not negative.
             let places = [joint, joints + 2 * joint, joints + 2 * joint + 1];
             for (kind, row) in places.into_iter().enumerate() {
                 right[row] = if kind == 0 { -here[0] } else { here[kind] };
@@ -289,7 +293,7 @@ impl Blocks {
         Some(farthest)
     }
 
-    /// Lets it come to rest; false where it falls.
+    /// Moves the blocks to their equilibrium; false if the arch falls.
     pub fn settle(&mut self) -> bool {
         let start = self.moved.clone();
         for _ in 0..400 {
@@ -315,16 +319,16 @@ impl Blocks {
         false
     }
 
-    /// The highest push under which forces at the corners that touch balance all blocks where they are.
+    /// Largest push at which forces at the closed corners hold all blocks in their present position.
     pub fn first_motion(&self) -> f64 {
         let (blocks, joints) = (self.masses.len(), self.joints.len());
-        // Of every joint: the force along it, and those across it at either corner; last, the push.
+        // Unknowns of each joint: the force along it and the normal forces at both corners. The last unknown is the push.
         let (mut rows, mut columns, mut values): Triplets = Default::default();
         let mut right = vec![0.0; 3 * blocks];
         let mut pulls = Vec::new();
         for joint in 0..joints {
             let [_, inner, outer] = self.opening(joint, [[0.0; 3]; 2]);
-            // An open joint presses at its corner.
+            // A hinge transmits force at its closed corner.
             let touching = [inner < 1e-6, outer < 1e-6];
             let left = self.joints[joint].map(|corner| self.place(joint, corner, [0.0; 3]));
             let other = self.joints[joint].map(|corner| self.place(joint + 1, corner, [0.0; 3]));
@@ -409,7 +413,7 @@ impl Blocks {
         solver.solution.x[push]
     }
 
-    /// How much lower the crown's extrados is.
+    /// How far the extrados of the crown has come down.
     fn crown_drop(&self) -> f64 {
         let joint = self.joints.len() / 2;
         let crown = self.joints[joint][1];
@@ -417,10 +421,10 @@ impl Blocks {
     }
 }
 
-/// The least energy of all blocks, followed in steps of the support from the undeformed arch, is lost in the same step in which the path of hinges
-/// ends; and half way there the crown is as low. Thin and thick semicircles, and one that is flatter.
+/// The minimum of the energy of all blocks vanishes in the same step of the support in which the path of hinges ends. Halfway
+/// there, the crown has come down equally in both computations. The cases are thin and thick semicircles and a flatter arch.
 #[test]
-fn an_arch_falls_where_its_least_energy_is_lost() {
+fn an_arch_falls_when_its_energy_minimum_vanishes() {
     for (embrace_deg, thickness, voussoirs, direction, steps) in [
         (180.0, 0.12, 12, OUT, 20),
         (180.0, 0.15, 20, OUT, 40),
@@ -454,10 +458,10 @@ fn an_arch_falls_where_its_least_energy_is_lost() {
     }
 }
 
-/// The push that makes hinges give way where the right foot has moved is that of the linear programme of forces at the corners that touch; and
-/// the push at which the arch falls is that of the programme in the last place where it rests under a growing push.
+/// The push of the first motion on moved supports agrees with a linear programme of forces at the closed corners. The push at
+/// which the arch falls is that of the programme in the last equilibrium under a growing push.
 #[test]
-fn both_pushes_are_those_of_programmes_in_moved_places() {
+fn both_pushes_are_those_of_limit_analysis_at_moved_positions() {
     for (embrace_deg, thickness, voussoirs, direction, at) in [
         (180.0, 0.15, 16, OUT, 0.04),
         (180.0, 0.15, 16, DOWN, 0.1),
@@ -494,8 +498,8 @@ fn both_pushes_are_those_of_programmes_in_moved_places() {
     }
 }
 
-/// A bar between the intrados corners of a joint of an arch and of its mirror image; or from the first of these to the ground below, near
-/// the left foot.
+/// A bar between the intrados corners of a joint and of its mirror image. With `ground` it connects the first of these corners to
+/// the ground near the left foot.
 fn bar(
     blocks: &Blocks,
     joint: usize,
@@ -518,7 +522,7 @@ fn bar(
     }
 }
 
-/// A semicircle with such bars, as a row and as blocks.
+/// A semicircle with these bars, as a row and as blocks.
 fn with_bars(voussoirs: usize, bars: impl Fn(&Blocks) -> Vec<Bar>) -> (Row, Blocks) {
     let mut blocks = Blocks::new(180.0, 0.15, voussoirs);
     blocks.bars = bars(&blocks);
@@ -529,7 +533,7 @@ fn with_bars(voussoirs: usize, bars: impl Fn(&Blocks) -> Vec<Bar>) -> (Row, Bloc
     (row.with_ties(ties, 9.81).unwrap(), blocks)
 }
 
-/// The same with one bar at a quarter of its joints.
+/// A semicircle with one bar at a quarter of its joints, as a row and as blocks.
 fn tied(
     voussoirs: usize,
     stiffness: f64,
@@ -543,11 +547,12 @@ fn tied(
     })
 }
 
-/// A tied arch that follows its right foot has the least energy of blocks and bar at every step: three hinges with a soft tie, also on the
-/// ground, four that a stiff one holds, one that yields. Where it falls that energy has no minimum within the same step. The pushes are
-/// those of the programme with the force of the bar; on four hinges the first is none.
+/// A tied arch on a moving right foot stays at the minimum of the energy of blocks and bar. The cases have three hinges with a
+/// soft tie (also anchored in the ground), four hinges held by a stiff tie, and a yielding tie. The arch falls in the step in
+/// which the minimum vanishes. With three hinges, the push of the first motion agrees with the programme that includes the force
+/// of the bar; with four hinges it is zero.
 #[test]
-fn a_tied_arch_follows_as_its_least_energy_does() {
+fn a_tied_arch_follows_its_energy_minimum() {
     let unbounded = f64::INFINITY;
     let (mut most, mut yielded) = (3, 0.0_f64);
     for (stiffness, prestress, yields_at, ground, direction, stride, steps, falls) in [
@@ -614,10 +619,10 @@ fn a_tied_arch_follows_as_its_least_energy_does() {
     assert!(most == 4 && yielded > 0.01, "{most} {yielded}");
 }
 
-/// Steps of a way grow while blocks turn evenly, but not across the yielding of a tie: one long movement gives the yielding and the capacities
-/// of 1000 short ones, to a millionth of the radius, of the weight and of gravity.
+/// Steps of a movement grow while blocks rotate steadily, but end where a tie yields. One long movement gives the yielding and
+/// the capacities of 1000 short ones, to a millionth of the radius, of the weight and of gravity.
 #[test]
-fn ties_yield_in_long_steps_as_in_short_ones() {
+fn yielding_of_ties_does_not_depend_on_step_length() {
     for (direction, end_m) in [(OUT, 0.03), (DOWN, 0.24)] {
         let law = |yields_at| [75.0, 0.0, yields_at];
         let (row, _) = with_bars(16, |blocks| {
@@ -650,10 +655,10 @@ fn ties_yield_in_long_steps_as_in_short_ones() {
     }
 }
 
-/// Two stiff bars at different heights hold an arch on five hinges. Each pulls as its twin does where the energy of blocks and bars is
-/// least; where an arch has both, what one pulls with depends on the other.
+/// Two stiff bars at different heights hold an arch on five hinges. Each has the force that it has at the minimum of the energy
+/// of blocks and bars. With two bars, the force of one depends on the other.
 #[test]
-fn an_arch_with_two_ties_follows_as_its_least_energy_does() {
+fn an_arch_with_two_ties_follows_its_energy_minimum() {
     let (mut most, mut pulling) = (3, 0);
     for (stiffnesses, direction, stride, steps) in [
         ([150.0, 100.0], OUT, 0.005, 12),
@@ -694,10 +699,10 @@ fn an_arch_with_two_ties_follows_as_its_least_energy_does() {
     assert!(most == 5 && pulling > 5, "{most} {pulling}");
 }
 
-/// What is told of an arch that its tie holds on four hinges, and on three once it yields, is what the library has: the force of the tie, the
-/// pushes, every hinge in the table and in the picture, and where the tie is.
+/// For an arch that its tie holds on four hinges, and on three once the tie yields, commands print the results of the library:
+/// the force of the tie, the pushes, every hinge in the table and in the picture, and the position of the tie.
 #[test]
-fn commands_tell_of_an_arch_that_its_tie_holds() {
+fn commands_report_an_arch_held_by_its_tie() {
     let text = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 16\n[free_hinges]\n\
                 [[tie]]\nheight_m = 3.3\nstiffness_n_m = 7e6\nyield_force_n = 2.5e4\n\
                 [supports]\nright = { settlement_m = 0.3 }\n";
@@ -713,26 +718,26 @@ fn commands_tell_of_an_arch_that_its_tie_holds() {
     assert_eq!(hinges.len(), 4);
     let force_n = follower.stance.forces_n().next().unwrap();
 
-    let told = printed(folder.path(), &["limit", "a.toml", "--format", "json"]);
-    let told: serde_json::Value = serde_json::from_str(&told).unwrap();
+    let reported = printed(folder.path(), &["limit", "a.toml", "--format", "json"]);
+    let reported: serde_json::Value = serde_json::from_str(&reported).unwrap();
     let words = printed(folder.path(), &["limit", "a.toml"]);
     assert_eq!(
-        told["ties"],
+        reported["ties"],
         serde_json::json!({ "forces_at_rest_n": [force_n] })
     );
     let listed = hinges
         .iter()
         .map(|hinge| serde_json::json!({ "joint": hinge.joint, "edge": hinge.edge.name() }));
-    assert_eq!(told["hinges"], listed.collect::<serde_json::Value>());
+    assert_eq!(reported["hinges"], listed.collect::<serde_json::Value>());
     shows(&words, &[force_n / 1e3]);
     golden("limit-held-by-tie", &words);
     for sway in [Sway::Right, Sway::Left] {
         let side = sway.name();
         let [first_g, falls_g] = pushes_g(&follower, sway);
         assert_eq!(first_g, 0.0);
-        assert_eq!(told["incipient_acceleration_g"][side], first_g);
-        assert_eq!(told["capacity_g"][side], falls_g);
-        assert_eq!(told["mechanism"][side], serde_json::json!([]));
+        assert_eq!(reported["incipient_acceleration_g"][side], first_g);
+        assert_eq!(reported["capacity_g"][side], falls_g);
+        assert_eq!(reported["mechanism"][side], serde_json::json!([]));
         shows(&words, &[falls_g]);
     }
 
@@ -793,9 +798,9 @@ fn commands_tell_of_an_arch_that_its_tie_holds() {
     }
 }
 
-/// A growing push is borne until the arch with its bar falls, by either computation within the same step.
+/// Under a growing push the tied arch falls in the same step in both computations.
 #[test]
-fn a_tied_arch_falls_under_the_push_under_which_its_energy_does() {
+fn a_tied_arch_falls_at_the_push_that_removes_its_energy_minimum() {
     for (stiffness, prestress, direction, at) in [(1.0, 0.05, OUT, 0.06), (20.0, 0.0, DOWN, 0.06)] {
         let (row, mut blocks) = tied(16, stiffness, prestress, f64::INFINITY, false);
         let mut follower = Follower::new(&row).unwrap();
@@ -813,8 +818,8 @@ fn a_tied_arch_falls_under_the_push_under_which_its_energy_does() {
     }
 }
 
-/// What holds a tied arch of elastic joints tends to what holds one of rigid joints, as the stiffness of the joints grows: force and yield
-/// of the tie, on three hinges and on four. Its tie breaks where the rigid one has stretched so far.
+/// Force and yielding of a tie on elastic joints tend to those on rigid joints as the joints get stiffer, on three hinges and on
+/// four. The tie breaks at the movement at which it breaks on rigid joints.
 #[test]
 fn ties_on_elastic_joints_tend_to_those_on_rigid_ones() {
     for (stiffness, prestress, yields_at, direction, at) in [
@@ -871,14 +876,14 @@ fn ties_on_elastic_joints_tend_to_those_on_rigid_ones() {
     let Err(RestError::TieDuringMovement(0, part)) = joints.rest([0.0, -9.81]) else {
         panic!("it holds");
     };
-    // In steps of 3 % of the way.
+    // The search for the break takes steps of 3 % of the movement.
     assert!((0.1 * part - at).abs() < 5e-3, "{part} {at} {breaks_m}");
 }
 
-/// Moved along as a whole, an arch is the same arch: with rigid and with elastic joints, tied to its blocks and to the ground, near and far,
-/// and where the two movements differ by rounding.
+/// A translation of both supports changes nothing: with rigid and elastic joints, with ties to blocks and to the ground, for
+/// short and long movements, and if the two movements differ by rounding.
 #[test]
-fn an_arch_that_moves_as_a_whole_is_the_same_arch() {
+fn translation_does_not_change_an_arch() {
     for (ground, far, off) in [(false, 0.3, 0.0), (true, 40.0, 0.0), (true, 0.3, 5e-17)] {
         let (row, _) = tied(16, 5.0, 0.03, f64::INFINITY, ground);
         let movement = |spread_m| Movement {
@@ -897,7 +902,7 @@ fn an_arch_that_moves_as_a_whole_is_the_same_arch() {
         for sway in [Sway::Right, Sway::Left] {
             let [now, then] =
                 [&follower, &built].map(|row| row.first_motion_g(sway).unwrap().unwrap());
-            // Places far away have larger rounding, which the stiffness of the tie makes forces of.
+            // Large coordinates have larger rounding errors, which the stiffness of the tie turns into forces.
             assert!((now - then).abs() < 1e-11, "{far}: {now} {then}");
         }
         let model = ElasticJoints::new(row.clone(), ElasticProperties::of_stiffness(1e9)).unwrap();
@@ -939,10 +944,11 @@ fn an_arch_that_moves_as_a_whole_is_the_same_arch() {
     }
 }
 
-/// Turned as a whole, an arch bears what the undeformed one does under gravity that is turned back: the linear programme of forces of the
-/// built arch, whose push has a component along its height. Turned too far, it falls.
+/// An arch rotated as a whole has the capacity of the undeformed arch under gravity rotated by the opposite angle. The reference
+/// is the linear programme of forces of the built arch, whose push then has a component along its height. Rotated too far, the
+/// arch falls.
 #[test]
-fn an_arch_that_turns_as_a_whole_leans() {
+fn rotation_of_a_whole_arch_acts_as_inclined_gravity() {
     let row = arch(157.5, 0.15, 12);
     let joints = &row.joints;
     let turned = |angle: f64| {
@@ -984,7 +990,8 @@ fn an_arch_that_turns_as_a_whole_leans() {
         if !stands {
             continue;
         }
-        // Turned anticlockwise, it leans to the left: the push that is left there is that beyond the lean.
+        // Rotated anticlockwise, the arch leans to the left. The remaining push to the left is the part of the angle that the
+        // lean has not used.
         let left_g = follower.first_motion_g(Sway::Left).unwrap().unwrap();
         assert!(
             (left_g.atan() + angle - falls_at).abs() < 1e-9,
@@ -993,10 +1000,10 @@ fn an_arch_that_turns_as_a_whole_leans() {
     }
 }
 
-/// Numbers of another program: Newton's method on the stationary energy of hinges, with their changes bisected, and descents in block
-/// coordinates between.
+/// Reference values from an independent program: Newton's method on the stationary energy of hinges, bisection of the changes of
+/// hinges, and block-coordinate descents in between.
 #[test]
-fn paths_are_those_of_another_program() {
+fn paths_agree_with_an_independent_program() {
     let e = Edge::Extrados;
     let i = Edge::Intrados;
     for (embrace_deg, thickness, voussoirs, direction, expected) in [
@@ -1014,7 +1021,7 @@ fn paths_are_those_of_another_program() {
         (140.0, 0.20, 36, DIAGONAL, 0.448_308),
     ] {
         let found = falls_at(&arch(embrace_deg, thickness, voussoirs), direction);
-        // They are known to six digits.
+        // The reference values have six digits.
         assert!(
             (found - expected).abs() < 6e-7,
             "{embrace_deg} {thickness} {direction:?}: {found}"
@@ -1056,7 +1063,7 @@ fn paths_are_those_of_another_program() {
         let mut follower = Follower::new(&semicircle).unwrap();
         follower.move_supports(right(direction), 0.0, at).unwrap();
         let state = follower.state().unwrap();
-        // The movement is given to six digits, and the thrust changes up to three times as fast as it.
+        // The movement has six digits, and the thrust changes up to three times as fast.
         assert!(
             (state.right_reaction.linear.x.abs() - thrust).abs() < 2e-6,
             "{at}"
@@ -1088,10 +1095,10 @@ fn paths_are_those_of_another_program() {
     }
 }
 
-/// An arch that spreads and comes back falls inwards where it does without the way out. With a settlement beside it, joints shut on
-/// the way back within the step in which another one has to open, and its hinges were once lost there.
+/// An arch that spreads and returns falls inwards at the same movement as without the excursion. With a settlement as well,
+/// joints close on the way back in the step in which another one must open; hinges were once lost there.
 #[test]
-fn an_arch_that_comes_back_falls_where_it_would_have_fallen() {
+fn a_return_path_does_not_change_the_collapse() {
     let row = arch(180.0, 0.15, 20);
     let inwards_from = |out: [f64; 2]| {
         let mut follower = Follower::new(&row).unwrap();
@@ -1109,9 +1116,9 @@ fn an_arch_that_comes_back_falls_where_it_would_have_fallen() {
     assert!((settled - fall).abs() < 0.01, "{settled} {fall}");
 }
 
-/// What moves outwards to the right does so to the left; and half to each side is the same.
+/// Moving the left springing is equivalent to moving the right one, or each by half.
 #[test]
-fn either_springing_moves_an_arch_alike() {
+fn moving_either_springing_is_equivalent() {
     let row = arch(157.5, 0.15, 15);
     let both = |s: f64, [left, right]: [f64; 2]| Movements {
         left: Movement {
@@ -1157,9 +1164,10 @@ fn either_springing_moves_an_arch_alike() {
     assert!((spread([0.5, 0.5]) - spread([0.0, 1.0])).abs() < 1e-12);
 }
 
-/// A springing that turns about the middle of its joint: the arch of three pins that this makes keeps its hinges' lengths, and shuts at both ends.
+/// A springing rotates about the middle of its joint. The resulting three-pin arch keeps the distances of its hinges and closes
+/// at both ends.
 #[test]
-fn a_springing_that_turns_leaves_an_arch_that_fits() {
+fn a_rotated_springing_leaves_a_compatible_three_pin_arch() {
     let row = arch(157.5, 0.15, 20);
     let mut follower = Follower::new(&row).unwrap();
     let turned = |s: f64| Movements {
@@ -1180,12 +1188,12 @@ const SEMICIRCLE: &str =
     "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 36\n";
 
 #[test]
-fn the_command_tells_where_an_arch_falls_and_what_push_is_left() {
+fn spread_reports_the_collapse_movement_and_the_remaining_push() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("arch.toml"), SEMICIRCLE).unwrap();
     let words = printed(folder.path(), &["--quiet", "spread", "arch.toml"]);
-    let told = json(&folder.path().join("results/arch/spread.json"));
-    let path = &told["paths"][0];
+    let reported = json(&folder.path().join("results/arch/spread.json"));
+    let path = &reported["paths"][0];
     let falls_at_m = path["falls_at_m"].as_f64().unwrap();
     assert!((falls_at_m - 0.558_230_9).abs() < 1e-6);
     shows(&words, &[falls_at_m, falls_at_m / 9.25, 9.25]);
@@ -1194,7 +1202,7 @@ fn the_command_tells_where_an_arch_falls_and_what_push_is_left() {
     assert!(path["stages"][0]["thrust_n"].is_null());
     let rows = Table::read(folder.path().join("results/arch/spread.csv"));
     assert_eq!(rows.numbers("movement_m").len(), 3 * 21);
-    // Where it is about to fall any push moves it, and `limit` tells no less than none.
+    // At the brink of collapse any push moves the arch: `limit` prints zero and nothing negative.
     let brink_m = path["falls_at_m"].as_f64().unwrap() * (1.0 - 1e-13);
     let moved = format!("supports={{right={{spread_m={brink_m:?}}}}}");
     let limit = [
@@ -1212,15 +1220,15 @@ fn the_command_tells_where_an_arch_falls_and_what_push_is_left() {
         assert_eq!(path["stages"][20]["first_motion_g"][side], 0.0);
         assert_eq!(limit["incipient_acceleration_g"][side], 0.0);
     }
-    // Five metres of radius, and the weight of the ring.
+    // The radius is 5 m; the thrust is relative to the weight of the ring.
     let half = &path["stages"][10];
-    let weight_n = told["weight_n"].as_f64().unwrap();
+    let weight_n = reported["weight_n"].as_f64().unwrap();
     let thrust = half["thrust_n"].as_f64().unwrap() / weight_n;
     assert!((thrust - 0.197_138).abs() < 2e-6, "{thrust}");
     let picture = std::fs::read_to_string(folder.path().join("results/arch/spread.svg")).unwrap();
     assert_eq!(picture.matches("data-name=\"hinge\"").count(), 9);
     assert!(!picture.contains("NaN"));
-    // As many hinges, mirrored.
+    // The left springing gives the mirrored path.
     let left = printed(
         folder.path(),
         &[
@@ -1242,10 +1250,10 @@ fn the_command_tells_where_an_arch_falls_and_what_push_is_left() {
     assert!((at - 0.558_230_9).abs() < 1e-6);
 }
 
-/// Shallow arches whose crown loses its thrust as a springing moves inwards: there the capacity is the push of the first motion. It is the same
-/// whatever the radius, and was once lost to rounding.
+/// Shallow arches lose their thrust as a springing moves inwards. Their capacity then equals the push of the first motion, for
+/// every radius. Rounding once made the program miss it.
 #[test]
-fn an_arch_without_thrust_bears_the_push_of_its_first_motion() {
+fn an_arch_without_thrust_has_the_capacity_of_its_first_motion() {
     for (embrace_deg, thickness, voussoirs, due_g) in [
         (140.0, 0.18, 36, 0.004_489),
         (140.0, 0.18, 20, 0.004_492),
@@ -1279,8 +1287,8 @@ fn an_arch_without_thrust_bears_the_push_of_its_first_motion() {
     }
 }
 
-/// A snap may take the middle one of three pins to the other side of the line between the outer ones than that on which it was built. Numbers
-/// of every stage are found, and no capacity is below the push of the first motion.
+/// A snap may move the middle pin of three to the other side of the line between the outer pins. Results of every stage are
+/// found, and no capacity is below the push of the first motion.
 #[test]
 fn pins_may_change_sides() {
     let text = "[arch]\nmean_radius_m = 4.0\nthickness_ratio = 0.18\nembrace_deg = 100.0\nvoussoirs = 20\n";
@@ -1303,16 +1311,16 @@ fn pins_may_change_sides() {
     }
 }
 
-/// A flat arch on springings that part snaps through where its three hinges lie on one line. There its forces grow beyond all bounds: thrust and
-/// pushes are left out with the reason, and the stage before has a large thrust.
+/// A flat arch on spreading springings snaps through when its three hinges lie on one line. Its forces then exceed all bounds:
+/// thrust and pushes are omitted with the reason, and the stage before has a large thrust.
 #[test]
-fn a_thrust_beyond_all_bounds_is_left_out() {
+fn an_unbounded_thrust_is_omitted() {
     let folder = tempfile::tempdir().unwrap();
     let text = "[arch]\nmean_radius_m = 4.0\nthickness_ratio = 0.1\nembrace_deg = 40\nvoussoirs = 12\n[free_hinges]\n";
     std::fs::write(folder.path().join("flat.toml"), text).unwrap();
     let words = printed(folder.path(), &["spread", "flat.toml", "--angle", "0"]);
-    let told = json(&folder.path().join("results/flat/spread.json"));
-    let path = &told["paths"][0];
+    let reported = json(&folder.path().join("results/flat/spread.json"));
+    let path = &reported["paths"][0];
     let [before, last] = [19, 20].map(|stage: usize| &path["stages"][stage]);
     assert_eq!(path["falls_at_m"], last["movement_m"]);
     assert!((1.0..100.0).contains(&before["thrust_ratio"].as_f64().unwrap()));
@@ -1335,10 +1343,10 @@ fn a_thrust_beyond_all_bounds_is_left_out() {
     assert_eq!(table.rows[20]["thrust_n"], "");
 }
 
-/// Under a push of several g this flat arch leaves one springing and leans on the other, which is not followed: that capacity is left out with its
-/// reason, and everything else remains.
+/// Under a push of several g this flat arch leaves one springing and leans on the other. The program does not follow that, so it
+/// omits this capacity with the reason and reports everything else.
 #[test]
-fn a_push_that_is_not_found_is_left_out_with_its_reason() {
+fn a_push_that_is_not_found_is_omitted_with_its_reason() {
     let folder = tempfile::tempdir().unwrap();
     let text = "[arch]\nmean_radius_m = 1.0\nthickness_ratio = 0.15\nembrace_deg = 74.3\nvoussoirs = 7\n[free_hinges]\n";
     std::fs::write(folder.path().join("flat.toml"), text).unwrap();
@@ -1355,11 +1363,12 @@ fn a_push_that_is_not_found_is_left_out_with_its_reason() {
         ],
     );
     golden("spread", &words);
-    let told = json(&folder.path().join("results/flat/spread.json"));
-    let falls_at_m = [0, 1].map(|path: usize| told["paths"][path]["falls_at_m"].as_f64().unwrap());
+    let reported = json(&folder.path().join("results/flat/spread.json"));
+    let falls_at_m =
+        [0, 1].map(|path: usize| reported["paths"][path]["falls_at_m"].as_f64().unwrap());
     assert!((falls_at_m[0] - 0.358_811).abs() < 5e-7);
     shows(&words, &falls_at_m);
-    let stages = told["paths"][0]["stages"].as_array().unwrap();
+    let stages = reported["paths"][0]["stages"].as_array().unwrap();
     let mut missing = 0;
     for stage in stages {
         for side in ["right", "left"] {
@@ -1382,7 +1391,7 @@ fn a_push_that_is_not_found_is_left_out_with_its_reason() {
 }
 
 #[test]
-fn what_has_no_two_springings_has_no_spread() {
+fn spread_refuses_structures_without_two_springings() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(
         folder.path().join("ring.toml"),
@@ -1411,8 +1420,8 @@ fn what_has_no_two_springings_has_no_spread() {
     );
 }
 
-/// Where the springings' extrados lies above the intrados of the crown, no hinges let the springings approach each other: the arch
-/// jams, and neither its weights nor its iterations are the reason.
+/// If the extrados of the springings lies above the intrados of the crown, no hinges allow the springings to approach each other:
+/// the arch jams. The message blames neither weights nor iterations.
 #[test]
 fn a_flat_thick_arch_jams() {
     let direction = |embrace_deg, direction| {
@@ -1444,7 +1453,7 @@ fn a_flat_thick_arch_jams() {
     );
 }
 
-/// The semicircle above as elastic joints.
+/// [`SEMICIRCLE`] with elastic joints of this normal stiffness.
 fn elastic(normal_gpa_m: f64) -> ElasticProperties {
     ElasticProperties {
         friction_coefficient: None,
@@ -1457,10 +1466,10 @@ fn semicircle_of_5_m() -> Row {
     Row::arch(&ring, 36, 5.0, 1.0, 2000.0).unwrap()
 }
 
-/// Springings that spread over 300 s, half to each side, in explicit steps of another program with mass damping, let elastic joints fall at these
-/// movements over the radius; the delay of that and the damping are worth 0.002. They tend to those of rigid joints.
+/// Reference movements at collapse over the radius, from explicit steps of an independent program with mass damping: springings
+/// spread over 300 s, half to each side. Delay and damping are worth 0.002. The movements tend to those of rigid joints.
 #[test]
-fn elastic_joints_fall_earlier_and_tend_to_rigid_ones() {
+fn arches_of_elastic_joints_fall_earlier_and_tend_to_rigid_ones() {
     let row = semicircle_of_5_m();
     let mut last = 0.0;
     for (normal_gpa_m, expected) in [(1.0, 0.0657), (10.0, 0.0956), (100.0, 0.1064)] {
@@ -1487,7 +1496,7 @@ fn spread_out(spread_m: f64) -> Movements {
     }
 }
 
-/// An arch on springings that have moved stays where it stands: the ground begins to move after 10 s, by too little to be seen.
+/// An arch on moved springings stays at rest until the ground moves: from 10 s on, by too little to be seen.
 #[test]
 fn a_settled_arch_is_at_rest() {
     let model = ElasticJoints::new(semicircle_of_5_m(), elastic(10.0)).unwrap();
@@ -1511,9 +1520,10 @@ fn a_settled_arch_is_at_rest() {
     assert!(summary.end_s > 10.0, "{}", summary.end_s);
 }
 
-/// What starts it is what makes the hinges of its rigid twin give way; and a symmetric arch that was moved as a whole is the same arch.
+/// The push that starts a settled arch of elastic joints agrees with the push of the first motion of its rigid twin. A symmetric
+/// arch translated as a whole is unchanged.
 #[test]
-fn the_push_that_starts_a_settled_arch_is_that_of_moved_hinges() {
+fn the_onset_of_a_settled_elastic_arch_agrees_with_its_rigid_twin() {
     let row = semicircle_of_5_m();
     let movements = spread_out(0.15);
     let mut follower = Follower::new(&row).unwrap();
@@ -1553,7 +1563,7 @@ fn the_push_that_starts_a_settled_arch_is_that_of_moved_hinges() {
 const ELASTIC: &str = "[elastic_joints]\nnormal_stiffness_gpa_m = 10.0\n[ground.half_sine]\namplitude_g = 0.03\nduration_s = 0.2\n";
 
 #[test]
-fn a_scenario_says_where_its_springings_have_gone() {
+fn a_scenario_can_give_the_movement_of_its_springings() {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, supports: &str| {
         let text = format!("{SEMICIRCLE}{ELASTIC}[supports]\n{supports}\n");
@@ -1568,7 +1578,7 @@ fn a_scenario_says_where_its_springings_have_gone() {
         resolved.contains("spread_m = 0.15") && resolved.contains("settlement_m = 0.05"),
         "{resolved}"
     );
-    let told = printed(
+    let reported = printed(
         folder.path(),
         &[
             "--quiet",
@@ -1579,9 +1589,14 @@ fn a_scenario_says_where_its_springings_have_gone() {
             "json",
         ],
     );
-    let told: serde_json::Value = serde_json::from_str(&told).unwrap();
-    assert!(told["incipient_acceleration_g"]["right"].as_f64().unwrap() < 0.08);
-    // Its rigid twin has moved alike.
+    let reported: serde_json::Value = serde_json::from_str(&reported).unwrap();
+    assert!(
+        reported["incipient_acceleration_g"]["right"]
+            .as_f64()
+            .unwrap()
+            < 0.08
+    );
+    // The rigid twin has moved by the same amount.
     let said = printed(folder.path(), &["run", "arch.toml"]);
     assert!(
         said.contains("with rigid joints (free hinges)") && !said.contains("that were built"),

@@ -420,7 +420,7 @@ fn the_record_of_a_history_is_that_of_its_samples() {
 }
 
 #[test]
-fn where_nothing_moves_there_are_no_shares() {
+fn at_rest_there_are_no_shares() {
     let arch = semicircle();
     let history = pulse_history(&arch, 0.1, (0.0, 0.5), 1.0);
     let record = history.summary.thrust.unwrap();
@@ -473,7 +473,7 @@ fn lines_of_thrust_pass_through_the_hinges_and_give_the_excess() {
                 .map(|ratio| ratio.unwrap().abs())
                 .fold(0.0, f64::max);
             let excess = (worst - 0.5).max(0.0);
-            // In a section with hardly any compression the excess is defined differently, and larger than anything drawn.
+            // In an almost unloaded section the excess is defined differently, and is larger than anything drawn.
             if worst < 3.0 {
                 let miss = (excess - sample.demand.excess_ratio).abs();
                 assert!(miss < 1e-6, "{} {worst} {:?}", sample.time_s, sample.demand);

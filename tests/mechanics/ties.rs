@@ -1,5 +1,5 @@
-//! Ties in limit analysis, against static programmes with a force more and numbers computed apart from this program; and how they are
-//! read and told.
+//! Ties in limit analysis, compared with static programmes that have the tie forces as unknowns, and with independently computed
+//! numbers; and reading and printing of ties.
 
 use crate::common::program::{printed, refused, scenarios};
 use crate::common::prose::{golden, shows};
@@ -23,7 +23,7 @@ use serde_json::Value;
 
 const GRAVITY_M_S2: f64 = 9.81;
 
-/// A tie that only its forces matter of.
+/// A tie of which only the forces matter.
 fn tie(ends: [Anchor; 2], prestress_n: f64, yield_force_n: f64) -> Tie {
     Tie {
         ends,
@@ -34,7 +34,7 @@ fn tie(ends: [Anchor; 2], prestress_n: f64, yield_force_n: f64) -> Tie {
     }
 }
 
-/// Between the intrados corners of a joint and of the one opposite, on the blocks above them.
+/// Anchors at the intrados corners of a joint and of the opposite joint, on the blocks above them.
 fn level(row: &Row, joint: usize) -> [Anchor; 2] {
     let blocks = row.blocks.len();
     [(joint, joint), (blocks - joint, blocks - 1 - joint)].map(|(joint, block)| Anchor {
@@ -47,22 +47,23 @@ fn tied(row: &Row, ties: Vec<Tie>) -> Row {
     row.clone().with_ties(ties, GRAVITY_M_S2).unwrap()
 }
 
-/// The static theorem: the largest push under which the thrust at every joint lies between its corners, over the reaction at the
-/// first joint and the forces of the ties, each within its bounds. In units of the weight and the size; `None` where nothing does.
+/// The static theorem: the largest push for which the thrust at every joint lies between its corners. Unknowns are the reaction
+/// at the first joint and the forces of the ties, each within its bounds. In units of weight and size; `None` if no push is
+/// feasible.
 fn statically(row: &Row, sway: Sway, bounds: &[[f64; 2]]) -> Option<f64> {
     extreme_push(row, sway, bounds, 1.0)
 }
 
-/// The least such push, from zero on: zero where the row stands without one.
+/// The smallest feasible push that is not negative: zero if the row stands without a push.
 fn least_statically(row: &Row, sway: Sway, bounds: &[[f64; 2]]) -> Option<f64> {
     extreme_push(row, sway, bounds, -1.0)
 }
 
-/// The largest push times a sign.
+/// The feasible push that maximises `sign` times the push.
 fn extreme_push(row: &Row, sway: Sway, bounds: &[[f64; 2]], sign: f64) -> Option<f64> {
     let (size_m, mass_kg) = (row.size_m, row.mass_kg());
     let origin = row.joints[0].middle_m();
-    // Wrench about the origin on what is before each joint, by unknown: push, reaction, ties; and known.
+    // Wrench about the origin on the part before each joint, for each unknown (push, reaction, ties) and for the known loads.
     let width = 4 + bounds.len();
     let wrench = |point_m: Vector2<f64>, force: Vector2<f64>| {
         let arm = (point_m - origin) / size_m;
@@ -85,11 +86,11 @@ fn extreme_push(row: &Row, sway: Sway, bounds: &[[f64; 2]], sign: f64) -> Option
         right.push(limit);
     };
     for (index, joint) in row.joints.iter().enumerate() {
-        // Force across the joint on what is before it, about either corner: both compressive.
+        // Normal force and moments on the part before the joint: compression at both corners.
         let along = joint.along();
         let across = Vector2::new(-along.y, along.x) * -row.handedness;
         for corner in [Edge::Intrados, Edge::Extrados] {
-            // The moment about one corner is that of the force at the other.
+            // The moment about one corner equals the force at the other times the distance.
             let other = match corner {
                 Edge::Intrados => Edge::Extrados,
                 Edge::Extrados => Edge::Intrados,
@@ -98,7 +99,7 @@ fn extreme_push(row: &Row, sway: Sway, bounds: &[[f64; 2]], sign: f64) -> Option
             let arm = (pole - origin) / size_m;
             let about = |w: &[f64; 3]| w[2] - (arm.x * w[1] - arm.y * w[0]);
             let sense = ((at - pole) / size_m).perp(&across);
-            // What is before the joint presses on what is behind: its wrench has the sense of a push along `-across`.
+            // The part before the joint presses on the part behind it: its wrench has the sense of a push along `-across`.
             let coefficients = by_unknown.iter().map(|w| about(w) / sense).collect();
             bound(coefficients, -about(&known) / sense);
         }
@@ -132,7 +133,7 @@ fn extreme_push(row: &Row, sway: Sway, bounds: &[[f64; 2]], sign: f64) -> Option
     }
     let mut objective = vec![0.0; width];
     objective[0] = -sign;
-    // Pushes against the sway are none.
+    // Pushes against the sway count as zero.
     let mut coefficients = vec![0.0; width];
     coefficients[0] = -1.0;
     bound(coefficients, 0.0);
@@ -162,9 +163,9 @@ fn extreme_push(row: &Row, sway: Sway, bounds: &[[f64; 2]], sign: f64) -> Option
     }
 }
 
-/// Random arches with a tie or two: with the forces at rest, and with any up to those at which they yield.
+/// Random arches with one or two ties: with the forces at rest, and with any force up to yielding.
 #[test]
-fn pushes_with_ties_are_those_of_the_static_programme() {
+fn pushes_with_ties_agree_with_the_static_theorem() {
     let mut random = Random(23);
     let (mut compared, mut limits, mut fall) = (0, 0, 0);
     while compared < 50 {
@@ -225,13 +226,13 @@ fn pushes_with_ties_are_those_of_the_static_programme() {
                     for (force_n, tie) in limit.forces_n.iter().zip(&row.ties) {
                         assert!((0.0..=tie.yield_force_n).contains(force_n));
                     }
-                    // The same by joints that do not slip, however hard they are pushed.
+                    // Joints that do not slip, however large the force, give the same result.
                     let with_friction = friction::onset(&row, 50.0, *sway).unwrap().unwrap();
                     assert!((with_friction.acceleration_g - found_g).abs() < 1e-6);
                     limits += usize::from(limit_g > found_g + 1e-3);
                 }
                 Err(StabilityError::CannotStand(_)) => {
-                    // It may stand under a push, and falls without one.
+                    // The row may stand under a push and fall without one.
                     let least_g = least_statically(&row, *sway, &at_rest);
                     assert!(
                         least_g.is_none_or(|least_g| least_g > 1e-9),
@@ -247,9 +248,9 @@ fn pushes_with_ties_are_those_of_the_static_programme() {
     assert!(limits > 10 && fall > 0 && fall < 50, "{limits} {fall}");
 }
 
-/// Worked numbers, computed with another program: a force that stays, in weights, and one that yields.
+/// Worked numbers of an independent program: a constant tie force in units of the weight, and a yielding tie.
 #[test]
-fn worked_arches_have_their_pushes() {
+fn pushes_of_tied_arches_agree_with_worked_numbers() {
     let cases = [
         (
             (0.15, 180.0, 36, 5.0, 9),
@@ -297,7 +298,7 @@ fn worked_arches_have_their_pushes() {
                 .unwrap();
             assert!((limit.onset.acceleration_g - most_g).abs() < 1e-8);
             let force = limit.forces_n[0] / weight_n;
-            // Of many forces with the same push the least; where that plateau begins the push is flat to 1e-8.
+            // If many forces give the same push, the smallest is reported. At the start of that plateau the push is flat to 1e-8.
             assert!((force - best).abs() < 1e-6, "{force} {best}");
             let weak = limit_with_yielding_ties(&pulled(0.0, 0.05), *sway)
                 .unwrap()
@@ -332,7 +333,7 @@ fn worked_arches_have_their_pushes() {
     }
 }
 
-/// The mirror image of a row with ties is pushed over by the mirror image of the push.
+/// A row with ties and its mirror image are overturned by mirrored pushes of equal size.
 #[test]
 fn mirrored_ties_have_mirrored_pushes() {
     let row = Row::arch(&ring(0.16, 170.0), 15, 4.0, 1.0, 2100.0).unwrap();
@@ -371,9 +372,9 @@ fn on_piers() -> String {
     format!("{before}[ground{after}")
 }
 
-/// A pointed arch on piers, tied at its springings or higher: onset, the limit with a tie that yields, and what stands no longer.
+/// A pointed arch on piers, tied at its springings or higher: onset, limit with a yielding tie, and rows that no longer stand.
 #[test]
-fn a_tied_arch_on_piers_has_its_pushes() {
+fn pushes_of_a_tied_arch_on_piers_agree_with_worked_numbers() {
     let text = on_piers();
     let answer = |tie: &str| {
         limit(&parsed(&format!(
@@ -440,7 +441,7 @@ fn a_tied_arch_on_piers_has_its_pushes() {
 const COLUMN: &str = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n";
 const TIE: &str = "[[tie]]\nfrom_m = [-0.4, 3.5]\nto_m = [-3.4, 3.5]\nto_block = 0\nstiffness_n_m = 1e6\nprestress_n = 5000.0\n";
 
-/// A block that a level tie holds: by moments about its toe. The check by the Circolare has the same multiplier.
+/// A block held by a level tie, by moments about its toe. The check by the Circolare has the same multiplier.
 #[test]
 fn a_tied_column_turns_about_its_toe() {
     let weight_n = 6400.0 * GRAVITY_M_S2;
@@ -474,15 +475,15 @@ fn a_tied_column_turns_about_its_toe() {
         ((rise + held) / sway - 0.339_366_718).abs() < 5e-10,
         "{right}"
     );
-    let told = page(&scenario, &check, "2026-01-01");
+    let reported = page(&scenario, &check, "2026-01-01");
     for words in ["F (kN)", "5.000", "0.33937"] {
-        assert!(told.contains(words), "{words}");
+        assert!(reported.contains(words), "{words}");
     }
 }
 
-/// What is no tie is refused with what to change.
+/// Invalid ties are refused with a remedy.
 #[test]
-fn what_is_no_tie_is_refused() {
+fn invalid_ties_are_refused() {
     let arch = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 20\n";
     let section = "stiffness_n_m = 1e7\n";
     for (tie, words) in [
@@ -562,9 +563,10 @@ fn what_is_no_tie_is_refused() {
     none(TieError::OnSupports, "supports");
 }
 
-/// A scenario with ties is written as it is read, by section or by stiffness; keys of a tie are set by its number.
+/// A scenario with ties reads back, whether ties are given by section or by stiffness. `--set` changes keys of a tie by its
+/// number.
 #[test]
-fn scenarios_with_ties_are_written_as_they_are_read() {
+fn scenarios_with_ties_read_back() {
     let arch = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 20\n";
     let ties = "[[tie]]\nheight_m = 2.0\narea_mm2 = 491.0\nmodulus_gpa = 210.0\nprestress_n = 1e4\nyield_stress_mpa = 235.0\n\
                 breaks_at_strain = 0.05\n[[tie]]\nfrom_m = [-5.0, 0.5]\nto_m = [5.0, 0.5]\nstiffness_n_m = 1e7\n";
@@ -596,11 +598,10 @@ fn scenarios_with_ties_are_written_as_they_are_read() {
     assert_eq!(stack.supports, Supports::Left);
 }
 
-/// Two hundred ties side by side bear what one of their strength bears; one more, or a stiffer one, is refused with the limit.
-/// 200 ties over the height of an arch hold it up to a push that depends on how they are spread only by the square of their distance: 50 at
-/// the same heights, each four times as stiff, bear nearly as much.
+/// 200 ties over the height of an arch have nearly the capacity of 50 ties four times as stiff at the same heights: the capacity
+/// depends on the distance of the ties only by its square.
 #[test]
-fn a_curtain_of_ties_bears_what_fewer_and_stiffer_ones_bear() {
+fn many_ties_have_the_capacity_of_fewer_stiffer_ones() {
     let capacity_g = |count: u32| {
         let tie = |index: u32| {
             let height_m = 0.5 + 3.5 * (f64::from(index) + 0.5) / f64::from(count);
@@ -620,8 +621,10 @@ fn a_curtain_of_ties_bears_what_fewer_and_stiffer_ones_bear() {
     );
 }
 
+/// Two hundred ties side by side have the capacity of one tie of their total strength. One more tie, or a stiffer one, is refused
+/// with the limit.
 #[test]
-fn ties_have_limits_and_many_of_them_bear_what_one_bears() {
+fn the_number_of_ties_is_limited_and_many_equal_one() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let arch = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 36\n";

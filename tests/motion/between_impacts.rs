@@ -298,7 +298,7 @@ fn cuts_in_the_ground_motion_change_nothing() {
 }
 
 #[test]
-fn the_critical_rotation_is_where_it_turns_over() {
+fn beyond_the_critical_rotation_it_overturns() {
     // Released just above and just below, on ground that moves a little first, so that the end is not decided yet.
     let arch = four_links(8.0, 0.15, 157.5, HingeSites::Anywhere);
     let link = arch.link(0).unwrap();
@@ -308,7 +308,7 @@ fn the_critical_rotation_is_where_it_turns_over() {
     }
     assert!(link.mechanism.coefficients(link.critical_rad).s_y.abs() < 1e-14);
     assert!(link.limit_rad > link.critical_rad);
-    // The energy decides: a blow that gives just less or just more than the barrier.
+    // The energy decides: pulses that give just less or just more than the barrier.
     let c = link.mechanism.coefficients(0.0);
     let barrier = GRAVITY / arch.length_m() * top;
     let duration_s = 1e-7;

@@ -160,7 +160,7 @@ fn peaks_decay_with_the_restitution() {
 /// The same for slender columns: `1 - (1 - phi)^2`, where `phi` is the rotation over `alpha`. Energies before the
 /// impacts stand for the peaks; the slender law has an error of `alpha^2`.
 #[test]
-fn slender_columns_decay_as_housner_says() {
+fn slender_columns_decay_by_housners_law() {
     let (alpha, phi_0) = (1e-3, 0.7);
     let (column, still) = (column(alpha), GroundMotion::still());
     let history = run(&column, &still, &released(Sway::Right, phi_0 * alpha));
@@ -176,7 +176,7 @@ fn slender_columns_decay_as_housner_says() {
 }
 
 #[test]
-fn uplift_is_at_the_slenderness() {
+fn uplift_starts_at_the_slenderness() {
     for alpha in [0.01, 0.2, 0.9] {
         let column = column(alpha);
         assert!((column.incipient_g() - alpha.tan()).abs() < 1e-15);
@@ -225,7 +225,7 @@ fn overturning_x(kind: Pulse, alpha: f64, duration_s: f64) -> f64 {
 /// Slender: `cosh(p t_1) = 1 + 1 / (2 x (x - 1))` (Housner), solved for `x`. The error is of the order
 /// `alpha^2`.
 #[test]
-fn rectangular_pulses_overturn_slender_columns_as_housner_says() {
+fn rectangular_pulses_overturn_slender_columns_at_housners_amplitude() {
     for time in [0.3, 0.8, 2.0_f64] {
         let duration_s = time / p();
         let product = 0.5 / (time.cosh() - 1.0);
@@ -369,7 +369,7 @@ struct Nobody;
 impl Observer<Rocking<'_, RockingColumn>, 3> for Nobody {}
 
 #[test]
-fn too_many_events_are_an_error_that_says_what_to_change() {
+fn too_many_events_are_an_error_with_a_remedy() {
     let (column, still) = (column(0.2), GroundMotion::still());
     let rocking = Rocking::new(&column, &still, GRAVITY_M_S2, 1e-8);
     let settings = |max_transitions| Settings {

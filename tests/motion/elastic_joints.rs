@@ -40,7 +40,7 @@ fn stack(drums: usize, height_m: f64) -> Row {
     Row::stack(&vec![drum; drums], 1.0, 2700.0).unwrap()
 }
 
-/// As stiff against slip as against penetration, without damping.
+/// Joints with equal stiffness against slip and penetration, without damping.
 fn joints(stiffness_pa_m: f64, contact: Contact) -> ElasticProperties {
     ElasticProperties {
         stiffness: Stiffness::Uniform(JointStiffness {
@@ -107,9 +107,9 @@ fn thrust_ratio(structure: &ElasticStructure, gravity_m_s2: f64) -> f64 {
     action.force_n[0].0[0] / weight_n
 }
 
-/// An independent program, with tangents by finite differences, gives these values to all digits shown.
+/// Reference values to all digits shown are from an independent program, with tangents by finite differences.
 #[test]
-fn arches_rest_where_an_independent_program_has_them() {
+fn equilibria_of_arches_agree_with_an_independent_program() {
     for (row, gravity, stiffness, thrust, drop_mm) in [
         (lemos(), 10.0, 1e10, 0.19624, 2.021),
         (lemos(), 10.0, 1e11, 0.19614, 0.1935),
@@ -189,7 +189,7 @@ fn a_block_that_is_pushed_resists_by_its_closed_form() {
 }
 
 #[test]
-fn what_does_not_rest_says_why() {
+fn a_structure_without_equilibrium_gives_the_reason() {
     let why =
         |row: Row, properties: ElasticProperties| ElasticJoints::new(row, properties).unwrap_err();
     let arch = |contact| joints(1e10, contact);
@@ -238,7 +238,7 @@ fn what_does_not_rest_says_why() {
 /// From a published deck of a discrete-element program: 17 voussoirs, joints of 10 GPa/m with three points, half sine of 0.15 g. The
 /// independent program gives 16.42 mm at 0.540 s; the crown's displacement is read from samples a millisecond apart.
 #[test]
-fn the_crown_of_a_published_arch_moves_as_it_should() {
+fn the_crown_of_a_published_arch_has_the_published_motion() {
     let properties = ElasticProperties {
         damping_time_s: 0.05 / (PI * 10.9),
         ..joints(1e10, Contact::Points(3))
@@ -274,7 +274,7 @@ fn the_crown_of_a_published_arch_moves_as_it_should() {
 
 /// The tables of an independent program are reproduced to half a per cent.
 #[test]
-fn blocks_and_arches_overturn_where_an_independent_program_has_them() {
+fn overturning_of_blocks_and_arches_agrees_with_an_independent_program() {
     let continuous = Contact::Continuous;
     for (stiffness, contact, due_g) in [
         (1e8, continuous, 0.3677),
@@ -338,16 +338,16 @@ fn histories_side_by_side_have_the_bits_of_each_alone() {
             ControlFlow::Continue(())
         };
         let (ground, request) = &cases[3];
-        let told = model
+        let reported = model
             .simulate(ground, request, Some(&mut recorder))
             .unwrap();
         let alone = model.simulate(ground, request, None).unwrap();
-        assert_eq!(told.peak_rotations_rad, alone.peak_rotations_rad);
-        assert!(samples > 80 && told.cost == alone.cost);
+        assert_eq!(reported.peak_rotations_rad, alone.peak_rotations_rad);
+        assert!(samples > 80 && reported.cost == alone.cost);
     }
 }
 
-/// Asks for every case by the model and by its repetitions, followed to each end.
+/// Requests every case by the model and by its repetitions, followed to each end.
 struct Everything {
     waiting: Vec<Job>,
     answers: Vec<(Job, Summary)>,
@@ -385,7 +385,7 @@ impl Jobs for Everything {
     }
 }
 
-/// Every job is that of the model or the repetition that it names, followed as far as it says.
+/// Every job gives the history of the model or the repetition that it names, followed to the requested end.
 #[test]
 fn jobs_side_by_side_have_the_bits_of_each_alone() {
     let properties = ElasticProperties {
@@ -406,7 +406,7 @@ fn jobs_side_by_side_have_the_bits_of_each_alone() {
         let alone = model.simulate_until(job.until, &cases[job.case]).unwrap();
         assert_eq!(alone, *together, "{job:?}");
     }
-    // No two of a case are the same: all have other steps, or end elsewhere.
+    // All jobs of a case differ in their steps or in their end.
     for case in 0..cases.len() {
         let of_case = jobs.answers.iter().filter(|(job, _)| job.case == case);
         let ends: HashSet<_> = of_case
@@ -466,7 +466,7 @@ fn the_energy_balance_closes_with_the_square_of_the_step() {
 /// Mirror images move as mirror images, up to the rounding that a second of chatter amplifies. If all lengths are four times as large,
 /// the stiffness per area a quarter and times twice as long, rotations change by rounding only.
 #[test]
-fn mirror_images_and_scaled_arches_move_alike() {
+fn mirror_images_and_scaled_arches_have_similar_motions() {
     let ring = Ring::new(0.15, PI).unwrap();
     let sections = [0.0, 0.3, 0.7, 1.0, 1.6, 2.1, 2.6, PI];
     let row = Row::annular(&ring, &sections, 5.0, 1.0, 2700.0).unwrap();
@@ -508,7 +508,7 @@ fn mirror_images_and_scaled_arches_move_alike() {
 
 /// Thresholds tend to that of the rigid block (Housner's first half cycle, 0.50173 g), as a power of stiffness between 1/3 and 1/2.
 #[test]
-fn stiff_joints_go_to_the_rigid_block() {
+fn stiff_joints_tend_to_the_rigid_block() {
     let least_g = |stiffness: f64| {
         let model =
             ElasticJoints::new(stack(1, 5.0), joints(stiffness, Contact::Continuous)).unwrap();
@@ -547,7 +547,7 @@ fn stiff_joints_go_to_the_rigid_block() {
 }
 
 #[test]
-fn an_arch_that_is_not_shaken_stays_and_one_that_is_comes_to_rest() {
+fn an_unshaken_arch_stays_and_a_shaken_one_comes_to_rest() {
     let properties = ElasticProperties {
         damping_time_s: 1e-3,
         ..joints(1e9, Contact::Continuous)
@@ -569,11 +569,11 @@ fn an_arch_that_is_not_shaken_stays_and_one_that_is_comes_to_rest() {
     assert!((due - model.incipient_acceleration_g(Sway::Left).unwrap()).abs() < 1e-9);
 }
 
-/// Pushed over slowly, a block of half base `b` and centre height `h` resists `W (b - x_c/3 - h kappa)`, with
-/// `x_c = sqrt(2 W/(kn w kappa))` of its base in contact. This closed form is for small rotations; for those of this block it is 2 % off.
+/// Pushed over slowly, a block of half base `b` and centre height `h` resists `W (b - x_c/3 - h kappa)`, with a length of base in
+/// contact of `x_c = sqrt(2 W/(kn w kappa))`. This closed form holds for small rotations; for those of this block it is 2 % off.
 /// With contact points, stiff joints need the energy of rigid ones; arches approach it from below.
 #[test]
-fn what_is_pushed_over_takes_the_energy_of_its_closed_form() {
+fn overturning_energy_agrees_with_the_closed_form() {
     let row = stack(1, 5.0);
     let weight_n = row.mass_kg() * 9.81;
     let barrier_j = |row: Row, stiffness: f64, contact| {
@@ -615,10 +615,10 @@ fn what_is_pushed_over_takes_the_energy_of_its_closed_form() {
     assert!((0.999..1.0).contains(&(elastic_j / rigid_j)));
 }
 
-/// If the path over is lost, that of softer joints gives a lower bound of the barrier: not much less than that of soft joints, and less than
-/// that of rigid ones.
+/// If the overturning path is lost, the path of softer joints gives a lower bound of the barrier: not much less than for soft
+/// joints, and less than for rigid ones.
 #[test]
-fn softer_joints_tell_of_less_energy_than_a_structure_needs() {
+fn softer_joints_give_a_lower_bound_of_the_barrier() {
     let barrier_j = |stiffness: f64, contact| {
         let model = ElasticJoints::new(semicircle(13), joints(stiffness, contact)).unwrap();
         let rigid_j = model.barrier_j(9.81).unwrap();
@@ -640,10 +640,11 @@ fn softer_joints_tell_of_less_energy_than_a_structure_needs() {
     }
 }
 
-/// After a pulse, any structure that overturns had more energy than the easiest way over needs; one that never had half of it stands.
+/// After a pulse, every overturning structure had more energy than the easiest way over requires; a structure that stays below
+/// half of that survives.
 #[test]
-fn what_overturns_had_more_energy_than_its_barrier() {
-    // Of stiff joints and of points a part of the barrier is found, from softer joints.
+fn overturned_structures_had_more_energy_than_the_barrier() {
+    // For stiff joints and contact points, softer joints give a lower bound of the barrier.
     for (row, stiffness, contact, found) in [
         (semicircle(9), 3e9, Contact::Continuous, 1.0),
         (stack(3, 5.0), 2e9, Contact::Continuous, 1.0),
@@ -744,9 +745,9 @@ fn no_history_fails_silently() {
     assert!(2 * moved > none, "{moved} {none}");
 }
 
-/// A block on three points bounces and slips at each landing. Friction takes energy with any step, and what it takes converges: to 1.88 J,
-/// that with steps of 1e-6 s, for slips of 3.36 mm at most. The steps of the program miss both, and say that the slip at the end is
-/// uncertain. The trapezoidal rule gives -1.47 J with them.
+/// A block on three points bounces and slips at each landing. Friction takes energy with any step. The energy converges to 1.88
+/// J, the value with steps of 1e-6 s, for slips of at most 3.36 mm. With the steps of the program both values are off, and the
+/// summary reports the final slip as uncertain. With those steps the trapezoidal rule gives -1.47 J.
 #[test]
 fn friction_at_points_takes_energy_and_slips_are_compared() {
     let run = |step: &str| {
@@ -851,10 +852,10 @@ fn restitution_follows_from_contact_and_damping() {
     }
 }
 
-/// The greatest push under which arches rest, compared with an independent program; that program uses slow ramps, which overshoot by some
-/// tenths of a per cent.
+/// The largest push under which arches rest, compared with an independent program. That program uses slow ramps, which overshoot
+/// by some tenths of a per cent.
 #[test]
-fn arches_that_are_pushed_resist_as_an_independent_program_has_it() {
+fn resistance_of_arches_agrees_with_an_independent_program() {
     for (row, gravity, stiffness, due_g) in [
         (lemos(), 10.0, 1e10, 0.0303),
         (lemos(), 10.0, 1e11, 0.0520),
@@ -871,10 +872,11 @@ fn arches_that_are_pushed_resist_as_an_independent_program_has_it() {
     }
 }
 
-/// The same on three points, where equilibria end at kinks that Newton's method does not pass: a push that rises over 3 s and stays for
-/// 3 s. What still swings then takes some tenths of a per cent of what the arch bears, there as here.
+/// The largest push of an arch on three contact points. There equilibria end at kinks that Newton's method does not pass, so a
+/// push rises over 3 s and stays for 3 s. In both programs the remaining vibration takes some tenths of a per cent of the
+/// capacity.
 #[test]
-fn an_arch_on_points_resists_a_slow_push_as_an_independent_program_has_it() {
+fn slow_push_resistance_on_points_agrees_with_an_independent_program() {
     let model = ElasticJoints::new(lemos(), joints(1e10, Contact::Points(3))).unwrap();
     let falls_under = |push_g: f64| {
         let part = |index: i32| 0.5 - 0.5 * (PI * (f64::from(index) / 60.0).min(1.0)).cos();
@@ -890,7 +892,7 @@ fn an_arch_on_points_resists_a_slow_push_as_an_independent_program_has_it() {
 
 /// The column of drums of the failure domain, with two points: within 1 % of an independent program.
 #[test]
-fn drums_overturn_where_an_independent_program_has_them() {
+fn overturning_of_drums_agrees_with_an_independent_program() {
     let text = std::fs::read_to_string(scenarios().join("drums-step-pair.toml")).unwrap();
     let properties = ElasticProperties {
         damping_time_s: 1e-4,
@@ -907,7 +909,7 @@ fn drums_overturn_where_an_independent_program_has_them() {
     );
 }
 
-/// A number in the last cell of a row of docs/validation.md, with the stiffness of its joints in Pa/m, which is in the first one.
+/// Numbers in the last cell of rows of docs/validation.md, each with the stiffness of its joints in Pa/m from the first cell.
 fn shown(label: &str) -> Vec<(f64, f64)> {
     let cells = validated(label);
     let stiffness = cells[0].iter().map(|gpa_m| gpa_m * 1e9);
@@ -937,7 +939,7 @@ fn damped(stiffness_pa_m: f64) -> ElasticProperties {
 }
 
 #[test]
-fn the_page_has_the_pushes_that_blocks_and_arches_bear() {
+fn the_page_has_the_largest_pushes_of_blocks_and_arches() {
     let mut wrong = Vec::new();
     for (label, row, gravity) in [
         ("push that tips a block", stack(1, 5.0), 9.81),

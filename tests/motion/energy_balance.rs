@@ -24,7 +24,7 @@ fn block(friction_coefficient: Option<f64>, longest_step_s: Option<f64>) -> Free
 /// A released block gains the energy by which its centre comes down, from sine and cosine of its rotation, half its width and height.
 /// The first impact is within a step of the largest kinetic energy.
 #[test]
-fn the_largest_kinetic_energy_is_noted() {
+fn the_largest_kinetic_energy_is_recorded() {
     let angle_rad = 0.1_f64;
     for coefficient in COEFFICIENTS {
         let model = block(coefficient, None);

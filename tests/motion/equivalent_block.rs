@@ -133,7 +133,7 @@ fn column(height_m: f64, width_m: f64, model: ImpactModel) -> RockingColumn {
 
 /// Size cancels out of the dimensionless view.
 #[test]
-fn large_and_small_structures_look_alike() {
+fn scaled_structures_have_similar_motions() {
     let of_arch = |radius_m| dimensionless(&arch(0.15, 157.5, radius_m), 1.0, 2.0);
     assert_same(&of_arch(1.0), &of_arch(37.0), 1e-9);
     let of_column = |size: f64| {
@@ -146,9 +146,9 @@ fn large_and_small_structures_look_alike() {
     assert_same(&of_column(0.1), &of_column(7.0), 1e-9);
 }
 
-/// So does the slenderness of slender columns with equal loss of energy, up to its square.
+/// For slender columns with equal loss of energy, the slenderness cancels as well, up to its square.
 #[test]
-fn slender_columns_look_alike() {
+fn slender_columns_have_similar_motions() {
     let of_column = |width_m: f64| {
         let model = ImpactModel::Prescribed { restitution: 0.8 };
         dimensionless(&column(4.0, width_m, model), 1.0, 2.0)

@@ -242,7 +242,7 @@ fn the_onset_of_random_rows_is_that_of_linear_programming() {
 
 /// All four hinges of the four-link motion shut at once.
 #[test]
-fn a_full_closure_keeps_what_the_cone_allows() {
+fn a_full_closure_keeps_the_energy_of_the_cone() {
     for (embrace, thickness, voussoirs, kept) in [
         (157.5, 0.15, 7, 0.559_235_19),
         (157.5, 0.15, 14, 0.614_996_65),
@@ -405,7 +405,7 @@ fn thresholds_of_single_pulses_are_the_measured_ones() {
     }
 }
 
-/// Step pairs that a tapered column of drums does not survive, as measured.
+/// Measured step pairs that overturn a tapered column of drums.
 #[test]
 fn the_failure_domain_of_a_column_of_drums_is_the_measured_one() {
     let drums = [0.82, 0.82, 0.82, 0.82, 0.82, 0.82, 0.82, 0.21];
@@ -544,7 +544,7 @@ fn left_and_right_are_mirror_images() {
 
 /// Factors that are powers of two change no digits: whole histories are bit-identical.
 #[test]
-fn size_density_and_depth_scale_as_they_should() {
+fn size_density_and_depth_scale_exactly() {
     let ring = ring(0.15, 157.5);
     let reference = Row::arch(&ring, 14, 4.0, 1.0, 2048.0).unwrap();
     let settings = Settings::to_landings(&reference, GRAVITY, 4.0);
@@ -593,7 +593,7 @@ fn energy_does_not_grow() {
 }
 
 #[test]
-fn what_does_not_move_says_so() {
+fn pulses_below_the_onset_move_nothing() {
     let row = arch(180.0, 0.15, 36, 5.0);
     let settings = Settings::to_landings(&row, GRAVITY, 10.0);
     assert_eq!(
@@ -653,7 +653,7 @@ fn random_histories_do_not_fail() {
     );
 }
 
-/// At rest a corner of this row closes by rounding; it depends on other corners, none of which gives way.
+/// At rest a corner of this row closes by rounding; it depends on other corners, which all stay closed.
 #[test]
 fn a_corner_that_closes_by_rounding_does_not_stop_a_history() {
     let run = torture(&mut Random(511 * 7919 + 1), 60, 8.0).unwrap();
@@ -662,7 +662,7 @@ fn a_corner_that_closes_by_rounding_does_not_stop_a_history() {
 
 /// When blocks are flung about, the displacement that brings the ends of an arch together may shut corners with small gaps.
 #[test]
-fn the_ends_of_an_arch_meet_where_corners_shut_on_the_way() {
+fn the_ends_of_an_arch_meet_although_corners_close() {
     for (voussoirs, amplitude_g, duration_s) in [(7, -2.0, 0.4), (36, -2.0, 0.4), (36, -1.27, 0.6)]
     {
         let row = arch(157.5, 0.15, voussoirs, 10.0);

@@ -106,7 +106,7 @@ proptest! {
 }
 
 #[test]
-fn errors_name_the_number_and_what_is_allowed() {
+fn errors_name_the_number_and_its_range() {
     let pulse = |amplitude, duration_s, start_s| {
         let error = Pulse::HalfSine
             .lasting_s(duration_s)
@@ -168,7 +168,7 @@ fn errors_name_the_number_and_what_is_allowed() {
 }
 
 #[test]
-fn samples_are_a_record_from_time_zero() {
+fn a_record_of_samples_starts_at_time_zero() {
     let ground = GroundMotion::from_samples(0.25, &[1.0, -2.0, 0.5]).unwrap();
     let record = [(0.0, 1.0), (0.25, -2.0), (0.5, 0.5)];
     assert_eq!(ground, GroundMotion::record(&record, &[], 0.0).unwrap());

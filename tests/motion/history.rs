@@ -212,7 +212,7 @@ fn density_and_depth_change_no_bit() {
 }
 
 #[test]
-fn the_same_history_twice_is_the_same_to_the_last_bit() {
+fn a_repeated_history_is_bit_identical() {
     let run_anew = || {
         let arch = seven_voussoirs();
         let ground = pulse(Pulse::Ricker, 0.6, 0.5);
@@ -254,7 +254,7 @@ fn below_the_incipient_acceleration_nothing_moves() {
 }
 
 #[test]
-fn it_starts_where_the_push_passes_the_incipient_acceleration() {
+fn motion_starts_when_the_push_passes_the_incipient_acceleration() {
     // A triangle of 2 A_L and 0.8 s passes A_L at 0.2 s; phase 1 begins there.
     let arch = semicircle();
     let ground = pulse(Pulse::Triangular, -2.0 * arch.incipient_g(), 0.8);
@@ -282,7 +282,7 @@ fn it_starts_where_the_push_passes_the_incipient_acceleration() {
 }
 
 #[test]
-fn it_rests_and_starts_again_on_either_side() {
+fn motion_can_restart_on_either_side_after_rest() {
     let arch = semicircle();
     let incipient_g = arch.incipient_g();
     // A push just above A_L, a long calm in between, then a push to the other side: one period of a sine.
@@ -332,7 +332,7 @@ fn it_rests_and_starts_again_on_either_side() {
 }
 
 #[test]
-fn a_push_barely_above_the_threshold_does_no_harm() {
+fn a_push_just_above_the_onset_does_not_overturn() {
     // One-cosine starts at its peak, so the structure is lifted only for an instant, by as little as rounding.
     let arch = semicircle();
     for exponent in 1..=13 {
@@ -393,7 +393,7 @@ fn the_peak_is_not_below_any_sample() {
 }
 
 #[test]
-fn a_very_short_blow_gives_its_momentum() {
+fn a_very_short_pulse_transfers_its_momentum() {
     // Rate just after: velocity of the ground times S_x / M. Gravity takes g dt S_y / M meanwhile.
     let arch = semicircle();
     let link = arch.link(0).unwrap();
@@ -448,7 +448,7 @@ fn a_late_pulse_is_the_same_pulse() {
 }
 
 #[test]
-fn released_beyond_the_critical_rotation_it_is_lost_at_once() {
+fn a_release_beyond_the_critical_rotation_overturns_at_once() {
     let arch = semicircle();
     let still = GroundMotion::still();
     let critical = arch.link(0).unwrap().critical_rad;

@@ -128,7 +128,7 @@ fn a_late_start_changes_nothing() {
 }
 
 #[test]
-fn a_watcher_stops_it_at_the_step_it_sees() {
+fn an_observer_stops_the_integration_at_its_step() {
     let task = task(0.0, 3.0, State::<1>::new(1.0), 1e-9);
     let mut seen = None;
     let watch = |step: &Step<1>| {
@@ -145,7 +145,7 @@ fn a_watcher_stops_it_at_the_step_it_sees() {
 }
 
 #[test]
-fn a_slope_that_is_not_a_number_is_called_so() {
+fn a_slope_that_is_not_a_number_is_reported() {
     let broken = |time_s: f64, state: &State<1>| {
         State::<1>::new(if time_s > 0.5 { f64::NAN } else { state[0] })
     };
@@ -451,7 +451,7 @@ fn more_bounces_than_allowed_are_an_error() {
 }
 
 #[test]
-fn the_end_is_the_end() {
+fn integration_ends_exactly_at_the_end() {
     let (log, finish) = throw(&BALL, State::<2>::new(1.0, 0.0), 0.25);
     assert!(finish.unwrap() == 0.25 && log.bounces.is_empty());
     let last = log.steps.last().unwrap();

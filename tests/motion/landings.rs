@@ -44,7 +44,7 @@ impl Recorder for FirstImpact {
 /// Wherever in a step a block lands, its impact keeps the energy that Housner gives: with the steps of a run, and with steps some
 /// three times as long. Measured error: 7e-16, rounding.
 #[test]
-fn a_block_released_anywhere_keeps_what_housner_says() {
+fn a_released_block_keeps_the_energy_housner_gives() {
     let drum = Drum {
         height_m: 4.0,
         base_width_m: 0.8,

@@ -143,7 +143,7 @@ fn places(history: &History, in_a_mirror: bool) -> Vec<Vec<u64>> {
 }
 
 #[test]
-fn mirrored_grounds_put_bodies_and_hinges_where_the_mirror_shows_them_to_the_last_bit() {
+fn mirrored_ground_mirrors_bodies_and_hinges_to_the_last_bit() {
     let check = |model: &dyn Model| {
         for kind in Pulse::ALL.iter().copied() {
             for amplitude_g in [0.4, 2.0] {
@@ -162,13 +162,13 @@ fn mirrored_grounds_put_bodies_and_hinges_where_the_mirror_shows_them_to_the_las
 
 /// Keeps everything that it receives.
 #[derive(Default)]
-struct Told {
+struct Received {
     samples: Vec<Sample>,
     events: Vec<Event>,
     most_samples: Option<usize>,
 }
 
-impl Recorder for Told {
+impl Recorder for Received {
     fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
         self.samples.push(sample.clone());
         match self.most_samples {
@@ -186,23 +186,25 @@ impl Recorder for Told {
 fn assert_owned<T: Debug + Clone + Send + Sync + 'static>(_: &T) {}
 
 #[test]
-fn a_history_keeps_what_a_recorder_is_told() {
+fn a_recorder_receives_the_data_of_the_history() {
     let check = |model: &dyn Model| {
         for ground in grounds() {
             let request = sampled(10.0, 0.01);
             let history = model.history(&ground, &request).unwrap();
             assert_owned(&history);
             assert_eq!(history.bodies, model.bodies());
-            let mut told = Told::default();
-            let summary = model.simulate(&ground, &request, Some(&mut told)).unwrap();
+            let mut received = Received::default();
+            let summary = model
+                .simulate(&ground, &request, Some(&mut received))
+                .unwrap();
             assert_eq!(summary, history.summary);
-            assert_eq!(told.events, history.events);
-            assert!(history.samples.iter().eq(told.samples.iter().cloned()));
+            assert_eq!(received.events, history.events);
+            assert!(history.samples.iter().eq(received.samples.iter().cloned()));
 
             let (columns, bodies) = (&history.samples, model.bodies().len());
-            assert_eq!(columns.len(), told.samples.len());
+            assert_eq!(columns.len(), received.samples.len());
             assert!(columns.get(columns.len()).is_none() && !columns.is_empty());
-            for (i, sample) in told.samples.iter().enumerate() {
+            for (i, sample) in received.samples.iter().enumerate() {
                 let by_body = i * bodies..(i + 1) * bodies;
                 assert_eq!(columns.rotations_rad[by_body.clone()], sample.rotations_rad);
                 assert_eq!(columns.rates_rad_s[by_body.clone()], sample.rates_rad_s);
@@ -223,7 +225,11 @@ fn a_history_keeps_what_a_recorder_is_told() {
                 assert_eq!(columns.energy_ratio[i], sample.energy_ratio);
                 assert_eq!(columns.energy_j[i], sample.energy_j);
             }
-            let hinges: usize = told.samples.iter().map(|sample| sample.hinges.len()).sum();
+            let hinges: usize = received
+                .samples
+                .iter()
+                .map(|sample| sample.hinges.len())
+                .sum();
             assert_eq!(columns.hinges.len(), hinges);
 
             // Without a recorder: the same, except for the demand of samples.
@@ -232,13 +238,15 @@ fn a_history_keeps_what_a_recorder_is_told() {
             let thrust = summary.thrust;
             assert_eq!(archrock::Summary { thrust, ..alone }, summary);
             // A break ends the history.
-            told = Told {
+            received = Received {
                 most_samples: Some(3),
-                ..Told::default()
+                ..Received::default()
             };
-            let broken = model.simulate(&ground, &request, Some(&mut told)).unwrap();
-            assert!(told.samples.len() == 3 && broken.end_s < 0.1);
-            assert!(history.samples.iter().take(3).eq(told.samples));
+            let broken = model
+                .simulate(&ground, &request, Some(&mut received))
+                .unwrap();
+            assert!(received.samples.len() == 3 && broken.end_s < 0.1);
+            assert!(history.samples.iter().take(3).eq(received.samples));
         }
     };
     check(&semicircle());
@@ -356,7 +364,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(160))]
 
     #[test]
-    fn arches_of_any_numbers_are_arches_or_errors(
+    fn arches_from_random_numbers_are_valid_or_errors(
         sizes in (number(0.1..50.0), number(0.05..0.5), number(60.0..180.0)),
         others in (number(0.1..10.0), number(500.0..3000.0)),
         again in (number(0.1..50.0), number(0.05..0.5), number(60.0..180.0)),
@@ -402,7 +410,7 @@ proptest! {
     }
 
     #[test]
-    fn rings_of_any_numbers_are_rings_or_errors(t in number(0.0..2.0), embrace_rad in number(0.0..3.2)) {
+    fn rings_from_random_numbers_are_valid_or_errors(t in number(0.0..2.0), embrace_rad in number(0.0..3.2)) {
         match Ring::new(t, embrace_rad) {
             Ok(ring) => {
                 let mass = ring.moments_to(ring.embrace_rad).mass;
@@ -413,7 +421,7 @@ proptest! {
     }
 
     #[test]
-    fn columns_of_any_numbers_are_columns_or_errors(
+    fn columns_from_random_numbers_are_valid_or_errors(
         (height_m, width_m) in (number(1e-9..1e12), number(1e-9..1e12)),
         (depth_m, density_kg_m3) in (number(1e-9..1e12), number(1e-9..1e12)),
         model in any_model(),
@@ -437,7 +445,7 @@ proptest! {
     }
 
     #[test]
-    fn requests_of_any_numbers_are_met_or_errors(
+    fn requests_with_random_numbers_succeed_or_are_errors(
         (gravity_m_s2, end_s) in (number(1.0..30.0), number(0.1..20.0)),
         output_step_s in number(0.001..1.0),
         rotation_rad in proptest::option::of(number(0.0..0.3)),
@@ -456,12 +464,12 @@ proptest! {
         let models: [&dyn Model; 3] = [&*ARCH, &column(), &block()];
         for model in models {
             // A number of samples that is quick to test.
-            let mut told = Told { most_samples: Some(1000), ..Told::default() };
-            match model.simulate(&ground, &request, Some(&mut told)) {
+            let mut received = Received { most_samples: Some(1000), ..Received::default() };
+            match model.simulate(&ground, &request, Some(&mut received)) {
                 Ok(summary) => {
                     prop_assert!(summary.end_s <= end_s && summary.energy_defect_ratio.is_finite());
-                    let energies = told.samples.iter().map(|sample| sample.energy_j);
-                    let rotations = told.samples.iter().flat_map(|sample| &sample.rotations_rad);
+                    let energies = received.samples.iter().map(|sample| sample.energy_j);
+                    let rotations = received.samples.iter().flat_map(|sample| &sample.rotations_rad);
                     prop_assert!(energies.chain(rotations.copied()).all(f64::is_finite));
                 }
                 Err(SimulationError::Argument(error)) => check_named(&error, &[

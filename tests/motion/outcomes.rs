@@ -1,4 +1,4 @@
-//! Outcomes mean what they say: incomplete histories, vibrating joints, times of rest, and results up to overturning.
+//! Outcomes: incomplete histories, vibrating joints, times of rest, and results up to overturning.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -161,7 +161,7 @@ fn studies_follow_the_ground_motion_of_each_case() {
 
 /// A structure that still has more than a quarter of the energy barrier has no verdict either; with less it survives.
 #[test]
-fn energy_that_is_left_decides() {
+fn the_remaining_energy_decides_the_verdict() {
     let block = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n";
     for (model, ends) in [("", [1e-3, 16.0]), ("[free_hinges]\n", [1e-3, 16.0])] {
         let outcomes = ends.map(|end_s| {
@@ -185,9 +185,9 @@ fn simulated(text: &str) -> Summary {
     summary.unwrap()
 }
 
-/// On ground that is too weak rigid joints never move, and elastic ones vibrate. A joint that opens rocks, however little.
+/// On weak ground rigid joints never move, and elastic ones vibrate. A block rocks once a joint opens, by any amount.
 #[test]
-fn what_does_not_open_does_not_rock() {
+fn a_structure_without_open_joints_does_not_rock() {
     let arch = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.15\nembrace_deg = 150\nvoussoirs = 15\n[free_hinges]\n\
                 [ground.one_sine]\namplitude_g = 0.1\nduration_s = 3\n";
     assert_eq!(simulated(arch).outcome, Outcome::NeverMoved);
@@ -205,7 +205,7 @@ fn what_does_not_open_does_not_rock() {
     assert!(rocks.largest_rotation_rad() > 4e-3);
     let rests = matches!(rocks.outcome, Outcome::Rest | Outcome::StillRocking);
     assert!(rests && rocks.outcome_time_s > 0.3, "{rocks:?}");
-    // A block that the ground hardly lifts rotates, and does not slide.
+    // A block that barely lifts off rotates and does not slide.
     let folder = tempfile::tempdir().unwrap();
     let block = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[free_hinges]\n[ground.rectangular]\namplitude_g = 0.20000001\nduration_s = 0.3\n";
     fs::write(folder.path().join("s.toml"), block).unwrap();
@@ -239,7 +239,7 @@ fn the_time_of_rest_is_that_of_the_motion() {
 
 /// What happens while it falls is no part of the results of a structure that overturns.
 #[test]
-fn results_end_where_it_overturns() {
+fn results_end_at_overturning() {
     let block = "[column]\nheight_m = 1.0\nwidth_m = 1.0\npedestal = true\n[free_hinges]\nfriction_coefficient = 0.2\n\
                  [ground.rectangular]\namplitude_g = 1.5\nduration_s = 0.8\n[simulation]\nduration_s = 12.0\n";
     let folder = tempfile::tempdir().unwrap();
@@ -270,7 +270,7 @@ fn results_end_where_it_overturns() {
 
 /// A scenario is written without a `duration_s` that was not given; `check` prints the time.
 #[test]
-fn a_default_is_not_frozen() {
+fn a_default_duration_is_not_written_to_toml() {
     let folder = tempfile::tempdir().unwrap();
     late(folder.path(), 2.0, "");
     let scenario = Scenario::read(&folder.path().join("s.toml")).unwrap();
@@ -365,7 +365,7 @@ fn samples_without_a_verdict_are_counted_apart() {
 
 /// The ratio of the ground to the push that starts the structure is that of the side to which it pushes, as in the words.
 #[test]
-fn the_governing_side_is_compared_with_what_starts_it() {
+fn the_governing_side_is_compared_with_its_onset() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     let text = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 150\nvoussoirs = 20\n\

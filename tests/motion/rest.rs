@@ -43,10 +43,11 @@ fn halving_the_rest_energy_changes_no_scenario() {
     assert!(scenarios >= 2);
 }
 
-/// For an arch that hardly stands, the onset and that in its equation of motion differ by rounding. This was once more
-/// than the margin by which a push must exceed the onset: the arch lifted off and closed again at one instant, for ever.
+/// For an arch near instability, rounding makes the onset and the onset in the equation of motion differ. This difference was
+/// once larger than the margin by which a push must exceed the onset: the arch lifted off and closed again at one instant,
+/// endlessly.
 #[test]
-fn an_arch_that_hardly_stands_does_not_lock() {
+fn an_arch_that_barely_stands_does_not_lock() {
     let arch = Arch::new(1.619_540_616_883_977_4, 0.107_511_050_298_186_1, 180.0)
         .and_then(|arch| arch.with_voussoirs(200))
         .unwrap();

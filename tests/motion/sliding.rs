@@ -59,9 +59,9 @@ fn the_associated_bound_is_the_published_one() {
     }
 }
 
-/// With much friction, the limit analysis without sliding, which is another programme, gives the same result.
+/// With high friction the result equals that of limit analysis without sliding, which is another programme.
 #[test]
-fn much_friction_is_no_sliding() {
+fn high_friction_prevents_sliding() {
     for (embrace_deg, thickness_ratio, voussoirs) in
         [(157.5, 0.15, 7), (180.0, 0.15, 36), (120.0, 0.1, 20)]
     {
@@ -77,7 +77,7 @@ fn much_friction_is_no_sliding() {
     }
 }
 
-/// A block on its base: if friction is less than the slope of its diagonal it slides, otherwise it overturns.
+/// A block on its base slides if friction is less than the slope of its diagonal; otherwise it overturns.
 #[test]
 fn a_block_slides_or_overturns() {
     let row = Row::tapered_stack(&[4.0], 0.8, 0.8, 1.0, 2000.0).unwrap();
@@ -88,7 +88,7 @@ fn a_block_slides_or_overturns() {
     }
 }
 
-/// At the least coefficient the push that the row can bear vanishes; a column stands with any coefficient.
+/// At the least friction coefficient the capacity of the row vanishes; a column stands with any coefficient.
 #[test]
 fn below_the_least_coefficient_nothing_stands() {
     let row = arch(157.5, 0.15, 7, 10.0);
@@ -132,7 +132,7 @@ fn slid(run: &Summary) -> &Sliding {
 /// friction dissipates `mu m g` times that. Positions are those of a leapfrog whose kicks are exact; the pulse and the stop end inside
 /// steps, which leaves an error of the order of the square of the step.
 #[test]
-fn a_flat_block_is_that_of_newmark() {
+fn a_flat_block_slides_as_newmarks_block() {
     let row = Row::tapered_stack(&[0.8], 4.0, 4.0, 1.0, 2000.0).unwrap();
     for coefficient in [0.2, 0.4] {
         for (amplitude_g, duration_s) in [(0.5, 0.3), (-0.7, 0.11)] {
@@ -259,9 +259,9 @@ fn column(height_m: f64, width_m: f64, pedestal: bool) -> Row {
     model.row().clone()
 }
 
-/// On ground that continues, a flat block slips almost three times its width; on a pedestal it falls off. Half sines to both sides.
+/// On unlimited ground a flat block slips almost three times its width; on a pedestal it falls off. Half sines act to both sides.
 #[test]
-fn nothing_slips_off_ground_that_goes_on() {
+fn nothing_slips_off_unlimited_ground() {
     for amplitude_g in [0.9, -0.9] {
         let (ground, acceleration) = half_sine(amplitude_g, 0.5);
         let path = newmark(0.0, 0.2, acceleration, 3.0);
@@ -380,8 +380,9 @@ impl Recorder for Block {
     }
 }
 
-/// On ground that continues, a block that has slid rocks about its own corner. On a pedestal, the edge would push it over three times
-/// as far on the same ground. Until it comes down it is compared with its equations of motion; ours are of first order at changes of mode.
+/// On unlimited ground, a block that has slid rocks about its own corner. On a pedestal, the edge would push it over three times
+/// as far on the same ground. Until it comes down it is compared with its equations of motion; ours are of first order at changes
+/// of mode.
 #[test]
 fn a_block_that_slides_on_the_ground_rocks_about_its_own_corner() {
     let (sizes_m, coefficient, duration_s) = ([1.0, 2.0], 0.52, 0.15);
@@ -445,7 +446,7 @@ fn a_block_that_slides_on_the_ground_rocks_about_its_own_corner() {
 
 /// The motion is the same to either side, to rounding, until impacts amplify the difference.
 #[test]
-fn a_block_on_the_ground_moves_to_either_side_alike() {
+fn a_block_on_the_ground_moves_symmetrically() {
     let row = column(2.0, 1.0, false);
     let settings = equal(1e-4, 0.55, 0.52);
     let [right, left] =
@@ -523,14 +524,14 @@ fn the_time_of_overturning_is_that_of_the_unstable_equilibrium() {
     assert!(with.end_s > times_s[1] + 0.1);
 }
 
-/// The lowest level faces stand on ground that continues; so do columns and piers, unless they stand on a pedestal.
+/// The lowest level faces stand on unlimited ground; so do columns and piers, unless they stand on a pedestal.
 #[test]
-fn the_lowest_level_faces_stand_on_ground_that_goes_on() {
+fn the_lowest_level_faces_stand_on_unlimited_ground() {
     let joint = |[xi, yi, xe, ye]: [f64; 4]| Joint {
         intrados_m: Vector2::new(xi, yi),
         extrados_m: Vector2::new(xe, ye),
     };
-    let goes_on = |supports, joints: &[[f64; 4]]| {
+    let unlimited = |supports, joints: &[[f64; 4]]| {
         let given = GivenBlocks {
             joints_file: String::new(),
             outlines_file: None,
@@ -552,18 +553,18 @@ fn the_lowest_level_faces_stand_on_ground_that_goes_on() {
             [2.0, right, 3.0, right],
         ]
     };
-    assert_eq!(goes_on(Supports::Both, &frame(0.0, 0.0)), [true, true]);
-    assert_eq!(goes_on(Supports::Both, &frame(0.0, 1.0)), [true, false]);
-    assert_eq!(goes_on(Supports::Both, &frame(1.0, 0.0)), [false, true]);
+    assert_eq!(unlimited(Supports::Both, &frame(0.0, 0.0)), [true, true]);
+    assert_eq!(unlimited(Supports::Both, &frame(0.0, 1.0)), [true, false]);
+    assert_eq!(unlimited(Supports::Both, &frame(1.0, 0.0)), [false, true]);
     let mut inclined = frame(0.0, 0.0);
     inclined[0][3] = 0.1;
-    assert_eq!(goes_on(Supports::Both, &inclined), [false, true]);
+    assert_eq!(unlimited(Supports::Both, &inclined), [false, true]);
     let stack = [
         [-0.5, 0.0, 0.5, 0.0],
         [-0.5, 1.0, 0.5, 1.0],
         [-0.4, 2.0, 0.4, 2.0],
     ];
-    assert_eq!(goes_on(Supports::Left, &stack), [true, false]);
+    assert_eq!(unlimited(Supports::Left, &stack), [true, false]);
     // In a mirror image the supports are exchanged.
     let row = arch(157.5, 0.15, 7, 10.0);
     assert_eq!(row.supports_extend, [false; 2]);
@@ -622,9 +623,9 @@ fn the_least_pulse_that_overturns_is_the_published_one() {
     }
 }
 
-/// Step pairs that a tapered column of drums does not survive: sliding mostly raises them.
+/// Step pairs that overturn a tapered column of drums; sliding mostly raises the least amplitude.
 #[test]
-fn the_least_step_pair_that_fells_a_column_of_drums_is_the_published_one() {
+fn the_least_step_pair_that_overturns_drums_is_the_published_one() {
     let drums = [0.82, 0.82, 0.82, 0.82, 0.82, 0.82, 0.82, 0.21];
     let row = Row::tapered_stack(&drums, 1.11, 0.90, 1.0, 2620.0).unwrap();
     for (duration_s, coefficient, threshold_g) in [
@@ -650,9 +651,9 @@ fn the_least_step_pair_that_fells_a_column_of_drums_is_the_published_one() {
     }
 }
 
-/// With much friction the first half cycle is that with joints that do not slip.
+/// With high friction the first half cycle equals that with joints that cannot slip.
 #[test]
-fn the_motion_with_much_friction_is_that_without_sliding() {
+fn high_friction_gives_the_motion_without_sliding() {
     let row = arch(157.5, 0.15, 7, 10.0);
     for amplitude_g in [0.45, 0.5336, 0.8] {
         let ground = push(amplitude_g, 0.2);
@@ -800,7 +801,7 @@ fn a_block_that_slides_and_rocks_follows_its_equations() {
 
 /// The motion to the left is the mirror image; rounding differs, and impacts amplify it.
 #[test]
-fn mirror_images_move_alike() {
+fn mirror_images_have_mirrored_motions() {
     let row = arch(157.5, 0.15, 7, 10.0);
     let settings = equal(2e-4, 0.5, 0.4);
     let [right, left] =
@@ -844,7 +845,7 @@ fn barrier_j(row: &Row) -> Option<f64> {
 
 /// Relative to weight times size: the barrier of similar rows that start as four links. The others are thicker.
 const USUAL_BARRIER: f64 = 0.03;
-/// Rows that hardly stand fall with energies far larger than their barriers.
+/// Rows near instability fall with energies far larger than their barriers.
 const LEAST_BARRIER: f64 = 1e-3;
 
 /// Any structure on any ground, with any friction: no history fails, and none creates more energy than a millionth of the barrier.
@@ -965,9 +966,9 @@ fn long_arches_under_heavy_fill_near_their_least_friction_are_solved() {
     }
 }
 
-/// Velocities of the blocks after a step by Coulomb's law, as one linear complementarity problem with dense matrices: two unknowns for
-/// the ends of a joint, two for friction to either side, and a speed of slip.
-fn judged(
+/// Reference velocities of the blocks after a step by Coulomb's law, as one linear complementarity problem with dense matrices:
+/// two unknowns for the ends of a joint, two for friction to either side, and a slip speed.
+fn reference_velocities(
     row: &Row,
     contacts: &[Contact],
     faces: &[Faces],
@@ -1075,7 +1076,7 @@ fn every_step_solves_the_complementarity_problem() {
             .zip(&stuck)
             .map(|(contact, stuck)| (contact.coordinates_m - Vector3::new(0.0, 0.0, *stuck)) / step)
             .collect();
-        // Pushes to and fro, in which much is lifted and dropped.
+        // Alternating pushes, under which many blocks lift off and land.
         let push = if (count / 120) % 2 == 0 { 0.9 } else { -0.9 };
         let lift = if (count / 70) % 3 == 2 { 1.2 } else { 0.0 };
         let kick = Vector3::new(push, lift - 1.0, 0.0) * (GRAVITY * step);
@@ -1085,7 +1086,7 @@ fn every_step_solves_the_complementarity_problem() {
         program.load(|block| free[block]);
         let solution = program.solve(|joint| lags[joint], 1e-9 * (GRAVITY * step + fastest));
         assert!(solution.bound_error < 1e-9, "{count} {solution:?}");
-        let judge = judged(
+        let judge = reference_velocities(
             &row,
             &contacts,
             &faces,

@@ -20,7 +20,7 @@ struct Impacts {
 
 impl Recorder for Impacts {
     fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
-        // An impact belongs to the phase that it begins, although it is reported a step later.
+        // An impact belongs to the phase that it begins, but is reported a step later.
         assert!(sample.phase >= self.times_s.len());
         ControlFlow::Continue(())
     }
@@ -76,7 +76,7 @@ fn taken_j(impact: &Impact) -> f64 {
 /// closes by at most `g h`, so the loss, proportional to its square, is known to within `4 g h/u` of it. Half cycles begin and end
 /// within a step, in which the weight does as much work as one of these four parts.
 #[test]
-fn an_impact_without_slip_takes_what_housner_says_at_every_step() {
+fn an_impact_without_slip_has_housners_loss_with_any_step() {
     let row = Row::tapered_stack(&[4.0], 0.8, 0.8, 1.0, 2000.0).unwrap();
     let ground = Pulse::Rectangular
         .lasting_s(0.2)

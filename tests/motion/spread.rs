@@ -1,4 +1,4 @@
-//! Arches of rigid blocks that rock from springings that have moved.
+//! Arches of rigid blocks that rock on springings that have moved.
 
 use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::{Outcome, State};
@@ -26,7 +26,7 @@ fn arch(embrace_deg: f64, thickness_ratio: f64, voussoirs: usize) -> Row {
     Row::arch(&ring, voussoirs, RADIUS_M, 1.0, 2000.0).unwrap()
 }
 
-/// The right springing has gone so far out and down, in radii.
+/// Supports whose right springing has moved outwards and down by these parts of the radius.
 fn right(spread: f64, settlement: f64) -> Movements {
     Movements {
         right: Movement {
@@ -101,7 +101,7 @@ fn joint(hinge: Hinge) -> usize {
     }
 }
 
-/// Ground that moves by nothing worth it after four seconds, so that a history goes on until then.
+/// Ground that moves negligibly after four seconds, so that a history continues until then.
 fn four_seconds() -> GroundMotion {
     Pulse::HalfSine
         .lasting_s(0.1)
@@ -111,7 +111,7 @@ fn four_seconds() -> GroundMotion {
 }
 
 #[test]
-fn a_settled_arch_stays_where_it_is() {
+fn a_settled_arch_stays_at_rest() {
     for (row, movements) in [
         (arch(180.0, 0.15, 36), right(0.0279, 0.0)),
         (arch(180.0, 0.15, 36), right(0.0, 0.13)),
@@ -129,7 +129,7 @@ fn a_settled_arch_stays_where_it_is() {
             let summary = &history.summary;
             assert_eq!(summary.outcome, Outcome::NeverMoved);
             assert!(summary.end_s > 4.0);
-            // Rounding of angles of a tenth.
+            // Rounding of angles of a tenth of a radian.
             let moved = largest(&summary.peak_rotations_rad);
             assert!(moved < 1e-13, "{moved:e}");
             for sample in history.samples.iter() {
@@ -153,9 +153,10 @@ fn a_settled_arch_stays_where_it_is() {
     }
 }
 
-/// It moves at the push of the linear programme of forces in the moved place, to a millionth, and not before.
+/// A settled arch starts to move at the push of the linear programme of forces in the moved position, to a millionth, and not
+/// before.
 #[test]
-fn a_settled_arch_starts_at_the_push_of_its_programme() {
+fn a_settled_arch_starts_at_the_push_of_limit_analysis() {
     for (embrace_deg, thickness, voussoirs, spread, settlement) in [
         (180.0, 0.15, 16, 0.04, 0.0),
         (180.0, 0.15, 16, 0.0, 0.1),
@@ -170,7 +171,7 @@ fn a_settled_arch_starts_at_the_push_of_its_programme() {
         let row = arch(embrace_deg, thickness, voussoirs);
         let model = settled(&row, &right(spread, settlement));
         let told_g = model.incipient_acceleration_g(Sway::Right).unwrap();
-        // The judge knows its place to 1e-7, and its push to 1e-9.
+        // The reference knows its position to 1e-7, and its push to 1e-9.
         assert!((told_g - due_g).abs() < 1e-6, "{told_g} {due_g}");
         for model in [model.clone(), slipping(model, 2.0)] {
             let starts = |factor: f64| {
@@ -182,17 +183,17 @@ fn a_settled_arch_starts_at_the_push_of_its_programme() {
     }
 }
 
-/// With a tie the same, to the push of the programme with the force of the tie there: of forces at the corners of all joints, by an
-/// interior-point method.
+/// A settled arch with a tie starts to move at the push of the programme of corner forces that includes the force of the tie,
+/// solved by an interior-point method.
 #[test]
-fn a_tied_arch_that_settled_starts_at_the_push_of_its_programme() {
+fn a_settled_tied_arch_starts_at_the_push_of_limit_analysis() {
     let row = tied(0.2, 0.05);
     let movements = right(0.06, 0.0);
     let mut follower = Follower::new(&row).unwrap();
     follower
         .move_supports(|part| movements * part, 0.0, 1.0)
         .unwrap();
-    // As good as glue.
+    // So much friction that nothing slips.
     let onset = friction::onset_at(&row, &follower.stance, 20.0, Sway::Right).unwrap();
     let due_g = onset.unwrap().acceleration_g;
     let model = settled(&row, &movements);
@@ -205,7 +206,8 @@ fn a_tied_arch_that_settled_starts_at_the_push_of_its_programme() {
         };
         assert!(!starts(1.0 - 1e-6) && starts(1.0 + 1e-6), "{due_g}");
     }
-    // Four hinges that a tie holds start at once, and swing about where they stood: rigid blocks on a spring, whose energy stays.
+    // An arch that a tie holds on four hinges starts at once and swings about its position: rigid blocks on a spring, with
+    // constant energy.
     let model = settled(&tied(30.0, 0.03), &right(0.0, 0.12));
     assert_eq!(model.incipient_acceleration_g(Sway::Right), Some(0.0));
     for model in [model.clone(), slipping(model, 3.0)] {
@@ -229,10 +231,10 @@ fn a_tied_arch_that_settled_starts_at_the_push_of_its_programme() {
     }
 }
 
-/// A tie that is stretched by a part more than it bears has broken where the arch is to stand, which is an error: its motion would begin
-/// without a tie that it has.
+/// A tie stretched beyond its strength has broken in the settled position. This is an error, because the motion would start
+/// without a tie that the arch has.
 #[test]
-fn an_arch_whose_tie_breaks_on_the_way_has_no_motion() {
+fn an_arch_whose_tie_breaks_during_settlement_has_no_motion() {
     let movements = right(0.06, 0.0);
     let row = tied(0.2, 0.05);
     let mut follower = Follower::new(&row).unwrap();
@@ -254,7 +256,7 @@ fn an_arch_whose_tie_breaks_on_the_way_has_no_motion() {
     assert!(error.contains("tie 1 breaks before"), "{error}");
 }
 
-/// How the blocks are turned from where they stood, in samples of 10 ms.
+/// Rotations of the blocks from the settled position, every 10 ms.
 fn turned(history: &History) -> Vec<Vec<f64>> {
     let samples = history.samples.iter();
     samples
@@ -262,7 +264,7 @@ fn turned(history: &History) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// The largest difference of two motions until a time.
+/// Largest difference of two motions in the first `until` samples.
 fn apart(one: &[Vec<f64>], other: &[Vec<f64>], until: usize) -> f64 {
     let pairs = one.iter().zip(other).take(until);
     let apart = pairs.flat_map(|(one, other)| {
@@ -273,9 +275,9 @@ fn apart(one: &[Vec<f64>], other: &[Vec<f64>], until: usize) -> f64 {
     apart.fold(0.0, f64::max)
 }
 
-/// Only how the springings stand to each other counts; and the mirror image moves to the other side.
+/// Only the relative movement of the springings matters; and the mirror image moves to the other side.
 #[test]
-fn only_the_movement_of_one_springing_against_the_other_counts() {
+fn only_the_relative_movement_of_the_springings_counts() {
     let row = arch(157.5, 0.15, 12);
     let movement = |spread: f64, settlement: f64, rotation_rad: f64| Movement {
         spread_m: RADIUS_M * spread,
@@ -306,13 +308,13 @@ fn only_the_movement_of_one_springing_against_the_other_counts() {
     let as_one = pushed(&along, 0.5, Sway::Right);
     let motion = |movements: &Movements, sway| pushed(movements, 0.3, sway);
     assert!(largest(&built.concat()) > 1e-2);
-    // Places differ by their rounding, some 1e-16 of a metre and a half.
+    // Positions differ by rounding, some 1e-16 of 1.5 m.
     assert!(apart(&built, &as_one, 25) < 1e-11);
     let far = Movements {
         left: movement(-20.0, 8.0, 0.0),
         right: movement(20.0, 8.0, 0.0),
     };
-    // And 1e-14 of a hundred.
+    // At a distance of 100 m, rounding is 1e-14 m.
     assert!(apart(&built, &pushed(&far, 0.5, Sway::Right), 25) < 1e-9);
     let first = motion(&moved, Sway::Right);
     let elsewhere = motion(&shifted, Sway::Right);
@@ -325,15 +327,15 @@ fn only_the_movement_of_one_springing_against_the_other_counts() {
     }
     assert!(largest(&first.concat()) > 1e-2);
     assert!(apart(&first, &elsewhere, 101) < 1e-11);
-    // The last open joint on the right closes the row, which is worth the square of the steps: measured 1e-8 of a radian up to here.
+    // The last open joint on the right closes the row, with an error of the square of the steps: measured 1e-8 rad up to here.
     let off = apart(&first, &image, 25);
     assert!(off < 5e-8, "{off:e}");
 }
 
-/// Steps that end at landings of joints that do not slip, and equal steps with Coulomb's law on all blocks with friction that is as good as
-/// glue, share no mechanics but the row: they move alike until the first impact, come to the same end, and balance their energy.
+/// The two methods share only the row: steps that end at landings without slip, and equal steps with Coulomb's law with so much
+/// friction that nothing slips. Both give the same motion until the first impact, the same outcome and a closed energy balance.
 #[test]
-fn both_ways_to_move_rigid_blocks_agree() {
+fn both_methods_for_moved_rigid_blocks_agree() {
     let row = arch(157.5, 0.15, 12);
     let free = settled(&row, &right(0.08, 0.0));
     let ground = push(0.3, Sway::Right, 0.2);
@@ -341,7 +343,7 @@ fn both_ways_to_move_rigid_blocks_agree() {
         [free.clone(), slipping(free, 3.0)].map(|model| history(&model, &ground, 0.26));
     let (one_rad, other_rad) = (turned(&one), turned(&other));
     assert!(largest(&one_rad.concat()) > 0.05 && one.summary.impacts == 0);
-    // Equal steps are wrong by 1.3e-8 of a radian there: the square of what they are of the motion.
+    // Equal steps have an error of 1.3e-8 rad here, which falls with the square of the step.
     let off = apart(&one_rad, &other_rad, 26);
     assert!(off < 5e-8, "{off:e}");
     let row = arch(180.0, 0.15, 36);
@@ -357,7 +359,7 @@ fn both_ways_to_move_rigid_blocks_agree() {
             };
             assert_eq!(summary.outcome, expected);
             let of_row = summary.row().unwrap();
-            // In weights times radii: measured 1.3e-7 at most, over some two thousand impacts.
+            // In units of weight times radius: measured at most 1.3e-7, over some two thousand impacts.
             assert!(
                 summary.energy_defect_ratio < 1e-6,
                 "{:e}",
@@ -365,7 +367,7 @@ fn both_ways_to_move_rigid_blocks_agree() {
             );
             assert!(of_row.closure_error_m < 1e-9 && of_row.energy_taken_j > 0.0);
             if !falls {
-                // It stands on three hinges again.
+                // The arch stands on three hinges again.
                 let last = history.samples.iter().last().unwrap();
                 assert_eq!(last.hinges.len(), 3, "{:?}", last.hinges);
             }
@@ -373,10 +375,10 @@ fn both_ways_to_move_rigid_blocks_agree() {
     }
 }
 
-/// The block between hinges that neighbouring joints pass on to each other turns as far with elastic joints, the more so the stiffer they are. They
-/// start a little earlier, as they hand hinges on little by little, so they come near slowly.
+/// With stiffer elastic joints, the rotation of the block whose hinge passes from joint to joint approaches that of rigid joints.
+/// Convergence is slow because elastic joints shift a hinge gradually and start a little earlier.
 #[test]
-fn stiff_joints_move_a_settled_arch_as_rigid_ones_do() {
+fn a_settled_arch_on_stiff_joints_moves_as_on_rigid_ones() {
     let row = arch(157.5, 0.15, 12);
     let movements = right(0.08, 0.0);
     let ground = push(0.3, Sway::Right, 0.2);
@@ -404,22 +406,23 @@ const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace
                     [ground.rectangular]\namplitude_g = -0.05\nduration_s = 0.2\n[simulation]\nduration_s = 0.3\n";
 
 #[test]
-fn a_scenario_runs_and_tells_both_pushes_where_springings_have_gone() {
+fn a_run_on_moved_springings_reports_both_pushes() {
     let folder = tempfile::tempdir().unwrap();
     let write = |more: &str| {
         std::fs::write(folder.path().join("arch.toml"), format!("{ARCH}{more}")).unwrap()
     };
     write("[free_hinges]\n");
-    let told = printed(folder.path(), &["limit", "arch.toml", "--format", "json"]);
-    let told: serde_json::Value = serde_json::from_str(&told).unwrap();
+    let reported = printed(folder.path(), &["limit", "arch.toml", "--format", "json"]);
+    let reported: serde_json::Value = serde_json::from_str(&reported).unwrap();
     for side in ["right", "left"] {
-        // The first quarter of the way of this semicircle, by another program; it is known to six digits, and so is the movement.
-        let number = |key: &str| told[key][side].as_f64().unwrap();
+        // At a quarter of the movement capacity of this semicircle, by an independent program. Its numbers and the movement have
+        // six digits.
+        let number = |key: &str| reported[key][side].as_f64().unwrap();
         assert!((number("incipient_acceleration_g") - 0.006_437_48).abs() < 2e-7);
         assert!((number("capacity_g") - 0.115_773).abs() < 1e-5);
     }
     assert_eq!(
-        told["hinges"],
+        reported["hinges"],
         serde_json::json!([
             { "joint": 6, "edge": "intrados" },
             { "joint": 18, "edge": "extrados" },
@@ -430,17 +433,20 @@ fn a_scenario_runs_and_tells_both_pushes_where_springings_have_gone() {
     shows(&words, &[6.0, 18.0, 30.0]);
     let run = ["--quiet", "run", "arch.toml", "--no-repeat", "--no-report"];
     printed(folder.path(), &run);
-    let told = json(&folder.path().join("results/arch/summary.json"));
-    let told_g = told["incipient_acceleration_g"]["right"].as_f64().unwrap();
+    let reported = json(&folder.path().join("results/arch/summary.json"));
+    let told_g = reported["incipient_acceleration_g"]["right"]
+        .as_f64()
+        .unwrap();
     assert!((told_g - 0.006_437_48).abs() < 2e-7, "{told_g}");
-    // Where it stands, and from where it is told.
+    // The settled position, from which rotations count.
     let first = |table: &str, column: &str| {
         Table::read(folder.path().join("results/arch").join(table)).numbers(column)[0]
     };
     assert_eq!(first("rotations.csv", "rotation_18_rad"), 0.0);
     // The hinge at the crown turns by 0.04627, on the extrados, over a thickness of 0.75 m.
     assert!((first("joints.csv", "gap_18_intrados_m") - 0.0347).abs() < 1e-4);
-    // As it stands, on its hinges, and as it was built: the springings are farther apart by the movement, and so are the outer corners.
+    // The settled arch on its hinges, and the undeformed arch: the springings and the outer corners are farther apart by the
+    // movement.
     printed(folder.path(), &["check", "arch.toml", "--plot", "arch.svg"]);
     let picture = std::fs::read_to_string(folder.path().join("arch.svg")).unwrap();
     assert_eq!(picture.matches("data-name=\"hinge\"").count(), 3);

@@ -1,10 +1,10 @@
-//! Ties of rows that move: at rest and in small vibration by closed forms, in rocking by an equation of motion of its own, yielding and
-//! breaking by areas; energies; side by side; and what a run tells of them.
+//! Ties of rows in motion: rest and small vibration by closed forms, rocking by an independent equation of motion, yielding and
+//! breaking by areas; energies; histories side by side; and the output of a run about ties.
 
 use std::f64::consts::PI;
 use std::os::unix::fs::symlink;
 
-use crate::common::program::{done, printed, refused, says_what_it_shows, scenarios};
+use crate::common::program::{assert_shown_output_is_printed, done, printed, refused, scenarios};
 use crate::common::prose::{golden, shows};
 use crate::common::results::{Table, json, named};
 use crate::common::{parsed, pulse, run_sampled, sampled};
@@ -23,7 +23,7 @@ use roxmltree::Document;
 
 const GRAVITY_M_S2: f64 = 9.81;
 
-/// A tie at this height on the left face of a block, level to the left, so long.
+/// A horizontal tie of this length to the left, at this height on the left face of a block.
 fn to_the_left(
     width_m: f64,
     height_m: f64,
@@ -75,12 +75,12 @@ fn joints(stiffness_pa_m: f64) -> ElasticProperties {
     }
 }
 
-/// The frequency near which a signal is strongest, in Hz, by a Fourier integral with a smooth window.
+/// The frequency between two limits at which a signal is strongest, in Hz, by a Fourier integral with a smooth window.
 fn strongest_hz(step_s: f64, signal: &[f64], [mut low, mut high]: [f64; 2]) -> f64 {
     let count = signal.len() as f64;
     let window = |index: usize| {
         let phase = 2.0 * PI * (index as f64 + 0.5) / count;
-        // Blackman's.
+        // Blackman's window.
         0.42 - 0.5 * phase.cos() + 0.08 * (2.0 * phase).cos()
     };
     let whole: f64 = (0..signal.len()).map(window).sum();
@@ -110,10 +110,10 @@ fn strongest_hz(step_s: f64, signal: &[f64], [mut low, mut high]: [f64; 2]) -> f
     0.5 * (low + high)
 }
 
-/// On an elastic base that stays closed: what the tie is left with after the base gives way, and the frequencies of slip and tilt, by two
-/// linear equations.
+/// A block on a closed elastic base: two linear equations give the remaining force of the tie after the base has compressed, and
+/// the frequencies of slip and tilt.
 #[test]
-fn a_tied_block_rests_and_vibrates_by_two_linear_equations() {
+fn a_tied_block_obeys_two_linear_equations() {
     let (width, height, mass) = (0.8, 4.0, 6400.0);
     let (normal, stiffness, force_n, at) = (1e10, 1e7, 1e3, 3.5);
     let weight_n = mass * GRAVITY_M_S2;
@@ -151,11 +151,11 @@ fn a_tied_block_rests_and_vibrates_by_two_linear_equations() {
         let model = ElasticJoints::new(block(tie), joints(normal)).unwrap();
         let rest = model.rest(GRAVITY_M_S2).unwrap();
         if tie.is_some() {
-            // What turning does at second order is some 1e-6 of it.
+            // The second-order effect of the rotation is some 1e-6 of the force.
             assert!((rest.ties[0].force_n.0[0] - left_n).abs() < 2e-3);
             assert!((rest.moved[0][2] - moved.y).abs() < 1e-11);
         }
-        // A steady push that is small beside what opens the base: the frequency of what follows.
+        // A steady push far too small to open the base excites the first frequency.
         let model = model.with_longest_step_s(4e-5).unwrap();
         let ground = pulse(Pulse::Rectangular, -1e-4, 3.0);
         let (_, samples) = run_sampled(&model, &ground, &sampled(2.0, 1e-3));
@@ -171,8 +171,8 @@ fn a_tied_block_rests_and_vibrates_by_two_linear_equations() {
     }
 }
 
-/// What a rectangular block that a constant push turns about its right toe does: rotation in time, by Runge and Kutta, with the
-/// force of its tie by its length alone.
+/// Reference motion of a rectangular block under a constant push that rotates it about its right toe: rotation in time by the
+/// Runge-Kutta method, with a tie force that depends only on the length of the tie.
 struct Toe {
     tie: Tie,
     push_g: f64,
@@ -181,7 +181,7 @@ struct Toe {
 impl Toe {
     const MASS: f64 = 6400.0;
 
-    /// Where a point of the block is when it has turned clockwise by an angle.
+    /// Position of a point of the block after a clockwise rotation by `angle`.
     fn at(point: Vector2<f64>, angle: f64) -> Vector2<f64> {
         let toe = Vector2::new(0.4, 0.0);
         let arm = point - toe;
@@ -228,8 +228,8 @@ impl Toe {
     }
 }
 
-/// With a rigid base, under a push that starts it: it leans on its toe and swings about where tie, weight and push balance, and comes back
-/// to where it was.
+/// On a rigid base, under a push above the onset, the block swings on its toe about the equilibrium of tie, weight and push, and
+/// returns.
 #[test]
 fn a_tied_block_swings_on_its_toe() {
     let tie = to_the_left(0.8, 3.5, 3.0, 1e6, 5e3);
@@ -242,12 +242,12 @@ fn a_tied_block_swings_on_its_toe() {
     );
     let toe = Toe { tie, push_g };
     let due = toe.rotations(1e-3, samples.len() - 1);
-    // Linear: it swings to twice where it balances.
+    // A linear oscillator swings to twice its equilibrium.
     let balance = 6.282_13e-4;
     let top = due.iter().copied().fold(0.0, f64::max);
     assert!((top / (2.0 * balance) - 1.0).abs() < 1e-3, "{top}");
     for (sample, due) in samples.iter().zip(&due) {
-        // Steps of 1.5e-4 s are wrong by the square of what they are of a radian of the swing.
+        // The error of steps of 1.5e-4 s is the square of their part of a radian of the swing.
         assert!(
             (sample.rotations_rad[0] + due).abs() < 1e-5 * top,
             "{} {due}",
@@ -258,7 +258,7 @@ fn a_tied_block_swings_on_its_toe() {
     }
     let peak_n = history.summary.row().unwrap().ties[0].peak_force_n;
     assert!((peak_n - toe.force_n(top)).abs() < 1.0, "{peak_n}");
-    // 0.340 s is the period of 2.941541 Hz: there it is back, hardly moving.
+    // At 0.340 s, the period for 2.941541 Hz, the block is back and almost at rest.
     let back = due.last().unwrap() / top;
     assert!(back < 0.02, "{back}");
     assert!(history.summary.energy_defect_ratio < 1e-9);
@@ -272,10 +272,10 @@ fn stiff_ground(row: Row) -> ElasticJoints {
     ElasticJoints::new(row, properties).unwrap()
 }
 
-/// Elastic joints: at rest the thrust of an arch, and how far its crown opens, are on slender piers with a stiff tie between the springings those on
-/// fixed supports; without much of a tie the piers give way.
+/// On slender piers with a stiff tie between its springings, an arch at rest has the thrust and the crown opening that it has on
+/// fixed supports. Without much of a tie the piers give way. Joints are elastic.
 #[test]
-fn a_stiff_tie_between_springings_on_piers_is_as_good_as_fixed_supports() {
+fn a_stiff_tie_on_piers_is_equivalent_to_fixed_supports() {
     let arch = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 157.5\nvoussoirs = 20\n\
                 [elastic_joints]\nnormal_stiffness_gpa_m = 10.0\n";
     let rest = |more: &str, crown: usize| {
@@ -292,7 +292,7 @@ fn a_stiff_tie_between_springings_on_piers_is_as_good_as_fixed_supports() {
         ]
     };
     let [thrust_n, gap_m, _] = rest("", 10);
-    // Many of the stiffest ties, side by side.
+    // Many ties of the largest stiffness, side by side.
     let tied = |count: usize, stiffness_n_m: f64| {
         let piers = "[piers]\nheight_m = 1.0\nwidth_m = 1.2\nblocks = 1\n";
         let tie = format!("[[tie]]\nbetween = \"springings\"\nstiffness_n_m = {stiffness_n_m:e}\n");
@@ -301,7 +301,8 @@ fn a_stiff_tie_between_springings_on_piers_is_as_good_as_fixed_supports() {
         [thrust_n, gap_m, ties_n]
     };
     let [stiff_n, stiff_m, tie_n] = tied(100, 1e10);
-    // Measured 4e-4 and 7e-3. What is left is that the tops of the piers turn by 6e-7, beside 1e-4 of the blocks of the arch.
+    // Measured 4e-4 and 7e-3. The remaining difference comes from the tops of the piers, which rotate by 6e-7 while blocks of the
+    // arch rotate by 1e-4.
     assert!(
         (stiff_n / thrust_n - 1.0).abs() < 1e-3,
         "{stiff_n} {thrust_n}"
@@ -321,7 +322,7 @@ fn slipping(row: Row, coefficient: f64) -> FreeHinges {
     FreeHinges::new(row).unwrap().with_options(options).unwrap()
 }
 
-/// With friction that is as good as glue the block swings on its toe as above.
+/// With so much friction that nothing slips, the block swings on its toe as in [`a_tied_block_swings_on_its_toe`].
 #[test]
 fn a_tied_block_whose_base_could_slip_swings_on_its_toe() {
     let tie = to_the_left(0.8, 3.5, 3.0, 1e6, 5e3);
@@ -334,7 +335,7 @@ fn a_tied_block_whose_base_could_slip_swings_on_its_toe() {
     let due = Toe { tie, push_g }.rotations(1e-3, samples.len() - 1);
     let top = due.iter().copied().fold(0.0, f64::max);
     for (sample, due) in samples.iter().zip(&due) {
-        // Equal steps of 5e-5 s; the square of what they are of a radian of the swing.
+        // The error of equal steps of 5e-5 s is the square of their part of a radian of the swing.
         assert!(
             (sample.rotations_rad[0] + due).abs() < 1e-5 * top,
             "{} {due}",
@@ -344,8 +345,8 @@ fn a_tied_block_whose_base_could_slip_swings_on_its_toe() {
     assert!(history.summary.energy_defect_ratio < 1e-9);
 }
 
-/// A low block that a push drives against a tie, along its base: between friction, push and tie it goes twice as far as where they would balance,
-/// in half a period, and sticks there.
+/// A push drives a low block along its base against a tie. In half a period the block moves twice as far as to the equilibrium of
+/// friction, push and tie, and sticks there.
 #[test]
 fn a_block_slides_against_its_tie() {
     let [stiffness_n_m, coefficient, push_g, mass_kg] = [1e5, 0.3, 0.5, 6400.0];
@@ -354,7 +355,7 @@ fn a_block_slides_against_its_tie() {
         base_width_m: 4.0,
         top_width_m: 4.0,
     };
-    // So long that it stays level.
+    // The tie is so long that it stays level.
     let tie = to_the_left(4.0, 0.4, 1e5, stiffness_n_m, 0.0);
     let row = Row::stack(&[drum], 1.0, 2000.0).unwrap();
     let row = row.with_supports_that_extend([true; 2]);
@@ -369,7 +370,8 @@ fn a_block_slides_against_its_tie() {
     for sample in &samples {
         let phase = (rate * sample.time_s).min(PI);
         let due_m = 0.5 * far_m * (1.0 - phase.cos());
-        // Steps of 4e-5 s: the block sticks at the end of the step in which it stops, and the tie is a millionth longer than it is level.
+        // Steps are 4e-5 s long. The block sticks at the end of the step in which it stops, and a tie that is not exactly level
+        // is longer by a millionth.
         assert!(
             (sample.offsets_m[0] - due_m).abs() < 1e-6 * far_m,
             "{} {} {due_m}",
@@ -386,8 +388,8 @@ fn a_block_slides_against_its_tie() {
     assert!(history.summary.energy_defect_ratio < 1e-7);
 }
 
-/// A tie that yields takes its force times what it yields, with rigid joints and with elastic ones; the energy of the whole is balanced, the
-/// better the shorter the steps.
+/// A yielding tie dissipates its force times its plastic elongation, with rigid and with elastic joints. The total energy
+/// balances, better with shorter steps.
 #[test]
 fn a_yielding_tie_takes_the_area_of_its_loop() {
     let tie = Tie {
@@ -412,15 +414,15 @@ fn a_yielding_tie_takes_the_area_of_its_loop() {
     for (model, defect) in models {
         let history = model.history(&ground, &sampled(4.0, 1e-3)).unwrap();
         let summary = &history.summary;
-        let told = summary.row().unwrap().ties[0];
-        assert_eq!(told.peak_force_n, 1.2e4);
-        assert!(told.yielded_m > 1e-3, "{}", told.yielded_m);
-        // But for the one step in which each yielding begins.
-        let area_j = 1.2e4 * told.yielded_m;
+        let reported = summary.row().unwrap().ties[0];
+        assert_eq!(reported.peak_force_n, 1.2e4);
+        assert!(reported.yielded_m > 1e-3, "{}", reported.yielded_m);
+        // The step in which each yielding begins is not exact.
+        let area_j = 1.2e4 * reported.yielded_m;
         assert!(
-            (told.taken_j / area_j - 1.0).abs() < 2e-3,
+            (reported.taken_j / area_j - 1.0).abs() < 2e-3,
             "{} {area_j}",
-            told.taken_j
+            reported.taken_j
         );
         assert!(
             summary.energy_defect_ratio < defect,
@@ -447,14 +449,15 @@ fn a_yielding_tie_takes_the_area_of_its_loop() {
             .collect();
         assert_eq!(events.len(), 1);
         assert_eq!(events[0].kind, EventKind::TieYields);
-        assert_eq!(Some(events[0].time_s), told.yielded_s);
-        yielded.push(told.yielded_m);
+        assert_eq!(Some(events[0].time_s), reported.yielded_s);
+        yielded.push(reported.yielded_m);
     }
     assert!((yielded[0] / yielded[1] - 1.0).abs() < 1e-3, "{yielded:?}");
 }
 
-/// Stretched until it yields, back, and on until it breaks, a tie takes the area under its law, and what is left is elastic: at every
-/// instant that is the trapezoid of its force over the way, if steps end where the law bends.
+/// A tie is stretched until it yields, released, and stretched until it breaks. The dissipated energy plus the elastic energy is
+/// the area under its law. If steps end at the bends of the law, this is at every instant the integral of its force by
+/// trapezoids.
 #[test]
 fn a_tie_that_is_stretched_takes_the_area_under_its_law() {
     let tie = Tie {
@@ -462,7 +465,7 @@ fn a_tie_that_is_stretched_takes_the_area_under_its_law() {
         breaks_at_strain: 2e-3,
         ..to_the_left(0.8, 3.5, 3.0, 1e7, 0.0)
     };
-    // It yields at 1.2 mm, goes slack at 2.8 mm after 4 mm, pulls again from there, and breaks at 6 mm.
+    // The tie yields at 1.2 mm, goes slack at 2.8 mm after 4 mm, carries again from there, and breaks at 6 mm.
     let bends_m = [0.0, 1.2e-3, 4e-3, 2.8e-3, 2.5e-3, 2.8e-3, 4e-3];
     for steps in [1, 10, 100] {
         let mut memory = TieMemory::stretched(&tie, 0.0, Lanes([0.0]));
@@ -483,7 +486,7 @@ fn a_tie_that_is_stretched_takes_the_area_under_its_law() {
                 stretch(&mut memory, way[0] + (way[1] - way[0]) * part);
             }
         }
-        // On to beyond its break, in steps of which the one that breaks it may end anywhere.
+        // Further stretching beyond the break; the step that breaks the tie may end anywhere.
         let step_m = 2.9e-3 / f64::from(steps);
         for step in 1..=steps {
             stretch(&mut memory, 4e-3 + step_m * f64::from(step));
@@ -495,9 +498,10 @@ fn a_tie_that_is_stretched_takes_the_area_under_its_law() {
     }
 }
 
-/// A tie that breaks gives up what was in it, and holds no more: the block overturns as one that had none, and not with one that holds.
+/// A broken tie loses its elastic energy and has no force. With a tie that breaks the block overturns; with one that holds it
+/// does not.
 #[test]
-fn a_tie_that_breaks_holds_no_more() {
+fn a_broken_tie_has_no_force() {
     let whole = to_the_left(0.8, 3.5, 3.0, 1e7, 5e3);
     let broken = Tie {
         breaks_at_strain: 5e-4,
@@ -523,23 +527,25 @@ fn a_tie_that_breaks_holds_no_more() {
             "{elastic} {:?}",
             history.summary
         );
-        let told = history.summary.row().unwrap().ties[0];
-        let at_s = told.broken_s.unwrap();
+        let reported = history.summary.row().unwrap().ties[0];
+        let at_s = reported.broken_s.unwrap();
         let kinds: Vec<_> = history
             .events
             .iter()
             .filter(|event| event.tie.is_some())
             .collect();
         assert!(kinds.len() == 1 && kinds[0].kind == EventKind::TieBreaks);
-        // It breaks as it is stretched to its strain: the force then, and the energy.
+        // It breaks at its limiting strain, with the force and the energy of that strain.
         let force_n = 1e7 * 5e-4 * whole.slack_length_m();
         assert!(
-            (told.peak_force_n / force_n - 1.0).abs() < 1e-9,
+            (reported.peak_force_n / force_n - 1.0).abs() < 1e-9,
             "{}",
-            told.peak_force_n
+            reported.peak_force_n
         );
-        assert!((told.taken_j / (0.5 * force_n * force_n / 1e7) - 1.0).abs() < 0.02);
-        assert!(told.force_n == 0.0 && told.elastic_j == 0.0 && told.yielded_s.is_none());
+        assert!((reported.taken_j / (0.5 * force_n * force_n / 1e7) - 1.0).abs() < 0.02);
+        assert!(
+            reported.force_n == 0.0 && reported.elastic_j == 0.0 && reported.yielded_s.is_none()
+        );
         for sample in history.samples.iter() {
             assert_eq!(
                 sample.ties[0].force_n == 0.0,
@@ -552,9 +558,9 @@ fn a_tie_that_breaks_holds_no_more() {
     }
 }
 
-/// Histories side by side have the bits of histories alone.
+/// Histories with ties computed side by side are bit-identical to single histories.
 #[test]
-fn ties_side_by_side_are_as_ties_alone() {
+fn ties_computed_side_by_side_equal_single_histories() {
     let tie = Tie {
         yield_force_n: 1.2e4,
         breaks_at_strain: 5e-3,
@@ -578,7 +584,7 @@ fn ties_side_by_side_are_as_ties_alone() {
     assert!((1..10).contains(&breaks), "{breaks}");
 }
 
-/// An arch that is tied on both sides alike sways left as it sways right.
+/// A symmetric arch with symmetric ties sways left as it sways right.
 #[test]
 fn tied_arches_have_mirror_images() {
     let ring = crate::common::ring(0.15, 157.5);
@@ -617,9 +623,9 @@ fn tied_arches_have_mirror_images() {
     }
 }
 
-/// Tables, summary, words, pictures and page of a run tell of ties; models that take none refuse them with the reason.
+/// Tables, summary, words, pictures and page of a run report ties. Models without ties refuse them with the reason.
 #[test]
-fn a_run_tells_of_its_ties() {
+fn a_run_reports_its_ties() {
     let folder = tempfile::tempdir().unwrap();
     let text = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n\
                 [[tie]]\nfrom_m = [-0.4, 3.5]\nto_m = [-3.4, 3.5]\nto_block = 0\nstiffness_n_m = 1e7\nprestress_n = 5000.0\n\
@@ -667,8 +673,8 @@ fn a_run_tells_of_its_ties() {
         assert_eq!(tie["peak_force_n"], 12_000.0);
         assert!(tie["broken_s"].as_f64() > tie["yielded_s"].as_f64());
         assert_eq!(tie["force_n"], 0.0);
-        // It yields from 12 kN to the strain of its break, and then loses what is elastic in it: the area under its law, but for
-        // half of what it is stretched in the step in which it breaks, some 0.1 mm.
+        // The tie yields at 12 kN up to its limiting strain, and then loses its elastic energy. It dissipates the area under its
+        // law, except for half of the elongation in the step in which it breaks, some 0.1 mm.
         let due_j = 12_000.0 * (0.003 * 2.9995 - 0.0012) + 0.5 * 12_000.0 * 0.0012;
         let taken_j = tie["taken_j"].as_f64().unwrap();
         assert!((taken_j / due_j - 1.0).abs() < 6e-3, "{taken_j} {due_j}");
@@ -687,7 +693,7 @@ fn a_run_tells_of_its_ties() {
         assert!(page.contains(&format!("\"ties_broken_s\":[{}]", tie["broken_s"])));
         assert!(page.contains("12.000 kN"));
     }
-    // Limit analysis says what it leaves out, with nothing to mend; a threshold has its line of rigid joints.
+    // Limit analysis reports what it ignores, without a remedy; a threshold has its curve for rigid joints.
     let limit = printed(folder.path(), &["limit", "s.toml"]);
     assert!(!limit.contains("give ["), "{limit}");
     let threshold = [
@@ -712,19 +718,19 @@ fn a_run_tells_of_its_ties() {
     let four = "four links take no ties";
     refuses(&["run", "s.toml", "--hinges", "four"], four);
     let words = printed(folder.path(), &["capacity", "s.toml", "--out", "curve"]);
-    let told = json(&folder.path().join("curve/capacity.json"));
+    let reported = json(&folder.path().join("curve/capacity.json"));
     let [right, left] = capacity(&parsed(text), None).unwrap().into();
     for side in [&right, &left] {
         let TieEventDisplacements {
             yields_at_m,
             breaks_at_m,
         } = side.ties[0];
-        let tie = &told["capacity"][side.sway.name()]["ties"];
+        let tie = &reported["capacity"][side.sway.name()]["ties"];
         let due = serde_json::json!([{ "yields_at_m": yields_at_m, "breaks_at_m": breaks_at_m }]);
         assert_eq!(*tie, due);
     }
-    // The crown is at 4 m, the tie at 3.5 m: it is longer by 0.7 mm as it yields, and by 0.4 % less its prestress as it breaks. To the left
-    // it goes slack.
+    // The crown is at 4 m, the tie at 3.5 m. Its elongation is 0.7 mm at yielding, and 0.4 % less the prestress at the break. In
+    // a sway to the left it goes slack.
     let [yields_m, breaks_m] = [right.ties[0].yields_at_m, right.ties[0].breaks_at_m];
     let due_m = [0.0007, 0.004 * 2.9995 - 0.0005].map(|longer_m| longer_m * 4.0 / 3.5);
     for (told_m, due_m) in [yields_m, breaks_m].into_iter().zip(due_m) {
@@ -739,10 +745,13 @@ fn a_run_tells_of_its_ties() {
     );
 }
 
-/// The example of the section that an arch needs: its commands print the numbers shown.
+/// The commands in docs/ties.md, an example that finds the section a tie needs, print the output shown there.
 #[test]
-fn commands_say_what_the_page_of_ties_shows() {
+fn commands_print_the_output_shown_in_docs_ties() {
     let folder = tempfile::tempdir().unwrap();
     symlink(scenarios(), folder.path().join("scenarios")).unwrap();
-    assert_eq!(says_what_it_shows("docs/ties.md", folder.path()), 6);
+    assert_eq!(
+        assert_shown_output_is_printed("docs/ties.md", folder.path()),
+        6
+    );
 }

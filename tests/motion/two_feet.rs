@@ -1,4 +1,4 @@
-//! Feet that move differently: the ground under both, motions of arches on them, and what the program tells of it.
+//! Feet that move differently: the ground under both, motions of arches on them, and the output of the program about them.
 
 use std::f64::consts::PI;
 use std::fmt::Write as _;
@@ -6,7 +6,9 @@ use std::fs;
 use std::os::unix::fs::symlink;
 use std::path::Path;
 
-use crate::common::program::{done, files, printed, refused, says_what_it_shows, scenarios};
+use crate::common::program::{
+    assert_shown_output_is_printed, done, files, printed, refused, scenarios,
+};
 use crate::common::prose::{golden, shows};
 use crate::common::results::{Table, named};
 use crate::common::{parsed, pulse, run_sampled, sampled};
@@ -41,8 +43,8 @@ fn shaking(strong: [f64; 2], hz: [f64; 2]) -> GroundMotion {
 }
 
 #[test]
-fn feet_go_apart_as_their_motions_do() {
-    // A rectangular pulse leaves the ground with a velocity: late by a delay, the foot stays behind by that times the delay.
+fn feet_separate_by_the_difference_of_their_motions() {
+    // A rectangular pulse leaves the ground with a constant velocity, so a delayed foot stays behind by velocity times delay.
     let ground = pulse(Pulse::Rectangular, 0.3, 0.4);
     let late = ground.delayed_by(0.25).unwrap();
     let apart_m = ground
@@ -65,7 +67,7 @@ fn feet_go_apart_as_their_motions_do() {
             "{apart_m} {due_m}"
         );
     }
-    // The motion late by nothing is the motion.
+    // A delay of zero changes nothing.
     assert_eq!(ground.delayed_by(0.0).unwrap(), ground);
     let same = ground.clone().with_right_foot(ground.clone());
     assert!(
@@ -73,13 +75,13 @@ fn feet_go_apart_as_their_motions_do() {
             .iter()
             .all(|apart| *apart == Vector2::zeros())
     );
-    // Both feet are scaled, and only there where they move differently.
+    // A scale factor applies to both feet. This matters only for feet that move differently.
     let other = shaking([1.0, 0.4], [2.0, 5.0]);
     let both = ground.clone().with_right_foot(other.clone());
     let [once, twice] =
         [both.clone(), both.scaled(2.0).unwrap()].map(|ground| ground.feet_apart_m(&[0.37])[0]);
     assert!(once.norm() > 0.01 && once.y != 0.0 && (twice - once * 2.0).norm() < 1e-15);
-    // A foot whose motion stops stays where it is: from 0.4 s on the left one moves alone, until both have ended.
+    // A foot stays in place once its motion stops. Here the left foot moves alone from 0.2 s to 0.4 s, when both have ended.
     let stopped = ground
         .clone()
         .with_right_foot(pulse(Pulse::Rectangular, 0.3, 0.2).stopping());
@@ -95,7 +97,7 @@ fn feet_go_apart_as_their_motions_do() {
 /// A negative delay starts the right foot earlier. The left foot keeps its times; if the right foot accelerates before time zero, the motion
 /// starts there.
 #[test]
-fn a_negative_delay_leaves_the_left_foot_as_it_is() {
+fn a_negative_delay_does_not_change_the_left_foot() {
     let at = |ground: &GroundMotion, time_s: f64| {
         let piece = ground.pieces.iter().rfind(|piece| piece.start_s <= time_s);
         piece.unwrap().acceleration_m_s2(time_s)
@@ -116,7 +118,7 @@ fn a_negative_delay_leaves_the_left_foot_as_it_is() {
             assert_eq!(at(&early, time_s), at(&ground, time_s));
             assert!((at(right, time_s) - at(&ground, time_s + 0.3)).abs() < 1e-13);
         }
-        // The feet are as far apart as those of the same motion with a positive delay, to the other side.
+        // The distance of the feet is that for the same motion with a positive delay, mirrored.
         let late = ground.clone().with_delayed_right_foot(0.3).unwrap();
         for (early, late) in early
             .feet_apart_m(&[0.05, 0.4, 2.0])
@@ -138,9 +140,9 @@ fn a_negative_delay_leaves_the_left_foot_as_it_is() {
     assert!(record.with_delayed_right_foot(f64::NAN).is_err());
 }
 
-/// A history with a negative start is the history on a ground that is later by that time, with all its times.
+/// A history with a negative start equals the history on ground delayed by that time, with all times shifted.
 #[test]
-fn a_history_begins_with_the_right_foot() {
+fn a_history_starts_when_the_right_foot_starts() {
     let row = Row::arch(&crate::common::ring(0.15, 157.5), 12, 5.0, 1.0, 2000.0).unwrap();
     let slipping = RowOptions {
         friction_coefficient: Some(0.8),
@@ -169,7 +171,7 @@ fn a_history_begins_with_the_right_foot() {
         assert!(times_s.windows(2).all(|pair| pair[0] < pair[1]));
         let [first, at_zero] = [0, 3].map(|row| early.samples.get(row).unwrap());
         assert!(first.rotations_rad != at_zero.rotations_rad);
-        // Rows are at other instants of the motion: compare peaks and half cycles.
+        // The rows show other instants of the motion, so peaks and half cycles are compared.
         let [one, other] = [&early.summary, &later.summary];
         let [peak, due] = [one, other].map(|summary| summary.largest_rotation_rad());
         assert!(
@@ -181,7 +183,7 @@ fn a_history_begins_with_the_right_foot() {
     }
 }
 
-/// Steps of free hinges are halved where the balance of energy needs it, unless the scenario gives their length.
+/// Free hinges halve their steps if the energy balance requires it, unless the scenario gives the step.
 #[test]
 fn steps_are_halved_for_a_small_wave() {
     let arch = "[arch]\nmean_radius_m = 10.0\nthickness_ratio = 0.156\nembrace_deg = 157.5\nvoussoirs = 6\n\
@@ -210,10 +212,10 @@ fn steps_are_halved_for_a_small_wave() {
     assert!(!refused.contains("masonry"), "{refused}");
 }
 
-/// Both feet moved alike are the ground: to the bit where they have the same motion, and but for rounding where that is cut into other
-/// pieces.
+/// Two feet with equal motions are equivalent to one ground: bit-identical if the motions are written alike, and up to rounding
+/// if one is cut into other pieces.
 #[test]
-fn feet_that_move_alike_are_the_ground() {
+fn feet_with_equal_motions_equal_one_ground() {
     let model = arch();
     let ground = shaking([6.0, 2.0], [1.5, 4.0]);
     let (whole, alone) = run_sampled(&model, &ground, &sampled(1.5, 0.01));
@@ -241,8 +243,8 @@ fn feet_that_move_alike_are_the_ground() {
     }
 }
 
-/// The mirror image of an arch whose feet are exchanged moves as its mirror image; since positions count from the left foot, the two are
-/// computed on ground that moves differently: the same, but for the square of the step.
+/// The mirror image of an arch with exchanged feet moves as its mirror image. Positions count from the left foot, so the ground
+/// motions of the two computations differ; results agree up to the square of the step.
 #[test]
 fn mirrored_feet_move_a_mirrored_arch() {
     let model = arch();
@@ -274,7 +276,7 @@ fn mirrored_feet_move_a_mirrored_arch() {
     }
 }
 
-/// A structure whose supports are both moved alike rests as it did, elsewhere.
+/// If both supports move equally, the structure moves along with them and its equilibrium does not change.
 #[test]
 fn a_translation_of_both_supports_changes_nothing() {
     let model = arch();
@@ -294,7 +296,7 @@ fn a_translation_of_both_supports_changes_nothing() {
     }
 }
 
-/// The energy of an arch whose feet move differently is balanced, by the square of the step; both feet work.
+/// The energy balance of an arch on feet that move differently closes with the square of the step, and both feet do work.
 #[test]
 fn the_work_of_both_feet_balances_the_energy() {
     let properties = ElasticProperties {
@@ -315,16 +317,16 @@ fn the_work_of_both_feet_balances_the_energy() {
         summary.energy_defect_ratio
     });
     assert!(defects[0] < 1e-5, "{defects:?}");
-    // Of a quarter of the step: 16, where contacts that open between steps would let it.
+    // A quarter of the step should reduce the error by 16; contacts that open within steps disturb this.
     let ratio = defects[0] / defects[2];
     assert!((9.0..36.0).contains(&ratio), "{defects:?}");
 }
 
-/// A foot that moves for 10 s ends where springings that have moved so far let the arch rest.
+/// After a foot has moved slowly for 10 s, the arch is in its equilibrium on springings moved by the same amount.
 #[test]
-fn a_slow_foot_ends_where_the_supports_settle() {
+fn a_slow_foot_ends_in_the_equilibrium_of_moved_supports() {
     let (spread_m, settlement_m) = (0.08, 0.03);
-    // An acceleration of a sine over 10 s moves by its amplitude times 10^2/2 pi.
+    // One sine of acceleration over 10 s moves the foot by its amplitude times 10^2/(2 pi).
     let samples = |way_m: f64| -> Vec<(f64, f64)> {
         let strong = way_m * 2.0 * PI / 100.0;
         let at = |step: i32| {
@@ -336,7 +338,7 @@ fn a_slow_foot_ends_where_the_supports_settle() {
     let ramp = GroundMotion::record(&samples(spread_m), &samples(-settlement_m), 0.0).unwrap();
     let both = GroundMotion::still().with_right_foot(ramp);
     let end_m = both.feet_apart_m(&[10.0])[0];
-    // Straight lines between samples miss the sine by 3e-6 of it.
+    // Straight lines between samples deviate from the sine by 3e-6 of its amplitude.
     assert!(
         (end_m - Vector2::new(spread_m, -settlement_m)).norm() < 1e-6,
         "{end_m}"
@@ -364,7 +366,7 @@ fn a_slow_foot_ends_where_the_supports_settle() {
         .map(|pose| turned(pose).abs())
         .fold(0.0, f64::max);
     assert!(largest > 5e-3, "{largest}");
-    // What is left of the vibration, and of friction that both reach on other ways, is a thousandth of the rotation.
+    // The remaining vibration, and friction after different paths, account for a thousandth of the rotation.
     for (end, rest) in end.poses.iter().zip(&rest.poses) {
         assert!(
             (turned(end) - turned(rest)).abs() < 1e-3 * largest,
@@ -379,9 +381,10 @@ fn a_slow_foot_ends_where_the_supports_settle() {
     }
 }
 
-/// Histories side by side have the bits of histories alone, whether the feet of the others move alike or not.
+/// Histories computed side by side are bit-identical to single histories, whether the feet of the other cases move equally or
+/// not.
 #[test]
-fn feet_side_by_side_are_as_feet_alone() {
+fn feet_computed_side_by_side_equal_single_histories() {
     let model = arch();
     let cases: Vec<_> = (0..7)
         .map(|case| {
@@ -401,7 +404,8 @@ fn feet_side_by_side_are_as_feet_alone() {
     }
 }
 
-/// A stack stands on the left foot, whatever the right one does: nothing of it changes, nor how early it is known to be safe.
+/// A stack stands on the left foot: the motion of the right foot changes no result, nor the time at which the stack is known to
+/// be safe.
 #[test]
 fn a_stack_has_one_foot() {
     let drum = Drum {
@@ -418,7 +422,7 @@ fn a_stack_has_one_foot() {
     let elastic = |drums: usize| {
         ElasticJoints::new(stack(drums), ElasticProperties::of_stiffness(1e9)).unwrap()
     };
-    // Joints that may slip say nothing of safety.
+    // Models with slip are never known to be safe early.
     let models: [(&dyn Model, bool); 4] = [
         (&rigid, true),
         (&rigid.clone().with_options(slipping).unwrap(), false),
@@ -456,13 +460,13 @@ fn four_links_refuse_feet_that_move_differently() {
 
 const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 157.5\nvoussoirs = 12\n\
                     [elastic_joints]\nnormal_stiffness_gpa_m = 1.0\n[simulation]\nduration_s = 1.5\n";
-/// What stands in place of the elastic joints in [`ARCH`]; steps are those of runs in all studies.
+/// Replacements of the elastic joints in [`ARCH`]; the steps are those of runs in all studies.
 const RIGID: [&str; 2] = [
     "[free_hinges]\nlongest_step_s = 3e-4\n",
     "[free_hinges]\nlongest_step_s = 3e-4\nfriction_coefficient = 1.0\n",
 ];
 
-/// [`ARCH`] with elastic joints, and with rigid ones.
+/// [`ARCH`] with elastic joints, and with each of [`RIGID`].
 fn arches() -> [String; 3] {
     let rigid =
         |joints: &str| ARCH.replace("[elastic_joints]\nnormal_stiffness_gpa_m = 1.0\n", joints);
@@ -517,11 +521,11 @@ fn scenarios_have_a_right_foot_in_three_ways() {
     {
         assert!((one - other).norm() < 1e-14 && one.norm() > 1e-3);
     }
-    // A wave that goes to the left reaches the right foot first.
+    // A wave travelling to the left reaches the right foot first.
     let back = foot("apparent_velocity_m_s = -200.0");
     let [left_s, right_s] = back.ground_motion().ends_s();
     assert!((left_s - right_s - apart_m / 200.0).abs() < 1e-12);
-    // What varies in a study varies here.
+    // Keys that vary in a study apply to feet as well.
     let varied = late.with_values(&[
         ("ground.right.delay_s", 0.1),
         ("ground.one_sine.amplitude_g", 0.2),
@@ -543,7 +547,7 @@ fn scenarios_have_a_right_foot_in_three_ways() {
 }
 
 #[test]
-fn a_run_tells_of_its_feet() {
+fn a_run_reports_its_feet() {
     let folder = tempfile::tempdir().unwrap();
     write(folder.path(), "left.csv", &record(0.8, 0.3));
     write(folder.path(), "right.csv", &record(0.5, 0.2));
@@ -555,15 +559,15 @@ fn a_run_tells_of_its_feet() {
             table("right.csv")
         );
         write(folder.path(), "s.toml", &text);
-        let said = tells_of_its_feet(folder.path());
+        let said = assert_reports_feet(folder.path());
         if stem == "free" {
             golden("run-two-feet", &said);
         }
     }
 }
 
-/// Asserts what a run prints and writes about the feet; returns its words.
-fn tells_of_its_feet(folder: &Path) -> String {
+/// Asserts the printed and written output of a run about the feet; returns the printed output.
+fn assert_reports_feet(folder: &Path) -> String {
     let said = printed(
         folder,
         &[
@@ -587,8 +591,8 @@ fn tells_of_its_feet(folder: &Path) -> String {
         .iter()
         .map(|apart_m| apart_m.abs())
         .fold(0.0, f64::max);
-    let told = summary["feet_farthest_apart_m"][0].as_f64().unwrap();
-    assert!((told.abs() - farthest).abs() < 1e-12 && farthest > 1e-3);
+    let reported = summary["feet_farthest_apart_m"][0].as_f64().unwrap();
+    assert!((reported.abs() - farthest).abs() < 1e-12 && farthest > 1e-3);
     let last = summary["feet_apart_at_end_m"][0].as_f64().unwrap();
     assert!((last - apart_m.last().unwrap()).abs() < 1e-12);
     assert!(summary["right_foot_j"].as_f64().unwrap().abs() > 1.0);
@@ -601,9 +605,9 @@ fn tells_of_its_feet(folder: &Path) -> String {
     said
 }
 
-/// A run whose right foot begins before time zero begins there in every file.
+/// If the right foot starts before time zero, every file of the run starts then.
 #[test]
-fn a_run_begins_with_the_right_foot() {
+fn files_of_a_run_start_when_the_right_foot_starts() {
     let folder = tempfile::tempdir().unwrap();
     for (arch, stem) in arches().iter().zip(["elastic", "free", "friction"]) {
         let text = format!("{arch}{PULSE}[ground.right]\ndelay_s = -0.052\n");
@@ -630,7 +634,7 @@ fn a_run_begins_with_the_right_foot() {
         assert!((-0.052..begins).contains(&events_s[0]), "{events_s:?}");
         let picture = fs::read_to_string(results.join("history.svg")).unwrap();
         let picture = Document::parse(&picture).unwrap();
-        // The curves of all panels begin at the left edge of the frame, and none left of it.
+        // The curves of all panels begin at the left edge of the frame, and none lies left of it.
         let left = |name: &str| -> f64 {
             let path = named(&picture, name)[0].attribute("d").unwrap();
             path[1..].split([' ', 'L']).next().unwrap().parse().unwrap()
@@ -647,12 +651,15 @@ fn a_run_begins_with_the_right_foot() {
     }
 }
 
-/// The commands of the page of feet print the numbers shown.
+/// The commands in docs/two-feet.md print the output shown there.
 #[test]
-fn commands_say_what_the_page_of_feet_shows() {
+fn commands_print_the_output_shown_in_docs_two_feet() {
     let folder = tempfile::tempdir().unwrap();
     symlink(scenarios(), folder.path().join("scenarios")).unwrap();
-    assert_eq!(says_what_it_shows("docs/two-feet.md", folder.path()), 4);
+    assert_eq!(
+        assert_shown_output_is_printed("docs/two-feet.md", folder.path()),
+        4
+    );
 }
 
 #[test]
@@ -668,7 +675,7 @@ fn study_both_feet(arch: &str, folder: &Path) {
     write(folder, "s.toml", &feet);
     let alike = format!("{arch}{PULSE}");
     write(folder, "alike.toml", &alike);
-    // A factor of two on both feet is a pulse of twice the amplitude under both.
+    // A factor of two on both feet equals a pulse of twice the amplitude under both.
     let peak_rad = |file: &str| {
         let arguments = [
             "threshold",
@@ -727,7 +734,7 @@ fn study_both_feet(arch: &str, folder: &Path) {
 }
 
 #[test]
-fn feet_that_cannot_be_are_refused() {
+fn invalid_feet_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     write(folder.path(), "a.csv", &record(0.4, 0.4));
     let refuses = |text: &str, more: &[&str], words: &str| {
@@ -794,7 +801,7 @@ fn feet_that_cannot_be_are_refused() {
         &["verify", "late.toml"],
         &["leave [ground.right] out"],
     );
-    // Limit analysis asks for no ground.
+    // Limit analysis needs no ground motion.
     let alike = printed(folder.path(), &["limit", "late.toml"]);
     write(folder.path(), "late.toml", &format!("{ARCH}{PULSE}"));
     assert_eq!(alike, printed(folder.path(), &["limit", "late.toml"]));

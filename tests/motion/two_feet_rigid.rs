@@ -16,7 +16,7 @@ use nalgebra::{Rotation2, Vector2, Vector3};
 use crate::common::{GRAVITY, pulse, ring, run_sampled, sampled};
 
 const RADIUS_M: f64 = 5.0;
-/// Of joints that slip.
+/// Friction coefficient of the joints that may slip.
 const FRICTION: f64 = 1.5;
 
 fn row(embrace_deg: f64, thickness_ratio: f64, voussoirs: usize) -> Row {
@@ -30,7 +30,7 @@ fn row(embrace_deg: f64, thickness_ratio: f64, voussoirs: usize) -> Row {
     .unwrap()
 }
 
-/// Joints that do not slip, and joints that may.
+/// The row with joints that cannot slip, and with joints that may slip.
 fn models(row: &Row) -> [FreeHinges; 2] {
     let model = FreeHinges::new(row.clone()).unwrap();
     [model.clone(), slipping(model)]
@@ -44,7 +44,7 @@ fn slipping(model: FreeHinges) -> FreeHinges {
     model.with_options(options).unwrap()
 }
 
-/// The same in steps that are at most so long.
+/// The model with steps of at most this length.
 fn in_steps_of(longest_step_s: f64, model: &FreeHinges) -> FreeHinges {
     let options = RowOptions {
         longest_step_s: Some(longest_step_s),
@@ -54,30 +54,31 @@ fn in_steps_of(longest_step_s: f64, model: &FreeHinges) -> FreeHinges {
     model.clone().with_options(options).unwrap()
 }
 
-/// The foot goes so far to the right and up, in so long a time: as a cycloid, by an acceleration of one sine.
+/// Motion of the right foot by one sine of acceleration: its final displacement to the right and upwards, and its duration.
 #[derive(Clone, Copy)]
-struct Way {
-    way_m: [f64; 2],
+struct FootMotion {
+    displacement_m: [f64; 2],
     lasts_s: f64,
 }
 
-impl Way {
+impl FootMotion {
     fn ground(&self) -> GroundMotion {
-        let strong_m_s2 = Vector2::from(self.way_m) * (TAU / self.lasts_s.powi(2));
+        let strong_m_s2 = Vector2::from(self.displacement_m) * (TAU / self.lasts_s.powi(2));
         let right = Pulse::OneSine
             .lasting_s(self.lasts_s)
             .inclined_m_s2(strong_m_s2);
         GroundMotion::still().with_right_foot(right.unwrap())
     }
 
-    /// Where it is.
+    /// Displacement of the foot at a time.
     fn at_m(&self, time_s: f64) -> Vector2<f64> {
         let part = (time_s / self.lasts_s).min(1.0);
-        Vector2::from(self.way_m) * (part - (TAU * part).sin() / TAU)
+        Vector2::from(self.displacement_m) * (part - (TAU * part).sin() / TAU)
     }
 }
 
-/// Where the middle one of three pins with bars between them is, above them, when the outer ones are there: where two circles meet.
+/// Position of the middle of three pins joined by bars, for these positions of the outer pins: the upper intersection of two
+/// circles.
 fn middle_m(pins: [Vector2<f64>; 3], left: Vector2<f64>, right: Vector2<f64>) -> Vector2<f64> {
     let [own, other] = [pins[0], pins[2]].map(|pin| (pins[1] - pin).norm());
     let span = (right - left).norm();
@@ -87,20 +88,20 @@ fn middle_m(pins: [Vector2<f64>; 3], left: Vector2<f64>, right: Vector2<f64>) ->
     left + unit * along + Vector2::new(-unit.y, unit.x) * up
 }
 
-/// How a bar has turned.
+/// Rotation of a bar whose ends have moved, anticlockwise.
 fn turned_rad([from, to]: [Vector2<f64>; 2], [moved_from, moved_to]: [Vector2<f64>; 2]) -> f64 {
     let angle = |bar: Vector2<f64>| bar.y.atan2(bar.x);
     angle(moved_to - moved_from) - angle(to - from)
 }
 
-/// A block between pins: where its centre is, and how it has turned, when two of its points have moved.
+/// Centre and rotation of a block after two of its points, the ends of `bar`, have moved.
 fn moved(block: &Block, bar: [Vector2<f64>; 2], bar_moved: [Vector2<f64>; 2]) -> Vector3<f64> {
     let turn = turned_rad(bar, bar_moved);
     let centre = bar_moved[0] + Rotation2::new(turn) * (block.centre_m - bar[0]);
     Vector3::new(centre.x, centre.y, turn)
 }
 
-/// Two blocks on three hinges: nothing but the right foot decides where they are.
+/// Two blocks on three hinges: the position of the right foot determines theirs.
 struct ThreeHinges<'a> {
     row: &'a Row,
     pins: [Vector2<f64>; 3],
@@ -114,7 +115,7 @@ impl<'a> ThreeHinges<'a> {
         Self { row, pins }
     }
 
-    /// Centres and rotations of the blocks when the foot has gone so far.
+    /// Centres and rotations of the blocks for a displacement of the right foot.
     fn blocks(&self, apart_m: Vector2<f64>) -> [Vector3<f64>; 2] {
         let [left, crown, right] = self.pins;
         let crown_moved = middle_m(self.pins, left, right + apart_m);
@@ -125,10 +126,10 @@ impl<'a> ThreeHinges<'a> {
         ]
     }
 
-    /// Energy above that where it was built, on the way of the foot.
-    fn energy_j(&self, way: &Way, time_s: f64) -> f64 {
+    /// Kinetic and potential energy relative to the undeformed arch at rest.
+    fn energy_j(&self, foot: &FootMotion, time_s: f64) -> f64 {
         const H: f64 = 1e-4;
-        let [before, now, after] = [-H, 0.0, H].map(|by| self.blocks(way.at_m(time_s + by)));
+        let [before, now, after] = [-H, 0.0, H].map(|by| self.blocks(foot.at_m(time_s + by)));
         let energy_j = |block: usize| {
             let body = &self.row.blocks[block];
             let velocity = (after[block] - before[block]) / (2.0 * H);
@@ -148,8 +149,8 @@ fn open_joints(sample: &Sample) -> Vec<usize> {
     sample.hinges.iter().map(|open| joint(open.hinge)).collect()
 }
 
-/// The right springing has gone so far to the right and up, slowly.
-fn gone([right_m, up_m]: [f64; 2]) -> Movements {
+/// Supports whose right springing has moved slowly to the right and upwards by these distances.
+fn moved_supports([right_m, up_m]: [f64; 2]) -> Movements {
     Movements {
         left: Movement::default(),
         right: Movement {
@@ -160,47 +161,50 @@ fn gone([right_m, up_m]: [f64; 2]) -> Movements {
     }
 }
 
-/// Two voussoirs have three joints: they turn about all of them as the foot goes, and are where the closed form says.
+/// Two voussoirs hinge at all three joints as the foot moves, and follow the closed form.
 #[test]
 fn three_hinges_follow_the_foot() {
     let row = row(157.5, 0.15, 2);
     let three = ThreeHinges::new(&row);
-    for (way_m, lasts_s) in [([0.4, 0.0], 1.0), ([0.3, -0.2], 0.7)] {
-        let way = Way { way_m, lasts_s };
+    for (displacement_m, lasts_s) in [([0.4, 0.0], 1.0), ([0.3, -0.2], 0.7)] {
+        let foot = FootMotion {
+            displacement_m,
+            lasts_s,
+        };
         let request = sampled(1.2 * lasts_s, 0.02);
         for model in models(&row) {
-            let (history, samples) = run_sampled(&model, &way.ground(), &request);
+            let (history, samples) = run_sampled(&model, &foot.ground(), &request);
             for sample in &samples {
-                let apart_m = way.at_m(sample.time_s);
-                // The program sums what the foot goes in every step.
+                let apart_m = foot.at_m(sample.time_s);
+                // The program sums the displacements of the foot over all steps.
                 assert!((sample.feet_apart_m - apart_m).norm() < 1e-13);
                 let due = three.blocks(apart_m);
                 for (rotation_rad, due) in sample.rotations_rad.iter().zip(due) {
-                    // Joints that may slip make up for what a step misses in the next one.
+                    // With slip, each step corrects the position error of the previous one.
                     assert!((rotation_rad - due.z).abs() < 1e-10, "{rotation_rad} {due}");
                 }
-                let due_j = three.energy_j(&way, sample.time_s);
-                // Differences over 0.1 ms in the closed form, and the square of the step in the program.
+                let due_j = three.energy_j(&foot, sample.time_s);
+                // The closed form uses differences over 0.1 ms; the program has an error of the square of its step.
                 assert!((sample.energy_j - due_j).abs() < 2e-3, "{due_j}");
             }
             let last = samples.last().unwrap();
             assert_eq!(open_joints(last), [0, 1, 2]);
-            // At its end the foot has done all the work.
+            // At the end, the work of the foot equals the energy.
             let row = history.summary.row().unwrap();
-            let due_j = three.energy_j(&way, 1.1 * lasts_s);
+            let due_j = three.energy_j(&foot, 1.1 * lasts_s);
             let work_j = row.right_foot_j;
             assert!((work_j / due_j - 1.0).abs() < 1e-8, "{work_j} {due_j}");
             assert_eq!((history.summary.impacts, row.ground_j), (0, 0.0));
             assert!(row.energy_taken_j.abs() < 1e-5, "{}", row.energy_taken_j);
         }
-        // The same from springings that have moved: rotations are told from there.
+        // On moved springings the motion is the same; rotations count from the settled position.
         let from_m = [0.1, -0.05];
         let model = FreeHinges::new(row.clone()).unwrap();
-        let settled = model.on_supports(&gone(from_m)).unwrap();
-        let (_, samples) = run_sampled(&settled, &way.ground(), &request);
+        let settled = model.on_supports(&moved_supports(from_m)).unwrap();
+        let (_, samples) = run_sampled(&settled, &foot.ground(), &request);
         let stood = three.blocks(from_m.into());
         for sample in samples {
-            let due = three.blocks(way.at_m(sample.time_s) + Vector2::from(from_m));
+            let due = three.blocks(foot.at_m(sample.time_s) + Vector2::from(from_m));
             for (block, rotation_rad) in sample.rotations_rad.iter().enumerate() {
                 let due_rad = due[block].z - stood[block].z;
                 assert!((rotation_rad - due_rad).abs() < 1e-12, "{rotation_rad}");
@@ -209,9 +213,10 @@ fn three_hinges_follow_the_foot() {
     }
 }
 
-/// A tie from the ground at the right foot to the left block pulls as it is stretched, and the foot works against it.
+/// A tie connects the ground at the right foot to the left block. Its force follows its elongation, and the foot works against
+/// it.
 #[test]
-fn a_tie_on_the_ground_goes_with_the_foot() {
+fn a_ground_tie_follows_the_foot() {
     let row = row(157.5, 0.15, 2);
     let three = ThreeHinges::new(&row);
     let held_m = [three.pins[2] + Vector2::new(0.3, 0.5), three.pins[1]];
@@ -232,39 +237,39 @@ fn a_tie_on_the_ground_goes_with_the_foot() {
         breaks_at_strain: f64::INFINITY,
     };
     let tied = row.clone().with_ties(vec![tie], GRAVITY).unwrap();
-    let way = Way {
-        way_m: [0.3, 0.0],
+    let foot = FootMotion {
+        displacement_m: [0.3, 0.0],
         lasts_s: 1.0,
     };
     let force_n = |time_s: f64| {
-        let apart_m = way.at_m(time_s);
+        let apart_m = foot.at_m(time_s);
         let crown = middle_m(three.pins, three.pins[0], three.pins[2] + apart_m);
         let longer_m = (held_m[0] + apart_m - crown).norm() - (held_m[0] - held_m[1]).norm();
         1e3 + 1e5 * longer_m
     };
     for model in models(&tied) {
-        let (history, samples) = run_sampled(&model, &way.ground(), &sampled(1.1, 0.02));
+        let (history, samples) = run_sampled(&model, &foot.ground(), &sampled(1.1, 0.02));
         for sample in &samples {
             let due_n = force_n(sample.time_s);
             let [tie] = sample.ties[..] else {
                 panic!("one tie");
             };
-            // Joints that may slip are where they should be to a tenth of a nanometre here.
+            // With slip, positions are accurate to a tenth of a nanometre here.
             assert!((tie.force_n - due_n).abs() < 1e-4, "{tie:?} {due_n}");
         }
         let [first_n, last_n] = [0.0, 1.05].map(force_n);
         assert!(last_n > 2.0 * first_n, "{last_n}");
         let stored_j = (last_n * last_n - first_n * first_n) / 2e5;
-        let due_j = three.energy_j(&way, 1.05) + stored_j;
+        let due_j = three.energy_j(&foot, 1.05) + stored_j;
         let work_j = history.summary.row().unwrap().right_foot_j;
         assert!((work_j - due_j).abs() < 1e-6 * stored_j, "{work_j} {due_j}");
     }
 }
 
-/// Three blocks on four hinges between feet of which each has its own acceleration: beside an integration of the one angle that is left,
-/// by Lagrange's equation with differences of the positions, that shares nothing with the program.
+/// Three blocks on four hinges between feet with different accelerations. The reference integrates Lagrange's equation for the
+/// single free angle, with finite differences of the positions, and shares nothing with the program.
 #[test]
-fn four_hinges_between_two_feet_move_as_lagrange_says() {
+fn four_hinges_between_two_feet_obey_lagranges_equation() {
     const H: f64 = 1e-4;
     let row = row(157.5, 0.2, 3);
     let [left_m_s2, right_m_s2] = [Vector2::new(6.0, 0.0), Vector2::new(7.0, -1.0)];
@@ -275,7 +280,7 @@ fn four_hinges_between_two_feet_move_as_lagrange_says() {
         Edge::Intrados,
     ];
     let pins = [0, 1, 2, 3].map(|joint: usize| row.joints[joint].corner_m(edges[joint]));
-    // Beside the left foot.
+    // Relative to the left foot.
     let blocks = |angle: f64, time_s: f64| {
         let right = pins[3] + (right_m_s2 - left_m_s2) * (0.5 * time_s * time_s);
         let second = pins[0] + Rotation2::new(angle) * (pins[1] - pins[0]);
@@ -329,12 +334,12 @@ fn four_hinges_between_two_feet_move_as_lagrange_says() {
             assert_eq!(open_joints(sample), [0, 1, 2, 3]);
             let due = blocks(state[0], time_s);
             for (rotation_rad, due) in sample.rotations_rad.iter().zip(due) {
-                // Measured 7e-10: the square of the step, and rounding of the differences.
+                // Measured 7e-10: the square of the step, and rounding in the finite differences.
                 assert!((rotation_rad - due.z).abs() < 3e-9, "{rotation_rad} {due}");
             }
         }
         assert!(state[0] > 0.01, "{state:?}");
-        // No impact took energy, so the two works are what it has, but for those in half a step, by which they lag behind.
+        // No impact took energy, so the energy is the sum of both works, except for half a step by which they lag behind.
         let [.., before, last] = &samples[..] else {
             panic!("samples");
         };
@@ -344,7 +349,7 @@ fn four_hinges_between_two_feet_move_as_lagrange_says() {
         let lags_j = 0.5 * step_s * (last.energy_j - before.energy_j) / sampled_s;
         let missing_j = last.energy_j - of_row.ground_j - of_row.right_foot_j;
         assert!(of_row.ground_j > 1e3, "{of_row:?}");
-        // Measured 0.7 %: the power is taken to be what it was on average since the sample before.
+        // Measured 0.7 %: the reference takes the average power since the previous sample.
         assert!(
             (missing_j / lags_j - 1.0).abs() < 0.02,
             "{missing_j} {lags_j}"
@@ -352,18 +357,18 @@ fn four_hinges_between_two_feet_move_as_lagrange_says() {
     }
 }
 
-/// The energy between two feet closes with the square of the step.
+/// The energy balance of an arch on two feet closes with the square of the step.
 #[test]
 fn the_energy_closes_with_the_square_of_the_step() {
     let row = row(157.5, 0.15, 2);
-    let way = Way {
-        way_m: [0.3, -0.2],
+    let foot = FootMotion {
+        displacement_m: [0.3, -0.2],
         lasts_s: 0.7,
     };
     for model in models(&row) {
         let defects = [4e-3, 2e-3, 1e-3].map(|longest_step_s| {
             let model = in_steps_of(longest_step_s, &model);
-            let (history, _) = run_sampled(&model, &way.ground(), &sampled(0.8, 0.02));
+            let (history, _) = run_sampled(&model, &foot.ground(), &sampled(0.8, 0.02));
             history.summary.energy_defect_ratio
         });
         assert!(defects[0] < 1e-6, "{defects:?}");
@@ -374,18 +379,19 @@ fn the_energy_closes_with_the_square_of_the_step() {
     }
 }
 
-/// A pulse that reaches the right foot late.
+/// A pulse that reaches the right foot after a delay.
 fn late(amplitude_g: f64, lasts_s: f64, delay_s: f64) -> GroundMotion {
     let ground = pulse(Pulse::OneSine, amplitude_g, lasts_s);
     let late = ground.delayed_by(delay_s).unwrap();
     ground.with_right_foot(late)
 }
 
-/// With the work of the foot in it, an impact takes half the square of the velocities that it changes, by mass: never less than nothing.
+/// Including the work of the foot, an impact dissipates half of mass times the squared change of velocity, which is never
+/// negative.
 #[test]
 fn impacts_between_two_feet_take_energy() {
     let row = row(157.5, 0.15, 12);
-    // Joints that may slip make up for what a step misses in the next one: measured 1.4e-9.
+    // With slip, each step corrects the position error of the previous one: measured 1.4e-9.
     for (model, tolerance) in models(&row).into_iter().zip([0.0, 1e-8]) {
         let (history, _) = run_sampled(&model, &late(0.7, 0.4, 0.1), &sampled(1.0, 0.01));
         let mut impacts = 0;
@@ -401,10 +407,10 @@ fn impacts_between_two_feet_take_energy() {
     }
 }
 
-/// Both feet moved alike are the ground: to the bit where they have the same motion, and but for rounding where that is cut into other
-/// pieces.
+/// Two feet with equal motions are equivalent to one ground: bit-identical if the motions are written alike, and up to rounding
+/// if one is cut into other pieces.
 #[test]
-fn feet_that_move_alike_are_the_ground() {
+fn feet_with_equal_motions_equal_one_ground() {
     let row = row(157.5, 0.15, 12);
     let ground = pulse(Pulse::OneSine, 0.7, 0.4);
     let request = sampled(3.0, 0.01);
@@ -438,8 +444,8 @@ fn feet_that_move_alike_are_the_ground() {
     }
 }
 
-/// The mirror image of an arch whose feet are exchanged moves as its mirror image; since positions count from the left foot, the two are
-/// computed on ground that moves differently: the same up to the square of the step.
+/// The mirror image of an arch with exchanged feet moves as its mirror image. Positions count from the left foot, so the ground
+/// motions of the two computations differ; results agree up to the square of the step.
 #[test]
 fn mirrored_feet_move_a_mirrored_arch() {
     let row = row(157.5, 0.15, 12);
@@ -470,24 +476,27 @@ fn mirrored_feet_move_a_mirrored_arch() {
                 worst = worst.max((rotation + image).abs());
             }
         }
-        // Measured 7e-9: the square of the step, and the order of what happens within one.
+        // Measured 7e-9: the square of the step, and the order of events within a step.
         assert!(worst < 1e-7, "{worst:e}");
     }
 }
 
-/// A foot that moves for 10 s ends where springings that have moved so far let the arch rest: three hinges leave no other place.
+/// After a foot has moved slowly for 10 s, the arch is in its equilibrium on springings moved by the same amount: three hinges
+/// allow no other position.
 #[test]
-fn a_slow_foot_ends_where_the_supports_settle() {
+fn a_slow_foot_ends_in_the_equilibrium_of_moved_supports() {
     let row = row(157.5, 0.15, 12);
-    let way = Way {
-        way_m: [0.25, -0.1],
+    let foot = FootMotion {
+        displacement_m: [0.25, -0.1],
         lasts_s: 10.0,
     };
     // Steps of 0.5 ms are fine enough for so slow a motion.
     for model in models(&row).map(|model| in_steps_of(5e-4, &model)) {
-        let (history, samples) = run_sampled(&model, &way.ground(), &sampled(12.0, 0.5));
+        let (history, samples) = run_sampled(&model, &foot.ground(), &sampled(12.0, 0.5));
         assert_eq!(history.summary.outcome, Outcome::Rest);
-        let rest = model.on_supports(&gone(way.way_m)).unwrap();
+        let rest = model
+            .on_supports(&moved_supports(foot.displacement_m))
+            .unwrap();
         let (_, there) = run_sampled(&rest, &GroundMotion::still(), &sampled(0.01, 0.01));
         let (there, here) = (&there[0], samples.last().unwrap());
         assert_eq!(open_joints(here).len(), 3);
@@ -506,26 +515,26 @@ fn a_slow_foot_ends_where_the_supports_settle() {
     }
 }
 
-/// An arch falls between feet that slowly go farther apart than springings may, and not before.
+/// An arch falls once its feet have slowly moved apart by the movement capacity of its springings, and not before.
 #[test]
-fn a_slow_foot_goes_as_far_as_the_supports_may() {
+fn an_arch_falls_when_a_slow_foot_passes_the_movement_capacity() {
     let row = row(157.5, 0.15, 20);
     let model = FreeHinges::new(row.clone()).unwrap();
-    for (way_m, part) in [([1.2, 0.0], 0.97), ([1.2, 0.0], 1.03), ([0.0, -3.0], 1.03)] {
+    for (displacement_m, part) in [([1.2, 0.0], 0.97), ([1.2, 0.0], 1.03), ([0.0, -3.0], 1.03)] {
         let mut follower = Follower::new(&row).unwrap();
-        let slowly = |part: f64| gone(way_m) * part;
+        let slowly = |part: f64| moved_supports(displacement_m) * part;
         let Some(falls) = follower.move_supports(slowly, 0.0, 1.0).unwrap() else {
             panic!("it falls");
         };
-        let way = Way {
-            way_m: way_m.map(|way_m| way_m * falls * part),
+        let foot = FootMotion {
+            displacement_m: displacement_m.map(|displacement_m| displacement_m * falls * part),
             lasts_s: 10.0,
         };
         let request = sampled(13.0, 0.5);
-        let summary = model.simulate(&way.ground(), &request, None).unwrap();
+        let summary = model.simulate(&foot.ground(), &request, None).unwrap();
         if part > 1.0 {
             assert!(matches!(summary.outcome, Outcome::Overturned(_)));
-            // The last hundredths of the way take a second or two.
+            // The last hundredths of the movement take a second or two.
             assert!(summary.outcome_time_s > 7.0, "{}", summary.outcome_time_s);
         } else {
             assert_eq!(summary.outcome, Outcome::Rest);
@@ -533,7 +542,7 @@ fn a_slow_foot_goes_as_far_as_the_supports_may() {
     }
 }
 
-/// Elastic joints tend to rigid ones under a late right foot: the first peak, stiffness for stiffness.
+/// Under a delayed right foot, the first peak with elastic joints tends to that with rigid joints as the stiffness grows.
 #[test]
 fn stiff_joints_tend_to_rigid_ones() {
     let row = row(157.5, 0.15, 12);

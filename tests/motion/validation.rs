@@ -5,7 +5,7 @@ use std::os::unix::fs::symlink;
 use std::path::Path;
 
 use crate::common::parsed;
-use crate::common::program::{printed, says_what_it_shows, scenarios};
+use crate::common::program::{assert_shown_output_is_printed, printed, scenarios};
 use archrock::mechanics::blocks::Row;
 use archrock::mechanics::four_link::limit::least_thickness_ratio;
 use archrock::mechanics::four_link::mechanism::HingeSites;
@@ -93,7 +93,8 @@ fn least_thickness_of_a_semicircle_against_friction() {
         (0.325, 0.179, 0.1776),
         (0.31, 0.196, 0.1953),
     ] {
-        // Well below it also stands, with hardly more friction; well above it needs more friction again.
+        // Well below this thickness the arch also stands, with little more friction; well above it, more friction is needed
+        // again.
         let ratio = least(0.1, 0.2, |ratio| {
             stands(&row(ratio), coefficient) == Ok(true)
         });
@@ -104,7 +105,7 @@ fn least_thickness_of_a_semicircle_against_friction() {
             assert!((own - coefficient).abs() < 1e-5, "{coefficient}: {own}");
         }
     }
-    // With more friction than that, the thickness for no sliding is enough; with less than this, no thickness is.
+    // With more friction than this, the thickness for no sliding suffices; with less, no thickness does.
     let without = least(0.05, 0.2, |ratio| {
         collapse_mechanism(&row(ratio)).unwrap().is_none()
     });
@@ -144,17 +145,17 @@ fn least_thickness_of_pointed_and_elliptic_arches() {
 }
 
 #[test]
-fn commands_say_what_the_page_shows() {
+fn commands_print_the_output_shown_in_docs_validation() {
     let folder = tempfile::tempdir().unwrap();
     symlink(scenarios(), folder.path().join("scenarios")).unwrap();
-    let commands = says_what_it_shows("docs/validation.md", folder.path());
+    let commands = assert_shown_output_is_printed("docs/validation.md", folder.path());
     assert!(commands >= 15, "{commands}");
 }
 
 /// Each row of the page's table of drums: the column of its scenario stands just below the number and falls just above. The
 /// command that finds the numbers is tested for one row.
 #[test]
-fn the_failure_domain_of_the_page_is_that_of_the_command() {
+fn threshold_reproduces_the_failure_domain_of_the_page() {
     let path = scenarios().join("drums-step-pair.toml");
     let scenario = fs::read_to_string(&path).unwrap();
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/validation.md");

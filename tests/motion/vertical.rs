@@ -22,7 +22,7 @@ fn release(rotation_rad: f64) -> Option<Initial> {
     })
 }
 
-/// On ground with a constant upward acceleration everything is as with more gravity.
+/// A constant upward acceleration of the ground is equivalent to more gravity.
 #[test]
 fn a_steady_vertical_acceleration_is_gravity() {
     let arch = semicircle();
@@ -72,7 +72,7 @@ fn a_steady_vertical_acceleration_is_gravity() {
 /// Both components grow linearly: the tilt of gravity passes A_L when
 /// `h t = A_L (g + v t)`.
 #[test]
-fn uplift_is_at_the_tilt_of_gravity() {
+fn uplift_starts_at_the_tilt_of_gravity() {
     let arch = semicircle();
     let incipient = arch.incipient_g();
     for (h, v) in [
@@ -96,8 +96,8 @@ fn uplift_is_at_the_tilt_of_gravity() {
         assert_eq!(outcome(1.0 - 1e-9), Outcome::NeverMoved);
         assert_ne!(outcome(1.0 + 1e-3), Outcome::NeverMoved);
     }
-    // The ground takes weight away while its push decreases: the largest tilt is neither at
-    // the largest push nor at the largest fall, and lasts for a moment.
+    // The vertical motion reduces the weight while the push decreases: the largest tilt occurs neither at the largest push nor at
+    // the largest downward acceleration, and lasts for an instant.
     let tilt = |t: f64| (1.2 - 0.3 * t) / (G - 4.0 * t.min(2.0 - t));
     assert!(tilt(1.0) > incipient && tilt(0.7) < incipient && tilt(1.1) < incipient);
     let ground = GroundMotion::record(
@@ -216,7 +216,7 @@ fn ground_that_falls_freely_is_an_input_error() {
 
 /// The fixed columns stay the same; the vertical acceleration follows only if there is one.
 #[test]
-fn the_vertical_acceleration_is_the_last_column_where_there_is_one() {
+fn the_vertical_acceleration_is_the_last_column_if_present() {
     for vertical_g in [0.0, -0.15] {
         let scenario = parsed(&format!(
             "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n\
@@ -270,7 +270,8 @@ proptest! {
     }
 }
 
-/// No model follows a structure that the ground leaves: `run` refuses such ground, and `threshold` and `map` have no histories on it.
+/// No model follows a structure on ground that falls away: `run` refuses such ground, and `threshold` and `map` have no histories
+/// on it.
 #[test]
 fn ground_that_falls_away_has_no_history_in_any_model() {
     let folder = tempfile::tempdir().unwrap();

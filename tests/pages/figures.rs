@@ -1,4 +1,4 @@
-//! Figures for print: their size is what was asked for, and no text is cut off, on another, or struck through by a line.
+//! Figures for print: they have the requested size, and no text is cut off, overlaps another text or is crossed by a line.
 
 use std::fs;
 use std::path::Path;
@@ -8,12 +8,12 @@ use crate::common::results::{named, points, texts};
 use archrock::output::text::text_px;
 use roxmltree::{Document, Node};
 
-/// From the left, from above, to the right and to below, in pixels.
+/// A rectangle in pixels: left, top, right, bottom.
 type Box = [f64; 4];
 
-/// Letters reach so far above their baseline, in parts of the size of the text.
+/// Height of letters above the baseline, relative to the size of the text.
 const ABOVE: f64 = 0.72;
-/// And below it.
+/// Depth of letters below the baseline, relative to the size of the text.
 const BELOW: f64 = 0.21;
 
 fn number(node: &Node<'_, '_>, name: &str) -> f64 {
@@ -21,7 +21,7 @@ fn number(node: &Node<'_, '_>, name: &str) -> f64 {
     text.trim_end_matches("mm").parse().unwrap()
 }
 
-/// A text and where it is.
+/// A text and its rectangle.
 fn extents(text: &Node<'_, '_>, font_px: f64) -> (String, Box) {
     let (x, y) = (number(text, "x"), number(text, "y"));
     let words = text.text().unwrap_or_default().to_owned();
@@ -38,7 +38,7 @@ fn extents(text: &Node<'_, '_>, font_px: f64) -> (String, Box) {
             x - before + long,
             y + BELOW * font_px,
         ],
-        // Turned by a quarter, upwards.
+        // Rotated by a quarter turn, reading upwards.
         Some(turned) => {
             assert!(turned.starts_with("rotate(-90 "), "{turned}");
             [
@@ -87,7 +87,8 @@ fn segments(path: &str) -> Vec<[[f64; 2]; 2]> {
     segments
 }
 
-/// Points of a circular arc that goes on from one: radii, a zero, whether it is the longer one, its direction, its end.
+/// Points of a circular arc from a given point. The numbers are radii, a zero, whether it is the longer arc, its direction and
+/// its end.
 fn arc(from: [f64; 2], numbers: &[f64]) -> Vec<[f64; 2]> {
     let (radius, longer, direction) = (numbers[0], numbers[3] != 0.0, numbers[4] != 0.0);
     let to = [numbers[5], numbers[6]];
@@ -140,7 +141,7 @@ fn frame(svg: &Node<'_, '_>) -> Box {
     [x, y, x + width, y + height]
 }
 
-/// What of these lines a box does not cover.
+/// The parts of these lines outside a box.
 fn outside(lines: &[[[f64; 2]; 2]], covered: Box) -> Vec<[[f64; 2]; 2]> {
     let parts = |line: &[[f64; 2]; 2]| match clipped(*line, covered) {
         None => vec![*line],
@@ -149,7 +150,7 @@ fn outside(lines: &[[[f64; 2]; 2]], covered: Box) -> Vec<[[f64; 2]; 2]> {
     lines.iter().flat_map(parts).collect()
 }
 
-/// The lines of a picture that can be seen.
+/// The visible lines of a picture.
 fn lines(document: &Document<'_>) -> Vec<[[f64; 2]; 2]> {
     let mut lines = Vec::new();
     for path in document
@@ -182,7 +183,7 @@ fn lines(document: &Document<'_>) -> Vec<[[f64; 2]; 2]> {
     lines
 }
 
-/// What is wrong with a picture of this width.
+/// Faults of a picture of this width.
 fn faults(picture: &str, width_mm: f64, height_mm: Option<f64>, text_pt: f64) -> Vec<String> {
     let document = Document::parse(picture).unwrap();
     let root = document.root_element();
@@ -219,7 +220,7 @@ fn faults(picture: &str, width_mm: f64, height_mm: Option<f64>, text_pt: f64) ->
     let nodes = document.descendants();
     let nodes: Vec<_> = nodes.filter(|node| node.has_tag_name("text")).collect();
     for node in &nodes {
-        // Whatever font draws it, a text is as long as it was measured.
+        // Every text is drawn with its measured length, whatever the font.
         let words = node.text().unwrap_or_default();
         let drawn_px = node
             .attribute("textLength")
@@ -334,7 +335,7 @@ fn pictures(map: &str) -> Vec<(Vec<String>, Vec<&'static str>)> {
         .collect()
 }
 
-/// Draws all pictures, and tells what is wrong with them.
+/// Draws all pictures and returns their faults.
 fn drawn(folder: &Path, arguments: &[&str], facts: (f64, Option<f64>, f64)) -> Vec<String> {
     let map = folder.join("map.toml");
     let text = fs::read_to_string(scenarios().join("semicircle-map.toml")).unwrap();
@@ -353,7 +354,7 @@ fn drawn(folder: &Path, arguments: &[&str], facts: (f64, Option<f64>, f64)) -> V
         assert!(output.status.success(), "{all:?} {}", stderr(&output));
         for picture in pictures {
             let text = fs::read_to_string(folder.join("out").join(picture)).unwrap();
-            // Lines that look alike are in the legend.
+            // Lines of similar appearance are in the legend.
             if picture == "ida.svg" {
                 assert!(
                     text.contains("data-name=\"critical\"") && text.contains(">critical rotation<")
@@ -435,7 +436,7 @@ fn a_structure_is_drawn_with_its_dimensions() {
 
 /// A curve ends where the structure overturns, and narrow bands are seen and listed.
 #[test]
-fn curves_of_thresholds_end_there() {
+fn curves_end_at_the_threshold() {
     let folder = tempfile::tempdir().unwrap();
     let own = scenarios().join("column-pulse.toml");
     let arguments = [
@@ -467,7 +468,7 @@ fn curves_of_thresholds_end_there() {
 }
 
 #[test]
-fn faults_are_found() {
+fn the_search_for_drawing_faults_finds_them() {
     let sheet = |inside: &str| {
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"84mm\" height=\"42mm\" viewBox=\"0 0 387 193.5\" \
@@ -507,7 +508,7 @@ fn faults_are_found() {
         );
     }
     assert_eq!(found(&(text(20.0, 100.0) + &line("M0 106H300"))), "");
-    // An arc above it, whose chord would strike it through, and one that does.
+    // An arc above the text, whose chord would cross the text, and an arc that crosses it.
     assert_eq!(
         found(&(text(20.0, 100.0) + &line("M0 97A40 40 0 0 1 80 97"))),
         ""
@@ -516,7 +517,7 @@ fn faults_are_found() {
 }
 
 #[test]
-fn height_text_panels_and_title_are_as_asked() {
+fn height_text_panels_and_title_can_be_chosen() {
     let folder = tempfile::tempdir().unwrap();
     let own = scenarios().join("semicircle-pulse.toml");
     let own = own.to_str().unwrap();
@@ -560,7 +561,7 @@ fn height_text_panels_and_title_are_as_asked() {
     );
     let title = "Semicircular arch";
     assert!(run(&[]).contains(title) && !run(&["--no-title"]).contains(title));
-    for (more, told) in [
+    for (more, reported) in [
         (&["--figure-width", "85"][..], "such as 85mm"),
         (&["--figure-height", "60mm"], "--figure-width"),
         (
@@ -580,11 +581,11 @@ fn height_text_panels_and_title_are_as_asked() {
     ] {
         let arguments = [&["run", own], more].concat();
         let said = refusal(&archrock(folder.path(), &arguments));
-        assert!(said.contains(told), "{said}");
+        assert!(said.contains(reported), "{said}");
     }
 }
 
-/// With the feature `print` the files are written; without it the program says how to get it.
+/// With the feature `print` the files are written; without it the program prints how to get it.
 #[test]
 fn pictures_are_written_as_pdf_and_png() {
     let folder = tempfile::tempdir().unwrap();
@@ -617,7 +618,7 @@ fn pictures_are_written_as_pdf_and_png() {
         assert!(output.status.success(), "{}", stderr(&output));
         assert!(
             !folder.path().join("out/history.png").exists(),
-            "an old one goes"
+            "the old file is removed"
         );
     }
 }

@@ -132,7 +132,7 @@ fn limit_shows_the_thrust_line_inside_the_ring_and_through_its_hinges() {
 }
 
 #[test]
-fn joints_are_drawn_where_there_are_voussoirs() {
+fn joints_are_drawn_for_voussoirs() {
     let arch = Arch::new(10.0, 0.15, 157.5).unwrap();
     let (arch, scene) = drawn(arch.with_voussoirs(7).unwrap());
     let chain = arch.chain();
@@ -260,7 +260,7 @@ fn impact_shows_the_bodies_of_the_paper_and_the_impulse_line() {
                 .fold(f64::INFINITY, f64::min);
             assert!(nearest < PIXEL, "{nearest}");
         }
-        // Nothing of it lies beyond its sections.
+        // No part of the line lies beyond its sections.
         for corner in shown.iter().map(|corner| sheet.back(*corner)) {
             let angle = corner.x.atan2(corner.y).to_degrees() + 90.0;
             let slack = PIXEL / sheet.scale * 57.3;
@@ -316,7 +316,7 @@ fn rows_are_drawn_by_their_outlines_and_hinges_at_corners_of_joints() {
         let exact = [corner(outlines_m, 0), corner(outlines_m, last)];
         let mut sheets = Vec::new();
         for document in [&limit, &impact] {
-            // The structure at rest is similar to its blocks, wherever it is drawn whole.
+            // Wherever the structure at rest is drawn whole, it is similar to its blocks.
             let whole = ["block", "built"].into_iter();
             let whole: Vec<_> = whole.flat_map(|name| named(document, name)).collect();
             assert!(!whole.is_empty());
@@ -487,7 +487,7 @@ fn curve_of(document: &Document<'_>, name: &str) -> Vec<Vector2<f64>> {
 }
 
 #[test]
-fn a_run_in_which_nothing_moves_has_its_picture_too() {
+fn a_run_without_motion_has_a_picture() {
     let folder = tempfile::tempdir().unwrap();
     let weak = "[ground.rectangular]\namplitude_g = 0.01\nduration_s = 0.1\n";
     scenario(
@@ -644,7 +644,7 @@ fn the_map_shows_every_cell() {
     assert_eq!(shown, 15);
 }
 
-/// Whatever draws an arch draws what it carries, and its dimensions; small pictures have these in words.
+/// Every picture of an arch shows its fill, loads and dimensions; small pictures give the dimensions in words.
 #[test]
 fn pictures_of_an_arch_have_fill_loads_and_dimensions() {
     let folder = tempfile::tempdir().unwrap();
@@ -700,7 +700,8 @@ fn pictures_of_an_arch_have_fill_loads_and_dimensions() {
     }
 }
 
-/// The picture of `limit` is that of four links. Where ties rule them out, the error does not ask for a table that the scenario has.
+/// The picture of `limit` shows four links. If ties rule them out, the error does not suggest a table that the scenario already
+/// has.
 #[test]
 fn the_picture_of_a_tied_limit_is_refused_with_its_reason() {
     let folder = tempfile::tempdir().unwrap();

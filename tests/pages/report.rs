@@ -108,9 +108,10 @@ fn free_hinges_in_a_dark_browser() {
     check("free-hinges.toml", &names, 4, &["--force-dark-mode"]);
 }
 
-/// What overturns falls on the page until a block has turned by 45 degrees, whatever moves it; no table has the fall.
+/// An overturning structure falls on the page until a block has rotated by 45 degrees, with every model; no table contains the
+/// fall.
 #[test]
-fn a_fall_is_on_the_page_and_in_no_table() {
+fn a_fall_is_drawn_but_not_tabulated() {
     let arch = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 17\n\
                 [ground.rectangular]\namplitude_g = -0.9\nduration_s = 0.45\n";
     let column = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[ground.half_sine]\namplitude_g = 0.9\nduration_s = 0.6\n";
@@ -159,11 +160,11 @@ fn a_fall_is_on_the_page_and_in_no_table() {
     }
     assert!(
         fallen >= 3,
-        "those that overturn before they have turned so far: {fallen}"
+        "cases that overturn before a block has rotated so far: {fallen}"
     );
 }
 
-/// An arch with all that it can have beside it under a scaled record, as wide as a phone, and on paper.
+/// An arch on piers with fill and loads under a scaled record, on a page as wide as a phone, and on paper.
 #[test]
 fn an_arch_on_piers_on_a_phone_and_on_paper() {
     let folder = tempfile::tempdir().unwrap();
@@ -192,7 +193,7 @@ fn an_arch_on_piers_on_a_phone_and_on_paper() {
     assert!(browser::sheets(&page).is_none_or(|sheets| sheets == 1));
 }
 
-/// The frames of a film are numbered, evenly spaced in time, and go with the next run.
+/// The frames of a film are numbered and evenly spaced in time, and the next run removes them.
 #[test]
 fn a_film_is_numbered_pictures() {
     let folder = tempfile::tempdir().unwrap();
@@ -232,7 +233,7 @@ fn a_film_is_numbered_pictures() {
         let time = format!(">{:.3} s, ", 0.05 * f64::from(number - 1));
         assert!(frame.contains(&time), "{time}");
     }
-    assert!(frames("5").len() < due / 3, "old ones go");
+    assert!(frames("5").len() < due / 3, "old frames are removed");
     let said = program::refusal(&program::archrock(
         folder.path(),
         &["run", own, "--exaggerate", "3"],
@@ -259,7 +260,7 @@ fn ten_seconds_of_thirty_six_blocks_are_small() {
 }
 
 #[test]
-fn what_the_scenario_says_cannot_break_the_page() {
+fn text_of_the_scenario_cannot_break_the_page() {
     let folder = tempfile::tempdir().unwrap();
     let scenario = "title = \"</title></script><script>alert(1)</script> %DATA% & more\"\n\
                     [column]\nheight_m = 4.0\nwidth_m = 0.8\n[ground.rectangular]\namplitude_g = 0.5\nduration_s = 0.1\n";
@@ -267,13 +268,13 @@ fn what_the_scenario_says_cannot_break_the_page() {
     let output = program::archrock(folder.path(), &["run", "odd.toml", "--out", "."]);
     assert!(output.status.success(), "{}", program::stderr(&output));
     let page = fs::read_to_string(folder.path().join("report.html")).unwrap();
-    assert!(!page.contains("<script>alert"), "a title stays text");
+    assert!(!page.contains("<script>alert"), "a title is shown as text");
     assert!(page.contains("&lt;script&gt;alert(1)&lt;/script&gt; %DATA% &amp; more"));
     assert_eq!(data_of(&page)["bodies"], json!([""]));
 }
 
 #[test]
-fn a_report_is_left_out_and_an_old_one_goes() {
+fn without_a_report_the_old_one_is_removed() {
     let folder = tempfile::tempdir().unwrap();
     run(folder.path(), "never-moved.toml");
     let path = program::scenarios().join("never-moved.toml");

@@ -55,15 +55,19 @@ fn four_links_are_a_rough_guide_in_every_study() {
             assert_eq!(said.contains(GUIDE), is_arch, "{command}: {said}");
             for file in files {
                 let file = json(&at.join(&out).join(file));
-                let told = warnings(&file);
-                assert_eq!(told.len(), usize::from(is_arch), "{command} {told:?}");
-                assert!(told.iter().all(|warning| warning.starts_with(GUIDE)));
+                let reported = warnings(&file);
+                assert_eq!(
+                    reported.len(),
+                    usize::from(is_arch),
+                    "{command} {reported:?}"
+                );
+                assert!(reported.iter().all(|warning| warning.starts_with(GUIDE)));
             }
         }
     }
 }
 
-/// A run follows the line of thrust, and its summary has the numbers of the words and the warnings.
+/// A run follows the line of thrust, and its summary has the printed numbers and warnings.
 #[test]
 fn the_summary_lists_the_warnings() {
     let folder = tempfile::tempdir().unwrap();
@@ -74,13 +78,14 @@ fn the_summary_lists_the_warnings() {
     let said = String::from_utf8(output.stdout).unwrap();
     assert!(said.contains(GUIDE), "{said}");
     let summary = json(&at.join("o/summary.json"));
-    let told = warnings(&summary);
+    let reported = warnings(&summary);
     let wanted = format!("{GUIDE}: the thrust line leaves the arch by up to ");
-    assert!(told[0].starts_with(&wanted), "{told:?}");
+    assert!(reported[0].starts_with(&wanted), "{reported:?}");
     assert!(
-        told.iter()
+        reported
+            .iter()
             .any(|warning| warning.contains("needs a friction of ")),
-        "{told:?}"
+        "{reported:?}"
     );
     // Unlikely numbers, which the program prints as warnings.
     let text = text.replace("= 5.0", "= 500").replace("= 0.4", "= 30");
@@ -94,7 +99,7 @@ fn the_summary_lists_the_warnings() {
         assert!(warnings(&summary).contains(&unlikely), "{summary:#}");
         assert!(stderr(&output).contains(&format!("warning: {unlikely}")));
     }
-    // Statics warn of them too.
+    // Static commands give these warnings too.
     for command in ["limit", "capacity"] {
         let said = stderr(&archrock(at, &[command, "s.toml"]));
         assert!(
@@ -102,7 +107,7 @@ fn the_summary_lists_the_warnings() {
             "{command}: {said}"
         );
     }
-    // A column that hardly rocks has none.
+    // A column that barely rocks has none.
     fs::write(
         at.join("s.toml"),
         format!("{COLUMN}{}", PULSE.replace("0.4", "0.21")),
@@ -112,9 +117,10 @@ fn the_summary_lists_the_warnings() {
     assert!(warnings(&json(&at.join("o/summary.json"))).is_empty());
 }
 
-/// On springings that have moved far a small fraction of its own strength starts an arch, which says nothing about the unit of a pulse.
+/// On springings that have moved far, a small fraction of the strength of the undeformed arch starts motion; this raises no doubt
+/// about the unit of a pulse.
 #[test]
-fn moved_springings_raise_no_doubt_about_units() {
+fn moved_springings_cause_no_warning_about_units() {
     let arch = format!(
         "{ARCH}voussoirs = 16\n[free_hinges]\n[supports]\nright = {{ spread_m = 0.5 }}\n\
          [ground.rectangular]\namplitude_g = 0.7\nduration_s = 0.2\n"
@@ -125,7 +131,7 @@ fn moved_springings_raise_no_doubt_about_units() {
     let starts = starts.map(|sway| model.incipient_acceleration_g(sway).unwrap());
     assert!(starts[0].min(starts[1]) < 0.7 / 20.0, "{starts:?}");
     assert_eq!(scenario.unlikely(), [""; 0]);
-    // A pulse in another unit is found all the same.
+    // A pulse in a wrong unit still causes the warning.
     let strong = parsed(&arch.replace("= 0.7\nd", "= 30\nd"));
     assert!(strong.unlikely()[0].contains("in units of gravity"));
 }

@@ -101,14 +101,14 @@ fn outcomes_of_the_other_scenarios() {
 }
 
 #[test]
-fn every_scenario_of_the_repository_runs_and_says_what_it_is() {
+fn every_scenario_of_the_repository_runs_and_describes_itself() {
     for path in scenario_files() {
         let text = fs::read_to_string(&path).unwrap();
         assert!(
             text.starts_with("# ") && text.contains("\ntitle = "),
             "{path:?}"
         );
-        // What repetitions say is another matter, and takes most of the time.
+        // The results of repetitions are tested elsewhere, and take most of the time.
         let repeated = ["[free_hinges]", "[elastic_joints]"];
         let more = repeated.iter().any(|table| text.contains(table));
         let more = if more { &["--no-repeat"][..] } else { &[] };
@@ -118,7 +118,7 @@ fn every_scenario_of_the_repository_runs_and_says_what_it_is() {
 }
 
 #[test]
-fn impacts_are_a_table_of_what_the_summary_counts() {
+fn the_table_of_impacts_has_the_number_in_the_summary() {
     let folder = tempfile::tempdir().unwrap();
     let file = scenarios().join("semicircle-pulse.toml");
     let arguments = ["run", file.to_str().unwrap(), "--out", "o", "--quiet"];
@@ -274,7 +274,7 @@ fn every_command_refuses_wrong_input_with_exit_code_two() {
 }
 
 #[test]
-fn bad_input_is_refused_with_its_place() {
+fn errors_of_the_input_name_their_place() {
     let pulse = "[ground.ricker]\namplitude_g = 0.3\nduration_s = 1\n";
     let another = "[ground.half_sine]\namplitude_g = 1\nduration_s = 1\n";
     for (text, words) in [
@@ -332,7 +332,7 @@ fn bad_input_is_refused_with_its_place() {
 }
 
 #[test]
-fn a_place_that_cannot_be_written_is_said_before_the_work() {
+fn an_unwritable_folder_is_reported_before_the_computation() {
     let folder = tempfile::tempdir().unwrap();
     let pulse = "[ground.half_sine]\namplitude_g = 0.3\nduration_s = 0.2\n";
     scenario(folder.path(), &format!("{ARCH}{pulse}"));
@@ -351,7 +351,7 @@ fn a_place_that_cannot_be_written_is_said_before_the_work() {
 }
 
 #[test]
-fn numbers_too_small_for_anything_are_refused() {
+fn numbers_too_small_to_compute_with_are_refused() {
     let pulse = "[ground.ricker]\namplitude_g = 0.3\nduration_s = 1e-320\n";
     for (text, word) in [
         (ARCH.replace("0.15", "1e-320"), "at least 1e-6 and below 2"),
@@ -373,7 +373,7 @@ fn numbers_too_small_for_anything_are_refused() {
 
 /// A scenario in which nothing moves the structure is bad input: there is no history to draw.
 #[test]
-fn a_run_that_nothing_moves_is_refused() {
+fn a_run_without_motion_or_release_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     scenario(folder.path(), ARCH);
     let output = archrock(folder.path(), &["run", "s.toml", "--out", "o"]);
@@ -407,7 +407,7 @@ fn rotations_go_to_standard_output_and_nothing_else_is_written() {
     assert_eq!((fields[3], fields[6]), ("left", "0.001"));
 }
 
-/// The repetitions of this run would take minutes, and nobody reads its output.
+/// The repetitions of this run would take minutes, and its output has no reader.
 #[test]
 fn a_closed_pipe_ends_a_run_with_free_hinges_at_once() {
     let folder = tempfile::tempdir().unwrap();
@@ -431,9 +431,9 @@ fn a_closed_pipe_ends_a_run_with_free_hinges_at_once() {
     );
 }
 
-/// If it overturned, the rotation at the end of the run means nothing.
+/// After overturning, the rotation at the end of the run means nothing.
 #[test]
-fn of_what_overturns_the_largest_rotation_is_not_said() {
+fn an_overturned_run_prints_no_largest_rotation() {
     let folder = tempfile::tempdir().unwrap();
     for (name, overturns) in [("overturning-at-once", true), ("semicircle-pulse", false)] {
         let file = scenarios().join(name).with_extension("toml");
@@ -532,7 +532,7 @@ fn random_scenarios_run_to_an_outcome() {
 }
 
 #[test]
-fn a_mistyped_command_is_answered_with_the_likely_one() {
+fn a_mistyped_command_suggests_the_likely_one() {
     let folder = tempfile::tempdir().unwrap();
     for (given, likely) in [
         ("rnu", "run"),
@@ -549,7 +549,7 @@ fn a_mistyped_command_is_answered_with_the_likely_one() {
 
 /// Every command shows examples, whose options it has.
 #[test]
-fn every_help_has_examples_that_are_right() {
+fn every_help_text_has_valid_examples() {
     let folder = tempfile::tempdir().unwrap();
     let help = crate::common::program::stdout(&archrock(folder.path(), &["run", "--help"]));
     assert!(
@@ -594,7 +594,7 @@ fn every_help_has_examples_that_are_right() {
 }
 
 #[test]
-fn studies_and_checks_are_printed_as_json() {
+fn studies_and_checks_can_be_printed_as_json() {
     let folder = tempfile::tempdir().unwrap();
     let text = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[ground.rectangular]\namplitude_g = 0.3\nduration_s = 0.3\n\
                 [map]\namplitude_g = [0.2, 0.6]\nduration_s = [0.3]\n";
@@ -602,10 +602,10 @@ fn studies_and_checks_are_printed_as_json() {
     let json = |arguments: &[&str]| -> serde_json::Value {
         serde_json::from_str(&printed(folder.path(), arguments)).unwrap()
     };
-    let told = json(&["map", "s.toml", "--format", "json", "--quiet"]);
+    let reported = json(&["map", "s.toml", "--format", "json", "--quiet"]);
     let file = fs::read_to_string(folder.path().join("results/s/map.json")).unwrap();
     assert_eq!(
-        told,
+        reported,
         serde_json::from_str::<serde_json::Value>(&file).unwrap()
     );
     let checked = json(&["check", "s.toml", "--format", "json"]);

@@ -70,7 +70,7 @@ fn every_kind_runs_at_once_and_its_comments_are_true() {
 }
 
 #[test]
-fn a_scenario_to_begin_with_can_be_named_or_printed() {
+fn a_starting_scenario_can_be_written_to_a_file_or_printed() {
     let folder = tempfile::tempdir().unwrap();
     let printed = archrock(folder.path(), &["init", "column", "-"]);
     assert!(printed.status.success() && printed.stderr.is_empty());
@@ -91,7 +91,7 @@ fn a_scenario_to_begin_with_can_be_named_or_printed() {
 }
 
 #[test]
-fn the_record_that_is_made_up_is_what_it_says() {
+fn the_generated_record_has_its_stated_properties() {
     let folder = tempfile::tempdir().unwrap();
     assert!(
         archrock(folder.path(), &["init", "record"])

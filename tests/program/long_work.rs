@@ -97,7 +97,7 @@ fn the_slurm_array_computes_the_whole_study() {
     assert_whole(folder.path());
 }
 
-/// If GNU parallel is not installed, this test says so and tests nothing; the checks of the repository install it.
+/// Without GNU parallel this test prints a message and checks nothing; the checks of the repository install it.
 #[test]
 fn gnu_parallel_computes_the_whole_study() {
     let version = Command::new("parallel").arg("--version").output();

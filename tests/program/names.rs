@@ -8,7 +8,7 @@ use crate::common::program::{archrock, files, printed, refused, stderr};
 
 const PULSE: &str = "[ground.rectangular]\namplitude_g = 0.3\nduration_s = 0.21\n";
 const RECORD: &str = "A\nUNITS OF G\nNPTS= 5, DT= .1\n0 .3 .4 -.3 0\n";
-/// Letters, a mark that reverses the text after it, and more letters: looks like `wave-2ta.gvs`.
+/// Letters, a mark that reverses the following text, and more letters: it looks like `wave-2ta.gvs`.
 const NAME: &str = "wave-\u{202e}svg.at2";
 const SHOWN: &str = r"wave-\u202esvg.at2";
 
@@ -82,8 +82,11 @@ fn pages_have_the_scenario_line_by_line() {
 fn names_of_records_are_shown_escaped() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join(NAME), RECORD).unwrap();
-    let told = printed(folder.path(), &["check", NAME]);
-    assert!(told.starts_with(&format!("{SHOWN}: AT2 file")), "{told}");
+    let reported = printed(folder.path(), &["check", NAME]);
+    assert!(
+        reported.starts_with(&format!("{SHOWN}: AT2 file")),
+        "{reported}"
+    );
     let text = format!("{ARCH}[ground.record]\nfile = '{NAME}'\n");
     fs::write(folder.path().join("s.toml"), text).unwrap();
     let said = printed(folder.path(), &["run", "s.toml", "--out", "run"]);
@@ -161,7 +164,7 @@ fn names_like_formulas_are_refused_in_suites() {
     printed(folder.path(), &["check", "s.toml"]);
 }
 
-/// A file whose name contains commands for a terminal issues none in an error.
+/// A file name with commands for a terminal does not issue them in an error.
 #[cfg(unix)]
 #[test]
 fn names_of_scenarios_are_shown_escaped() {
@@ -175,7 +178,7 @@ fn names_of_scenarios_are_shown_escaped() {
     assert_legible("run", &printed(folder.path(), &["run", name]));
 }
 
-/// What only tests need is behind one hidden module, which no example and no page shows.
+/// Items that only tests need are in one hidden module, which no example and no page shows.
 #[test]
 fn one_module_is_hidden_from_users() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));

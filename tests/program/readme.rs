@@ -18,7 +18,7 @@ fn run(arguments: &[&str]) -> String {
 
 /// The commands are those of `docs/pictures/draw`.
 #[test]
-fn its_pictures_are_up_to_date() {
+fn the_pictures_of_the_readme_are_up_to_date() {
     let script = fs::read_to_string(repository().join("docs/pictures/draw")).unwrap();
     let script = script.replace("\\\n", " ");
     let folder = tempfile::tempdir().unwrap();
@@ -48,7 +48,7 @@ fn its_pictures_are_up_to_date() {
 }
 
 #[test]
-fn what_it_quotes_is_what_run_says() {
+fn the_readme_quotes_the_output_of_run() {
     let readme = fs::read_to_string(repository().join("README.md")).unwrap();
     let scenario = scenarios().join("semicircle-pulse.toml");
     let said = run(&["run", scenario.to_str().unwrap()]);
@@ -64,7 +64,7 @@ fn what_it_quotes_is_what_run_says() {
 
 /// Below a paragraph of these pages with a command on a scenario are lines that the command prints, in their order.
 #[test]
-fn pages_quote_what_their_commands_print() {
+fn pages_quote_the_output_of_their_commands() {
     for (page, outputs) in [("docs/example.md", 3), ("docs/models.md", 1)] {
         let page = fs::read_to_string(repository().join(page)).unwrap();
         let mut blocks = page.split("\n\n").peekable();
@@ -92,7 +92,7 @@ fn pages_quote_what_their_commands_print() {
 }
 
 #[test]
-fn it_is_short() {
+fn the_readme_is_short() {
     let readme = fs::read_to_string(repository().join("README.md")).unwrap();
     let words = readme.split_whitespace();
     let words = words
@@ -102,7 +102,7 @@ fn it_is_short() {
 }
 
 #[test]
-fn links_lead_somewhere() {
+fn links_of_the_documents_have_targets() {
     let docs = fs::read_dir(repository().join("docs")).unwrap();
     let pages = docs.map(|entry| entry.unwrap().path());
     let mut pages: Vec<PathBuf> = pages

@@ -45,7 +45,7 @@ fn succeeds(folder: &Path, arguments: &[&str]) -> String {
 
 /// Asserts that all results in a folder are sealed and come from a pulse of this amplitude.
 #[track_caller]
-fn all_are_of(folder: &Path, amplitude_g: f64) {
+fn assert_all_come_from(folder: &Path, amplitude_g: f64) {
     let of = |summary: &str| {
         json(&folder.join(summary))["scenario"]["ground"]["one_sine"]["amplitude_g"].clone()
     };
@@ -141,7 +141,7 @@ fn a_run_removes_all_results_of_the_last_run_of_its_command() {
         let mut left = below(&at.join("o"));
         left.retain(|name| !kept.contains(name));
         assert_eq!(left, RUN_FILES, "{first:?}");
-        all_are_of(&at.join("o"), 0.05);
+        assert_all_come_from(&at.join("o"), 0.05);
         assert!(kept.iter().all(|name| at.join("o").join(name).exists()));
     }
     // A run that fails leaves the last results unchanged.
@@ -152,11 +152,11 @@ fn a_run_removes_all_results_of_the_last_run_of_its_command() {
     // Results that were written to a subfolder by a run of their own are not those of this folder.
     succeeds(at, &["run", "strong.toml", "--out", "o/four", "--quiet"]);
     succeeds(at, &["run", "weak.toml", "--out", "o", "--quiet"]);
-    all_are_of(&at.join("o/four"), 0.9);
+    assert_all_come_from(&at.join("o/four"), 0.9);
 }
 
 #[test]
-fn records_of_the_last_suite_go_with_it() {
+fn a_suite_removes_the_records_of_the_last_suite() {
     let root = tempfile::tempdir().unwrap();
     let at = root.path();
     for name in ["a.csv", "b.csv", "c.csv"] {
@@ -257,7 +257,7 @@ fn after_a_kill_a_folder_holds_one_scenario() {
         run.kill().unwrap();
         run.wait().unwrap();
         succeeds(at, &weak);
-        all_are_of(&at.join("o"), 0.05);
+        assert_all_come_from(&at.join("o"), 0.05);
         let left = below(&at.join("o"));
         // Rows of samples are never lost; they are no results.
         let others: Vec<_> = left
@@ -272,7 +272,7 @@ fn after_a_kill_a_folder_holds_one_scenario() {
 }
 
 #[test]
-fn results_of_other_commands_stay_and_other_scenarios_are_warned_of() {
+fn results_of_other_commands_stay_with_a_warning_for_other_scenarios() {
     let root = tempfile::tempdir().unwrap();
     let at = root.path();
     let table = |peak: f64| format!("0.0,0.0\n0.2,{peak}\n0.4,-{peak}\n0.6,0.0\n");

@@ -1,4 +1,4 @@
-//! The program under bad circumstances: killed, with nobody reading its output, out of space, and with very much to write.
+//! The program in adverse conditions: killed, without a reader of its output, on a full disk, and with very long output.
 #![cfg(target_os = "linux")]
 #![expect(clippy::print_stderr, reason = "tests")]
 
@@ -96,8 +96,8 @@ fn a_killed_run_leaves_complete_results_or_none() {
     assert!(spawn(0).wait().unwrap().success());
     let mut whole = begin.elapsed();
     assert!(check_results(&folder, 40.0));
-    // Delays are spread over the run by the golden ratio, and denser at its end, when the files get their names;
-    // the machine adds randomness, and may be faster or slower by now: a run that ends in time shortens the next.
+    // Delays are spread over the run by the golden ratio, more densely at its end, when the files get their names. The machine
+    // adds randomness and may be faster or slower by now: a run that ends in time shortens the next.
     let (mut killed, mut finished) = (0, 0);
     for turn in 1..=24_u32 {
         let part = (f64::from(turn) * 0.618_033_988_75).fract();
@@ -141,7 +141,7 @@ fn run_into(stdout: Stdio, arguments: &[&str]) -> (Option<i32>, String) {
 }
 
 #[test]
-fn a_full_disk_is_said_once() {
+fn a_full_disk_is_reported_once() {
     for (arguments, what) in [
         (
             &["run", "--rotations", "-"][..],
@@ -263,7 +263,7 @@ fn while_being_written(root: &Path, action: impl FnOnce(&Path)) {
         .args([&folder, &scenario])
         .spawn()
         .unwrap();
-    // When something is on the disk the tables are open; the folder was locked before they were created.
+    // Once a file exists the tables are open; the folder was locked before they were created.
     let begun = || {
         fs::read_dir(&folder).is_ok_and(|mut files| {
             files
@@ -280,7 +280,7 @@ fn while_being_written(root: &Path, action: impl FnOnce(&Path)) {
 }
 
 #[test]
-fn of_two_that_write_to_one_folder_the_second_says_so() {
+fn a_second_program_writing_to_one_folder_is_refused() {
     let root = tempfile::tempdir().unwrap();
     let short = root.path().join("short.toml");
     fs::write(&short, endless(0.1, 1.0, 1e-2)).unwrap();
@@ -321,7 +321,7 @@ fn within_a_minute(folder: &Path, arguments: &[&str]) -> (Option<i32>, String) {
 }
 
 #[test]
-fn nobody_waits_for_a_pipe_in_the_results() {
+fn a_pipe_among_the_results_does_not_block() {
     let root = tempfile::tempdir().unwrap();
     let path = root.path();
     let folder = path.join("results/s");
@@ -423,7 +423,7 @@ fn on_a_terminal(folder: &Path, command: &str) -> Option<String> {
 }
 
 #[test]
-fn a_run_that_takes_a_while_shows_its_progress_on_a_terminal() {
+fn a_long_run_shows_its_progress_on_a_terminal() {
     let root = tempfile::tempdir().unwrap();
     // A second is some 200 kB of rotations, more than a pipe holds.
     let scenario = |duration_s: f64| {

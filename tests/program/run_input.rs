@@ -26,7 +26,7 @@ fn piped(folder: &Path, arguments: &[&str], text: &str) -> Output {
 }
 
 #[test]
-fn the_summary_is_on_standard_output_unless_data_are() {
+fn the_summary_goes_to_standard_output_unless_data_do() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("s.toml"), TEXT).unwrap();
     let run = archrock(folder.path(), &["run", "s.toml"]);
@@ -42,7 +42,7 @@ fn the_summary_is_on_standard_output_unless_data_are() {
 }
 
 #[test]
-fn the_summary_as_json_is_that_of_the_file() {
+fn the_printed_json_summary_equals_the_file() {
     let folder = tempfile::tempdir().unwrap();
     let text = format!("{TEXT}[free_hinges]\n").replace("[ground", "voussoirs = 9\n[ground");
     fs::write(folder.path().join("s.toml"), text).unwrap();
@@ -63,7 +63,7 @@ fn the_summary_as_json_is_that_of_the_file() {
     assert_eq!(printed["outcome"], "rest");
 
     let both: Value = serde_json::from_str(&stdout(&run(&["--hinges", "both"]))).unwrap();
-    // The time that a step takes differs every time.
+    // The computing time of a step varies.
     let mut printed = printed;
     printed["longest_step_us"] = both["free"]["longest_step_us"].clone();
     assert_eq!(both["free"], printed);
@@ -72,7 +72,7 @@ fn the_summary_as_json_is_that_of_the_file() {
 }
 
 #[test]
-fn a_scenario_may_come_by_standard_input() {
+fn a_scenario_can_be_read_from_standard_input() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("s.toml"), TEXT).unwrap();
     let of_file = archrock(folder.path(), &["check", "s.toml"]);

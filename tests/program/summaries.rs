@@ -97,7 +97,7 @@ fn parts(kind: &Type) -> (String, Option<&Type>) {
         Type::Path(path) => {
             let last = path.path.segments.last().unwrap();
             let inner = match &last.arguments {
-                // Of a map, that of its values.
+                // For a map, the name of the type of its values.
                 PathArguments::AngleBracketed(inner) => inner.args.last(),
                 _ => None,
             };

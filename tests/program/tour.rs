@@ -5,10 +5,10 @@ use std::fs;
 use std::path::Path;
 
 use crate::common::motions::{NGA_WEST2, at2, scaled, synthetic};
-use crate::common::program::{says_what_it_shows, scenarios};
+use crate::common::program::{assert_shown_output_is_printed, scenarios};
 use archrock::Scenario;
 
-/// The two records of the tour, made as their titles say: the first as a PEER file of 0.45 g, the second as a table of
+/// The two records of the tour, generated as their titles describe: the first as a PEER file of 0.45 g, the second as a table of
 /// 380 cm/s2 after three lines of text.
 fn records() -> [(&'static str, String); 2] {
     let first = scaled(&synthetic(11, 16.0, 0.01), 0.45);
@@ -27,7 +27,7 @@ fn records() -> [(&'static str, String); 2] {
 }
 
 #[test]
-fn the_records_of_the_tour_are_the_generated_ones() {
+fn the_records_of_the_tour_match_their_generator() {
     let folder = scenarios().join("tour");
     for (name, text) in records() {
         let file = folder.join(name);
@@ -45,7 +45,7 @@ fn the_records_of_the_tour_are_the_generated_ones() {
 }
 
 #[test]
-fn the_tour_says_what_it_shows() {
+fn commands_print_the_output_shown_in_the_tour() {
     let folder = tempfile::tempdir().unwrap();
     for entry in fs::read_dir(scenarios().join("tour")).unwrap() {
         let path = entry.unwrap().path();
@@ -59,7 +59,7 @@ fn the_tour_says_what_it_shows() {
     let scenario = fs::read_to_string(scenarios().join("tour/tour.toml")).unwrap();
     let (_, scenario) = scenario.split_once("\n\n").unwrap();
     assert!(page.contains(&format!("```toml\n{scenario}```")));
-    let commands = says_what_it_shows("docs/tour.md", folder.path());
+    let commands = assert_shown_output_is_printed("docs/tour.md", folder.path());
     assert!((2..=4).contains(&commands));
     // The files to which the page refers.
     for record in ["nga1.at2", "station.csv"] {

@@ -1,4 +1,4 @@
-//! Records as people have them: what `check` and `run` report about them, formats, and unlikely input.
+//! Records in common file formats: output of `check` and `run` about them, and unlikely input.
 
 use std::f64::consts::PI;
 use std::fmt::Write as _;
@@ -98,7 +98,7 @@ fn set(keys: &str) -> Vec<String> {
 /// end and ever after. The integral of the squares is A^2 / 2; a part p of it is reached where t - sin(4 pi t) / (4 pi) = p:
 /// 5 % at 0.12945 s, and 95 % equally long before the end.
 #[test]
-fn a_record_is_told_alike_in_all_formats() {
+fn check_describes_a_record_the_same_in_all_formats() {
     let folder = tempfile::tempdir().unwrap();
     for (file, keys) in files(folder.path()) {
         let set = set(keys);
@@ -142,7 +142,7 @@ fn a_record_is_told_alike_in_all_formats() {
 }
 
 #[test]
-fn a_record_shakes_alike_in_all_formats() {
+fn a_record_gives_the_same_history_in_all_formats() {
     let folder = tempfile::tempdir().unwrap();
     let mut outcomes = Vec::new();
     for (file, keys) in files(folder.path()) {
@@ -224,7 +224,7 @@ fn several_files_are_checked_at_once_and_one_is_drawn() {
         said.contains("single.csv:2: there is no column 2"),
         "{said}"
     );
-    // Files that are right are described, and those that are wrong are reported.
+    // Valid files are described, and faulty ones are reported.
     let output = check(&["g.AT2", "none.at2", "s.toml"]);
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("none.at2: cannot be read"));
@@ -391,7 +391,7 @@ fn unlikely_input_is_pointed_out() {
     }
 }
 
-/// If weights differ by more than numbers can resolve, the error says so; otherwise there is no error.
+/// If weights differ by more than floating point can resolve, the error says so; otherwise there is no error.
 #[test]
 fn blocks_too_unlike_in_weight_are_named() {
     let folder = tempfile::tempdir().unwrap();
@@ -487,7 +487,7 @@ fn the_name_of_a_column_gives_the_unit_of_times() {
 }
 
 #[test]
-fn a_weak_record_is_asked_for_its_unit() {
+fn an_unlikely_peak_raises_a_warning_about_the_unit() {
     let folder = tempfile::tempdir().unwrap();
     for (peak, asks) in [(0.09, true), (0.1, false), (29.0, false), (30.0, true)] {
         fs::write(

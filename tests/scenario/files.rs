@@ -29,7 +29,7 @@ fn assert_errors(text: &str, expected: &[(usize, usize, &[&str])]) {
     }
 }
 
-/// As `assert_errors`, for lines that follow a valid `[arch]`, counted from 1.
+/// Asserts the error of lines that follow a valid `[arch]`; its line is counted from 1.
 #[track_caller]
 fn assert_error_after_arch(lines: &str, (line, column): (usize, usize), words: &[&str]) {
     let before = ARCH.lines().count();
@@ -38,7 +38,7 @@ fn assert_error_after_arch(lines: &str, (line, column): (usize, usize), words: &
 
 /// The defaults of Python's keyword arguments are those of a scenario.
 #[test]
-fn defaults_are_those_of_python() {
+fn python_has_the_same_defaults() {
     let scenario = parse(ARCH).unwrap();
     let mut settings = scenario.to_json()["simulation"].clone();
     settings["impact"] = json!(ImpactModel::MaxRestitution.name());
@@ -347,14 +347,14 @@ fn a_run_needs_something_that_moves() {
 }
 
 #[test]
-fn nothing_given() {
+fn an_empty_scenario_lists_what_is_missing() {
     for text in ["", "\n \n# nothing\n"] {
         assert_errors(text, &[(1, 1, &["needs exactly one of", "arch, column"])]);
     }
 }
 
 #[test]
-fn all_errors_in_one_go_in_the_order_of_the_file() {
+fn all_errors_are_reported_in_the_order_of_the_file() {
     let text = r#"
 title = 3
 [simulation]
@@ -588,7 +588,7 @@ fn output_steps_point_at_the_key_that_is_given() {
 }
 
 #[test]
-fn syntax_errors_hide_nothing_and_breed_nothing() {
+fn syntax_errors_neither_hide_nor_cause_other_errors() {
     // A key on a faulty line is not missing, and the default does not replace it.
     assert_error_after_arch(
         "[simulation]\nduration_s = 60 s\noutput_step_s = 20",
@@ -607,7 +607,7 @@ fn syntax_errors_hide_nothing_and_breed_nothing() {
 }
 
 #[test]
-fn messages_carry_no_control_characters_and_no_books() {
+fn overlong_keys_are_cut_and_escaped_in_messages() {
     let errors = parse(&format!("\"\\u001b[2J{}\" = 1", "x".repeat(500))).expect_err("unknown");
     assert!(errors.to_string().lines().all(|line| line.len() < 330));
     assert!(!errors.to_string().contains('\u{1b}'));
@@ -739,7 +739,7 @@ fn any_arch() -> impl Strategy<Value = String> {
 
 /// A ground motion read on its own, applied to a structure read without it, is that of the scenario with both.
 #[test]
-fn a_ground_may_be_read_by_itself_and_put_under_a_structure() {
+fn a_ground_motion_can_be_read_alone_and_applied_to_a_structure() {
     let simulation = "[simulation]\ngravity_m_s2 = 3.7\n";
     let shaken = |ground: &str| parse(&format!("{ARCH}{simulation}{ground}")).unwrap();
     let alone = |ground: &str| Ground::of(&Source::of_text(ground, "g.toml"), 9.81);
@@ -824,7 +824,7 @@ fn any_simulation() -> impl Strategy<Value = String> {
 proptest! {
     /// A written scenario reads back the same, and TOML and JSON have the same contents.
     #[test]
-    fn to_toml_reads_back_the_same(
+    fn a_scenario_reads_back_from_its_toml(
         title in proptest::option::of(any::<String>()),
         structure in prop_oneof![
             (prop_oneof![any_arch(), any_column()], any_impact()).prop_map(|(four, impact)| four + &impact),
@@ -848,13 +848,13 @@ proptest! {
     }
 
     #[test]
-    fn noise_is_read_or_said_to_be_wrong(text in any::<String>()) {
+    fn random_text_is_read_or_refused(text in any::<String>()) {
         prop_assert!(parse(&text).map_or_else(|errors| !errors.0.is_empty(), |_| true));
     }
 
     /// Damage to a valid text gets further into the reader than noise would.
     #[test]
-    fn damage_is_read_or_said_to_be_wrong(
+    fn a_damaged_scenario_is_read_or_refused(
         damage in proptest::collection::vec((0..200_usize, proptest::sample::select(DAMAGE)), 1..8),
     ) {
         let mut text = format!(
@@ -897,7 +897,7 @@ fn messages_show_characters_without_width() {
     }
 }
 
-/// A pedestal is recorded for a column, for both piers or for one; everything else stands on ground that continues.
+/// A pedestal is read for a column, for both piers or for one; everything else stands on unlimited ground.
 #[test]
 fn pedestals() {
     let goes_on = |text: &str| {

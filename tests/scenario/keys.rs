@@ -106,7 +106,7 @@ fn other_document(table: &str) -> &'static str {
 /// Every table of the reader is described: in the reference, which has all of its keys and no others, or in the document to which the
 /// reference refers, which names all of them.
 #[test]
-fn the_documents_have_the_keys_that_are_read() {
+fn the_documents_list_all_keys_of_the_reader() {
     let reference = document("scenario.md");
     let tables = tables();
     assert!(tables.len() > 50, "{} tables", tables.len());
@@ -185,7 +185,7 @@ fn limits(schema: &Value) -> Option<[f64; 2]> {
 
 /// The reference has the defaults and bounds of the reader, and says which keys are required.
 #[test]
-fn the_reference_has_the_defaults_and_bounds_that_are_read() {
+fn the_reference_has_the_defaults_and_bounds_of_the_reader() {
     let reference = document("scenario.md");
     let (mut defaults, mut ranges) = (0, 0);
     for (table, (schemas, required)) in tables() {

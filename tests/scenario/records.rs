@@ -28,7 +28,7 @@ fn scenario(folder: &Path, files: &[(&str, &str)], keys: &str) -> Result<Scenari
 /// The error of straight lines is h^2/8 times the second derivative: 7.7e-6 of the peak for h = 1 ms and a half sine
 /// of 0.4 s, and 5e-6 of the resulting velocity.
 #[test]
-fn a_sampled_half_sine_does_what_a_half_sine_does() {
+fn a_sampled_half_sine_gives_the_history_of_a_half_sine() {
     let arch = semicircle();
     let (peak, duration) = (-0.3 * G, 0.4);
     let samples: Vec<_> = (0..=400)
@@ -125,7 +125,7 @@ fn a_record_in_two_files_is_the_same_motion() {
 
 /// The same numbers give the same motion, whatever the file format.
 #[test]
-fn the_way_a_record_is_written_changes_no_bit() {
+fn number_formats_of_a_record_change_no_bit() {
     let folder = tempfile::tempdir().unwrap();
     let record = synthetic(5, 4.0, 0.01);
     let text = at2(&record, "SYNTHETIC", &NGA_WEST2);
@@ -344,7 +344,7 @@ fn rows_of_several_samples_are_the_samples_one_after_another() {
 
 /// Excel's "Unicode text" and the text of old Macs are recognised, also for scenarios.
 #[test]
-fn what_is_no_plain_text_is_named() {
+fn files_that_are_not_plain_text_are_refused_by_name() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("s.toml");
     let text = format!("{ARCH}file = 'a.at2'\n");
@@ -591,7 +591,7 @@ fn a_mirrored_record_mirrors_the_history() {
 
 /// The record among the scenarios comes from this generator: run with ARCHROCK_REGENERATE=1 to write it again.
 #[test]
-fn the_record_among_the_scenarios_is_the_generated_one() {
+fn the_repository_record_matches_its_generator() {
     let scenarios = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
     let generated = scaled(&synthetic(2024, 20.0, 0.02), 0.3);
     let title = "Synthetic: tests/common/motions.rs, synthetic(2024, 20 s, 0.02 s), peak 0.3 g";

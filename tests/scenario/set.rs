@@ -31,7 +31,7 @@ fn edited(old: &str, new: &str) -> Scenario {
 }
 
 #[test]
-fn an_assignment_does_what_an_edit_of_the_text_does() {
+fn an_assignment_equals_an_edit_of_the_text() {
     assert_eq!(
         read(&["arch.thickness_ratio=0.12"]).unwrap(),
         edited("0.15", "0.12")
@@ -191,7 +191,7 @@ fn entries_of_lists_are_counted_from_one() {
 }
 
 #[test]
-fn what_is_no_assignment_is_said() {
+fn an_invalid_assignment_is_reported() {
     for wrong in ["", "x", "x=", "=1", "a b=1", "a..b=1", "[arch]=1"] {
         let error = wrong.parse::<Assignment>().unwrap_err();
         assert!(error.contains("arch.thickness_ratio=0.12"), "{error}");

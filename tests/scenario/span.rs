@@ -25,7 +25,7 @@ fn span_and_rise_m(arch: &archrock::Arch, outwards: f64) -> (f64, f64) {
 }
 
 #[test]
-fn the_arch_has_the_span_and_the_rise_that_were_given() {
+fn an_arch_has_the_given_span_and_rise() {
     for (line, outwards) in [("intrados", -0.5), ("mean", 0.0), ("extrados", 0.5)] {
         for thickness in ["thickness_m = 0.9", "thickness_ratio = 0.2"] {
             for (height, rise_m) in [("rise_m = 2.2", Some(2.2)), ("embrace_deg = 150", None)] {
@@ -53,7 +53,7 @@ fn the_arch_has_the_span_and_the_rise_that_were_given() {
 }
 
 #[test]
-fn what_does_not_go_together_is_said() {
+fn conflicting_dimensions_are_refused() {
     const SPAN: &str = "span_m = 6\nmeasured_at = 'intrados'\n";
     for (keys, message) in [
         (
@@ -100,7 +100,7 @@ fn what_does_not_go_together_is_said() {
 
 /// Dimensions are printed and drawn as the file gives them.
 #[test]
-fn dimensions_stay_as_they_were_given() {
+fn dimensions_are_printed_as_given() {
     let keys = "span_m = 4.2\nrise_m = 1.4\nmeasured_at = \"intrados\"\nthickness_m = 0.35\n";
     for beside in ["", "voussoirs = 15\n[piers]\nheight_m = 1\nwidth_m = 0.6\n"] {
         let scenario = parsed(&format!("[arch]\n{keys}{beside}"));
@@ -128,9 +128,9 @@ fn dimensions_stay_as_they_were_given() {
     assert_eq!((arch.mean_radius_m, arch.thickness_ratio), (6.0, 0.15));
 }
 
-/// Every structure says where y = 0 is, and a tie where it lies beside the springings.
+/// `check` states for every structure where y = 0 lies, and for a tie its position relative to the springings.
 #[test]
-fn the_frame_of_reference_is_said() {
+fn check_states_the_frame_of_reference() {
     let tie = "[[tie]]\nstiffness_n_m = 1e7\nheight_m = ";
     let segment = "[arch]\nspan_m = 4.2\nrise_m = 1.4\nmeasured_at = \"intrados\"\nthickness_m = 0.35\nvoussoirs = 15\n";
     let circle = "y = 0 at the centre of the circle, 0.875 m below the intrados of the springings; x = 0 in the middle of the span";

@@ -159,10 +159,13 @@ fn the_command_writes_table_picture_and_summary() {
         .map(|line| line.split(',').collect())
         .collect();
     for (index, side) in own.iter().enumerate() {
-        let told = &json["capacity"][side.sway.name()];
-        assert_eq!(told["acceleration_g"], side.start().acceleration_g);
-        assert_eq!(told["ultimate_displacement_m"], side.end().displacement_m);
-        assert_eq!(told["oscillator"]["mass_fraction"], side.mass_fraction);
+        let reported = &json["capacity"][side.sway.name()];
+        assert_eq!(reported["acceleration_g"], side.start().acceleration_g);
+        assert_eq!(
+            reported["ultimate_displacement_m"],
+            side.end().displacement_m
+        );
+        assert_eq!(reported["oscillator"]["mass_fraction"], side.mass_fraction);
         for (point, row) in side.curve.iter().zip(&rows[1 + index * side.curve.len()..]) {
             assert_eq!(row[0], side.sway.name());
             assert_eq!(row[2].parse::<f64>().unwrap(), point.displacement_m);
@@ -225,11 +228,12 @@ fn control_points_must_be_on_the_structure_and_move() {
     );
 }
 
-/// A column on its toe with a bar to its left, level at first: moments about the toe, at any rotation. The bar yields and breaks on the way.
+/// A column on its toe with a bar to its left that starts level, by moments about the toe at any rotation. The bar yields and
+/// breaks during the motion.
 #[test]
 fn a_tied_column_has_the_capacity_of_a_block_and_a_bar() {
     let (stiffness, natural) = (1e5, 3.0 - 5e3 / 1e5);
-    // It breaks after it has yielded, before it could, and where nothing else holds the column.
+    // The bar never breaks, breaks after yielding, breaks before it could yield, or breaks when nothing else holds the column.
     let whole = f64::INFINITY;
     for (yields_at, breaks_at) in [
         (5e3, whole),
@@ -248,7 +252,7 @@ fn a_tied_column_has_the_capacity_of_a_block_and_a_bar() {
              stiffness_n_m = 1e5\nprestress_n = 5e3\nyield_force_n = {yields_at:?}\n{breaks}"
         ));
         let [right, left] = capacity(&scenario, None).unwrap();
-        // The clause's number of this column.
+        // The value of this column by the clause.
         assert!((right.start().acceleration_g - 0.339_366_718).abs() < 5e-10);
         let weight = 6400.0 * 9.81;
         let bears = |q: f64| {
@@ -264,7 +268,7 @@ fn a_tied_column_has_the_capacity_of_a_block_and_a_bar() {
             ((back - weight * x) / (weight * y), length)
         };
         for point in &right.curve {
-            // Where it breaks, just before and just after; where that takes all strength, the curve ends at none.
+            // The curve just before and just after the break; if the break takes all strength, the curve ends at zero.
             let due_g = |more: f64| bears(point.q_rad + more).0.max(0.0);
             let off = |more: f64| (point.acceleration_g - due_g(more)).abs();
             let off_g = off(0.0).min(off(-1e-13)).min(off(1e-13));
@@ -272,7 +276,7 @@ fn a_tied_column_has_the_capacity_of_a_block_and_a_bar() {
         }
         assert!(bears(right.end().q_rad + 1e-9).0 < 0.0);
         let gives_way = right.ties[0];
-        // The bar pulls most where it yields, and drops to nothing where it breaks: there the curve has points.
+        // The force of the bar is largest at yielding and drops to zero at the break; the curve has points at both.
         let at = |displacement_m: f64| {
             let near = |point: &&CurvePoint| (point.displacement_m - displacement_m).abs() < 1e-12;
             right.curve.iter().filter(near).copied().collect::<Vec<_>>()
@@ -291,21 +295,22 @@ fn a_tied_column_has_the_capacity_of_a_block_and_a_bar() {
                 panic!("{breaks:?}");
             };
             assert!((bears(whole.q_rad).1 - natural * (1.0 + breaks_at)).abs() < 1e-9);
-            // All that the bar held at its lever arm, 3.5 m over the toe at first, about which the weight has 2 m.
+            // The whole force of the bar acts at its lever arm, initially 3.5 m above the toe; that of the weight is 2 m.
             assert!(whole.acceleration_g > broken.acceleration_g + 0.1);
             assert_eq!(broken == *right.end(), breaks_at == 0.3);
         }
-        // To the left it goes slack at once, and falls as it would without: from less than that by what it pulls at rest.
+        // In a sway to the left the bar goes slack at once. The column falls as without it, from a push reduced by the force at
+        // rest.
         let least = 0.2 - 5e3 * 3.5 / (weight * 2.0);
         assert!((left.start().acceleration_g - least).abs() < 1e-9);
     }
 }
 
-/// A semicircle with a tie that pulls with next to nothing bears what the linkage without it does, another computation. With a real one it
-/// starts from what the programme of limit analysis has, and what it bears on the way is the slope of the energy of weight and bar, which
-/// knows of no forces.
+/// A semicircle with an almost forceless tie has the capacity of the linkage without ties, which is computed separately. With a
+/// real tie the curve starts at the push of limit analysis and follows the slope of the energy of weight and bar, which uses no
+/// forces.
 #[test]
-fn a_tied_arch_bears_the_slope_of_its_energy() {
+fn the_capacity_of_a_tied_arch_is_the_slope_of_its_energy() {
     let arch = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 24\n[free_hinges]\n";
     let tie = |stiffness: f64, prestress: f64| {
         parsed(&format!(
@@ -329,7 +334,7 @@ fn a_tied_arch_bears_the_slope_of_its_energy() {
         let held = Held::new(&row, side).unwrap();
         let start_g = onset(&row, side).unwrap().unwrap().acceleration_g;
         assert!((held.displaced(0.0).acceleration_g - start_g).abs() < 1e-9);
-        // Heights, ways to the side and energy of the bar, over the whole mass.
+        // Heights, lateral displacements and energy of the bar, over the whole mass.
         let known = |part: f64| {
             let displaced = held.displaced(part);
             let joints: Vec<usize> = held.pins.hinges.iter().map(|hinge| hinge.joint).collect();
@@ -386,10 +391,10 @@ fn drums_have_the_capacity_of_a_block() {
     }
 }
 
-/// Statics need no motion: the records of the ground may be missing, and drums and moved springings need no model of motion. Whatever moves the
-/// structure still does.
+/// Static commands need neither records of the ground nor a model of motion: records may be missing, and drums and moved
+/// springings work. Commands that simulate still need both.
 #[test]
-fn statics_need_no_motion() {
+fn statics_need_no_ground_motion_and_no_model_of_motion() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
     let record = "[ground.record]\nfile = \"nowhere.at2\"\n";
@@ -432,12 +437,12 @@ fn statics_need_no_motion() {
         let printed = String::from_utf8(output.stdout).unwrap();
         assert!(printed.contains("file = \"nowhere.at2\""), "{printed}");
     }
-    // What is wrong with the scenario itself is an error in all of them.
+    // Errors in the scenario itself are errors in all of them.
     let wrong = write("wrong", &format!("{arch}{record}scael = 2.0\n"));
     for command in ["limit", "check"] {
         program::refused(path, &[command, &wrong], &["unknown key `scael`"]);
     }
-    // The same numbers with a model of motion.
+    // The numbers are the same with a model of motion.
     let free = write("free", &format!("{arch}{moved}[free_hinges]\n"));
     let numbers = |file: &str| program::printed(path, &["limit", file, "--format", "json"]);
     assert_eq!(numbers(&of_moved), numbers(&free));

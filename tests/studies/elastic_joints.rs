@@ -18,7 +18,7 @@ use crate::common::results::json;
 
 /// A slender block that rocks for two seconds.
 fn block(more: &str) -> String {
-    // With given steps those of a map are those of a run.
+    // With given steps, a map uses the steps of a run.
     format!(
         "[column]\nheight_m = 5.0\nwidth_m = 1.0\n\
          [elastic_joints]\nnormal_stiffness_gpa_m = 0.5\ndamping_time_s = 1e-3\nfriction_coefficient = 0.5\n\
@@ -155,7 +155,7 @@ fn cases_of_a_suite_are_runs() {
 
 /// Samples equal runs; the edge is that of a bisection that computes one history after another.
 #[test]
-fn thresholds_are_found_as_by_single_runs() {
+fn thresholds_equal_those_of_single_runs() {
     let scenario = parsed(&block(PULSE));
     let model = scenario.model().unwrap();
     let (ground, request) = (scenario.ground_motion(), scenario.request());
@@ -215,8 +215,8 @@ fn variations_count_histories_without_a_verdict() {
         "0.2",
     ];
     let said = printed(folder.path(), &threshold);
-    let told = json(&folder.path().join("o/threshold.json"));
-    let model = &told["models"][0];
+    let reported = json(&folder.path().join("o/threshold.json"));
+    let model = &reported["models"][0];
     assert!(model["lowest_factor"].is_number(), "{said}");
     assert!(!model["incomplete"].as_array().unwrap().is_empty());
     let variations = model["variations"].as_array().unwrap();
@@ -225,7 +225,7 @@ fn variations_count_histories_without_a_verdict() {
         let incomplete = variation["incomplete"].as_u64().unwrap();
         let name = variation["with"].as_str().unwrap();
         assert!(variation["factor"].is_number() && incomplete > 0, "{said}");
-        let warnings = told["warnings"].as_array().unwrap().iter();
+        let warnings = reported["warnings"].as_array().unwrap().iter();
         let mut own = warnings
             .filter_map(|warning| warning.as_str()?.strip_prefix("with ")?.strip_prefix(name));
         let words = own.next().unwrap().trim_start_matches(": ");

@@ -240,7 +240,7 @@ impl Repeated {
 /// The scatter of 1000 samples is known to 1 / sqrt(2000) = 2.2 %, the coverage to 0.7 %. Three times these are
 /// allowed, plus 1 % because the errors are of first order.
 #[test]
-fn independent_cases_spread_and_lie_in_the_band_as_the_errors_say() {
+fn errors_and_bands_predict_the_scatter_of_independent_cases() {
     let (mut random, dispersion) = (Random(21), 0.5);
     // Every case has its own record.
     let repeated = Repeated::new(1000, || {
@@ -258,7 +258,7 @@ fn independent_cases_spread_and_lie_in_the_band_as_the_errors_say() {
     }
     for eta in [-1.5, -0.5, 0.0, 1.0, 2.0] {
         let coverage = repeated.coverage(MEDIAN * (dispersion * eta).exp(), normal(eta));
-        // The larger of two errors is a little too large.
+        // The larger of the two errors is slightly too large.
         assert!((0.925..0.985).contains(&coverage), "{eta} {coverage}");
     }
 }
@@ -266,7 +266,7 @@ fn independent_cases_spread_and_lie_in_the_band_as_the_errors_say() {
 /// Cases of one record share most of their capacity. The scatter of 600 samples is known to 2.9 %, and with
 /// 100 records the errors are some percent too small.
 #[test]
-fn dependent_cases_spread_as_the_clustered_errors_say() {
+fn clustered_errors_predict_the_scatter_of_dependent_cases() {
     let (mut random, dispersion) = (Random(22), 0.5);
     let repeated = Repeated::new(600, || suite(&mut random, 100, dispersion, 0.45));
     for ratio in repeated.ratios(|fit| fit.clustered.unwrap()) {
@@ -529,7 +529,7 @@ fn a_step_too_far_is_halved() {
 }
 
 #[test]
-fn cases_that_make_no_curve_say_why() {
+fn cases_without_a_curve_give_the_reason() {
     let refusal = |levels: &[(f64, usize, usize)]| fit(&counts(levels)).unwrap_err();
     assert_eq!(refusal(&[]), NoFit::NoObservations);
     assert_eq!(
@@ -558,7 +558,7 @@ fn cases_that_make_no_curve_say_why() {
 }
 
 #[test]
-fn separated_cases_are_told_exactly() {
+fn separated_cases_are_recognised_exactly() {
     let refusal = |levels: &[(f64, usize, usize)]| fit(&counts(levels)).unwrap_err();
     let separated = NoFit::Separated;
     assert_eq!(
@@ -584,7 +584,7 @@ fn separated_cases_are_told_exactly() {
 }
 
 #[test]
-fn a_fraction_that_does_not_grow_is_no_fragility() {
+fn a_fraction_that_does_not_grow_gives_no_curve() {
     for levels in [
         // Falling; falling and separated; level; level in the mean of logarithms.
         [(0.2, 4, 3), (0.4, 4, 2), (0.8, 4, 1)],
@@ -609,13 +609,13 @@ fn a_fraction_that_does_not_grow_is_no_fragility() {
 
 /// Out of 100 000 cases one more overturns at a 10 % higher intensity: at that rate, half would at e^1800.
 #[test]
-fn a_median_beyond_all_numbers_is_none() {
+fn a_median_beyond_floating_point_is_undetermined() {
     let levels = [(1.0, 100_000, 30_000), (1.1, 100_000, 30_001)];
     assert_eq!(fit(&counts(&levels)), Err(NoFit::Undetermined));
 }
 
 #[test]
-fn messages_say_what_was_seen() {
+fn messages_report_the_observed_cases() {
     let message = |levels: &[(f64, usize, usize)]| fit(&counts(levels)).unwrap_err().to_string();
     assert_eq!(
         message(&[(0.2, 3, 0), (0.4, 5, 0)]),

@@ -82,7 +82,7 @@ fn a_cell_is_the_history_of_its_row_under_its_pulse() {
 }
 
 #[test]
-fn sizes_and_shapes_make_other_rows() {
+fn axes_of_size_and_shape_change_the_row() {
     let scenario = parsed(&map_text().replace(
         AXES,
         "[map]\nmean_radius_m = [5.0, 10.0]\namplitude_g = [0.6]",
@@ -192,7 +192,8 @@ fn a_cell_counts_the_outcomes_of_all_repetitions() {
     let hatch = picture.lines().find(|line| line.contains("\"doubtful\""));
     assert_eq!(hatch.unwrap().matches('M').count(), doubtful);
 
-    // Without it less is repeated: cells that overturn at once are not, though steps this long blur their edge too.
+    // Without this option fewer cells are repeated: cells that overturn at once are not, although such long steps blur their edge
+    // too.
     let plain = parsed(&text(""));
     let map = OverturningMap::of(&plain).unwrap();
     for (index, with) in rows.iter().enumerate() {
@@ -334,11 +335,11 @@ fn results_do_not_depend_on_threads_and_parts() {
     assert_eq!(files(&path.join("merged")), whole);
 }
 
-/// With steps far too long the ends of an arch may part in the computation. The reason for the failure of such a cell passes
+/// With far too long steps the ends of an arch may separate in the computation. The reason for the failure of such a cell passes
 /// from the part file to the merged results.
 #[test]
 fn a_cell_that_fails_keeps_its_reason_to_the_end() {
-    // Rounding decides which steps do that; among a few, there is one with which some cells fail.
+    // Rounding decides which steps cause this; among a few, one makes some cells fail.
     let steps_s = [0.04, 0.06, 0.08, 0.1, 0.13, 0.16, 0.2, 0.3, 0.5];
     let found = steps_s.into_iter().find_map(|step_s| {
         let text = format!(
@@ -422,7 +423,7 @@ fn the_model_of_motion_can_be_chosen_on_the_command_line() {
 }
 
 #[test]
-fn what_is_of_four_links_is_refused() {
+fn keys_of_four_links_are_refused_for_free_hinges() {
     let work = folder(&map_text());
     let path = work.path();
     let out = ["map", "s.toml", "--shard", "1/1", "--out", "part"];
@@ -466,7 +467,7 @@ fn read_with(file: &Path, hinges: Hinges) -> Result<Scenario, ScenarioErrors> {
 }
 
 #[test]
-fn a_scenario_with_another_model_is_written_as_it_was_read() {
+fn a_scenario_with_another_model_reads_back() {
     let work = folder(&map_text());
     let file = work.path().join("s.toml");
     let chosen = Scenario::read(&file).unwrap();
@@ -488,7 +489,7 @@ fn a_scenario_with_another_model_is_written_as_it_was_read() {
 }
 
 #[test]
-fn a_suite_shakes_the_row_of_its_scenario() {
+fn rows_of_a_suite_of_drums_equal_single_histories() {
     let work = folder(&format!(
         "{DRUMS}[suite]\nrecords = [\"wave-1.at2\", \"wave-2.at2\"]\npeaks_g = [0.15, 0.6, 3.0]\n\
          both_signs = false\n"

@@ -24,7 +24,7 @@ fn json(folder: &Path, arguments: &[&str]) -> Value {
     serde_json::from_str(&printed(folder, &arguments)).unwrap()
 }
 
-/// The same output, where the ring has a section in degrees and the row the number of its joint.
+/// Asserts equal outputs of a row and a ring, where the ring has sections in degrees and the row has joint numbers.
 fn assert_same(row: &Value, ring: &Value, spacing_deg: f64, key: &str) {
     match (row, ring) {
         (Value::Object(row), Value::Object(ring)) => {
@@ -60,10 +60,9 @@ fn assert_same(row: &Value, ring: &Value, spacing_deg: f64, key: &str) {
     }
 }
 
-/// Voussoirs of equal angles that are given one by one are a row of blocks for the program; given as a number they are cut from
-/// a ring.
+/// Equal voussoirs given one by one form a row of blocks; equal voussoirs given by their number are cut from a ring.
 #[test]
-fn equal_voussoirs_given_one_by_one_are_told_as_those_of_the_ring() {
+fn equal_voussoirs_given_one_by_one_have_the_impact_of_the_ring() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     for (embrace_deg, voussoirs) in [(157.5, 7_u32), (180.0, 18)] {
@@ -140,8 +139,8 @@ fn uneven(folder: &Path) {
 }
 
 /// The output for the mirror image, mirrored back.
-fn seen_in_a_mirror(told: &Value, key: &str, last: u64) -> Value {
-    match told {
+fn seen_in_a_mirror(reported: &Value, key: &str, last: u64) -> Value {
+    match reported {
         Value::Object(map) => {
             let inside =
                 |(key, value): (&String, &Value)| (key.clone(), seen_in_a_mirror(value, key, last));
@@ -166,14 +165,16 @@ fn seen_in_a_mirror(told: &Value, key: &str, last: u64) -> Value {
             "left" => "right".into(),
             _ => "left".into(),
         },
-        _ if key == "joint" || key.ends_with("_joint") => (last - told.as_u64().unwrap()).into(),
-        _ if key == "x_n_s_per_m" => (-told.as_f64().unwrap()).into(),
-        _ => told.clone(),
+        _ if key == "joint" || key.ends_with("_joint") => {
+            (last - reported.as_u64().unwrap()).into()
+        }
+        _ if key == "x_n_s_per_m" => (-reported.as_f64().unwrap()).into(),
+        _ => reported.clone(),
     }
 }
 
 #[test]
-fn a_mirror_image_is_told_as_seen_in_a_mirror() {
+fn a_mirror_image_has_the_mirrored_impact() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     uneven(folder);
@@ -284,10 +285,10 @@ fn impulses_of_the_ground_are_the_momentum_that_blocks_gain() {
                 .sum()
         };
         let sign = first.before(1).sign();
-        let told = Vector2::new(sign * total("x_n_s_per_m"), total("y_n_s_per_m")) * depth_m;
+        let reported = Vector2::new(sign * total("x_n_s_per_m"), total("y_n_s_per_m")) * depth_m;
         assert!(
-            (told - gained).norm() < 1e-10 * gained.norm(),
-            "{told} {gained}"
+            (reported - gained).norm() < 1e-10 * gained.norm(),
+            "{reported} {gained}"
         );
     }
 }
@@ -323,8 +324,8 @@ fn the_certificate_is_the_full_closure_of_free_hinges() {
         let options = ["--certificate", "--first", first.name()];
         let result = json(folder.path(), &[&["s.toml"], &options[..]].concat());
         let certificate = &result["certificate"];
-        let told = certificate["restitution_all_fields"].as_f64().unwrap();
-        assert!((told - kept).abs() < 1e-8, "{told} {kept}");
+        let reported = certificate["restitution_all_fields"].as_f64().unwrap();
+        assert!((reported - kept).abs() < 1e-8, "{reported} {kept}");
         assert_eq!(certificate["joints"], joints);
         // The same motion, joint by joint.
         let opened = certificate["opened_joints"].as_array().unwrap();
@@ -340,20 +341,20 @@ fn the_certificate_is_the_full_closure_of_free_hinges() {
                 Sway::Left => joints - 1 - from_left,
             };
             let turn = rate(Some(joint)) - rate(joint.checked_sub(1));
-            let told = opening["opening_rate_ratio"].as_f64().unwrap();
+            let reported = opening["opening_rate_ratio"].as_f64().unwrap();
             // The part to the right of a joint turns clockwise about the intrados, anticlockwise about the extrados.
             let sign = if opening["edge"] == "intrados" {
                 -1.0
             } else {
                 1.0
             };
-            assert!((sign * turn - told).abs() < 1e-4, "{turn} {opening}");
+            assert!((sign * turn - reported).abs() < 1e-4, "{turn} {opening}");
         }
     }
 }
 
 #[test]
-fn a_row_is_told_in_words() {
+fn impact_prints_a_row_in_words() {
     let folder = tempfile::tempdir().unwrap();
     uneven(folder.path());
     let options = ["--models", "--certificate", "--first", "left"];
@@ -371,7 +372,7 @@ fn a_row_is_told_in_words() {
 }
 
 #[test]
-fn what_does_not_go_with_a_structure_is_refused() {
+fn requests_that_do_not_suit_the_structure_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     uneven(folder);
@@ -411,7 +412,7 @@ fn what_does_not_go_with_a_structure_is_refused() {
         refused(folder, arguments, words);
     }
     assert!(!folder.join("p.svg").exists());
-    // A column sways alike to both sides.
+    // A column sways equally to both sides.
     let [left, right] =
         ["left", "right"].map(|side| printed(folder, &["impact", "column.toml", "--first", side]));
     let words =

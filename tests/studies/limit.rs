@@ -199,7 +199,7 @@ fn published_accelerations_and_hinges() {
         );
         assert_hinges(found.mechanism.hinges_rad, hinges, 0.5e-5);
     }
-    // The paper's own figure.
+    // The value printed in the paper.
     let semicircle = incipient(&ring(0.15, 180.0), HingeSites::Anywhere).unwrap();
     assert!((semicircle.acceleration_g - 0.1443).abs() <= 0.5e-4);
 
@@ -270,7 +270,7 @@ fn room_for_a_line(ring: &Ring, sections: &[f64]) -> Option<f64> {
 }
 
 #[test]
-fn arches_that_stand_are_not_said_to_fall() {
+fn arches_that_stand_are_not_refused() {
     // The search for mechanisms alone once took both for arches that cannot stand, or that stand at no
     // thickness.
     let found = incipient(&ring(0.05, 141.8), HingeSites::Anywhere).unwrap();
@@ -291,7 +291,7 @@ fn arches_that_stand_are_not_said_to_fall() {
 }
 
 #[test]
-fn rings_of_hardly_any_thickness_fall_in_finite_time() {
+fn rings_of_vanishing_thickness_cannot_stand() {
     for t in [1e-320, 1e-100, 1e-17] {
         let error = incipient(&ring(t, 180.0), HingeSites::Anywhere).unwrap_err();
         assert_eq!(error, LimitError::CannotStand);
@@ -301,7 +301,7 @@ fn rings_of_hardly_any_thickness_fall_in_finite_time() {
 }
 
 #[test]
-fn the_thickness_that_an_arch_too_thin_is_advised_to_have_is_accepted() {
+fn the_thickness_advised_for_a_thin_arch_is_accepted() {
     let mut as_thin_as_can_be = Vec::new();
     for embrace in [
         1.0, 10.0, 12.5, 20.0, 45.0, 90.0, 120.0, 141.8, 142.0, 157.5, 170.0, 180.0,
@@ -413,8 +413,8 @@ fn critical_and_limit_rotations() {
     assert!((critical - 0.069_065).abs() <= 0.5e-6, "{critical}");
 }
 
-/// The verdict of a reference that has one; otherwise another case is tried, which may happen only a few times.
-fn judged<T>(verdict: Option<T>) -> Result<T, TestCaseError> {
+/// The answer of the reference if it has one; otherwise another case is tried, which may happen only a few times.
+fn reference_answer<T>(verdict: Option<T>) -> Result<T, TestCaseError> {
     verdict.ok_or_else(|| TestCaseError::reject("no verdict"))
 }
 
@@ -455,15 +455,15 @@ proptest! {
             Err(LimitError::CannotStand) => {
                 // No line fits, or only one that leaves the ring between sections. An arch that cannot stand
                 // may still stand while it is pushed.
-                let room = judged(room_for_a_line(&ring, &sections([0.0; 4])))?;
+                let room = reference_answer(room_for_a_line(&ring, &sections([0.0; 4])))?;
                 prop_assert!(room < 1e-5, "{room}");
                 if let Some(push) = static_limit_g(&ring, &sections([0.0; 4])) {
                     prop_assert!(push < 0.05, "{push}");
                 }
             }
             Err(LimitError::OtherMechanism(acceleration_g)) => {
-                // The test's own programme finds no starting corner in some of these rings.
-                let push = judged(static_limit_g(&ring, &sections([0.0; 4])))?;
+                // The programme of the test finds no starting corner in some of these rings.
+                let push = reference_answer(static_limit_g(&ring, &sections([0.0; 4])))?;
                 // Statics at 180 sections constrains the line less than the whole ring would, by the square of their
                 // distance; the mechanism is the best one even where its hinges merge.
                 prop_assert!(push <= acceleration_g * (1.0 + 1e-3), "{push} {acceleration_g}");
@@ -487,8 +487,8 @@ proptest! {
             let joints = even_sections(&ring, u32::try_from(voussoirs).unwrap());
             (HingeSites::Voussoirs(voussoirs), joints)
         };
-        let room = judged(room_for_a_line(&ring, &sections))?;
-        // The limit allows for what the line may leave the ring between sections, and for the error of the solver.
+        let room = reference_answer(room_for_a_line(&ring, &sections))?;
+        // The tolerance covers how far the line may leave the ring between sections, and the error of the solver.
         if room.abs() > 1e-5 {
             prop_assert_eq!(carries_its_weight(&ring, sites), room > 0.0, "{}", room);
         }
@@ -501,13 +501,13 @@ proptest! {
 
     /// At the least thickness a thrust line just fits.
     #[test]
-    fn at_the_least_thickness_a_line_just_fits(embrace in 60.0_f64..180.0, voussoirs in 4_usize..40) {
+    fn at_the_least_thickness_a_thrust_line_just_fits(embrace in 60.0_f64..180.0, voussoirs in 4_usize..40) {
         let sites = HingeSites::Voussoirs(voussoirs);
         let least = least_thickness_ratio(embrace.to_radians(), sites, 1e-9).unwrap();
         for (factor, stands) in [(1.0 - 1e-3, false), (1.0 + 1e-3, true)] {
             let ring = ring(least * factor, embrace);
             let joints = even_sections(&ring, u32::try_from(voussoirs).unwrap());
-            let room = judged(room_for_a_line(&ring, &joints))?;
+            let room = reference_answer(room_for_a_line(&ring, &joints))?;
             prop_assert_eq!(room > 0.0, stands, "{}", room);
         }
     }
@@ -516,7 +516,7 @@ proptest! {
     #[test]
     fn no_mechanism_moves_earlier(t in 0.11_f64..0.3, embrace in 100.0_f64..180.0, seed in 0_u64..1 << 60) {
         let ring = ring(t, embrace);
-        let found = judged(incipient(&ring, HingeSites::Anywhere).ok())?;
+        let found = reference_answer(incipient(&ring, HingeSites::Anywhere).ok())?;
         let score = |angles: [f64; 4]| {
             let mechanism = FourLink::new(&ring, angles)?;
             let push = acceleration_g(&mechanism, &ring);
@@ -540,9 +540,9 @@ proptest! {
     }
 }
 
-/// `limit` and `verify` say where each tie is, in the words of `check`.
+/// `limit` and `verify` describe the position of each tie as `check` does.
 #[test]
-fn ties_are_placed_in_the_words_of_check() {
+fn limit_describes_ties_as_check_does() {
     use crate::common::program::printed;
     let text = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.15\nembrace_deg = 150\nvoussoirs = 12\n\
                 [[tie]]\nfrom_m = [-4.2, 2.5]\nto_m = [-7, 0]\nto_block = 0\nstiffness_n_m = 1e6\nprestress_n = 1000\n\

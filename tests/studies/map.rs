@@ -62,8 +62,8 @@ fn the_frequency_is_the_inverse_of_the_duration() {
     }
 }
 
-/// A pulse to the other side gives the mirror image, to the last bit. An arch four times as large under a pulse
-/// twice as long does what the small one does, in twice the time.
+/// A pulse to the other side gives the mirror image, to the last bit. An arch four times as large under a pulse twice as long has
+/// the motion of the small arch in twice the time.
 #[test]
 fn maps_have_the_symmetries_of_the_mechanics() {
     let text = |map: &str| {
@@ -104,7 +104,7 @@ fn maps_have_the_symmetries_of_the_mechanics() {
 }
 
 #[test]
-fn shapes_that_are_no_four_link_arches_have_no_history() {
+fn shapes_without_four_link_mechanism_have_no_history() {
     let scenario = parsed(&format!(
         "{ARCH}[ground.rectangular]\namplitude_g = 0.4\nduration_s = 0.2\n\
          [map]\nthickness_ratio = [0.1, 0.15, 0.4]\nembrace_deg = [90.0, 180.0]"
@@ -352,7 +352,7 @@ fn parts_that_do_not_belong_together_are_refused() {
     }
 }
 
-/// However much of a part is left, continuing it gives the same results.
+/// Whatever fraction of a part file is left, resuming it gives the same results.
 #[test]
 fn a_torn_part_is_resumed_to_the_same_results() {
     let folder = folder_with_map(7);
@@ -390,7 +390,7 @@ fn a_torn_part_is_resumed_to_the_same_results() {
 }
 
 #[test]
-fn interrupted_work_is_neither_lost_nor_mixed() {
+fn interrupted_work_is_kept_and_not_mixed() {
     let folder = folder_with_map(5);
     let path = folder.path();
     done(path, &["map", "s.toml", "--out", "r", "--shard", "1/2"]);
@@ -403,7 +403,7 @@ fn interrupted_work_is_neither_lost_nor_mixed() {
     fs::write(path.join("r/map-1-of-2.part"), &some).unwrap();
     let again = ["map", "s.toml", "--out", "r", "--shard", "1/2"];
     refused(path, &again, &["3 cases", "--resume", "remove it"]);
-    // A part renamed to another part.
+    // A part file under the name of another part.
     let renamed = ["map", "s.toml", "--out", "r", "--shard", "2/2", "--resume"];
     fs::copy(
         path.join("r/map-1-of-2.part"),
@@ -477,7 +477,7 @@ fn start_long_work(folder: &Path, more: &[&str]) -> Child {
 }
 
 #[test]
-fn killed_at_any_moment_the_work_goes_on_to_the_same_results() {
+fn work_killed_at_any_moment_resumes_to_the_same_results() {
     let folder = folder_with_map(36);
     let path = folder.path();
     let begun = Instant::now();
@@ -510,7 +510,7 @@ fn killed_at_any_moment_the_work_goes_on_to_the_same_results() {
 
 #[cfg(unix)]
 #[test]
-fn an_interrupt_ends_the_work_within_a_second_and_says_how_to_go_on() {
+fn an_interrupt_ends_within_a_second_and_prints_how_to_resume() {
     let folder = folder_with_map(200);
     let path = folder.path();
     let child = start_long_work(path, &[]);
@@ -555,7 +555,7 @@ fn assert_error(map: &str, place: &str, words: &[&str]) {
 }
 
 #[test]
-fn faults_of_a_map_are_said_with_their_place_and_remedy() {
+fn errors_of_a_map_name_their_place_and_remedy() {
     let both = |second: &str| format!("duration_s = [0.1, 0.2]\n{second}");
     assert_error(
         "duration_s = [0.1]",
@@ -661,7 +661,7 @@ fn a_map_needs_a_ground_motion_and_a_column_has_no_radius() {
 }
 
 #[test]
-fn a_map_reads_back_as_it_is_written() {
+fn a_map_reads_back() {
     for map in [
         "restitution = [0.2, 0.5]\namplitude_g = { from = -3, to = -0.1, count = 5, spacing = 'logarithmic' }",
         "thickness_ratio = { from = 0.12, to = 0.2, count = 4 }\nembrace_deg = [160, 180]",

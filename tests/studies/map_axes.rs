@@ -65,7 +65,7 @@ fn a_cell_under_a_record_is_the_run_with_its_values() {
     outcomes.dedup();
     assert!(outcomes.len() > 1, "{outcomes:?}");
 
-    // Scaled to a peak: the record's own is 0.3 g.
+    // Scaled to a peak: the record itself has 0.3 g.
     let text = text.replace("scale = [0.5, 1.7, 4]", "peak_g = [0.15, 0.51, 1.2]");
     for (by_peak, by_scale) in rows(path, &text, &[]).iter().zip(&cells) {
         assert_eq!(by_peak["outcome"], by_scale["outcome"]);
@@ -85,7 +85,7 @@ fn a_cell_under_a_record_is_the_run_with_its_values() {
 }
 
 #[test]
-fn any_number_of_the_scenario_can_be_an_axis() {
+fn every_numeric_key_can_be_an_axis() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
     let text = format!(
@@ -124,9 +124,9 @@ fn any_number_of_the_scenario_can_be_an_axis() {
     assert_eq!(stdout(&archrock(path, &["check", "t.toml"])), resolved);
 }
 
-/// A map of pulses may stand beside the record of `run`: only `map` refuses it.
+/// A scenario may contain a map of pulses and a record for `run`; only `map` refuses the combination.
 #[test]
-fn a_map_of_pulses_may_stand_beside_a_record() {
+fn a_scenario_may_have_a_map_of_pulses_and_a_record() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
     fs::copy(scenarios().join("records/wave-1.at2"), path.join("r.at2")).unwrap();
@@ -144,7 +144,7 @@ fn a_map_of_pulses_may_stand_beside_a_record() {
 }
 
 #[test]
-fn axes_that_do_not_suit_are_refused() {
+fn invalid_axes_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
     fs::copy(scenarios().join("records/wave-1.at2"), path.join("r.at2")).unwrap();
@@ -237,7 +237,7 @@ fn dimensionless_axes_are_in_units_of_p_and_of_the_onset() {
 }
 
 #[test]
-fn survivors_can_be_coloured_by_how_close_it_was() {
+fn survivors_can_be_coloured_by_their_distance_from_overturning() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
     let cells = rows(path, &format!("{ARCH}{MAP}"), &["--color", "peak"]);
@@ -292,7 +292,7 @@ fn an_axis_that_is_no_key_is_named() {
 }
 
 #[test]
-fn a_map_without_a_title_has_no_second_line_either() {
+fn without_a_title_a_map_has_no_subtitle() {
     let folder = tempfile::tempdir().unwrap();
     let text = format!(
         "title = 'Mine'\n{COLUMN}[ground.one_sine]\namplitude_g = 0.1\nduration_s = 0.5\n[map]\nduration_s = [0.1, 0.2]\namplitude_g = [0.1, 0.2]\n"

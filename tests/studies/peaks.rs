@@ -162,7 +162,7 @@ fn each_record_of_a_suite_can_be_run_and_have_its_threshold() {
 }
 
 #[test]
-fn a_suite_says_a_line_per_record_and_draws_how_far_each_goes() {
+fn a_suite_prints_a_line_per_record_and_draws_the_peaks() {
     let folder = folder();
     let path = folder.path();
     let output = archrock(path, &["suite", "s.toml"]);
@@ -231,7 +231,7 @@ fn potential_ratio(slenderness_rad: f64, rotation_rad: f64) -> f64 {
 }
 
 #[test]
-fn a_block_with_free_hinges_is_as_close_as_its_peak_rotation_says() {
+fn potential_ratio_of_a_block_follows_from_its_peak_rotation() {
     let slenderness_rad = 0.2_f64.atan();
     for (amplitude_g, overturns) in [(0.25, false), (0.35, false), (0.5, true)] {
         let folder = tempfile::tempdir().unwrap();
@@ -265,7 +265,7 @@ fn a_block_with_free_hinges_is_as_close_as_its_peak_rotation_says() {
 
 /// A structure released at rest on still ground never rises above the height of release.
 #[test]
-fn an_arch_that_is_released_is_as_close_as_its_four_links_were() {
+fn a_released_arch_has_the_potential_ratio_of_its_four_links() {
     let arch = Arch::new(5.0, 0.15, 180.0)
         .unwrap()
         .with_voussoirs(12)

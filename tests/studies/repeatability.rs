@@ -1,4 +1,4 @@
-//! What a run calls certain holds with other steps, and most results are still called certain.
+//! Results that a run reports as certain do not change with other steps, and most results are certain.
 
 use std::ops::ControlFlow;
 
@@ -63,7 +63,7 @@ struct Counts {
 fn campaign(cases: usize) -> Counts {
     let mut random = Random(2026);
     let mut counts = Counts::default();
-    // A few that take little time, or many.
+    // A few cases that take little time, or many.
     let most = if cases > 10 { 30 } else { 12 };
     for _ in 0..cases {
         let (model, ground, end_s) = case(&mut random, most);
@@ -114,10 +114,10 @@ fn campaign(cases: usize) -> Counts {
     counts
 }
 
-/// Ten rows of up to 12 blocks. Out of a hundred of up to 30 (`ARCHROCK_CASES=100`, which prints the counts), 95 outcomes and 88
-/// first peaks are called certain, and all of these hold.
+/// Ten rows of up to 12 blocks. Out of a hundred rows of up to 30 blocks (`ARCHROCK_CASES=100`, which prints the counts), 95
+/// outcomes and 88 first peaks are reported as certain, and none of these changes.
 #[test]
-fn what_is_called_certain_holds_with_other_steps() {
+fn certain_outcomes_do_not_change_with_other_steps() {
     let cases = std::env::var("ARCHROCK_CASES").map_or(10, |cases| cases.parse().unwrap());
     let counts = campaign(cases);
     assert!(counts.failed_cases <= cases / 100, "{counts:?}");
@@ -132,7 +132,7 @@ fn what_is_called_certain_holds_with_other_steps() {
     }
 }
 
-/// A row whose joints slip, and ground on which it survives or overturns, although with a few percent more or less of it, it would not.
+/// A row with slipping joints, and ground on which its outcome changes if the amplitude changes by a few percent.
 fn near_an_edge(random: &mut Random, most: usize) -> (FreeHinges, GroundMotion, Request) {
     loop {
         let (model, ground, _) = case(random, most);
@@ -183,10 +183,11 @@ fn near_an_edge(random: &mut Random, most: usize) -> (FreeHinges, GroundMotion, 
 /// Near an edge, rows whose joints slip are uncertain where a half cycle before the largest rotation depends on the step. Of 200 cases
 /// (`ARCHROCK_CASES=200`, rows of up to 8 blocks) other steps contradict fewer of those called certain than without that rule.
 #[test]
-fn outcomes_called_certain_near_an_edge_hold_with_other_steps() {
+fn certain_outcomes_near_an_edge_do_not_change_with_other_steps() {
     let cases = std::env::var("ARCHROCK_CASES").map_or(3, |cases| cases.parse().unwrap());
     let mut random = Random(35);
-    // Certain by the outcomes alone, and by the half cycles as well; and how many of these other steps contradict.
+    // Numbers of cases that are certain by outcomes alone and by half cycles as well, and how many of these other steps
+    // contradict.
     let (mut certain, mut contradicted) = ([0; 2], [0; 2]);
     for _ in 0..cases {
         let most = if cases > 3 { 8 } else { 3 };
@@ -251,7 +252,7 @@ fn an_outcome_that_an_early_half_cycle_decides_is_uncertain() {
     let early = spread.early.unwrap();
     assert_eq!(early.peak_time_s, own.half_cycles()[0].peak_time_s);
     assert!((0.01..0.1).contains(&early.ratio), "{early:?}");
-    // Studies say the same of the case.
+    // Studies report the same about the case.
     let cell = Ending::until_safe(&*model, &[(ground.clone(), request)]).remove(0);
     let doubt = cell.unwrap().uncertain.unwrap();
     assert!(doubt.contains("survives; the half cycle at 0."), "{doubt}");
@@ -259,7 +260,7 @@ fn an_outcome_that_an_early_half_cycle_decides_is_uncertain() {
     let joint = spread.uncertain_slip().unwrap();
     let slip = spread.slips_m[joint];
     assert!(slip.min < slip.max && (slip.min..=slip.max).contains(&slip.own));
-    // A motion is as good as itself.
+    // A motion agrees with itself.
     let same = Repeatability::new(&own, &[("equal steps", own.clone())]);
     assert!(!same.is_uncertain() && same.uncertain_slip().is_none() && same.has_slipped());
 }
@@ -326,11 +327,11 @@ fn repetitions_have_other_steps_however_close_output_times_are() {
     }
 }
 
-/// Maps take longer steps, and end a history that cannot overturn any more. With the steps of a run, the outcome and the
-/// largest rotation are those of the whole history to the last bit. With longer steps, an answer called certain differs in at most
+/// Maps take longer steps than runs, and end a history that can no longer overturn. With the steps of a run, outcome and largest
+/// rotation equal those of the whole history to the last bit. With longer steps, an answer reported as certain differs in at most
 /// one of a hundred cases, as with other steps of a run. Six rows are tested, each under three strengths of a pulse or a record.
 #[test]
-fn maps_answer_as_runs_do() {
+fn maps_have_the_outcomes_of_runs() {
     let cases = std::env::var("ARCHROCK_CASES").map_or(6, |cases| cases.parse().unwrap());
     let mut random = Random(11);
     let (mut early, mut overturned, mut uncertain, mut least) = (0, 0, 0, f64::INFINITY);
@@ -396,7 +397,7 @@ fn maps_answer_as_runs_do() {
     assert!(early > 0 && overturned > 0, "{counts}");
     assert!(100 * contradicted <= 3 * cases, "{counts}");
     assert!(uncertain < cases && 2 * other_peaks <= peaks, "{counts}");
-    // Histories that are ended early have less than 0.25.
+    // Histories that are ended early have less than a quarter of the barrier.
     assert!(least > 0.4, "{counts}");
     if cases > 6 {
         std::io::Write::write_all(&mut std::io::stderr(), counts.as_bytes()).unwrap();
@@ -443,13 +444,13 @@ fn elastic_case(
     }
 }
 
-/// Maps of elastic joints take longer steps, end a history that cannot overturn any more, and spare repetitions. With the same steps the
-/// largest rotation is that of the whole history to the last bit, and no repetition that was spared or cut short would have
-/// disagreed; with those of a run an answer that is called certain differs in at most one of a hundred cases.
+/// Maps of elastic joints take longer steps than runs, end a history that can no longer overturn, and skip repetitions. With
+/// equal steps the largest rotation is that of the whole history to the last bit, and all skipped or shortened repetitions would
+/// have agreed. With the steps of a run, an answer reported as certain differs in at most one of a hundred cases.
 #[test]
-fn maps_of_elastic_joints_answer_as_runs_do() {
+fn maps_of_elastic_joints_have_the_outcomes_of_runs() {
     let cases = std::env::var("ARCHROCK_CASES").map_or(4, |cases| cases.parse().unwrap());
-    // A few that take little time, or many.
+    // A few cases that take little time, or many.
     let (most, end_s) = if cases > 4 {
         ([30, 100], 10.0)
     } else {
@@ -493,7 +494,7 @@ fn maps_of_elastic_joints_answer_as_runs_do() {
                     least = on_its_way.fold(least, |least: f64, (_, j)| least.min(j / barrier_j));
                 }
             }
-            // Neither of these claims that it stands.
+            // Neither of these reports that the structure survives.
             if cell.uncertain.is_some() || cell.outcome == Outcome::Incomplete {
                 uncertain += 1;
                 continue;
@@ -516,18 +517,18 @@ fn maps_of_elastic_joints_answer_as_runs_do() {
         disagreeing == 0 && 100 * contradicted <= 3 * cases,
         "{counts}"
     );
-    // What is ended early has less than half of it.
+    // Histories that are ended early have less than half of the barrier.
     assert!(least > 0.8, "{counts}");
     if cases > 4 {
         std::io::Write::write_all(&mut std::io::stderr(), counts.as_bytes()).unwrap();
     }
 }
 
-/// A block on a joint as soft and as viscous as rubber: once past its barrier it falls slowly, and loses on the way down all that made it
-/// overturn. That it has little energy says that it is safe only on its way back: histories that are ended early overturn where
-/// whole ones do, although some had less than half of the barrier long before.
+/// A block on a joint as soft and viscous as rubber. Past its barrier it falls slowly and dissipates the energy that made it
+/// overturn. So low energy means safety only while it returns: shortened histories overturn whenever whole ones do, although some
+/// had less than half of the barrier long before.
 #[test]
-fn what_falls_slowly_is_not_safe() {
+fn a_slow_fall_is_not_reported_as_safe() {
     let row = archrock::Column::new(5.0, 1.0).unwrap().row();
     let properties = ElasticProperties {
         damping_time_s: 1.0,
@@ -540,7 +541,7 @@ fn what_falls_slowly_is_not_safe() {
         output_step_s: 0.05,
         ..Request::default()
     };
-    // Whether the whole history overturns, whether one that is ended early does, and the least energy on quiet ground.
+    // Whether the whole history overturns, whether the shortened one does, and the least energy on quiet ground.
     let history = |amplitude_g: f64| {
         let push_m_s2 = -amplitude_g * GRAVITY;
         let ground = Pulse::Rectangular

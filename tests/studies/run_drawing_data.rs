@@ -152,7 +152,7 @@ fn snapshots_are_to_scale() {
 }
 
 #[test]
-fn exaggerated_snapshots_move_so_many_times_as_far() {
+fn exaggerated_snapshots_scale_displacements() {
     let folder = tempfile::tempdir().unwrap();
     let corners = |more: &[&str]| {
         run(
@@ -183,7 +183,7 @@ fn exaggerated_snapshots_move_so_many_times_as_far() {
 }
 
 #[test]
-fn snapshots_after_the_end_and_without_a_folder_are_told() {
+fn snapshots_that_cannot_be_written_are_reported() {
     let folder = tempfile::tempdir().unwrap();
     let said = run(
         folder.path(),
@@ -197,7 +197,7 @@ fn snapshots_after_the_end_and_without_a_folder_are_told() {
     run(folder.path(), "semicircle-pulse.toml", &[]);
     assert!(
         !folder.path().join("snapshots.svg").exists(),
-        "those of an earlier run go"
+        "snapshots of an earlier run are removed"
     );
     let path = scenarios().join("semicircle-pulse.toml");
     let path = path.to_str().unwrap();
@@ -224,7 +224,7 @@ fn snapshots_after_the_end_and_without_a_folder_are_told() {
 
 /// The JSON has every number of the text.
 #[test]
-fn limit_says_the_same_as_json() {
+fn limit_prints_the_same_as_json() {
     for scenario in [
         "semicircle-pulse.toml",
         "column-pulse.toml",

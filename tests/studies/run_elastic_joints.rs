@@ -1,4 +1,4 @@
-//! `[elastic_joints]`: what is read, what is refused, and the output of a run.
+//! `[elastic_joints]`: reading, refusals, and the output of a run.
 
 use std::f64::consts::PI;
 use std::fs;
@@ -19,7 +19,7 @@ fn block(keys: &str) -> String {
 }
 
 #[test]
-fn scenarios_are_written_as_they_are_read() {
+fn scenarios_with_elastic_joints_read_back() {
     for keys in [
         "normal_stiffness_gpa_m = 10.0",
         "normal_stiffness_gpa_m = 10.0\nshear_stiffness_gpa_m = 3.0\ncontact_points = 3\ncompressive_strength_mpa = 5.0",
@@ -42,7 +42,7 @@ fn scenarios_are_written_as_they_are_read() {
 }
 
 #[test]
-fn what_is_no_joint_is_refused_with_its_place() {
+fn invalid_joint_properties_are_refused_with_their_place() {
     let stiff = "normal_stiffness_gpa_m = 10.0\n";
     for (keys, place, words) in [
         ("", "5:1", ["lacks a stiffness", "docs/elastic-joints.md"]),
@@ -110,9 +110,10 @@ fn what_is_no_joint_is_refused_with_its_place() {
     }
 }
 
-/// What a structure does not rest on, and steps that are not stable or too many, are placed at the key that makes them so.
+/// Joints on which a structure has no equilibrium, and steps that are unstable or too many, are reported at the key that causes
+/// this.
 #[test]
-fn joints_that_do_not_carry_are_refused_with_their_place() {
+fn unsuitable_joints_and_steps_are_refused_with_their_place() {
     let arch = |keys: &str| {
         format!(
             "[arch]\nmean_radius_m = 4.0\nthickness_ratio = 0.125\nembrace_deg = 180.0\nvoussoirs = 17\n[elastic_joints]\n{keys}\n"
@@ -173,7 +174,7 @@ fn joints_that_do_not_carry_are_refused_with_their_place() {
 
 /// At rest a column stands on its weight: `N = m g`, evenly over the base.
 #[test]
-fn a_run_tells_what_joints_bear() {
+fn a_run_reports_joint_forces_and_stresses() {
     let folder = tempfile::tempdir().unwrap();
     let text = block(
         "normal_stiffness_gpa_m = 10.0\nfriction_coefficient = 0.7\ncompressive_strength_mpa = 20.0",
@@ -206,9 +207,9 @@ fn a_run_tells_what_joints_bear() {
     assert!(taken_j > 0.0 && taken_j < 0.5 * number("ground_j"));
 }
 
-/// The friction that is needed is that of joints that bear more than a hundredth of the weight: as an arch rocks, others hardly press.
+/// The needed friction counts joints that bear more than a hundredth of the weight; as an arch rocks, others are almost unloaded.
 #[test]
-fn friction_is_needed_where_a_joint_presses() {
+fn needed_friction_counts_loaded_joints() {
     let folder = tempfile::tempdir().unwrap();
     let text = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 36\n\
                 [elastic_joints]\nnormal_stiffness_gpa_m = 10.0\n\
@@ -231,19 +232,22 @@ fn friction_is_needed_where_a_joint_presses() {
             if *normal_n > 0.0 {
                 of_all = of_all.max(shear_n.abs() / normal_n);
             }
-            // It overturns: what happens while it falls does not count.
+            // The structure overturns: the fall itself does not count.
             if *normal_n > 0.01 * weight_n && *time_s <= until_s {
                 needed = needed.max(shear_n.abs() / normal_n);
             }
         }
     }
-    let told = summary["largest_friction_demand"].as_f64().unwrap();
-    assert!((told / needed - 1.0).abs() < 1e-9, "{told} {needed}");
+    let reported = summary["largest_friction_demand"].as_f64().unwrap();
+    assert!(
+        (reported / needed - 1.0).abs() < 1e-9,
+        "{reported} {needed}"
+    );
     assert!(of_all > 10.0 && needed < 2.0, "{of_all} {needed}");
-    shows(&said, &[told]);
+    shows(&said, &[reported]);
 }
 
-/// The threshold of a block is that of its table, in every study; the same block with rigid joints stands up to 0.5017 g.
+/// Every study gives the threshold of the block in the table; with rigid joints the same block stands up to 0.5017 g.
 #[test]
 fn studies_take_elastic_joints() {
     let folder = tempfile::tempdir().unwrap();
@@ -327,7 +331,7 @@ fn three_models_in_one_run() {
 /// The properties on which the motion of the arch of Lemos depends: with three points it stands at 0.15 g, with continuous contact it
 /// falls. The other runs equal those of scenarios that have these properties.
 #[test]
-fn a_run_says_what_it_hangs_on() {
+fn a_run_reports_its_dependence_on_stiffness() {
     let folder = tempfile::tempdir().unwrap();
     let arch = |joints: &str| {
         format!(
@@ -373,7 +377,7 @@ fn a_run_says_what_it_hangs_on() {
     let (said, own) = run("own", &elastic("10", points), &alone);
     assert!(!said.contains("  with "), "{said}");
     assert_eq!(own["variations"], serde_json::Value::Null);
-    // With rigid joints the words suggest elastic ones, unless a run with elastic joints stands beside.
+    // With rigid joints the output suggests elastic ones, unless the run also has a model with elastic joints.
     let (said, _) = run("rigid", &arch("[free_hinges]"), &alone);
     assert!(said.contains("--hinges elastic"), "{said}");
     let models = ["--hinges", "free,elastic", "--no-repeat"];
@@ -395,7 +399,7 @@ fn a_run_says_what_it_hangs_on() {
 
 /// The page draws the stresses of `joints.csv`, to 1/256 of the largest.
 #[test]
-fn the_page_draws_what_joints_bear() {
+fn the_page_draws_joint_forces() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(
         folder.path().join("s.toml"),
@@ -443,7 +447,7 @@ fn the_page_draws_what_joints_bear() {
 
 /// A threshold with other properties equals that of a scenario that has them.
 #[test]
-fn a_threshold_says_what_it_hangs_on() {
+fn a_threshold_reports_its_dependence_on_stiffness() {
     let folder = tempfile::tempdir().unwrap();
     let text = |stiffness: &str| {
         let keys = format!("normal_stiffness_gpa_m = {stiffness}\nfriction_coefficient = 0.7");
@@ -487,7 +491,7 @@ fn a_threshold_says_what_it_hangs_on() {
     golden("threshold-elastic", &said);
 }
 
-/// A repetition may overturn too, but to the other side: the verdict names it, and does not claim that all is the same.
+/// A repetition may also overturn, but to the other side: the verdict names it and does not claim agreement.
 #[test]
 fn the_verdict_names_repetitions_that_overturn_to_the_other_side() {
     let folder = tempfile::tempdir().unwrap();

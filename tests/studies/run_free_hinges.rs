@@ -1,4 +1,4 @@
-//! `archrock run` with free hinges: its files, its words, overriding the scenario, and what it refuses.
+//! `archrock run` with free hinges: its files, its printed output, overriding the scenario, and refusals.
 
 use crate::common::program;
 use crate::common::prose::{golden, shows, skeleton};
@@ -69,7 +69,7 @@ fn refusal(scenario: &str, arguments: &[&str]) -> String {
 }
 
 #[test]
-fn tables_of_a_row_fit_together() {
+fn tables_of_a_row_are_consistent() {
     let results = Results::of(&free(SEVEN), &["--no-repeat"]);
     let names = [
         "events.csv",
@@ -245,7 +245,7 @@ fn hinges(table: &Table, row: usize, what: &str) -> Vec<(usize, String)> {
 /// The ground reaches the incipient acceleration of limit analysis at a known instant of its sine, and the hinges of that
 /// mechanism open then; a column starts about a toe.
 #[test]
-fn it_starts_when_and_where_limit_analysis_says() {
+fn motion_starts_at_the_push_and_hinges_of_limit_analysis() {
     let arch = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 12\n";
     let column = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n";
     let shaken = |structure: &str, amplitude_g: f64| {
@@ -374,7 +374,7 @@ fn events_name_the_joints_that_are_open() {
                         "extrados" => intrados_m > 0.0,
                         _ => intrados_m.max(extrados_m) > 0.0,
                     };
-                    // If joints slip, corners that are hardly apart shut without an impact.
+                    // If joints slip, corners with tiny gaps close without an impact.
                     assert!(
                         is_open || !options.is_empty(),
                         "joint {hinge:?} in row {row}"
@@ -456,7 +456,7 @@ fn the_picture_shows_every_block_and_which_joints_are_open() {
 }
 
 #[test]
-fn what_repetitions_change_is_said_and_written() {
+fn differences_of_repetitions_are_printed_and_written() {
     let results = Results::of(&free(SEVEN), &[]);
     let summary = results.summary();
     let spread = &summary["repeatability"];
@@ -491,8 +491,8 @@ fn what_repetitions_change_is_said_and_written() {
     );
 }
 
-/// Three short pushes that make the arch rattle, before one that makes it rock: the half cycles that are reported and judged are those of
-/// the rocking, not the first ones.
+/// Three short pushes make the arch rattle, then a longer one makes it rock. The reported and judged half cycles are those of the
+/// rocking, not the first ones.
 #[test]
 fn the_largest_half_cycles_are_reported() {
     let root = tempfile::tempdir().unwrap();
@@ -549,7 +549,7 @@ fn the_largest_half_cycles_are_reported() {
         "{said}"
     );
     golden("run-free-hinges", &said);
-    // What differs among the repetitions does so after the rattling.
+    // The repetitions differ after the rattling.
     assert!(
         summary["repeatability"]["parts_at_s"]
             .as_f64()
@@ -564,8 +564,7 @@ fn half_cycles_mut(summary: &mut Summary) -> &mut Vec<HalfCycle> {
     }
 }
 
-/// A repetition whose half cycles before the largest differ in number from those of the motion itself, as rattling does, has the same large
-/// ones.
+/// Rattling may change the number of half cycles before the largest one; such a repetition still has the same large half cycles.
 #[test]
 fn half_cycles_are_compared_at_the_same_time() {
     let column = Column::new(4.0, 0.8).unwrap();
@@ -590,7 +589,7 @@ fn half_cycles_are_compared_at_the_same_time() {
     let spread = Repeatability::new(&own, &[("double steps", rattles)]);
     assert_eq!(spread.parts_at_s, None);
     assert!(spread.half_cycles.iter().all(|cycle| cycle.is_certain()));
-    // One that has no such half cycle differs there.
+    // A repetition without such a half cycle differs there.
     let mut shorter = own.clone();
     half_cycles_mut(&mut shorter).truncate(1);
     let spread = Repeatability::new(&own, &[("double steps", shorter)]);
@@ -599,9 +598,9 @@ fn half_cycles_are_compared_at_the_same_time() {
     assert_eq!(spread.parts_at_s, Some(own.half_cycles()[1].start_s));
 }
 
-/// A leaning block starts more easily to one side. Ground that pushes to the other side only is compared with what starts it there.
+/// A leaning block starts more easily to one side. Ground that pushes to one side only is compared with the onset on that side.
 #[test]
-fn a_push_is_compared_with_the_one_that_starts_it_to_that_side() {
+fn a_push_is_compared_with_the_onset_on_its_side() {
     let root = tempfile::tempdir().unwrap();
     // The centre is at 0.7 m of a base of 1 m, and 1 m high: 0.3 g to the right, 0.7 g to the left.
     fs::write(root.path().join("j.csv"), "0,0,1,0\n0.4,2,1.4,2\n").unwrap();
@@ -628,7 +627,7 @@ fn a_push_is_compared_with_the_one_that_starts_it_to_that_side() {
 /// A cap that bears half a hundredth of the weight on a face of 30 degrees needs a friction of 0.58 there, and does not count; one with two
 /// hundredths does. Under a push too weak to move it the rest needs the ratio of that push to gravity.
 #[test]
-fn friction_is_needed_where_a_joint_bears_a_hundredth_of_the_weight() {
+fn needed_friction_counts_joints_bearing_a_hundredth_of_the_weight() {
     for (share, needed) in [(0.005, 0.1_f64), (0.02, 0.5773)] {
         let root = tempfile::tempdir().unwrap();
         // Faces from 30 degrees below to level: the cap is a wedge whose lower face is inclined.
@@ -667,10 +666,10 @@ fn friction_is_needed_where_a_joint_bears_a_hundredth_of_the_weight() {
     }
 }
 
-/// With steps far too long the ends of the arch may part in the computation, or its energy balance may be wrong. Rounding decides
-/// which steps do that; among a few, one makes a repetition fail but not the history itself.
+/// With far too long steps the ends of the arch may separate in the computation, or its energy balance may fail. Rounding decides
+/// which steps cause this; among a few, one makes a repetition fail but not the history itself.
 #[test]
-fn a_failed_repetition_leaves_the_history_and_says_why() {
+fn a_failed_repetition_keeps_the_history_and_its_reason() {
     let scenario = |step_s: f64| {
         free(SEVEN).replace("amplitude_g = -0.5336", "amplitude_g = 0.6")
             + &format!("longest_step_s = {step_s}\n[simulation]\nduration_s = 4.0\n")
@@ -713,7 +712,7 @@ fn a_failed_repetition_leaves_the_history_and_says_why() {
 }
 
 #[test]
-fn a_spread_knows_other_outcomes() {
+fn repeatability_includes_other_outcomes() {
     let column = Column::new(4.0, 0.8).unwrap();
     let model = FreeHinges::of_column(&column).unwrap();
     let pulse = |amplitude_m_s2| {
@@ -857,13 +856,13 @@ fn an_arch_of_any_shape_is_released_from_its_first_mechanism() {
     let fallen = released(0.3);
     assert_eq!(fallen["outcome"], "overturned");
     assert_eq!(fallen["overturning_sway"], "left");
-    // Nothing moved except the released body.
+    // Only the released body moved.
     let peak_rad = fallen["peak_rotation_13_rad"].as_f64().unwrap();
     assert!((peak_rad - 0.3).abs() < 1e-12);
 }
 
 #[test]
-fn what_a_model_cannot_do_is_refused() {
+fn requests_beyond_a_model_are_refused() {
     let whole = SEVEN.replace("voussoirs = 7\n", "");
     let said = refusal(&whole, &["--hinges", "free"]);
     assert!(said.contains("voussoirs"), "{said}");
@@ -901,7 +900,7 @@ fn what_a_model_cannot_do_is_refused() {
 }
 
 #[test]
-fn a_column_of_one_block_moves_as_housner_s() {
+fn a_column_of_one_block_moves_as_housners_block() {
     let column = format!("[column]\n{SHAKEN_COLUMN}");
     let results = Results::of(&column, &["--hinges", "both", "--no-repeat"]);
     let [four, free] = ["four", "free"].map(|model| {
@@ -941,14 +940,14 @@ fn a_column_of_one_block_moves_as_housner_s() {
 
 /// The friction is far less than this pulse requires: voussoirs slip and stay displaced.
 #[test]
-fn joints_that_slip_are_told_of() {
+fn slipping_joints_are_reported() {
     let slipping = format!(
         "{SEVEN}[free_hinges]\nfriction_coefficient = 0.4\n[simulation]\nduration_s = 12\n"
     );
     let results = Results::of(&slipping, &["--no-repeat"]);
     let summary = results.summary();
     assert_eq!(summary["friction_coefficient"], 0.4);
-    // It has slipped so far down that its height means nothing for overturning.
+    // The block has slipped so far down that its height no longer indicates overturning.
     assert_eq!(summary["peak_potential_over_barrier"], Value::Null);
     assert_eq!(summary["unconverged_steps"], 0);
     let slips_m: Vec<f64> = serde_json::from_value(summary["slips_m"].clone()).unwrap();
@@ -968,7 +967,7 @@ fn joints_that_slip_are_told_of() {
         assert!((joints.rows.last().unwrap().number(17 + joint) - slip_m).abs() < 1e-9);
     }
     assert_eq!(joints.header.len(), 17 + 8);
-    // Something lands in every impact; a joint that opens again at once turns about the edge that landed.
+    // In every impact a corner lands; a joint that opens again at once turns about that corner.
     let table = Table::read(results.path("impacts.csv"));
     let list = |row: usize, name: &str| -> Vec<&str> {
         table.rows[row][name].split_whitespace().collect()
@@ -1030,7 +1029,7 @@ fn joints_that_slip_are_told_of() {
 /// The horizontal peak of a pulse is reported with the push that starts the structure. With friction, that push is the result of
 /// limit analysis: for a low block Coulomb's coefficient, for a slender one width over height.
 #[test]
-fn with_friction_the_push_that_starts_it_is_that_with_friction() {
+fn with_friction_the_onset_includes_friction() {
     for (height_m, width_m, friction, push_g) in [
         (0.3, 2.0, 0.2, 0.2),
         (2.0, 0.3, 0.2, 0.15),
@@ -1051,7 +1050,7 @@ fn with_friction_the_push_that_starts_it_is_that_with_friction() {
 }
 
 #[test]
-fn what_slides_without_turning_has_no_half_cycles_to_tell_of() {
+fn sliding_without_rotation_reports_no_half_cycles() {
     let scenario = "[column]\nheight_m = 0.3\nwidth_m = 2\n[free_hinges]\nfriction_coefficient = 0.2\n\
                     [ground.half_sine]\namplitude_g = 0.5\nduration_s = 0.3\n[simulation]\nduration_s = 2\n";
     let results = Results::of(scenario, &[]);
@@ -1064,9 +1063,9 @@ fn what_slides_without_turning_has_no_half_cycles_to_tell_of() {
     }
 }
 
-/// Another mechanism, which takes less energy than the first, may overturn it.
+/// A mechanism with a lower barrier than the first may overturn the arch.
 #[test]
-fn what_overturned_has_passed_the_barrier_whatever_its_measure() {
+fn an_overturned_run_reports_no_fraction_of_the_barrier() {
     let scenario = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.138\nembrace_deg = 120\nvoussoirs = 9\n\
                     [free_hinges]\n[ground.one_sine]\namplitude_g = 2.309\nduration_s = 0.482\n\
                     [simulation]\nduration_s = 3\n";
@@ -1074,7 +1073,7 @@ fn what_overturned_has_passed_the_barrier_whatever_its_measure() {
     let summary = results.summary();
     assert_eq!(summary["outcome"], "overturned");
     assert!(summary["peak_potential_over_barrier"].as_f64().unwrap() < 1.0);
-    // A part of the barrier would suggest that it has not passed it.
+    // A fraction of the barrier would suggest that the arch has not passed it.
     let percent = 100.0 * summary["peak_potential_over_barrier"].as_f64().unwrap();
     assert!(
         !results.said.contains(&format!("{percent:.1} %")),
@@ -1084,7 +1083,7 @@ fn what_overturned_has_passed_the_barrier_whatever_its_measure() {
 }
 
 #[test]
-fn limit_analysis_of_drums_tells_the_push_that_starts_them() {
+fn limit_analysis_of_drums_reports_the_onset() {
     let root = tempfile::tempdir().unwrap();
     let limit = |more: &str| -> Value {
         let text = format!("[column]\nheight_m = 6\nwidth_m = 1\n{more}");

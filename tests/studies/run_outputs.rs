@@ -1,4 +1,4 @@
-//! Words, page, picture and tables of a run tell the same story: of random scenarios, with every model.
+//! Printed output, page, picture and tables of a run agree, for random scenarios with every model.
 
 use std::fs;
 
@@ -8,7 +8,7 @@ use crate::common::program::printed;
 use crate::common::results::{Row, Table, data_of, summary, texts};
 use serde_json::{Value, json};
 
-/// A random structure on a random pulse, and its number of blocks; none if links or a whole column move.
+/// A random structure on a random pulse, and its number of blocks; `None` if links or a whole column move.
 fn scenario(random: &mut Random, model: &str) -> String {
     let voussoirs = 7 + 2 * random.pick(3);
     let structure = if random.pick(2) == 0 {
@@ -33,7 +33,7 @@ fn scenario(random: &mut Random, model: &str) -> String {
 }
 
 #[test]
-fn words_page_picture_and_tables_agree() {
+fn words_page_picture_and_tables_of_a_run_agree() {
     let mut random = Random(26);
     let elastic = "[elastic_joints]\nnormal_stiffness_gpa_m = 10.0\nfriction_coefficient = 0.7\n";
     let (mut overturned, mut stood) = (0, 0);
@@ -49,7 +49,7 @@ fn words_page_picture_and_tables_agree() {
         }
         let said = printed(folder.path(), &arguments);
         let out = folder.path().join("o");
-        let (told, rotations) = (summary(&out), Table::read(out.join("rotations.csv")));
+        let (reported, rotations) = (summary(&out), Table::read(out.join("rotations.csv")));
         let page = fs::read_to_string(out.join("report.html")).unwrap();
         let verdict = said.lines().next().unwrap().trim();
         assert!(
@@ -57,11 +57,11 @@ fn words_page_picture_and_tables_agree() {
             "{said}"
         );
         // The outcome and its time.
-        let time_s = told["outcome_time_s"].as_f64().unwrap();
-        let (begins, happens) = match told["outcome"].as_str().unwrap() {
+        let time_s = reported["outcome_time_s"].as_f64().unwrap();
+        let (begins, happens) = match reported["outcome"].as_str().unwrap() {
             "overturned" => {
                 overturned += 1;
-                let sway = told["overturning_sway"].as_str().unwrap();
+                let sway = reported["overturning_sway"].as_str().unwrap();
                 let to = format!("overturned to the {sway} at {time_s:.4} s");
                 (format!("overturns to the {sway}"), to)
             }
@@ -87,11 +87,14 @@ fn words_page_picture_and_tables_agree() {
             verdict.starts_with(&begins) && said.contains(&happens),
             "{text}{said}"
         );
-        let is_down = told["verdict"] == "overturns";
-        assert_eq!(is_down, told["outcome"] == "overturned", "{said}");
+        let is_down = reported["verdict"] == "overturns";
+        assert_eq!(is_down, reported["outcome"] == "overturned", "{said}");
         stood += usize::from(!is_down);
-        shown.push((page.clone(), facts(&told, &rotations, verdict, &happens)));
-        if model.is_empty() || told["outcome"] == "never_moved" {
+        shown.push((
+            page.clone(),
+            facts(&reported, &rotations, verdict, &happens),
+        ));
+        if model.is_empty() || reported["outcome"] == "never_moved" {
             continue;
         }
         // The block that rotates most, by how much, and when, compared with the table.
@@ -103,11 +106,11 @@ fn words_page_picture_and_tables_agree() {
             .parse()
             .unwrap();
         let block: usize = number("rad, of block ", " of ").parse().unwrap();
-        let own_rad = told["largest_peak_rotation_rad"].as_f64().unwrap();
+        let own_rad = reported["largest_peak_rotation_rad"].as_f64().unwrap();
         assert!((own_rad - peak_rad).abs() <= 5.1e-7, "{said}");
         assert_eq!(
-            told[format!("peak_rotation_{block}_rad")],
-            told["largest_peak_rotation_rad"]
+            reported[format!("peak_rotation_{block}_rad")],
+            reported["largest_peak_rotation_rad"]
         );
         // The largest rotation of a structure that overturns is that up to then.
         let until_s = if is_down { time_s } else { f64::INFINITY };
@@ -132,8 +135,8 @@ fn words_page_picture_and_tables_agree() {
     check_in_a_browser(&shown);
 }
 
-/// What a page has to show: the row of the table with the largest rotation, how it ended, and what was said.
-fn facts(told: &Value, rotations: &Table, verdict: &str, happens: &str) -> Value {
+/// Facts that a page must show: the row of the table with the largest rotation, the outcome, and the printed summary.
+fn facts(reported: &Value, rotations: &Table, verdict: &str, happens: &str) -> Value {
     let names = rotations.header.iter();
     let columns: Vec<&String> = names
         .filter(|name| name.starts_with("rotation_") && name.ends_with("rad"))
@@ -154,7 +157,7 @@ fn facts(told: &Value, rotations: &Table, verdict: &str, happens: &str) -> Value
         "peak_rad": largest(peak),
         "state": &peak["state"],
         "end_s": rows[rows.len() - 1].number("time_s"),
-        "overturned": told["outcome"] == "overturned",
+        "overturned": reported["outcome"] == "overturned",
     })
 }
 

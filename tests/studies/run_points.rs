@@ -109,8 +109,8 @@ fn a_point_of_a_voussoir_moves_with_it() {
     assert_eq!(data["layouts"][0]["point_bodies"][0], 3);
 }
 
-/// If the ground moves to the other side, the mirrored point moves to the other side, with every model; with free
-/// hinges up to the effect of rounding on the order of landings.
+/// If the ground moves to the other side, so does the mirrored point, with every model; with free hinges, up to the effect of
+/// rounding on the order of landings.
 #[test]
 fn mirrored_points_have_mirrored_displacements() {
     let folder = tempfile::tempdir().unwrap();

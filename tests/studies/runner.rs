@@ -87,21 +87,21 @@ fn until(most: usize) -> impl FnMut(Progress) -> ControlFlow<()> {
 #[test]
 fn rows_come_in_order_on_any_number_of_threads() {
     for count in [1, 2, 5] {
-        let mut told = Vec::new();
+        let mut reported = Vec::new();
         let rows = threads(count).rows(&Slow::default(), |progress| {
-            told.push(progress);
+            reported.push(progress);
             ControlFlow::Continue(())
         });
         assert_eq!(rows.unwrap(), all());
         assert_eq!(
-            told[0],
+            reported[0],
             Progress {
                 done: 0,
                 all: COUNT
             }
         );
-        assert_eq!(told[told.len() - 1].done, COUNT);
-        assert!(told.is_sorted_by_key(|progress| progress.done));
+        assert_eq!(reported[reported.len() - 1].done, COUNT);
+        assert!(reported.is_sorted_by_key(|progress| progress.done));
     }
 }
 
@@ -178,7 +178,7 @@ fn shards_are_merged_to_the_whole() {
 }
 
 #[test]
-fn a_folder_that_cannot_be_made_is_said() {
+fn a_folder_that_cannot_be_created_is_reported() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("file");
     fs::write(&file, "").unwrap();

@@ -74,7 +74,7 @@ fn rows(folder: &Path) -> Vec<Row> {
     table.rows
 }
 
-/// Two records and a table, either multiplied by factors or scaled to peaks.
+/// Two records and a table, multiplied by factors or scaled to peaks.
 fn mixed(levels: &str) -> String {
     format!(
         "{COLUMN}[suite]\nrecords = ['records/wave-[12].at2', 'north, \"old\".csv']\n\
@@ -83,7 +83,7 @@ fn mixed(levels: &str) -> String {
 }
 
 #[test]
-fn rows_are_what_runs_of_the_same_scenario_give() {
+fn rows_of_a_suite_equal_single_runs() {
     let folder = folder();
     let folder = folder.path();
     for levels in ["scales = [0.5, 1.5, 4.0]", "peaks_g = [0.15, 0.45, 1.2]"] {
@@ -146,7 +146,7 @@ fn samples_of(folder: &Path, file: &str) -> Vec<(f64, f64)> {
 }
 
 #[test]
-fn a_mirrored_record_does_the_same_to_the_other_side() {
+fn a_mirrored_record_moves_the_structure_to_the_other_side() {
     let folder = folder();
     let folder = folder.path();
     for structure in [COLUMN, ARCH] {
@@ -189,7 +189,7 @@ fn a_mirrored_record_does_the_same_to_the_other_side() {
 }
 
 #[test]
-fn the_curve_is_that_of_the_rows() {
+fn the_curve_is_the_fit_of_the_rows() {
     let folder = tempfile::tempdir().unwrap();
     let file = scenarios().join("column-suite.toml");
     let said = done(folder.path(), &["suite", file.to_str().unwrap()]);
@@ -240,7 +240,7 @@ fn the_curve_is_that_of_the_rows() {
     }
     shows(&said, &[320.0, 8.0, fragility["median"].as_f64().unwrap()]);
     golden("suite", &said);
-    // The words print the edges of capacity.csv, and say where nothing was searched for.
+    // The printed output has the edges of capacity.csv, and states where no edge was searched for.
     let capacities = Table::read(results.join("capacity.csv")).rows;
     for capacity in &capacities {
         let record = format!("  {}: ", &capacity["record"]);
@@ -301,7 +301,7 @@ fn the_curve_is_that_of_the_rows() {
 }
 
 #[test]
-fn the_records_of_the_repository_are_what_they_are_said_to_be() {
+fn the_records_of_the_repository_match_their_description() {
     for k in 1..=8_u32 {
         let frequency_hz = 0.6 + 0.1 * f64::from(k);
         let wave = |t: f64| {
@@ -395,7 +395,7 @@ fn resolved_scenarios_read_back_the_same() {
 }
 
 #[test]
-fn parts_make_the_same_files_where_the_records_are_not() {
+fn parts_merge_to_the_same_files_without_the_records() {
     let folder = folder();
     let folder = folder.path();
     write(
@@ -457,7 +457,7 @@ fn parts_make_the_same_files_where_the_records_are_not() {
 }
 
 #[test]
-fn other_records_are_not_resumed_with() {
+fn a_part_with_other_records_is_not_resumed() {
     let folder = folder();
     let folder = folder.path();
     let text = format!("{COLUMN}[suite]\nrecords = 'records/*.at2'\nscales = [1.0, 3.0]\n");
@@ -495,7 +495,7 @@ fn other_records_are_not_resumed_with() {
 }
 
 #[test]
-fn without_a_curve_the_reason_is_said() {
+fn without_a_fragility_curve_the_reason_is_reported() {
     let folder = folder();
     let folder = folder.path();
     for (scales, never, always) in [
@@ -614,9 +614,9 @@ fn free_heading() -> Heading {
     Heading::of_resolved(scenario, Vec::new()).unwrap()
 }
 
-/// With uncertain cases counted as survived or as overturned, the results are those of suites in which they did so.
+/// If uncertain cases are counted as survived or as overturned, the results equal those of suites in which they did so.
 #[test]
-fn uncertain_cases_are_taken_both_ways() {
+fn uncertain_cases_are_counted_as_surviving_and_as_overturning() {
     let with = |letter: &str| {
         let records = [
             ("a", "..~xx"),
@@ -649,8 +649,8 @@ fn uncertain_cases_are_taken_both_ways() {
     assert_eq!(survivals[0].1.overturns_from, Some(4.0));
     assert_eq!(survivals[0].1.uncertain, [[3.0, 3.0]]);
 
-    let told = told(&free_heading(), &doubtful);
-    let Table { header, rows } = Table::parse(&told["fragility.csv"]);
+    let result_files = result_files(&free_heading(), &doubtful);
+    let Table { header, rows } = Table::parse(&result_files["fragility.csv"]);
     assert!(
         header
             .windows(2)
@@ -671,7 +671,7 @@ fn uncertain_cases_are_taken_both_ways() {
         );
         assert!(row.number("fraction") <= row.number("fraction_with_uncertain"));
     }
-    let json: Value = told["fragility.json"].parse().unwrap();
+    let json: Value = result_files["fragility.json"].parse().unwrap();
     assert_eq!(
         (&json["overturned"], &json["uncertain"]),
         (&9.into(), &3.into())
@@ -686,19 +686,24 @@ fn uncertain_cases_are_taken_both_ways() {
     assert_eq!(json["uncertain_cases"][0]["case"], "a, scale 3");
     assert_eq!(json["longest_step_s"]["max"], 1e-4);
     // Neither the side nor impacts before overturning are given.
-    assert_eq!(told["suite.csv"].matches(",uncertain,,0,,1.0,").count(), 3);
+    assert_eq!(
+        result_files["suite.csv"]
+            .matches(",uncertain,,0,,1.0,")
+            .count(),
+        3
+    );
 
     let named =
         |picture: &str, name: &str| picture.matches(&format!("data-name=\"{name}\"")).count();
-    let picture = &told["suite.svg"];
+    let picture = &result_files["suite.svg"];
     for name in ["fit", "fit-with-uncertain", "band", "between"] {
         assert_eq!(named(picture, name), 1, "{name}");
     }
     assert_eq!(named(picture, "uncertain"), 3);
     let picture = Document::parse(picture).unwrap();
     shows(&texts(&picture).join("\n"), &[3.0]);
-    assert_eq!(named(&told["ida.svg"], "uncertain"), 3);
-    let plain = self::told(&free_heading(), &survived);
+    assert_eq!(named(&result_files["ida.svg"], "uncertain"), 3);
+    let plain = self::result_files(&free_heading(), &survived);
     for name in ["fit-with-uncertain", "between", "uncertain"] {
         assert_eq!(named(&plain["suite.svg"], name), 0, "{name}");
     }
@@ -706,7 +711,7 @@ fn uncertain_cases_are_taken_both_ways() {
 
 /// A mirrored record whose results are exactly mirrored adds no evidence; otherwise it does, as the same record.
 #[test]
-fn mirrored_records_count_where_they_are_not_mirror_images() {
+fn mirrored_records_count_unless_results_are_mirror_images() {
     let own = [("a", "..xx"), ("b", ".x.x"), ("c", ".xxx")];
     let alone = SuiteFragility::new(Measure::Scale, levels_of(&own));
     let images = [
@@ -752,11 +757,11 @@ fn mirrored_records_count_where_they_are_not_mirror_images() {
 }
 
 /// The files of the results, by their names.
-fn told(heading: &Heading, results: &SuiteFragility) -> BTreeMap<&'static str, String> {
-    let told = heading
+fn result_files(heading: &Heading, results: &SuiteFragility) -> BTreeMap<&'static str, String> {
+    let result_files = heading
         .report(results.cases.clone(), Figure::SCREEN)
         .unwrap();
-    let files = told.files.into_iter();
+    let files = result_files.files.into_iter();
     files
         .map(|(name, contents)| (name, String::from_utf8(contents).unwrap()))
         .collect()
@@ -771,7 +776,7 @@ const FAILED: Option<Outcome> = None;
 const OVERTURNED: Option<Outcome> = Some(Outcome::Overturned(Sway::Left));
 
 #[test]
-fn failed_cases_do_not_count_and_rocking_ones_have_not_overturned() {
+fn failed_cases_are_excluded_and_rocking_ones_survive() {
     let results = results(&[
         ("a, b.at2", 1.0, FAILED),
         ("a, b.at2", 2.0, OVERTURNED),
@@ -797,7 +802,7 @@ fn failed_cases_do_not_count_and_rocking_ones_have_not_overturned() {
         })
         .collect();
     assert_eq!(counts, [(1.0, 2, 1, 1, 2), (2.0, 3, 2, 0, 2)]);
-    let json: Value = told(&heading(), &results)["fragility.json"]
+    let json: Value = result_files(&heading(), &results)["fragility.json"]
         .parse()
         .unwrap();
     assert_eq!(json["cases"], 5);
@@ -825,24 +830,26 @@ fn failed_cases_do_not_count_and_rocking_ones_have_not_overturned() {
 }
 
 #[test]
-fn a_level_of_which_all_failed_has_no_fraction() {
+fn a_level_with_only_failed_cases_has_no_fraction() {
     let results = results(&[("a.at2", 1.0, FAILED), ("a.at2", 2.0, OVERTURNED)]);
-    let told = told(&heading(), &results);
-    let levels = &told["fragility.csv"];
+    let result_files = result_files(&heading(), &results);
+    let levels = &result_files["fragility.csv"];
     assert!(
         levels.contains("\n1.0,0,0,0,0,1,,,,\n2.0,1,1,0,0,0,1.0,,,\n"),
         "{levels}"
     );
-    let json: Value = told["fragility.json"].parse().unwrap();
+    let json: Value = result_files["fragility.json"].parse().unwrap();
     shows(json["no_fit"].as_str().unwrap(), &[1.0]);
     assert_eq!(
-        told["suite.svg"].matches("data-name=\"fraction\"").count(),
+        result_files["suite.svg"]
+            .matches("data-name=\"fraction\"")
+            .count(),
         1
     );
 }
 
 #[test]
-fn those_still_rocking_are_said() {
+fn cases_still_rocking_are_reported() {
     let folder = folder();
     let folder = folder.path();
     let text = format!(
@@ -1116,7 +1123,7 @@ fn suites_need_a_table_and_start_from_rest() {
 /// Sines of one period, sampled closely: their measures of intensity have closed forms, and the spectral acceleration follows from the
 /// equation of an oscillator by the method of Runge and Kutta. Capacities are where runs begin to overturn.
 #[test]
-fn capacities_are_told_in_several_measures() {
+fn capacities_are_reported_in_several_measures() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let gravity = 9.81;
@@ -1217,7 +1224,7 @@ fn capacities_are_told_in_several_measures() {
         fragility["intensity_measures"][0]["measure"],
         measures[0]["measure"]
     );
-    // Fractiles of three peaks are the least, the middle one and the largest; what overturned is beyond.
+    // The fractiles of three peaks are the smallest, the middle and the largest; overturned cases lie beyond all.
     let ida = Table::read(folder.join("o/ida.csv")).rows;
     for level in &ida {
         let peak_g = level.number("peak_g");
@@ -1271,13 +1278,13 @@ fn spectral(duration_s: f64, period_s: f64, damping: f64) -> f64 {
     omega * omega * peak
 }
 
-/// The probability with which a peak is at most this, of those in ascending order or not; what overturned is infinite.
+/// The share of peaks up to a value, for peaks in any order; overturned cases count as infinite.
 fn share(peaks: &[f64], up_to: f64) -> f64 {
     peaks.iter().filter(|peak| **peak <= up_to).count() as f64 / peaks.len() as f64
 }
 
-/// A block rocks alike as Housner's and as a row of one block, so that the distributions of its peaks are as good as one; those of a block
-/// whose Housner restitution is halved are not. The tables of the models give the same peaks, and the distance is that of their
+/// A block rocks equally as Housner's block and as a row of one block, so the distributions of peaks do not differ. Those of a
+/// block with half of Housner's restitution do. The tables of the models give the same peaks, and the distance is that of their
 /// shares.
 #[test]
 fn distributions_of_models_are_compared() {
@@ -1302,7 +1309,7 @@ fn distributions_of_models_are_compared() {
         let rows = table.rows.iter().filter(|row| row["model"] == *model);
         rows.map(|row| row.number("peak_rotation_rad")).collect()
     };
-    // Of Housner's block the critical rotation is the slenderness.
+    // The critical rotation of Housner's block is the slenderness.
     let slenderness_rad = (0.8_f64 / 4.0).atan();
     let mut all = Vec::new();
     for (name, words, column, unit_rad) in [
@@ -1325,8 +1332,11 @@ fn distributions_of_models_are_compared() {
         let mut peaks: Vec<f64> = suite.rows.iter().map(peak).collect();
         peaks.sort_by(f64::total_cmp);
         let finite = peaks.iter().filter(|peak| peak.is_finite());
-        for (told, known) in of(words).iter().zip(finite.clone()) {
-            assert!((told - known).abs() < 1e-9, "{name}: {told} {known}");
+        for (result_files, known) in of(words).iter().zip(finite.clone()) {
+            assert!(
+                (result_files - known).abs() < 1e-9,
+                "{name}: {result_files} {known}"
+            );
         }
         assert_eq!(of(words).len(), finite.count());
         assert!((6..15).contains(&of(words).len()), "{name}");
@@ -1336,13 +1346,13 @@ fn distributions_of_models_are_compared() {
     let apart = finite().map(|peak| (share(&all[0], *peak) - share(&all[1], *peak)).abs());
     let distance = pair["kolmogorov_distance"].as_f64().unwrap();
     assert!((apart.fold(0.0, f64::max) - distance).abs() < 1e-12);
-    // Peaks that differ by the steps of the row change places, one in fifteen at a time.
+    // Small differences of peaks from the steps of the row may exchange neighbours, one in fifteen at a time.
     assert!(distance < 0.14, "{pair}");
     for name in ["models/peaks.svg", "four/suite.csv", "free/peaks.svg"] {
         assert!(at.join("r").join(name).exists(), "{name}");
     }
 
-    // The same of the samples of a run, with a model that is not alike.
+    // The same comparison for the samples of a run, with a model that differs.
     let run = suite.replace("[suite]\nrecords = '?.csv'\nunit = 'g'\nboth_signs = false\npeaks_g = [0.22, 0.26, 0.3, 0.35, 1.2]\n", "")
         + "model = 'prescribed'\nrestitution = 0.3\n[ground.one_sine]\namplitude_g = 0.3\nduration_s = 0.8\n\
            [uncertain]\nsamples = 16\n'ground.one_sine.duration_s' = { from = 0.4, to = 0.9 }\n";

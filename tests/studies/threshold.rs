@@ -159,10 +159,9 @@ fn factor_times_amplitude_counts() {
     assert_eq!(a.gaps().iter().map(doubled).collect::<Vec<_>>(), b.gaps());
 }
 
-/// If vertical motion is so strong that nothing presses the column on the ground, there is no history; the known
-/// range ends there.
+/// If the vertical motion unloads the column completely, there is no history; the known range ends there.
 #[test]
-fn factors_at_which_the_ground_falls_freely_are_said_to_be_that() {
+fn factors_with_free_falling_ground_are_reported() {
     let column = Column::new(4.0, 0.8).unwrap();
     let column = RockingColumn::new(&column, ImpactModel::MaxRestitution).unwrap();
     let amplitude = Vector2::new(0.3, 0.2) * GRAVITY;
@@ -390,7 +389,7 @@ fn bands_and_gaps_of_any_models_side_by_side() {
 }
 
 #[test]
-fn histories_that_fail_keep_their_reasons_and_stop_nothing() {
+fn failed_histories_keep_their_reasons_and_stop_no_others() {
     // One failure among the samples, and one only in the search for the edge near 4.05.
     let rule = Rule::new(|x| match x {
         _ if (2.9..3.1).contains(&x) => None,
@@ -440,7 +439,7 @@ fn histories_that_fail_keep_their_reasons_and_stop_nothing() {
 }
 
 #[test]
-fn the_study_can_be_cancelled_and_refuses_what_is_not_possible() {
+fn a_threshold_can_be_cancelled_and_refuses_invalid_requests() {
     let rule = Rule::new(|_| {
         thread::sleep(Duration::from_millis(1));
         Some(false)
@@ -577,7 +576,7 @@ fn files_agree_and_threads_change_nothing() {
 }
 
 #[test]
-fn strides_and_ends_can_be_chosen() {
+fn strides_and_limits_can_be_chosen() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     file(folder, SCENARIO);
@@ -594,7 +593,7 @@ fn strides_and_ends_can_be_chosen() {
 }
 
 #[test]
-fn what_has_no_threshold_is_refused() {
+fn a_scenario_without_a_threshold_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let arch = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n";

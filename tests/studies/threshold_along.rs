@@ -24,9 +24,9 @@ fn rows(text: &str, along: &str, factors: Factors) -> Vec<AlongRow> {
     (0..study.count()).map(|index| study.row(index)).collect()
 }
 
-/// The least factors without impact for some durations of a pulse. No other factor overturns the structure, since none is tried.
+/// The least factors that overturn without impact, for some durations of a pulse.
 pub fn without_impact(text: &str, kind: &str, durations_s: &[f64]) -> Vec<f64> {
-    // The step is so long that the search for the first edge tries the ends alone.
+    // With so long a step the search for an edge with impacts computes only the ends of the range.
     let factors = Factors::new(1e-3, 1e3, 1.0).unwrap();
     let least = |duration_s: &f64| {
         let along = format!(
@@ -63,7 +63,7 @@ fn of_column(kind: &str, alpha: f64, p_t: &[f64]) -> Vec<f64> {
 /// Slender: `cosh(p t) = 1 + 1 / (2 x (x - 1))` (Housner), solved for `x`. Finite slenderness changes that by
 /// a small multiple of its square.
 #[test]
-fn rectangular_pulses_and_slender_columns_are_housners() {
+fn rectangular_pulses_on_slender_columns_agree_with_housner() {
     let p_t = [0.05, 0.3, 1.0, 2.5, 6.0];
     let miss = |alpha: f64| -> Vec<f64> {
         let simulated = of_column("rectangular", alpha, &p_t);
@@ -78,7 +78,7 @@ fn rectangular_pulses_and_slender_columns_are_housners() {
     let (coarse, fine) = (miss(0.02), miss(0.01));
     for (index, p_t) in p_t.into_iter().enumerate() {
         assert!(fine[index].abs() < 1e-4, "{p_t}: {}", fine[index]);
-        // The longest pulse needs hardly more than the onset of the column, so the error is that of rounding.
+        // The longest pulse needs little more than the onset of the column, so the error is that of rounding.
         if p_t < 6.0 {
             let ratio = coarse[index] / fine[index];
             assert!((3.9..4.1).contains(&ratio), "{p_t}: {ratio}");
@@ -97,10 +97,10 @@ fn short_pulses_overturn_by_their_impulse() {
     }
 }
 
-/// Half sine of the frequency `w = b p`, as derived in `tests/motion/column.rs`:
-/// `sqrt(x^2 - 1) + x exp(-(pi - asin(1/x)) / b) = b`.
+/// Half sine of the frequency `w = b p`, as derived in `tests/motion/column.rs`: `sqrt(x^2 - 1) + x exp(-(pi - asin(1/x)) / b) =
+/// b`.
 #[test]
-fn half_sines_and_slender_columns_are_the_linear_solution() {
+fn half_sines_on_slender_columns_agree_with_the_linear_solution() {
     let b = [0.8, 1.5, 3.0, 6.0];
     let simulated = of_column("half_sine", 0.01, &b.map(|b| PI / b));
     for (simulated, b) in simulated.iter().zip(b) {
@@ -114,7 +114,7 @@ fn half_sines_and_slender_columns_are_the_linear_solution() {
 
 /// Amplitudes in g from an independent integration (relative tolerance 1e-10), printed with three digits.
 #[test]
-fn step_pairs_overturn_an_arch_of_seven_voussoirs_as_computed_elsewhere() {
+fn step_pairs_overturn_seven_voussoirs_at_independently_computed_amplitudes() {
     let arch = "[arch]\nmean_radius_m = 10.0\nthickness_ratio = 0.15\nembrace_deg = 157.5\nvoussoirs = 7\n";
     let text = format!("{arch}{}", pulse("step_pair"));
     let found = without_impact(&text, "step_pair", &[0.2, 0.5, 1.0]);
@@ -159,7 +159,8 @@ fn narrow_windows_are_found() {
     }
 }
 
-/// An arch four times as large under pulses twice as long, and one on the moon: at the same acceleration over gravity they move alike.
+/// An arch four times as large under pulses twice as long, and one on the moon, have similar motions at the same ratio of
+/// acceleration to gravity.
 #[test]
 fn similar_structures_have_similar_thresholds() {
     let factors = Factors::new(0.1, 30.0, 0.3).unwrap();
@@ -197,7 +198,7 @@ fn similar_structures_have_similar_thresholds() {
 
 /// Just above the edge the first fall overturns, just below it does not, in single histories.
 #[test]
-fn the_edge_without_impact_is_an_edge() {
+fn histories_change_at_the_edge_without_impact() {
     let text = format!("{ARCH}{}", pulse("one_sine"));
     let model = parsed(&text).mechanisms().unwrap();
     for duration_s in [0.4, 0.9] {
@@ -283,7 +284,7 @@ fn parts_threads_and_interruptions_change_nothing() {
     ];
     refused(at, &other, &["belongs to another study: the options"]);
 
-    // As if it had been killed while writing its third row.
+    // The file looks as if the program had been killed while writing its third row.
     fs::create_dir(at.join("killed")).unwrap();
     let part = fs::read_to_string(at.join(&parts[1])).unwrap();
     let killed = part.replace("\"1/3\"", "\"1/1\"");

@@ -1,4 +1,4 @@
-//! Uncertain numbers: their samples, the consequences, and which of them matter.
+//! Uncertain input: samples, distributions of results, and the influence of each number.
 
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
@@ -159,7 +159,7 @@ fn first_order_indices_are_those_of_ishigami() {
 }
 
 /// Total indices of the function of Ishigami and Homma are known as well: 0.5574, 0.4424, 0.2436. The design takes three further
-/// samples for each of 1,024; the samples themselves stay what they are without it.
+/// samples for each of 1,024; these samples are the same without the design.
 #[test]
 fn total_indices_are_those_of_ishigami() {
     let known = {
@@ -314,12 +314,12 @@ fn a_sample_is_the_scenario_with_its_values() {
 }
 
 #[test]
-fn the_program_tells_what_follows() {
+fn a_run_with_uncertain_input_prints_and_writes_its_results() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     fs::write(at.join("s.toml"), uncertain_arch(64, 1)).unwrap();
     let said = printed(at, &["run", "s.toml", "--out", "one", "--no-report"]);
-    // The first line is the probability; one sentence, over several lines, before the report on the scenario itself.
+    // The output begins with the probability; one sentence over several lines precedes the report on the scenario itself.
     let (first, rest) = said.split_once("\n  overturned: ").unwrap();
     shows(first, &[64.0, 95.0]);
     assert!(!rest.is_empty());
@@ -418,7 +418,7 @@ fn the_page_of_a_run_begins_with_the_probability() {
 /// A map of a block whose width is uncertain: the share of each cell is that of the widths that overturn, by quadrature, to a sample or
 /// two of 64, since samples of one number are spread evenly; and the line of 50 % is where the block of the median width begins to overturn.
 #[test]
-fn maps_tell_the_probability_of_each_cell() {
+fn maps_report_the_probability_of_each_cell() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     let text = format!(
@@ -567,9 +567,9 @@ fn maps_tell_the_probability_of_each_cell() {
     );
 }
 
-/// Where the lowest cell of a map, or the smallest factor of a threshold, already overturns, it is no edge but a bound.
+/// If the lowest cell of a map or the smallest factor of a threshold already overturns, it is a bound, not an edge.
 #[test]
-fn the_least_strength_that_was_tried_is_no_edge() {
+fn the_smallest_tested_strength_is_no_edge() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     let text = format!(
@@ -613,7 +613,7 @@ fn the_least_strength_that_was_tried_is_no_edge() {
     let summary = json(&at.join("t/uncertain_threshold/uncertain.json"));
     assert!((1..32).contains(&bounds));
     assert_eq!(summary["at_smallest_factor"], bounds);
-    // What overturns at the smallest factor, above 1, may or may not overturn at 1.
+    // A structure that overturns at the smallest factor, above 1, may or may not overturn at 1.
     let said = printed(
         at,
         &[
@@ -680,7 +680,7 @@ fn thresholds_have_a_distribution() {
 
 /// Samples whose structure does not stand are counted and reported.
 #[test]
-fn samples_that_do_not_stand_are_told() {
+fn samples_that_do_not_stand_are_reported() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     // A semicircle needs t/R of at least 0.1075; a thinner one is not an error of the range.
@@ -701,9 +701,9 @@ fn samples_that_do_not_stand_are_told() {
     assert_eq!(count("invalid") + count("answered"), 32);
 }
 
-/// The page and its scenario agree.
+/// docs/uncertain.md shows the deviations of its scenario.
 #[test]
-fn the_worked_case_is_there() {
+fn the_page_shows_the_deviations_of_the_worked_case() {
     let scenario = Scenario::read(&scenarios().join("uncertain/arch.toml")).unwrap();
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/uncertain.md");
     let page = fs::read_to_string(page).unwrap();
@@ -717,9 +717,9 @@ fn the_worked_case_is_there() {
     }
 }
 
-/// The thickness of a circular arch varies at its mean radius, whatever that is, and the drums of a column in proportion.
+/// The thickness of a circular arch varies at any mean radius, and the drums of a column vary in proportion to its height.
 #[test]
-fn numbers_that_go_with_others_take_these_along() {
+fn related_dimensions_vary_together() {
     let scenario = parsed(&format!(
         "{ARCH}{PULSE}[uncertain]\n'arch.mean_radius_m' = {{ from = 4.0, to = 6.0 }}\n'arch.thickness_m' = {{ deviation = 0.02 }}\n"
     ));
@@ -764,10 +764,10 @@ fn numbers_that_go_with_others_take_these_along() {
     }
 }
 
-/// The span of an arch that is measured by it may vary while its rise and its thickness stay, as they were measured; and the joints of an
-/// arch go with its angle. The expected ring is that of the circle through the springings and the crown.
+/// If an arch is given by its span, the span may vary while rise and thickness stay as measured. Joints of an arch scale with its
+/// angle. The expected ring is that of the circle through springings and crown.
 #[test]
-fn measured_arches_vary_as_they_are_measured() {
+fn measured_arches_vary_in_their_measured_dimensions() {
     let text = "[arch]\nspan_m = 6\nrise_m = 2\nthickness_m = 0.7\nmeasured_at = 'intrados'\n";
     let uncertain = "[uncertain]\n'arch.span_m' = { deviation = 0.05 }\n'arch.rise_m' = { from = 1.9, to = 2.1 }\n\
                      'arch.thickness_m' = { from = 0.6, to = 0.8 }\n";
@@ -810,10 +810,10 @@ fn measured_arches_vary_as_they_are_measured() {
     assert!((angle(1) - embrace_deg * 40.0 / 134.760_270_103_919).abs() < 1e-9);
 }
 
-/// With eight samples in place of 200, the first of these, the commands of the page run; what they say of the scenario itself is what
-/// the page shows, and their intervals hold the shares that it shows.
+/// The commands of the page run with the first eight of its 200 samples. Their output about the scenario itself is that of the
+/// page, and their intervals contain the shares that the page shows.
 #[test]
-fn the_worked_case_says_what_it_shows() {
+fn commands_print_the_output_shown_in_the_worked_case() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     fs::copy(
@@ -844,10 +844,10 @@ fn the_worked_case_says_what_it_shows() {
             };
             assert!(rest.ends_with("of 200 samples"));
             let (outcome, quoted) = beginning.trim().split_once(": ").unwrap();
-            // An outcome to which no sample came is not told.
-            let told = said.split_once(&format!("\n  {outcome}: "));
-            let count = told.map_or(0, |(_, told)| {
-                let (_, count) = told.split_once("), ").unwrap();
+            // An outcome without samples is not printed.
+            let reported = said.split_once(&format!("\n  {outcome}: "));
+            let count = reported.map_or(0, |(_, reported)| {
+                let (_, count) = reported.split_once("), ").unwrap();
                 count.split(' ').next().unwrap().parse().unwrap()
             });
             let share = Share::of(count, 8).unwrap();
@@ -861,7 +861,7 @@ fn the_worked_case_says_what_it_shows() {
 }
 
 #[test]
-fn what_cannot_be_uncertain_is_refused() {
+fn keys_that_cannot_be_uncertain_are_refused() {
     let refusal = |keys: &str| {
         let text = format!("{ARCH}voussoirs = 7\n{PULSE}[uncertain]\n{keys}\n");
         let errors = Scenario::parse(&text, "s.toml").unwrap_err();
@@ -907,7 +907,7 @@ fn what_cannot_be_uncertain_is_refused() {
             "'arch.thickness_ratio' = { deviation = 0.1 }",
             "reaches -0.15, which the scenario does not allow",
         ),
-        // Three deviations of 0.05 below 0.15 are zero, but for rounding.
+        // Three deviations of 0.05 below 0.15 are zero, up to rounding.
         (
             "'arch.thickness_ratio' = { deviation = 0.05 }",
             "reaches 0, which the scenario does not allow: `thickness_ratio = 0` is out of range",
@@ -977,7 +977,7 @@ fn what_cannot_be_uncertain_is_refused() {
     assert!(Ensemble::new(&nothing, Ok(question)).is_err());
 }
 
-/// Every number that may have a fraction, in every kind of structure, ground and model, may be uncertain.
+/// Every number that may be fractional can be uncertain, in every kind of structure, ground and model.
 #[test]
 fn all_numbers_may_be_uncertain() {
     let voussoirs = "thickness_m = 0.5\nvoussoirs = 9\n";
@@ -1062,7 +1062,7 @@ fn all_numbers_may_be_uncertain() {
                     }
                     let mut names = key.split('.').filter(|part| part.parse::<usize>().is_err());
                     names_tried.insert((table.clone(), names.next_back().unwrap().to_owned()));
-                    // What a file gives in two ways contradicts what it is resolved to.
+                    // A file that gives one dimension in two ways contradicts the resolved value.
                     let contradicts = match &*key {
                         "arch.mean_radius_m" => structure.contains("[arch]\nspan_m"),
                         "elastic_joints.damping_time_s" => structure.contains("damping_ratio"),
@@ -1161,10 +1161,10 @@ fn numbers(key: &str, value: &serde_json::Value, all: &mut Vec<(String, f64)>) {
     }
 }
 
-/// Records that overturn a column of uncertain width, and the intensity from which they do. The intensities of the scenario itself lie
-/// between the levels at which its suite changes, and the width decides.
+/// Records overturn a column of uncertain width from a certain intensity on. The intensities of the scenario itself lie between
+/// the levels at which its suite changes, and the width decides.
 #[test]
-fn suites_tell_the_parts_of_fragility() {
+fn suites_split_fragility_into_records_and_uncertain_input() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     for (name, second) in [("a", 0.9), ("b", 0.4), ("c", 0.2)] {
@@ -1188,7 +1188,7 @@ fn suites_tell_the_parts_of_fragility() {
     };
     fs::write(at.join("s.toml"), text).unwrap();
     let said = done(at, &["suite", "s.toml", "--out", "r"]);
-    // Records of so few samples are asked about first.
+    // The program first asks about records of so few samples.
     let (asked, said) = said.split_once("of the suite are like that\n").unwrap();
     assert!(asked.contains("a.csv has a sample every 0.3 s"), "{asked}");
     shows(said, &[5.0, 50.0, 24.0, 16.0, 84.0]);
@@ -1219,8 +1219,8 @@ fn suites_tell_the_parts_of_fragility() {
     }
     let summary = json(&results.join("uncertain.json"));
     let dispersion = |of: &str| summary["fragility"][of]["dispersion"].as_f64().unwrap();
-    // The width, known to 6 %, changes the capacity by more than that. In three of them, both together scatter more than the records
-    // alone; the bound is that of the fractiles of three records.
+    // The width is uncertain by 6 %, which changes the capacity by more than that. Over the three records, records and width
+    // together scatter more than the width alone.
     assert!(
         (0.03..0.3).contains(&dispersion("uncertain_data")),
         "{summary:#}"

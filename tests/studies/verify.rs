@@ -1,5 +1,5 @@
-//! The whole check by the Circolare 7/2019: worked numbers computed independently of this program, both sides, on the
-//! ground and at a height; spectra from files; what cannot be checked, and why.
+//! The whole check by the Circolare 7/2019: worked numbers computed independently of this program, both sides, on the ground and
+//! at a height; spectra from files; refusals with their reasons.
 
 use crate::common::browser;
 use crate::common::parsed;
@@ -176,7 +176,7 @@ fn c8_7_1_2_1_the_control_point_at_the_crown() {
 
 /// The worse side counts; if a wall holds the other side, only one does.
 #[test]
-fn the_worse_side_counts_unless_one_is_held() {
+fn the_worse_side_governs_unless_a_wall_holds_it() {
     let text = format!("{}{DEMAND}", on_piers());
     let both = check(&text);
     let (side, method, zeta_e) = governing(&both, LimitState::Slv).unwrap();
@@ -232,9 +232,9 @@ fn c8_7_1_6_to_9_a_column_that_is_free_to_vibrate() {
     assert!((ag_g(&known) / ag_g(&free) - 1.0).abs() < 1e-9);
 }
 
-/// A stout column has a displacement capacity that it reaches before motion starts: then the onset counts.
+/// The displacement capacity of a stout column is reached before motion starts: then the onset counts.
 #[test]
-fn c8_7_1_2_1_8_what_starts_later_than_it_falls_counts_by_its_start() {
+fn c8_7_1_2_1_8_a_capacity_reached_before_onset_counts_as_the_onset() {
     let text = format!("[column]\nheight_m = 0.3\nwidth_m = 0.12\n{DEMAND}");
     let check = check(&text);
     let slv = displacement(&check, LimitState::Slv, Sway::Right);
@@ -313,7 +313,7 @@ fn a_spectrum_of_points_names_no_clause() {
 }
 
 #[test]
-fn spectra_of_points_are_refused_where_they_end() {
+fn spectra_of_points_are_refused_beyond_their_range() {
     let short = POINTS.replace("2.6,0.08\n4,0.03\n", "");
     let early = POINTS.replace("0,0.29\n0.15", "0.15");
     for (points, demand, words) in [
@@ -361,7 +361,7 @@ fn spectra_of_points_are_refused_where_they_end() {
 
 /// Each error has its place, clause and range.
 #[test]
-fn what_is_out_of_the_range_of_the_code_is_refused() {
+fn input_outside_the_range_of_the_code_is_refused() {
     for (from, to, words) in [
         (
             "f0 = 2.40",
@@ -552,7 +552,7 @@ fn c8_7_1_2_1_3_a_stack_on_one_support_is_a_block_about_its_toe() {
 /// The least multiplier counts: if sliding has a smaller one than the mechanism without sliding, there is nothing to check. A block
 /// that needs more friction than the Circolare gives is checked, with a warning.
 #[test]
-fn c8_7_1_1_what_slides_before_is_no_mechanism() {
+fn c8_7_1_1_a_mechanism_that_slides_first_is_refused() {
     let lintel = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.3\nembrace_deg = 90\nvoussoirs = 5\n[free_hinges]\n";
     let folder = in_folder(lintel, DEMAND);
     refused(
@@ -605,7 +605,7 @@ fn c8_7_1_1_the_friction_of_the_scenario_counts() {
 /// Sides with a number that differs are printed one by one: a tie that holds one side, a leaning stack, a demand that only words of the
 /// mechanism hide.
 #[test]
-fn sides_that_differ_are_both_on_the_page() {
+fn the_page_shows_both_sides_if_they_differ() {
     let tied = "[[tie]]\nfrom_m = [0.0, 3.5]\nto_m = [-4.0, 3.5]\nstiffness_n_m = 1e6\nprestress_n = 5000\nto_block = 0\n";
     let arch_tie = "[[tie]]\nfrom_m = [-4.2, 2.5]\nto_m = [-7.0, 0.0]\nto_block = 0\nstiffness_n_m = 1e6\nprestress_n = 1000\n";
     let arch =
@@ -638,7 +638,7 @@ fn sides_that_differ_are_both_on_the_page() {
 /// Input that is unlikely or ignored is a warning in words, on the page and in the JSON; the building of the page is named by the hashes of
 /// its files.
 #[test]
-fn unlikely_and_ignored_input_is_warned_of() {
+fn unlikely_and_ignored_input_causes_warnings() {
     let floor = HEIGHT
         .replace("damping_percent = 10", "damping_percent = 0.1")
         .replace("gamma = 1.2857142857142858", "gamma = -1.2857142857142858");
@@ -702,7 +702,7 @@ fn unlikely_and_ignored_input_is_warned_of() {
 }
 
 #[test]
-fn what_does_not_stand_is_refused() {
+fn a_structure_that_does_not_stand_is_refused() {
     let thin = ARCH.replace("0.15", "0.08");
     let folder = in_folder(&thin, DEMAND);
     refused(
@@ -714,7 +714,7 @@ fn what_does_not_stand_is_refused() {
 
 /// The command: words, JSON with the same numbers, files; a negative verdict is not a failure of the program.
 #[test]
-fn the_command_says_and_writes_the_check() {
+fn verify_prints_and_writes_the_check() {
     let folder = in_folder(ARCH, DEMAND);
     let said = print_of(folder.path(), &["verify", "a.toml"]);
     golden("verify", &said);

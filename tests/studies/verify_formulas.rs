@@ -165,7 +165,7 @@ fn par_3_2_3_2_3_spectral_displacements() {
 }
 
 #[test]
-fn par_3_2_1_and_3_2_3_2_refuse_what_is_out_of_their_range() {
+fn par_3_2_1_and_3_2_3_2_refuse_input_out_of_range() {
     for (wrong, soil, factor, argument, words) in [
         (
             hazard(0.2, 2.1, 0.3),
@@ -616,7 +616,7 @@ fn c8_7_1_2_1_3_a_linkage_that_locks_has_no_d0() {
 
 /// If the force first grows and then falls, the curve is followed along its own course to where the force vanishes.
 #[test]
-fn c8_7_1_2_1_3_a_curve_that_rises_first_ends_where_it_is_zero() {
+fn c8_7_1_2_1_3_a_curve_that_rises_first_ends_at_zero() {
     let law = |part: f64| (1.0 - part) * (0.1 + 0.4 * part);
     let displaced = |part: f64| Displaced {
         q_rad: part,

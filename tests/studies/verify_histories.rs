@@ -1,12 +1,12 @@
-//! The dynamic route of the check, C8.7.1.2.1.9: peaks compared with an integration and a geometry of this test's own, which peaks
-//! count, both sides, and what is refused.
+//! The dynamic route of the check, C8.7.1.2.1.9: peaks compared with an independent integration and geometry, the choice of the
+//! governing peak, both sides, and refusals.
 
 use std::fs;
 use std::path::Path;
 use std::sync::LazyLock;
 
 use crate::common::browser;
-use crate::common::program::{printed, refused, says_what_it_shows, scenarios};
+use crate::common::program::{assert_shown_output_is_printed, printed, refused, scenarios};
 use crate::common::prose::{shows, skeleton};
 use archrock::mechanics::chain::Hinge;
 use archrock::mechanics::geometry::ring::Edge;
@@ -546,7 +546,7 @@ fn records_that_make_no_check_are_refused() {
 
 /// Histories at both limit states appear in words, JSON and page, resolve and read back; with spectra by points no clause is cited.
 #[test]
-fn histories_are_told_alike_everywhere() {
+fn words_json_and_page_agree_on_histories() {
     let text = format!(
         "{SEMICIRCLE}{DEMAND}[verify]\nslv_records = 'slv-*.at2'\nslc_records = ['wave-1.at2', 'wave-3.at2', 'wave-6.at2']\n"
     );
@@ -603,12 +603,15 @@ for (const [index, state] of ['slv', 'slc'].entries()) {
     browser::assert_checked(&page, &script, &json, &[], 100);
 }
 
-/// The commands of docs/verify.md print what stands below them, and the rows of its table are those of the JSON.
+/// The commands in docs/verify.md print the output shown there, and the rows of its table equal those of the JSON.
 #[test]
-fn commands_say_what_the_page_of_the_documentation_shows() {
+fn commands_print_the_output_shown_in_docs_verify() {
     let folder = tempfile::tempdir().unwrap();
     std::os::unix::fs::symlink(scenarios(), folder.path().join("scenarios")).unwrap();
-    assert_eq!(says_what_it_shows("docs/verify.md", folder.path()), 5);
+    assert_eq!(
+        assert_shown_output_is_printed("docs/verify.md", folder.path()),
+        5
+    );
     let json = folder.path().join("results/semicircle-verify/verify.json");
     let json: Value = serde_json::from_str(&fs::read_to_string(json).unwrap()).unwrap();
     let slv = &json["states"]["slv"];

@@ -1,4 +1,4 @@
-"""Objects that are described by tables of a scenario, and by the files that these name."""
+"""Objects described by tables of a scenario and by the files that these tables name."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class Described:
         return described
 
     def _read(self, tables: Tables, files: dict[str, bytes]) -> None:
-        """Reads tables and files that were described before."""
+        """Restores an object from its tables and files."""
         raise NotImplementedError
 
     def __reduce__(self) -> tuple[Any, ...]:

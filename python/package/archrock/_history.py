@@ -58,7 +58,7 @@ def _figure_of(ax: Axes) -> Figure:
 
 
 def _axes(ax: Axes | None) -> Axes:
-    """The axes that are given, or those of a new figure."""
+    """The given axes, or those of a new figure."""
     from matplotlib.figure import Figure
 
     if ax is not None:
@@ -82,7 +82,7 @@ class History(Summarised):
 
     def __init__(self, native: _native.History, origin: Any, folder: str | None) -> None:
         self._native: _native.History | None = native
-        # The object from which the scenario's files are taken.
+        # Source of the files of the scenario.
         self._origin = origin
         self._folder = folder
         self._cache: dict[str, Any] | None = None
@@ -244,7 +244,7 @@ class History(Summarised):
         """Number of samples."""
         return len(self.time)
 
-    # What happened
+    # Events and summary
 
     def _once(self, name: str, make: Any) -> Any:
         kept = self._kept
@@ -290,7 +290,7 @@ class History(Summarised):
 
     def __getattr__(self, name: str) -> Any:
         if not name.startswith("_"):
-            # These are computed in no time.
+            # These take negligible time to compute.
             ended = self._once("ended", lambda native: json.loads(native.ended_json()))
             if name in ended:
                 return ended[name]
@@ -328,7 +328,7 @@ class History(Summarised):
         scenario: Scenario = self._once("scenario", make)
         return scenario
 
-    # Elsewhere
+    # Output
 
     def to_pandas(self) -> pandas.DataFrame:
         """The samples as a table: the columns of ``rotations.csv``, always with vertical accelerations, and energies.
@@ -393,7 +393,7 @@ class History(Summarised):
         for index, body in enumerate(self.bodies):
             label: str | None = body or "rotation"
             if not few:
-                # Of many blocks the one that turns most is named.
+                # Among many blocks only the one with the largest rotation is named.
                 label = f"block {body}, which turns most" if index == largest else None
                 if index == (largest + 1) % len(self.bodies):
                     label = "other blocks"
@@ -429,7 +429,7 @@ class History(Summarised):
     def _words(self) -> str:
         impacts = self.summary["impacts"]
         at = f"at {self.outcome_time_s:.4f} s"
-        # The contact of elastic joints lasts: nothing counts their impacts.
+        # Elastic contact lasts, so impacts are not counted.
         if impacts is not None:
             at += " without impact" if impacts == 0 else f" after {impacts} impact{'s'[: impacts > 1]}"
         return {

@@ -170,7 +170,7 @@ class Scenario(Described):
         tables["supports"] = supports
         tables.update(map=map, suite=suite, demand=demand, verify=verify)
         tables.update(uncertain=uncertain)
-        # Statics of drums and of moved springings need no model: the tables choose, unless the caller does.
+        # Statics of drums and of moved springings need no model: the tables choose the model unless the caller gives one.
         return cls(tables, files=held, model=_model(chosen.model) if "model" in settings else None)
 
     def run(self, *, memory_gb: float = MEMORY_GB) -> History:

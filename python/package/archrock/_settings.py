@@ -1,4 +1,4 @@
-"""How a motion is simulated: the contents of a scenario except structure, ground and studies."""
+"""Settings of a simulation: the contents of a scenario except structure, ground and studies."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from ._tables import Tables
 
 
 class Settings(NamedTuple):
-    """Keyword arguments of everything that simulates, with the program's defaults."""
+    """Keyword arguments of all functions that simulate, with the defaults of the program."""
 
     model: str = "four_links"
     impact: str = "max_restitution"

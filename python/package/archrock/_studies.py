@@ -518,7 +518,7 @@ def _study(
 
 
 def _whole(of: Structure | Scenario, others: Mapping[str, Any]) -> bool:
-    """Whether a complete scenario is given, which allows no other arguments."""
+    """Whether the argument is a complete scenario, which allows no other arguments."""
     if isinstance(of, Structure):
         return False
     if not isinstance(of, Scenario):
@@ -532,7 +532,7 @@ def _whole(of: Structure | Scenario, others: Mapping[str, Any]) -> bool:
 
 
 def _complete(of: Structure | Scenario, ground: Ground | None, settings: Mapping[str, Any]) -> Scenario:
-    """The scenario that is given, or that of a structure with its ground and settings."""
+    """The given scenario, or the scenario of a structure with its ground and settings."""
     if _whole(of, {"ground": ground, **settings}):
         assert isinstance(of, Scenario)
         return of

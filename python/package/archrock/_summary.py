@@ -89,7 +89,7 @@ class Summarised:
         raise NotImplementedError
 
     def __getattr__(self, name: str) -> Any:
-        # No key begins so, and the attributes of an object that is being restored are not there yet.
+        # No key begins with an underscore, and an object that is being restored has no attributes yet.
         if not name.startswith("_"):
             numbers = self._numbers()
             if name in numbers:

@@ -1,4 +1,4 @@
-"""Warnings about unlikely numbers and about limits of the trust in results."""
+"""Warnings about unlikely numbers and about limits of the results."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Iterable
 
 
 class ArchrockWarning(UserWarning):
-    """A number is unlikely, or something limits the trust in a result.
+    """An input is unlikely, or a result is of limited reliability.
 
     ``warnings.simplefilter("ignore", ArchrockWarning)`` silences these warnings, ``"error"`` turns them into exceptions. Results keep
     them as ``summary["warnings"]``.
