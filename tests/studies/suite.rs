@@ -14,7 +14,7 @@ use archrock::dynamics::history::Outcome;
 use archrock::mechanics::sway::Sway;
 use archrock::output::Figure;
 use archrock::scenario::{Format, Layout, Measure, Scenario};
-use archrock::studies::ending::{Ending, PeakRotation, Steps, Verdict};
+use archrock::studies::ending::{Ending, Steps, Verdict};
 use archrock::studies::suite::Heading;
 use archrock::studies::suite::{CaseRow, SuiteFragility};
 use roxmltree::Document;
@@ -556,7 +556,7 @@ fn results(rows: &[(&str, f64, Option<Outcome>)]) -> SuiteFragility {
             outcome,
             outcome_time_s: 1.0,
             impacts: Some(0),
-            peak: PeakRotation::OverCritical(Some(0.5)),
+            peak_over_critical: Some(0.5),
             peak_rotation_rad: 0.1,
             energy_defect_ratio: 0.0,
             steps: None,
@@ -592,7 +592,7 @@ fn levels_of(records: &[(&str, &str)]) -> Vec<CaseRow> {
                     outcome,
                     outcome_time_s: 1.0,
                     impacts: Some(0),
-                    peak: PeakRotation::Rad(0.5),
+                    peak_over_critical: None,
                     peak_rotation_rad: 0.5,
                     energy_defect_ratio: 0.0,
                     steps: Some(Steps {

@@ -8,6 +8,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use archrock::Scenario;
+use archrock::studies::catalogue::Options;
 use archrock::studies::ensemble::histories::{Histories, HistoryAnswer};
 use archrock::studies::ensemble::matters::{total_indices, what_matters};
 use archrock::studies::ensemble::{Ensemble, SampleRow};
@@ -25,8 +26,7 @@ use crate::scenario::keys::{document, rows};
 const PULSE: &str = "[ground.rectangular]\namplitude_g = 0.3\nduration_s = 0.21\n";
 
 fn histories(scenario: &Scenario, threads: usize) -> Vec<SampleRow<HistoryAnswer>> {
-    let question = Histories::of(scenario).unwrap();
-    let study = Ensemble::new(scenario, Ok(question)).unwrap();
+    let study = Ensemble::<Histories>::of(scenario, &Options::default()).unwrap();
     let runner = Runner {
         threads: NonZeroUsize::new(threads),
     };
@@ -309,7 +309,10 @@ fn a_sample_is_the_scenario_with_its_values() {
             .unwrap();
         let went = row.answer.as_ref().unwrap();
         assert_eq!(went.ending.outcome, summary.outcome);
-        assert_eq!(went.peak_rotation_rad, summary.largest_rotation_rad());
+        assert_eq!(
+            went.ending.peak_rotation_rad,
+            summary.largest_rotation_rad()
+        );
     }
 }
 
@@ -973,8 +976,7 @@ fn what_cannot_be_uncertain_is_refused() {
         assert!(said.contains("s.toml:"), "{said}");
     }
     let nothing = parsed(&format!("{ARCH}{PULSE}"));
-    let question = Histories::of(&nothing).unwrap();
-    assert!(Ensemble::new(&nothing, Ok(question)).is_err());
+    assert!(Ensemble::<Histories>::of(&nothing, &Options::default()).is_err());
 }
 
 /// Every number that may have a fraction, in every kind of structure, ground and model, may be uncertain.

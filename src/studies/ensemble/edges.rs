@@ -12,6 +12,7 @@ use crate::output::svg::{Stroke, color};
 use crate::output::table::{column, csv, list};
 use crate::output::{Figure, OutputError};
 use crate::scenario::Scenario;
+use crate::studies::catalogue::Options;
 use crate::studies::statistics::{BAND, Share, ascending, fractile};
 use crate::studies::threshold::first_edge::FirstEdge;
 use crate::studies::threshold::{Factors, check, rounded};
@@ -58,17 +59,6 @@ impl FirstStrength {
     }
 }
 
-impl FirstEdges {
-    /// Makes the question for a scenario.
-    ///
-    /// # Errors
-    /// Returns the change that the scenario needs, in words.
-    pub fn of(scenario: &Scenario, factors: Factors) -> Result<Self, String> {
-        check(scenario)?;
-        Ok(Self { factors })
-    }
-}
-
 impl Question for FirstEdges {
     type Answer = FirstEdge;
 
@@ -81,6 +71,13 @@ impl Question for FirstEdges {
         "samples.csv",
         "uncertain.json",
     ];
+
+    fn of(scenario: &Scenario, options: &Options) -> Result<Self, String> {
+        check(scenario)?;
+        Ok(Self {
+            factors: options.factors,
+        })
+    }
 
     fn findings<'a>(
         &'a self,

@@ -19,6 +19,7 @@ use serde::de::DeserializeOwned;
 
 pub use self::report::Findings;
 pub use self::samples::{SampleRow, Samples};
+use super::catalogue::Options;
 pub use super::ending::NoAnswer;
 use super::results::{Reported, Results, Style};
 use super::runner::Study;
@@ -26,7 +27,7 @@ use crate::output::{Figure, OutputError};
 use crate::scenario::{Scenario, Uncertain};
 
 /// A question that is answered for every sample.
-pub trait Question: Sync {
+pub trait Question: Sized + Sync {
     /// The answer for a sample.
     type Answer: Serialize + DeserializeOwned + Send;
 
@@ -35,6 +36,12 @@ pub trait Question: Sync {
 
     /// Names of the files of the findings, the summary last.
     const FILES: &'static [&'static str];
+
+    /// Makes the question for a scenario.
+    ///
+    /// # Errors
+    /// Returns the change that the scenario needs, in words.
+    fn of(scenario: &Scenario, options: &Options) -> Result<Self, String>;
 
     /// Computes the findings from all answers.
     ///
@@ -79,9 +86,9 @@ impl<'a, Q: Question> Ensemble<'a, Q> {
     ///
     /// # Errors
     /// When the question does not fit the scenario, or the scenario has no table `[uncertain]`.
-    pub fn new(scenario: &'a Scenario, question: Result<Q, String>) -> Result<Self, String> {
+    pub fn of(scenario: &'a Scenario, options: &Options) -> Result<Self, String> {
         Ok(Self {
-            question: question?,
+            question: Q::of(scenario, options)?,
             uncertain: uncertain(scenario)?,
             scenario,
         })

@@ -73,11 +73,16 @@ impl CaseRow {
         self.result.as_ref().ok().map(Ending::verdict)
     }
 
+    /// Returns the ending of a complete history; `None` if there is no history, or the history is incomplete.
+    pub(super) fn complete(&self) -> Option<&Ending> {
+        let ending = self.result.as_ref().ok();
+        ending.filter(|ending| ending.verdict() != Verdict::Incomplete)
+    }
+
     /// Returns the verdict; `None` if there is no history, or the history is incomplete.
     #[must_use]
     pub fn known_verdict(&self) -> Option<Verdict> {
-        self.verdict()
-            .filter(|verdict| *verdict != Verdict::Incomplete)
+        self.complete().map(Ending::verdict)
     }
 
     /// Returns true if both cases apply one record with one sign.
@@ -89,12 +94,6 @@ impl CaseRow {
     pub(super) fn record_in_words(&self) -> String {
         let mirrored = if self.mirrored { " mirrored" } else { "" };
         format!("{}{mirrored}", self.record)
-    }
-
-    /// Returns true if the history of the case itself overturned, even if the verdict is uncertain.
-    fn overturned_itself(&self) -> bool {
-        let ending = self.result.as_ref();
-        ending.is_ok_and(|ending| matches!(ending.outcome, Outcome::Overturned(_)))
     }
 
     /// Returns true if the structure certainly survived, but had not come to rest.

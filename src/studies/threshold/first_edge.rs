@@ -51,7 +51,7 @@ impl FirstEdge {
             Ok(Verdict::Incomplete) => Err(NoAnswer::Incomplete),
             found => found.map_err(NoAnswer::Failed),
         };
-        let overturns = |strength| Ok(known(strength)? == Verdict::Overturns);
+        let overturns = |strength| known(strength).map(|found| found == Verdict::Overturns);
         let mut edge = Self::default();
         for strength in strengths.iter().copied() {
             let found = match known(strength) {
