@@ -9,8 +9,7 @@
 
 use std::ops::ControlFlow;
 
-use archrock::studies::ending::Ending;
-use archrock::{NoHistory, Outcome, OverturningMap, Runner, Scenario};
+use archrock::{Ending, NoHistory, Outcome, OverturningMap, Runner, Scenario};
 
 const SCENARIO: &str = r#"
 [arch]

@@ -224,7 +224,11 @@ impl StudyKind {
 
     const fn of_samples<Q: Question>() -> Self {
         Self::of::<Ensemble<'_, Q>>(|scenarios, options, style, rows| {
-            computed(Ensemble::<Q>::of(&scenarios[0], options), style, rows)
+            computed(
+                Ensemble::<Q>::of(&scenarios[0], options.factors),
+                style,
+                rows,
+            )
         })
     }
 

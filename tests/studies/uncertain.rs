@@ -8,12 +8,12 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use archrock::Scenario;
-use archrock::studies::catalogue::Options;
 use archrock::studies::ensemble::histories::{Histories, HistoryAnswer};
 use archrock::studies::ensemble::matters::{total_indices, what_matters};
 use archrock::studies::ensemble::{Ensemble, SampleRow};
 use archrock::studies::runner::Runner;
 use archrock::studies::statistics::Share;
+use archrock::studies::threshold::Factors;
 
 use crate::common::program::{
     archrock, done, files, names, printed, refused, scenarios, shown_commands,
@@ -26,7 +26,7 @@ use crate::scenario::keys::{document, rows};
 const PULSE: &str = "[ground.rectangular]\namplitude_g = 0.3\nduration_s = 0.21\n";
 
 fn histories(scenario: &Scenario, threads: usize) -> Vec<SampleRow<HistoryAnswer>> {
-    let study = Ensemble::<Histories>::of(scenario, &Options::default()).unwrap();
+    let study = Ensemble::<Histories>::of(scenario, Factors::default()).unwrap();
     let runner = Runner {
         threads: NonZeroUsize::new(threads),
     };
@@ -976,7 +976,7 @@ fn what_cannot_be_uncertain_is_refused() {
         assert!(said.contains("s.toml:"), "{said}");
     }
     let nothing = parsed(&format!("{ARCH}{PULSE}"));
-    assert!(Ensemble::<Histories>::of(&nothing, &Options::default()).is_err());
+    assert!(Ensemble::<Histories>::of(&nothing, Factors::default()).is_err());
 }
 
 /// Every number that may have a fraction, in every kind of structure, ground and model, may be uncertain.

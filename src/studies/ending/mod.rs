@@ -118,27 +118,30 @@ impl Ending {
     ///
     /// # Errors
     /// The reason why there is no history, or a number is not finite.
-    pub fn of(model: &dyn Model, ground: &GroundMotion, request: &Request) -> Result<Self, String> {
+    pub fn of(
+        model: &dyn Model,
+        ground: &GroundMotion,
+        request: &Request,
+    ) -> Result<Self, NoHistory> {
         Self::of_all(model, &[(ground.clone(), *request)]).remove(0)
     }
 
     /// Simulates several cases and returns their endings in order. A case without a history, or with a number that is not finite, has the reason
     /// instead.
     #[must_use]
-    pub fn of_all(model: &dyn Model, cases: &[Case]) -> Vec<Result<Self, String>> {
+    pub fn of_all(model: &dyn Model, cases: &[Case]) -> Vec<Result<Self, NoHistory>> {
         Self::checked(model, cases, Until::End)
     }
 
     /// Simulates several cases. A history stops once it can no longer overturn and has enough time to come to rest.
     #[must_use]
-    pub fn until_safe(model: &dyn Model, cases: &[Case]) -> Vec<Result<Self, String>> {
+    pub fn until_safe(model: &dyn Model, cases: &[Case]) -> Vec<Result<Self, NoHistory>> {
         Self::checked(model, cases, Until::Settled)
     }
 
-    fn checked(model: &dyn Model, cases: &[Case], until: Until) -> Vec<Result<Self, String>> {
+    fn checked(model: &dyn Model, cases: &[Case], until: Until) -> Vec<Result<Self, NoHistory>> {
         let ending = |checked: Checked| {
-            let summary = checked.own.map_err(|error| error.to_string())?;
-            Self::from_summary(&summary, checked.safe_from_s, checked.doubt)
+            Self::from_summary(&checked.own?, checked.safe_from_s, checked.doubt)
         };
         let checked = checked(model, cases, until).into_iter();
         checked.map(ending).collect()
@@ -152,7 +155,7 @@ impl Ending {
         summary: &Summary,
         safe_from_s: Option<f64>,
         uncertain: Option<String>,
-    ) -> Result<Self, String> {
+    ) -> Result<Self, NoHistory> {
         let ending = Self {
             outcome: summary.outcome,
             outcome_time_s: summary.outcome_time_s,
@@ -194,10 +197,12 @@ pub(super) fn answered<C, A, E>(
 }
 
 /// Returns an error for numbers that are not finite: they are a bug of the program.
-pub(super) fn check_finite(values: &[f64]) -> Result<(), String> {
+pub(super) fn check_finite(values: &[f64]) -> Result<(), NoHistory> {
     let wrong = "a result is not a finite number: please report the scenario";
     let are_finite = values.iter().all(|value| value.is_finite());
-    are_finite.then_some(()).ok_or_else(|| wrong.to_owned())
+    are_finite
+        .then_some(())
+        .ok_or_else(|| NoHistory::Failed(wrong.to_owned()))
 }
 
 /// Reasons why a case has no history.

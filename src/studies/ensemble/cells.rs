@@ -7,9 +7,10 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use super::{NoAnswer, SampleRow, Samples, uncertain};
 use crate::output::OutputError;
-use crate::scenario::{Axis, Scenario, Spacing, Uncertain, UncertainKey};
+use crate::scenario::{Axis, Scenario, Uncertain, UncertainKey};
 use crate::studies::ending::columns::OUTCOMES;
 use crate::studies::ending::{Ending, NoHistory};
+use crate::studies::map::picture::is_logarithmic;
 use crate::studies::map::{OverturningMap, described};
 use crate::studies::results::{Reported, Results, Style};
 use crate::studies::runner::Study;
@@ -266,8 +267,7 @@ impl CellsOfSamples<'_> {
     fn crossings(&self, counts: &[CellCounts]) -> Vec<Crossing> {
         let [_, y] = self.map.axes;
         let values = &self.map.values[1];
-        let logarithmic =
-            y.sequence.spacing() == Spacing::Logarithmic && values.iter().all(|value| *value > 0.0);
+        let logarithmic = is_logarithmic(y, values);
         let crossing = |column| Crossing::of(column, logarithmic);
         counts.chunks(values.len()).map(crossing).collect()
     }

@@ -12,7 +12,6 @@ use crate::output::svg::{Stroke, color};
 use crate::output::table::{column, csv, list};
 use crate::output::{Figure, OutputError};
 use crate::scenario::Scenario;
-use crate::studies::catalogue::Options;
 use crate::studies::statistics::{BAND, Share, ascending, fractile};
 use crate::studies::threshold::first_edge::FirstEdge;
 use crate::studies::threshold::{Factors, check, rounded};
@@ -72,11 +71,9 @@ impl Question for FirstEdges {
         "uncertain.json",
     ];
 
-    fn of(scenario: &Scenario, options: &Options) -> Result<Self, String> {
+    fn of(scenario: &Scenario, factors: Factors) -> Result<Self, String> {
         check(scenario)?;
-        Ok(Self {
-            factors: options.factors,
-        })
+        Ok(Self { factors })
     }
 
     fn findings<'a>(

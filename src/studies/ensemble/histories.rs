@@ -18,10 +18,10 @@ use crate::output::svg::{Stroke, color};
 use crate::output::table::{column, csv, list};
 use crate::output::{Figure, OutputError};
 use crate::scenario::{Motion, Scenario, Structure};
-use crate::studies::catalogue::Options;
 use crate::studies::ending::columns::{self, OUTCOMES};
-use crate::studies::ending::{Ending, Verdict};
+use crate::studies::ending::{Ending, NoHistory, Verdict};
 use crate::studies::statistics::{band, fractile, quantile};
+use crate::studies::threshold::Factors;
 
 /// Largest number of times at which samples are compared.
 const MOST_TIMES: usize = 300;
@@ -72,7 +72,7 @@ impl Question for Histories {
     ];
 
     /// Computes the history of the scenario itself.
-    fn of(scenario: &Scenario, _: &Options) -> Result<Self, String> {
+    fn of(scenario: &Scenario, _: Factors) -> Result<Self, String> {
         scenario.check_for_run()?;
         let model = scenario.model().map_err(|error| error.to_string())?;
         let request = scenario.request();
@@ -186,12 +186,11 @@ impl Histories {
             }
             ControlFlow::Continue(())
         });
-        let failed = |error: String| NoAnswer::Failed(error);
         let case = (ground.clone(), request);
         let own = vec![model.simulate(ground, &request, Some(&mut record))];
         let checked = repeated(model, &[case], own).remove(0);
-        let summary = checked.own.map_err(|error| failed(error.to_string()))?;
-        let ending = Ending::from_summary(&summary, None, checked.doubt).map_err(failed)?;
+        let summary = checked.own.map_err(NoHistory::from)?;
+        let ending = Ending::from_summary(&summary, None, checked.doubt)?;
         if ending.verdict() == Verdict::Incomplete {
             return Err(NoAnswer::Incomplete);
         }

@@ -19,10 +19,10 @@ use serde::de::DeserializeOwned;
 
 pub use self::report::Findings;
 pub use self::samples::{SampleRow, Samples};
-use super::catalogue::Options;
 pub use super::ending::NoAnswer;
 use super::results::{Reported, Results, Style};
 use super::runner::Study;
+use super::threshold::Factors;
 use crate::output::{Figure, OutputError};
 use crate::scenario::{Scenario, Uncertain};
 
@@ -37,11 +37,11 @@ pub trait Question: Sized + Sync {
     /// Names of the files of the findings, the summary last.
     const FILES: &'static [&'static str];
 
-    /// Makes the question for a scenario.
+    /// Makes the question for a scenario. `factors` are those on the ground motion that a threshold tries.
     ///
     /// # Errors
     /// Returns the change that the scenario needs, in words.
-    fn of(scenario: &Scenario, options: &Options) -> Result<Self, String>;
+    fn of(scenario: &Scenario, factors: Factors) -> Result<Self, String>;
 
     /// Computes the findings from all answers.
     ///
@@ -86,9 +86,9 @@ impl<'a, Q: Question> Ensemble<'a, Q> {
     ///
     /// # Errors
     /// When the question does not fit the scenario, or the scenario has no table `[uncertain]`.
-    pub fn of(scenario: &'a Scenario, options: &Options) -> Result<Self, String> {
+    pub fn of(scenario: &'a Scenario, factors: Factors) -> Result<Self, String> {
         Ok(Self {
-            question: Q::of(scenario, options)?,
+            question: Q::of(scenario, factors)?,
             uncertain: uncertain(scenario)?,
             scenario,
         })

@@ -13,12 +13,11 @@ use crate::output::svg::{Stroke, color};
 use crate::output::table::{column, csv};
 use crate::output::{Figure, OutputError};
 use crate::scenario::{Scenario, Suite, shown};
-use crate::studies::catalogue::Options;
 use crate::studies::ending::Ending;
 use crate::studies::statistics::{ascending, bootstrap, fractile, interval, shares_up_to};
 use crate::studies::suite::case;
 use crate::studies::threshold::first_edge::FirstEdge;
-use crate::studies::threshold::{rounded, rounded_range};
+use crate::studies::threshold::{Factors, rounded, rounded_range};
 
 /// Relative width to which bisection encloses an intensity: much less than the scatter between records.
 const WIDTH: f64 = 2e-3;
@@ -56,7 +55,7 @@ impl Question for Capacities {
         "uncertain.json",
     ];
 
-    fn of(scenario: &Scenario, _: &Options) -> Result<Self, String> {
+    fn of(scenario: &Scenario, _: Factors) -> Result<Self, String> {
         scenario.check_from_rest("suite")?;
         let suite = scenario.suite.as_ref();
         let suite = suite.ok_or("the scenario has no [suite], whose records shake the samples")?;

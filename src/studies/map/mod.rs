@@ -366,8 +366,12 @@ impl<'a> OverturningMap<'a> {
                 ended.map(|ending| Ok((ending?, None))).collect()
             }
         };
-        let known = |ended: Result<Ended, String>| ended.map_err(NoHistory::Failed);
-        ended.into_iter().map(known).collect()
+        // In a map, a cell whose ground falls has failed.
+        let failed = |reason: NoHistory| NoHistory::Failed(reason.to_string());
+        ended
+            .into_iter()
+            .map(|ended| ended.map_err(failed))
+            .collect()
     }
 }
 
@@ -375,12 +379,12 @@ impl<'a> OverturningMap<'a> {
 type Ended = (Ending, Option<Result<usize, String>>);
 
 /// Computes the endings of histories, and the number of outcomes of each with its repetitions. All histories run to their end.
-fn all_outcomes(model: &dyn Model, cases: &[Case]) -> Vec<Result<Ended, String>> {
+fn all_outcomes(model: &dyn Model, cases: &[Case]) -> Vec<Result<Ended, NoHistory>> {
     let repetitions = model.repetitions().into_iter();
     let repeated = repetitions.map(|Repetition { name, model }| (name, model.simulate_all(cases)));
     let repeated: Vec<(_, Vec<_>)> = repeated.collect();
     let outcomes = |(index, own): (usize, Result<Summary, SimulationError>)| {
-        let own = own.map_err(|error| error.to_string())?;
+        let own = own?;
         let (mut names, mut doubt, mut failed) = (vec![own.outcome.name()], None, None);
         for (name, repeated) in &repeated {
             let repeated = &repeated[index];

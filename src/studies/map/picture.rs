@@ -23,12 +23,16 @@ pub(super) fn kind_of(cell: &CellRow, style: Style) -> Kind {
     Kind::of_result(&cell.result)
 }
 
+/// Returns true if an axis with these values is logarithmic.
+pub(crate) fn is_logarithmic(axis: &Axis, values: &[f64]) -> bool {
+    axis.sequence.spacing() == Spacing::Logarithmic && values.iter().all(|value| *value > 0.0)
+}
+
 /// Returns the scale of an axis, and the edges of its cells halfway between the values. The values are multiplied by `factor`.
 fn scale(axis: &Axis, factor: f64, figure: Figure) -> (Scale, Vec<f64>) {
     let values: Vec<f64> = axis.sequence.values();
     let values: Vec<f64> = values.into_iter().map(|value| factor * value).collect();
-    let logarithmic =
-        axis.sequence.spacing() == Spacing::Logarithmic && values.iter().all(|value| *value > 0.0);
+    let logarithmic = is_logarithmic(axis, &values);
     let to = |value: f64| if logarithmic { value.ln() } else { value };
     let from = |place: f64| if logarithmic { place.exp() } else { place };
     let places: Vec<_> = values.iter().map(|value| to(*value)).collect();

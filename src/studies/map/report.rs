@@ -62,13 +62,7 @@ fn remarks(map: &OverturningMap<'_>, cells: &[CellRow]) -> Remarks {
     let mut remarks = Remarks::default();
     for cell in cells {
         let case = || format!("{x_name} {}, {y_name} {}", plain(cell.x), plain(cell.y));
-        match &cell.result {
-            Err(NoHistory::CannotStand | NoHistory::NotFourLinks) => {}
-            Err(NoHistory::GroundFalls(reason) | NoHistory::Failed(reason)) => {
-                remarks.note(case, Err(reason));
-            }
-            Ok(ending) => remarks.note(case, Ok(ending)),
-        }
+        remarks.note(case, &cell.result);
         if let Some(Err(reason)) = &cell.outcomes {
             remarks.failures.push(Remark::new(case(), reason));
         }

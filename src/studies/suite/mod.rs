@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use self::fragility::{Fragility, NoFit, Observation, by_intensity, fit};
 pub use self::heading::Heading;
 use self::strength::Strength;
-use super::ending::{Ending, Verdict, check_finite};
+use super::ending::{Ending, NoHistory, Verdict, check_finite};
 use super::remarks::warnings;
 use super::results::{Reported, Results, Style};
 use super::runner::Study;
@@ -37,7 +37,7 @@ pub struct CaseRow {
     /// Peak acceleration after scaling, in units of gravity.
     pub peak_g: f64,
     /// Outcome of the history, or the reason why there is none.
-    pub result: Result<Ending, String>,
+    pub result: Result<Ending, NoHistory>,
     /// The lowest overturning level between this level and the level below, by bisection. `None` unless this level overturns and the level below
     /// survives.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -228,7 +228,7 @@ pub(super) fn case(
 }
 
 /// Returns true if a history certainly overturns; `None` without a complete history.
-fn overturns_certainly(result: &Result<Ending, String>) -> Option<bool> {
+fn overturns_certainly(result: &Result<Ending, NoHistory>) -> Option<bool> {
     let verdict = result.as_ref().ok()?.verdict();
     (verdict != Verdict::Incomplete).then_some(verdict == Verdict::Overturns)
 }

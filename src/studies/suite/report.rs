@@ -167,7 +167,7 @@ impl Heading {
         let mut remarks = Remarks::default();
         for case in &results.cases {
             let name = || format!("{}, {}", case.record_in_words(), self.level(case));
-            remarks.note(name, case.result.as_ref().map_err(String::as_str));
+            remarks.note(name, &case.result);
         }
         remarks
     }

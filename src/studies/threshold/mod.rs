@@ -28,8 +28,6 @@ use super::runner::{Progress, Runner, Watch};
 use crate::bisection::{Width, next_middles, try_bisect};
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::model::{Model, Request, SimulationError};
-use crate::dynamics::repeatability::{Checked, checked};
-use crate::dynamics::until::Until;
 use crate::output::Figure;
 use crate::scenario::Scenario;
 
@@ -263,14 +261,7 @@ impl Shaking<'_> {
             let ground = self.ground.scaled(*factor);
             Ok((ground.map_err(SimulationError::from)?, *self.request))
         });
-        let endings = answered(cases, |cases| {
-            let checked = checked(self.models[model].1, cases, Until::End).into_iter();
-            let ending = |case: Checked| {
-                let ending = Ending::from_summary(&case.own?, None, case.doubt);
-                ending.map_err(NoHistory::Failed)
-            };
-            checked.map(ending).collect()
-        });
+        let endings = answered(cases, |cases| Ending::of_all(self.models[model].1, cases));
         let samples = factors.iter().copied().zip(endings);
         let sample = |(factor, result)| FactorSample { factor, result };
         samples.map(sample).collect()

@@ -121,7 +121,7 @@ struct HistorySummary {
     /// Number of impacts.
     impacts: Option<usize>,
     /// The time of the outcome, in seconds.
-    outcome_time_s: Option<f64>,
+    outcome_time_s: f64,
     /// Largest rotation over the critical rotation; null if the critical rotation is unknown.
     peak_rotation_over_critical: Option<f64>,
     /// Largest rotation of any body, in radians.
@@ -167,9 +167,12 @@ fn table(models: &[ModelSummary<'_>]) -> Result<Vec<u8>, OutputError> {
     });
     let mut columns = vec![column("model", |row: &Row<'_>| row.0.to_owned())];
     columns.extend(fields!(|row: &Row<'_>| row.1 => factor, outcome));
+    columns.extend(fields!(|row: &Row<'_>| row.1.history? => overturning_sway, impacts));
+    columns.push(column("outcome_time_s", |row: &Row<'_>| {
+        Some(row.1.history?.outcome_time_s)
+    }));
     columns.extend(fields!(
-        |row: &Row<'_>| row.1.history? => overturning_sway, impacts, outcome_time_s, peak_rotation_over_critical,
-        peak_rotation_rad
+        |row: &Row<'_>| row.1.history? => peak_rotation_over_critical, peak_rotation_rad
     ));
     csv(columns, &rows.collect::<Vec<_>>())
 }
@@ -258,7 +261,7 @@ impl SampleSummary {
             history: ending.ok().map(|ending| HistorySummary {
                 overturning_sway: ending.overturning_sway(),
                 impacts: ending.impacts,
-                outcome_time_s: Some(ending.outcome_time_s),
+                outcome_time_s: ending.outcome_time_s,
                 peak_rotation_over_critical: ending.peak_over_critical,
                 peak_rotation_rad: Some(ending.peak_rotation_rad),
             }),
