@@ -9,7 +9,7 @@
 
 use std::ops::ControlFlow;
 
-use archrock::{CellResult, Outcome, OverturningMap, Runner, Scenario};
+use archrock::{Ending, NoHistory, Outcome, OverturningMap, Runner, Scenario};
 
 const SCENARIO: &str = r#"
 [arch]
@@ -45,14 +45,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-fn symbol(result: &CellResult) -> char {
+fn symbol(result: &Result<Ending, NoHistory>) -> char {
     match result {
-        CellResult::Ended(ending) => match (ending.outcome, ending.impacts) {
+        Ok(ending) => match (ending.outcome, ending.impacts) {
             (Outcome::Overturned(_), Some(0)) => '#',
             (Outcome::Overturned(_), _) => '+',
             (Outcome::NeverMoved, _) => ' ',
             _ => '.',
         },
-        _ => '?',
+        Err(_) => '?',
     }
 }

@@ -6,11 +6,11 @@ use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
 use super::capacity::{self, capacity};
-use super::ensemble::Ensemble;
 use super::ensemble::cells::CellsOfSamples;
 use super::ensemble::edges::FirstEdges;
 use super::ensemble::histories::Histories;
 use super::ensemble::records::Capacities;
+use super::ensemble::{Ensemble, Question};
 use super::map::OverturningMap;
 use super::part::{self, PartFile};
 use super::results::{ReportedStudy, Results, StudyError, Style};
@@ -180,23 +180,11 @@ pub const VERIFY: StudyKind = StudyKind {
     },
 };
 /// Endings and courses of histories for samples of the uncertain numbers.
-pub const UNCERTAIN: StudyKind =
-    StudyKind::of::<Ensemble<'_, Histories>>(|scenarios, _, style, rows| {
-        let question = Histories::of(&scenarios[0]);
-        computed(Ensemble::new(&scenarios[0], question), style, rows)
-    });
+pub const UNCERTAIN: StudyKind = StudyKind::of_samples::<Histories>();
 /// The factor from which samples of the uncertain numbers overturn.
-pub const UNCERTAIN_THRESHOLD: StudyKind =
-    StudyKind::of::<Ensemble<'_, FirstEdges>>(|scenarios, options, style, rows| {
-        let question = FirstEdges::of(&scenarios[0], options.factors);
-        computed(Ensemble::new(&scenarios[0], question), style, rows)
-    });
+pub const UNCERTAIN_THRESHOLD: StudyKind = StudyKind::of_samples::<FirstEdges>();
 /// The records that overturn samples of the uncertain numbers.
-pub const UNCERTAIN_SUITE: StudyKind =
-    StudyKind::of::<Ensemble<'_, Capacities>>(|scenarios, _, style, rows| {
-        let question = Capacities::of(&scenarios[0]);
-        computed(Ensemble::new(&scenarios[0], question), style, rows)
-    });
+pub const UNCERTAIN_SUITE: StudyKind = StudyKind::of_samples::<Capacities>();
 /// The probability that pulses overturn samples of the uncertain numbers, over two quantities.
 pub const UNCERTAIN_MAP: StudyKind =
     StudyKind::of::<CellsOfSamples<'_>>(|scenarios, _, style, rows| {
@@ -237,6 +225,16 @@ impl StudyKind {
             has_parts: true,
             run,
         }
+    }
+
+    const fn of_samples<Q: Question>() -> Self {
+        Self::of::<Ensemble<'_, Q>>(|scenarios, options, style, rows| {
+            computed(
+                Ensemble::<Q>::of(&scenarios[0], options.factors),
+                style,
+                rows,
+            )
+        })
     }
 
     /// Computes the study of scenarios that differ only in their models of motion. A run and a threshold take several; the others use the first.

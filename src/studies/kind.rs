@@ -1,15 +1,9 @@
 //! Kinds of outcomes and their colours, the same in all pictures.
 
-use super::ending::columns::{FAILED, UNCERTAIN};
+use super::ending::columns::{CANNOT_STAND, FAILED, GROUND_FALLS, NOT_FOUR_LINKS, UNCERTAIN};
+use super::ending::{Ending, NoHistory, outcome_name};
 use crate::output::sheet::{Key, Sign};
 use crate::output::svg::color;
-
-/// Outcome of an arch that cannot carry its own weight.
-pub(crate) const CANNOT_STAND: &str = "cannot_stand";
-/// Outcome of an arch that is too thick to rock as four links.
-pub(crate) const NOT_FOUR_LINKS: &str = "not_four_links";
-/// Outcome if the ground accelerates downwards as fast as a free fall.
-pub(crate) const GROUND_FALLS: &str = "ground_falls";
 
 /// Kind of outcome, which sets the colour of a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,6 +59,13 @@ impl Kind {
         kind(FAILED, "failed", color::BLACK),
     ];
 
+    /// The kind of a case.
+    pub(crate) fn of_result(result: &Result<Ending, NoHistory>) -> Self {
+        let ending = result.as_ref().ok();
+        let impacts = ending.and_then(Ending::impacts_of_all_hinges);
+        Self::of(outcome_name(result), impacts)
+    }
+
     /// The kind of an outcome. It depends on the number of impacts before overturning if all hinges close at once;
     /// landings of free hinges come in cascades, and their number does not matter.
     pub(crate) fn of(outcome: &str, impacts: Option<usize>) -> Self {
@@ -80,9 +81,9 @@ impl Kind {
     }
 }
 
-/// The legend entries of these kinds.
-pub(crate) fn keys(kinds: &[Kind]) -> Vec<Key> {
-    let present = Kind::ALL.into_iter().filter(|kind| kinds.contains(kind));
+/// The legend entries of the kinds of a palette that are present.
+pub(crate) fn keys(palette: &[Kind], kinds: &[Kind]) -> Vec<Key> {
+    let present = palette.iter().filter(|kind| kinds.contains(kind));
     present
         .map(|kind| Key::new(kind.label, Sign::Band(kind.fill, 1.0)))
         .collect()

@@ -166,24 +166,20 @@ impl Header {
         let differ = |what: &str, here: &str, there: &str| {
             (here != there).then(|| format!("{what} {there:?} instead of {here:?}"))
         };
-        differ("the study", &self.study, &other.study)
-            .or_else(|| differ("the program version", &self.version, &other.version))
-            .or_else(|| self.other_input(other))
-            .or_else(|| {
-                let mut lines = self.scenario.lines().zip(other.scenario.lines());
-                let (here, there) = lines
-                    .find(|(here, there)| here != there)
-                    .unwrap_or((&self.scenario, &other.scenario));
-                differ("in the scenario", here, there)
-            })
-            .or_else(|| {
-                let [here, there] = [self, other].map(|header| header.options.to_string());
-                differ("the options", &here, &there)
-            })
-            .or_else(|| {
-                let (here, there) = (self.cases, other.cases);
-                (here != there).then(|| format!("{there} cases instead of {here}"))
-            })
+        let mut lines = self.scenario.lines().zip(other.scenario.lines());
+        let lines = lines.find(|(here, there)| here != there);
+        let lines = lines.unwrap_or((&self.scenario, &other.scenario));
+        let [options, other_options] = [self, other].map(|header| header.options.to_string());
+        let (here, there) = (self.cases, other.cases);
+        let all = [
+            differ("the study", &self.study, &other.study),
+            differ("the program version", &self.version, &other.version),
+            self.other_input(other),
+            differ("in the scenario", lines.0, lines.1),
+            differ("the options", &options, &other_options),
+            (here != there).then(|| format!("{there} cases instead of {here}")),
+        ];
+        all.into_iter().flatten().next()
     }
 }
 

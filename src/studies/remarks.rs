@@ -6,7 +6,7 @@ use std::fmt;
 use serde::Serialize;
 use serde_json::Value;
 
-use super::ending::{Ending, Verdict};
+use super::ending::{Ending, NoHistory, Verdict};
 use crate::dynamics::history::Outcome;
 use crate::scenario::{Hinges, Scenario};
 
@@ -72,16 +72,20 @@ impl StepRange {
 }
 
 impl Remarks {
-    /// Adds the ending of a case, or the reason of its failure.
-    pub(crate) fn note(&mut self, case: impl Fn() -> String, ended: Result<&Ending, &str>) {
-        let ending = match ended {
-            Ok(ending) => ending,
-            Err(reason) => return self.failures.push(Remark::new(case(), reason)),
-        };
-        if let Some(reason) = &ending.uncertain {
-            self.uncertain.push(Remark::new(case(), reason));
+    /// Adds the ending of a case, or the reason of its failure. A structure that cannot stand, or is no mechanism of four links, is no failure.
+    pub(crate) fn note(&mut self, case: impl Fn() -> String, result: &Result<Ending, NoHistory>) {
+        match result {
+            Ok(ending) => {
+                let uncertain = ending.uncertain.as_ref();
+                let uncertain = uncertain.map(|reason| Remark::new(case(), reason));
+                self.uncertain.extend(uncertain);
+                self.note_history(ending);
+            }
+            Err(NoHistory::CannotStand | NoHistory::NotFourLinks) => {}
+            Err(NoHistory::GroundFalls(reason) | NoHistory::Failed(reason)) => {
+                self.failures.push(Remark::new(case(), reason));
+            }
         }
-        self.note_history(ending);
     }
 
     /// Counts a history with or without a verdict, and adds the lengths of its steps.

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 /// Number of standard deviations on each side of the mean that enclose 95 % of a normal distribution.
-const TWO_SIDED_95: f64 = 1.959_963_984_540_054;
+pub(super) const TWO_SIDED_95: f64 = 1.959_963_984_540_054;
 
 /// Number of samples with a property, and the estimated share among all possible samples.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

@@ -369,7 +369,7 @@ fn maps_have_the_outcomes_of_runs() {
             }
             let peak_rad = whole.largest_rotation_rad();
             assert_eq!(
-                (same_steps.outcome, same_steps.peak.rad()),
+                (same_steps.outcome, same_steps.peak_of_row_rad()),
                 (whole.outcome, Some(peak_rad))
             );
             if let Some(safe_from_s) = same_steps.safe_from_s {
@@ -383,7 +383,7 @@ fn maps_have_the_outcomes_of_runs() {
                 continue;
             }
             contradicted += usize::from(cell.verdict() != same_steps.verdict());
-            let other = (cell.peak.rad().unwrap() / peak_rad - 1.0).abs() > 0.01;
+            let other = (cell.peak_of_row_rad().unwrap() / peak_rad - 1.0).abs() > 0.01;
             if cell.outcome == Outcome::Rest {
                 peaks += 1;
                 other_peaks += usize::from(other);
@@ -479,7 +479,7 @@ fn maps_of_elastic_joints_have_the_outcomes_of_runs() {
             let cell = Ending::until_safe(&of_maps, &[(ground.clone(), request)]).remove(0);
             let (whole, cell) = (whole.unwrap(), cell.unwrap());
             let falls = |outcome: Outcome| matches!(outcome, Outcome::Overturned(_));
-            assert_eq!(cell.peak.rad(), Some(whole.largest_rotation_rad()));
+            assert_eq!(cell.peak_of_row_rad(), Some(whole.largest_rotation_rad()));
             assert_eq!(falls(cell.outcome), falls(whole.outcome));
             if cell.safe_from_s.is_some() {
                 early += 1;

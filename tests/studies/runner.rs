@@ -10,7 +10,8 @@ use std::time::Duration;
 
 use crate::common::parsed;
 use crate::common::program::{archrock, stderr};
-use archrock::studies::map::{CellResult, CellRow, OverturningMap};
+use archrock::studies::ending::NoHistory;
+use archrock::studies::map::{CellRow, OverturningMap};
 use archrock::studies::part::{self, Header, PartErrorKind, PartFile, Shard};
 use archrock::studies::runner::{Progress, Runner, RunnerError, Study, Task};
 
@@ -201,7 +202,7 @@ fn failed_cells_keep_their_reason() {
     let study = OverturningMap::of(&scenario).unwrap();
     let mut rows = Runner::default().rows(&study, go_on).unwrap();
     for (index, reason) in [(1, "the first reason"), (4, "another")] {
-        rows[index].result = CellResult::Failed(reason.to_owned());
+        rows[index].result = Err(NoHistory::Failed(reason.to_owned()));
     }
     let path = folder.path().join("map.part");
     let header = Header::new(&study, Shard::WHOLE);

@@ -14,7 +14,7 @@ use archrock::dynamics::history::Outcome;
 use archrock::mechanics::sway::Sway;
 use archrock::output::Figure;
 use archrock::scenario::{Format, Layout, Measure, Scenario};
-use archrock::studies::ending::{Ending, PeakRotation, Steps, Verdict};
+use archrock::studies::ending::{Ending, NoHistory, Steps, Verdict};
 use archrock::studies::suite::Heading;
 use archrock::studies::suite::{CaseRow, SuiteFragility};
 use roxmltree::Document;
@@ -552,17 +552,19 @@ fn results(rows: &[(&str, f64, Option<Outcome>)]) -> SuiteFragility {
         edge: None,
         edge_at_most: false,
         strength: None,
-        result: outcome.ok_or("it broke".to_owned()).map(|outcome| Ending {
-            outcome,
-            outcome_time_s: 1.0,
-            impacts: Some(0),
-            peak: PeakRotation::OverCritical(Some(0.5)),
-            peak_rotation_rad: 0.1,
-            energy_defect_ratio: 0.0,
-            steps: None,
-            safe_from_s: None,
-            uncertain: None,
-        }),
+        result: outcome
+            .ok_or(NoHistory::Failed("it broke".to_owned()))
+            .map(|outcome| Ending {
+                outcome,
+                outcome_time_s: 1.0,
+                impacts: Some(0),
+                peak_over_critical: Some(0.5),
+                peak_rotation_rad: 0.1,
+                energy_defect_ratio: 0.0,
+                steps: None,
+                safe_from_s: None,
+                uncertain: None,
+            }),
     });
     SuiteFragility::new(Measure::Scale, rows.collect())
 }
@@ -592,7 +594,7 @@ fn levels_of(records: &[(&str, &str)]) -> Vec<CaseRow> {
                     outcome,
                     outcome_time_s: 1.0,
                     impacts: Some(0),
-                    peak: PeakRotation::Rad(0.5),
+                    peak_over_critical: None,
                     peak_rotation_rad: 0.5,
                     energy_defect_ratio: 0.0,
                     steps: Some(Steps {

@@ -17,7 +17,7 @@ use archrock::dynamics::history::{Cost, Details};
 use archrock::dynamics::model::Repetition;
 use archrock::internals::hybrid::engine::EngineError;
 use archrock::output::Figure;
-use archrock::studies::ending::Verdict;
+use archrock::studies::ending::{Verdict, outcome_name};
 use archrock::studies::results::StudyError;
 use archrock::studies::runner::{Progress, Runner, RunnerError};
 use archrock::studies::threshold::picture::draw;
@@ -172,7 +172,7 @@ fn factors_with_free_falling_ground_are_reported() {
     let threshold = found(&column, &ground, 20.0, &factors(0.5, 10.0, 0.1));
     for sample in &threshold.samples {
         assert_eq!(
-            sample.outcome_name() == "ground_falls",
+            outcome_name(&sample.result) == "ground_falls",
             sample.factor >= 5.0,
             "{}",
             sample.factor
@@ -405,7 +405,7 @@ fn failed_histories_keep_their_reasons_and_stop_no_others() {
     assert!(
         failed
             .iter()
-            .all(|sample| sample.outcome_name() == "failed")
+            .all(|sample| outcome_name(&sample.result) == "failed")
     );
     assert!(
         failed[0]

@@ -13,6 +13,7 @@ use archrock::studies::ensemble::matters::{total_indices, what_matters};
 use archrock::studies::ensemble::{Ensemble, SampleRow};
 use archrock::studies::runner::Runner;
 use archrock::studies::statistics::Share;
+use archrock::studies::threshold::Factors;
 
 use crate::common::program::{
     archrock, done, files, names, printed, refused, scenarios, shown_commands,
@@ -25,8 +26,7 @@ use crate::scenario::keys::{document, rows};
 const PULSE: &str = "[ground.rectangular]\namplitude_g = 0.3\nduration_s = 0.21\n";
 
 fn histories(scenario: &Scenario, threads: usize) -> Vec<SampleRow<HistoryAnswer>> {
-    let question = Histories::of(scenario).unwrap();
-    let study = Ensemble::new(scenario, Ok(question)).unwrap();
+    let study = Ensemble::<Histories>::of(scenario, Factors::default()).unwrap();
     let runner = Runner {
         threads: NonZeroUsize::new(threads),
     };
@@ -309,7 +309,10 @@ fn a_sample_is_the_scenario_with_its_values() {
             .unwrap();
         let went = row.answer.as_ref().unwrap();
         assert_eq!(went.ending.outcome, summary.outcome);
-        assert_eq!(went.peak_rotation_rad, summary.largest_rotation_rad());
+        assert_eq!(
+            went.ending.peak_rotation_rad,
+            summary.largest_rotation_rad()
+        );
     }
 }
 
@@ -973,8 +976,7 @@ fn keys_that_cannot_be_uncertain_are_refused() {
         assert!(said.contains("s.toml:"), "{said}");
     }
     let nothing = parsed(&format!("{ARCH}{PULSE}"));
-    let question = Histories::of(&nothing).unwrap();
-    assert!(Ensemble::new(&nothing, Ok(question)).is_err());
+    assert!(Ensemble::<Histories>::of(&nothing, Factors::default()).is_err());
 }
 
 /// Every number that may be fractional can be uncertain, in every kind of structure, ground and model.

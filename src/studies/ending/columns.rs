@@ -1,6 +1,6 @@
 //! The endings of histories as columns of a table.
 
-use super::{Ending, Outcome};
+use super::{Ending, NoHistory, Outcome};
 use crate::output::table::{Column, column};
 
 /// Outcome of a case whose history could not be computed.
@@ -17,6 +17,33 @@ pub(crate) const OUTCOMES: [&str; 6] = [
     "vibrates",
     "still_rocking",
 ];
+
+/// Outcome of an arch that cannot carry its own weight.
+pub(crate) const CANNOT_STAND: &str = "cannot_stand";
+/// Outcome of an arch that is too thick to rock as four links.
+pub(crate) const NOT_FOUR_LINKS: &str = "not_four_links";
+/// Outcome if the ground accelerates downwards as fast as a free fall.
+pub(crate) const GROUND_FALLS: &str = "ground_falls";
+
+impl NoHistory {
+    /// Returns the name of the reason in tables, in place of an outcome.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::CannotStand => CANNOT_STAND,
+            Self::NotFourLinks => NOT_FOUR_LINKS,
+            Self::GroundFalls(_) => GROUND_FALLS,
+            Self::Failed(_) => FAILED,
+        }
+    }
+}
+
+/// Returns the outcome of a case by its name in tables, or the reason why the case has no history.
+#[must_use]
+pub fn outcome_name(result: &Result<Ending, NoHistory>) -> &'static str {
+    let ending = result.as_ref();
+    ending.map_or_else(NoHistory::name, Ending::outcome_name)
+}
 
 impl Ending {
     /// Returns the name of the outcome of a case.
@@ -57,26 +84,20 @@ pub(crate) fn columns<'a, R: 'a>(free_hinges: bool, ended: Ended<R>) -> Vec<Colu
                 .filter(|one| one.overturning_sway().is_some());
             overturned?.impacts
         }),
-        column("outcome_time_s", move |row| {
-            ended(row).ok()?.known_time_s().map(number)
-        }),
+        column("outcome_time_s", move |row| ended(row).ok()?.known_time_s()),
         column("peak_rotation_over_critical", move |row| {
-            ended(row).ok()?.peak.over_critical().map(number)
+            ended(row).ok()?.peak_over_critical
         }),
         column("energy_defect_ratio", move |row| {
-            Some(number(ended(row).ok()?.energy_defect_ratio))
+            Some(ended(row).ok()?.energy_defect_ratio)
         }),
     ];
     if free_hinges {
-        let peak_rad = move |row: &R| ended(row).ok()?.peak.rad().map(number);
-        columns.push(column("peak_rotation_rad", peak_rad));
+        columns.push(column("peak_rotation_rad", move |row| {
+            ended(row).ok()?.peak_of_row_rad()
+        }));
     }
     columns
-}
-
-/// Returns a number with the fewest digits that read back as the same `f64`.
-pub(crate) fn number(value: f64) -> String {
-    format!("{value:?}")
 }
 
 /// Returns a truth value for the cell of a table.

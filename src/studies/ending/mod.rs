@@ -5,10 +5,12 @@ pub(crate) mod columns;
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
+use thiserror::Error;
 
+pub use self::columns::outcome_name;
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::{Outcome, Summary};
-use crate::dynamics::model::{Case, Model, Request};
+use crate::dynamics::model::{Case, Model, Request, SimulationError};
 pub use crate::dynamics::repeatability::Verdict;
 use crate::dynamics::repeatability::{CheckedHistory, checked};
 use crate::dynamics::until::EndCondition;
@@ -38,54 +40,16 @@ pub struct Ending {
     pub impacts: Option<usize>,
     /// Largest error of the energy balance, over the energy barrier of a mechanism, or over weight times size of a row of blocks.
     pub energy_defect_ratio: f64,
-    /// The largest rotation.
-    pub peak: PeakRotation,
+    /// Largest rotation over that at the unstable equilibrium; `None` if that is unknown, or for a row of blocks.
+    pub peak_over_critical: Option<f64>,
     /// Largest rotation of any body, in radians, for every model.
-    #[serde(default)]
     pub peak_rotation_rad: f64,
-    /// Time steps of the computation; `None` for models whose steps follow from a tolerance.
+    /// Time steps of the computation of a row of blocks; `None` for mechanisms, whose steps follow from a tolerance.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub steps: Option<Steps>,
     /// Reason why overturning is uncertain: the outcome, and the other outcome of a repetition. `None` if the verdict is certain.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub uncertain: Option<Box<str>>,
-}
-
-/// The largest rotation, in the measure of the model of motion.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum PeakRotation {
-    /// Models with one mechanism at a time: relative to the rotation at the unstable equilibrium; `None` if that is unknown.
-    OverCritical(Option<f64>),
-    /// Rows of blocks, with free hinges or elastic joints: the largest rotation of a block, in radians.
-    Rad(f64),
-}
-
-impl PeakRotation {
-    fn of(summary: &Summary) -> Self {
-        match summary.row() {
-            Some(_) => Self::Rad(summary.largest_rotation_rad()),
-            None => Self::OverCritical(summary.peak_over_critical()),
-        }
-    }
-
-    /// Returns the rotation relative to that at the unstable equilibrium; `None` if that is unknown, or for a row of blocks.
-    #[must_use]
-    pub const fn over_critical(self) -> Option<f64> {
-        match self {
-            Self::OverCritical(ratio) => ratio,
-            Self::Rad(_) => None,
-        }
-    }
-
-    /// Returns the rotation of a row of blocks, in radians; `None` for mechanisms.
-    #[must_use]
-    pub const fn rad(self) -> Option<f64> {
-        match self {
-            Self::OverCritical(_) => None,
-            Self::Rad(rotation_rad) => Some(rotation_rad),
-        }
-    }
 }
 
 impl Ending {
@@ -108,8 +72,28 @@ impl Ending {
     /// Returns the number of impacts at which all hinges close together; `None` for a row of blocks, whose hinges close one by one.
     #[must_use]
     pub fn impacts_of_all_hinges(&self) -> Option<usize> {
-        let is_of_all = matches!(self.peak, PeakRotation::OverCritical(_));
-        self.impacts.filter(|_| is_of_all)
+        self.impacts.filter(|_| self.steps.is_none())
+    }
+
+    /// Returns the largest rotation of a row of blocks, in radians; `None` for mechanisms.
+    #[must_use]
+    pub fn peak_of_row_rad(&self) -> Option<f64> {
+        self.steps.map(|_| self.peak_rotation_rad)
+    }
+
+    /// Returns true if the history itself overturned, even if the verdict is uncertain.
+    #[must_use]
+    pub const fn overturned_itself(&self) -> bool {
+        matches!(self.outcome, Outcome::Overturned(_))
+    }
+
+    /// Returns the largest rotation of any body, in radians; infinite if the history overturned.
+    #[must_use]
+    pub const fn peak_or_infinite_rad(&self) -> f64 {
+        match self.overturned_itself() {
+            true => f64::INFINITY,
+            false => self.peak_rotation_rad,
+        }
     }
 
     /// Returns the verdict on overturning.
@@ -134,20 +118,24 @@ impl Ending {
     ///
     /// # Errors
     /// The reason why there is no history, or a number is not finite.
-    pub fn of(model: &dyn Model, ground: &GroundMotion, request: &Request) -> Result<Self, String> {
+    pub fn of(
+        model: &dyn Model,
+        ground: &GroundMotion,
+        request: &Request,
+    ) -> Result<Self, NoHistory> {
         Self::of_all(model, &[(ground.clone(), *request)]).remove(0)
     }
 
     /// Simulates several cases and returns their endings in order. A case without a history, or with a number that is not finite, has the reason
     /// instead.
     #[must_use]
-    pub fn of_all(model: &dyn Model, cases: &[Case]) -> Vec<Result<Self, String>> {
+    pub fn of_all(model: &dyn Model, cases: &[Case]) -> Vec<Result<Self, NoHistory>> {
         Self::checked(model, cases, EndCondition::End)
     }
 
     /// Simulates several cases. A history stops once it can no longer overturn and has enough time to come to rest.
     #[must_use]
-    pub fn until_safe(model: &dyn Model, cases: &[Case]) -> Vec<Result<Self, String>> {
+    pub fn until_safe(model: &dyn Model, cases: &[Case]) -> Vec<Result<Self, NoHistory>> {
         Self::checked(model, cases, EndCondition::Settled)
     }
 
@@ -155,10 +143,9 @@ impl Ending {
         model: &dyn Model,
         cases: &[Case],
         until: EndCondition,
-    ) -> Vec<Result<Self, String>> {
+    ) -> Vec<Result<Self, NoHistory>> {
         let ending = |checked: CheckedHistory| {
-            let summary = checked.own.map_err(|error| error.to_string())?;
-            Self::from_summary(&summary, checked.safe_from_s, checked.doubt)
+            Self::from_summary(&checked.own?, checked.safe_from_s, checked.doubt)
         };
         let checked = checked(model, cases, until).into_iter();
         checked.map(ending).collect()
@@ -172,14 +159,18 @@ impl Ending {
         summary: &Summary,
         safe_from_s: Option<f64>,
         uncertain: Option<String>,
-    ) -> Result<Self, String> {
+    ) -> Result<Self, NoHistory> {
         let ending = Self {
             outcome: summary.outcome,
             outcome_time_s: summary.outcome_time_s,
             safe_from_s,
             impacts: summary.known_impacts(),
             energy_defect_ratio: summary.energy_defect_ratio,
-            peak: PeakRotation::of(summary),
+            // A row has no critical rotation.
+            peak_over_critical: match summary.row() {
+                Some(_) => None,
+                None => summary.peak_over_critical(),
+            },
             peak_rotation_rad: summary.largest_rotation_rad(),
             steps: summary.row().map(|row| Steps {
                 longest_s: row.longest_step_s,
@@ -187,8 +178,8 @@ impl Ending {
             }),
             uncertain: uncertain.map(String::into_boxed_str),
         };
-        let peak = ending.peak.over_critical().or(ending.peak.rad());
-        check_finite(&[ending.peak_rotation_rad, peak.unwrap_or(0.0)])?;
+        let peak = ending.peak_over_critical.unwrap_or(0.0);
+        check_finite(&[ending.peak_rotation_rad, peak])?;
         check_finite(&[ending.outcome_time_s, ending.energy_defect_ratio])?;
         Ok(ending)
     }
@@ -210,10 +201,40 @@ pub(super) fn answered<C, A, E>(
 }
 
 /// Returns an error for numbers that are not finite: they are a bug of the program.
-pub(super) fn check_finite(values: &[f64]) -> Result<(), String> {
+pub(super) fn check_finite(values: &[f64]) -> Result<(), NoHistory> {
     let wrong = "a result is not a finite number: please report the scenario";
     let are_finite = values.iter().all(|value| value.is_finite());
-    are_finite.then_some(()).ok_or_else(|| wrong.to_owned())
+    are_finite
+        .then_some(())
+        .ok_or_else(|| NoHistory::Failed(wrong.to_owned()))
+}
+
+/// Reasons why a case has no history.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Error)]
+#[serde(rename_all = "snake_case")]
+pub enum NoHistory {
+    /// The structure cannot carry its own weight.
+    #[error("it cannot stand")]
+    CannotStand,
+    /// The arch is too thick for four links.
+    #[error("it is too thick for four links")]
+    NotFourLinks,
+    /// The ground accelerates downwards as fast as a free fall, which the model does not cover.
+    #[error("{0}")]
+    GroundFalls(String),
+    /// The history could not be computed.
+    #[error("{0}")]
+    Failed(String),
+}
+
+impl From<SimulationError> for NoHistory {
+    fn from(error: SimulationError) -> Self {
+        let kind = match error {
+            SimulationError::FreeFall(_) => Self::GroundFalls,
+            _ => Self::Failed,
+        };
+        kind(error.to_string())
+    }
 }
 
 /// Reasons why a sample has no answer.
@@ -226,6 +247,16 @@ pub enum NoAnswer {
     Failed(String),
     /// The history ended too early for a verdict.
     Incomplete,
+}
+
+impl From<NoHistory> for NoAnswer {
+    fn from(reason: NoHistory) -> Self {
+        let kind = match reason {
+            NoHistory::CannotStand | NoHistory::NotFourLinks => Self::Invalid,
+            NoHistory::GroundFalls(_) | NoHistory::Failed(_) => Self::Failed,
+        };
+        kind(reason.to_string())
+    }
 }
 
 impl NoAnswer {

@@ -7,9 +7,11 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use super::{NoAnswer, SampleRow, Samples, uncertain};
 use crate::output::OutputError;
-use crate::scenario::{Axis, Scenario, Spacing, Uncertain, UncertainKey};
+use crate::scenario::{Axis, Scenario, Uncertain, UncertainKey};
 use crate::studies::ending::columns::OUTCOMES;
-use crate::studies::map::{CellResult, OverturningMap, described};
+use crate::studies::ending::{Ending, NoHistory};
+use crate::studies::map::picture::is_logarithmic;
+use crate::studies::map::{OverturningMap, described};
 use crate::studies::results::{ReportedStudy, Results, Style};
 use crate::studies::runner::Study;
 use crate::studies::statistics::Share;
@@ -17,18 +19,10 @@ use crate::studies::statistics::Share;
 /// The outcome of a cell of a sample, as an index of [`OUTCOMES`], or the reason why there is none.
 type CellRow = Result<usize, NoAnswer>;
 
-fn cell_row(result: CellResult) -> CellRow {
-    let invalid = |why: &str| Err(NoAnswer::Invalid(why.to_owned()));
-    match result {
-        CellResult::Ended(ending) => {
-            let outcome = ending.outcome_name();
-            let place = OUTCOMES.iter().position(|name| *name == outcome);
-            place.ok_or(NoAnswer::Incomplete)
-        }
-        CellResult::CannotStand => invalid("it cannot stand"),
-        CellResult::NotFourLinks => invalid("it is too thick for four links"),
-        CellResult::Failed(reason) => Err(NoAnswer::Failed(reason)),
-    }
+fn cell_row(result: Result<Ending, NoHistory>) -> CellRow {
+    let outcome = result?.outcome_name();
+    let place = OUTCOMES.iter().position(|name| *name == outcome);
+    place.ok_or(NoAnswer::Incomplete)
 }
 
 /// Largest number of histories; their rows must fit into memory.
@@ -273,8 +267,7 @@ impl CellsOfSamples<'_> {
     fn crossings(&self, counts: &[CellCounts]) -> Vec<Crossing> {
         let [_, y] = self.map.axes;
         let values = &self.map.values[1];
-        let logarithmic =
-            y.sequence.spacing() == Spacing::Logarithmic && values.iter().all(|value| *value > 0.0);
+        let logarithmic = is_logarithmic(y, values);
         let crossing = |column| Crossing::of(column, logarithmic);
         counts.chunks(values.len()).map(crossing).collect()
     }

@@ -58,17 +58,6 @@ impl FirstStrength {
     }
 }
 
-impl FirstEdges {
-    /// Makes the question for a scenario.
-    ///
-    /// # Errors
-    /// Returns the change that the scenario needs, in words.
-    pub fn of(scenario: &Scenario, factors: Factors) -> Result<Self, String> {
-        check(scenario)?;
-        Ok(Self { factors })
-    }
-}
-
 impl Question for FirstEdges {
     type Answer = FirstEdge;
 
@@ -81,6 +70,11 @@ impl Question for FirstEdges {
         "samples.csv",
         "uncertain.json",
     ];
+
+    fn of(scenario: &Scenario, factors: Factors) -> Result<Self, String> {
+        check(scenario)?;
+        Ok(Self { factors })
+    }
 
     fn findings<'a>(
         &'a self,

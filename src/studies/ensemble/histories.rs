@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 
 use super::report::{Band, Findings, Line, of_answer, share_in_words};
 use super::{NoAnswer, Question, Samples};
-use crate::dynamics::history::{Outcome, Sample};
+use crate::dynamics::history::Sample;
 use crate::dynamics::model::{Model, WithoutDemand};
 use crate::dynamics::repeatability::repeated;
 use crate::output::axes::Scale;
@@ -19,8 +19,9 @@ use crate::output::table::{column, csv, list};
 use crate::output::{Figure, OutputError};
 use crate::scenario::{Motion, Scenario, Structure};
 use crate::studies::ending::columns::{self, OUTCOMES};
-use crate::studies::ending::{Ending, Verdict};
+use crate::studies::ending::{Ending, NoHistory, Verdict};
 use crate::studies::statistics::{band, fractile, quantile};
+use crate::studies::threshold::Factors;
 
 /// Largest number of times at which samples are compared.
 const MOST_TIMES: usize = 300;
@@ -44,8 +45,6 @@ pub struct Histories {
 pub struct HistoryAnswer {
     /// Outcome of the history.
     pub ending: Ending,
-    /// Largest rotation of any body, in radians; of an overturned sample, the largest until overturning was certain.
-    pub peak_rotation_rad: f64,
     /// Largest potential energy of a row of blocks over the barrier; `None` if the barrier is unknown.
     pub potential_over_barrier: Option<f64>,
     /// Recorded rotations of the body, in radians, until the end of the history. After it the rotation is constant, or the sample has
@@ -59,12 +58,21 @@ fn many_cases(scenario: &Scenario) -> Result<Box<dyn Model>, String> {
     model.map_err(|error| error.to_string())
 }
 
-impl Histories {
-    /// Makes the question for a scenario. Computes the history of the scenario itself.
-    ///
-    /// # Errors
-    /// Returns the change that the scenario needs, in words.
-    pub fn of(scenario: &Scenario) -> Result<Self, String> {
+impl Question for Histories {
+    type Answer = HistoryAnswer;
+
+    const NAME: &'static str = "uncertain";
+
+    const FILES: &'static [&'static str] = &[
+        "bands.svg",
+        "matters.svg",
+        "bands.csv",
+        "samples.csv",
+        "uncertain.json",
+    ];
+
+    /// Computes the history of the scenario itself.
+    fn of(scenario: &Scenario, _: Factors) -> Result<Self, String> {
         scenario.check_for_run()?;
         let model = scenario.model().map_err(|error| error.to_string())?;
         let request = scenario.request();
@@ -85,20 +93,6 @@ impl Histories {
             own: (structure, scenario.motion, many_cases(scenario)?),
         })
     }
-}
-
-impl Question for Histories {
-    type Answer = HistoryAnswer;
-
-    const NAME: &'static str = "uncertain";
-
-    const FILES: &'static [&'static str] = &[
-        "bands.svg",
-        "matters.svg",
-        "bands.csv",
-        "samples.csv",
-        "uncertain.json",
-    ];
 
     fn findings<'a>(
         &'a self,
@@ -106,15 +100,16 @@ impl Question for Histories {
         figure: Figure,
     ) -> Result<Findings<'a, HistoryAnswer, impl Serialize>, OutputError> {
         // Overturned samples have no largest rotation, but rank above all others.
+        let peak_rad = |answer: &HistoryAnswer| answer.ending.peak_or_infinite_rad();
         let names = [
             ["overturning", "whether it overturns"],
             ["peak_rotation_rank", "how far it rocks"],
         ];
         let influences = vec![
             samples.influence(names[0], false, HistoryAnswer::overturned),
-            samples.influence(names[1], true, HistoryAnswer::peak_rad),
+            samples.influence(names[1], true, peak_rad),
         ];
-        let peaks: Vec<f64> = samples.answers().map(HistoryAnswer::peak_rad).collect();
+        let peaks: Vec<f64> = samples.answers().map(peak_rad).collect();
         let peak_band = band(peaks.clone(), fractile);
         let (mut outcomes, mut lines) = (Map::new(), Vec::new());
         for name in OUTCOMES {
@@ -134,7 +129,7 @@ impl Question for Histories {
             answer.map(|answer| &answer.ending).map_err(NoAnswer::name)
         });
         let potential = |one: &HistoryAnswer| one.potential_over_barrier;
-        let rotation = |one: &HistoryAnswer| one.peak_rotation_rad;
+        let rotation = |one: &HistoryAnswer| one.ending.peak_rotation_rad;
         all.push(match has_joints {
             true => of_answer("peak_potential_over_barrier", potential),
             false => of_answer("peak_rotation_rad", rotation),
@@ -191,18 +186,16 @@ impl Histories {
             }
             ControlFlow::Continue(())
         });
-        let failed = |error: String| NoAnswer::Failed(error);
         let case = (ground.clone(), request);
         let own = vec![model.simulate(ground, &request, Some(&mut record))];
         let checked = repeated(model, &[case], own).remove(0);
-        let summary = checked.own.map_err(|error| failed(error.to_string()))?;
-        let ending = Ending::from_summary(&summary, None, checked.doubt).map_err(failed)?;
+        let summary = checked.own.map_err(NoHistory::from)?;
+        let ending = Ending::from_summary(&summary, None, checked.doubt)?;
         if ending.verdict() == Verdict::Incomplete {
             return Err(NoAnswer::Incomplete);
         }
         Ok(HistoryAnswer {
             ending,
-            peak_rotation_rad: summary.largest_rotation_rad(),
             potential_over_barrier: summary.peak_potential_over_barrier(),
             course_rad,
         })
@@ -210,21 +203,6 @@ impl Histories {
 }
 
 impl HistoryAnswer {
-    /// Returns true if the history itself overturned, even if the verdict is uncertain.
-    #[must_use]
-    pub const fn overturned_itself(&self) -> bool {
-        matches!(self.ending.outcome, Outcome::Overturned(_))
-    }
-
-    /// Returns the largest rotation, in radians; infinite if the history overturned.
-    #[must_use]
-    pub fn peak_rad(&self) -> f64 {
-        match self.overturned_itself() {
-            true => f64::INFINITY,
-            false => self.peak_rotation_rad,
-        }
-    }
-
     /// Returns the weight of the sample as overturned: 1 or 0, and one half if overturning is uncertain.
     #[must_use]
     pub fn overturned(&self) -> f64 {
@@ -241,7 +219,7 @@ impl HistoryAnswer {
         let last = self.course_rad.last().copied().map_or(0.0, f64::from);
         match self.course_rad.get(time) {
             Some(rotation_rad) => f64::from(*rotation_rad),
-            None if self.overturned_itself() => f64::INFINITY.copysign(last),
+            None if self.ending.overturned_itself() => f64::INFINITY.copysign(last),
             None => last,
         }
     }
@@ -289,7 +267,7 @@ fn first_words(samples: &Samples<'_, HistoryAnswer>) -> Option<String> {
         Ok((_, Verdict::Overturns)) => "overturns".to_owned(),
         Ok((_, Verdict::Uncertain)) => "is uncertain".to_owned(),
         Ok((own, _)) => {
-            let rotation = own.ending.peak.over_critical();
+            let rotation = own.ending.peak_over_critical;
             let rotation = rotation.map(|part| (part, "rotation"));
             let margin = rotation.or(own.potential_over_barrier.map(|part| (part, "energy")));
             // Rounded down as in `run`: a value just below 100 % must not be printed as 100 %.

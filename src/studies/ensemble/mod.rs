@@ -22,11 +22,12 @@ pub use self::samples::{SampleRow, Samples};
 pub use super::ending::NoAnswer;
 use super::results::{ReportedStudy, Results, Style};
 use super::runner::Study;
+use super::threshold::Factors;
 use crate::output::{Figure, OutputError};
 use crate::scenario::{Scenario, Uncertain};
 
 /// A question that is answered for every sample.
-pub trait Question: Sync {
+pub trait Question: Sized + Sync {
     /// The answer for a sample.
     type Answer: Serialize + DeserializeOwned + Send;
 
@@ -35,6 +36,12 @@ pub trait Question: Sync {
 
     /// Names of the files of the findings, the summary last.
     const FILES: &'static [&'static str];
+
+    /// Makes the question for a scenario. `factors` are those on the ground motion that a threshold tries.
+    ///
+    /// # Errors
+    /// Returns the change that the scenario needs, in words.
+    fn of(scenario: &Scenario, factors: Factors) -> Result<Self, String>;
 
     /// Computes the findings from all answers.
     ///
@@ -79,9 +86,9 @@ impl<'a, Q: Question> Ensemble<'a, Q> {
     ///
     /// # Errors
     /// When the question does not fit the scenario, or the scenario has no table `[uncertain]`.
-    pub fn new(scenario: &'a Scenario, question: Result<Q, String>) -> Result<Self, String> {
+    pub fn of(scenario: &'a Scenario, factors: Factors) -> Result<Self, String> {
         Ok(Self {
-            question: question?,
+            question: Q::of(scenario, factors)?,
             uncertain: uncertain(scenario)?,
             scenario,
         })

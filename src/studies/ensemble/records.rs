@@ -17,7 +17,7 @@ use crate::studies::ending::Ending;
 use crate::studies::statistics::{ascending, bootstrap, fractile, interval, shares_up_to};
 use crate::studies::suite::case;
 use crate::studies::threshold::first_edge::FirstEdge;
-use crate::studies::threshold::{rounded, rounded_range};
+use crate::studies::threshold::{Factors, rounded, rounded_range};
 
 /// Relative width to which bisection encloses an intensity: much less than the scatter between records.
 const WIDTH: f64 = 2e-3;
@@ -33,20 +33,6 @@ pub struct Capacities {
 type Edges = Vec<FirstEdge>;
 
 impl Capacities {
-    /// Makes the question for a scenario.
-    ///
-    /// # Errors
-    /// Returns the change that the scenario needs, in words.
-    pub fn of(scenario: &Scenario) -> Result<Self, String> {
-        scenario.check_from_rest("suite")?;
-        let suite = scenario.suite.as_ref();
-        let suite = suite.ok_or("the scenario has no [suite], whose records shake the samples")?;
-        Ok(Self {
-            levels: suite.levels.values(),
-            suite: suite.clone(),
-        })
-    }
-
     /// Returns the file and the sign of each record, in the order of the answers.
     fn shakes(&self) -> impl Iterator<Item = (&str, &'static str)> {
         let signs = &["1", "-1"][..self.suite.signs()];
@@ -68,6 +54,16 @@ impl Question for Capacities {
         "samples.csv",
         "uncertain.json",
     ];
+
+    fn of(scenario: &Scenario, _: Factors) -> Result<Self, String> {
+        scenario.check_from_rest("suite")?;
+        let suite = scenario.suite.as_ref();
+        let suite = suite.ok_or("the scenario has no [suite], whose records shake the samples")?;
+        Ok(Self {
+            levels: suite.levels.values(),
+            suite: suite.clone(),
+        })
+    }
 
     fn findings<'a>(
         &'a self,

@@ -10,9 +10,7 @@ use std::sync::{Arc, OnceLock};
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
-use super::ending::columns::FAILED;
-use super::ending::{Ending, answered};
-use super::kind::{CANNOT_STAND, NOT_FOUR_LINKS};
+use super::ending::{Ending, NoHistory, answered};
 use super::runner::Study;
 use crate::argument::ArgumentError;
 use crate::dynamics::ground::{GroundMotion, PulseShape};
@@ -27,21 +25,7 @@ use crate::mechanics::four_links::{FourLinkError, FourLinks};
 use crate::mechanics::stability::StabilityError;
 use crate::scenario::{Axis, Ground, ModelError, Motion, Quantity, Scaling, Scenario, Structure};
 
-/// The result of a cell.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum CellResult {
-    /// The history of the cell ended.
-    Ended(Ending),
-    /// The structure cannot carry its own weight.
-    CannotStand,
-    /// The arch is too thick for four links.
-    NotFourLinks,
-    /// The history could not be computed, for this reason.
-    Failed(String),
-}
-
-impl From<ModelError> for CellResult {
+impl From<ModelError> for NoHistory {
     fn from(error: ModelError) -> Self {
         match error {
             ModelError::FourLinks(FourLinkError::Limit(LimitError::CannotStand))
@@ -56,19 +40,6 @@ impl From<ModelError> for CellResult {
     }
 }
 
-impl CellResult {
-    /// Returns the outcome by its name in tables.
-    #[must_use]
-    pub const fn outcome_name(&self) -> &'static str {
-        match self {
-            Self::Ended(ending) => ending.outcome_name(),
-            Self::CannotStand => CANNOT_STAND,
-            Self::NotFourLinks => NOT_FOUR_LINKS,
-            Self::Failed(_) => FAILED,
-        }
-    }
-}
-
 /// A cell of a map.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CellRow {
@@ -76,8 +47,8 @@ pub struct CellRow {
     pub x: f64,
     /// Value along y.
     pub y: f64,
-    /// The result.
-    pub result: CellResult,
+    /// Ending of the history, or the reason why there is none.
+    pub result: Result<Ending, NoHistory>,
     /// Number of different outcomes of the history and all its repetitions: one if the outcome does not depend on the computation. Overturning
     /// to either side is one outcome; rest and still rocking are two. The error is the failure of a repetition. `None` if repetitions were not
     /// requested, or there is no history.
@@ -376,10 +347,10 @@ impl<'a> OverturningMap<'a> {
     }
 
     /// Returns the model of a cell, with its ground motion and request.
-    fn case(&self, index: usize) -> Result<(Standing, Case), CellResult> {
-        let scenario = self.variant(index).map_err(CellResult::Failed)?;
+    fn case(&self, index: usize) -> Result<(Standing, Case), NoHistory> {
+        let scenario = self.variant(index).map_err(NoHistory::Failed)?;
         let standing = self.standing(index, &scenario)?;
-        let ground = self.motion(index, &scenario).map_err(CellResult::Failed)?;
+        let ground = self.motion(index, &scenario).map_err(NoHistory::Failed)?;
         let structure = self.structure(index, &scenario);
         let structure = structure.map_err(|error| ModelError::from(FourLinkError::from(error)))?;
         let request = scenario.request_on(&ground, &structure);
@@ -387,7 +358,7 @@ impl<'a> OverturningMap<'a> {
     }
 
     /// Computes the endings of cells with the same structure, and, if requested, the number of outcomes of each with its repetitions.
-    fn endings(&self, model: &dyn Model, cases: &[Case]) -> Vec<Result<Ended, CellResult>> {
+    fn endings(&self, model: &dyn Model, cases: &[Case]) -> Vec<Result<Ended, NoHistory>> {
         let ended = match self.repeat {
             true => all_outcomes(model, cases),
             false => {
@@ -395,8 +366,12 @@ impl<'a> OverturningMap<'a> {
                 ended.map(|ending| Ok((ending?, None))).collect()
             }
         };
-        let known = |ended: Result<Ended, String>| ended.map_err(CellResult::Failed);
-        ended.into_iter().map(known).collect()
+        // In a map, a cell whose ground falls has failed.
+        let failed = |reason: NoHistory| NoHistory::Failed(reason.to_string());
+        ended
+            .into_iter()
+            .map(|ended| ended.map_err(failed))
+            .collect()
     }
 }
 
@@ -404,12 +379,12 @@ impl<'a> OverturningMap<'a> {
 type Ended = (Ending, Option<Result<usize, String>>);
 
 /// Computes the endings of histories, and the number of outcomes of each with its repetitions. All histories run to their end.
-fn all_outcomes(model: &dyn Model, cases: &[Case]) -> Vec<Result<Ended, String>> {
+fn all_outcomes(model: &dyn Model, cases: &[Case]) -> Vec<Result<Ended, NoHistory>> {
     let repetitions = model.repetitions().into_iter();
     let repeated = repetitions.map(|Repetition { name, model }| (name, model.simulate_all(cases)));
     let repeated: Vec<(_, Vec<_>)> = repeated.collect();
     let outcomes = |(index, own): (usize, Result<Summary, SimulationError>)| {
-        let own = own.map_err(|error| error.to_string())?;
+        let own = own?;
         let (mut names, mut doubt, mut failed) = (vec![own.outcome.name()], None, None);
         for (name, repeated) in &repeated {
             let repeated = &repeated[index];
@@ -458,11 +433,11 @@ impl Study for OverturningMap<'_> {
             let standing = standing.get();
             standing.map_or(Vec::new(), |one| self.endings(one.model(), cases))
         });
-        let row = |(index, ended): (&usize, Result<Ended, CellResult>)| {
+        let row = |(index, ended): (&usize, Result<Ended, NoHistory>)| {
             let [x, y] = self.coordinates(*index);
             let (result, outcomes) = match ended {
-                Ok((ending, outcomes)) => (CellResult::Ended(ending), outcomes),
-                Err(other) => (other, None),
+                Ok((ending, outcomes)) => (Ok(ending), outcomes),
+                Err(reason) => (Err(reason), None),
             };
             CellRow {
                 x,

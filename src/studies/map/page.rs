@@ -5,7 +5,7 @@ use base64::prelude::BASE64_STANDARD;
 use serde_json::{Map, Value, json};
 
 use super::picture::{self, Drawn};
-use super::{CellResult, CellRow, Described, OverturningMap, described};
+use super::{CellRow, Described, OverturningMap, described};
 use crate::output::Figure;
 use crate::output::page::{escaped, fill_template, script_safe};
 use crate::scenario::{Ground, Quantity, toml_text};
@@ -21,9 +21,9 @@ pub fn page(title: &str, map: &OverturningMap<'_>, rows: &[CellRow], style: Styl
         ..style
     };
     let drawn = picture::drawn(title, map, rows, style);
-    let kinds = rows.iter().map(|row| picture::kind_of(&row.result, style));
+    let kinds = rows.iter().map(|row| picture::kind_of(row, style));
     let doubt = |(index, row): (usize, &CellRow)| {
-        let doubt = ended(row)?.uncertain.as_ref()?;
+        let doubt = row.result.as_ref().ok()?.uncertain.as_ref()?;
         Some((index, doubt.clone()))
     };
     let cells = Cells {
@@ -102,32 +102,21 @@ impl Cells<'_> {
     }
 }
 
-/// Returns the ending of the history of a cell; `None` without a history.
-const fn ended(row: &CellRow) -> Option<&Ending> {
-    match &row.result {
-        CellResult::Ended(ending) => Some(ending),
-        _ => None,
-    }
-}
-
 /// Returns the columns with numbers of the cells.
 fn columns(rows: &[CellRow]) -> Vec<(&'static str, Vec<Option<f64>>)> {
-    type Of = fn(&CellRow) -> Option<f64>;
+    type Of = fn(&Ending) -> Option<f64>;
     let all: [(&str, Of); 5] = [
-        ("impacts", |row| Some(ended(row)?.known_impacts()? as f64)),
-        ("outcome_time_s", |row| ended(row)?.known_time_s()),
-        ("peak_rotation_over_critical", |row| {
-            ended(row)?.peak.over_critical()
-        }),
-        ("peak_rotation_rad", |row| ended(row)?.peak.rad()),
-        ("energy_defect_ratio", |row| {
-            Some(ended(row)?.energy_defect_ratio)
-        }),
+        ("impacts", |of| Some(of.known_impacts()? as f64)),
+        ("outcome_time_s", Ending::known_time_s),
+        ("peak_rotation_over_critical", |of| of.peak_over_critical),
+        ("peak_rotation_rad", Ending::peak_of_row_rad),
+        ("energy_defect_ratio", |of| Some(of.energy_defect_ratio)),
     ];
-    let columns = all.into_iter();
-    columns
-        .map(|(name, of)| (name, rows.iter().map(of).collect()))
-        .collect()
+    let column = |(name, of): (_, Of)| {
+        let cells = rows.iter().map(|row| of(row.result.as_ref().ok()?));
+        (name, cells.collect())
+    };
+    all.map(column).into()
 }
 
 /// Returns the command that runs a cell, with placeholders for its two values. The command contains the whole scenario, so it depends neither on

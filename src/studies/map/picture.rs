@@ -1,6 +1,6 @@
 //! The picture of an overturning map.
 
-use super::{CellResult, CellRow, OverturningMap, described};
+use super::{CellRow, OverturningMap, described};
 use crate::dynamics::history::Outcome;
 use crate::output::Figure;
 use crate::output::axes::{Axes, Scale};
@@ -13,26 +13,26 @@ use crate::studies::kind::{self, Kind};
 use crate::studies::results::Style;
 
 /// Returns the kind of a cell, which sets its colour.
-pub(super) fn kind_of(result: &CellResult, style: Style) -> Kind {
-    if let (true, CellResult::Ended(ending)) = (style.by_peak, result)
+pub(super) fn kind_of(cell: &CellRow, style: Style) -> Kind {
+    if let (true, Ok(ending)) = (style.by_peak, &cell.result)
         && let (Outcome::Vibrates | Outcome::Rest | Outcome::StillRocking, Some(peak)) =
-            (ending.outcome, ending.peak.over_critical())
+            (ending.outcome, ending.peak_over_critical)
     {
         return Kind::survived(peak);
     }
-    let impacts = match result {
-        CellResult::Ended(ending) => ending.impacts_of_all_hinges(),
-        _ => None,
-    };
-    Kind::of(result.outcome_name(), impacts)
+    Kind::of_result(&cell.result)
+}
+
+/// Returns true if an axis with these values is logarithmic.
+pub(crate) fn is_logarithmic(axis: &Axis, values: &[f64]) -> bool {
+    axis.sequence.spacing() == Spacing::Logarithmic && values.iter().all(|value| *value > 0.0)
 }
 
 /// Returns the scale of an axis, and the edges of its cells halfway between the values. The values are multiplied by `factor`.
 fn scale(axis: &Axis, factor: f64, figure: Figure) -> (Scale, Vec<f64>) {
     let values: Vec<f64> = axis.sequence.values();
     let values: Vec<f64> = values.into_iter().map(|value| factor * value).collect();
-    let logarithmic =
-        axis.sequence.spacing() == Spacing::Logarithmic && values.iter().all(|value| *value > 0.0);
+    let logarithmic = is_logarithmic(axis, &values);
     let to = |value: f64| if logarithmic { value.ln() } else { value };
     let from = |place: f64| if logarithmic { place.exp() } else { place };
     let places: Vec<_> = values.iter().map(|value| to(*value)).collect();
@@ -107,7 +107,7 @@ impl<'s> Sheet<'s> {
         (factors[0] * x, factors[1] * y)
     }
 
-    /// Fills the cells by their kinds, which the palette must contain, and draws marks over them.
+    /// Fills the cells by their kinds, which the palette must contain, and draws marks over them. The legend has the kinds, then these keys.
     pub(crate) fn draw(
         self,
         palette: &[Kind],
@@ -135,7 +135,7 @@ impl<'s> Sheet<'s> {
             Mark::new(kind.name, Stroke::new(kind.fill, 0.4, ""), boxes)
         });
         chart.below = fills.collect();
-        chart.keys = keys;
+        chart.keys = [kind::keys(palette, kinds), keys].concat();
         chart.marks = marks;
         let mut sheet = output::Sheet::new(figure, title);
         if figure.has_title {
@@ -189,10 +189,13 @@ pub(super) fn drawn(
     rows: &[CellRow],
     style: Style,
 ) -> Drawn {
-    let kinds: Vec<_> = rows.iter().map(|row| kind_of(&row.result, style)).collect();
+    let kinds: Vec<_> = rows.iter().map(|row| kind_of(row, style)).collect();
     let sheet = Sheet::new(title, map, style);
     let hatch = hatch(&sheet.edges, rows);
-    sheet.draw(&Kind::ALL, &kinds, legend(map, &kinds), vec![hatch])
+    let sign = Sign::LineOn(CELL, "doubtful", DOUBTFUL);
+    let key = Key::new("another outcome in a repetition", sign);
+    let keys = map.repeat.then_some(key).into_iter().collect();
+    sheet.draw(&Kind::ALL, &kinds, keys, vec![hatch])
 }
 
 /// Hatches the cells whose outcome depends on the computation.
@@ -214,13 +217,3 @@ fn hatch([x_edges, y_edges]: &[Vec<f64>; 2], rows: &[CellRow]) -> Mark {
 /// Background of lines in the legend: light, as most cells.
 const CELL: &str = "#ffffff";
 const DOUBTFUL: Stroke = Stroke::new(color::BLACK, 1.2, "");
-
-/// Returns the legend of the colours, and of the hatching if cells are repeated.
-fn legend(map: &OverturningMap<'_>, kinds: &[Kind]) -> Vec<Key> {
-    let mut keys = kind::keys(kinds);
-    if map.repeat {
-        let sign = Sign::LineOn(CELL, "doubtful", DOUBTFUL);
-        keys.push(Key::new("another outcome in a repetition", sign));
-    }
-    keys
-}

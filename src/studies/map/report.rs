@@ -1,12 +1,12 @@
 //! Files and words of an overturning map.
 
-use super::{CellResult, CellRow, OverturningMap, page, picture};
+use super::{CellRow, NoHistory, OverturningMap, page, picture};
 use crate::argument::plain;
 use crate::dynamics::history::Outcome;
 use crate::output::OutputError;
 use crate::output::table::{Column, column, csv};
 use crate::scenario::{Quantity, Scenario};
-use crate::studies::ending::columns::{self, FAILED, number};
+use crate::studies::ending::columns::{self, FAILED};
 use crate::studies::remarks::{self, CaseSummary, Remark, Remarks, outcome_counts, outcome_label};
 use crate::studies::results::{ReportedStudy, Results, Style};
 use crate::studies::run::Scales;
@@ -36,15 +36,12 @@ impl OverturningMap<'_> {
     fn columns(&self) -> Vec<Column<'_, CellRow>> {
         let [x, y] = self.axes.map(|axis| axis.key.as_str());
         let mut all = vec![
-            column(x, |row: &CellRow| number(row.x)),
-            column(y, |row: &CellRow| number(row.y)),
+            column(x, |row: &CellRow| row.x),
+            column(y, |row: &CellRow| row.y),
         ];
         let has_joints = self.scenario.motion.hinges().has_joints();
         all.extend(columns::columns(has_joints, |row: &CellRow| {
-            match &row.result {
-                CellResult::Ended(ending) => Ok(ending),
-                other => Err(other.outcome_name()),
-            }
+            row.result.as_ref().map_err(NoHistory::name)
         }));
         if self.repeat {
             all.push(column("outcomes", |row: &CellRow| {
@@ -65,11 +62,7 @@ fn remarks(map: &OverturningMap<'_>, cells: &[CellRow]) -> Remarks {
     let mut remarks = Remarks::default();
     for cell in cells {
         let case = || format!("{x_name} {}, {y_name} {}", plain(cell.x), plain(cell.y));
-        match &cell.result {
-            CellResult::Ended(ending) => remarks.note(case, Ok(ending)),
-            CellResult::Failed(reason) => remarks.note(case, Err(reason)),
-            CellResult::CannotStand | CellResult::NotFourLinks => {}
-        }
+        remarks.note(case, &cell.result);
         if let Some(Err(reason)) = &cell.outcomes {
             remarks.failures.push(Remark::new(case(), reason));
         }
@@ -80,15 +73,13 @@ fn remarks(map: &OverturningMap<'_>, cells: &[CellRow]) -> Remarks {
 /// Returns the number of cells with each outcome, and remarks on doubtful and failed cells, in words.
 fn words(map: &OverturningMap<'_>, cells: &[CellRow], remarks: &Remarks) -> String {
     let words = |cell: &CellRow| match &cell.result {
-        CellResult::Ended(ending)
-            if ending.uncertain.is_none() && ending.outcome == Outcome::StillRocking =>
-        {
+        Ok(ending) if ending.uncertain.is_none() && ending.outcome == Outcome::StillRocking => {
             (4, "still rocking at the end, which counts as survived")
         }
-        CellResult::Ended(ending) => outcome_label(ending),
-        CellResult::CannotStand => (7, "unable to stand"),
-        CellResult::NotFourLinks => (8, "too thick for four links"),
-        CellResult::Failed(_) => (9, "failed"),
+        Ok(ending) => outcome_label(ending),
+        Err(NoHistory::CannotStand) => (7, "unable to stand"),
+        Err(NoHistory::NotFourLinks) => (8, "too thick for four links"),
+        Err(NoHistory::GroundFalls(_) | NoHistory::Failed(_)) => (9, "failed"),
     };
     let counts = outcome_counts(cells.iter().map(words));
     let mut lines = vec![format!("{} cells: {counts}", cells.len())];

@@ -30,6 +30,7 @@ use nalgebra::{Matrix2, Vector2};
 use thiserror::Error;
 
 use crate::argument::plain;
+use crate::studies::statistics::TWO_SIDED_95;
 
 /// The outcome of a record at one intensity.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -152,14 +153,11 @@ impl Fragility {
         let error = self.clustered_covariance.map_or(independent, |covariance| {
             independent.max(standard_error(&covariance, &gradient))
         });
-        let (eta, margin) = (self.line.at(log), QUANTILE_95 * error);
+        let (eta, margin) = (self.line.at(log), TWO_SIDED_95 * error);
         let [low, high] = [eta - margin, eta + margin].map(normal_probability);
         (low, high)
     }
 }
-
-/// Number of standard deviations on each side of the mean that enclose 95 % of the normal distribution.
-const QUANTILE_95: f64 = 1.959_963_984_540_054;
 
 /// Returns `ln x` with `x` clamped to positive finite numbers, so that the logarithm is finite.
 fn logarithm(x: f64) -> f64 {

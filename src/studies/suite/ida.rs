@@ -7,7 +7,7 @@ use crate::output::axes::Scale;
 use crate::output::chart::{Chart, Mark, Shape};
 use crate::output::sheet::{Key, Sign};
 use crate::output::svg::{CURVES, Stroke, color};
-use crate::studies::ending::Verdict;
+use crate::studies::ending::Ending;
 use crate::studies::statistics::{ascending, fractile, shares_up_to};
 
 /// Largest number of records whose curves have their own stroke and name.
@@ -21,8 +21,8 @@ const SURVIVED: f64 = 0.94;
 #[must_use]
 pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility) -> String {
     let over_critical = over_critical(results);
-    let cases = results.cases.iter();
-    let survived = cases.filter(|case| !case.overturned_itself());
+    let endings = results.cases.iter().filter_map(CaseRow::complete);
+    let survived = endings.filter(|ending| !ending.overturned_itself());
     let least = if over_critical { 1.0 } else { 1e-3 };
     let largest = survived.filter_map(peak).fold(least, f64::max);
     let x = Scale::exactly(0.0, largest / SURVIVED, figure.ticks(8));
@@ -79,25 +79,22 @@ fn of_record(
     let level = |case: &CaseRow| case.level(results.measure);
     // Overturned cases interrupt the curve.
     let points = cases.iter();
-    let points = points.filter_map(|case| match case.overturned_itself() {
-        true => Some((f64::NAN, level(case))),
-        false => Some((peak(case)?, level(case))),
-    });
+    let points = points.filter_map(|case| Some((beyond(case)?, level(case))));
     let mut marks = vec![Mark::curve(name, stroke, points)];
     let plain = Stroke::new(stroke.color, 1.0, "");
     for case in cases {
-        let Some(verdict) = case.known_verdict() else {
+        let Some(ending) = case.complete() else {
             continue;
         };
-        let is_certain = verdict != Verdict::Uncertain;
+        let is_certain = ending.uncertain.is_none();
         let mark = |certain: &'static str| match is_certain {
             true => (certain, plain, 2.2),
             false => ("uncertain", UNCERTAIN, 4.0),
         };
-        if case.overturned_itself() {
+        if ending.overturned_itself() {
             let (name, stroke, _) = mark("overturned");
             marks.push(Mark::new(name, stroke, Shape::Beyond(level(case))));
-        } else if let Some(peak) = peak(case) {
+        } else if let Some(peak) = peak(ending) {
             let (name, stroke, radius_px) = mark("survived");
             let circle = Shape::Circle((peak, level(case)), radius_px);
             marks.push(Mark::new(name, stroke, circle));
@@ -128,11 +125,9 @@ pub struct Fractiles {
     pub peaks: [Option<f64>; 3],
 }
 
-/// Returns the peak of a case; `None` if its history is incomplete.
-fn peak(case: &CaseRow) -> Option<f64> {
-    case.known_verdict()?;
-    let peak = case.result.as_ref().ok()?.peak;
-    peak.over_critical().or(peak.rad())
+/// Returns the peak of a history over the critical rotation, or of a row of blocks in radians; `None` if the critical rotation is unknown.
+fn peak(ending: &Ending) -> Option<f64> {
+    ending.peak_over_critical.or(ending.peak_of_row_rad())
 }
 
 /// Computes the fractiles of the peaks at each level (Vamvatsikos and Cornell, Earthquake Engineering and Structural Dynamics 31, 2002).
@@ -158,14 +153,8 @@ const UNCERTAIN: Stroke = Stroke::new(color::GREEN, 1.6, "");
 
 /// Returns the largest rotation of each case with a complete history, in radians, infinite if the case overturned.
 pub(super) fn rotations_rad(cases: &[CaseRow]) -> Vec<f64> {
-    let peak_rad = |case: &CaseRow| {
-        case.known_verdict()?;
-        Some(match case.overturned_itself() {
-            true => f64::INFINITY,
-            false => case.result.as_ref().ok()?.peak_rotation_rad,
-        })
-    };
-    cases.iter().filter_map(peak_rad).collect()
+    let endings = cases.iter().filter_map(CaseRow::complete);
+    endings.map(Ending::peak_or_infinite_rad).collect()
 }
 
 /// Returns the distribution of the peaks of all cases that count: ascending finite peaks, as in [`Fractiles`], each with the share of cases up
@@ -177,10 +166,10 @@ pub fn peaks(results: &SuiteFragility) -> Vec<(f64, f64)> {
 
 /// Returns the peak of a case with a complete history, infinite if the case overturned.
 fn beyond(case: &CaseRow) -> Option<f64> {
-    case.known_verdict()?;
-    match case.overturned_itself() {
+    let ending = case.complete()?;
+    match ending.overturned_itself() {
         true => Some(f64::INFINITY),
-        false => peak(case),
+        false => peak(ending),
     }
 }
 
@@ -213,5 +202,5 @@ const fn peak_in_words(over_critical: bool) -> &'static str {
 /// Returns true if the critical rotation of every case is known.
 fn over_critical(results: &SuiteFragility) -> bool {
     let mut endings = results.cases.iter().flat_map(|case| &case.result);
-    endings.all(|ending| ending.peak.over_critical().is_some())
+    endings.all(|ending| ending.peak_over_critical.is_some())
 }

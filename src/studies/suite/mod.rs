@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use self::fragility::{Fragility, NoFit, Observation, by_intensity, fit};
 pub use self::heading::Heading;
 use self::strength::Strength;
-use super::ending::{Ending, Verdict, check_finite};
+use super::ending::{Ending, NoHistory, Verdict, check_finite};
 use super::remarks::warnings;
 use super::results::{ReportedStudy, Results, Style};
 use super::runner::Study;
@@ -37,7 +37,7 @@ pub struct CaseRow {
     /// Peak acceleration after scaling, in units of gravity.
     pub peak_g: f64,
     /// Outcome of the history, or the reason why there is none.
-    pub result: Result<Ending, String>,
+    pub result: Result<Ending, NoHistory>,
     /// The lowest overturning level between this level and the level below, by bisection. `None` unless this level overturns and the level below
     /// survives.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -73,11 +73,16 @@ impl CaseRow {
         self.result.as_ref().ok().map(Ending::verdict)
     }
 
+    /// Returns the ending of a complete history; `None` if there is no history, or the history is incomplete.
+    pub(super) fn complete(&self) -> Option<&Ending> {
+        let ending = self.result.as_ref().ok();
+        ending.filter(|ending| ending.verdict() != Verdict::Incomplete)
+    }
+
     /// Returns the verdict; `None` if there is no history, or the history is incomplete.
     #[must_use]
     pub fn known_verdict(&self) -> Option<Verdict> {
-        self.verdict()
-            .filter(|verdict| *verdict != Verdict::Incomplete)
+        self.complete().map(Ending::verdict)
     }
 
     /// Returns true if both cases apply one record with one sign.
@@ -89,12 +94,6 @@ impl CaseRow {
     pub(super) fn record_in_words(&self) -> String {
         let mirrored = if self.mirrored { " mirrored" } else { "" };
         format!("{}{mirrored}", self.record)
-    }
-
-    /// Returns true if the history of the case itself overturned, even if the verdict is uncertain.
-    fn overturned_itself(&self) -> bool {
-        let ending = self.result.as_ref();
-        ending.is_ok_and(|ending| matches!(ending.outcome, Outcome::Overturned(_)))
     }
 
     /// Returns true if the structure certainly survived, but had not come to rest.
@@ -229,7 +228,7 @@ pub(super) fn case(
 }
 
 /// Returns true if a history certainly overturns; `None` without a complete history.
-fn overturns_certainly(result: &Result<Ending, String>) -> Option<bool> {
+fn overturns_certainly(result: &Result<Ending, NoHistory>) -> Option<bool> {
     let verdict = result.as_ref().ok()?.verdict();
     (verdict != Verdict::Incomplete).then_some(verdict == Verdict::Overturns)
 }

@@ -7,6 +7,7 @@ use crate::output::axes::Scale;
 use crate::output::chart::{BELOW_PX, Chart, LEFT_PX, Mark, Shape};
 use crate::output::sheet::{Key, Sheet, Sign};
 use crate::output::svg::{Stroke, color};
+use crate::studies::statistics::ascending;
 
 /// Draws fractions, curve and band, with the curve in words.
 pub(super) fn draw(
@@ -115,10 +116,8 @@ fn along(scale: &Scale, curves: &[(&Fragility, CurveStyle)]) -> Vec<f64> {
             .clone()
             .map(|part| fit.median * (fit.dispersion * RISES * (2.0 * part - 1.0)).exp())
     });
-    let mut values: Vec<f64> = even.chain(rising).collect();
-    values.retain(|x| *x > 0.0 && (scale.low..=scale.high).contains(x));
-    values.sort_by(f64::total_cmp);
-    values
+    let values = even.chain(rising);
+    ascending(values.filter(|x| *x > 0.0 && (scale.low..=scale.high).contains(x)))
 }
 
 /// Draws the joint 95 % band of the curves, and the area between the curves.

@@ -11,7 +11,7 @@ use crate::output::table::{Column, column, csv, each, fields, list};
 use crate::output::{Figure, OutputError};
 use crate::scenario::{Measure, shown};
 use crate::studies::ending::Verdict;
-use crate::studies::ending::columns::{self, FAILED, number, yes};
+use crate::studies::ending::columns::{self, FAILED, yes};
 use crate::studies::remarks::{Remarks, outcome_counts, outcome_label, rough_guide_of};
 use crate::studies::results::Results;
 use crate::studies::threshold::{rounded, survival};
@@ -167,7 +167,7 @@ impl Heading {
         let mut remarks = Remarks::default();
         for case in &results.cases {
             let name = || format!("{}, {}", case.record_in_words(), self.level(case));
-            remarks.note(name, case.result.as_ref().map_err(String::as_str));
+            remarks.note(name, &case.result);
         }
         remarks
     }
@@ -250,8 +250,8 @@ impl Heading {
         let mut all = vec![
             column("record", |case: &CaseRow| shown(&case.record)),
             column("sign", |case: &CaseRow| sign(case.mirrored)),
-            column("scale", |case: &CaseRow| number(case.scale)),
-            column("peak_g", |case: &CaseRow| number(case.peak_g)),
+            column("scale", |case: &CaseRow| case.scale),
+            column("peak_g", |case: &CaseRow| case.peak_g),
         ];
         all.extend(columns::columns(self.has_joints(), |case: &CaseRow| {
             case.result.as_ref().map_err(|_| FAILED)

@@ -4,10 +4,11 @@ use serde::{Deserialize, Serialize};
 
 use super::factors::{EDGE_WIDTH, Factors};
 use crate::bisection::{Width, try_bisect};
+use crate::dynamics::model::SimulationError;
 use crate::output::table::{Column, column};
 use crate::scenario::Scenario;
 use crate::studies::ending::columns::yes;
-use crate::studies::ending::{Ending, NoAnswer, Verdict};
+use crate::studies::ending::{Ending, NoAnswer, NoHistory, Verdict};
 
 /// The smallest strength of a ground motion that overturns a structure.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -33,7 +34,7 @@ impl FirstEdge {
         let request = scenario.request_on(scenario.ground_motion(), &scenario.structure);
         let verdict = |factor: f64| {
             let ground = scenario.ground_motion().scaled(factor);
-            let ground = ground.map_err(|error| error.to_string())?;
+            let ground = ground.map_err(SimulationError::from)?;
             let ending = Ending::of(&*model, &ground, &request);
             ending.map(|ending| ending.verdict())
         };
@@ -45,13 +46,13 @@ impl FirstEdge {
     pub(in crate::studies) fn search(
         strengths: &[f64],
         width: f64,
-        verdict: impl Fn(f64) -> Result<Verdict, String>,
+        verdict: impl Fn(f64) -> Result<Verdict, NoHistory>,
     ) -> Result<Self, NoAnswer> {
         let known = |strength| match verdict(strength) {
             Ok(Verdict::Incomplete) => Err(NoAnswer::Incomplete),
-            found => found.map_err(NoAnswer::Failed),
+            found => Ok(found?),
         };
-        let overturns = |strength| Ok(known(strength)? == Verdict::Overturns);
+        let overturns = |strength| known(strength).map(|found| found == Verdict::Overturns);
         let mut edge = Self::default();
         for strength in strengths.iter().copied() {
             let found = match known(strength) {
@@ -104,6 +105,29 @@ impl FirstEdge {
             None => (factor <= self.tried_to).then_some(false),
         }
     }
+}
+
+/// Finds the lowest strength at which a structure overturns. `histories` says for each of some ascending strengths whether it does, and `overturns`
+/// for a strength between two of them, which bisection encloses to this relative width. Returns the first strength if the structure overturns at
+/// it already, and `None` if it overturns at none.
+///
+/// # Errors
+/// The first error of a history.
+pub(super) fn lowest<E>(
+    histories: impl Iterator<Item = (f64, Result<bool, E>)>,
+    width: f64,
+    overturns: impl FnMut(f64) -> Result<bool, E>,
+) -> Result<Option<f64>, E> {
+    let mut survived = None;
+    for (strength, history) in histories {
+        if history? {
+            let below = survived.unwrap_or(strength);
+            let (_, lowest) = try_bisect(below, strength, Width::Relative(width), overturns)?;
+            return Ok(Some(lowest));
+        }
+        survived = Some(strength);
+    }
+    Ok(None)
 }
 
 #[cfg(test)]

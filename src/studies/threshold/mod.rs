@@ -21,18 +21,13 @@ pub use varied::{VariedThreshold, vary};
 use std::ops::ControlFlow;
 
 use serde::Serialize;
-use thiserror::Error;
 
-use super::ending::columns::FAILED;
-use super::ending::{Ending, Verdict, answered};
-use super::kind::GROUND_FALLS;
+use super::ending::{Ending, NoHistory, Verdict, answered};
 use super::results::{Results, StudyError};
 use super::runner::{Progress, Runner, Watch};
 use crate::bisection::{Width, next_middles, try_bisect};
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::model::{Model, Request, SimulationError};
-use crate::dynamics::repeatability::{CheckedHistory, checked};
-use crate::dynamics::until::EndCondition;
 use crate::output::Figure;
 use crate::scenario::Scenario;
 
@@ -48,38 +43,7 @@ pub struct FactorSample {
     pub result: Result<Ending, NoHistory>,
 }
 
-/// Reasons why there is no history at a factor.
-#[derive(Clone, Debug, PartialEq, Error)]
-pub enum NoHistory {
-    /// The ground accelerates downwards as fast as a free fall, which the model does not cover.
-    #[error("{0}")]
-    GroundFalls(String),
-    /// The history could not be computed.
-    #[error("{0}")]
-    Failed(String),
-}
-
-impl From<SimulationError> for NoHistory {
-    fn from(error: SimulationError) -> Self {
-        let kind = match error {
-            SimulationError::FreeFall(_) => Self::GroundFalls,
-            _ => Self::Failed,
-        };
-        kind(error.to_string())
-    }
-}
-
 impl FactorSample {
-    /// Returns the outcome by its name in results, or the reason why there is no history.
-    #[must_use]
-    pub const fn outcome_name(&self) -> &'static str {
-        match &self.result {
-            Ok(ending) => ending.outcome_name(),
-            Err(NoHistory::GroundFalls(_)) => GROUND_FALLS,
-            Err(NoHistory::Failed(_)) => FAILED,
-        }
-    }
-
     /// Returns the verdict; `None` if there is no history.
     #[must_use]
     pub fn verdict(&self) -> Option<Verdict> {
@@ -297,14 +261,7 @@ impl Shaking<'_> {
             let ground = self.ground.scaled(*factor);
             Ok((ground.map_err(SimulationError::from)?, *self.request))
         });
-        let endings = answered(cases, |cases| {
-            let checked = checked(self.models[model].1, cases, EndCondition::End).into_iter();
-            let ending = |case: CheckedHistory| {
-                let ending = Ending::from_summary(&case.own?, None, case.doubt);
-                ending.map_err(NoHistory::Failed)
-            };
-            checked.map(ending).collect()
-        });
+        let endings = answered(cases, |cases| Ending::of_all(self.models[model].1, cases));
         let samples = factors.iter().copied().zip(endings);
         let sample = |(factor, result)| FactorSample { factor, result };
         samples.map(sample).collect()
@@ -364,7 +321,7 @@ impl Threshold {
         match results.clone().find_map(|result| result.as_ref().err()) {
             Some(reason) if results.all(Result::is_err) => Err(match reason {
                 NoHistory::GroundFalls(reason) => StudyError::Scenario(reason.clone()),
-                NoHistory::Failed(reason) => StudyError::Failed(reason.clone()),
+                reason => StudyError::failed(reason),
             }),
             _ => Ok(()),
         }

@@ -26,6 +26,10 @@ const LEAST_PX: f64 = 1.5;
 /// Distance between hatching lines along the strip, in pixels.
 const HATCH_PX: f64 = 6.0;
 
+fn kind_of(sample: &FactorSample) -> Kind {
+    Kind::of_result(&sample.result)
+}
+
 /// Draws the outcome against the factor: a strip for each model with the edges of its bands, and the largest rotation below. `peak_g` is the
 /// peak ground acceleration at factor 1.
 #[must_use]
@@ -42,14 +46,14 @@ pub fn draw(
     let names: Vec<String> = names.collect();
     let over_critical = are_over_critical(thresholds);
     let peak = |sample: &FactorSample| match over_critical {
-        true => sample.result.as_ref().ok()?.peak.over_critical(),
+        true => sample.result.as_ref().ok()?.peak_over_critical,
         false => Some(sample.result.as_ref().ok()?.peak_rotation_rad),
     };
     let (least, y_label) = match over_critical {
         true => (1.0, "peak rotation / critical rotation"),
         false => (0.01, "peak rotation (rad)"),
     };
-    let mut keys = kind::keys(&kinds);
+    let mut keys = kind::keys(&Kind::ALL, &kinds);
     if over_critical {
         keys.push(Key::line("unstable equilibrium", CRITICAL));
     }
@@ -148,17 +152,11 @@ fn narrow(thresholds: &[Threshold], names: &[String], axes: &Axes) -> String {
     }
 }
 
-fn kind_of(sample: &FactorSample) -> Kind {
-    let ending = sample.result.as_ref().ok();
-    let impacts = ending.and_then(|ending| ending.impacts_of_all_hinges());
-    Kind::of(sample.outcome_name(), impacts)
-}
-
 /// Returns true if the critical rotation of all samples is known; otherwise rotations are drawn in radians.
 fn are_over_critical(thresholds: &[Threshold]) -> bool {
     let samples = thresholds.iter().flat_map(|threshold| &threshold.samples);
     let mut endings = samples.flat_map(|sample| &sample.result);
-    endings.all(|ending| ending.peak.over_critical().is_some())
+    endings.all(|ending| ending.peak_over_critical.is_some())
 }
 
 /// Returns the scale up to the largest survived rotation. Overturned cases exceed it.

@@ -5,12 +5,12 @@ use serde_json::Value;
 
 use super::digits::{rounded, rounded_range};
 use super::survival::{self, Survival};
-use super::{FactorRange, FactorSample, Factors, NoHistory, RangeEnd, Threshold, peak_g, picture};
+use super::{FactorRange, FactorSample, Factors, RangeEnd, Threshold, peak_g, picture};
 use crate::dynamics::history::Outcome;
-use crate::output::table::{column, csv};
+use crate::output::table::{column, csv, fields};
 use crate::output::{Figure, OutputError};
 use crate::scenario::{Ground, Scenario};
-use crate::studies::ending::Verdict;
+use crate::studies::ending::{NoHistory, Verdict, outcome_name};
 use crate::studies::remarks::{self, Remarks};
 use crate::studies::results::Results;
 
@@ -59,7 +59,7 @@ struct ModelSummary<'a> {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     variations: Vec<VariedSummary<'a>>,
     /// All histories, in order of ascending factors.
-    samples: Vec<SampleSummary<'a>>,
+    samples: Vec<SampleSummary>,
 }
 
 /// A range of factors.
@@ -101,7 +101,7 @@ enum VariedSummary<'a> {
 
 /// The history at a factor.
 #[derive(Serialize)]
-struct SampleSummary<'a> {
+struct SampleSummary {
     /// The factor.
     factor: f64,
     /// Outcome of the history.
@@ -110,7 +110,7 @@ struct SampleSummary<'a> {
     history: Option<HistorySummary>,
     /// Reason why the outcome is uncertain, or why there is no history.
     #[serde(skip_serializing_if = "Option::is_none")]
-    reason: Option<&'a str>,
+    reason: Option<String>,
 }
 
 /// The numbers of a history.
@@ -160,24 +160,20 @@ pub fn report(
 
 /// Makes the table of the samples, ordered by model, then by factor.
 fn table(models: &[ModelSummary<'_>]) -> Result<Vec<u8>, OutputError> {
-    type Row<'a> = (&'a str, &'a SampleSummary<'a>);
+    type Row<'a> = (&'a str, &'a SampleSummary);
     let rows = models.iter().flat_map(|model| {
         let samples = model.samples.iter();
         samples.map(|sample| (model.model, sample))
     });
-    let history = |row: &Row<'_>| row.1.history;
-    let columns = [
-        column("model", |row: &Row<'_>| row.0.to_owned()),
-        column("factor", |row: &Row<'_>| row.1.factor),
-        column("outcome", |row: &Row<'_>| row.1.outcome),
-        column("overturning_sway", |row| history(row)?.overturning_sway),
-        column("impacts", |row| history(row)?.impacts),
-        column("outcome_time_s", |row| Some(history(row)?.outcome_time_s)),
-        column("peak_rotation_over_critical", |row| {
-            history(row)?.peak_rotation_over_critical
-        }),
-        column("peak_rotation_rad", |row| history(row)?.peak_rotation_rad),
-    ];
+    let mut columns = vec![column("model", |row: &Row<'_>| row.0.to_owned())];
+    columns.extend(fields!(|row: &Row<'_>| row.1 => factor, outcome));
+    columns.extend(fields!(|row: &Row<'_>| row.1.history? => overturning_sway, impacts));
+    columns.push(column("outcome_time_s", |row: &Row<'_>| {
+        Some(row.1.history?.outcome_time_s)
+    }));
+    columns.extend(fields!(
+        |row: &Row<'_>| row.1.history? => peak_rotation_over_critical, peak_rotation_rad
+    ));
     csv(columns, &rows.collect::<Vec<_>>())
 }
 
@@ -256,22 +252,22 @@ impl Threshold {
     }
 }
 
-impl<'a> SampleSummary<'a> {
-    fn of(sample: &'a FactorSample) -> Self {
+impl SampleSummary {
+    fn of(sample: &FactorSample) -> Self {
         let ending = sample.result.as_ref();
         Self {
             factor: sample.factor,
-            outcome: sample.outcome_name(),
+            outcome: outcome_name(&sample.result),
             history: ending.ok().map(|ending| HistorySummary {
                 overturning_sway: ending.overturning_sway(),
                 impacts: ending.impacts,
                 outcome_time_s: ending.outcome_time_s,
-                peak_rotation_over_critical: ending.peak.over_critical(),
+                peak_rotation_over_critical: ending.peak_over_critical,
                 peak_rotation_rad: Some(ending.peak_rotation_rad),
             }),
             reason: match ending {
-                Ok(ending) => ending.uncertain.as_deref(),
-                Err(NoHistory::GroundFalls(reason) | NoHistory::Failed(reason)) => Some(reason),
+                Ok(ending) => ending.uncertain.as_ref().map(ToString::to_string),
+                Err(reason) => Some(reason.to_string()),
             },
         }
     }
@@ -414,7 +410,7 @@ impl Threshold {
             |sample: &&FactorSample| matches!(sample.result, Err(NoHistory::GroundFalls(_)));
         let histories = self.samples.iter().filter(|sample| !falls(sample));
         let all = histories.clone().count();
-        let listed = |what: &str, reasons: Vec<(f64, &str)>| {
+        let listed = |what: &str, reasons: Vec<(f64, String)>| {
             let (factor, reason) = reasons.first()?;
             let (count, factor) = (reasons.len(), rounded(*factor));
             Some(format!(

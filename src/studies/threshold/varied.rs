@@ -3,11 +3,11 @@
 use std::cell::Cell;
 use std::ops::ControlFlow;
 
+use super::first_edge::lowest;
 use super::{EDGE_WIDTH, Factors};
-use crate::bisection::{Width, try_bisect};
 use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::Summary;
-use crate::dynamics::model::{Model, Request, SimulationError};
+use crate::dynamics::model::{Case, Model, Request, SimulationError};
 use crate::dynamics::repeatability::Verdict;
 use crate::dynamics::until::EndCondition;
 use crate::dynamics::variation::Variation;
@@ -58,7 +58,7 @@ pub fn vary(
         let incomplete = Cell::new(0);
         let factor = match model {
             Ok(model) => {
-                lowest(&**model, case, &factors, &incomplete).map_err(|error| error.to_string())
+                lowest_of(&**model, case, &factors, &incomplete).map_err(|error| error.to_string())
             }
             Err(reason) => Err(reason.clone()),
         };
@@ -71,7 +71,8 @@ pub fn vary(
     runner.each(variations.len(), search, watch)
 }
 
-fn lowest(
+/// Finds the lowest factor that overturns a model, and counts the histories without a verdict.
+fn lowest_of(
     model: &dyn Model,
     (ground, request): (&GroundMotion, &Request),
     factors: &[f64],
@@ -84,29 +85,21 @@ fn lowest(
             verdict == Verdict::Overturns
         })
     };
-    let mut survived = None;
-    for factors in factors.chunks(TOGETHER) {
-        let cases = factors
-            .iter()
-            .map(|factor| Ok((ground.scaled(*factor)?, *request)))
-            .collect::<Result<Vec<_>, SimulationError>>()?;
-        for (factor, history) in factors
-            .iter()
-            .zip(model.simulate_all_until(EndCondition::Safe, &cases))
-        {
-            if !falls(history)? {
-                survived = Some(*factor);
-                continue;
+    let case =
+        |factor: f64| -> Result<Case, SimulationError> { Ok((ground.scaled(factor)?, *request)) };
+    let histories = |factors: &[f64]| -> Vec<(f64, Result<Summary, SimulationError>)> {
+        let cases = factors.iter().map(|factor| case(*factor));
+        match cases.collect::<Result<Vec<_>, _>>() {
+            Ok(cases) => {
+                let summaries = model.simulate_all_until(EndCondition::Safe, &cases);
+                factors.iter().copied().zip(summaries).collect()
             }
-            let Some(survived) = survived else {
-                return Ok(Some(*factor));
-            };
-            let width = Width::Relative(EDGE_WIDTH);
-            let (_, lowest) = try_bisect(survived, *factor, width, |factor| {
-                falls(model.simulate_until(EndCondition::Safe, &(ground.scaled(factor)?, *request)))
-            })?;
-            return Ok(Some(lowest));
+            Err(error) => vec![(factors[0], Err(error))],
         }
-    }
-    Ok(None)
+    };
+    let histories = factors.chunks(TOGETHER).flat_map(histories);
+    let histories = histories.map(|(factor, history)| (factor, falls(history)));
+    lowest(histories, EDGE_WIDTH, |factor| {
+        falls(model.simulate_until(EndCondition::Safe, &case(factor)?))
+    })
 }

@@ -5,7 +5,7 @@ use serde_json::Value;
 
 use super::{CellCounts, CellRow, CellsOfSamples, Crossing, LEVELS, Samples};
 use crate::output::chart::Mark;
-use crate::output::sheet::{Key, Sign};
+use crate::output::sheet::Key;
 use crate::output::svg::{Stroke, color};
 use crate::output::table::{column, csv, each, list};
 use crate::output::{Figure, OutputError};
@@ -177,12 +177,8 @@ fn draw(
     style: Style,
 ) -> Drawn {
     let kinds: Vec<Kind> = counts.iter().map(kind_of).collect();
-    let present = PALETTE.iter().filter(|kind| kinds.contains(kind));
-    let mut keys: Vec<Key> = present
-        .map(|kind| Key::new(kind.label, Sign::Band(kind.fill, 1.0)))
-        .collect();
     let sheet = Sheet::new(title, &study.map, style);
-    let mut lines = Vec::new();
+    let (mut keys, mut lines) = (Vec::new(), Vec::new());
     for (level, (name, stroke)) in LINES.into_iter().enumerate() {
         if crossings
             .iter()

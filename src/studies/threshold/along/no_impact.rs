@@ -4,9 +4,9 @@
 //! there is only one edge. Under a motion with lobes to both sides, narrow ranges of the factor may overturn the structure: one lobe just
 //! overturns it and the next lobe does not stop it. So the search for the edge uses small strides, followed by bisection.
 
-use crate::bisection::{Width, try_bisect};
 use crate::scenario::{Ground, Scenario};
 use crate::studies::threshold::factors::Factors;
+use crate::studies::threshold::first_edge::lowest;
 
 /// Ratio of successive factors under motions with lobes to both sides; a narrower range may be missed. The narrowest known ranges, under Ricker,
 /// Gabor and windowed pulses, were about 1.5 % wide.
@@ -40,14 +40,6 @@ pub(super) fn least_without_impact(
     let ascending = std::iter::successors(Some(factors.from), |factor| {
         (*factor < last).then(|| (factor * stride).min(last))
     });
-    let mut below = None;
-    for factor in ascending {
-        if overturns(factor)? {
-            let low = below.unwrap_or(factor);
-            let (_, least) = try_bisect(low, factor, Width::Relative(RESOLUTION), overturns)?;
-            return Ok(Some(least));
-        }
-        below = Some(factor);
-    }
-    Ok(None)
+    let histories = ascending.map(|factor| (factor, overturns(factor)));
+    lowest(histories, RESOLUTION, overturns)
 }
