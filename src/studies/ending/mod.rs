@@ -26,6 +26,8 @@ pub struct Steps {
 
 /// The ending of a history, in numbers that studies compare. All numbers are finite.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+// A row of a part file from another build is refused, not read in part.
+#[serde(deny_unknown_fields)]
 pub struct Ending {
     /// The outcome.
     pub outcome: Outcome,
