@@ -436,7 +436,9 @@ fn a_long_run_shows_its_progress_on_a_terminal() {
     fs::write(root.path().join("short.toml"), scenario(1e-2)).unwrap();
     // The program waits for a slow reader of its rotations.
     let run = |more: &str| {
-        format!("{PROGRAM} run --rotations - {more} | (sleep 2.5; cat > rotations.csv)")
+        format!(
+            "({PROGRAM} run --rotations - {more}; echo code $? >&2) | (sleep 2.5; cat > rotations.csv)"
+        )
     };
     let Some(said) = on_a_terminal(root.path(), &run("long.toml")) else {
         eprintln!("script is missing: progress is not tested");
@@ -448,6 +450,7 @@ fn a_long_run_shows_its_progress_on_a_terminal() {
     for more in ["long.toml --quiet", "short.toml"] {
         let said = on_a_terminal(root.path(), &run(more)).unwrap();
         assert!(!said.contains(" s simulated"), "{said}");
+        assert!(said.contains("code 0"), "{said}");
     }
     // Progress is not written to a file.
     let ran = Command::new("sh")
@@ -457,6 +460,7 @@ fn a_long_run_shows_its_progress_on_a_terminal() {
         .unwrap();
     let said = String::from_utf8(ran.stderr).unwrap();
     assert!(said.contains("still rocking at 8.0000 s"), "{said}");
+    assert!(said.ends_with("code 0\n"), "{said}");
     assert!(!said.contains(" s simulated"), "{said}");
 }
 

@@ -651,8 +651,8 @@ fn uncertain_cases_are_counted_as_surviving_and_as_overturning() {
     assert_eq!(survivals[0].1.overturns_from, Some(4.0));
     assert_eq!(survivals[0].1.uncertain, [[3.0, 3.0]]);
 
-    let result_files = result_files(&free_heading(), &doubtful);
-    let Table { header, rows } = Table::parse(&result_files["fragility.csv"]);
+    let files = result_files(&free_heading(), &doubtful);
+    let Table { header, rows } = Table::parse(&files["fragility.csv"]);
     assert!(
         header
             .windows(2)
@@ -673,7 +673,7 @@ fn uncertain_cases_are_counted_as_surviving_and_as_overturning() {
         );
         assert!(row.number("fraction") <= row.number("fraction_with_uncertain"));
     }
-    let json: Value = result_files["fragility.json"].parse().unwrap();
+    let json: Value = files["fragility.json"].parse().unwrap();
     assert_eq!(
         (&json["overturned"], &json["uncertain"]),
         (&9.into(), &3.into())
@@ -688,24 +688,19 @@ fn uncertain_cases_are_counted_as_surviving_and_as_overturning() {
     assert_eq!(json["uncertain_cases"][0]["case"], "a, scale 3");
     assert_eq!(json["longest_step_s"]["max"], 1e-4);
     // Neither the side nor impacts before overturning are given.
-    assert_eq!(
-        result_files["suite.csv"]
-            .matches(",uncertain,,0,,1.0,")
-            .count(),
-        3
-    );
+    assert_eq!(files["suite.csv"].matches(",uncertain,,0,,1.0,").count(), 3);
 
     let named =
         |picture: &str, name: &str| picture.matches(&format!("data-name=\"{name}\"")).count();
-    let picture = &result_files["suite.svg"];
+    let picture = &files["suite.svg"];
     for name in ["fit", "fit-with-uncertain", "band", "between"] {
         assert_eq!(named(picture, name), 1, "{name}");
     }
     assert_eq!(named(picture, "uncertain"), 3);
     let picture = Document::parse(picture).unwrap();
     shows(&texts(&picture).join("\n"), &[3.0]);
-    assert_eq!(named(&result_files["ida.svg"], "uncertain"), 3);
-    let plain = self::result_files(&free_heading(), &survived);
+    assert_eq!(named(&files["ida.svg"], "uncertain"), 3);
+    let plain = result_files(&free_heading(), &survived);
     for name in ["fit-with-uncertain", "between", "uncertain"] {
         assert_eq!(named(&plain["suite.svg"], name), 0, "{name}");
     }
@@ -760,10 +755,10 @@ fn mirrored_records_count_unless_results_are_mirror_images() {
 
 /// The files of the results, by their names.
 fn result_files(heading: &Heading, results: &SuiteFragility) -> BTreeMap<&'static str, String> {
-    let result_files = heading
+    let results = heading
         .report(results.cases.clone(), Figure::SCREEN)
         .unwrap();
-    let files = result_files.files.into_iter();
+    let files = results.files.into_iter();
     files
         .map(|(name, contents)| (name, String::from_utf8(contents).unwrap()))
         .collect()
@@ -834,18 +829,16 @@ fn failed_cases_are_excluded_and_rocking_ones_survive() {
 #[test]
 fn a_level_with_only_failed_cases_has_no_fraction() {
     let results = results(&[("a.at2", 1.0, FAILED), ("a.at2", 2.0, OVERTURNED)]);
-    let result_files = result_files(&heading(), &results);
-    let levels = &result_files["fragility.csv"];
+    let files = result_files(&heading(), &results);
+    let levels = &files["fragility.csv"];
     assert!(
         levels.contains("\n1.0,0,0,0,0,1,,,,\n2.0,1,1,0,0,0,1.0,,,\n"),
         "{levels}"
     );
-    let json: Value = result_files["fragility.json"].parse().unwrap();
+    let json: Value = files["fragility.json"].parse().unwrap();
     shows(json["no_fit"].as_str().unwrap(), &[1.0]);
     assert_eq!(
-        result_files["suite.svg"]
-            .matches("data-name=\"fraction\"")
-            .count(),
+        files["suite.svg"].matches("data-name=\"fraction\"").count(),
         1
     );
 }
@@ -1334,11 +1327,8 @@ fn distributions_of_models_are_compared() {
         let mut peaks: Vec<f64> = suite.rows.iter().map(peak).collect();
         peaks.sort_by(f64::total_cmp);
         let finite = peaks.iter().filter(|peak| peak.is_finite());
-        for (result_files, known) in of(words).iter().zip(finite.clone()) {
-            assert!(
-                (result_files - known).abs() < 1e-9,
-                "{name}: {result_files} {known}"
-            );
+        for (printed, known) in of(words).iter().zip(finite.clone()) {
+            assert!((printed - known).abs() < 1e-9, "{name}: {printed} {known}");
         }
         assert_eq!(of(words).len(), finite.count());
         assert!((6..15).contains(&of(words).len()), "{name}");

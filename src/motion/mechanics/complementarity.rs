@@ -128,7 +128,7 @@ mod tests {
         let z = solve(&matrix, &[-1.0, 3.0]).unwrap();
         assert!((z[0] - 0.5).abs() < 1e-14 && z[1] == 0.0);
         assert_eq!(solve(&matrix, &[1.0, 0.0]), Some(vec![0.0, 0.0]));
-        // No `z` makes a row of zeros positive.
+        // No `z` makes a row of zeros and -1 positive.
         assert_eq!(solve(&DMatrix::zeros(1, 1), &[-1.0]), None);
     }
 

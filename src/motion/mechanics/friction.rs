@@ -23,7 +23,7 @@ const COEFFICIENT_TOLERANCE: f64 = 1e-7;
 /// Coefficient of friction that is assumed to prevent all slip.
 const LARGEST_COEFFICIENT: f64 = 100.0;
 /// Excess of friction over its bound, over the weight, that counts as zero.
-const LEAST_FRICTION_EXCESS: f64 = 1e-8;
+const FRICTION_EXCESS_TOLERANCE: f64 = 1e-8;
 
 /// Joint that opens or slips in a mechanism.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -134,7 +134,7 @@ pub(crate) fn stands_at(
 ) -> Result<bool, FrictionError> {
     let program = Program::new(row, stance, coefficient, Objective::FrictionExcess);
     let found = program.solve(1.0, FrictionError::NeverStands)?;
-    Ok(found.is_none_or(|(shortage, _)| shortage <= LEAST_FRICTION_EXCESS))
+    Ok(found.is_none_or(|(excess, _)| excess <= FRICTION_EXCESS_TOLERANCE))
 }
 
 /// Returns the least coefficient of friction for which a row carries its own weight, with a tolerance of 1e-7.

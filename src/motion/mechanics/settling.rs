@@ -458,7 +458,7 @@ impl<'a> Follower<'a> {
         let mut pins = self.hinges.clone()?;
         for _ in 0..MOST_EXCHANGES {
             let state = pins.state(self.row, condition, &self.stance)?;
-            let wrong = state.joints_below_margin(-self.slack);
+            let wrong = state.pins_below_margin(-self.slack);
             if wrong.is_empty() {
                 return Some((pins, state));
             }
@@ -481,8 +481,7 @@ impl<'a> Follower<'a> {
             let beyond = at + perturbation * unit;
             let condition = path(beyond);
             let state = self.state_in(&condition);
-            let causes =
-                state.map_or_else(Vec::new, |state| state.joints_below_margin(-self.slack));
+            let causes = state.map_or_else(Vec::new, |state| state.pins_below_margin(-self.slack));
             let snap = |after: Option<&Pins>| Snap {
                 at,
                 before: before.as_ref().map(|hinges| hinges.hinges.to_vec()),

@@ -389,7 +389,7 @@ pub fn scene(scenario: &Scenario, model: &dyn Model) -> Scene {
     scene
 }
 
-/// Collects the samples and events of a history for its pictures, its page and its words.
+/// Collects the samples and events of a history for its pictures, its page, its words and its summary.
 struct Drawings {
     timeline: Timeline,
     report: Option<Report>,

@@ -19,9 +19,9 @@ use crate::output::svg::{CURVES, Stroke, color};
 /// Upper limit of the drawn excess of the thrust line, in thicknesses. The values of a falling structure would hide all others.
 pub(super) const LARGEST_EXCESS: f64 = 1.0;
 
-/// A half cycle that comes near the unstable equilibrium or passes it.
+/// A half cycle that reaches a quarter of the unstable rotation.
 #[derive(Clone, Copy, Debug)]
-struct NearCriticalCycle {
+struct LargeCycle {
     phase: usize,
     /// The body whose rotation is the coordinate of the mechanism.
     body: usize,
@@ -32,7 +32,7 @@ struct NearCriticalCycle {
 }
 
 /// Fraction of the unstable rotation, or of the barrier, from which the limit is drawn.
-const NEAR_CRITICAL_RATIO: f64 = 0.25;
+const LARGE_RATIO: f64 = 0.25;
 
 /// Returns the stroke for the unstable rotation of a body, in the colour of its curve.
 const fn unstable(body: usize) -> Stroke {
@@ -61,8 +61,8 @@ pub(super) struct Timeline {
     /// The last phase.
     phase: usize,
     phase_from_s: f64,
-    /// Half cycles that come near the unstable equilibrium.
-    near_critical: Vec<NearCriticalCycle>,
+    /// Half cycles that reach a quarter of the unstable rotation.
+    large_cycles: Vec<LargeCycle>,
     /// The states of mechanisms over time, and their impacts.
     states: StateHistory,
     impacts_s: Vec<f64>,
@@ -115,7 +115,7 @@ impl Timeline {
         self.in_barriers = sample.energy_ratio.is_some();
         let energy = sample.energy_ratio.unwrap_or(sample.energy_j);
         self.energy.push(time_s, energy);
-        self.note_near_critical(sample);
+        self.note_large_cycle(sample);
         if let Some(joints) = &mut self.joints {
             joints.push(sample);
         }
@@ -131,8 +131,8 @@ impl Timeline {
         }
     }
 
-    /// Adds the half cycle of a sample if the sample is near the unstable equilibrium.
-    fn note_near_critical(&mut self, sample: &Sample) {
+    /// Adds the half cycle of a sample that reaches a quarter of the unstable rotation.
+    fn note_large_cycle(&mut self, sample: &Sample) {
         if sample.phase != self.phase {
             (self.phase, self.phase_from_s) = (sample.phase, sample.time_s);
         }
@@ -145,18 +145,16 @@ impl Timeline {
             Sway::Right => 0,
             Sway::Left => sample.rotations_rad.len() - 1,
         };
-        let last = self.near_critical.last_mut();
+        let last = self.large_cycles.last_mut();
         match last.filter(|cycle| cycle.phase == sample.phase) {
             Some(cycle) => cycle.to_s = sample.time_s,
-            None if ratio.abs() >= NEAR_CRITICAL_RATIO => {
-                self.near_critical.push(NearCriticalCycle {
-                    phase: sample.phase,
-                    body,
-                    from_s: self.phase_from_s,
-                    to_s: sample.time_s,
-                    unstable_rad: sample.rotations_rad[body] / ratio.abs(),
-                })
-            }
+            None if ratio.abs() >= LARGE_RATIO => self.large_cycles.push(LargeCycle {
+                phase: sample.phase,
+                body,
+                from_s: self.phase_from_s,
+                to_s: sample.time_s,
+                unstable_rad: sample.rotations_rad[body] / ratio.abs(),
+            }),
             None => {}
         }
     }
@@ -218,7 +216,7 @@ impl Timeline {
             let mut curves = vec![energy];
             // A barrier far above the curve would flatten the curve.
             let over_barrier = history.peak_potential_over_barrier();
-            if over_barrier.is_some_and(|peak| peak >= NEAR_CRITICAL_RATIO) {
+            if over_barrier.is_some_and(|peak| peak >= LARGE_RATIO) {
                 let ends = span_s.map(|time_s| (time_s, 1.0));
                 curves.push(Mark::curve("barrier", BARRIER, ends));
                 let label = "gravity alone overturns the first mechanism";
@@ -259,7 +257,7 @@ impl Timeline {
                 panels.keys.push(Key::line(body, stroke));
             }
         }
-        marks.extend(self.near_critical.iter().map(|cycle| {
+        marks.extend(self.large_cycles.iter().map(|cycle| {
             let ends = [cycle.from_s, cycle.to_s].map(|time_s| (time_s, cycle.unstable_rad));
             Mark::curve("unstable", unstable(cycle.body), ends)
         }));
@@ -269,7 +267,7 @@ impl Timeline {
         if !self.impacts_s.is_empty() {
             panels.keys.push(Key::new("impacts", Sign::Tick(IMPACT)));
         }
-        if let Some(cycle) = self.near_critical.first() {
+        if let Some(cycle) = self.large_cycles.first() {
             let label = match self.bodies.len() {
                 1 => "unstable rotation",
                 _ => "unstable rotation of the body of that colour alone: others may go beyond it",

@@ -283,7 +283,7 @@ impl<'a> LandingStepper<'a> {
         let time = self.course.time;
         let (impulse, ground) = self.impulse(self.kicked_s, time);
         self.kick(impulse, time - self.kicked_s);
-        self.right.set_velocity(time);
+        self.right.prescribe_velocity_at(time);
         self.load.jumps.fill(Twist::ZERO);
         self.add_right_support_velocity();
         self.landing.fill([0.0; 2]);
@@ -299,7 +299,7 @@ impl<'a> LandingStepper<'a> {
     fn solve_step(&mut self, step: f64) -> Result<(), RowMotionError> {
         let (from_s, to_s) = self.kicked(step);
         self.kick(self.impulse(from_s, to_s).0, to_s - from_s);
-        self.right.set_mean_velocity(self.course.time, step);
+        self.right.prescribe_mean_velocity(self.course.time, step);
         self.set_relative_velocities(step);
         self.solve()
     }

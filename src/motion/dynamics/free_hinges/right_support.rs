@@ -44,16 +44,16 @@ impl<'a> RightSupport<'a> {
         [left, right]
     }
 
-    /// Sets the velocity of the current solution to the mean over a step that starts at `from_s`.
-    pub fn set_mean_velocity(&mut self, from_s: f64, lasts_s: f64) {
+    /// Prescribes the mean velocity over a step that starts at `from_s` for the current solution.
+    pub fn prescribe_mean_velocity(&mut self, from_s: f64, lasts_s: f64) {
         if let Some(feet) = &self.feet {
             self.solution_m_s =
                 (feet.ahead(from_s + lasts_s) - self.joint_displacement_m) / lasts_s;
         }
     }
 
-    /// Sets the velocity of the current solution to that at an instant.
-    pub fn set_velocity(&mut self, time_s: f64) {
+    /// Prescribes the velocity at an instant for the current solution.
+    pub fn prescribe_velocity_at(&mut self, time_s: f64) {
         if let Some(feet) = &self.feet {
             self.solution_m_s = feet.velocity_m_s(time_s);
         }

@@ -257,7 +257,7 @@ impl<'a> SlidingStepper<'a> {
         for joint in 0..self.faces.len() {
             self.rates_before[joint] = self.program.joint_rate(joint);
         }
-        self.right.set_mean_velocity(self.course.time, step);
+        self.right.prescribe_mean_velocity(self.course.time, step);
         self.update_position_errors(step);
         self.load(kick, to_s);
         let speeds = self.velocities.iter().map(|v| v.x.abs() + v.y.abs());
@@ -392,7 +392,7 @@ impl<'a> SlidingStepper<'a> {
     /// energy in J.
     fn synchronise(&mut self) -> f64 {
         let (kick, _) = self.kick(self.course.time);
-        self.right.set_velocity(self.course.time);
+        self.right.prescribe_velocity_at(self.course.time);
         let rates_at_gaps = |joint: usize| {
             let [intrados, extrados] = self.gaps(joint).map(|gap| gap / self.last_step);
             Vector3::new(intrados, extrados, 0.0)

@@ -12,7 +12,7 @@ function follow(source) {
 }
 
 function addPlot(label, tall, xs, curves, legend) {
-  // Omits curves that are zero throughout.
+  // Omits a plot whose curves are all zero throughout.
   if (curves.every(({ values }) => farthest(values) === 0)) return;
   const holder = document.createElement("div");
   holder.className = "plot";
