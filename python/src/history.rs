@@ -204,8 +204,8 @@ impl History {
         let (samples, events) = watched.recording.finish().map_err(too_large)?;
         let displaced = |point: &StructurePoint| {
             let moved_m = samples.iter().map(|sample| {
-                let mark = scene.body_point(point, &sample.hinges);
-                mark.moved(&sample.poses, 1.0) - point.at_m
+                let carried = scene.body_point(point, &sample.hinges);
+                carried.moved(&sample.poses, 1.0) - point.at_m
             });
             moved_m.flat_map(|moved_m| [moved_m.x, moved_m.y]).collect()
         };

@@ -156,8 +156,6 @@ fn hinges(model: Option<&str>) -> PyResult<Option<Hinges>> {
 impl Scenario {
     /// Reads the text of a scenario, with the files that it names. Without such files, they are read from the folder of `name`.
     ///
-    /// Reads the text of a scenario, with the files that it names. Without such files, they are read from the folder of `name`.
-    ///
     /// Errors that do not concern statics are kept until the structure is simulated. `unmovable` are those of an earlier reading of the
     /// scenario.
     #[new]

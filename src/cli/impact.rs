@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::output::Folder;
 use archrock::output::scene::Scene;
-use archrock::studies::impact::{ImpactOptions, LinkImpact, chain_answer, four_links_answer};
+use archrock::studies::impact::{ImpactOptions, LinkImpact, chain_result, four_links_result};
 use archrock::studies::pictures;
 
 use super::figure::FigureOption;
@@ -59,7 +59,7 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
     let (first, count) = (arguments.first.get(), usize::from(arguments.count));
     if !scenario.structure.thrusts() && !arguments.of_arches_only() {
         let model = commands::model(&scenario)?;
-        let answer = chain_answer(&scenario, &*model, first, count)?;
+        let answer = chain_result(&scenario, &*model, first, count)?;
         return commands::print_result(&answer, arguments.format);
     }
     let options = "--models, --certificate, --line and --plot are";
@@ -108,7 +108,7 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
         certificate: arguments.certificate,
         joints: arguments.joints.map(usize::from),
     };
-    let answer = four_links_answer(&scenario, &impact, &options)?;
+    let answer = four_links_result(&scenario, &impact, &options)?;
     commands::print_result(&answer, arguments.format)
 }
 

@@ -137,12 +137,12 @@ impl Input<'_> {
     }
 
     fn read_for(&self, hinges: Option<Hinges>, statics: bool) -> Result<Scenario, Failure> {
-        let changes = ReadOptions {
+        let options = ReadOptions {
             hinges,
             set: self.set,
             statics,
         };
-        let scenario = Scenario::of(&self.source, &changes)?;
+        let scenario = Scenario::of(&self.source, &options)?;
         Ok(match self.no_uncertain {
             true => scenario.without_uncertain(),
             false => scenario,
@@ -372,7 +372,7 @@ impl Destination {
         let (batch, command) = self.locked();
         let folder = batch.folder(&self.path, &all);
         let mut folder = folder.map_err(suggest_other_folder)?;
-        // `last_run` misses the folder of a record whose seal was not written.
+        // `last_results` misses the folder of a record whose seal was not written.
         let others = command.files.iter().filter(|name| !names.contains(name));
         others.for_each(|name| folder.forget(name));
         if let Some(origin) = &self.origin {

@@ -194,8 +194,8 @@ impl<'s> Session<'s> {
             display.show(part, |elapsed| match kind == RUN {
                 true => simulated(progress, elapsed),
                 false => {
-                    let pace = progress_text(new, all.saturating_sub(done), elapsed);
-                    format!("{done} of {all} cases, {pace}")
+                    let progress = progress_text(new, all.saturating_sub(done), elapsed);
+                    format!("{done} of {all} cases, {progress}")
                 }
             });
             ControlFlow::Continue(())

@@ -3,12 +3,12 @@
 use nalgebra::Vector2;
 
 use super::figure::Figure;
-use super::scene::{BodyPoint, Piece, Scene};
+use super::scene::{Piece, Scene};
 use super::sheet::{PartHeight, Sheet};
 use super::svg::{Anchor, Drawing, Frame, Stroke, color};
 use super::text::{TEXT_PX, Text, text_px};
 use crate::dynamics::history::OpenHinge;
-use crate::mechanics::geometry::pose::Pose;
+use crate::mechanics::geometry::pose::{BodyPoint, Pose};
 use crate::scenario::{Dimension, DimensionSide, metres};
 
 /// Colour of blocks.
@@ -136,8 +136,8 @@ impl<'a> View<'a> {
     }
 
     /// Returns the position of a point on the sheet.
-    pub(crate) fn px(&self, mark: &BodyPoint) -> Vector2<f64> {
-        self.place.px(mark.moved(self.poses, self.exaggeration))
+    pub(crate) fn px(&self, point: &BodyPoint) -> Vector2<f64> {
+        self.place.px(point.moved(self.poses, self.exaggeration))
     }
 
     fn corners(&self, piece: &Piece) -> impl Iterator<Item = Vector2<f64>> {
@@ -184,8 +184,8 @@ impl<'a> View<'a> {
     }
 
     pub(crate) fn draw_hinges(&self, drawing: &mut Drawing) {
-        for mark in self.scene.hinges(self.hinges) {
-            drawing.circle("hinge", self.px(&mark), HINGE_PX, HINGE);
+        for hinge in self.scene.hinges(self.hinges) {
+            drawing.circle("hinge", self.px(&hinge), HINGE_PX, HINGE);
         }
     }
 
@@ -194,8 +194,8 @@ impl<'a> View<'a> {
         let mut farthest = f64::NEG_INFINITY;
         let mut loads = self.scene.loads(self.hinges);
         loads.sort_by(|a, b| a.0.at_m.x.total_cmp(&b.0.at_m.x));
-        for (mark, load) in loads {
-            let foot = self.px(&mark);
+        for (point, load) in loads {
+            let foot = self.px(&point);
             let tail = from.map_or(foot.y - 20.0, |top| top - 8.0);
             let tail = Vector2::new(foot.x, tail);
             drawing.curve("load", [tail, foot], LOAD);
@@ -203,8 +203,8 @@ impl<'a> View<'a> {
             drawing.polygon("", [foot, barb(-1.0), barb(1.0)], LOAD.color, LOAD);
             if load.width_m > 0.0 {
                 let edge = |side: f64| {
-                    let at_m = mark.at_m + Vector2::new(0.5 * side * load.width_m, 0.0);
-                    Vector2::new(self.px(&BodyPoint { at_m, ..mark }).x, tail.y)
+                    let at_m = point.at_m + Vector2::new(0.5 * side * load.width_m, 0.0);
+                    Vector2::new(self.px(&BodyPoint { at_m, ..point }).x, tail.y)
                 };
                 drawing.curve("load width", [edge(-1.0), edge(1.0)], LOAD);
             }

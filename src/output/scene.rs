@@ -6,7 +6,7 @@ use nalgebra::Vector2;
 use crate::dynamics::history::{OpenHinge, Sample};
 use crate::mechanics::blocks::Row;
 use crate::mechanics::chain::Hinge;
-use crate::mechanics::geometry::pose::Pose;
+use crate::mechanics::geometry::pose::{BodyPoint, Pose};
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::masonry::{FillColumn, PlacedLoad};
 use crate::mechanics::parts::{Outline, Parts, Section};
@@ -67,25 +67,6 @@ pub struct Piece {
     pub body: Option<usize>,
     /// Undeformed corners along the outline, in metres.
     pub outline_m: Vec<Vector2<f64>>,
-}
-
-/// A point that moves with a body.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BodyPoint {
-    /// Index of the body; `None` for a point that does not move.
-    pub body: Option<usize>,
-    /// Position in the undeformed structure, in metres.
-    pub at_m: Vector2<f64>,
-}
-
-impl BodyPoint {
-    /// Returns the current position of the point, with its displacement multiplied by `exaggeration`. At any exaggeration, coincident points
-    /// stay coincident and closed joints stay closed; in return, bodies grow with the square of their rotation.
-    #[must_use]
-    pub fn moved(&self, poses: &[Pose], exaggeration: f64) -> Vector2<f64> {
-        let (pose, at_m) = (self.body.and_then(|body| poses.get(body)), self.at_m);
-        pose.map_or(at_m, |pose| at_m + (pose.of(at_m) - at_m) * exaggeration)
-    }
 }
 
 impl Piece {
@@ -303,11 +284,11 @@ impl Scene {
         let last = hinges.len().saturating_sub(1);
         let marks = hinges.iter().enumerate();
         let marks = marks.filter_map(|(index, open)| {
-            let mark = self.hinge(open.hinge)?;
+            let point = self.hinge(open.hinge)?;
             // The last hinge is on the part that does not move.
             let link = (index < last).then_some(index);
-            let body = if self.linked { link } else { mark.body };
-            Some(BodyPoint { body, ..mark })
+            let body = if self.linked { link } else { point.body };
+            Some(BodyPoint { body, ..point })
         });
         marks.collect()
     }

@@ -239,43 +239,43 @@ impl Scenario {
     #[must_use]
     pub fn schema() -> Value {
         // With a set model, tables of several models are allowed together.
-        let changes = ReadOptions {
+        let options = ReadOptions {
             hinges: Some(Hinges::Four),
             ..ReadOptions::default()
         };
-        let mut schema = table::describe(|table| Self::read_table(table, &[], &changes));
+        let mut schema = table::describe(|table| Self::read_table(table, &[], &options));
         schema["$schema"] = "http://json-schema.org/draft-07/schema#".into();
         schema["title"] = "Scenario of archrock".into();
         schema
     }
 
-    /// Reads a scenario with changes.
+    /// Reads a scenario with options.
     ///
     /// # Errors
     ///
-    /// As [`Scenario::parse`], and when a change does not fit the scenario. An error in an assignment has the assignment instead of the file,
+    /// As [`Scenario::parse`], and when an option does not fit the scenario. An error in an assignment has the assignment instead of the file,
     /// and no line.
-    pub fn of(source: &Source, changes: &ReadOptions<'_>) -> Result<Self, ScenarioErrors> {
+    pub fn of(source: &Source, options: &ReadOptions<'_>) -> Result<Self, ScenarioErrors> {
         let Source { folder, text, .. } = source;
-        table::read_text((text, folder), changes.set, |table| {
-            let mut scenario = Self::read_table(table, &[], changes)?;
+        table::read_text((text, folder), options.set, |table| {
+            let mut scenario = Self::read_table(table, &[], options)?;
             let mut files = vec![InputFile::of_scenario(&source.name, text)];
             files.append(&mut table.noted_files());
             let folder = folder.clone();
             scenario.files = InputFiles { files, folder };
             Ok(scenario)
         })
-        .map_err(|faults| ScenarioErrors::placed((text, &source.name), changes.set, faults))
+        .map_err(|faults| ScenarioErrors::placed((text, &source.name), options.set, faults))
     }
 
     /// Reads a scenario. `known` are records that need not be read from their files again.
     fn read_table(
         table: &mut Table<'_>,
         known: &[Series],
-        changes: &ReadOptions<'_>,
+        options: &ReadOptions<'_>,
     ) -> ReadResult<Self> {
         let title = table.optional("title", &text());
-        let motion = motion::Tables::read(table, changes.hinges, changes.statics);
+        let motion = motion::Tables::read(table, options.hinges, options.statics);
         let hinges = motion.hinges;
         let simulation = table.table_or_defaults("simulation", Simulation::read);
         let simulated = simulation.as_ref().ok();
@@ -283,9 +283,9 @@ impl Scenario {
         let built = Structure::read(table, hinges, gravity_m_s2);
         let structure = built.as_ref().ok().map(|(structure, _)| structure);
         let known = (known, gravity_m_s2);
-        let shaking = GroundInput::read(table, known, changes.statics);
+        let ground = GroundInput::read(table, known, options.statics);
         let motion = motion.complete(table);
-        let right_foot = shaking.as_ref().ok().and_then(|it| it.right_foot.as_ref());
+        let right_foot = ground.as_ref().ok().and_then(|it| it.right_foot.as_ref());
         let suits = right_foot.map_or(Ok(()), |it| it.suits(table, structure, hinges));
         let initial = table.given_table("initial", |table| initial::read(table, structure, hinges));
         let moved = (hinges, motion.as_ref().ok().map(|(motion, _)| motion));
@@ -300,7 +300,7 @@ impl Scenario {
             verify.suits(table, demand.as_ref())?;
         }
         let ((motion, ignores_impact), (structure, ties)) = (motion?, built?);
-        let shaken_s = shaking.as_ref().map_or(0.0, |it| it.motion.end_s());
+        let shaken_s = ground.as_ref().map_or(0.0, |it| it.motion.end_s());
         let until = simulated.map(|simulation| {
             let end_s = simulation.end_s(shaken_s, structure.size_m());
             (simulation.gravity_m_s2, end_s)
@@ -309,16 +309,16 @@ impl Scenario {
         let is_released = !ties.is_empty() && table.gives("initial");
         let wrong = "cannot be combined with [[tie]], which holds the structure where it stands; leave one out";
         table.refuse(is_released, "initial", wrong)?;
-        let (given_shape, shaking) = (Circular::given(table), shaking?);
+        let (given_shape, ground) = (Circular::given(table), ground?);
         let mut certain = Self {
             title: title.map(|title| shown(&title)),
             structure,
             ties,
             motion,
             ignores_impact,
-            ground: shaking.ground,
-            unread_ground: shaking.unread,
-            right_foot: shaking.right_foot,
+            ground: ground.ground,
+            unread_ground: ground.unread,
+            right_foot: ground.right_foot,
             initial: initial?,
             simulation: simulation?,
             map: map?,
@@ -331,7 +331,7 @@ impl Scenario {
             given_shape,
             ground_motion: Arc::new(GroundMotion::still()),
         };
-        certain.ground_motion = Arc::new(certain.under_both_feet(shaking.motion));
+        certain.ground_motion = Arc::new(certain.under_both_feet(ground.motion));
         let end_s = certain.request().end_s;
         certain.simulation.check_default_end(table, end_s)?;
         let uncertain = uncertain?.map(|uncertain| {

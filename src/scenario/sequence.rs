@@ -72,6 +72,12 @@ impl Sequence {
         }
     }
 
+    /// Returns true if the axis of these values, multiples of the numbers, is logarithmic.
+    #[must_use]
+    pub fn is_logarithmic(&self, values: &[f64]) -> bool {
+        self.spacing() == Spacing::Logarithmic && values.iter().all(|value| *value > 0.0)
+    }
+
     /// Returns the spacing of the axis on which the numbers are drawn.
     #[must_use]
     pub const fn spacing(&self) -> Spacing {

@@ -18,7 +18,7 @@ use super::variant::{number, parts, value};
 use crate::bisection::{Width, bisect, middle};
 
 named! {
-    /// Distribution of a number about the value in the scenario.
+    /// Form of a distribution about the value in the scenario.
     pub enum DistributionForm {
         /// Normal distribution, with that value as its mean.
         Normal = "normal",
@@ -45,7 +45,8 @@ pub enum Distribution {
         /// Standard deviation, in the unit of the key; that of the natural logarithm for a lognormal distribution.
         deviation: f64,
         /// The form of the distribution.
-        distribution: DistributionForm,
+        #[serde(rename = "distribution")]
+        form: DistributionForm,
     },
 }
 
@@ -105,7 +106,7 @@ impl Distribution {
         let Some((from, to)) = from.zip(to) else {
             return Ok(Self::About {
                 deviation: deviation.ok_or(FaultRecorded)?,
-                distribution: distribution.unwrap_or(DistributionForm::Normal),
+                form: distribution.unwrap_or(DistributionForm::Normal),
             });
         };
         let spacing = spacing.unwrap_or(Spacing::Linear);
@@ -130,7 +131,7 @@ impl Distribution {
             }
             Self::About {
                 deviation,
-                distribution: DistributionForm::Normal,
+                form: DistributionForm::Normal,
             } => own + deviation * cut_normal(part),
             Self::About { deviation, .. } => own * libm::exp(deviation * cut_normal(part)),
         }

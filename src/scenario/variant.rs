@@ -28,8 +28,8 @@ impl Scenario {
         document.assign(&set);
         fit(&mut document.root, &keys);
         let known: Vec<Series> = self.series().cloned().collect();
-        let changes = ReadOptions::default();
-        table::read_document(document, |table| Self::read_table(table, &known, &changes))
+        let options = ReadOptions::default();
+        table::read_document(document, |table| Self::read_table(table, &known, &options))
             .map_err(|faults| shown(&faults[0].message))
     }
 }

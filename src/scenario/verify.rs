@@ -289,7 +289,7 @@ pub struct CodeDemand {
     pub soil: Soil,
     /// Topography.
     #[serde(flatten)]
-    pub relief: SiteTopography,
+    pub topography: SiteTopography,
     /// Hazard of each checked limit state.
     #[serde(flatten)]
     pub hazards: ByState<Hazard>,
@@ -455,16 +455,18 @@ impl CodeDemand {
         let factor = table.optional("topographic_factor", &TOPOGRAPHIC_FACTOR);
         let is_site = table.agrees(&[OneOf(&["topography", "topographic_factor"], None)]);
         let category = category.map(SiteTopography::Topography);
-        let relief = category.or(factor.map(SiteTopography::TopographicFactor));
-        let site = relief.filter(|_| is_site.is_ok()).map(|relief| Site {
-            soil,
-            topographic_factor: relief.factor(),
-        });
+        let topography = category.or(factor.map(SiteTopography::TopographicFactor));
+        let site = topography
+            .filter(|_| is_site.is_ok())
+            .map(|topography| Site {
+                soil,
+                topographic_factor: topography.factor(),
+            });
         let hazards = read_by_state(table, |table, _| read_hazard(table, site));
         let height = table.table("height", |table| Building::read(table, &hazards));
         Ok(Self {
             soil,
-            relief: relief.ok_or(FaultRecorded)?,
+            topography: topography.ok_or(FaultRecorded)?,
             hazards,
             height,
         })

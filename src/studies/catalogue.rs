@@ -153,13 +153,9 @@ pub const SPREAD: StudyKind = StudyKind {
     files: &spread::FILES,
     has_parts: false,
     run: |scenarios, options, style, _| {
-        let found =
-            spread::spread(&scenarios[0], &options.directions).map_err(StudyError::scenario)?;
-        Ok(complete(spread::report(
-            &scenarios[0],
-            &found,
-            style.figure,
-        )?))
+        let (scenario, directions) = (&scenarios[0], &options.directions);
+        let found = spread::spread(scenario, directions).map_err(StudyError::scenario)?;
+        Ok(complete(spread::report(scenario, &found, style.figure)?))
     },
 };
 /// The check of the first mechanism by the Circolare 7/2019.
@@ -229,11 +225,8 @@ impl StudyKind {
 
     const fn of_samples<Q: Question>() -> Self {
         Self::of::<Ensemble<'_, Q>>(|scenarios, options, style, rows| {
-            computed(
-                Ensemble::<Q>::of(&scenarios[0], options.factors),
-                style,
-                rows,
-            )
+            let study = Ensemble::<Q>::of(&scenarios[0], options.factors);
+            computed(study, style, rows)
         })
     }
 

@@ -59,14 +59,14 @@ impl Kind {
         kind(FAILED, "failed", color::BLACK),
     ];
 
-    /// The kind of a case.
+    /// Returns the kind of a case.
     pub(crate) fn of_result(result: &Result<Ending, NoHistory>) -> Self {
         let ending = result.as_ref().ok();
         let impacts = ending.and_then(Ending::impacts_of_all_hinges);
         Self::of(outcome_name(result), impacts)
     }
 
-    /// The kind of an outcome. It depends on the number of impacts before overturning if all hinges close at once;
+    /// Returns the kind of an outcome. It depends on the number of impacts before overturning if all hinges close at once;
     /// landings of free hinges come in cascades, and their number does not matter.
     pub(crate) fn of(outcome: &str, impacts: Option<usize>) -> Self {
         let name = match (outcome, impacts) {

@@ -259,10 +259,10 @@ impl ResultsCommand {
             all.extend(self.paths_in_folder(&film, &["frame-0001.svg"]));
             all.extend(run::pictures_in(&film));
         }
-        if let Some(mark) = self.models_marker {
+        if let Some(marker) = self.models_marker {
             for below in Hinges::ALL.iter().map(|hinges| folder.join(hinges.name())) {
-                // A sealed subfolder without the mark is the result of another run, which used it with --out.
-                let alone = self.is_sealed(&below) && !folder.join(mark).is_file();
+                // A sealed subfolder without the marker is the result of another run, which used it with --out.
+                let alone = self.is_sealed(&below) && !folder.join(marker).is_file();
                 if below.is_dir() && !alone {
                     all.extend(self.paths_in_folder(&below, self.files));
                     let one = Self {

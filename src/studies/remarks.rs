@@ -51,7 +51,7 @@ pub struct Remarks {
     shortest_step_s: Option<StepRange>,
 }
 
-/// The smallest and the largest of some values.
+/// The range of the steps of several histories, in seconds.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 struct StepRange {
     /// The smallest.
@@ -61,7 +61,7 @@ struct StepRange {
 }
 
 impl StepRange {
-    /// Returns the extent with one more value.
+    /// Returns the range with one more step.
     fn with(range: Option<Self>, value: f64) -> Option<Self> {
         let ends = range.map_or((value, value), |Self { min, max }| {
             (min.min(value), max.max(value))

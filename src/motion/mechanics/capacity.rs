@@ -21,7 +21,7 @@ use thiserror::Error;
 
 use super::chain::{Mechanism as _, MechanismChain, Motion};
 use super::geometry::field::Twist;
-use super::geometry::pose::Pose;
+use super::geometry::pose::{BodyPoint, Pose};
 use super::sway::Sway;
 use super::virtual_work::{MovingBody, Participation};
 
@@ -91,15 +91,6 @@ pub fn moving_bodies<C: MechanismChain>(structure: &C, sway: Sway) -> Option<Vec
         moving.reverse();
     }
     Some(moving)
-}
-
-/// Point that moves with a body.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BodyPoint {
-    /// Position in the undeformed structure, in metres.
-    pub at_m: Vector2<f64>,
-    /// Index of the body; `None` for a fixed point.
-    pub body: Option<usize>,
 }
 
 impl BodyPoint {

@@ -38,6 +38,14 @@ impl NoHistory {
     }
 }
 
+/// Returns true if all histories are of mechanisms: their rotations are drawn over the critical one, those of rows of blocks in radians.
+pub(crate) fn are_over_critical<'a>(
+    results: impl IntoIterator<Item = &'a Result<Ending, NoHistory>>,
+) -> bool {
+    let mut endings = results.into_iter().flatten();
+    endings.all(|ending| ending.peak_over_critical.is_some())
+}
+
 /// Returns the outcome of a case by its name in tables, or the reason why the case has no history.
 #[must_use]
 pub fn outcome_name(result: &Result<Ending, NoHistory>) -> &'static str {

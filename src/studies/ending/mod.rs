@@ -13,7 +13,12 @@ use crate::dynamics::history::{Outcome, Summary};
 use crate::dynamics::model::{Case, Model, Request, SimulationError};
 pub use crate::dynamics::repeatability::Verdict;
 use crate::dynamics::repeatability::{CheckedHistory, checked};
+use crate::dynamics::row::error::RowModelError;
 use crate::dynamics::until::EndCondition;
+use crate::mechanics::four_link::limit::LimitError;
+use crate::mechanics::four_links::FourLinkError;
+use crate::mechanics::stability::StabilityError;
+use crate::scenario::ModelError;
 
 /// The steps of a history.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -42,7 +47,7 @@ pub struct Ending {
     pub impacts: Option<usize>,
     /// Largest error of the energy balance, over the energy barrier of a mechanism, or over weight times size of a row of blocks.
     pub energy_defect_ratio: f64,
-    /// Largest rotation over that at the unstable equilibrium; `None` if that is unknown, or for a row of blocks.
+    /// Largest rotation over that at the unstable equilibrium; `None` for a row of blocks.
     pub peak_over_critical: Option<f64>,
     /// Largest rotation of any body, in radians, for every model.
     pub peak_rotation_rad: f64,
@@ -168,11 +173,7 @@ impl Ending {
             safe_from_s,
             impacts: summary.known_impacts(),
             energy_defect_ratio: summary.energy_defect_ratio,
-            // A row has no critical rotation.
-            peak_over_critical: match summary.row() {
-                Some(_) => None,
-                None => summary.peak_over_critical(),
-            },
+            peak_over_critical: summary.peak_over_critical(),
             peak_rotation_rad: summary.largest_rotation_rad(),
             steps: summary.row().map(|row| Steps {
                 longest_s: row.longest_step_s,
@@ -236,6 +237,21 @@ impl From<SimulationError> for NoHistory {
             _ => Self::Failed,
         };
         kind(error.to_string())
+    }
+}
+
+impl From<ModelError> for NoHistory {
+    fn from(error: ModelError) -> Self {
+        match error {
+            ModelError::FourLinks(FourLinkError::Limit(LimitError::CannotStand))
+            | ModelError::FreeHinges(RowModelError::Stability(StabilityError::CannotStand(_))) => {
+                Self::CannotStand
+            }
+            ModelError::FourLinks(FourLinkError::Limit(
+                LimitError::OtherMechanism(_) | LimitError::NoPush,
+            )) => Self::NotFourLinks,
+            error => Self::Failed(error.to_string()),
+        }
     }
 }
 

@@ -10,7 +10,6 @@ use crate::output::OutputError;
 use crate::scenario::{Axis, Scenario, Uncertain, UncertainKey};
 use crate::studies::ending::columns::OUTCOMES;
 use crate::studies::ending::{Ending, NoHistory};
-use crate::studies::map::picture::is_logarithmic;
 use crate::studies::map::{OverturningMap, described};
 use crate::studies::results::{ReportedStudy, Results, Style};
 use crate::studies::runner::Study;
@@ -267,7 +266,7 @@ impl CellsOfSamples<'_> {
     fn crossings(&self, counts: &[CellCounts]) -> Vec<Crossing> {
         let [_, y] = self.map.axes;
         let values = &self.map.values[1];
-        let logarithmic = is_logarithmic(y, values);
+        let logarithmic = y.sequence.is_logarithmic(values);
         let crossing = |column| Crossing::of(column, logarithmic);
         counts.chunks(values.len()).map(crossing).collect()
     }

@@ -118,7 +118,7 @@ pub struct ImpactOptions {
 ///
 /// # Errors
 /// When a number is not finite.
-pub fn chain_answer(
+pub fn chain_result(
     scenario: &Scenario,
     model: &dyn MechanismModel,
     first: Sway,
@@ -133,7 +133,7 @@ pub fn chain_answer(
 ///
 /// # Errors
 /// When no certificate is found, or a number is not finite.
-pub fn four_links_answer(
+pub fn four_links_result(
     scenario: &Scenario,
     impact: &LinkImpact<'_>,
     options: &ImpactOptions,

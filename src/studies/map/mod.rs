@@ -17,28 +17,10 @@ use crate::dynamics::ground::{GroundMotion, PulseShape};
 use crate::dynamics::history::Summary;
 use crate::dynamics::model::{Case, Model, Repetition, SimulationError};
 use crate::dynamics::repeatability::objection;
-use crate::dynamics::row::error::RowModelError;
 use crate::mechanics::arch::Arch;
 use crate::mechanics::four_link::impact::ImpactModel;
-use crate::mechanics::four_link::limit::LimitError;
 use crate::mechanics::four_links::{FourLinkError, FourLinks};
-use crate::mechanics::stability::StabilityError;
 use crate::scenario::{Axis, Ground, ModelError, Motion, Quantity, Scaling, Scenario, Structure};
-
-impl From<ModelError> for NoHistory {
-    fn from(error: ModelError) -> Self {
-        match error {
-            ModelError::FourLinks(FourLinkError::Limit(LimitError::CannotStand))
-            | ModelError::FreeHinges(RowModelError::Stability(StabilityError::CannotStand(_))) => {
-                Self::CannotStand
-            }
-            ModelError::FourLinks(FourLinkError::Limit(
-                LimitError::OtherMechanism(_) | LimitError::NoPush,
-            )) => Self::NotFourLinks,
-            error => Self::Failed(error.to_string()),
-        }
-    }
-}
 
 /// A cell of a map.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

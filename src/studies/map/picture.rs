@@ -8,7 +8,7 @@ use crate::output::caption::caption;
 use crate::output::chart::{Chart, LEFT_PX, Mark, Shape};
 use crate::output::sheet::{self as output, Key, Sign};
 use crate::output::svg::{Stroke, color};
-use crate::scenario::{Axis, Quantity, Spacing};
+use crate::scenario::{Axis, Quantity};
 use crate::studies::kind::{self, Kind};
 use crate::studies::results::Style;
 
@@ -23,16 +23,11 @@ pub(super) fn kind_of(cell: &CellRow, style: Style) -> Kind {
     Kind::of_result(&cell.result)
 }
 
-/// Returns true if an axis with these values is logarithmic.
-pub(crate) fn is_logarithmic(axis: &Axis, values: &[f64]) -> bool {
-    axis.sequence.spacing() == Spacing::Logarithmic && values.iter().all(|value| *value > 0.0)
-}
-
 /// Returns the scale of an axis, and the edges of its cells halfway between the values. The values are multiplied by `factor`.
 fn scale(axis: &Axis, factor: f64, figure: Figure) -> (Scale, Vec<f64>) {
     let values: Vec<f64> = axis.sequence.values();
     let values: Vec<f64> = values.into_iter().map(|value| factor * value).collect();
-    let logarithmic = is_logarithmic(axis, &values);
+    let logarithmic = axis.sequence.is_logarithmic(&values);
     let to = |value: f64| if logarithmic { value.ln() } else { value };
     let from = |place: f64| if logarithmic { place.exp() } else { place };
     let places: Vec<_> = values.iter().map(|value| to(*value)).collect();

@@ -31,11 +31,9 @@ pub fn warnings(scenario: &Scenario, model: &dyn Model, history: &History) -> Ve
     let of_mechanisms = model.as_mechanisms().and(history.thrust.as_ref());
     let leaves = of_mechanisms.is_some_and(|thrust| thrust.largest_excess.value > most);
     warnings.extend(no_verdict(scenario, history));
-    if leaves
-        && let Some(four_link_limits) =
-            four_link_limits(history, structure, Some("compare with free hinges"))
-    {
-        warnings.push(four_link_limits.join(" "));
+    let advice = Some("compare with free hinges");
+    if leaves && let Some(limits) = four_link_limits(history, structure, advice) {
+        warnings.push(limits.join(" "));
     }
     warnings.extend(friction_condition(scenario, history));
     warnings

@@ -43,8 +43,8 @@ fn outcome_words(history: &History) -> String {
 /// Returns the conclusion: the model with the fewest assumptions, the dependence of its outcome on its joints, and the differences of the other
 /// models.
 fn conclusion(runs: &[ModelResults<'_>]) -> String {
-    let trust = |run: &Run<'_>| run.scenario.motion.hinges() as usize;
-    let Some(best) = runs.iter().max_by_key(|results| trust(results.run)) else {
+    let rank = |run: &Run<'_>| run.scenario.motion.hinges() as usize;
+    let Some(best) = runs.iter().max_by_key(|results| rank(results.run)) else {
         return String::new();
     };
     let (best, own, varied) = (best.run, &best.history, &best.varied);
@@ -58,8 +58,8 @@ fn conclusion(runs: &[ModelResults<'_>]) -> String {
         _ => "survives",
     };
     let mut text = match changed_outcome(own, varied) {
-        Some(changed_outcome) => format!(
-            "  {name}: THE OUTCOME DEPENDS ON JOINT STIFFNESS AND CONTACT: it {happens} as given, and {changed_outcome}\n"
+        Some(change) => format!(
+            "  {name}: THE OUTCOME DEPENDS ON JOINT STIFFNESS AND CONTACT: it {happens} as given, and {change}\n"
         ),
         None if is_elastic && !all_agree(own, varied) => {
             format!(
@@ -72,7 +72,7 @@ fn conclusion(runs: &[ModelResults<'_>]) -> String {
         }
     };
     let others = runs.iter().map(|results| (results.run, &results.history));
-    for (run, other) in others.filter(|(run, _)| trust(run) != trust(best)) {
+    for (run, other) in others.filter(|(run, _)| rank(run) != rank(best)) {
         let (name, verdict) = (run.name(), Verdict::from(own.outcome));
         let late_s = other.outcome_time_s - own.outcome_time_s;
         let when = if late_s < 0.0 { "earlier" } else { "later" };
@@ -91,19 +91,17 @@ fn conclusion(runs: &[ModelResults<'_>]) -> String {
 
 /// Returns the opposite outcome and the properties with which it occurs, in words; `None` if no property changes the outcome.
 pub(super) fn changed_outcome(own: &History, varied: &[VariationResult]) -> Option<String> {
-    let (opposite, changed_outcome) = match Verdict::from(own.outcome) {
+    let (opposite, verb) = match Verdict::from(own.outcome) {
         Verdict::Overturns => (Verdict::Survives, "survives"),
         Verdict::Survives => (Verdict::Overturns, "overturns"),
         Verdict::Incomplete | Verdict::Uncertain => return None,
     };
-    let others = varied
-        .iter()
-        .filter_map(|VariationResult { name, result }| {
-            let other = Verdict::from(result.as_ref().ok()?.outcome);
-            (other == opposite).then_some(name.as_str())
-        });
+    let others = varied.iter().filter_map(|one| {
+        let other = Verdict::from(one.result.as_ref().ok()?.outcome);
+        (other == opposite).then_some(one.name.as_str())
+    });
     let others: Vec<&str> = others.collect();
-    (!others.is_empty()).then(|| format!("{changed_outcome} with {}", others.join(" and with ")))
+    (!others.is_empty()).then(|| format!("{verb} with {}", others.join(" and with ")))
 }
 
 /// Returns true if the motion was computed with other properties, and all outcomes agree.

@@ -199,18 +199,18 @@ impl<'a> Run<'a> {
         figure: Figure,
         all_models: &'a [Hinges],
     ) -> Result<Self, String> {
+        if options.dimensionless && scenario.motion.hinges().has_joints() {
+            let why_not = "--dimensionless goes with four links and columns: free hinges have no unstable equilibrium to measure by";
+            return Err(why_not.to_owned());
+        }
         let model = scenario.model().map_err(|error| error.to_string())?;
-        let scales = match (options.dimensionless, model.as_mechanisms()) {
-            (false, _) => None,
-            (true, Some(model)) => {
+        let scales = match model.as_mechanisms().filter(|_| options.dimensionless) {
+            Some(model) => {
                 let scales = Scales::new(model, scenario.gravity_m_s2());
                 let why_not = "the mechanism has no unstable equilibrium to measure by: leave --dimensionless out";
                 Some(scales.ok_or(why_not)?)
             }
-            (true, None) => {
-                let why_not = "--dimensionless goes with four links and columns: free hinges have no unstable equilibrium to measure by";
-                return Err(why_not.to_owned());
-            }
+            None => None,
         };
         let points = ObservedPoints::new(scene(scenario, &*model), &options.points_m)?;
         Ok(Self {
@@ -344,12 +344,6 @@ impl<'a> Run<'a> {
         Ok(words)
     }
 
-    /// The title of its pictures.
-    fn title(&self) -> &str {
-        let title = self.scenario.title.as_deref();
-        title.unwrap_or("Rocking history")
-    }
-
     /// The subject of the pictures.
     fn subject<'s>(&'s self, title: &'s str) -> Subject<'s> {
         let incipient_g = |sway| self.model.incipient_acceleration_g(sway);
@@ -387,6 +381,11 @@ pub fn scene(scenario: &Scenario, model: &dyn Model) -> Scene {
         scene.supports = movements.poses(row);
     }
     scene
+}
+
+/// Returns the title of the pictures and the page of a scenario.
+fn title(scenario: &Scenario) -> &str {
+    scenario.title.as_deref().unwrap_or("Rocking history")
 }
 
 /// Collects the samples and events of a history for its pictures, its page, its words and its summary.
@@ -445,7 +444,7 @@ impl Drawings {
         opening: [&str; 2],
         words: &str,
     ) -> Vec<(&'static str, Vec<u8>)> {
-        let (figure, title) = (run.figure, run.title());
+        let (figure, title) = (run.figure, title(run.scenario));
         let subject = run.subject(title);
         let picture = self.timeline.draw(figure, &subject, history, &self.points);
         let report = self.report.as_ref().map(|report| {
@@ -469,7 +468,7 @@ impl Drawings {
         let Some(film) = &self.film else {
             return Ok(String::new());
         };
-        let pictures = film.film_pictures(run.figure, run.title());
+        let pictures = film.film_pictures(run.figure, title(run.scenario));
         film::add(folder, &pictures)?;
         let (count, path) = (pictures.len(), folder.path().join(FILM));
         let path = path.display();

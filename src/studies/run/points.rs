@@ -177,8 +177,8 @@ impl ObservedPoints {
 }
 
 fn displacement_m(scene: &Scene, point: &StructurePoint, sample: &Sample) -> Vector2<f64> {
-    let mark = scene.body_point(point, &sample.hinges);
-    mark.moved(&sample.poses, 1.0) - point.at_m
+    let carried = scene.body_point(point, &sample.hinges);
+    carried.moved(&sample.poses, 1.0) - point.at_m
 }
 
 /// Returns a position in the format of `--point`.

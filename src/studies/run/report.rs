@@ -15,19 +15,20 @@ use super::packed::{
 };
 use super::picture::LARGEST_EXCESS;
 use super::points::ObservedPoints;
+use super::title;
 use crate::dynamics::fall::FallEnd;
 use crate::dynamics::ground::{GroundMotion, GroundVelocity};
 use crate::dynamics::history::{OpenHinge, Sample, State, Summary as History};
 use crate::dynamics::model::Model;
 use crate::mechanics::chain::Hinge;
-use crate::mechanics::geometry::pose::Pose;
+use crate::mechanics::geometry::pose::{BodyPoint, Pose};
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
 use crate::output::caption::ground_in_words;
 use crate::output::envelope::Envelope;
 use crate::output::ground::curve_g;
 use crate::output::page::{escaped, fill_template, script_safe};
-use crate::output::scene::{BodyPoint, FARTHEST, Piece, Scene};
+use crate::output::scene::{FARTHEST, Piece, Scene};
 use crate::scenario::Scenario;
 use crate::scenario::metres;
 
@@ -122,7 +123,7 @@ impl Report {
         words: &str,
     ) -> String {
         let ground = scenario.ground_motion();
-        let title = scenario.title.as_deref().unwrap_or("Rocking history");
+        let title = title(scenario);
         let mut frames = self.motion.frames();
         let ends_at = frames.len();
         frames.extend(self.fall.frames());
@@ -231,19 +232,19 @@ impl Report {
     /// Returns the outlines and hinges of a layout.
     fn layout(&self, hinges: &[OpenHinge], points: Option<&ObservedPoints>, unit_m: f64) -> Value {
         let drawn = |piece: Piece| drawn_piece(&piece, unit_m);
-        let loads = self.scene.loads(hinges).into_iter().map(|(mark, load)| {
-            let ((body, x_m, y_m), text) = (point(mark), format!("{} kg", metres(load.mass_kg)));
+        let loads = self.scene.loads(hinges).into_iter().map(|(at, load)| {
+            let ((body, x_m, y_m), text) = (point(at), format!("{} kg", metres(load.mass_kg)));
             (body, x_m, y_m, load.width_m, text)
         });
         let marks = self.scene.hinges(hinges).into_iter().zip(hinges);
-        let marks = marks.map(|(mark, open)| {
+        let marks = marks.map(|(at, open)| {
             let code = match open.hinge {
                 Hinge::Section { edge, .. } => edge_code(Some(edge)),
                 Hinge::Toe(Sway::Left) => edge_code(Some(Edge::Intrados)),
                 Hinge::Toe(Sway::Right) => edge_code(Some(Edge::Extrados)),
                 Hinge::Joint { edge, .. } => edge_code(edge),
             };
-            let (body, x_m, y_m) = point(mark);
+            let (body, x_m, y_m) = point(at);
             (body, x_m, y_m, code)
         });
         let bodies = self.scene.bodies_of_sections(hinges).into_iter();
@@ -334,8 +335,8 @@ fn list(items: impl Iterator<Item = impl Serialize>) -> Value {
 }
 
 /// Returns the number of the body of a point, and its position.
-fn point(mark: BodyPoint) -> (i64, f64, f64) {
-    (body_number(mark.body), mark.at_m.x, mark.at_m.y)
+fn point(point: BodyPoint) -> (i64, f64, f64) {
+    (body_number(point.body), point.at_m.x, point.at_m.y)
 }
 
 fn flat([a, b]: [Vector2<f64>; 2]) -> [f64; 4] {

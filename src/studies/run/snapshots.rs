@@ -5,9 +5,10 @@ use std::fmt::Write as _;
 use nalgebra::Vector2;
 
 use crate::dynamics::history::{Sample, State};
+use crate::mechanics::geometry::pose::BodyPoint;
 use crate::output::Figure;
 use crate::output::elevation::{BODIES, STONE, SheetTransform, TIE, View};
-use crate::output::scene::{BodyPoint, Scene};
+use crate::output::scene::Scene;
 use crate::output::sheet::{PartHeight, Sheet};
 use crate::output::svg::{Anchor, Drawing, Stroke, color};
 
@@ -206,7 +207,7 @@ impl Snapshots {
             }
             Some(body) => (format!("body {body}"), STONE),
         });
-        let moved = |mark: &BodyPoint| view.px(mark);
+        let moved = |point: &BodyPoint| view.px(point);
         let broken = |tie: usize| sample.ties.get(tie).is_some_and(|tie| tie.is_broken);
         for (tie, ends) in self.scene.ties(&sample.hinges).iter().enumerate() {
             let [from, to] = ends.each_ref().map(moved);

@@ -280,7 +280,7 @@ impl<'a> Words<'a> {
     }
 
     /// Returns the limits of four links, or of a column on its toe, in parts of a sentence; `None` if no friction is reported.
-    fn trust(&self) -> Option<Vec<String>> {
+    fn limits(&self) -> Option<Vec<String>> {
         let (scenario, history) = (self.computed.scenario, self.computed.history);
         if self.is_row() {
             return self.sliding().is_none().then(Vec::new);

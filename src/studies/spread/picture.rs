@@ -4,10 +4,11 @@ use nalgebra::Vector2;
 
 use super::{Push, SpreadPath, Stage, Summary};
 use crate::mechanics::blocks::Row;
+use crate::mechanics::geometry::pose::BodyPoint;
 use crate::output::Figure;
 use crate::output::chart::{Chart, Mark};
 use crate::output::elevation::{HINGE, HINGE_PX, STONE, SheetTransform, View};
-use crate::output::scene::{BodyPoint, Scene, widened};
+use crate::output::scene::{Scene, widened};
 use crate::output::sheet::{Key, PartHeight, Sheet};
 use crate::output::svg::{Anchor, CURVES, Drawing, Frame, Stroke, color};
 
@@ -132,13 +133,13 @@ impl<'a> Cell<'a> {
             let thrust = joints.filter_map(|(index, (joint, [inner, outer]))| {
                 let across = joint.extrados_m - joint.intrados_m;
                 let at_m = joint.intrados_m + across * (outer / (inner + outer));
-                (inner + outer > 0.0).then(|| view.px(&self.mark(index, at_m)))
+                (inner + outer > 0.0).then(|| view.px(&self.body_point(index, at_m)))
             });
             let stroke = Stroke::new(color::BLUE, 1.6, "");
             drawing.curve("thrust line", thrust, stroke);
             for hinge in &state.hinges {
                 let corner_m = self.row.joints[hinge.joint].corner_m(hinge.edge);
-                let at = view.px(&self.mark(hinge.joint, corner_m));
+                let at = view.px(&self.body_point(hinge.joint, corner_m));
                 drawing.circle("hinge", at, HINGE_PX, HINGE);
             }
         }
@@ -153,7 +154,7 @@ impl<'a> Cell<'a> {
     }
 
     /// Returns a point of the body with the face of a joint: the block after the joint, or the last block.
-    fn mark(&self, joint: usize, at_m: Vector2<f64>) -> BodyPoint {
+    fn body_point(&self, joint: usize, at_m: Vector2<f64>) -> BodyPoint {
         let body = Some(joint.min(self.stage.poses.len() - 1));
         BodyPoint { body, at_m }
     }

@@ -8,6 +8,7 @@ use crate::output::chart::{Chart, Mark, Shape};
 use crate::output::sheet::{Key, Sign};
 use crate::output::svg::{CURVES, Stroke, color};
 use crate::studies::ending::Ending;
+use crate::studies::ending::columns::are_over_critical;
 use crate::studies::statistics::{ascending, fractile, shares_up_to};
 
 /// Largest number of records whose curves have their own stroke and name.
@@ -20,11 +21,11 @@ const SURVIVED: f64 = 0.94;
 /// of its own history.
 #[must_use]
 pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility) -> String {
-    let over_critical = over_critical(results);
+    let over_critical = are_over_critical(results.cases.iter().map(|case| &case.result));
     let endings = results.cases.iter().filter_map(CaseRow::complete);
     let survived = endings.filter(|ending| !ending.overturned_itself());
     let least = if over_critical { 1.0 } else { 1e-3 };
-    let largest = survived.filter_map(peak).fold(least, f64::max);
+    let largest = survived.map(peak).fold(least, f64::max);
     let x = Scale::exactly(0.0, largest / SURVIVED, figure.ticks(8));
     let (y_label, y) = heading.axis(results, figure);
     let label = format!("{}; arrows: overturned", peak_in_words(over_critical));
@@ -94,9 +95,9 @@ fn of_record(
         if ending.overturned_itself() {
             let (name, stroke, _) = mark("overturned");
             marks.push(Mark::new(name, stroke, Shape::Beyond(level(case))));
-        } else if let Some(peak) = peak(ending) {
+        } else {
             let (name, stroke, radius_px) = mark("survived");
-            let circle = Shape::Circle((peak, level(case)), radius_px);
+            let circle = Shape::Circle((peak(ending), level(case)), radius_px);
             marks.push(Mark::new(name, stroke, circle));
         }
     }
@@ -125,9 +126,10 @@ pub struct Fractiles {
     pub peaks: [Option<f64>; 3],
 }
 
-/// Returns the peak of a history over the critical rotation, or of a row of blocks in radians; `None` if the critical rotation is unknown.
-fn peak(ending: &Ending) -> Option<f64> {
-    ending.peak_over_critical.or(ending.peak_of_row_rad())
+/// Returns the peak of a history over the critical rotation, or of a row of blocks in radians.
+fn peak(ending: &Ending) -> f64 {
+    let of_row = ending.peak_rotation_rad;
+    ending.peak_over_critical.unwrap_or(of_row)
 }
 
 /// Computes the fractiles of the peaks at each level (Vamvatsikos and Cornell, Earthquake Engineering and Structural Dynamics 31, 2002).
@@ -169,7 +171,7 @@ fn beyond(case: &CaseRow) -> Option<f64> {
     let ending = case.complete()?;
     match ending.overturned_itself() {
         true => Some(f64::INFINITY),
-        false => peak(ending),
+        false => Some(peak(ending)),
     }
 }
 
@@ -179,7 +181,9 @@ pub fn draw_peaks(figure: Figure, heading: &Heading, results: &SuiteFragility) -
     let peaks = peaks(results);
     let largest = peaks.last().map_or(1.0, |(peak, _)| *peak).max(1e-3);
     let x = Scale::exactly(0.0, 1.05 * largest, figure.ticks(8));
-    let label = peak_in_words(over_critical(results));
+    let label = peak_in_words(are_over_critical(
+        results.cases.iter().map(|case| &case.result),
+    ));
     let y_axis = ("share with at most this peak", Scale::exactly(0.0, 1.0, 5));
     let words = "share of all records and levels; overturned cases are beyond";
     let chart = Chart {
@@ -197,10 +201,4 @@ const fn peak_in_words(over_critical: bool) -> &'static str {
         true => "peak / critical rotation",
         false => "peak rotation (rad)",
     }
-}
-
-/// Returns true if the critical rotation of every case is known.
-fn over_critical(results: &SuiteFragility) -> bool {
-    let mut endings = results.cases.iter().flat_map(|case| &case.result);
-    endings.all(|ending| ending.peak_over_critical.is_some())
 }

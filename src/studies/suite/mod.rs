@@ -75,8 +75,7 @@ impl CaseRow {
 
     /// Returns the ending of a complete history; `None` if there is no history, or the history is incomplete.
     pub(super) fn complete(&self) -> Option<&Ending> {
-        let ending = self.result.as_ref().ok();
-        ending.filter(|ending| ending.verdict() != Verdict::Incomplete)
+        complete(&self.result)
     }
 
     /// Returns the verdict; `None` if there is no history, or the history is incomplete.
@@ -227,10 +226,15 @@ pub(super) fn case(
     (ground, request)
 }
 
+/// Returns the ending of a complete history; `None` if there is none.
+fn complete(result: &Result<Ending, NoHistory>) -> Option<&Ending> {
+    let ending = result.as_ref().ok();
+    ending.filter(|ending| ending.verdict() != Verdict::Incomplete)
+}
+
 /// Returns true if a history certainly overturns; `None` without a complete history.
 fn overturns_certainly(result: &Result<Ending, NoHistory>) -> Option<bool> {
-    let verdict = result.as_ref().ok()?.verdict();
-    (verdict != Verdict::Incomplete).then_some(verdict == Verdict::Overturns)
+    complete(result).map(|ending| ending.verdict() == Verdict::Overturns)
 }
 
 /// Relative width to which bisection encloses an edge: much less than the scatter of records.

@@ -107,9 +107,9 @@ impl FirstEdge {
     }
 }
 
-/// Finds the lowest strength at which a structure overturns. `histories` says for each of some ascending strengths whether it does, and `overturns`
-/// for a strength between two of them, which bisection encloses to this relative width. Returns the first strength if the structure overturns at
-/// it already, and `None` if it overturns at none.
+/// Finds the lowest strength that overturns a structure. `histories` are ascending strengths, each with true if the structure overturns. Bisection
+/// with `overturns` encloses the edge to this relative width. Returns the first strength if it already overturns the structure, and `None` if no
+/// strength does.
 ///
 /// # Errors
 /// The first error of a history.

@@ -10,6 +10,7 @@ use crate::output::chart::{BELOW_PX, Chart, LEFT_PX, Mark};
 use crate::output::sheet::{Key, PartHeight, Sheet};
 use crate::output::svg::{Anchor, Drawing, Frame, Stroke, color};
 use crate::studies::ending::Verdict;
+use crate::studies::ending::columns::are_over_critical;
 use crate::studies::kind::{self, Kind};
 
 /// Height of the labels of edges above a strip.
@@ -26,10 +27,6 @@ const LEAST_PX: f64 = 1.5;
 /// Distance between hatching lines along the strip, in pixels.
 const HATCH_PX: f64 = 6.0;
 
-fn kind_of(sample: &FactorSample) -> Kind {
-    Kind::of_result(&sample.result)
-}
-
 /// Draws the outcome against the factor: a strip for each model with the edges of its bands, and the largest rotation below. `peak_g` is the
 /// peak ground acceleration at factor 1.
 #[must_use]
@@ -41,10 +38,15 @@ pub fn draw(
     thresholds: &[Threshold],
 ) -> String {
     let samples = thresholds.iter().flat_map(|threshold| &threshold.samples);
-    let kinds: Vec<Kind> = samples.map(kind_of).collect();
+    let kinds: Vec<Kind> = samples
+        .map(|sample| Kind::of_result(&sample.result))
+        .collect();
     let names = thresholds.iter().map(|one| one.model.replace('_', " "));
     let names: Vec<String> = names.collect();
-    let over_critical = are_over_critical(thresholds);
+    let over_critical = {
+        let samples = thresholds.iter().flat_map(|threshold| &threshold.samples);
+        are_over_critical(samples.map(|sample| &sample.result))
+    };
     let peak = |sample: &FactorSample| match over_critical {
         true => sample.result.as_ref().ok()?.peak_over_critical,
         false => Some(sample.result.as_ref().ok()?.peak_rotation_rad),
@@ -152,13 +154,6 @@ fn narrow(thresholds: &[Threshold], names: &[String], axes: &Axes) -> String {
     }
 }
 
-/// Returns true if the critical rotation of all samples is known; otherwise rotations are drawn in radians.
-fn are_over_critical(thresholds: &[Threshold]) -> bool {
-    let samples = thresholds.iter().flat_map(|threshold| &threshold.samples);
-    let mut endings = samples.flat_map(|sample| &sample.result);
-    endings.all(|ending| ending.peak_over_critical.is_some())
-}
-
 /// Returns the scale up to the largest survived rotation. Overturned cases exceed it.
 fn scale(
     thresholds: &[Threshold],
@@ -201,7 +196,7 @@ fn strip(drawing: &mut Drawing, axes: &Axes, threshold: &Threshold) {
     let mut from = axes.x.low;
     let mut bands = Vec::new();
     let samples = &threshold.samples;
-    let runs = samples.chunk_by(|a, b| kind_of(a) == kind_of(b));
+    let runs = samples.chunk_by(|a, b| Kind::of_result(&a.result) == Kind::of_result(&b.result));
     let runs: Vec<_> = runs.collect();
     for (index, run) in runs.iter().enumerate() {
         let last = &run[run.len() - 1];
@@ -215,7 +210,7 @@ fn strip(drawing: &mut Drawing, axes: &Axes, threshold: &Threshold) {
             width: wide.max(LEAST_PX),
             height,
         };
-        bands.push((wide, frame, kind_of(last), last.verdict()));
+        bands.push((wide, frame, Kind::of_result(&last.result), last.verdict()));
         from = to;
     }
     // Narrow bands are drawn last, over their neighbours.

@@ -11,6 +11,7 @@ use crate::dynamics::model::{Case, Model, Request, SimulationError};
 use crate::dynamics::repeatability::Verdict;
 use crate::dynamics::until::EndCondition;
 use crate::dynamics::variation::Variation;
+use crate::studies::ending::answered;
 use crate::studies::runner::{Progress, Runner, RunnerError};
 
 /// The threshold of a variation.
@@ -57,9 +58,8 @@ pub fn vary(
         let Variation { name, model } = &variations[index];
         let incomplete = Cell::new(0);
         let factor = match model {
-            Ok(model) => {
-                lowest_of(&**model, case, &factors, &incomplete).map_err(|error| error.to_string())
-            }
+            Ok(model) => lowest_factor_of(&**model, case, &factors, &incomplete)
+                .map_err(|error| error.to_string()),
             Err(reason) => Err(reason.clone()),
         };
         VariedThreshold {
@@ -72,7 +72,7 @@ pub fn vary(
 }
 
 /// Finds the lowest factor that overturns a model, and counts the histories without a verdict.
-fn lowest_of(
+fn lowest_factor_of(
     model: &dyn Model,
     (ground, request): (&GroundMotion, &Request),
     factors: &[f64],
@@ -89,13 +89,10 @@ fn lowest_of(
         |factor: f64| -> Result<Case, SimulationError> { Ok((ground.scaled(factor)?, *request)) };
     let histories = |factors: &[f64]| -> Vec<(f64, Result<Summary, SimulationError>)> {
         let cases = factors.iter().map(|factor| case(*factor));
-        match cases.collect::<Result<Vec<_>, _>>() {
-            Ok(cases) => {
-                let summaries = model.simulate_all_until(EndCondition::Safe, &cases);
-                factors.iter().copied().zip(summaries).collect()
-            }
-            Err(error) => vec![(factors[0], Err(error))],
-        }
+        let histories = answered(cases, |cases| {
+            model.simulate_all_until(EndCondition::Safe, cases)
+        });
+        factors.iter().copied().zip(histories).collect()
     };
     let histories = factors.chunks(TOGETHER).flat_map(histories);
     let histories = histories.map(|(factor, history)| (factor, falls(history)));

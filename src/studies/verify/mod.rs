@@ -79,12 +79,12 @@ pub enum VerifyError {
         why: String,
     },
     /// A spectrum of points ends at too small a period.
-    #[error("[demand.{}] {beyond}", .state.name())]
-    Beyond {
+    #[error("[demand.{}] {error}", .state.name())]
+    PeriodOutOfRange {
         /// The limit state.
         state: LimitState,
         /// The period that is needed.
-        beyond: PeriodOutOfRange,
+        error: PeriodOutOfRange,
     },
 }
 
@@ -360,7 +360,7 @@ fn alike(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-9 * (a.abs() + b.abs()).max(1e-6)
 }
 
-/// The basis of a check: its scenario, options and demand.
+/// The input of a check: its scenario, options and demand.
 struct CheckInput<'a> {
     scenario: &'a Scenario,
     settings: Verify,
@@ -487,7 +487,7 @@ impl CheckInput<'_> {
             Ok((*sway, side))
         });
         let sides = sides.collect::<Result<BTreeMap<Sway, SideCheck>, PeriodOutOfRange>>();
-        let sides = sides.map_err(|beyond| VerifyError::Beyond { state, beyond })?;
+        let sides = sides.map_err(|error| VerifyError::PeriodOutOfRange { state, error })?;
         let histories = match &rule {
             Some(rule) => histories::histories(self, (state, rule, &spectrum), mechanisms, &sides)?,
             None => None,

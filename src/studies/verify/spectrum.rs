@@ -83,7 +83,7 @@ impl Spectrum {
         };
         let site = Site {
             soil: code.soil,
-            topographic_factor: code.relief.factor(),
+            topographic_factor: code.topography.factor(),
         };
         let spectrum = GroundSpectrum::new(*code.hazards.get(&state)?, site)
             .expect("the hazards of a scenario are within the ranges of the code");

@@ -96,6 +96,25 @@ pub(crate) fn product(unit: Vector2<f64>, vector: Vector2<f64>) -> Vector2<f64> 
     )
 }
 
+/// Point that moves with a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BodyPoint {
+    /// Index of the body; `None` for a point that does not move.
+    pub body: Option<usize>,
+    /// Position in the undeformed structure, in metres.
+    pub at_m: Vector2<f64>,
+}
+
+impl BodyPoint {
+    /// Returns the current position of the point, with its displacement multiplied by `exaggeration`. At any exaggeration, coincident points
+    /// stay coincident and closed joints stay closed; in return, bodies grow with the square of their rotation.
+    #[must_use]
+    pub fn moved(&self, poses: &[Pose], exaggeration: f64) -> Vector2<f64> {
+        let (pose, at_m) = (self.body.and_then(|body| poses.get(body)), self.at_m);
+        pose.map_or(at_m, |pose| at_m + (pose.of(at_m) - at_m) * exaggeration)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use nalgebra::Rotation2;
