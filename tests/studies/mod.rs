@@ -19,6 +19,7 @@ mod run_outputs;
 mod run_points;
 mod runner;
 mod suite;
+mod survival;
 mod threshold;
 pub mod threshold_along;
 mod uncertain;

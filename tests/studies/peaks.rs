@@ -32,37 +32,46 @@ fn folder() -> tempfile::TempDir {
     folder
 }
 
+/// Four digits of a number, and four digits that are not above it.
+fn four(value: f64) -> [String; 2] {
+    let digits = (3.0 - value.log10().floor()).max(0.0) as usize;
+    let long = format!("{value:.12}");
+    let point = long.find('.').unwrap();
+    [
+        format!("{value:.digits$}"),
+        long[..=point + digits].to_owned(),
+    ]
+}
+
 /// The words that follow from the bands and gaps of `threshold.json`.
 fn words(threshold: &Value) -> String {
     let model = &threshold["models"][0];
-    let four = |value: &Value| {
-        let value = value.as_f64().unwrap();
-        let digits = (3.0 - value.log10().floor()).max(0.0) as usize;
-        format!("{value:.digits$}")
+    let number = |value: &Value| value.as_f64().unwrap();
+    let peak_g = number(&threshold["peak_acceleration_g"]);
+    let [safe, first] = ["survives_up_to_factor", "lowest_factor"].map(|key| number(&model[key]));
+    // The safe factor is just below the edge.
+    assert!(
+        safe < first && first < safe * (1.0 + 2e-4),
+        "{safe} {first}"
+    );
+    let [_, safe_g] = four(safe * peak_g);
+    let [first_g, _] = four(first * peak_g);
+    let ends = |from: &Value, to: &Value| {
+        let [[from, _], [to, _]] = [from, to].map(|end| four(number(end)));
+        format!("{from} to {to}")
     };
-    let first = four(&model["lowest_factor"]);
-    let mut again: Vec<String> = model["gaps"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .map(|gap| format!("{} to {}", four(&gap["from"]), four(&gap["to"])))
-        .collect();
+    let gaps = model["gaps"].as_array().unwrap().iter();
+    let mut gaps: Vec<String> = gaps.map(|gap| ends(&gap["from"], &gap["to"])).collect();
     let last = model["bands"].as_array().unwrap().last().unwrap();
     if last["to_end"] == "edge" {
-        again.push(format!(
-            "{} to {}",
-            four(&last["to"]),
-            four(&threshold["factors"]["to"])
-        ));
+        gaps.push(ends(&last["to"], &threshold["factors"]["to"]));
     }
-    if again.is_empty() {
-        format!("first overturns at {first}")
-    } else {
-        format!(
-            "first overturns at {first}; survives again at {}",
-            again.join(", ")
-        )
-    }
+    let gaps = match gaps.join(", ") {
+        none if none.is_empty() => none,
+        gaps => format!(" (gaps above: {gaps})"),
+    };
+    let ([_, safe], [first, _]) = (four(safe), four(first));
+    format!("survives up to {safe} ({safe_g} g); overturns from {first} ({first_g} g){gaps}")
 }
 
 const OPTIONS: [&str; 6] = ["--from", "0.5", "--to", "12", "--stride", "0.05"];
@@ -76,7 +85,7 @@ fn a_threshold_of_a_record_is_one_line() {
         &[&["threshold", "s.toml"], &OPTIONS[..]].concat(),
     ));
     let found = json(&path.join("results/s/threshold.json"));
-    let line = format!("  wave-1.at2: {} (1 is 0.3000 g)", words(&found));
+    let line = format!("  wave-1.at2: {}", words(&found));
     assert_eq!(said.lines().next().unwrap(), line, "{said}");
     assert_eq!(said.matches("overturns").count(), 1, "{said}");
 }
@@ -92,10 +101,7 @@ fn each_record_of_a_suite_can_be_run_and_have_its_threshold() {
     let said = stdout(&all);
     for (line, record) in said.lines().zip(["wave-1.at2", "wave-2.at2"]) {
         let found = json(&path.join("results/s").join(record).join("threshold.json"));
-        assert_eq!(
-            line,
-            format!("  {record}: {} (1 is 0.3000 g)", words(&found))
-        );
+        assert_eq!(line, format!("  {record}: {}", words(&found)));
         let scenario = &found["models"][0]["scenario"];
         assert_eq!(scenario["ground"]["record"]["file"], record);
         assert_eq!(scenario.get("suite"), None);
@@ -189,29 +195,33 @@ fn a_suite_prints_a_line_per_record_and_draws_the_peaks() {
             .iter()
             .position(|row| row["outcome"] == "overturned")
             .unwrap();
-        let four = |row: &Row| {
-            let value = row.number("peak_g");
-            let digits = (3.0 - value.log10().floor()).max(0.0) as usize;
-            format!("{value:.digits$}")
-        };
+        let peak = |row: &Row| four(row.number("peak_g"))[0].clone();
         // That level is narrowed by bisection, as in capacity.csv.
         let mut capacity = capacities.iter();
         let edge = capacity
             .find(|row| row["record"] == record && row["sign"] == "1")
             .unwrap();
         assert!(edge.number("peak_g") < own[first].number("peak_g"));
-        let mut expected = format!("  {record}: first overturns at {} g", four(edge));
+        // The safe level is at most the width of the bisection below it.
+        let scale = edge.number("survives_up_to_scale");
+        assert!(scale < edge.number("scale") && edge.number("scale") < 1.0021 * scale);
+        let safe_g = scale * edge.number("peak_g") / edge.number("scale");
+        let mut expected = format!(
+            "  {record}: survives up to {} g; overturns from {} g",
+            four(safe_g)[1],
+            peak(edge)
+        );
         let again: Vec<String> = own[first..]
             .chunk_by(|a, b| (a["outcome"] == "overturned") == (b["outcome"] == "overturned"))
             .filter(|run| run[0]["outcome"] != "overturned")
             .map(|run| match run {
-                [only] => format!("{} g", four(only)),
-                [from, .., to] => format!("{} to {} g", four(from), four(to)),
+                [only] => format!("{} g", peak(only)),
+                [from, .., to] => format!("{} to {} g", peak(from), peak(to)),
                 [] => unreachable!(),
             })
             .collect();
         if !again.is_empty() {
-            expected += &format!("; survives again at {}", again.join(", "));
+            expected += &format!(" (gaps above: {})", again.join(", "));
         }
         assert!(
             said.lines().any(|line| line == expected),

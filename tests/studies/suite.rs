@@ -551,6 +551,7 @@ fn results(rows: &[(&str, f64, Option<Outcome>)]) -> SuiteFragility {
         peak_g: 0.3 * scale,
         edge: None,
         edge_at_most: false,
+        safe_below_edge: None,
         strength: None,
         result: outcome
             .ok_or(NoHistory::Failed("it broke".to_owned()))
@@ -589,6 +590,7 @@ fn levels_of(records: &[(&str, &str)]) -> Vec<CaseRow> {
                 peak_g: 0.3 * f64::from(level),
                 edge: None,
                 edge_at_most: false,
+                safe_below_edge: None,
                 strength: None,
                 result: Ok(Ending {
                     outcome,
@@ -649,7 +651,8 @@ fn uncertain_cases_are_counted_as_surviving_and_as_overturning() {
     assert_eq!(doubtful.always(Verdict::Survives), [""; 0]);
     let survivals = doubtful.survivals();
     assert_eq!(survivals[0].1.overturns_from, Some(4.0));
-    assert_eq!(survivals[0].1.uncertain, [[3.0, 3.0]]);
+    assert_eq!(survivals[0].1.survives_up_to, Some(2.0));
+    assert_eq!(survivals[0].1.runs[1], (Some(Verdict::Uncertain), [3.0; 2]));
 
     let files = result_files(&free_heading(), &doubtful);
     let Table { header, rows } = Table::parse(&files["fragility.csv"]);

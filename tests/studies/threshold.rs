@@ -11,7 +11,7 @@ use std::time::Duration;
 use crate::common::program::{archrock, printed, refused, stderr, stdout};
 use crate::common::prose::{golden, shows, skeleton};
 use crate::common::pulse;
-use crate::common::results::{Row, Table};
+use crate::common::results::{Row, Table, named};
 use crate::common::{GRAVITY, pairs, request, semicircle, seven_voussoirs};
 use archrock::dynamics::history::{Cost, Details};
 use archrock::dynamics::model::Repetition;
@@ -314,6 +314,7 @@ fn uncertain_factors_are_ranges_of_their_own() {
         "{reasons:?}"
     );
     assert_eq!(threshold.lowest_factor(), Some(threshold.bands()[0].from));
+    assert_eq!(threshold.survives_up_to(), Some(threshold.ranges[0].1.to));
 
     let picture = draw(
         Figure::SCREEN,
@@ -324,6 +325,31 @@ fn uncertain_factors_are_ranges_of_their_own() {
     );
     assert_eq!(picture.matches("data-name=\"model uncertain\"").count(), 3);
     assert!(picture.contains("uncertain whether it overturns"));
+    assert!(picture.contains("survives up to 1.9"));
+    // The curve of peaks goes on through uncertain factors whose own history survives (1.99 to 2), and not where it overturns.
+    let document = roxmltree::Document::parse(&picture).unwrap();
+    let curve = named(&document, "model peak")[0].attribute("d").unwrap();
+    assert_eq!(curve.matches('M').count(), 2, "{curve}");
+}
+
+/// At most eight edges have labels, the safe factor and the lowest that overturns among them.
+#[test]
+fn at_most_eight_edges_are_labelled() {
+    let comb = Rule::new(|x| Some((12.0 * x).floor() % 2.0 == 1.0));
+    let factors = factors(1.0, 4.0, 0.01);
+    let threshold = found(&comb, &unit_pulse(), 1.0, &factors);
+    assert_eq!(threshold.bands().len(), 18);
+    let picture = draw(Figure::SCREEN, "Title", 0.1, &factors, &[threshold]);
+    let document = roxmltree::Document::parse(&picture).unwrap();
+    let upright = |node: &roxmltree::Node<'_, '_>| {
+        let turned = node.attribute("transform");
+        node.has_tag_name("text") && turned.is_some_and(|how| how.contains("rotate(-90"))
+    };
+    let labels = document.descendants().filter(upright);
+    let labels = labels.filter_map(|node| node.text()?.parse::<f64>().ok());
+    let labels: Vec<f64> = labels.collect();
+    assert_eq!(labels.len(), 8, "{labels:?}");
+    assert!((labels[0] - 13.0 / 12.0).abs() < 1e-3, "{labels:?}");
 }
 
 fn unit_pulse() -> GroundMotion {

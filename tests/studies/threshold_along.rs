@@ -6,6 +6,7 @@ use std::fs;
 
 use crate::common::program::{done, files, printed, refused};
 use crate::common::prose::{golden, shows};
+use crate::common::results::Table;
 use crate::common::{ARCH, COLUMN, GRAVITY, parsed};
 use archrock::studies::runner::Study as _;
 use archrock::studies::threshold::Factors;
@@ -297,6 +298,54 @@ fn parts_threads_and_interruptions_change_nothing() {
     );
     printed(at, &command(&["--out", "killed", "--resume"]));
     assert_eq!(files(&at.join("killed")), whole);
+}
+
+/// Words never say "no factor overturns the structure" of values without a verdict, or whose ground falls freely from some factor on; such
+/// values are counted. The ground falls as fast as a free body from 1 / 0.7 times these motions on.
+#[test]
+fn values_without_a_verdict_or_with_falling_ground_are_counted() {
+    let root = tempfile::tempdir().unwrap();
+    let at = root.path();
+    // The run ends while the ground moves.
+    let cut = format!(
+        "{ARCH}{}[simulation]\nduration_s = 0.5\n",
+        pulse("one_cosine")
+    );
+    fs::write(at.join("cut.toml"), cut).unwrap();
+    let along = [
+        "threshold",
+        "cut.toml",
+        "--along",
+        "arch.mean_radius_m=4..5:2",
+    ];
+    let said = printed(at, &along);
+    assert!(
+        said.starts_with("2 values of arch.mean_radius_m from 4 to 5: no verdict at 2 values"),
+        "{said}"
+    );
+    let falling = "[column]\nheight_m = 4.0\nwidth_m = 2.0\n[ground.one_sine]\namplitude_g = 0.1\n\
+                   vertical_amplitude_g = 0.7\nduration_s = 0.5\n";
+    fs::write(at.join("falling.toml"), falling).unwrap();
+    let along = "threshold falling.toml --from 0.5 --stride 0.3 --along column.width_m=2..3:2";
+    let said = printed(at, &along.split(' ').collect::<Vec<_>>());
+    assert!(
+        said.contains("not known beyond") && said.contains("at 2 values"),
+        "{said}"
+    );
+    assert!(!said.contains("no factor"), "{said}");
+    let rows = Table::read(at.join("results/falling/threshold_along.csv")).rows;
+    for row in &rows {
+        assert_eq!(
+            (&*row["failed_beyond"], &*row["overturns_from_factor"]),
+            ("true", "")
+        );
+        let tried_to = row.number("tried_to_factor");
+        assert_eq!(row.number("survives_up_to_factor"), tried_to);
+        assert!(
+            tried_to < 1.0 / 0.7 && 1.3 * tried_to >= 1.0 / 0.7,
+            "{tried_to}"
+        );
+    }
 }
 
 #[test]

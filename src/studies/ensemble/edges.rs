@@ -14,7 +14,7 @@ use crate::output::{Figure, OutputError};
 use crate::scenario::Scenario;
 use crate::studies::statistics::{BAND, Share, ascending, fractile};
 use crate::studies::threshold::first_edge::FirstEdge;
-use crate::studies::threshold::{Factors, check, rounded};
+use crate::studies::threshold::{Factors, check, rounded, rounded_down};
 
 /// The question for the first edge of each sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -88,6 +88,13 @@ impl Question for FirstEdges {
         let band = low.zip(median).zip(high);
         let band = band.map(|((low, median), high)| [low, median, high]);
         let at_one = share_up_to(samples, 1.0);
+        let safe = ascending(
+            samples
+                .answers()
+                .map(|edge| edge.survives_up_to.unwrap_or(0.0)),
+        );
+        let safe = band.map(|_| BAND.map(|part| fractile(&safe, part).unwrap_or(0.0)));
+        let own = samples.own.as_ref().ok();
         let count = |condition: fn(&&_) -> bool| samples.answers().filter(condition).count();
         let probabilities = probabilities(samples);
         let names = ["probability", "probability_low", "probability_high"];
@@ -99,15 +106,23 @@ impl Question for FirstEdges {
             line.answer.as_ref().ok()
         });
         Ok(Findings {
-            first: band.map(|band| first_words(samples, band, at_one)),
+            first: band.zip(safe).map(|(band, safe)| {
+                format!(
+                    "{};\n    {}",
+                    safe_words(samples, safe),
+                    first_words(samples, band, at_one)
+                )
+            }),
             lines: Vec::new(),
             influences: vec![samples.influence(answer, false, strength)],
             no_verdict: samples.no_verdict(),
             details: Details {
+                survives_up_to_factor: safe.into(),
+                own_survives_up_to_factor: own.and_then(|edge| edge.survives_up_to),
                 first_factor: band.map(|band| band.map(|one| one.strength)).into(),
                 at_smallest_factor: count(|edge| edge.at_most),
                 beyond_largest_factor: count(|edge| edge.factor.is_none()),
-                own_first_factor: samples.own.as_ref().ok().and_then(|edge| edge.factor),
+                own_first_factor: own.and_then(|edge| edge.factor),
                 overturned_up_to_factor_1: at_one,
             },
             pictures: vec![draw(figure, samples, &probabilities)],
@@ -131,6 +146,10 @@ impl Question for FirstEdges {
 /// The part of the summary that is specific to first edges.
 #[derive(Serialize)]
 struct Details {
+    /// The largest factor up to which a sample certainly survives; 0 if it does not survive the smallest.
+    survives_up_to_factor: Band,
+    /// The largest factor up to which the scenario itself certainly survives; null if it does not survive the smallest.
+    own_survives_up_to_factor: Option<f64>,
     /// The first factor that overturns a sample.
     first_factor: Band,
     /// Number of samples that overturn at the smallest factor already.
@@ -159,6 +178,23 @@ fn share_up_to(samples: &Samples<'_, FirstEdge>, factor: f64) -> Option<Share> {
     let mut answers = samples.answers();
     let known = answers.all(|edge| edge.overturns_up_to(factor).is_some());
     known.then(|| samples.share(|edge| edge.overturns_up_to(factor) == Some(true)))?
+}
+
+/// Returns words for the factors that are safe for the samples, with these fractiles, and for the scenario itself.
+fn safe_words(samples: &Samples<'_, FirstEdge>, [low, median, _]: [f64; 3]) -> String {
+    let up_to = |factor: f64| match factor > 0.0 {
+        true => rounded_down(factor),
+        false => "less than the smallest factor".to_owned(),
+    };
+    let own = samples
+        .own
+        .as_ref()
+        .map(|edge| edge.survives_up_to.unwrap_or(0.0));
+    let own = own.map_or("an unknown factor".to_owned(), up_to);
+    let [low, median] = [low, median].map(up_to);
+    format!(
+        "95 % of the samples certainly survive up to {low}, half of them up to {median}, the scenario itself up to {own}"
+    )
 }
 
 fn first_words(

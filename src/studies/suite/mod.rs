@@ -45,6 +45,9 @@ pub struct CaseRow {
     /// True if lower levels may overturn as well, because a level between the two has no verdict.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub edge_at_most: bool,
+    /// The largest level up to which the bisection of the edge found certain survival. `None` without an edge, or if the level below does not survive.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub safe_below_edge: Option<f64>,
     /// Intensities of the unscaled record.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub strength: Option<Strength>,
@@ -177,8 +180,8 @@ impl Study for RecordSuite<'_> {
             let upper = overturn[case] == Some(true) && survives_below != Some(false);
             upper.then(|| self.edge(index, below, survives_below.is_some()))?
         };
-        let edges: Vec<Option<(f64, bool)>> = (0..indices.len()).map(edge).collect();
-        let row = |((index, result), edge): ((&usize, _), Option<(f64, bool)>)| {
+        let edges: Vec<Option<Edge>> = (0..indices.len()).map(edge).collect();
+        let row = |((index, result), edge): ((&usize, _), Option<Edge>)| {
             let (level, record, mirrored) = self.place(*index);
             let series = &self.suite.records[record];
             let own_g = series.peak_g(self.scenario.gravity_m_s2());
@@ -192,8 +195,9 @@ impl Study for RecordSuite<'_> {
                 scale,
                 peak_g,
                 result: check_finite(&[scale, peak_g]).and(result),
-                edge: edge.map(|(edge, _)| edge),
-                edge_at_most: edge.is_some_and(|(_, at_most)| at_most),
+                edge: edge.map(|edge| edge.0),
+                edge_at_most: edge.is_some_and(|edge| edge.1),
+                safe_below_edge: edge.and_then(|edge| edge.2),
                 strength: Some(self.strengths[record]),
             }
         };
@@ -237,6 +241,10 @@ fn overturns_certainly(result: &Result<Ending, NoHistory>) -> Option<bool> {
     complete(result).map(|ending| ending.verdict() == Verdict::Overturns)
 }
 
+/// The edge below a level that overturns: the lowest overturning level of the bisection; true if the edge may lie lower, because a level without a
+/// verdict counted as surviving; and the largest level of the bisection below all levels that do not certainly survive.
+type Edge = (f64, bool, Option<f64>);
+
 /// Relative width to which bisection encloses an edge: much less than the scatter of records.
 const EDGE_WIDTH: f64 = 2e-3;
 
@@ -252,26 +260,30 @@ impl RecordSuite<'_> {
         )
     }
 
-    /// Finds the lowest overturning level between the level of a case that overturns and the level with index `below`; `None` if that level
-    /// overturns as well. The second value is true if the edge may lie lower, because a level without a verdict counted as surviving.
-    fn edge(&self, index: usize, below: usize, survives_below: bool) -> Option<(f64, bool)> {
+    /// Finds the edge between the level of a case that overturns and the level with index `below`; `None` if that level overturns as well.
+    fn edge(&self, index: usize, below: usize, survives_below: bool) -> Option<Edge> {
         let (level, record, mirrored) = self.place(index);
-        let overturns = |level: f64| {
+        let ending = |level: f64| {
             let (ground, request) = case(self.scenario, self.suite, record, level, mirrored);
-            let ending = Ending::of(&*self.model, &ground, &request);
-            overturns_certainly(&ending)
+            Ending::of(&*self.model, &ground, &request)
         };
         let below = self.levels[below];
-        if !survives_below && overturns(below)? {
+        if !survives_below && overturns_certainly(&ending(below))? {
             return None;
         }
-        let mut at_most = false;
+        let (mut at_most, mut safe, mut doubtful) = (false, None, level);
         let (_, lowest) = bisect(below, level, Width::Relative(EDGE_WIDTH), |level| {
-            let answer = overturns(level);
+            let ending = ending(level);
+            let answer = overturns_certainly(&ending);
             at_most |= answer.is_none();
+            // A level above a doubtful one is not safe.
+            match ending.as_ref().map(Ending::verdict) {
+                Ok(Verdict::Survives) => safe = Some(level).filter(|_| level < doubtful).or(safe),
+                _ => doubtful = doubtful.min(level),
+            }
             answer == Some(true)
         });
-        Some((lowest, at_most))
+        Some((lowest, at_most, safe))
     }
 }
 
@@ -420,15 +432,7 @@ impl SuiteFragility {
     pub fn survivals(&self) -> Vec<(&CaseRow, Survival)> {
         let mut survivals: Vec<(&CaseRow, Survival)> = Vec::new();
         for cases in self.cases.chunk_by(CaseRow::has_shake_of) {
-            let level = |case: &CaseRow| (case.level(self.measure), case.verdict());
-            let levels: Vec<_> = cases.iter().map(level).collect();
-            let mut survival = Survival::of_levels(&levels);
-            let overturns = |case: &CaseRow| case.verdict() == Some(Verdict::Overturns);
-            if let Some(first) = cases.iter().position(overturns) {
-                let is_known_below = first == 0 || cases[first - 1].known_verdict().is_some();
-                survival.overturns_from = Some(cases[first].overturns_from(self.measure));
-                survival.at_most = cases[first].edge_at_most || !is_known_below;
-            }
+            let survival = self.survival(&cases.iter().collect::<Vec<_>>());
             let case = &cases[0];
             let last = survivals.last();
             let last = last.filter(|(other, _)| case.mirrored && other.record == case.record);
@@ -437,6 +441,30 @@ impl SuiteFragility {
             }
         }
         survivals
+    }
+
+    /// Returns the intensities that the structure survives under a record, from its cases with one sign, the weakest first.
+    fn survival(&self, cases: &[&CaseRow]) -> Survival {
+        let level = |case: &&CaseRow| (case.level(self.measure), case.verdict());
+        let levels: Vec<_> = cases.iter().map(level).collect();
+        let mut survival = Survival::of_levels(&levels);
+        let is = |verdict| move |case: &&CaseRow| case.verdict() == Some(verdict);
+        let Some(first) = cases.iter().position(is(Verdict::Overturns)) else {
+            return survival;
+        };
+        let is_known_below = first == 0 || cases[first - 1].known_verdict().is_some();
+        let lowest = cases[first].overturns_from(self.measure);
+        survival.overturns_from = Some(lowest);
+        survival.at_most = cases[first].edge_at_most || !is_known_below;
+        if first > 0 && cases[..first].iter().all(is(Verdict::Survives)) {
+            let safe = cases[first].safe_below_edge.or(survival.survives_up_to);
+            survival.survives_up_to = safe;
+            // If the bisection met levels without a certain verdict, they are a range of their own.
+            let doubtful = safe.filter(|safe| lowest > safe * (1.0 + 2.0 * EDGE_WIDTH));
+            let doubtful = doubtful.map(|safe| (Some(Verdict::Uncertain), [safe, lowest]));
+            survival.runs.splice(1..1, doubtful);
+        }
+        survival
     }
 
     /// Returns the cases that count.

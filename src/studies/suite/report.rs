@@ -195,7 +195,7 @@ impl Heading {
         }));
         lines.extend(self.measures_in_words(capacities, measures));
         for (case, survival) in results.survivals() {
-            let words = survival::in_words(&survival, unit(self.measure));
+            let words = survival::in_words(&survival, unit(self.measure), None);
             lines.push(format!("{}: {words}", case.record_in_words()));
         }
         lines.push(searched(results));
@@ -291,11 +291,14 @@ const fn sign(mirrored: bool) -> &'static str {
 }
 
 /// Returns the columns of `capacity.csv`, one row per record. Missing values are empty.
-fn capacity_columns<'r>() -> [Column<'r, Capacity<'r>>; 5] {
+fn capacity_columns<'r>() -> [Column<'r, Capacity<'r>>; 6] {
     let measures = MEASURES.map(|(name, _, _)| name);
     [
         column("record", |one: &Capacity<'_>| shown(one.record)),
         column("sign", |one: &Capacity<'_>| sign(one.mirrored)),
+        column("survives_up_to_scale", |one: &Capacity<'_>| {
+            one.survives_up_to_scale
+        }),
         column("scale", |one: &Capacity<'_>| one.scale),
         list(measures, |one: &Capacity<'_>| one.in_measures),
         column("at_most", |one: &Capacity<'_>| yes(one.at_most)),

@@ -48,6 +48,8 @@ pub struct Capacity<'a> {
     pub record: &'a str,
     /// True if the record is mirrored.
     pub mirrored: bool,
+    /// The largest factor on the record up to which the structure certainly survives; `None` if it does not survive the lowest level.
+    pub survives_up_to_scale: Option<f64>,
     /// The factor on the record; `None` if no level overturns the structure.
     pub scale: Option<f64>,
     /// True if the capacity may be less: the lowest level already overturns the structure, or the level below has no complete history.
@@ -99,8 +101,10 @@ impl SuiteFragility {
         let first = levels.iter().position(overturns);
         let below = first.and_then(|first| levels[first.checked_sub(1)?].known_verdict());
         let own = levels[first.unwrap_or(0)];
+        let safe = self.survival(levels).survives_up_to;
         let level = first.map(|_| own.overturns_from(self.measure));
-        let scale = level.map(|level| own.scale * level / own.level(self.measure));
+        let scale_of = |level: f64| own.scale * level / own.level(self.measure);
+        let scale = level.map(scale_of);
         // All measures are scaled by the factor of the peak.
         let peak_g = scale.map(|scale| own.peak_g / own.scale * scale);
         let of = |strength: fn(&Strength) -> f64, power: i32| {
@@ -109,6 +113,7 @@ impl SuiteFragility {
         Capacity {
             record: &own.record,
             mirrored: own.mirrored,
+            survives_up_to_scale: safe.map(scale_of),
             scale,
             at_most: first.is_some() && (below.is_none() || own.edge_at_most),
             in_measures: [

@@ -9,6 +9,18 @@ pub fn rounded(value: f64) -> String {
     format!("{value:.decimals$}")
 }
 
+/// Returns a strength that is safe with four digits, never rounded upwards.
+#[must_use]
+pub fn rounded_down(value: f64) -> String {
+    let decimals = decimals(value);
+    let unit = 0.1_f64.powi(decimals as i32);
+    // The tolerance keeps decimal numbers such as 0.45 as they are.
+    format!(
+        "{:.decimals$}",
+        (value / unit * (1.0 + 1e-12)).floor() * unit
+    )
+}
+
 /// Returns both ends of a range with four digits, or with as many as needed to distinguish them.
 #[must_use]
 pub fn rounded_range(ends: [f64; 2]) -> [String; 2] {

@@ -10,9 +10,12 @@ use crate::scenario::Scenario;
 use crate::studies::ending::columns::yes;
 use crate::studies::ending::{Ending, NoAnswer, NoHistory, Verdict};
 
-/// The smallest strength of a ground motion that overturns a structure.
+/// The strengths of a ground motion that a structure certainly survives, and the smallest one that overturns it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FirstEdge {
+    /// The largest factor up to which the structure certainly survives all tried factors; `None` if it does not survive the smallest.
+    #[serde(default)]
+    pub survives_up_to: Option<f64>,
     /// The smallest factor that certainly overturns the structure; `None` if no factor does.
     pub factor: Option<f64>,
     /// True if `factor` is the smallest tried factor, so that a smaller one may overturn the structure too.
@@ -22,6 +25,9 @@ pub struct FirstEdge {
     pub tried_to: f64,
     /// The smallest factor below `factor` with an uncertain verdict; `None` without uncertain verdicts.
     pub uncertain_from: Option<f64>,
+    /// True if the history at the factor after `tried_to` failed, so that nothing is known of stronger motions.
+    #[serde(default)]
+    pub failed_beyond: bool,
 }
 
 impl FirstEdge {
@@ -52,27 +58,51 @@ impl FirstEdge {
             Ok(Verdict::Incomplete) => Err(NoAnswer::Incomplete),
             found => Ok(found?),
         };
-        let overturns = |strength| known(strength).map(|found| found == Verdict::Overturns);
+        // The ends of the edge between a low and a high strength, of verdicts below and from `least` on, and the verdict at its upper end.
+        let narrow = |low: f64, (high, mut verdict): (f64, Verdict), least: Verdict| {
+            let edge = try_bisect(low, high, Width::Relative(width), |strength| {
+                let found = known(strength)?;
+                verdict = if found >= least { found } else { verdict };
+                Ok::<_, NoAnswer>(found >= least)
+            })?;
+            Ok::<_, NoAnswer>((edge, verdict))
+        };
         let mut edge = Self::default();
         for strength in strengths.iter().copied() {
             let found = match known(strength) {
                 // The model may not allow a stronger motion: the ground may fall freely.
-                Err(NoAnswer::Failed(_)) if edge.tried_to > 0.0 => break,
+                Err(NoAnswer::Failed(_)) if edge.tried_to > 0.0 => {
+                    edge.failed_beyond = true;
+                    break;
+                }
                 found => found?,
             };
-            if found == Verdict::Overturns {
-                edge.factor = Some(if edge.tried_to > 0.0 {
-                    try_bisect(edge.tried_to, strength, Width::Relative(width), overturns)?.1
-                } else {
-                    edge.at_most = true;
-                    strength
-                });
-                edge.tried_to = strength;
-                break;
+            let mut below = std::mem::replace(&mut edge.tried_to, strength);
+            if found == Verdict::Survives {
+                if edge.uncertain_from.is_none() {
+                    edge.survives_up_to = Some(strength);
+                }
+                continue;
             }
-            edge.tried_to = strength;
-            if found == Verdict::Uncertain {
-                edge.uncertain_from.get_or_insert(strength);
+            if edge.uncertain_from.is_none() {
+                let mut first = (strength, found);
+                if below > 0.0 {
+                    let ((safe, from), verdict) = narrow(below, first, Verdict::Uncertain)?;
+                    edge.survives_up_to = Some(safe);
+                    first = (from, verdict);
+                }
+                if first.1 == Verdict::Overturns {
+                    edge.factor = Some(first.0);
+                    edge.at_most = below == 0.0;
+                    break;
+                }
+                below = first.0;
+                edge.uncertain_from = Some(below);
+            }
+            if found == Verdict::Overturns {
+                let ((_, lowest), _) = narrow(below, (strength, found), found)?;
+                edge.factor = Some(lowest);
+                break;
             }
         }
         Ok(edge)
@@ -82,8 +112,9 @@ impl FirstEdge {
     pub(in crate::studies) fn columns<'a, R: 'a>(
         factor: &'static str,
         of: impl Fn(&R) -> Option<&Self> + Copy + 'a,
-    ) -> [Column<'a, R>; 4] {
+    ) -> [Column<'a, R>; 5] {
         [
+            column("survives_up_to", move |row| of(row)?.survives_up_to),
             column(factor, move |row| of(row)?.factor),
             column("tried_to", move |row| Some(of(row)?.tried_to)),
             column("uncertain_from", move |row| of(row)?.uncertain_from),
@@ -133,6 +164,45 @@ pub(super) fn lowest<E>(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The safe strengths end at the first doubt, whose edge is narrowed as well; so does the lowest overturning strength.
+    #[test]
+    fn safe_strengths_end_where_doubt_begins() {
+        let verdict = |strength: f64| {
+            Ok(match strength {
+                _ if (0.953..1.672).contains(&strength) && !(1.1..1.2).contains(&strength) => {
+                    Verdict::Uncertain
+                }
+                _ if strength >= 1.672 => Verdict::Overturns,
+                _ => Verdict::Survives,
+            })
+        };
+        for strengths in [&[0.5, 1.0, 1.15, 2.0][..], &[0.5, 3.0], &[0.9, 1.15, 1.7]] {
+            let edge = FirstEdge::search(strengths, EDGE_WIDTH, verdict).unwrap();
+            let near = |found: Option<f64>, known: f64| {
+                assert!(
+                    (found.unwrap() / known - 1.0).abs() <= EDGE_WIDTH,
+                    "{edge:?}"
+                );
+            };
+            near(edge.factor, 1.672);
+            // A safe range above a missed uncertain one is not known to be unsafe.
+            let doubt = if strengths[1] == 1.15 { 1.2 } else { 0.953 };
+            near(edge.survives_up_to, doubt);
+            near(edge.uncertain_from, doubt);
+            assert!(edge.survives_up_to < edge.uncertain_from);
+        }
+        let edge = FirstEdge::search(&[0.96, 2.0], EDGE_WIDTH, verdict).unwrap();
+        assert_eq!(
+            (edge.survives_up_to, edge.uncertain_from),
+            (None, Some(0.96))
+        );
+        let edge = FirstEdge::search(&[1.7, 2.0], EDGE_WIDTH, verdict).unwrap();
+        assert_eq!(
+            (edge.survives_up_to, edge.factor, edge.at_most),
+            (None, Some(1.7), true)
+        );
+    }
 
     /// A history without a verdict is neither survived nor overturned, also where an edge is narrowed.
     #[test]

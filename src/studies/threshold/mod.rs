@@ -13,7 +13,7 @@ mod report;
 pub mod survival;
 mod varied;
 
-pub(super) use digits::{rounded, rounded_range};
+pub(super) use digits::{rounded, rounded_down, rounded_range};
 pub use factors::{EDGE_WIDTH, Factors};
 pub use report::FILES;
 pub use varied::{VariedThreshold, vary};
@@ -117,6 +117,12 @@ impl Threshold {
         let mut gaps = self.of(Verdict::Survives);
         gaps.retain(between);
         gaps
+    }
+
+    /// Returns the largest factor up to which the structure certainly survives all sampled factors; `None` if it does not survive the smallest.
+    #[must_use]
+    pub fn survives_up_to(&self) -> Option<f64> {
+        survival::Survival::of_threshold(self).survives_up_to
     }
 
     /// Returns the smallest factor that certainly overturns the structure; `None` if no factor does.

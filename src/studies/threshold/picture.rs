@@ -3,6 +3,7 @@
 use nalgebra::Vector2;
 
 use super::digits::rounded;
+use super::survival::{self, Survival};
 use super::{EDGE_WIDTH, FactorSample, Factors, RangeEnd, Threshold};
 use crate::output::Figure;
 use crate::output::axes::{Axes, Scale};
@@ -47,9 +48,14 @@ pub fn draw(
         let samples = thresholds.iter().flat_map(|threshold| &threshold.samples);
         are_over_critical(samples.map(|sample| &sample.result))
     };
-    let peak = |sample: &FactorSample| match over_critical {
-        true => sample.result.as_ref().ok()?.peak_over_critical,
-        false => Some(sample.result.as_ref().ok()?.peak_rotation_rad),
+    // A history that overturned itself has no peak and interrupts the curve; an uncertain one that did not has one.
+    let peak = |sample: &FactorSample| {
+        let ending = sample.result.as_ref().ok();
+        let ending = ending.filter(|ending| !ending.overturned_itself())?;
+        match over_critical {
+            true => ending.peak_over_critical,
+            false => Some(ending.peak_rotation_rad),
+        }
     };
     let (least, y_label) = match over_critical {
         true => (1.0, "peak rotation / critical rotation"),
@@ -70,6 +76,10 @@ pub fn draw(
     };
     let y = scale(thresholds, least, peak);
     let mut sheet = Sheet::new(figure, title);
+    for (threshold, name) in thresholds.iter().zip(&names) {
+        let words = survival::in_words(&Survival::of_threshold(threshold), "", Some(peak_g));
+        sheet.caption(16.0, &format!("{name}: {words}"));
+    }
     sheet.legend(LEFT_PX, keys);
     for (threshold, name) in thresholds.iter().zip(&names) {
         sheet.gap(EDGE_LABELS);
@@ -87,12 +97,8 @@ pub fn draw(
     for (threshold, stroke) in thresholds.iter().zip(curves()) {
         let faint = Stroke::new(stroke.color, 0.5, "2 3");
         marks.extend(edges(threshold).map(|edge| Mark::upright("", faint, edge, y)));
-        // Overturned samples have no peak and interrupt the curve.
-        let points = threshold.samples.iter().map(|sample| {
-            let overturns = sample.verdict() == Some(Verdict::Overturns);
-            let peak = peak(sample).filter(|_| !overturns);
-            (sample.factor, peak.unwrap_or(f64::NAN))
-        });
+        let points = threshold.samples.iter();
+        let points = points.map(|sample| (sample.factor, peak(sample).unwrap_or(f64::NAN)));
         let name = format!("{} peak", threshold.model);
         marks.push(Mark::curve(name, stroke, points));
     }
@@ -154,15 +160,14 @@ fn narrow(thresholds: &[Threshold], names: &[String], axes: &Axes) -> String {
     }
 }
 
-/// Returns the scale up to the largest survived rotation. Overturned cases exceed it.
+/// Returns the scale up to the largest rotation of a history that did not overturn.
 fn scale(
     thresholds: &[Threshold],
     least: f64,
     peak: impl Fn(&FactorSample) -> Option<f64>,
 ) -> Scale {
     let samples = thresholds.iter().flat_map(|threshold| &threshold.samples);
-    let survived = samples.filter(|sample| sample.verdict() == Some(Verdict::Survives));
-    let largest = survived.filter_map(peak).fold(least, f64::max);
+    let largest = samples.filter_map(peak).fold(least, f64::max);
     Scale::exactly(0.0, 1.15 * largest, 6)
 }
 
@@ -179,6 +184,31 @@ fn edges(threshold: &Threshold) -> impl Iterator<Item = f64> {
         last = *factor;
         anew
     })
+}
+
+/// Largest number of labelled edges of a model.
+const LABELLED: usize = 8;
+
+/// Returns the edges that are labelled, ascending: the end of the safe factors, the lowest that overturns, and those farthest from others.
+fn labelled(edges: &[f64], threshold: &Threshold) -> Vec<f64> {
+    let lowest = threshold.lowest_factor();
+    let distance = |index: usize| {
+        let from = |other: Option<&f64>| {
+            other.map_or(f64::INFINITY, |other| (edges[index] / other).ln().abs())
+        };
+        let is_lowest =
+            lowest.is_some_and(|lowest| (edges[index] / lowest - 1.0).abs() <= 2.0 * EDGE_WIDTH);
+        let below = index.checked_sub(1).map(|below| from(edges.get(below)));
+        match (below, is_lowest) {
+            (None, _) | (_, true) => f64::INFINITY,
+            (Some(below), _) => below.min(from(edges.get(index + 1))),
+        }
+    };
+    let mut order: Vec<usize> = (0..edges.len()).collect();
+    order.sort_by(|a, b| distance(*b).total_cmp(&distance(*a)));
+    order.truncate(LABELLED);
+    order.sort_unstable();
+    order.into_iter().map(|index| edges[index]).collect()
 }
 
 /// Draws the outcomes of a model along the factors, with the edges of its bands above.
@@ -224,9 +254,10 @@ fn strip(drawing: &mut Drawing, axes: &Axes, threshold: &Threshold) {
     }
     let Frame { left, width, .. } = axes.frame;
     drawing.outline(&axes.frame, Stroke::new(color::BLACK, 0.8, ""));
-    let places: Vec<f64> = edges.iter().map(|edge| place(*edge)).collect();
+    let labelled = labelled(&edges, threshold);
+    let places: Vec<f64> = labelled.iter().map(|edge| place(*edge)).collect();
     let besides = spread(&places, left, left + width);
-    for ((edge, at), beside) in edges.iter().zip(&places).zip(besides) {
+    for ((edge, at), beside) in labelled.iter().zip(&places).zip(besides) {
         let foot = Vector2::new(*at, top);
         let head = Vector2::new(beside, top - 14.0);
         drawing.line(foot, head, EDGE);

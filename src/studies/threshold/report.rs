@@ -3,7 +3,7 @@
 use serde::Serialize;
 use serde_json::Value;
 
-use super::digits::{rounded, rounded_range};
+use super::digits::rounded;
 use super::survival::{self, Survival};
 use super::{FactorRange, FactorSample, Factors, RangeEnd, Threshold, peak_g, picture};
 use crate::dynamics::history::Outcome;
@@ -43,6 +43,8 @@ struct ModelSummary<'a> {
     scenario: Value,
     /// Name and checksum of each record file.
     record_checksums: Vec<String>,
+    /// The largest factor up to which the structure certainly survives all sampled factors; null if it does not survive the smallest.
+    survives_up_to_factor: Option<f64>,
     /// The smallest factor that certainly overturns the structure; null if no factor does.
     lowest_factor: Option<f64>,
     /// Ranges of factors that overturn the structure, ascending.
@@ -225,6 +227,7 @@ impl Threshold {
             model: &self.model,
             scenario: scenario.to_json(),
             record_checksums: scenario.record_checksums(),
+            survives_up_to_factor: self.survives_up_to(),
             lowest_factor: self.lowest_factor(),
             bands: ranges(self.bands()),
             gaps: ranges(self.gaps()),
@@ -278,26 +281,30 @@ fn at(factor: f64, peak_g: f64) -> String {
     format!("{} ({} g)", rounded(factor), rounded(factor * peak_g))
 }
 
-/// Returns the results in words: one line for a record, one line per range for a pulse.
+/// Returns the results in words: for each model a line that begins with the safe factor, and lines about doubtful histories.
 fn words(scenarios: &[Scenario], thresholds: &[Threshold]) -> String {
     let peak_g = peak_g(&scenarios[0]);
     let mut lines = Vec::new();
     for threshold in thresholds {
-        let model = match thresholds {
-            [_] => String::new(),
-            _ => threshold.model.replace('_', " "),
+        let record = match scenarios[0].ground.as_ref() {
+            Some(Ground::Record(record)) => Some(record.main.name().to_owned()),
+            _ => None,
         };
-        if let Some(Ground::Record(record)) = scenarios[0].ground.as_ref() {
-            let comma = if model.is_empty() { "" } else { ", " };
-            let strengths = survival::in_words(&Survival::of_threshold(threshold), "");
-            let (file, peak) = (record.main.name(), rounded(peak_g));
-            lines.push(format!(
-                "  {file}{comma}{model}: {strengths} (1 is {peak} g)"
-            ));
-        } else {
-            lines.extend(Some(model).filter(|model| !model.is_empty()));
-            lines.extend(threshold.ranges_in_words(peak_g));
-        }
+        let model = (thresholds.len() > 1).then(|| threshold.model.replace('_', " "));
+        let subject = record
+            .into_iter()
+            .chain(model)
+            .collect::<Vec<_>>()
+            .join(", ");
+        let colon = if subject.is_empty() { "" } else { ": " };
+        let survival = Survival::of_threshold(threshold);
+        let strengths = survival::in_words(&survival, "", Some(peak_g));
+        lines.push(format!("  {subject}{colon}{strengths}"));
+        let unsafe_from_first = survival.survives_up_to.is_none();
+        lines.extend(
+            unsafe_from_first
+                .then(|| "  a smaller --from finds the factors that it survives".to_owned()),
+        );
         lines.extend(threshold.doubts_in_words());
         lines.extend(threshold.varied_in_words(peak_g));
     }
@@ -337,71 +344,6 @@ impl Threshold {
             let no_verdict = no_verdict.map_or(String::new(), |words| format!("; {words}"));
             format!("  with {}: {answer}{no_verdict}", varied.name)
         })
-    }
-
-    /// Returns a line for each band, with the range after the band.
-    fn ranges_in_words(&self, peak_g: f64) -> Vec<String> {
-        let mut lines: Vec<String> = Vec::new();
-        if self.bands().is_empty() {
-            let mut ranges = self.ranges.iter();
-            let is_certain = ranges.all(|(verdict, _)| *verdict == Verdict::Survives);
-            let certainly = if is_certain { "" } else { "certainly " };
-            let last = self.samples.iter().rfind(|sample| sample.result.is_ok());
-            let last = at(last.map_or(0.0, |sample| sample.factor), peak_g);
-            lines.push(format!(
-                "  does not {certainly}overturn up to factor {last}"
-            ));
-        }
-        if let Some((verdict, first)) = self.ranges.first()
-            && *verdict != Verdict::Survives
-            && first.from_end == RangeEnd::Sampled
-        {
-            let what = verdict.name();
-            let range = match verdict {
-                Verdict::Overturns => "band",
-                _ => "range",
-            };
-            lines.push(format!(
-                "  {what} at the smallest factor already: a smaller --from finds where this {range} begins"
-            ));
-        }
-        let before = lines.len();
-        let mut printed_end: Option<f64> = None;
-        for (verdict, range) in &self.ranges {
-            let ends = |ends: [f64; 2]| {
-                let factors = rounded_range(ends);
-                let accelerations_g = rounded_range(ends.map(|factor| factor * peak_g));
-                [0, 1].map(|end| format!("{} ({} g)", factors[end], accelerations_g[end]))
-            };
-            let [begins, mut to] = ends([range.from, range.to]);
-            // Lines after the first print only the ends of ranges, so each end must differ from the previous one.
-            if let (Some(last), false) = (printed_end, *verdict == Verdict::Overturns) {
-                [_, to] = ends([last, range.to]);
-            }
-            printed_end = Some(range.to);
-            let beyond = match range.to_end {
-                RangeEnd::Unknown => "; not known beyond",
-                RangeEnd::Sampled | RangeEnd::Edge => "",
-            };
-            let is_last = range.to_end == RangeEnd::Sampled;
-            let all = match is_last {
-                true => format!("from factor {begins} up to the largest factor"),
-                false if range.from == range.to => format!("at factor {begins}{beyond}"),
-                false => format!("from factor {begins} to {to}{beyond}"),
-            };
-            let what = verdict.name();
-            let line = lines.get_mut(before..).and_then(<[_]>::last_mut);
-            match (verdict, line) {
-                (Verdict::Survives, None) => {}
-                (Verdict::Overturns, _) | (_, None) => lines.push(format!("  {what} {all}")),
-                (_, Some(line)) if is_last => *line += &format!("; {what} from there on"),
-                (Verdict::Survives, Some(line)) => {
-                    *line += &format!("; survives again up to {to}{beyond}");
-                }
-                (_, Some(line)) => *line += &format!("; {what} up to {to}{beyond}"),
-            }
-        }
-        lines
     }
 
     /// Returns lines about uncertain, failed and incomplete histories.

@@ -137,6 +137,10 @@ impl<'a> Along<'a> {
 struct Point {
     /// The value of the key.
     value: f64,
+    /// The largest factor up to which the structure certainly survives all tried factors; null if it does not survive the smallest.
+    survives_up_to_factor: Option<f64>,
+    /// The peak ground acceleration at that factor, in units of gravity.
+    survives_up_to_g: Option<f64>,
     /// The smallest factor that certainly overturns the structure; null if no factor does.
     overturns_from_factor: Option<f64>,
     /// The peak ground acceleration at that factor, in units of gravity.
@@ -145,6 +149,10 @@ struct Point {
     at_most: bool,
     /// The smallest factor below `overturns_from_factor` with an uncertain verdict; null without uncertain verdicts.
     uncertain_from_factor: Option<f64>,
+    /// The largest factor with a history.
+    tried_to_factor: Option<f64>,
+    /// True if the history at the next factor failed, because the ground falls freely for example: nothing is known of stronger motions.
+    failed_beyond: bool,
     /// The smallest factor that overturns the structure before any impact; null if it was not requested or not found.
     no_impact_factor: Option<f64>,
     /// The peak ground acceleration at `no_impact_factor`, in units of gravity.
@@ -158,13 +166,18 @@ impl Point {
         let in_g = |factor: Option<f64>| Some(factor? * row.peak_g?);
         let edge = row.edge.as_ref().ok();
         let overturns_from_factor = edge.and_then(|edge| edge.factor);
+        let survives_up_to_factor = edge.and_then(|edge| edge.survives_up_to);
         let no_impact_factor = row.no_impact.as_ref().and_then(|found| found.clone().ok()?);
         Self {
             value: row.value,
+            survives_up_to_factor,
+            survives_up_to_g: in_g(survives_up_to_factor),
             overturns_from_factor,
             overturns_from_g: in_g(overturns_from_factor),
             at_most: edge.is_some_and(|edge| edge.at_most),
             uncertain_from_factor: edge.and_then(|edge| edge.uncertain_from),
+            tried_to_factor: edge.map(|edge| edge.tried_to),
+            failed_beyond: edge.is_some_and(|edge| edge.failed_beyond),
             no_impact_factor,
             no_impact_g: in_g(no_impact_factor),
             why_not: row.edge.as_ref().err().map(NoAnswer::name),

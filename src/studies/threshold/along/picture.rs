@@ -8,8 +8,9 @@ use crate::output::svg::CURVES;
 /// Function that returns a quantity of a point, in g.
 type Quantity = fn(&Point) -> Option<f64>;
 
-const CURVES_OF: [(&str, Quantity); 2] = [
-    ("overturns", |point| point.overturns_from_g),
+const CURVES_OF: [(&str, Quantity); 3] = [
+    ("survives up to", |point| point.survives_up_to_g),
+    ("certainly overturns from", |point| point.overturns_from_g),
     ("overturns without impact", |point| point.no_impact_g),
 ];
 

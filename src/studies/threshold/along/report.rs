@@ -9,7 +9,7 @@ use crate::output::table::{column, csv, fields};
 use crate::studies::ending::NoAnswer;
 use crate::studies::remarks::{self, CaseSummary, Remark, Remarks, no_verdict};
 use crate::studies::results::{ReportedStudy, Results, Style};
-use crate::studies::threshold::{Factors, rounded};
+use crate::studies::threshold::{Factors, rounded, rounded_down};
 
 /// The part of the summary that is specific to thresholds along a key.
 #[derive(Serialize)]
@@ -49,8 +49,8 @@ impl ReportedStudy for Along<'_> {
         let key = along.key.as_str();
         let mut columns = vec![column(key, |point: &Point| point.value)];
         columns.extend(fields!(
-            |point: &Point| point => overturns_from_factor, overturns_from_g, at_most,
-            uncertain_from_factor, no_impact_factor, no_impact_g, why_not
+            |point: &Point| point => survives_up_to_factor, survives_up_to_g, overturns_from_factor,
+            overturns_from_g, at_most, uncertain_from_factor, tried_to_factor, failed_beyond, no_impact_factor, no_impact_g, why_not
         ));
         let title = self.scenario.title.as_deref();
         let title = title.unwrap_or("Threshold of overturning");
@@ -84,33 +84,63 @@ impl Along<'_> {
 
     fn first_words(&self, points: &[Point]) -> String {
         let along = &self.options.along;
-        let mut text = format!(
-            "{} values of {} from {} to {}: ",
+        // The lowest and the highest acceleration, with their values.
+        let range = |what: &str, of: fn(&Point) -> Option<f64>, rounded: fn(f64) -> String| {
+            let known = points.iter();
+            let known = known.filter_map(|point| Some((of(point)?, point.value)));
+            let least = known.clone().min_by(|a, b| a.0.total_cmp(&b.0))?;
+            let most = known.max_by(|a, b| a.0.total_cmp(&b.0))?;
+            let [least, most] =
+                [least, most].map(|(g, value)| format!("{} g at {}", rounded(g), plain(value)));
+            Some(format!("{what} {least} to {most}"))
+        };
+        let count = |what: &str, at: fn(&&Point) -> bool| {
+            let count = points.iter().filter(at).count();
+            (count > 0).then(|| format!("{what} at {count} values"))
+        };
+        let no_impact = || {
+            let ends = range(
+                "without impact overturns from",
+                |point| point.no_impact_g,
+                rounded,
+            );
+            ends.unwrap_or_else(|| "no factor overturns it without impact".to_owned())
+        };
+        let parts = [
+            range(
+                "survives up to",
+                |point| point.survives_up_to_g,
+                rounded_down,
+            ),
+            count("not certain to survive the smallest factor", |point| {
+                point.tried_to_factor.is_some() && point.survives_up_to_g.is_none()
+            }),
+            count("uncertain above", |point| {
+                point.uncertain_from_factor.is_some()
+            }),
+            range(
+                "certainly overturns from",
+                |point| point.overturns_from_g,
+                rounded,
+            ),
+            count("no factor certainly overturns it", |point| {
+                let reached = point.tried_to_factor.is_some() && !point.failed_beyond;
+                reached && point.overturns_from_g.is_none()
+            }),
+            count(
+                "not known beyond the factor from which on the ground falls freely or the model fails,",
+                |point| point.failed_beyond,
+            ),
+            count("no verdict", |point| point.why_not.is_some()),
+            self.options.no_impact.then(no_impact),
+        ];
+        format!(
+            "{} values of {} from {} to {}: {}",
             points.len(),
             along.key,
             plain(along.from),
-            plain(along.to)
-        );
-        let range = |of: fn(&Point) -> Option<f64>| {
-            let known = points.iter().map(|point| Some((of(point)?, point.value)));
-            let known: Vec<(f64, f64)> = known.flatten().collect();
-            let least = known.iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
-            let most = known.iter().max_by(|a, b| a.0.total_cmp(&b.0))?;
-            let at = |(g, value): &(f64, f64)| format!("{} g at {}", rounded(*g), plain(*value));
-            Some((known.len(), format!("from {} to {}", at(least), at(most))))
-        };
-        text += &match range(|point| point.overturns_from_g) {
-            Some((count, ends)) => format!("the threshold is {ends}, at {count} values"),
-            None => "no factor overturns the structure".to_owned(),
-        };
-        if self.options.no_impact {
-            text += &match range(|point| point.no_impact_g) {
-                Some((count, ends)) => {
-                    format!("; without impact it overturns {ends}, at {count} values")
-                }
-                None => "; no factor overturns it without impact".to_owned(),
-            };
-        }
-        text
+            plain(along.to),
+            parts.into_iter().flatten().collect::<Vec<_>>().join("; ")
+        )
     }
 }
