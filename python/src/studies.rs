@@ -5,10 +5,9 @@ use std::path::{Path, PathBuf};
 use std::slice;
 use std::sync::Arc;
 
-use archrock::output::{Batch, Figure};
+use archrock::output::{Batch, Figure, Origin};
 use archrock::studies::catalogue::{self as studies, Computation, Options, RowSource, StudyKind};
 use archrock::studies::part::Shard;
-use archrock::studies::previous_results::ResultsCommand;
 use archrock::studies::results::{Results, StudyError, Style};
 use archrock::studies::runner::{Runner, Task};
 use archrock::studies::threshold::Factors;
@@ -169,14 +168,12 @@ pub fn save(
 
 fn write(path: &Path, files: &[(String, Vec<u8>)]) -> PyResult<Vec<String>> {
     let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
-    let batch = Batch::lock(path, true).map_err(not_written)?;
-    let mut warnings = Vec::new();
-    if let Some(command) = names.last().and_then(|seal| ResultsCommand::of_seal(seal)) {
-        batch.replace(command.last_results(path));
-        if let Some(origin) = command.origin_in(files) {
-            warnings = command.warnings(path, &origin);
-        }
-    }
+    let command = StudyKind::of_files(&names).map_or("python", |kind| kind.name);
+    let mut files_of_json = files.iter().filter(|(name, _)| name.ends_with(".json"));
+    let summary = files_of_json.next().map(|(_, text)| serde_json::from_slice(text));
+    let origin = summary.and_then(Result::ok).map(|summary| Origin::of_summary(&summary));
+    let batch = Batch::lock(path, command, origin.unwrap_or_default(), true).map_err(not_written)?;
+    let warnings = batch.warnings();
     let mut folder = batch.folder(path, &names).map_err(not_written)?;
     for (name, contents) in files {
         folder.write(name, contents).map_err(not_written)?;

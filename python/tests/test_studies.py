@@ -298,7 +298,7 @@ def test_results_replace_those_of_the_same_study(arch: Arch, pulse: Pulse, progr
     """A folder holds the results of one run of a study; those of another study stay, with a warning if they are of another scenario."""
     axes = {"duration_s": [0.2, 0.8], "amplitude_g": [0.2, 0.9]}
     folder = tmp_path / "o"
-    names = {"map.csv", "map.html", "map.json", "map.svg"}
+    names = {"archrock.json", "map.csv", "map.html", "map.json", "map.svg"}
     uncertain = '[uncertain]\nsamples = 2\n"arch.depth_m" = { deviation = 0.01 }\n'
     table = {name: list(values) for name, values in axes.items()}
     (tmp_path / "s.toml").write_text(Scenario.of(arch, pulse, map=table, duration_s=5.0).to_toml() + uncertain)
@@ -308,7 +308,7 @@ def test_results_replace_those_of_the_same_study(arch: Arch, pulse: Pulse, progr
     column = Column(height_m=4.0, width_m=0.8, drums=3)
     found = overturning_map(column, pulse, axes, model="free_hinges", duration_s=1.0)
     assert issued(lambda: found.save(folder)) == []
-    assert {path.name for path in folder.iterdir()} == names == set(found.files)
+    assert {path.name for path in folder.iterdir()} == names == {"archrock.json", *found.files}
 
     (warned,) = issued(lambda: capacity(arch).save(folder))
     assert warned.startswith(f"{folder} holds results of `archrock map` from another scenario")

@@ -1,15 +1,13 @@
 //! The command `limit`, and functions that several commands share.
 
-use std::fs::File;
-use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 use archrock::FourLinkError;
 use archrock::FourLinks;
 use archrock::dynamics::model::MechanismModel;
-use archrock::output::pretty;
 use archrock::output::print::{PictureFormat, PrintError};
 use archrock::output::scene::Scene;
+use archrock::output::{pretty, write_named_file};
 use archrock::scenario::Scenario;
 use archrock::studies::limit;
 use archrock::studies::pictures;
@@ -87,9 +85,11 @@ pub fn write_picture(path: &Path, picture: &str) -> Result<(), Failure> {
     let input = |wrong: PrintError| Failure::Input(format!("--plot: {wrong}"));
     let format = PictureFormat::of_file(path).map_err(input)?;
     let picture = format.of_picture(picture).map_err(input)?;
-    let cannot = |error: io::Error| format!("cannot write {}: {error}", path.display());
-    let remedy = "choose another file with --plot";
-    let file = File::create(path).map_err(|error| format!("{}; {remedy}", cannot(error)));
-    let written = file?.write_all(&picture);
-    written.map_err(|error| Failure::Work(cannot(error)))
+    write_named(path, &picture, "--plot")
+}
+
+/// Writes a file that this option names.
+pub fn write_named(path: &Path, contents: &[u8], option: &str) -> Result<(), Failure> {
+    let written = write_named_file(path, contents);
+    written.map_err(|error| Failure::Input(format!("{error}; choose another file with {option}")))
 }

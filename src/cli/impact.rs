@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 
 use archrock::mechanics::four_link::mechanism::HingeSites;
-use archrock::output::Folder;
 use archrock::output::scene::Scene;
 use archrock::studies::impact::{ImpactOptions, LinkImpact, chain_result, four_links_result};
 use archrock::studies::pictures;
@@ -124,16 +123,9 @@ fn write_line(path: &Path, impact: &LinkImpact<'_>) -> Result<(), Failure> {
     if path == Path::new("-") {
         return print(&String::from_utf8_lossy(&table));
     }
-    let name = path.file_name().and_then(|name| name.to_str());
-    let (Some(name), false) = (name, path.exists() && !path.is_file()) else {
+    if path.exists() && !path.is_file() {
         let message = "not a regular file; use - for standard output";
         return Err(format!("--line {}: {message}", path.display()).into());
-    };
-    let parent = path
-        .parent()
-        .filter(|parent| !parent.as_os_str().is_empty());
-    let mut folder = Folder::open(parent.unwrap_or(Path::new(".")), &[name])
-        .map_err(|error| format!("{error}; choose another file with --line"))?;
-    folder.write(name, &table)?;
-    Ok(folder.complete()?)
+    }
+    commands::write_named(path, &table, "--line")
 }

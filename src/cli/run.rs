@@ -3,10 +3,10 @@
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
+use archrock::output::Origin;
 use archrock::scenario::{Scenario, shown_lines};
 use archrock::studies::catalogue::{Options, RUN, UNCERTAIN};
-use archrock::studies::previous_results::{Origin, ResultsCommand};
-use archrock::studies::results::Style;
+use archrock::studies::results::{Results, Style};
 use archrock::studies::run::{RunOptions, check, heading};
 use nalgebra::Vector2;
 
@@ -97,41 +97,53 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     collect_input_error(Destination::check_distinct(&tasks), &mut wrong)?;
     check_no_errors(&wrong)?;
     for (root, origin) in &roots {
-        root.lock(ResultsCommand::of(RUN), origin, arguments.work.is_part())?;
+        root.lock(RUN, origin.clone(), arguments.work.is_part())?;
     }
-    let (mut summaries, mut failures) = (Vec::new(), Vec::new());
-    for (name, scenarios, place) in &tasks {
+    let (mut summaries, mut failures, mut done) = (Vec::new(), Vec::new(), Vec::new());
+    let mut printed = Ok(());
+    for (index, (name, scenarios, place)) in tasks.iter().enumerate() {
         super::warn(&scenarios[0].unlikely());
         let mut session = Session::new(None, arguments.work, style, options.clone());
-        let place = place.as_ref();
-        let found = session.with_samples([RUN, UNCERTAIN], scenarios, place);
-        let found = found.and_then(|found| session.publish(place).map(|()| found));
+        let found = session.with_samples([RUN, UNCERTAIN], scenarios, place.as_ref());
         let results = match found {
             // The other scenarios are still run.
             Err(Failure::Work(message)) if tasks.len() > 1 => {
-                place.into_iter().for_each(Destination::abandon);
+                place.iter().for_each(Destination::abandon);
                 failures.push(format!("{name}: {message}"));
-                continue;
+                Results::default()
             }
-            found => found?.unwrap_or_default(),
+            found => {
+                done.push((session, place));
+                found?.unwrap_or_default()
+            }
         };
+        // All results in a folder replace the earlier ones together, once the last of them is complete.
+        let in_folder = |other: &Option<Destination>| {
+            let both = other.as_ref().zip(place.as_ref());
+            both.is_some_and(|(other, place)| other.shares_lock(place))
+        };
+        if !tasks[index + 1..]
+            .iter()
+            .any(|(_, _, later)| in_folder(later))
+        {
+            let complete = done.extract_if(.., |(_, place)| in_folder(place));
+            let complete: Vec<_> = complete.collect();
+            for (mut session, place) in complete {
+                session.publish(place.as_ref())?;
+            }
+        }
         let words = match results.words.is_empty() {
             true => String::new(),
             false => heading(scenarios) + &results.words,
         };
-        match arguments.format {
-            Format::Json if results.summary.is_null() => {}
-            Format::Json => summaries.push(results.summary),
-            Format::Text if quiet => {}
-            // Standard output carries the rotations and nothing else.
-            Format::Text if arguments.to_stdout() => {
-                // When standard error fails there is nowhere to report it.
-                let _ = io::stderr().write_all(shown_lines(&words).as_bytes());
-            }
-            Format::Text => print(&words)?,
+        // A closed pipe ends the words, not the work.
+        printed = printed.and_then(|()| arguments.print(&words, quiet));
+        if !results.summary.is_null() {
+            summaries.push(results.summary);
         }
     }
-    if !summaries.is_empty() {
+    printed?;
+    if matches!(arguments.format, Format::Json) && !summaries.is_empty() {
         print_all(summaries)?;
     }
     match failures.is_empty() {
@@ -152,6 +164,21 @@ impl Arguments {
     /// Whether files are written.
     const fn has_folder(&self) -> bool {
         self.out.is_some() || !(self.to_stdout() || matches!(self.format, Format::Json))
+    }
+
+    /// Prints the words about a scenario.
+    fn print(&self, words: &str, quiet: bool) -> Result<(), Failure> {
+        match self.format {
+            Format::Json => Ok(()),
+            Format::Text if quiet => Ok(()),
+            // Standard output carries the rotations and nothing else.
+            Format::Text if self.to_stdout() => {
+                // When standard error fails there is nowhere to report it.
+                let _ = io::stderr().write_all(shown_lines(words).as_bytes());
+                Ok(())
+            }
+            Format::Text => print(words),
+        }
     }
 
     /// The options of a run.

@@ -3,18 +3,18 @@
 use std::cell::OnceCell;
 use std::collections::BTreeMap;
 use std::env;
-use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 use archrock::output::print::PictureFormat;
-use archrock::output::{Batch, Folder, OutputError};
+use archrock::output::{Batch, Folder, Manifest, Origin, OutputError};
 use archrock::scenario::{Assignment, Hinges, ReadOptions, Scenario, Source, shown};
+use archrock::studies::catalogue::StudyKind;
+use archrock::studies::peaks;
 use archrock::studies::results::Results;
 
 use super::{Failure, check_no_errors};
-use archrock::studies::previous_results::{ORIGIN, Origin, ResultsCommand};
 
 /// The scenario of a command.
 #[derive(clap::Args)]
@@ -94,8 +94,8 @@ impl SuiteOption {
             if let Some((_, scenarios, _)) = tasks.get_mut(index) {
                 scenarios.push(scenario);
             } else {
-                let place = root.map(|root| root.of_record(&record)).transpose();
-                let place = place.map_err(|wrong| input.with_file_name(wrong))?;
+                let name = Path::new(&record).file_name().unwrap_or_default();
+                let place = root.map(|root| root.within(name));
                 tasks.push((format!("{file}, {record}"), vec![scenario], place));
             }
         }
@@ -163,15 +163,7 @@ impl Input<'_> {
 
     /// Makes a failure with this reason, after the name of the scenario file.
     pub fn input_error(&self, reason: impl Into<String>) -> Failure {
-        self.with_file_name(Failure::Input(reason.into()))
-    }
-
-    /// Adds the name of the scenario file before the message of a failure.
-    pub fn with_file_name(&self, failure: Failure) -> Failure {
-        match failure {
-            Failure::Input(message) => Failure::Input(format!("{}: {message}", self.source.name())),
-            other => other,
-        }
+        Failure::Input(format!("{}: {}", self.source.name(), reason.into()))
     }
 
     /// Returns the name of the folder for the results.
@@ -189,9 +181,20 @@ impl Input<'_> {
             return Ok(Destination::of(out));
         }
         let path = Path::new("results").join(self.stem());
-        let origin = (!is_stdin(self.path)).then(|| origin(self.path));
+        let scenario_file = (!is_stdin(self.path)).then(|| origin(self.path));
+        if let Some(own) = &scenario_file {
+            let manifest = Manifest::read(&path).map_err(suggest_other_folder)?;
+            if let Some(other) = manifest.other_scenario_file(own) {
+                let (path, other) = (path.display(), shown(other));
+                let remedy = "choose another folder with --out, or remove that one";
+                return Err(format!("{path} holds the results of {other}: {remedy}").into());
+            }
+        }
         let place = Destination::of(&path);
-        Destination { origin, ..place }.checked()
+        Ok(Destination {
+            scenario_file,
+            ..place
+        })
     }
 }
 
@@ -208,11 +211,11 @@ fn origin(path: &Path) -> String {
 pub struct Destination {
     path: PathBuf,
     /// The scenario file after which the folder is named; `None` with `--out`.
-    origin: Option<String>,
+    scenario_file: Option<String>,
     /// Format of pictures in addition to SVG.
     pictures: Option<PictureFormat>,
-    /// The command that writes results to the locked folder. Folders inside this one share the lock.
-    locked: Rc<OnceCell<(Batch, ResultsCommand)>>,
+    /// The results in the locked folder. Folders inside this one share the lock.
+    locked: Rc<OnceCell<Batch>>,
 }
 
 impl Destination {
@@ -235,44 +238,58 @@ impl Destination {
         }
     }
 
-    /// Locks the folder and everything below it for a command, unless it is locked, before anything is written. Results of the last run are removed when those of
-    /// this run are published. Prints warnings about results of other commands from another scenario. Several parts of a study may be computed
-    /// in one folder at the same time.
-    pub fn lock(
-        &self,
-        command: ResultsCommand,
-        origin: &Origin,
-        is_part: bool,
-    ) -> Result<(), Failure> {
+    /// Returns true if the folders of two destinations share a lock.
+    pub fn shares_lock(&self, other: &Self) -> bool {
+        Rc::ptr_eq(&self.locked, &other.locked)
+    }
+
+    /// Locks the folder and everything below it for the results of a study, unless it is locked, before anything is written. Prints warnings
+    /// about results of other commands from another scenario. Several parts of a study may be computed in one folder at the same time.
+    pub fn lock(&self, kind: StudyKind, mut origin: Origin, is_part: bool) -> Result<(), Failure> {
         if self.locked.get().is_some() {
             return Ok(());
         }
-        let batch = Batch::lock(&self.path, !is_part).map_err(suggest_other_folder)?;
+        origin.scenario_file.clone_from(&self.scenario_file);
+        let batch = Batch::lock(&self.path, kind.name, origin, !is_part);
+        let batch = batch.map_err(suggest_other_folder)?;
         if !is_part {
-            batch.replace(command.last_results(&self.path));
-            super::warn(&command.warnings(&self.path, origin));
+            super::warn(&batch.warnings());
         }
-        self.locked.get_or_init(|| (batch, command));
+        self.locked.get_or_init(|| batch);
         Ok(())
     }
 
-    fn locked(&self) -> &(Batch, ResultsCommand) {
+    fn locked(&self) -> &Batch {
         self.locked.get().expect("the folder is locked")
     }
 
-    /// Returns the folder inside this one for the comparison of several models.
-    pub fn models_folder(&self) -> Self {
-        self.within(self.locked().1.models(&self.path))
+    /// Returns the folder inside this one for the comparison of several models: `models`, or another name if that folder belongs to another
+    /// command.
+    pub fn models_folder(&self, kind: StudyKind) -> Self {
+        let models = self.within("models");
+        match self
+            .locked()
+            .is_of_other_command(&models.path.join(peaks::SUMMARY))
+        {
+            true => self.within(format!("models_{}", kind.name)),
+            false => models,
+        }
     }
 
-    /// Gives all results their names.
+    /// Gives all results in the locked folder their names.
     pub fn publish(&self) -> Result<(), Failure> {
-        Ok(self.locked().0.publish()?)
+        Ok(self.locked().publish()?)
     }
 
-    /// Deletes the results that are not published.
+    /// Deletes the results in this folder that are not published.
     pub fn abandon(&self) {
-        self.locked().0.abandon();
+        self.locked().abandon(&self.path);
+    }
+
+    /// Returns an error if files with these names cannot be written to the folder.
+    pub fn check_names(&self, names: &[&str]) -> Result<(), Failure> {
+        let checked = self.locked().check(&self.path, names);
+        Ok(checked.map_err(suggest_other_folder)?)
     }
 
     /// Returns the path of the folder.
@@ -292,7 +309,6 @@ impl Destination {
     pub fn within(&self, name: impl AsRef<Path>) -> Self {
         Self {
             path: self.path.join(name),
-            origin: None,
             ..self.clone()
         }
     }
@@ -318,32 +334,6 @@ impl Destination {
         check_no_errors(&wrong)
     }
 
-    /// Returns the folder inside this one for the results of one record of the suite.
-    pub fn of_record(&self, record: &str) -> Result<Self, Failure> {
-        let name = Path::new(record).file_name().unwrap_or_default();
-        let origin = self.origin.clone();
-        Self {
-            origin,
-            ..self.within(name)
-        }
-        .checked()
-    }
-
-    /// Returns the folder; an error if it contains the results of another scenario file.
-    fn checked(self) -> Result<Self, Failure> {
-        let known = self.path.join(ORIGIN);
-        // Reading a pipe of that name would never end.
-        if known.is_file()
-            && let (Some(ours), Ok(theirs)) = (&self.origin, fs::read_to_string(known))
-            && ours != theirs.trim_end()
-        {
-            let (path, theirs) = (self.path.display(), shown(theirs.trim_end()));
-            let remedy = "choose another folder with --out, or remove that one";
-            return Err(format!("{path} holds the results of {theirs}: {remedy}").into());
-        }
-        Ok(self)
-    }
-
     /// Prepares results in the folder without publishing them. A history has already written its files.
     pub fn prepare(&self, results: &Results) -> Result<(), Failure> {
         if results.files.is_empty() {
@@ -365,25 +355,20 @@ impl Destination {
 
     /// Opens the folder for files with these names, the seal last. The error suggests `--out`.
     pub fn open(&self, names: &[&str]) -> Result<Folder, String> {
-        let mut all = names.to_vec();
-        if self.origin.is_some() {
-            all.insert(0, ORIGIN);
-        }
-        let (batch, command) = self.locked();
-        let folder = batch.folder(&self.path, &all);
-        let mut folder = folder.map_err(suggest_other_folder)?;
-        // `last_results` misses the folder of a record whose seal was not written.
-        let others = command.files.iter().filter(|name| !names.contains(name));
-        others.for_each(|name| folder.forget(name));
-        if let Some(origin) = &self.origin {
-            let written = folder.write(ORIGIN, format!("{origin}\n"));
-            written.map_err(suggest_other_folder)?;
-        }
-        Ok(folder.with_pictures(self.pictures))
+        let folder = self.locked().folder(&self.path, names);
+        Ok(folder
+            .map_err(suggest_other_folder)?
+            .with_pictures(self.pictures))
     }
 }
 
 /// Returns the error of a folder that cannot be used.
 fn suggest_other_folder(error: OutputError) -> String {
-    format!("{error}; choose another folder with --out")
+    let remedy = match error {
+        OutputError::Taken { .. } | OutputError::NoManifest { .. } => {
+            "move what is there, or choose another folder with --out"
+        }
+        _ => "choose another folder with --out",
+    };
+    format!("{error}; {remedy}")
 }

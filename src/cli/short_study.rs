@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
+use archrock::output::Origin;
 use archrock::studies::catalogue::{Options, StudyKind, VERIFY};
-use archrock::studies::previous_results::{Origin, ResultsCommand};
 use archrock::studies::results::Style;
 
 use super::figure::FigureOption;
@@ -41,6 +41,6 @@ pub fn run_short_study(
     let style = Style::of(figure.get()?);
     let session = Session::new(Some(&input), WorkOptions::default(), style, options);
     let place = figure.with_picture_format(input.results(arguments.out.as_deref())?);
-    place.lock(ResultsCommand::of(kind), &Origin::of(&scenario), false)?;
+    place.lock(kind, Origin::of(&scenario), false)?;
     session.finish(kind, &scenario, &place, arguments.format)
 }

@@ -3,12 +3,11 @@
 use std::path::{Path, PathBuf};
 use std::slice;
 
-use archrock::output::{Figure, pretty};
+use archrock::output::{Figure, Manifest, Origin, pretty};
 use archrock::scenario::Scenario;
 use archrock::studies::catalogue::{self, Options, StudyKind, merge as merged};
 use archrock::studies::ensemble::cells::CellsOfSamples;
 use archrock::studies::map::OverturningMap;
-use archrock::studies::previous_results::{Origin, ResultsCommand};
 use archrock::studies::results::{Results, Style};
 use clap::ValueEnum;
 use serde_json::Map;
@@ -142,7 +141,7 @@ fn compute(
     style: Style,
 ) -> Result<(), Failure> {
     let (place, origin) = (study.place(input)?, Origin::of(&scenarios[0]));
-    place.lock(ResultsCommand::of(kinds[0]), &origin, study.work.is_part())?;
+    place.lock(kinds[0], origin, study.work.is_part())?;
     let mut session = study.session(input, style, Options::default());
     let several = scenarios.len() > 1;
     let mut all = Vec::new();
@@ -151,7 +150,7 @@ fn compute(
         let found = session.with_samples(kinds, one, Some(&place))?;
         all.extend(found.map(|found| (one[0].motion.label(), found)));
     }
-    let compared = session.compare(scenarios[0].title.as_deref(), &all, Some(&place))?;
+    let compared = session.compare(kinds[0], scenarios[0].title.as_deref(), &all, Some(&place))?;
     session.publish(Some(&place))?;
     if let (false, [(_, results)]) = (several, &all[..]) {
         return show(results, &place, study.format);
@@ -183,14 +182,15 @@ pub fn merge(arguments: &MergeArguments) -> Result<(), Failure> {
     let mut style =
         |kind, scenario: Option<&Scenario>| arguments.map.merged(kind, scenario, figure);
     let (kind, results) = merged(parts, None, &mut style)?;
-    let origin = Origin::of_summary(&results.summary).unwrap_or_default();
-    let command = ResultsCommand::merge(kind);
-    place.lock(command, &origin, false)?;
+    let origin = Origin::of_summary(&results.summary);
     // Samples are merged into a folder inside that of their command.
     let around = place.path().parent();
     if let Some(around) = around.filter(|_| place.path().ends_with(kind.name)) {
-        super::warn(&command.warnings(around, &origin));
+        let manifest = Manifest::read(around)?;
+        super::warn(&manifest.warnings(around, kind.name, &origin));
     }
+    place.lock(kind, origin, false)?;
+    place.check_names(kind.files)?;
     place.prepare(&results)?;
     place.publish()?;
     show(&results, &place, arguments.format)

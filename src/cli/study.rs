@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use archrock::scenario::Scenario;
 use archrock::studies::catalogue::{Computation, Options, RUN, RowSource, StudyKind};
-use archrock::studies::part::{PartError, PartErrorKind, PartFile, Shard};
+use archrock::studies::part::{PartError, PartErrorKind, PartFile, Shard, rows_in};
 use archrock::studies::peaks;
 use archrock::studies::results::{Results, StudyError, Style};
 use archrock::studies::runner::{Progress, Runner, RunnerError, Task};
@@ -148,6 +148,12 @@ impl<'s> Session<'s> {
         Ok(pending.try_for_each(PartFile::remove)?)
     }
 
+    /// Returns an error if the results of a study cannot be written to the folder. A history checks its names itself.
+    fn check_names(&self, kind: StudyKind, place: Option<&Destination>) -> Result<(), Failure> {
+        let place = place.filter(|_| kind != RUN && !self.work.is_part());
+        place.map_or(Ok(()), |place| place.check_names(kind.files))
+    }
+
     /// Computes a study, and prepares its results in the folder, if there is one. Of a part, reports the file and returns `None`.
     pub fn compute(
         &mut self,
@@ -162,6 +168,7 @@ impl<'s> Session<'s> {
             shard,
             resume: work.resume,
         });
+        self.check_names(kind, place)?;
         let threads = work.threads.and_then(|n| NonZeroUsize::new(n.into()));
         let runner = Runner { threads };
         let (mut shown, mut last) = (None, 0);
@@ -267,6 +274,9 @@ impl<'s> Session<'s> {
                 "--shard computes a part of the samples of [uncertain], which the scenario lacks";
             return Err(message.into());
         }
+        if let Some(place) = place.filter(|_| !has_samples) {
+            warn_of_rows(place, samples);
+        }
         let (mut words, mut of_models) = (String::new(), Vec::new());
         let of_samples = scenarios.iter().filter(|one| one.uncertain.is_some());
         for (scenario, place) in of_samples.flat_map(|one| Some(one).zip(place)) {
@@ -303,7 +313,7 @@ impl<'s> Session<'s> {
         }
         let title = scenarios[0].title.as_deref();
         if own == RUN
-            && let Some(compared) = self.compare(title, &of_models, place)?
+            && let Some(compared) = self.compare(own, title, &of_models, place)?
         {
             words += &format!("{}\n", compared.words);
             summary["peaks"] = compared.summary;
@@ -322,6 +332,7 @@ impl<'s> Session<'s> {
     /// Compares how far models of motion rock in the same cases, in a folder beside theirs. `None` where there are not several.
     pub fn compare(
         &self,
+        kind: StudyKind,
         title: Option<&str>,
         models: &[(&str, Results)],
         place: Option<&Destination>,
@@ -334,8 +345,18 @@ impl<'s> Session<'s> {
         let title = title.unwrap_or("Largest rotations of several models");
         let results = peaks::results(title, &models, self.style.figure);
         let results = results.map_err(StudyError::from)?;
-        place.models_folder().prepare(&results)?;
+        place.models_folder(kind).prepare(&results)?;
         Ok(Some(results))
+    }
+}
+
+/// Warns about rows of an interrupted study of samples. A command without samples does not remove them.
+fn warn_of_rows(place: &Destination, samples: StudyKind) {
+    let part = place.within(samples.name);
+    let part = part.path().join(Shard::WHOLE.file_name(samples.name));
+    if let Some(rows) = rows_in(&part).filter(|rows| *rows > 0) {
+        let kept = "cases of samples from an interrupted run; they are not part of the results of this run";
+        super::warn(&[format!("{} has {rows} {kept}", part.display())]);
     }
 }
 

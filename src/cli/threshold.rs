@@ -1,8 +1,8 @@
 //! The command `threshold`.
 
+use archrock::output::Origin;
 use archrock::scenario::Scenario;
 use archrock::studies::catalogue::{Options, THRESHOLD, THRESHOLD_ALONG, UNCERTAIN_THRESHOLD};
-use archrock::studies::previous_results::{Origin, ResultsCommand};
 use archrock::studies::results::Style;
 use archrock::studies::threshold::along::{AlongOptions, KeyRange};
 use archrock::studies::threshold::{Factors, check};
@@ -70,22 +70,25 @@ pub fn threshold(arguments: &Arguments) -> Result<(), Failure> {
     }
     let title = tasks[0].1[0].title.as_deref();
     let title = title.map_or(String::new(), |title| format!("{title}\n"));
-    root.lock(ResultsCommand::of(THRESHOLD), &origin, study.work.is_part())?;
+    root.lock(THRESHOLD, origin, study.work.is_part())?;
     let mut all = Vec::new();
     for (_, scenarios, place) in &tasks {
         super::warn(&scenarios[0].unlikely());
         let kinds = [THRESHOLD, UNCERTAIN_THRESHOLD];
         let found = session.with_samples(kinds, scenarios, place.as_ref())?;
-        session.publish(place.as_ref())?;
-        if let (Some(found), Some(place)) = (&found, place) {
+        all.push((found.unwrap_or_default(), place));
+    }
+    session.publish(Some(&root))?;
+    for (found, place) in &all {
+        if let Some(place) = place.as_ref().filter(|_| !found.files.is_empty()) {
             print_status(&format!("results in {}", place.describe(found)));
         }
-        all.push(found.unwrap_or_default());
     }
+    let all = all.into_iter().map(|(results, _)| results);
     match study.format {
-        Format::Json => print_all(all.into_iter().map(|results| results.summary)),
+        Format::Json => print_all(all.map(|results| results.summary)),
         Format::Text => {
-            let words: String = all.into_iter().map(|results| results.words).collect();
+            let words: String = all.map(|results| results.words).collect();
             print(&format!("{title}{words}  {}\n", factors.in_words()))
         }
     }
@@ -103,7 +106,7 @@ fn thresholds_along(
         return Err(input.input_error(message));
     }
     warn_of(std::slice::from_ref(&scenario));
-    let (place, command) = (study.place(input)?, ResultsCommand::of(THRESHOLD_ALONG));
-    place.lock(command, &Origin::of(&scenario), study.work.is_part())?;
+    let place = study.place(input)?;
+    place.lock(THRESHOLD_ALONG, Origin::of(&scenario), study.work.is_part())?;
     session.finish(THRESHOLD_ALONG, &scenario, &place, study.format)
 }

@@ -7,16 +7,18 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use tempfile::{NamedTempFile, TempPath};
 
-use super::OutputError;
+use super::manifest::{MANIFEST, Manifest, Origin, command_line};
 use super::print::PictureFormat;
+use super::{OutputError, pretty};
 
 /// The results of one command, in a folder and its subfolders.
 ///
 /// The folder and everything below it stay locked while this value or one of its [`Folder`]s exists: no other command writes there. The system
 /// unlocks the folder when the program ends, even if the program is killed.
 ///
-/// Every file is written under a hidden name. [`Batch::publish`] removes the results of the last run, then renames all files. The seal of each
-/// folder is removed first and written last: a folder with a seal contains complete results of one run.
+/// Every file is written under a hidden name in the folder. [`Batch::publish`] removes the results of the last run of the same command, which
+/// the [`Manifest`] of the folder lists, and then renames all files. The manifest is written last. It is the seal: results that it calls
+/// complete are those of one run. A file that it does not list, or that the scenario needs, is never removed or replaced.
 ///
 /// A killed run leaves its hidden files; the next run removes them.
 #[derive(Clone, Debug)]
@@ -25,16 +27,18 @@ pub struct Batch(Arc<Mutex<Inner>>);
 #[derive(Debug)]
 struct Inner {
     path: PathBuf,
+    /// The name of the command in the manifest.
+    command: String,
+    origin: Origin,
+    manifest: Manifest,
     /// True for an exclusive lock; false for a lock that is shared with other commands.
     alone: bool,
     /// The locks; empty if folders cannot be locked, as on some network drives and on Windows.
     locks: Vec<File>,
     /// Folders that were created for the results, the outermost first.
     made: Vec<PathBuf>,
-    /// The complete files of each folder, still under hidden names, with their final paths; the seal last.
-    prepared: Vec<Vec<(PathBuf, TempPath)>>,
-    /// Results of earlier runs, in the order of removal.
-    last: Vec<PathBuf>,
+    /// The complete files, still under hidden names, with their final names relative to the folder.
+    prepared: Vec<(String, TempPath)>,
 }
 
 /// A folder in which results are being prepared.
@@ -44,12 +48,8 @@ pub struct Folder {
     /// Complete files, still under hidden names.
     done: Vec<(String, TempPath)>,
     files: Vec<(String, BufWriter<NamedTempFile>)>,
-    /// Names of results that earlier runs may have left and that this run does not write.
-    obsolete: Vec<String>,
     /// Format of pictures in addition to SVG.
     pictures: Option<PictureFormat>,
-    /// True if completing the folder publishes the batch.
-    publishes: bool,
     batch: Batch,
 }
 
@@ -57,40 +57,68 @@ pub struct Folder {
 const PREFIX: &str = ".archrock-";
 
 impl Batch {
-    /// Locks the folder and everything below it, exclusively if `alone`, otherwise shared. Creates the folder if necessary.
+    /// Locks the folder and everything below it for the results of a command, exclusively if `alone`, otherwise shared. Creates the folder if
+    /// necessary.
     ///
     /// # Errors
-    /// When the folder cannot be created, or another command is writing to this folder, a folder below it or a folder above it.
-    pub fn lock(path: &Path, alone: bool) -> Result<Self, OutputError> {
+    /// When the folder cannot be created, another command is writing to this folder, a folder below it or a folder above it, or an earlier
+    /// result of the command is now an input of the scenario.
+    pub fn lock(
+        path: &Path,
+        command: &str,
+        origin: Origin,
+        alone: bool,
+    ) -> Result<Self, OutputError> {
         let mut inner = Inner {
             path: path.to_owned(),
+            command: command.to_owned(),
+            origin,
+            manifest: Manifest::default(),
             alone,
             locks: Vec::new(),
             made: Vec::new(),
             prepared: Vec::new(),
-            last: Vec::new(),
         };
         inner.make(path)?;
         inner.lock()?;
+        let mut last = inner.last().iter();
+        last.try_for_each(|name| inner.check_no_input(&path.join(name)))?;
         Ok(Self(Arc::new(Mutex::new(inner))))
     }
 
-    /// Sets the results of the last run. They are removed just before the new files get their names. Hidden files that a killed run left beside
-    /// them are removed immediately.
-    pub fn replace(&self, results: Vec<PathBuf>) {
-        let mut inner = self.inner();
-        if inner.alone && !inner.locks.is_empty() {
-            for folder in folders(&results) {
-                remove_abandoned(folder);
-            }
-        }
-        inner.last = results;
+    /// Returns an error if files with these names in the folder, or a folder below it, cannot be written.
+    ///
+    /// # Errors
+    /// When one of them is an input of the scenario, or is there and is no earlier result of the command.
+    pub fn check(&self, path: &Path, names: &[&str]) -> Result<(), OutputError> {
+        let inner = self.inner();
+        names
+            .iter()
+            .try_for_each(|name| inner.check(&path.join(name)))
+    }
+
+    /// Returns true if another command has a result with this path.
+    #[must_use]
+    pub fn is_of_other_command(&self, path: &Path) -> bool {
+        let inner = self.inner();
+        inner
+            .manifest
+            .is_of_other(&inner.command, &inner.relative(path))
+    }
+
+    /// Returns warnings about results of other commands in the folder that come from another scenario.
+    #[must_use]
+    pub fn warnings(&self) -> Vec<String> {
+        let inner = self.inner();
+        inner
+            .manifest
+            .warnings(&inner.path, &inner.command, &inner.origin)
     }
 
     /// Opens the folder, or a folder below it, for files with these names, the seal last.
     ///
     /// # Errors
-    /// When the folder or a file in it cannot be created.
+    /// When the folder or a file in it cannot be created, or as for [`Batch::check`].
     pub fn folder(&self, path: &Path, names: &[&str]) -> Result<Folder, OutputError> {
         let mut inner = self.inner();
         // The user may have removed the folder since it was locked.
@@ -99,15 +127,12 @@ impl Batch {
             inner.make(&root)?;
             inner.lock()?;
         }
-        inner.make(path)?;
         drop(inner);
         let mut folder = Folder {
             path: path.to_owned(),
             done: Vec::new(),
             files: Vec::new(),
-            obsolete: Vec::new(),
             pictures: None,
-            publishes: false,
             batch: self.clone(),
         };
         for name in names {
@@ -118,41 +143,47 @@ impl Batch {
         Ok(folder)
     }
 
-    /// Removes the results of the last run, then gives all complete files their names.
+    /// Removes the results of the last run of the command, then gives all complete files their names. Does nothing if there are none.
     ///
     /// # Errors
-    /// When the system reports an error. The folders are then without their seals, or unchanged.
+    /// When the system reports an error. The manifest then calls the results incomplete, or they are unchanged.
     pub fn publish(&self) -> Result<(), OutputError> {
         let mut inner = self.inner();
         let failed = |path: &Path| OutputError::io(format!("cannot write {}", path.display()));
         let prepared = std::mem::take(&mut inner.prepared);
-        let last = std::mem::take(&mut inner.last);
-        let seals = prepared.iter().filter_map(|files| files.last());
-        for path in seals.map(|(path, _)| path).chain(&last) {
-            remove_if_there(path).map_err(failed(path))?;
+        let new: Vec<String> = prepared.iter().map(|(name, _)| name.clone()).collect();
+        if new.is_empty() {
+            return Ok(());
         }
-        let mut emptied: Vec<&Path> = folders(&last);
-        emptied.sort_by_key(|folder| std::cmp::Reverse(folder.components().count()));
-        for folder in emptied.into_iter().filter(|folder| *folder != inner.path) {
-            // A folder with other files stays.
-            let _ = fs::remove_dir(folder);
+        new.iter()
+            .try_for_each(|name| inner.check(&inner.path.join(name)))?;
+        let last = inner.last().to_vec();
+        inner.list([&last[..], &new].concat(), false)?;
+        // The last file was written last: without it, the others are incomplete.
+        for path in last.iter().rev().map(|name| inner.path.join(name)) {
+            remove_if_there(&path).map_err(failed(&path))?;
+            let folders = path.ancestors().skip(1);
+            for folder in folders.take_while(|folder| *folder != inner.path) {
+                // A folder with other files stays.
+                let _ = fs::remove_dir(folder);
+            }
         }
-        let (mut files, mut seals) = (Vec::new(), Vec::new());
-        for mut folder in prepared {
-            seals.extend(folder.pop());
-            files.extend(folder);
+        for (name, file) in prepared {
+            let path = inner.path.join(name);
+            fs::create_dir_all(path.parent().unwrap_or(&path)).map_err(failed(&path))?;
+            file.persist(&path)
+                .map_err(|error| failed(&path)(error.error))?;
         }
-        // The comparison of several models is prepared last and sealed first: it shows that the folders of the models belong to one run.
-        for (path, file) in files.into_iter().chain(seals.into_iter().rev()) {
-            let persisted = file.persist(&path);
-            persisted.map_err(|error| failed(&path)(error.error))?;
-        }
-        Ok(())
+        inner.list(new, true)
     }
 
-    /// Deletes all files that are complete but not published.
-    pub fn abandon(&self) {
-        self.inner().prepared.clear();
+    /// Deletes all files that are complete but not published, in this folder of the batch and below it.
+    pub fn abandon(&self, folder: &Path) {
+        let mut inner = self.inner();
+        let below = inner.relative(folder);
+        inner
+            .prepared
+            .retain(|(name, _)| !Path::new(name).starts_with(&below));
     }
 
     fn inner(&self) -> MutexGuard<'_, Inner> {
@@ -180,7 +211,7 @@ impl Inner {
         Ok(())
     }
 
-    /// Locks the folder, and takes shared locks of all folders above it.
+    /// Locks the folder, takes shared locks of all folders above it, and reads the manifest.
     fn lock(&mut self) -> Result<(), OutputError> {
         self.locks = lock(&self.path, self.alone)?.into_iter().collect();
         // With links in the path, the folders above differ from those in the path.
@@ -191,7 +222,61 @@ impl Inner {
         if self.alone && !self.locks.is_empty() {
             remove_abandoned(&self.path);
         }
+        self.manifest = Manifest::read(&self.path)?;
         Ok(())
+    }
+
+    /// The results of the last run of the command.
+    fn last(&self) -> &[String] {
+        self.manifest.files(&self.command)
+    }
+
+    /// Returns the name of a path in the folder, relative to it.
+    fn relative(&self, path: &Path) -> String {
+        let below = path.strip_prefix(&self.path).unwrap_or(path);
+        let parts = below.iter().map(|part| part.to_string_lossy());
+        parts.collect::<Vec<_>>().join("/")
+    }
+
+    fn check_no_input(&self, path: &Path) -> Result<(), OutputError> {
+        match self.origin.is_input(path) {
+            true => Err(OutputError::IsInput {
+                path: path.to_owned(),
+            }),
+            false => Ok(()),
+        }
+    }
+
+    /// Returns an error if a file with this path would replace another one than an earlier result of the command.
+    fn check(&self, path: &Path) -> Result<(), OutputError> {
+        self.check_no_input(path)?;
+        let is_result = self.last().contains(&self.relative(path));
+        let folders = path.ancestors().skip(1);
+        let mut folders = folders.take_while(|folder| *folder != self.path);
+        let taken = folders.find(|folder| folder.exists() && !folder.is_dir());
+        let taken = taken.or((!is_result && path.symlink_metadata().is_ok()).then_some(path));
+        taken.map_or(Ok(()), |path| {
+            Err(OutputError::Taken {
+                path: path.to_owned(),
+                command: command_line(&self.command).to_owned(),
+            })
+        })
+    }
+
+    /// Writes the manifest with these results of the command.
+    fn list(&mut self, files: Vec<String>, complete: bool) -> Result<(), OutputError> {
+        let path = self.path.join(MANIFEST);
+        self.manifest
+            .set(&self.command, &self.origin, files, complete);
+        let text = serde_json::to_value(&self.manifest).map(|it| pretty(&it));
+        let write = || {
+            let mut file = hidden_file(&self.path, MANIFEST)?;
+            file.write_all(text?.as_bytes())?;
+            file.as_file().sync_data()?;
+            file.persist(&path).map_err(|error| error.error)
+        };
+        let written = write().map(drop);
+        written.map_err(OutputError::io(format!("cannot write {}", path.display())))
     }
 }
 
@@ -207,26 +292,6 @@ impl Drop for Inner {
 }
 
 impl Folder {
-    /// Opens the folder for files with these names, the seal last; creates the folder if necessary. [`Folder::complete`] gives the files their
-    /// names.
-    ///
-    /// A single file is replaced in one step and cannot mix with others. So commands that write a single file share the lock.
-    ///
-    /// # Errors
-    /// When the folder or a file in it cannot be created, or another command is writing to it.
-    pub fn open(path: &Path, names: &[&str]) -> Result<Self, OutputError> {
-        let batch = Batch::lock(path, names.len() > 1)?;
-        Ok(Self {
-            publishes: true,
-            ..batch.folder(path, names)?
-        })
-    }
-
-    /// Adds the name of a result that earlier runs may have left and that this run does not write.
-    pub fn forget(&mut self, name: &str) {
-        self.obsolete.push(name.to_owned());
-    }
-
     /// Sets the format in which pictures are written in addition to SVG.
     #[must_use]
     pub fn with_pictures(mut self, pictures: Option<PictureFormat>) -> Self {
@@ -249,7 +314,7 @@ impl Folder {
     /// When the folder was not opened with this name.
     pub fn write(&mut self, name: &str, contents: impl AsRef<[u8]>) -> Result<(), OutputError> {
         let found = self.files.iter_mut().find(|(known, _)| known == name);
-        let file = &mut found.expect("the names are those given to `open`").1;
+        let file = &mut found.expect("the names are those given to `folder`").1;
         let written = file.write_all(contents.as_ref());
         written.map_err(self.cannot_write(name))
     }
@@ -259,14 +324,11 @@ impl Folder {
         self.files.iter_mut().map(|(name, file)| (&**name, file))
     }
 
-    /// Adds a file with these contents. It is not the seal. The name may be in a subfolder, which is created.
+    /// Adds a file with these contents. It is not the seal. The name may be in a subfolder.
     ///
     /// # Errors
-    /// When the file cannot be written.
+    /// When the file cannot be written, or as for [`Batch::check`].
     pub fn add(&mut self, name: &str, contents: &[u8]) -> Result<(), OutputError> {
-        if let Some(folder) = self.path.join(name).parent() {
-            self.batch.inner().make(folder)?;
-        }
         let mut file = self.hidden(name)?;
         let written = file.write_all(contents);
         written
@@ -277,59 +339,41 @@ impl Folder {
         Ok(())
     }
 
-    /// Completes the files. They get their names when the batch is published; [`Folder::open`] makes a batch that is published here.
+    /// Completes the files. They get their names when the batch is published.
     ///
     /// # Errors
-    /// When the system reports an error. Earlier results are then without their seal, or unchanged.
+    /// When the system reports an error, or as for [`Batch::check`].
     pub fn complete(mut self) -> Result<(), OutputError> {
         for (name, writer) in std::mem::take(&mut self.files) {
             let file = writer
                 .into_inner()
                 .map_err(|error| self.cannot_write(&name)(error.into_error()))?;
-            if let Some(stem) = name.strip_suffix(".svg") {
-                for format in PictureFormat::OTHERS {
-                    let other = format!("{stem}.{}", format.name());
-                    if self.pictures == Some(format) {
-                        let bytes = converted(&file, format).map_err(self.cannot_write(&other))?;
-                        self.add(&other, &bytes)?;
-                    } else {
-                        self.obsolete.push(other);
-                    }
-                }
+            let other = self.pictures.filter(|format| *format != PictureFormat::Svg);
+            if let Some((stem, format)) = name.strip_suffix(".svg").zip(other) {
+                let other = format!("{stem}.{}", format.name());
+                let bytes = converted(&file, format).map_err(self.cannot_write(&other))?;
+                self.add(&other, &bytes)?;
             }
             file.as_file()
                 .sync_data()
                 .map_err(self.cannot_write(&name))?;
             self.done.push((name, file.into_temp_path()));
         }
-        let files = self.done.drain(..);
-        let files = files.map(|(name, file)| (self.path.join(name), file));
-        let files = files.collect();
         let mut inner = self.batch.inner();
-        inner.prepared.push(files);
-        inner
-            .last
-            .extend(self.obsolete.iter().map(|name| self.path.join(name)));
-        drop(inner);
-        if self.publishes {
-            self.batch.publish()?;
+        for (name, file) in self.done {
+            let name = inner.relative(&self.path.join(name));
+            inner.prepared.push((name, file));
         }
         Ok(())
     }
 
-    /// Creates a file under a hidden name.
+    /// Creates a file under a hidden name, in the folder of the batch.
     fn hidden(&self, name: &str) -> Result<NamedTempFile, OutputError> {
-        let path = self.path.join(name);
+        let (path, inner) = (self.path.join(name), self.batch.inner());
+        inner.check(&path)?;
         let name_alone = path.file_name().unwrap_or_default().to_string_lossy();
-        let prefix = format!("{PREFIX}{name_alone}-");
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(&prefix);
-        // Temporary files are private by default; results get the usual permissions, to which the system applies the user's umask.
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        builder
-            .tempfile_in(path.parent().unwrap_or(&self.path))
-            // The system's message would name the hidden file.
+        // The system's message would name the hidden file.
+        hidden_file(&inner.path, &name_alone)
             .map_err(|error| self.cannot_write(name)(error.kind().into()))
     }
 
@@ -338,18 +382,67 @@ impl Folder {
     }
 }
 
+/// Creates a file under a hidden name in a folder.
+fn hidden_file(folder: &Path, name: &str) -> io::Result<NamedTempFile> {
+    let prefix = format!("{PREFIX}{name}-");
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(&prefix);
+    // Temporary files are private by default; results get the usual permissions, to which the system applies the user's umask.
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder.tempfile_in(folder)
+}
+
+/// Writes a file that no manifest lists, because the user named it. It replaces only an earlier one that begins alike.
+///
+/// # Errors
+/// When the system reports an error, or the file is there and was not written by this program.
+pub fn write_named_file(path: &Path, contents: &[u8]) -> Result<(), OutputError> {
+    let cannot = || OutputError::io(format!("cannot write {}", path.display()));
+    if path.exists() && !path.is_file() {
+        // A device, such as that of standard output.
+        return fs::write(path, contents).map_err(cannot());
+    }
+    if path.exists() && beginning(&fs::read(path).map_err(cannot())?) != beginning(contents) {
+        return Err(OutputError::NotWrittenHere {
+            path: path.to_owned(),
+        });
+    }
+    let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let write = || {
+        let mut file = hidden_file(folder.unwrap_or(Path::new(".")), &name)?;
+        file.write_all(contents)?;
+        file.as_file().sync_data()?;
+        file.persist(&path).map_err(|error| error.error)
+    };
+    write()
+        .map(drop)
+        .map_err(|error| cannot()(error.kind().into()))
+}
+
+/// Returns what files of one kind have in common: the first line of a text without its numbers, and the first bytes of other files.
+fn beginning(contents: &[u8]) -> String {
+    const BYTES: usize = 24;
+    let first = contents
+        .split(|byte| *byte == b'\n')
+        .next()
+        .unwrap_or_default();
+    match str::from_utf8(contents) {
+        Ok(_) => String::from_utf8_lossy(first)
+            .replace("mm\"", "\"")
+            .replace(|it: char| it.is_ascii_digit() || it == '.', ""),
+        Err(_) => format!("{:?}", &contents[..contents.len().min(BYTES)]),
+    }
+}
+
 /// Converts a picture to another format.
 fn converted(picture: &NamedTempFile, format: PictureFormat) -> io::Result<Vec<u8>> {
     let picture = fs::read_to_string(picture.path())?;
     format.of_picture(&picture).map_err(io::Error::other)
-}
-
-/// Returns the folders of these files, without duplicates.
-fn folders(files: &[PathBuf]) -> Vec<&Path> {
-    let mut folders: Vec<&Path> = files.iter().filter_map(|file| file.parent()).collect();
-    folders.sort_unstable();
-    folders.dedup();
-    folders
 }
 
 /// Locks a folder, exclusively or shared; `None` if the folder cannot be locked. The system unlocks it when the program ends, even if it is
@@ -405,31 +498,63 @@ mod tests {
         names
     }
 
+    const ALL: [&str; 2] = ["x.csv", "seal.json"];
+
+    fn lock(path: &Path) -> Result<Batch, OutputError> {
+        Batch::lock(path, "run", Origin::default(), true)
+    }
+
+    /// Writes the contents into all files, and publishes them.
+    fn write(path: &Path, all: &[&str], contents: &str) -> Result<(), OutputError> {
+        let batch = lock(path)?;
+        let mut folder = batch.folder(path, all)?;
+        for (_, file) in folder.files() {
+            file.write_all(contents.as_bytes()).unwrap();
+        }
+        folder.complete()?;
+        batch.publish()
+    }
+
     #[test]
     fn what_is_not_completed_leaves_nothing() {
         let root = tempfile::tempdir().unwrap();
         let path = root.path().join("a/b");
-        let mut folder = Folder::open(&path, &["x.csv", "seal.json"]).unwrap();
+        let batch = lock(&path).unwrap();
+        let mut folder = batch.folder(&path.join("c"), &ALL).unwrap();
         folder.write("x.csv", b"half").unwrap();
-        drop(folder);
+        drop((folder, batch));
         assert!(names(root.path()).is_empty());
     }
 
     #[test]
     fn completed_files_replace_earlier_ones() {
         let root = tempfile::tempdir().unwrap();
+        let path = root.path();
+        write(path, &["old/x.csv", "x.csv", "seal.json"], "zero").unwrap();
+        fs::write(path.join("mine.txt"), "keep").unwrap();
         for content in ["one", "two"] {
-            let mut folder = Folder::open(root.path(), &["x.csv", "seal.json"]).unwrap();
-            folder.forget("old.csv");
-            fs::write(root.path().join("old.csv"), "old").unwrap();
-            fs::write(root.path().join("mine.txt"), "keep").unwrap();
-            folder.write("x.csv", content.as_bytes()).unwrap();
-            folder.complete().unwrap();
-            assert_eq!(
-                fs::read_to_string(root.path().join("x.csv")).unwrap(),
-                content
-            );
-            assert_eq!(names(root.path()), ["mine.txt", "seal.json", "x.csv"]);
+            write(path, &ALL, content).unwrap();
+            assert_eq!(fs::read_to_string(path.join("x.csv")).unwrap(), content);
+            assert_eq!(names(path), [MANIFEST, "mine.txt", "seal.json", "x.csv"]);
+        }
+        // A file that the list lacks is not replaced, and no earlier result is lost.
+        let error = write(path, &["mine.txt"], "three").unwrap_err();
+        assert!(matches!(error, OutputError::Taken { .. }), "{error}");
+        assert_eq!(fs::read_to_string(path.join("mine.txt")).unwrap(), "keep");
+        assert_eq!(fs::read_to_string(path.join("x.csv")).unwrap(), "two");
+    }
+
+    /// A list from elsewhere must not lead to files outside the folder.
+    #[test]
+    fn no_list_names_files_outside_its_folder() {
+        let root = tempfile::tempdir().unwrap();
+        let path = root.path().join("o");
+        write(&path, &ALL, "one").unwrap();
+        let list = fs::read_to_string(path.join(MANIFEST)).unwrap();
+        for outside in ["../x.csv", "/x.csv"] {
+            fs::write(path.join(MANIFEST), list.replace("x.csv", outside)).unwrap();
+            let error = write(&path, &ALL, "two").unwrap_err();
+            assert!(matches!(error, OutputError::NoManifest { .. }), "{error}");
         }
     }
 
@@ -439,11 +564,10 @@ mod tests {
         fs::write(root.path().join(".archrock-x.csv-dead"), "half").unwrap();
         // A folder stays even if its name is that of a hidden file.
         fs::create_dir(root.path().join(".archrock-folder")).unwrap();
-        let folder = Folder::open(root.path(), &["x.csv", "seal.json"]).unwrap();
-        folder.complete().unwrap();
+        write(root.path(), &ALL, "one").unwrap();
         assert_eq!(
             names(root.path()),
-            [".archrock-folder", "seal.json", "x.csv"]
+            [".archrock-folder", MANIFEST, "seal.json", "x.csv"]
         );
     }
 
@@ -451,31 +575,18 @@ mod tests {
     #[test]
     fn a_folder_is_written_to_by_one_run_at_a_time() {
         let root = tempfile::tempdir().unwrap();
-        let all = ["x.csv", "seal.json"];
-        let mut working = Folder::open(root.path(), &all).unwrap();
+        let batch = lock(root.path()).unwrap();
+        let mut working = batch.folder(root.path(), &ALL).unwrap();
         working.write("x.csv", b"slow").unwrap();
         let before = names(root.path());
-        for files in [&all[..], &all[..1]] {
-            let error = Folder::open(root.path(), files).unwrap_err();
+        for below in ["", "below"] {
+            let error = lock(&root.path().join(below)).unwrap_err();
             assert!(error.to_string().contains("is being written to"), "{error}");
             assert_eq!(names(root.path()), before);
         }
         working.complete().unwrap();
-        assert_eq!(names(root.path()), ["seal.json", "x.csv"]);
-        // Runs that write single files can share a folder, also with a hidden file of an interrupted run.
-        let mut one = Folder::open(root.path(), &["one.csv"]).unwrap();
-        let mut two = Folder::open(root.path(), &["two.csv"]).unwrap();
-        assert!(Folder::open(root.path(), &all).is_err());
-        for folder in [&mut one, &mut two] {
-            let (_, file) = folder.files().next().unwrap();
-            file.write_all(b"whole").unwrap();
-        }
-        one.complete().unwrap();
-        two.complete().unwrap();
-        for file in ["one.csv", "two.csv"] {
-            assert_eq!(fs::read(root.path().join(file)).unwrap(), b"whole");
-        }
-        drop(Folder::open(root.path(), &all).unwrap());
+        batch.publish().unwrap();
+        assert_eq!(names(root.path()), [MANIFEST, "seal.json", "x.csv"]);
     }
 
     #[test]
@@ -487,14 +598,9 @@ mod tests {
                 let (path, sealed) = (root.path(), &sealed);
                 scope.spawn(move || {
                     for turn in 0..50 {
-                        let Ok(mut folder) = Folder::open(path, &["a", "b", "seal"]) else {
-                            continue;
-                        };
-                        for (_, file) in folder.files() {
-                            write!(file, "{writer} {turn}").unwrap();
+                        if write(path, &["a", "b", "seal"], &format!("{writer} {turn}")).is_ok() {
+                            sealed.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
                         }
-                        folder.complete().unwrap();
-                        sealed.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
                     }
                 });
             }
@@ -502,7 +608,7 @@ mod tests {
         assert!(sealed.into_inner() > 0);
         let read = |name| fs::read_to_string(root.path().join(name)).unwrap();
         assert_eq!([read("a"), read("b")], [read("seal"), read("seal")]);
-        assert_eq!(names(root.path()), ["a", "b", "seal"]);
+        assert_eq!(names(root.path()), ["a", MANIFEST, "b", "seal"]);
     }
 
     #[test]
@@ -510,7 +616,24 @@ mod tests {
         let root = tempfile::tempdir().unwrap();
         let path = root.path().join("file");
         fs::write(&path, "").unwrap();
-        let error = Folder::open(&path.join("results"), &["x"]).unwrap_err();
+        let error = lock(&path.join("results")).unwrap_err();
         assert!(error.to_string().contains("file/results"), "{error}");
+        let error = write(root.path(), &["file/x"], "one").unwrap_err();
+        assert!(error.to_string().contains("file is there"), "{error}");
+    }
+
+    #[test]
+    fn a_named_file_replaces_only_one_that_begins_alike() {
+        let root = tempfile::tempdir().unwrap();
+        let path = root.path().join("line.csv");
+        for contents in ["x_m,y_m\n1,2\n", "x_m,y_m\n3,4\n"] {
+            write_named_file(&path, contents.as_bytes()).unwrap();
+            assert_eq!(fs::read_to_string(&path).unwrap(), contents);
+        }
+        for mine in ["1,2,3\n", "[arch]\n", ""] {
+            fs::write(&path, mine).unwrap();
+            assert!(write_named_file(&path, b"x_m,y_m\n5,6\n").is_err());
+            assert_eq!(fs::read_to_string(&path).unwrap(), mine);
+        }
     }
 }

@@ -10,6 +10,7 @@ pub(crate) mod envelope;
 pub mod figure;
 mod folder;
 pub(crate) mod ground;
+mod manifest;
 pub mod mechanisms;
 pub(crate) mod page;
 pub(crate) mod panels;
@@ -28,7 +29,8 @@ use std::io;
 use std::path::PathBuf;
 
 pub use figure::Figure;
-pub use folder::{Batch, Folder};
+pub use folder::{Batch, Folder, write_named_file};
+pub use manifest::{Manifest, Origin};
 pub use panels::Subject;
 use serde_json::Value;
 use thiserror::Error;
@@ -51,6 +53,32 @@ pub enum OutputError {
     InUse {
         /// Path of the folder.
         folder: PathBuf,
+    },
+    /// A result would replace an input of the scenario.
+    #[error("{} is an input of the scenario, and a result has its name", path.display())]
+    IsInput {
+        /// Path of the file.
+        path: PathBuf,
+    },
+    /// A result would replace a file that the command has not written.
+    #[error("{} is there, and archrock.json does not list it as a result of `archrock {command}`", path.display())]
+    Taken {
+        /// Path of the file.
+        path: PathBuf,
+        /// The command.
+        command: String,
+    },
+    /// A file with the name of a manifest is none.
+    #[error("{} does not list results of this program", path.display())]
+    NoManifest {
+        /// Path of the file.
+        path: PathBuf,
+    },
+    /// A file that the user named is there and was not written by this program.
+    #[error("{} is there, and archrock did not write it", path.display())]
+    NotWrittenHere {
+        /// Path of the file.
+        path: PathBuf,
     },
     /// A result is not a finite number. This is a bug in the program; nothing is written.
     #[error("the result {what} is not a finite number: please report the scenario")]

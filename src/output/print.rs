@@ -51,9 +51,6 @@ impl FromStr for PictureFormat {
 }
 
 impl PictureFormat {
-    /// The formats in addition to SVG.
-    pub const OTHERS: [Self; 2] = [Self::Pdf, Self::Png];
-
     /// Returns the format of a file from its extension; SVG without an extension.
     ///
     /// # Errors

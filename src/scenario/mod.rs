@@ -61,7 +61,7 @@ mod unlikely;
 mod variant;
 mod verify;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::dynamics::ground::GroundMotion;
@@ -179,10 +179,22 @@ impl Scenario {
     /// Returns name and checksum of each record file of the ground and of the suite, separated by a space.
     #[must_use]
     pub fn record_checksums(&self) -> Vec<String> {
+        let named = |series: &Series| format!("{} {:08x}", series.file, series.checksum());
+        self.all_series().map(named).collect()
+    }
+
+    fn all_series(&self) -> impl Iterator<Item = &Series> {
         let suite = self.suite.iter().flat_map(|suite| &suite.records);
-        let series = self.series().chain(suite);
-        let named = series.map(|series| format!("{} {:08x}", series.file, series.checksum()));
-        named.collect()
+        self.series().chain(suite)
+    }
+
+    /// Returns the paths of all files from which the scenario was read.
+    pub(crate) fn input_paths(&self) -> impl Iterator<Item = PathBuf> {
+        let records = self.all_series().map(|series| &series.file);
+        let files = self.files.files.iter().map(|input| &input.file);
+        files
+            .chain(records)
+            .map(|file| self.files.folder.join(file))
     }
 
     /// Returns this scenario without uncertain numbers.

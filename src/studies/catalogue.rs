@@ -214,6 +214,14 @@ impl StudyKind {
         Self::ALL.into_iter().find(|kind| kind.name == name)
     }
 
+    /// The study whose results have these files, the seal last.
+    #[must_use]
+    pub fn of_files(names: &[&str]) -> Option<Self> {
+        let has_all = |kind: &Self| names.iter().all(|name| kind.files.contains(name));
+        let mut kinds = Self::ALL.into_iter();
+        kinds.find(|kind| has_all(kind) && kind.files.last() == names.last())
+    }
+
     const fn of<S: ReportedStudy>(run: Compute) -> Self {
         Self {
             name: S::NAME,

@@ -26,7 +26,6 @@ pub mod map;
 pub mod part;
 pub mod peaks;
 pub mod pictures;
-pub mod previous_results;
 mod remarks;
 pub mod results;
 pub mod run;

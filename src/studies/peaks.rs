@@ -61,7 +61,9 @@ pub fn distance(one: ModelPeaks<'_>, other: ModelPeaks<'_>) -> Option<Distance> 
 }
 
 /// Names of the files, the seal last.
-pub const FILES: [&str; 3] = ["peaks.svg", "peaks.csv", "peaks.json"];
+const FILES: [&str; 3] = ["peaks.svg", "peaks.csv", SUMMARY];
+/// The numbers of a comparison.
+pub const SUMMARY: &str = "peaks.json";
 
 /// Compares the distributions of several models of the same cases: table, picture, numbers and words.
 ///

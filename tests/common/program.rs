@@ -77,11 +77,17 @@ pub fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-/// All results in a folder with their contents: all files except the one that names the scenario file.
+/// Names of the results in a folder, without the list of them.
+pub fn result_names(folder: &Path) -> Vec<String> {
+    let mut names = names(folder);
+    names.retain(|name| name != "archrock.json");
+    names
+}
+
+/// All results in a folder with their contents, without the list of them.
 pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    names(folder)
+    result_names(folder)
         .into_iter()
-        .filter(|name| name != ".scenario")
         .map(|name| {
             let contents = fs::read(folder.join(&name)).unwrap();
             (name, contents)

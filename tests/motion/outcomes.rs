@@ -149,7 +149,7 @@ fn studies_follow_the_ground_motion_of_each_case() {
         outcomes("b", "suite.csv")[..2],
         ["never_moved", "overturned"]
     );
-    let capacity = &Table::read(at.join("b/capacity.csv")).rows[0];
+    let capacity = &Table::read(at.join("b/capacities.csv")).rows[0];
     let level_g: f64 = capacity["peak_g"].parse().unwrap();
     assert!((0.6..1.5).contains(&level_g), "{level_g}");
     assert_eq!(capacity["at_most"], "yes");

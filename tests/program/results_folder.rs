@@ -9,7 +9,9 @@ use std::time::Duration;
 
 use archrock::studies::catalogue::{self, StudyKind};
 
-use crate::common::program::{RUN_FILES, archrock, command, names, stderr};
+use crate::common::program::{
+    RUN_FILES, archrock, command, names, refused, result_names, scenarios, stderr,
+};
 use crate::common::results::json;
 
 /// A column that overturns at once under a strong pulse, and stands still under a weak one.
@@ -50,8 +52,10 @@ fn assert_all_come_from(folder: &Path, amplitude_g: f64) {
         json(&folder.join(summary))["scenario"]["ground"]["one_sine"]["amplitude_g"].clone()
     };
     assert_eq!(of("summary.json"), amplitude_g);
-    for seal in below(folder).iter().filter(|name| name.ends_with(".json")) {
-        assert_eq!(of(seal), amplitude_g, "{seal}");
+    let mut summaries = below(folder);
+    summaries.retain(|name| name.ends_with(".json") && name != "archrock.json");
+    for seal in summaries {
+        assert_eq!(of(&seal), amplitude_g, "{seal}");
     }
 }
 
@@ -137,7 +141,7 @@ fn a_run_removes_all_results_of_the_last_run_of_its_command() {
             "--quiet",
         ];
         succeeds(at, &weak);
-        let kept = ["film/notes.txt", "uncertain.txt"].map(str::to_owned);
+        let kept = ["film/notes.txt", "uncertain.txt", "archrock.json"].map(str::to_owned);
         let mut left = below(&at.join("o"));
         left.retain(|name| !kept.contains(name));
         assert_eq!(left, RUN_FILES, "{first:?}");
@@ -175,7 +179,7 @@ fn a_suite_removes_the_records_of_the_last_suite() {
             at,
             &[command, "s.toml", "--suite", "--out", command, "--quiet"],
         );
-        assert_eq!(names(&at.join(command)), ["a.csv", "b.csv"]);
+        assert_eq!(result_names(&at.join(command)), ["a.csv", "b.csv"]);
         // A folder that is no result of a record stays, whatever its name.
         fs::create_dir(at.join(command).join("mine.csv")).unwrap();
         suite("['b.csv', 'c.csv']");
@@ -183,7 +187,10 @@ fn a_suite_removes_the_records_of_the_last_suite() {
             at,
             &[command, "s.toml", "--suite", "--out", command, "--quiet"],
         );
-        assert_eq!(names(&at.join(command)), ["b.csv", "c.csv", "mine.csv"]);
+        assert_eq!(
+            result_names(&at.join(command)),
+            ["b.csv", "c.csv", "mine.csv"]
+        );
     }
 }
 
@@ -209,7 +216,7 @@ fn scenario_files_of_one_name_share_a_folder() {
             "run", files[0], files[1], "--suite", "--out", "o", "--quiet",
         ],
     );
-    assert_eq!(names(&at.join("o/x")), ["a.csv", "b.csv"]);
+    assert_eq!(result_names(&at.join("o/x")), ["a.csv", "b.csv"]);
 }
 
 #[test]
@@ -380,4 +387,250 @@ fn comparisons_of_models_do_not_replace_one_another() {
     );
     assert!(!at.join("o/models_run").exists() && !at.join("o/four/summary.json").exists());
     assert!(at.join("o/models/peaks.json").exists() && at.join("o/four/suite.csv").exists());
+}
+
+/// A suite of these records of a structure that overturns at once.
+fn suite(at: &Path, name: &str, records: &[&str], width_m: f64) {
+    for record in records {
+        fs::write(at.join(record), "0.0,0.0\n0.2,3.0\n0.4,-3.0\n0.6,0.0\n").unwrap();
+    }
+    let text = format!(
+        "[column]\nheight_m = 4\nwidth_m = {width_m}\n[simulation]\nduration_s = 1\n\
+         [suite]\nrecords = {records:?}\nunit = 'm/s2'\npeaks_g = [0.1]\n"
+    );
+    fs::write(at.join(name), text).unwrap();
+}
+
+/// All files below a folder with their contents.
+fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    let all = below(folder).into_iter();
+    all.map(|name| (name.clone(), fs::read(folder.join(&name)).unwrap()))
+        .collect()
+}
+
+/// Blocks whose joints are in a file with the name of a result of free hinges.
+#[test]
+fn no_result_replaces_or_removes_an_input() {
+    let root = tempfile::tempdir().unwrap();
+    let at = root.path();
+    let table = scenarios().join("straight-sided-voussoirs.csv");
+    let table = fs::read_to_string(table).unwrap();
+    fs::write(at.join("joints.csv"), &table).unwrap();
+    let text = "[blocks]\njoints = 'joints.csv'\n[ground.half_sine]\namplitude_g = 0.3\nduration_s = 0.1\n\
+                [simulation]\nduration_s = 0.2\n";
+    fs::write(at.join("s.toml"), text).unwrap();
+    let run = |hinges: &'static str| {
+        let options = ["--hinges", hinges, "--no-repeat", "--no-report", "--quiet"];
+        [&["run", "s.toml", "--out", "."][..], &options].concat()
+    };
+    let before = contents(at);
+    refused(
+        at,
+        &run("free"),
+        &["joints.csv is an input of the scenario", "--out"],
+    );
+    assert_eq!(contents(at), before);
+    succeeds(at, &run("four"));
+    assert_eq!(fs::read_to_string(at.join("joints.csv")).unwrap(), table);
+    // Also if an earlier run wrote a file of that name.
+    fs::rename(at.join("joints.csv"), at.join("input.csv")).unwrap();
+    fs::write(at.join("s.toml"), text.replace("joints.csv", "input.csv")).unwrap();
+    succeeds(at, &run("free"));
+    fs::write(at.join("s.toml"), text).unwrap();
+    fs::write(at.join("joints.csv"), &table).unwrap();
+    let before = contents(at);
+    for hinges in ["four", "free"] {
+        refused(
+            at,
+            &run(hinges),
+            &["joints.csv is an input of the scenario", "--out"],
+        );
+        assert_eq!(contents(at), before);
+    }
+    // Files that an option names.
+    for (line, words) in [
+        (
+            &["limit", "s.toml", "--plot", "plain"][..],
+            "did not write it",
+        ),
+        (
+            &["impact", "s.toml", "--line", "s.toml"],
+            "did not write it",
+        ),
+        (
+            &["impact", "s.toml", "--line", "input.csv"],
+            "did not write it",
+        ),
+    ] {
+        fs::write(at.join("plain"), "mine").unwrap();
+        refused(at, line, &[words, "choose another file with"]);
+    }
+    for line in [
+        ["limit", "s.toml", "--plot", "l.svg"],
+        ["impact", "s.toml", "--line", "l.csv"],
+    ] {
+        for _ in 0..2 {
+            let output = archrock(at, &line);
+            assert!(output.status.success(), "{}", stderr(&output));
+        }
+    }
+    let again = [
+        "limit",
+        "s.toml",
+        "--plot",
+        "l.svg",
+        "--figure-width",
+        "85mm",
+    ];
+    assert!(archrock(at, &again).status.success());
+}
+
+/// The list of a folder names the files of each command; others stay, such as results of earlier versions, which have no list.
+#[test]
+fn files_that_no_list_names_are_not_replaced() {
+    let root = tempfile::tempdir().unwrap();
+    let at = root.path();
+    suite(at, "s.toml", &["wave-1.at2.csv"], 0.8);
+    suite(at, "other.toml", &["b.csv"], 0.8);
+    let run = ["run", "s.toml", "--suite", "--out", "o", "--quiet"];
+    succeeds(at, &run);
+    let list = json(&at.join("o/archrock.json"));
+    let results = &list["results"]["run"];
+    assert_eq!(results["complete"], true);
+    let listed = results["files"].as_array().unwrap().iter();
+    let mut listed: Vec<_> = listed.filter_map(|name| name.as_str()).collect();
+    listed.sort_unstable();
+    let mut found = below(&at.join("o"));
+    found.retain(|name| name != "archrock.json");
+    assert_eq!(listed, found);
+    fs::remove_file(at.join("o/archrock.json")).unwrap();
+    let before = contents(&at.join("o"));
+    let remedy = "move what is there, or choose another folder with --out";
+    refused(
+        at,
+        &run,
+        &[
+            "o/wave-1.at2.csv/",
+            "archrock.json does not list it",
+            remedy,
+        ],
+    );
+    assert_eq!(contents(&at.join("o")), before);
+    // The folder of a record of another scenario stays.
+    succeeds(
+        at,
+        &["run", "other.toml", "--suite", "--out", "o", "--quiet"],
+    );
+    let mut after = contents(&at.join("o"));
+    after.retain(|(name, _)| name.starts_with("wave"));
+    assert_eq!(after, before);
+    // A study says so before it computes anything.
+    fs::write(at.join("o/suite.csv"), "mine").unwrap();
+    refused(
+        at,
+        &["suite", "s.toml", "--out", "o"],
+        &["o/suite.csv is there", "`archrock suite`", remedy],
+    );
+    assert!(!at.join("o/suite.part").exists());
+    // A file named as the list is no list.
+    fs::write(at.join("archrock.json"), "{}").unwrap();
+    refused(
+        at,
+        &["suite", "s.toml", "--out", "."],
+        &["does not list results", remedy],
+    );
+}
+
+/// Two commands never write a file of one name into one folder.
+#[test]
+fn each_result_has_the_name_of_one_command() {
+    let mut kinds = StudyKind::ALL.to_vec();
+    // Samples have a folder of their own.
+    kinds.retain(|kind| !kind.name.starts_with("uncertain"));
+    for (index, kind) in kinds.iter().enumerate() {
+        for other in &kinds[index + 1..] {
+            let both = kind.files.iter().find(|file| other.files.contains(file));
+            assert_eq!(both, None, "{} {}", kind.name, other.name);
+        }
+    }
+    // A map of samples has some names of a map, so the two are not merged into one folder.
+    let root = tempfile::tempdir().unwrap();
+    let at = root.path();
+    let map = "[map]\n'ground.one_sine.amplitude_g' = [0.2, 0.4]\n'ground.one_sine.duration_s' = [0.2, 0.3]\n";
+    let map = map.replace("ground.one_sine.", "");
+    fs::write(at.join("s.toml"), column(0.4, 2) + &map).unwrap();
+    succeeds(at, &["map", "s.toml", "--no-uncertain", "--out", "o"]);
+    succeeds(at, &["map", "s.toml", "--shard", "1/2", "--out", "p"]);
+    succeeds(at, &["map", "s.toml", "--shard", "2/2", "--out", "p"]);
+    let before = contents(&at.join("o"));
+    let parts = ["1", "2"].map(|part| format!("p/uncertain_map/uncertain_map-{part}-of-2.part"));
+    let merge = ["merge", &parts[0], &parts[1], "--out", "o"];
+    refused(
+        at,
+        &merge,
+        &["o/map.svg is there", "choose another folder with --out"],
+    );
+    assert_eq!(contents(&at.join("o")), before);
+}
+
+/// Results of a suite are replaced together, by `run` and by `threshold`. A killed suite leaves the last ones, and its hidden files only until
+/// the next run.
+#[test]
+fn a_killed_suite_leaves_the_last_results() {
+    let root = tempfile::tempdir().unwrap();
+    let at = root.path();
+    for command_name in ["run", "threshold"] {
+        let line = [
+            command_name,
+            "s.toml",
+            "--suite",
+            "--out",
+            command_name,
+            "--quiet",
+        ];
+        suite(at, "s.toml", &["a.csv", "b.csv"], 0.8);
+        succeeds(at, &line);
+        let out = at.join(command_name);
+        let before = contents(&out);
+        // The last record takes long.
+        let mut slow = "0.0,0.0\n".to_owned();
+        for index in 1..50_000 {
+            slow += &format!(
+                "{},{}\n",
+                f64::from(index) * 0.01,
+                (f64::from(index) * 0.03).sin() * 2.2
+            );
+        }
+        suite(at, "s.toml", &["a.csv", "b.csv", "c.csv"], 0.9);
+        fs::write(at.join("c.csv"), slow).unwrap();
+        let text = fs::read_to_string(at.join("s.toml")).unwrap();
+        fs::write(
+            at.join("s.toml"),
+            text.replace("duration_s = 1", "duration_s = 490"),
+        )
+        .unwrap();
+        let mut killed = command(at, &line).spawn().unwrap();
+        let hidden = || {
+            let names = names(&out).into_iter();
+            names.filter(|name| name.starts_with(".archrock-")).count()
+        };
+        // `run` opens the files of a record before its history, `threshold` after it.
+        let of_two = if command_name == "run" { 13 } else { 6 };
+        while hidden() < of_two {
+            assert!(
+                killed.try_wait().unwrap().is_none(),
+                "the suite is too short"
+            );
+            sleep(Duration::from_millis(2));
+        }
+        killed.kill().unwrap();
+        killed.wait().unwrap();
+        assert!(hidden() > 0);
+        let mut after = contents(&out);
+        after.retain(|(name, _)| !name.starts_with(".archrock-"));
+        assert_eq!(after, before);
+        suite(at, "s.toml", &["a.csv", "b.csv"], 0.8);
+        succeeds(at, &line);
+        assert_eq!(contents(&out), before);
+    }
 }

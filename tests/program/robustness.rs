@@ -2,7 +2,7 @@
 #![cfg(target_os = "linux")]
 #![expect(clippy::print_stderr, reason = "tests")]
 
-use crate::common::program::names;
+use crate::common::program::{names, result_names};
 use crate::common::results::{Row, Table, summary};
 use std::fs::{self, OpenOptions};
 use std::io::{BufRead, BufReader, Read};
@@ -123,7 +123,7 @@ fn a_killed_run_leaves_complete_results_or_none() {
     // The next run removes the files that they left.
     assert!(spawn(0).wait().unwrap().success());
     assert!(check_results(&folder, 40.0));
-    assert_eq!(names(&folder), crate::common::program::RUN_FILES);
+    assert_eq!(result_names(&folder), crate::common::program::RUN_FILES);
 }
 
 /// Exit code and standard error of the scenario, run with these arguments and standard output.
@@ -336,15 +336,21 @@ fn a_pipe_among_the_results_does_not_block() {
     fs::write(path.join("s.toml"), scenario).unwrap();
     for name in [
         ".archrock-rotations.csv-x",
-        ".scenario",
-        "rotations.csv",
         "summary.json",
+        "rotations.csv",
+        "archrock.json",
     ] {
         pipe(name);
     }
+    // The program reads and replaces none of them.
+    for name in ["archrock.json", "rotations.csv", "summary.json"] {
+        let (code, said) = within_a_minute(path, &["run", "s.toml"]);
+        assert_eq!(code, Some(2), "{said}");
+        assert!(said.contains(&format!("results/s/{name} ")), "{said}");
+        fs::remove_file(folder.join(name)).unwrap();
+    }
     let (code, said) = within_a_minute(path, &["run", "s.toml"]);
     assert_eq!(code, Some(0), "{said}");
-    assert!(check_file(&folder.join("rotations.csv")) && check_file(&folder.join("summary.json")));
     pipe("map.part");
     for arguments in [&["map", "s.toml"][..], &["map", "s.toml", "--resume"]] {
         let (code, said) = within_a_minute(path, arguments);
@@ -356,10 +362,6 @@ fn a_pipe_among_the_results_does_not_block() {
     fs::remove_file(folder.join("map.part")).unwrap();
     let (code, said) = within_a_minute(path, &["map", "s.toml"]);
     assert_eq!(code, Some(0), "{said}");
-}
-
-fn check_file(path: &Path) -> bool {
-    path.metadata().unwrap().is_file()
 }
 
 #[test]
@@ -390,7 +392,7 @@ fn a_folder_that_is_removed_during_a_map_is_made_again() {
     };
     assert_eq!(study(&[], "map.part"), (Some(0), String::new()));
     assert_eq!(
-        names(&folder),
+        result_names(&folder),
         ["map.csv", "map.html", "map.json", "map.svg"]
     );
     assert_eq!(rows(&folder.join("map.csv")).len(), 4900);

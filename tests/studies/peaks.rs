@@ -175,7 +175,7 @@ fn a_suite_prints_a_line_per_record_and_draws_the_peaks() {
     stdout(&output);
     let said = stderr(&output);
     let rows = Table::read(path.join("results/s/suite.csv")).rows;
-    let capacities = Table::read(path.join("results/s/capacity.csv")).rows;
+    let capacities = Table::read(path.join("results/s/capacities.csv")).rows;
     let picture = fs::read_to_string(path.join("results/s/ida.svg")).unwrap();
     let picture = roxmltree::Document::parse(&picture).unwrap();
     let marks = |name: &str| named(&picture, name).len();
@@ -196,7 +196,7 @@ fn a_suite_prints_a_line_per_record_and_draws_the_peaks() {
             .position(|row| row["outcome"] == "overturned")
             .unwrap();
         let peak = |row: &Row| four(row.number("peak_g"))[0].clone();
-        // That level is narrowed by bisection, as in capacity.csv.
+        // That level is narrowed by bisection, as in capacities.csv.
         let mut capacity = capacities.iter();
         let edge = capacity
             .find(|row| row["record"] == record && row["sign"] == "1")

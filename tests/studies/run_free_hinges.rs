@@ -49,7 +49,7 @@ impl Results {
     }
 
     fn files(&self, folder: &str) -> Vec<String> {
-        program::names(&self.path(folder))
+        program::result_names(&self.path(folder))
     }
 }
 

@@ -29,7 +29,7 @@ const FILES: [&str; 10] = [
     "peaks.svg",
     "ida.csv",
     "peaks.csv",
-    "capacity.csv",
+    "capacities.csv",
     "intensity.csv",
     "fragility.csv",
     "fragility.json",
@@ -240,8 +240,8 @@ fn the_curve_is_the_fit_of_the_rows() {
     }
     shows(&said, &[320.0, 8.0, fragility["median"].as_f64().unwrap()]);
     golden("suite", &said);
-    // The printed output has the edges of capacity.csv, and states where no edge was searched for.
-    let capacities = Table::read(results.join("capacity.csv")).rows;
+    // The printed output has the edges of capacities.csv, and states where no edge was searched for.
+    let capacities = Table::read(results.join("capacities.csv")).rows;
     for capacity in &capacities {
         let record = format!("  {}: ", &capacity["record"]);
         let line = said.lines().find(|line| line.starts_with(&record));
@@ -1146,7 +1146,7 @@ fn capacities_are_reported_in_several_measures() {
     shows(&said, &[2.0]);
     assert!(said.contains("0.5 s"), "{said}");
     let cases = rows(&folder.join("o"));
-    let capacities = Table::read(folder.join("o/capacity.csv")).rows;
+    let capacities = Table::read(folder.join("o/capacities.csv")).rows;
     // Mirrored records are mirror images, and no further evidence.
     assert_eq!(capacities.len(), 3);
     for (capacity, duration_s) in capacities.iter().zip(durations_s) {

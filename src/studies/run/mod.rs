@@ -35,7 +35,7 @@ use serde_json::Value;
 
 pub use self::caveats::warnings;
 use self::comparison::comparison_words;
-pub use self::film::{FILM, pictures_in};
+use self::film::FILM;
 use self::overlay::Curves;
 use self::picture::Timeline;
 pub use self::points::MAX_POINTS;
@@ -73,7 +73,7 @@ const PICTURE: &str = "history.svg";
 /// Written last: a folder that contains it is complete.
 const SUMMARY: &str = "summary.json";
 /// Several models of motion in one picture, beside the folders of the models.
-pub const OVERLAY: &str = "overlay.svg";
+const OVERLAY: &str = "overlay.svg";
 
 /// All files that a run may write, except the pictures of a film, in the order in which they are listed.
 pub const FILES: [&str; 10] = [

@@ -25,7 +25,7 @@ pub const FILES: [&str; 10] = [
     "peaks.svg",
     "ida.csv",
     "peaks.csv",
-    "capacity.csv",
+    "capacities.csv",
     "intensity.csv",
     "fragility.csv",
     FRAGILITY,
@@ -290,7 +290,7 @@ const fn sign(mirrored: bool) -> &'static str {
     if mirrored { "-1" } else { "1" }
 }
 
-/// Returns the columns of `capacity.csv`, one row per record. Missing values are empty.
+/// Returns the columns of `capacities.csv`, one row per record. Missing values are empty.
 fn capacity_columns<'r>() -> [Column<'r, Capacity<'r>>; 6] {
     let measures = MEASURES.map(|(name, _, _)| name);
     [
