@@ -3,7 +3,7 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, Output};
 
 const BROWSERS: [&str; 4] = [
     "chromium-headless-shell",
@@ -12,25 +12,44 @@ const BROWSERS: [&str; 4] = [
     "google-chrome",
 ];
 
-/// The installed browser, if any.
-fn browser() -> Option<&'static str> {
+/// Arguments of every browser. A full browser opens a window and looks for updates unless told otherwise.
+const ARGUMENTS: [&str; 8] = [
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+];
+
+/// Output of the installed browser with these further arguments for a page; `None`, with a message, if there is no browser.
+fn browse(arguments: &[&str], page: &Path) -> Option<Output> {
     let browser = BROWSERS.into_iter().find(|name| {
         let version = Command::new(name).arg("--version").output();
         version.is_ok_and(|output| output.status.success())
     });
-    if browser.is_none() {
+    let Some(browser) = browser else {
         eprintln!("no browser here ({BROWSERS:?}): the page is not checked in one");
-    }
-    browser
+        return None;
+    };
+    let profile = tempfile::tempdir().unwrap();
+    let output = Command::new(browser)
+        .args(ARGUMENTS)
+        .arg(format!("--user-data-dir={}", profile.path().display()))
+        .args(arguments)
+        .arg(format!("file://{}", page.display()))
+        .output();
+    Some(output.unwrap())
 }
 
 /// The result of a page's own script `check`, which has `data` and calls `verify(true or false, "what")`;
 /// `None`, with a message, if there is no browser. Errors on the console count as failed checks.
 ///
-/// `settings` are arguments of the browser. Its time is virtual and it draws no frames, so a timer replaces
-/// them.
+/// `settings` are further arguments of the browser. A window size among them is that of a frame: the window of a full browser is
+/// never as narrow as that of a phone. Time is virtual and nothing is drawn, so a timer replaces frames of an animation.
 pub fn checked(page: &Path, check: &str, data: &str, settings: &[&str]) -> Option<String> {
-    let browser = browser()?;
     let html = fs::read_to_string(page).unwrap();
     let before = "<script>window.failures = []; window.passed = 0;\
         window.verify = (holds, what) => { if (holds) passed += 1; else failures.push(what); };\
@@ -43,25 +62,40 @@ pub fn checked(page: &Path, check: &str, data: &str, settings: &[&str]) -> Optio
         "<script>const check = async () => {{ const data = {data};\n{check}\n}};\
          check().catch((error) => verify(false, `${{error}} ${{error.stack}}`)).then(() => {{\
          const verdict = document.createElement('pre'); verdict.id = 'verdict';\
-         verdict.textContent = `${{passed}} passed\\n` + failures.join('\\n'); document.body.append(verdict); }});\
+         verdict.textContent = `${{passed}} passed\\n` + failures.join('\\n'); document.body.append(verdict);\
+         parent.postMessage(verdict.textContent, '*'); }});\
          </script>"
     );
     let html = html.replacen("<head>", &format!("<head>{before}"), 1);
     let html = html.replacen("</body>", &format!("{after}</body>"), 1);
     let copy = page.with_extension("checked.html");
     fs::write(&copy, html).unwrap();
-    let output = Command::new(browser)
-        .args([
-            "--no-sandbox",
-            "--disable-gpu",
-            "--window-size=1100,1400",
-            "--virtual-time-budget=20000",
-            "--dump-dom",
-        ])
-        .args(settings)
-        .arg(format!("file://{}", copy.display()))
-        .output()
-        .unwrap();
+    let framed = page.with_extension("framed.html");
+    let size = settings.iter();
+    let size = size.filter_map(|setting| setting.strip_prefix("--window-size=")?.split_once(','));
+    let shown = match size.last() {
+        Some((width, height)) => {
+            let frame = format!(
+                "<!doctype html><html><head></head><body><script>addEventListener('message', ({{ data }}) => {{\
+                 const verdict = document.createElement('pre'); verdict.id = 'verdict'; verdict.textContent = data;\
+                 document.body.append(verdict); }});</script>\
+                 <iframe src=\"{}\" width=\"{width}\" height=\"{height}\"></iframe></body></html>",
+                copy.file_name().unwrap().to_str().unwrap()
+            );
+            fs::write(&framed, frame).unwrap();
+            &framed
+        }
+        None => &copy,
+    };
+    let arguments = [
+        "--virtual-time-budget=20000",
+        "--dump-dom",
+        "--window-size=1100,1400",
+    ];
+    let settings = settings.iter().copied();
+    let settings = settings.filter(|setting| !setting.starts_with("--window-size="));
+    let arguments: Vec<&str> = arguments.into_iter().chain(settings).collect();
+    let output = browse(&arguments, shown)?;
     let dom = String::from_utf8_lossy(&output.stdout);
     let verdict = dom
         .split_once("<pre id=\"verdict\">")
@@ -95,12 +129,8 @@ document.querySelectorAll('data').forEach((element) => {
 /// Number of sheets of paper on which a page is printed; `None`, with a message, if there is no browser.
 pub fn sheets(page: &Path) -> Option<usize> {
     let pdf = page.with_extension("pdf");
-    let output = Command::new(browser()?)
-        .args(["--no-sandbox", "--disable-gpu", "--no-pdf-header-footer"])
-        .arg(format!("--print-to-pdf={}", pdf.display()))
-        .arg(format!("file://{}", page.display()))
-        .output()
-        .unwrap();
+    let print = format!("--print-to-pdf={}", pdf.display());
+    let output = browse(&["--no-pdf-header-footer", &print], page)?;
     let printed =
         fs::read(&pdf).unwrap_or_else(|_| panic!("{}", String::from_utf8_lossy(&output.stderr)));
     let printed = String::from_utf8_lossy(&printed);
