@@ -54,8 +54,8 @@ pub fn unusable(error: PartError) -> PyErr {
 /// Why results could not be written.
 pub fn not_written(error: OutputError) -> PyErr {
     match error {
-        OutputError::Io { .. } | OutputError::InUse { .. } => PyOSError::new_err(error.to_string()),
         OutputError::NotFinite { .. } => PyRuntimeError::new_err(error.to_string()),
+        _ => PyOSError::new_err(error.to_string()),
     }
 }
 

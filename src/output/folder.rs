@@ -250,11 +250,12 @@ impl Inner {
     /// Returns an error if a file with this path would replace another one than an earlier result of the command.
     fn check(&self, path: &Path) -> Result<(), OutputError> {
         self.check_no_input(path)?;
-        let is_result = self.last().contains(&self.relative(path));
+        let is_there = path.symlink_metadata().is_ok();
+        let is_foreign = is_there && !self.last().contains(&self.relative(path));
         let folders = path.ancestors().skip(1);
         let mut folders = folders.take_while(|folder| *folder != self.path);
         let taken = folders.find(|folder| folder.exists() && !folder.is_dir());
-        let taken = taken.or((!is_result && path.symlink_metadata().is_ok()).then_some(path));
+        let taken = taken.or(is_foreign.then_some(path));
         taken.map_or(Ok(()), |path| {
             Err(OutputError::Taken {
                 path: path.to_owned(),
