@@ -169,10 +169,12 @@ pub fn save(
 fn write(path: &Path, files: &[(String, Vec<u8>)]) -> PyResult<Vec<String>> {
     let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
     let command = StudyKind::of_files(&names).map_or("python", |kind| kind.name);
-    let mut files_of_json = files.iter().filter(|(name, _)| name.ends_with(".json"));
-    let summary = files_of_json.next().map(|(_, text)| serde_json::from_slice(text));
-    let origin = summary.and_then(Result::ok).map(|summary| Origin::of_summary(&summary));
-    let batch = Batch::lock(path, command, origin.unwrap_or_default(), true).map_err(not_written)?;
+    let mut of_json = files.iter().filter(|(name, _)| name.ends_with(".json"));
+    let summary = of_json.next().map(|(_, text)| serde_json::from_slice(text));
+    let summary: Option<serde_json::Value> = summary.and_then(Result::ok);
+    let origin = summary.map(|summary| Origin::of_summary(&summary));
+    let batch =
+        Batch::lock(path, command, origin.unwrap_or_default(), true).map_err(not_written)?;
     let warnings = batch.warnings();
     let mut folder = batch.folder(path, &names).map_err(not_written)?;
     for (name, contents) in files {
