@@ -148,10 +148,11 @@ impl<'s> Session<'s> {
         Ok(pending.try_for_each(PartFile::remove)?)
     }
 
-    /// Returns an error if the results of a study cannot be written to the folder. A history checks its names itself.
+    /// Returns an error if the results of a study cannot be written to the folder. Of a run, only the last name is known in advance.
     fn check_names(&self, kind: StudyKind, place: Option<&Destination>) -> Result<(), Failure> {
-        let place = place.filter(|_| kind != RUN && !self.work.is_part());
-        place.map_or(Ok(()), |place| place.check_names(kind.files))
+        let first = if kind == RUN { kind.files.len() - 1 } else { 0 };
+        let place = place.filter(|_| !self.work.is_part());
+        place.map_or(Ok(()), |place| place.check_names(&kind.files[first..]))
     }
 
     /// Computes a study, and prepares its results in the folder, if there is one. Of a part, reports the file and returns `None`.
@@ -168,7 +169,7 @@ impl<'s> Session<'s> {
             shard,
             resume: work.resume,
         });
-        self.check_names(kind, place)?;
+        self.check_names(kind, place.filter(|_| kind != RUN))?;
         let threads = work.threads.and_then(|n| NonZeroUsize::new(n.into()));
         let runner = Runner { threads };
         let (mut shown, mut last) = (None, 0);
@@ -276,6 +277,11 @@ impl<'s> Session<'s> {
         }
         if let Some(place) = place.filter(|_| !has_samples) {
             warn_of_rows(place, samples);
+        }
+        // Samples may take long, so the names of other results are checked before them.
+        for scenario in scenarios {
+            let place = place.map(|place| place.of_model(scenario, several && own == RUN));
+            self.check_names(own, place.as_ref())?;
         }
         let (mut words, mut of_models) = (String::new(), Vec::new());
         let of_samples = scenarios.iter().filter(|one| one.uncertain.is_some());

@@ -82,7 +82,7 @@ impl Batch {
         inner.make(path)?;
         inner.lock()?;
         let mut last = inner.last().iter();
-        last.try_for_each(|name| inner.check_no_input(&path.join(name)))?;
+        last.try_for_each(|name| inner.check(&path.join(name)))?;
         Ok(Self(Arc::new(Mutex::new(inner))))
     }
 
@@ -238,18 +238,12 @@ impl Inner {
         parts.collect::<Vec<_>>().join("/")
     }
 
-    fn check_no_input(&self, path: &Path) -> Result<(), OutputError> {
-        match self.origin.is_input(path) {
-            true => Err(OutputError::IsInput {
-                path: path.to_owned(),
-            }),
-            false => Ok(()),
-        }
-    }
-
-    /// Returns an error if a file with this path would replace another one than an earlier result of the command.
+    /// Returns an error if a result with this path would replace an input of the scenario, or another file than an earlier result of the command.
     fn check(&self, path: &Path) -> Result<(), OutputError> {
-        self.check_no_input(path)?;
+        if self.origin.is_input(path) {
+            let path = path.to_owned();
+            return Err(OutputError::IsInput { path });
+        }
         let is_there = path.symlink_metadata().is_ok();
         let is_foreign = is_there && !self.last().contains(&self.relative(path));
         let folders = path.ancestors().skip(1);
