@@ -29,6 +29,8 @@ pub struct Summary {
     pub capacity: Sides<CapacitySide>,
     /// Parts of the structure whose centres carry the masses, in words.
     pub masses: String,
+    /// Warnings about unlikely numbers of the scenario.
+    pub warnings: Vec<String>,
     /// The scenario with all defaults.
     pub scenario: Value,
 }
@@ -94,13 +96,14 @@ pub fn report(
     sides: &Sides<Capacity>,
     figure: Figure,
 ) -> Result<Results, OutputError> {
-    let masses = match held_row(&scenario.structure) {
+    let masses = match held_row(scenario) {
         Ok(Some(row)) => row.parts_in_words(),
         _ => scenario.structure.as_parts().parts_in_words(),
     };
     let summary = Summary {
         capacity: sides.map(|side| CapacitySide::of(side, scenario.gravity_m_s2())),
         masses,
+        warnings: scenario.unlikely(),
         scenario: scenario.to_json(),
     };
     let title = scenario.title.as_deref().unwrap_or("Capacity");
