@@ -82,8 +82,7 @@ pub enum FourLinkError {
     Argument(#[from] ArgumentError),
 }
 
-const VOUSSOIRS: &str =
-    "; give `voussoirs`: `limit`, `capacity` and [free_hinges] find any mechanism of their joints";
+const VOUSSOIRS: &str = "; `limit` and [free_hinges] take any mechanism of voussoirs";
 
 impl FourLinkError {
     /// Returns true if the structure is stable and does not start as four links.
