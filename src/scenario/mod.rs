@@ -432,11 +432,6 @@ impl Scenario {
         self.structure.model(self.motion.impact())
     }
 
-    /// Returns true if the structure is stable and does not start as four links.
-    pub(crate) fn has_other_mechanism(&self) -> bool {
-        matches!(self.mechanisms(), Err(error) if error.is_other_mechanism())
-    }
-
     /// Rejects `[initial]` for a study named `what`, whose histories start from rest.
     ///
     /// # Errors
@@ -458,7 +453,9 @@ impl Scenario {
             Structure::Column(column) if !column.is_one_prism() => {
                 Some(self.structure.row().map_err(RowModelError::from)?)
             }
-            Structure::Arch(_) if self.has_other_mechanism() => self.structure.row().ok(),
+            Structure::Arch(_) if matches!(self.mechanisms(), Err(error) if error.is_other_mechanism()) => {
+                self.structure.row().ok()
+            }
             Structure::Arch(_) | Structure::Column(_) => None,
         })
     }

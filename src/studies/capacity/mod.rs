@@ -48,7 +48,7 @@ pub fn capacity(
     scenario: &Scenario,
     point_m: Option<Vector2<f64>>,
 ) -> Result<Sides<Capacity>, CapacityCurveError> {
-    if let Some(row) = held_row(scenario)? {
+    if let Some(row) = held_row(&scenario.structure)? {
         return of_row(&row, point_m, scenario.gravity_m_s2());
     }
     let model = scenario.mechanisms()?;
@@ -69,15 +69,13 @@ pub fn capacity(
     Sides::try_of(side)
 }
 
-/// Returns the blocks of a structure whose first mechanism is that of a row: a structure with ties, a stack on one support other than Housner's
-/// block, or voussoirs that do not start as four links. `None` for structures that move as four links or as Housner's block.
-fn held_row(scenario: &Scenario) -> Result<Option<Row>, RowError> {
-    let (structure, row) = (&scenario.structure, scenario.structure.row());
+/// Returns the blocks of a structure whose first mechanism is that of a row: a structure with ties, or a stack on one support other than
+/// Housner's block. `None` for structures that move as four links or as Housner's block.
+fn held_row(structure: &Structure) -> Result<Option<Row>, RowError> {
     let is_one_prism = matches!(structure, Structure::Column(column) if column.is_one_prism());
     let is_stack = structure.stands_on_one_support() && !is_one_prism;
-    let is_other = || row.is_ok() && scenario.has_other_mechanism();
-    let is_held = is_stack || !structure.ties().is_empty() || is_other();
-    is_held.then_some(row).transpose()
+    let is_held = is_stack || !structure.ties().is_empty();
+    is_held.then(|| structure.row()).transpose()
 }
 
 /// Computes the capacity of a row. Ties change the push that its first mechanism resists.

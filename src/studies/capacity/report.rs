@@ -96,7 +96,7 @@ pub fn report(
     sides: &Sides<Capacity>,
     figure: Figure,
 ) -> Result<Results, OutputError> {
-    let masses = match held_row(scenario) {
+    let masses = match held_row(&scenario.structure) {
         Ok(Some(row)) => row.parts_in_words(),
         _ => scenario.structure.as_parts().parts_in_words(),
     };

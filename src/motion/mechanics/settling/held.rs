@@ -234,7 +234,7 @@ fn pins(row: &Row, sway: Sway, onset: &RowOnset) -> Result<Pins, HeldError> {
     if hinges.len() != due || onset.openings.len() != due {
         let (side, hinges) = (sway.name(), onset.openings.len());
         return Err(HeldError(format!(
-            "a push to the {side} opens {hinges} hinges, which may go on in several ways: there is no one mechanism to follow; histories with free hinges or elastic joints take any"
+            "a push to the {side} opens {hinges} hinges, which may go on in several ways: there is no one mechanism to follow"
         )));
     }
     Ok(Pins::new(row, hinges))
