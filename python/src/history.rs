@@ -3,18 +3,18 @@
 use std::mem;
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
 use archrock::dynamics::fall::FallEnd;
 use archrock::dynamics::history::Summary;
 use archrock::dynamics::recording::{Recording, Samples};
-use archrock::dynamics::repeatability::Repetitions;
+use archrock::dynamics::repeatability::{Repeatability, RepeatabilityError};
 use archrock::mechanics::chain::Demand;
 use archrock::output::point::StructurePoint;
 use archrock::output::scene::Scene;
 use archrock::studies::run::report::Report;
-use archrock::studies::run::{self, OutcomeSummary};
+use archrock::studies::run::{self, ComputedRun, OutcomeSummary};
 use archrock::{Event, GroundMotion, Model, Recorder, Sample, SimulationError, State};
 use numpy::{Element, PyArray1, PyArrayMethods as _, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyKeyError;
@@ -24,6 +24,7 @@ use serde_json::Value;
 
 use crate::error::{not_written, panicked, refused, too_large};
 use crate::scenario::{Ground, Scenario};
+use crate::watched::watched;
 
 /// Interval at which a history looks for signals.
 const TICK: Duration = Duration::from_millis(100);
@@ -136,6 +137,8 @@ pub struct History {
     ground: Option<archrock::scenario::Ground>,
     model: Arc<dyn Model>,
     summary: Summary,
+    /// The comparison with its repetitions, which is made when first needed; `None` if the model has none.
+    repeated: OnceLock<Repeated>,
     events: Vec<Event>,
     /// Number of samples, of bodies, of joints with gaps, of joints that slip, of joints with contact forces, and of ties.
     counts: [usize; 6],
@@ -145,6 +148,9 @@ pub struct History {
     samples: Mutex<Samples>,
     arrays: [PyOnceLock<Py<PyAny>>; COLUMNS.len()],
 }
+
+/// The comparison of a history with its repetitions; `None` if its model has none.
+type Repeated = Option<Result<Repeatability, RepeatabilityError>>;
 
 /// Simulates while the interpreter's lock is released. A panic becomes an error; so does an exception that a signal raises.
 fn simulate<R: Recorder + Send>(
@@ -217,6 +223,7 @@ impl History {
             ground: ground.map(|ground| ground.inner.clone()),
             model: Arc::clone(model),
             summary,
+            repeated: OnceLock::new(),
             events,
             counts: [
                 count,
@@ -348,6 +355,35 @@ impl History {
         values.into_iter().map(|one| one as i64).collect()
     }
 
+    /// The comparison with its repetitions.
+    fn repeated(&self, py: Python<'_>) -> PyResult<&Repeated> {
+        if self.repeated.get().is_none() {
+            let (scenario, model) = (self.shaken(), Arc::clone(&self.model));
+            let summary = self.summary.clone();
+            let found = watched(py, None, move |_| {
+                Ok(run::repeat(&scenario, &*model, &summary))
+            })?;
+            // Another thread may have repeated it meanwhile, with the same result.
+            let _ = self.repeated.set(found);
+        }
+        Ok(self.repeated.get().unwrap_or(&None))
+    }
+
+    /// The history in a scenario, with its repetitions if they are given.
+    fn computed<'a>(
+        &'a self,
+        scenario: &'a archrock::Scenario,
+        repeated: Option<&'a Repeated>,
+    ) -> ComputedRun<'a> {
+        ComputedRun {
+            scenario,
+            model: &*self.model,
+            history: &self.summary,
+            repeated: repeated.and_then(Option::as_ref),
+            varied: &[],
+        }
+    }
+
     /// The scenario with the ground on which it was simulated.
     fn shaken(&self) -> Arc<archrock::Scenario> {
         match &self.ground {
@@ -447,20 +483,11 @@ impl History {
         Scenario::new(self.shaken())
     }
 
-    /// `summary.json` of the program; with `repeat`, the repetitions of a row of blocks are simulated too.
+    /// `summary.json` of the program; without `repeat`, `verdict` is that of the history alone.
     fn summary_json(&self, py: Python<'_>, repeat: bool) -> PyResult<String> {
-        let (scenario, model) = (self.shaken(), &*self.model);
-        let repeats = repeat && model.row().is_some();
-        let spread = repeats.then(|| {
-            py.detach(|| {
-                Repetitions::start(model, scenario.ground_motion(), &scenario.request())
-                    .compare(&self.summary)
-            })
-        });
-        if let Some(Err(error)) = &spread {
-            return Err(refused(error));
-        }
-        let summary = run::summary(&scenario, model, &self.summary, spread.as_ref());
+        let scenario = self.shaken();
+        let repeated = repeat.then(|| self.repeated(py)).transpose()?;
+        let summary = run::summary(&self.computed(&scenario, repeated));
         Ok(summary.map_err(not_written)?.to_string())
     }
 
@@ -469,9 +496,10 @@ impl History {
         py.detach(|| run::warnings(&self.shaken(), &*self.model, &self.summary))
     }
 
-    /// `report.html` with these words on it. Simulates the history again, with the line of thrust.
-    fn report(&self, py: Python<'_>, words: &str) -> PyResult<String> {
+    /// `report.html` with the verdict on it. Simulates the history again, with the line of thrust.
+    fn report(&self, py: Python<'_>) -> PyResult<String> {
         let scenario = self.shaken();
+        let verdict = run::verdict(self.computed(&scenario, Some(self.repeated(py)?)));
         let mut filming = Filming {
             report: Report::new(&scenario, &*self.model),
             signals: Signals::new(),
@@ -488,7 +516,7 @@ impl History {
         Ok(py.detach(|| {
             filming
                 .report
-                .page(&scenario, &self.summary, None, ["", words], "")
+                .page(&scenario, &self.summary, None, ["", &verdict], "")
         }))
     }
 }

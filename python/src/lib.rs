@@ -16,7 +16,7 @@ use pyo3::prelude::*;
 /// The module `archrock._native`.
 #[pymodule]
 mod _native {
-    use archrock::scenario::MODELS;
+    use archrock::scenario::Hinges;
     use pyo3::prelude::*;
 
     #[pymodule_export]
@@ -26,10 +26,11 @@ mod _native {
     #[pymodule_export]
     use crate::studies::{compute_part, merge, save, study};
 
-    /// Names of the models of motion, and the memory that a history may take by default, in units of 1e9 bytes.
+    /// Names of the models of motion, in results and as options of the program, and the memory that a history may take by default, in units of 1e9 bytes.
     #[pymodule_init]
     fn constants(module: &Bound<'_, PyModule>) -> PyResult<()> {
-        module.add("MODELS", MODELS.map(|model| model.name))?;
+        let models = Hinges::ALL.iter().map(|one| (one.name(), one.model().name));
+        module.add("MODELS", models.collect::<Vec<_>>())?;
         module.add("MEMORY_GB", archrock::MEMORY_BYTES as f64 / 1e9)
     }
 }

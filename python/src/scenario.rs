@@ -145,7 +145,7 @@ fn hinges(model: Option<&str>) -> PyResult<Option<Hinges>> {
         return Ok(None);
     };
     let mut known = Hinges::ALL.iter();
-    let found = known.find(|hinges| hinges.model().name == name);
+    let found = known.find(|hinges| [hinges.model().name, hinges.name()].contains(&name));
     found.copied().map(Some).ok_or_else(|| {
         let names = MODELS.map(|model| model.name).join(", ");
         PyValueError::new_err(format!("`model = {name:?}` is not one of {names}"))

@@ -19,14 +19,16 @@ Program = Callable[..., "subprocess.CompletedProcess[str]"]
 
 
 def issued(compute: Callable[[], Any]) -> list[str]:
-    """The warnings of a computation; each names the line of the tests that called the package."""
+    """The warnings of a computation, with their numbers; each names the line of the tests that called the package."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         compute()
     assert all(one.category is ArchrockWarning for one in caught)
     tests = Path(__file__).parent
     assert all(Path(one.filename).parent == tests for one in caught), [one.filename for one in caught]
-    return [str(one.message) for one in caught]
+    warned = [one.message for one in caught]
+    assert all(isinstance(one, ArchrockWarning) for one in warned)
+    return [one.details for one in warned if isinstance(one, ArchrockWarning)]
 
 
 def run_by(program: Program, scenario: Scenario, folder: Path) -> subprocess.CompletedProcess[str]:

@@ -221,6 +221,10 @@ def test_a_trace_of_obspy_is_a_record() -> None:
     data[2] = np.ma.masked
     with pytest.raises(ValueError, match="3: `nan` is not a finite number"):
         Record.from_obspy(trace, unit="m/s2")
+    whole = np.ma.masked_array([0, 1, -2, 0], mask=[False, False, True, False])
+    with pytest.raises(ValueError, match="3: `nan` is not a finite number"):
+        Record([0.0, 0.1, 0.2, 0.3], whole, unit="m/s2")
+    assert Record([0.0, 0.1], whole[:2], unit="m/s2").acceleration.tolist() == [0.0, 1.0]
 
 
 def test_records_equal_those_of_the_program() -> None:
@@ -228,6 +232,11 @@ def test_records_equal_those_of_the_program() -> None:
     assert record.unit == "g" and record.name == "wave-1.at2"
     assert len(record.time) == len(record.acceleration) > 100
     same = Record(record.time, record.acceleration, unit="g", scale=2.0)
+    path = SCENARIOS / "records" / "wave-1.at2"
+    both = Record.read(path, scale=2.0, vertical=str(path))
+    assert both == Record.read(path, scale=2.0, vertical=Record.read(path)) != record
+    with pytest.raises(TypeError, match="`vertical` must be a Record or the path of its file, not int"):
+        Record.read(path, vertical=3)  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="'wave-1.at2' is a record of acceleration: see `acceleration`"):
         _ = record.velocity
     column = Column(4.0, 0.8)
@@ -444,3 +453,13 @@ def test_feet_springings_and_ties() -> None:
         simulate(arch, right=right, **joints)
     with pytest.raises(ValueError, match="supports"):
         simulate(arch, ground, supports=supports)
+
+
+@pytest.mark.parametrize(("short", "long"), [("four", "four_links"), ("free", "free_hinges"), ("elastic", "elastic_joints")])
+def test_models_have_the_names_of_the_program_too(short: Any, long: Any) -> None:
+    arch, pulse = Arch(5.0, 0.15, 180.0, voussoirs=9), Pulse.half_sine(amplitude_g=0.2, duration_s=0.3)
+    settings: dict[str, Any] = {"duration_s": 0.5, **({"normal_stiffness_gpa_m": 1.0} if short == "elastic" else {})}
+    history = simulate(arch, pulse, model=short, **settings)
+    assert history == simulate(arch, pulse, model=long, **settings) == Scenario.of(arch, pulse, model=short, **settings).run()
+    peaks_rad = [history.summary[key] for key in history.summary if key.startswith("peak_rotation_") and key.endswith("_rad")]
+    assert history.largest_peak_rotation_rad == max(map(abs, peaks_rad))

@@ -93,9 +93,26 @@ def test_elastic_joints_that_do_not_open_vibrate() -> None:
     column = Column(height_m=7.25, width_m=1.85)
     joints: dict[str, Any] = {"model": "elastic_joints", "normal_stiffness_gpa_m": 1.0, "duration_s": 3.0}
     history = simulate(column, Pulse.half_sine(amplitude_g=0.03, duration_s=0.274), **joints)
-    assert history.outcome == "vibrates" and history.summary["verdict"] == "survives"
+    assert history.outcome == "vibrates" and history.verdict == history.summary["verdict"] == "survives"
     assert repr(history) == f"<History: vibrated without opening; {len(history)} samples>"
-    assert "vibrated without opening" in history.report_html()
+    assert "it vibrates, and no joint opens" in history.report_html()
+
+
+def test_an_uncertain_history_does_not_survive(program: Program, tmp_path: Path) -> None:
+    # Steps decide whether the column of three drums overturns.
+    drums = Column(height_m=4.0, width_m=0.8, drums=3)
+    verdicts = set()
+    for amplitude_g in (0.9, 1.0, 1.1, 1.2, 1.3, 1.4):
+        scenario = Scenario.of(drums, Pulse.one_sine(amplitude_g, 0.5), model="free", duration_s=6.0)
+        history = scenario.run()
+        run_by(program, scenario, tmp_path)
+        by_program = json.loads((tmp_path / "o" / "summary.json").read_text())
+        restored = pickle.loads(pickle.dumps(history))
+        assert history.verdict == by_program["verdict"] == restored.verdict
+        assert history.repeatability() == by_program["repeatability"] == restored.repeatability()
+        assert ("UNCERTAIN" in history.report_html()) == (history.verdict == "uncertain")
+        verdicts.add(history.verdict)
+    assert "uncertain" in verdicts, verdicts
 
 
 def test_the_largest_body_is_that_of_the_program(program: Program, tmp_path: Path) -> None:

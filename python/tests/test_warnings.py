@@ -25,6 +25,7 @@ from archrock import (
     suite,
     threshold,
     threshold_along,
+    verify,
 )
 
 from .conftest import ROOT, Program, issued, run_by
@@ -80,6 +81,29 @@ def test_four_links_are_a_rough_guide(arch: Arch, pulse: Pulse) -> None:
     unknown = {"samples": 2, "arch.thickness_ratio": {"deviation": 0.001}}
     (warned,) = issued(lambda: ensemble(Scenario.of(arch, WEAK, uncertain=unknown)))
     assert warned.startswith(GUIDE)
+
+
+def test_a_loop_shows_a_warning_of_one_kind_once() -> None:
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("default")
+        for radius_m in (200.0, 300.0, 4e3):
+            Arch(radius_m, 0.01, 30.0, voussoirs=5).limit()
+    assert [str(one.message) for one in caught] == ["the mean radius is ... m: is it in centimetres?", "the thickness is ... m: is it in centimetres?", "the mean radius is ... m: is it in millimetres?"]
+    (first, *_) = (one.message for one in caught)
+    assert isinstance(first, ArchrockWarning)
+    for same in (first, pickle.loads(pickle.dumps(first))):
+        assert same.details == "the mean radius is 200 m: is it in centimetres?" and same.numbers == (200.0,)
+    # Names of files keep their digits.
+    assert str(ArchrockWarning("wave-1.at2 and r2.csv peak at -3.5e-4 g (at 0.25 s).")) == "wave-1.at2 and r2.csv peak at ... g (at ... s)."
+
+
+def test_checks_issue_the_warnings_of_the_program() -> None:
+    site = {"soil": "B", "topography": "T1", "slv": {"ag_g": 0.25, "f0": 2.40, "tc_star_s": 0.35}}
+    arch = Arch(mean_radius_m=500.0, thickness_ratio=0.15, embrace_deg=150.0, voussoirs=15)
+    warned = issued(lambda: verify(arch, site))
+    assert "the mean radius is 500 m: is it in centimetres?" in warned
+    assert verify(arch, site).summary["warnings"] == warned
+    assert arch.limit().warnings == tuple(issued(arch.limit)) != ()
 
 
 def test_warnings_can_be_errors(arch: Arch) -> None:

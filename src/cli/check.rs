@@ -84,7 +84,13 @@ fn check_file(file: &Path, arguments: &Arguments) -> Result<(String, Value), Fai
 fn read(input: &Input<'_>) -> Result<Scenario, Failure> {
     let wrong = match input.read(None) {
         Err(Failure::Input(wrong)) => wrong,
-        read => return read,
+        // The reader has tried elastic joints, whose equilibrium takes long to find.
+        Ok(scenario) if scenario.motion.is_faster_together() => return Ok(scenario),
+        Ok(scenario) => match scenario.model() {
+            Err(error) => error.to_string(),
+            Ok(_) => return Ok(scenario),
+        },
+        failed => return failed,
     };
     let Ok(scenario) = input.read_statics() else {
         return Err(Failure::Input(wrong));

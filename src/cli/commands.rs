@@ -49,12 +49,14 @@ pub fn limit(arguments: &LimitArguments) -> Result<(), Failure> {
     warn(&scenario.unlikely());
     if let Some(plot) = &arguments.plot {
         let first = arguments.first.get();
-        let model = four_links(&scenario, "--plot is")?;
+        let model =
+            four_links(&scenario, "--plot is").map_err(|wrong| input.with_file_name(wrong))?;
         let (figure, scene) = (arguments.figure.get()?, Scene::new(&scenario.structure));
         let picture = pictures::limit(figure, &model, first, &scene);
         write_picture(plot, &picture)?;
     }
-    print_result(&limit::limit(&scenario)?, arguments.format)
+    let found = limit::limit(&scenario).map_err(|wrong| input.with_file_name(wrong.into()))?;
+    print_result(&found, arguments.format)
 }
 
 /// Prints a result without files.

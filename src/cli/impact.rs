@@ -10,7 +10,7 @@ use archrock::studies::pictures;
 use super::figure::FigureOption;
 use super::first::FirstOption;
 use super::scenario_file::ScenarioFile;
-use super::{Failure, Format, commands, print};
+use super::{Failure, Format, commands, print, warn};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -54,16 +54,19 @@ impl Arguments {
 }
 
 pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
-    let scenario = arguments.scenario.open()?.read_as_built()?;
+    let input = arguments.scenario.open()?;
+    let scenario = input.read_as_built()?;
+    warn(&scenario.unlikely());
     let (first, count) = (arguments.first.get(), usize::from(arguments.count));
     if !scenario.structure.thrusts() && !arguments.of_arches_only() {
-        let model = commands::model(&scenario)?;
+        let model = commands::model(&scenario).map_err(|wrong| input.with_file_name(wrong))?;
         let answer = chain_result(&scenario, &*model, first, count)?;
         return commands::print_result(&answer, arguments.format);
     }
     let options = "--models, --certificate, --line and --plot are";
+    let model = commands::four_links(&scenario, options);
     let impact = LinkImpact {
-        model: &commands::four_links(&scenario, options)?,
+        model: &model.map_err(|wrong| input.with_file_name(wrong))?,
         first,
         index: arguments.link.into(),
     };

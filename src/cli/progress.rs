@@ -3,6 +3,8 @@
 use std::io::{self, IsTerminal as _, Write as _};
 use std::process;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::thread;
 use std::time::{Duration, Instant};
 
 use archrock::scenario::shown_lines;
@@ -55,6 +57,8 @@ pub struct Display {
     said: Option<Instant>,
 }
 
+/// Time after which work without a display is announced.
+const LONG: Duration = Duration::from_secs(2);
 /// Interval between lines.
 const MINUTE: Duration = Duration::from_secs(60);
 /// Length of the bar: it counts thousandths of the work.
@@ -103,6 +107,20 @@ impl Drop for Display {
     fn drop(&mut self) {
         self.bar.finish_and_clear();
     }
+}
+
+/// Does work, and prints a line about it if it takes long.
+pub fn with_notice<T>(words: String, work: impl FnOnce() -> T) -> T {
+    let (done, waits) = mpsc::channel::<()>();
+    // Nothing depends on the thread.
+    let _ = thread::Builder::new().spawn(move || {
+        if waits.recv_timeout(LONG) == Err(RecvTimeoutError::Timeout) {
+            print_status(&words);
+        }
+    });
+    let result = work();
+    drop(done);
+    result
 }
 
 /// Returns speed and remaining time, such as "12 a second, 3 minutes left". They are means over all finished cases, so a single slow case has

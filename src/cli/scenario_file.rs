@@ -14,6 +14,7 @@ use archrock::studies::catalogue::StudyKind;
 use archrock::studies::peaks;
 use archrock::studies::results::Results;
 
+use super::progress::with_notice;
 use super::{Failure, check_no_errors};
 
 /// The scenario of a command.
@@ -142,7 +143,9 @@ impl Input<'_> {
             set: self.set,
             statics,
         };
-        let scenario = Scenario::of(&self.source, &options)?;
+        let name = self.source.name().to_owned();
+        let waiting = format!("still reading {name}, and finding the equilibrium of its structure");
+        let scenario = with_notice(waiting, || Scenario::of(&self.source, &options))?;
         Ok(match self.no_uncertain {
             true => scenario.without_uncertain(),
             false => scenario,

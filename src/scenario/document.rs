@@ -25,6 +25,9 @@ pub(super) struct Span {
 /// Positions of values by path, such as `/load/0/mass_kg`. A value from a program has no position.
 type Spans = HashMap<String, Span>;
 
+/// Text before the digits of a number that is not finite, which JSON does not have; usual texts do not begin with it.
+pub(super) const NOT_FINITE: char = '\0';
+
 /// The entries of a table in the order of the file. A number that is not finite is kept as text, and a date, which no key allows, as null.
 pub(super) type Entries = Map<String, Value>;
 
@@ -38,6 +41,7 @@ pub(super) fn kind(value: &Value) -> &'static str {
         Value::Bool(_) => "a boolean",
         Value::Number(number) if number.is_f64() => "a number with a fraction",
         Value::Number(_) => "a whole number",
+        Value::String(text) if text.starts_with(NOT_FINITE) => "not finite",
         Value::String(_) => "a string",
         Value::Array(_) => "an array",
         Value::Object(_) => "a table",
@@ -66,7 +70,7 @@ impl Parser {
                 ),
             DeValue::Float(number) => match number.as_str().parse::<f64>() {
                 Ok(finite) if finite.is_finite() => Value::from(finite),
-                _ => Value::from(number.as_str()),
+                _ => format!("{NOT_FINITE}{}", number.as_str()).into(),
             },
             DeValue::Boolean(value) => Value::from(value),
             DeValue::Datetime(_) => Value::Null,

@@ -5,7 +5,9 @@ use std::ops::RangeInclusive;
 
 use super::prelude::*;
 use super::structure::{ModelError, Structure};
+use crate::argument::ArgumentError;
 use crate::dynamics::elastic_joints::ElasticJoints;
+use crate::dynamics::model::Request;
 use crate::dynamics::row::error::RowModelError;
 use crate::mechanics::elastic_joint::{
     Contact, ElasticProperties, ElasticStructure, JointStiffness, Materials, RestError, Stiffness,
@@ -60,6 +62,9 @@ pub struct ElasticTable {
     /// Movements of the supports before time 0, from `[supports]`.
     #[serde(skip)]
     pub supports: Movements,
+    /// Gravity under which the joints settle, in m/s2, from `[simulation]`.
+    #[serde(skip)]
+    pub gravity_m_s2: f64,
 }
 
 impl ElasticTable {
@@ -82,6 +87,7 @@ impl ElasticTable {
             contact_points: table.optional("contact_points", &POINTS),
             longest_step_s: table.optional("longest_step_s", &within(&ElasticJoints::STEP_S)),
             supports: Movements::default(),
+            gravity_m_s2: Request::default().gravity_m_s2,
         };
         table.optional("contact", &one_of(&["continuous"], |name| name));
         table.relate(RELATIONS)?;
@@ -127,14 +133,19 @@ impl ElasticTable {
         structure: &Structure,
         (gravity_m_s2, end_s): (f64, f64),
     ) -> ReadResult<()> {
-        let (depth_m, _) = structure.depth_and_density();
-        let properties = self.properties(depth_m);
-        let row = structure.row().ok();
         // Other users of the row report its faults.
-        let Some(joints) = row.and_then(|row| ElasticStructure::of_row(&row, &properties).ok())
-        else {
+        let Some(joints) = self.joints(structure) else {
             return Ok(());
         };
+        let stiffness = match self.stone_modulus_gpa {
+            Some(_) => "stone_modulus_gpa",
+            None => "normal_stiffness_gpa_m",
+        };
+        let joints = joints.map_err(|error| {
+            let (name, value, allowed) = (error.argument, plain(error.value), error.allowed);
+            let wrong = format!("gives a joint `{name} = {value}`, which must be {allowed}");
+            table.wrong_in(TABLE, stiffness, wrong)
+        })?;
         let joints = joints.on_supports(self.supports.displacements());
         let Err(error) = joints.rest([0.0, -gravity_m_s2]) else {
             return self.check_step(table, &joints, end_s);
@@ -143,8 +154,7 @@ impl ElasticTable {
             RestError::Friction => "friction_coefficient",
             RestError::Strength => "compressive_strength_mpa",
             RestError::Points => "contact_points",
-            RestError::Stiffness if self.stone_modulus_gpa.is_some() => "stone_modulus_gpa",
-            RestError::Stiffness => "normal_stiffness_gpa_m",
+            RestError::Stiffness | RestError::NotFound => stiffness,
             RestError::Tie(index) => {
                 return Err(table.wrong_element("tie", index, format!("does not fit: {error}")));
             }
@@ -164,10 +174,23 @@ impl ElasticTable {
                 );
                 return Err(table.wrong("supports", wrong));
             }
-            RestError::NotFound => return Ok(()),
         };
         let wrong = format!("is not possible here: {error}");
         Err(table.wrong_in(TABLE, key, wrong))
+    }
+
+    /// Returns the joints of a structure, an error if their stiffness is out of range; `None` if the structure is not a row of blocks.
+    fn joints(&self, structure: &Structure) -> Option<Result<ElasticStructure, ArgumentError>> {
+        let (depth_m, _) = structure.depth_and_density();
+        let row = structure.row().ok()?;
+        Some(ElasticStructure::of_row(&row, &self.properties(depth_m)))
+    }
+
+    /// Returns the longest step of a motion of a structure, in seconds; `None` if it has no such joints.
+    pub(super) fn longest_step_s(&self, structure: &Structure) -> Option<f64> {
+        let joints = self.joints(structure)?.ok()?;
+        let default_s = ElasticJoints::default_step_s(&joints);
+        Some(self.longest_step_s.unwrap_or(default_s))
     }
 
     /// Rejects time steps that are too long, or too many until the end.
@@ -188,7 +211,7 @@ impl ElasticTable {
                 Err(table.wrong_in(TABLE, "longest_step_s", wrong))
             }
             None if end_s > ElasticJoints::MOST_STEPS * step_s => {
-                let [step, end] = [step_s, end_s].map(short);
+                let [step, end] = [step_s, end_s].map(plain);
                 let wrong = format!(
                     "makes steps of {step} s, too many for a motion of {end} s: give less damping, or a shorter [simulation] duration_s"
                 );
@@ -207,7 +230,7 @@ impl ElasticTable {
     pub(super) fn model(&self, structure: &Structure) -> Result<ElasticJoints, ModelError> {
         let row = structure.row().map_err(RowModelError::from)?;
         let (depth_m, _) = structure.depth_and_density();
-        ElasticJoints::new(row, self.properties(depth_m))
+        ElasticJoints::under(self.gravity_m_s2, row, self.properties(depth_m))
             .and_then(|model| model.on_supports(self.supports))
             .and_then(|model| match self.longest_step_s {
                 Some(step_s) => Ok(model.with_longest_step_s(step_s)?),

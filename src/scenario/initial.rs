@@ -39,3 +39,14 @@ pub(super) fn read(
     }
     Ok(initial)
 }
+
+/// Rejects `[initial]` for a structure that has ties or stands on moved springings.
+pub(super) fn suits(table: &mut Table<'_>, has_ties: bool, is_moved: bool) -> ReadResult<()> {
+    let ties = "[[tie]], which holds the structure where it stands";
+    let moved = "[supports]: on moved springings the structure stands on other hinges";
+    for (holds, by) in [(has_ties, ties), (is_moved, moved)] {
+        let wrong = format!("cannot be combined with {by}; leave one out");
+        table.refuse(holds && table.gives("initial"), "initial", wrong)?;
+    }
+    Ok(())
+}

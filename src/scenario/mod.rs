@@ -296,7 +296,10 @@ impl Scenario {
         let structure = built.as_ref().ok().map(|(structure, _)| structure);
         let known = (known, gravity_m_s2);
         let ground = GroundInput::read(table, known, options.statics);
-        let motion = motion.complete(table);
+        let mut motion = motion.complete(table);
+        if let (Ok((Motion::ElasticJoints(joints), _)), Some(it)) = (&mut motion, gravity_m_s2) {
+            joints.gravity_m_s2 = it;
+        }
         let right_foot = ground.as_ref().ok().and_then(|it| it.right_foot.as_ref());
         let suits = right_foot.map_or(Ok(()), |it| it.suits(table, structure, hinges));
         let initial = table.given_table("initial", |table| initial::read(table, structure, hinges));
@@ -318,9 +321,7 @@ impl Scenario {
             (simulation.gravity_m_s2, end_s)
         });
         motion.check(table, &structure, until)?;
-        let is_released = !ties.is_empty() && table.gives("initial");
-        let wrong = "cannot be combined with [[tie]], which holds the structure where it stands; leave one out";
-        table.refuse(is_released, "initial", wrong)?;
+        initial::suits(table, !ties.is_empty(), motion.supports().is_some())?;
         let (given_shape, ground) = (Circular::given(table), ground?);
         let mut certain = Self {
             title: title.map(|title| shown(&title)),
@@ -453,8 +454,8 @@ impl Scenario {
         })
     }
 
-    /// Returns the row of blocks of masonry, and of a column that is not Housner's single block: limit analysis of the row finds their first
-    /// mechanism. `None` for a structure that starts as one mechanism.
+    /// Returns the row of blocks of masonry, of a column that is not Housner's single block, and of voussoirs that do not start as four links: limit
+    /// analysis of the row finds their first mechanism. `None` for a structure that starts as one mechanism.
     ///
     /// # Errors
     /// As [`Structure::free_hinges`].
@@ -463,6 +464,9 @@ impl Scenario {
             Structure::Masonry(masonry) => Some(masonry.row.clone()),
             Structure::Column(column) if !column.is_one_prism() => {
                 Some(self.structure.row().map_err(RowModelError::from)?)
+            }
+            Structure::Arch(_) if matches!(self.mechanisms(), Err(error) if error.is_other_mechanism()) => {
+                self.structure.row().ok()
             }
             Structure::Arch(_) | Structure::Column(_) => None,
         })
@@ -542,12 +546,13 @@ impl Scenario {
         toml_text(&self.to_resolved_json())
     }
 
-    /// Returns the scenario as JSON as [`Scenario::to_json`] does, with `duration_s` always written.
+    /// Returns the scenario as JSON as [`Scenario::to_json`] does, with `duration_s` always written, to the nanosecond.
     #[must_use]
     pub fn to_resolved_json(&self) -> Value {
         let mut json = self.to_json();
         if let Some(Value::Object(simulation)) = json.get_mut("simulation") {
-            simulation.shift_insert(0, "duration_s".to_owned(), self.request().end_s.into());
+            let end_s = format!("{:.9}", self.request().end_s).parse::<f64>();
+            simulation.shift_insert(0, "duration_s".to_owned(), json!(end_s.ok()));
         }
         json
     }

@@ -132,7 +132,7 @@ impl Motion {
         match self {
             Self::FourLinks(_) => None,
             Self::FreeHinges(free) => Some(free.model(structure).ok()?.longest_step_s(request)),
-            Self::ElasticJoints(joints) => Some(joints.model(structure).ok()?.longest_step_s()),
+            Self::ElasticJoints(joints) => joints.longest_step_s(structure),
         }
     }
 

@@ -6,7 +6,7 @@ use std::ops::{RangeBounds as _, RangeInclusive};
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::document::kind;
+use super::document::{NOT_FINITE, kind};
 use super::error::excerpt;
 use crate::argument::short;
 
@@ -77,13 +77,11 @@ impl Rule for Number {
     }
 
     fn read(&self, value: &Value) -> Result<f64, String> {
-        let is_finite = |text: &String| text.parse::<f64>().map_or(true, f64::is_finite);
         match value {
             Value::Number(number) => number
                 .as_f64()
                 .filter(|x| self.contains(*x))
                 .ok_or("is out of range".to_owned()),
-            Value::String(text) if !is_finite(text) => Err("is not finite".to_owned()),
             _ => Err(is(value)),
         }
     }
@@ -165,7 +163,7 @@ pub(super) fn switch() -> Custom<'static, bool> {
 
 /// Returns the rule for any string.
 pub(super) fn text() -> Custom<'static, String> {
-    let read = |value: &Value| value.as_str().map(str::to_owned);
+    let read = |value: &Value| string(value).map(str::to_owned);
     any("a string", "string", read)
 }
 
@@ -182,7 +180,7 @@ pub(super) fn one_of<T: Copy>(all: &[T], name: fn(T) -> &'static str) -> Custom<
     let allowed = format!("one of {}", quoted.join(", "));
     let schema = json!({ "enum": names });
     let read = move |value: &Value| {
-        let text = value.as_str().ok_or_else(|| is(value))?;
+        let text = string(value).ok_or_else(|| is(value))?;
         let index = names.iter().position(|name| *name == text);
         let unknown = || format!("is unknown{}", did_you_mean(text, &names));
         index.map(|index| all[index]).ok_or_else(unknown)
@@ -214,6 +212,11 @@ impl Rule for Count {
     fn schema(&self) -> Value {
         json!({ "type": "integer", "minimum": self.0.start(), "maximum": self.0.end() })
     }
+}
+
+/// Returns the string of a value; `None` for other values, and for a number that is not finite.
+pub(super) fn string(value: &Value) -> Option<&str> {
+    value.as_str().filter(|text| !text.starts_with(NOT_FINITE))
 }
 
 /// Returns a phrase with the kind of a value: `is a string`.

@@ -34,17 +34,12 @@ impl Scenario {
     /// Returns sentences about unlikely values, each with the probably intended value.
     #[must_use]
     pub fn unlikely(&self) -> Vec<String> {
-        self.unlikely_with(|| starts_g(&*self.model().ok()?))
+        self.unlikely_of(None)
     }
 
-    /// Returns the sentences of [`Scenario::unlikely`] for a scenario whose model of motion is known.
+    /// Returns the sentences of [`Scenario::unlikely`] for a scenario whose model of motion may be known.
     #[must_use]
-    pub fn unlikely_of(&self, model: &dyn Model) -> Vec<String> {
-        self.unlikely_with(|| starts_g(model))
-    }
-
-    /// Returns sentences about unlikely values. `starts_g` computes the smallest acceleration that starts the structure, in g.
-    fn unlikely_with(&self, starts_g: impl FnOnce() -> Option<f64>) -> Vec<String> {
+    pub fn unlikely_of(&self, model: Option<&dyn Model>) -> Vec<String> {
         let gravity_m_s2 = self.simulation.gravity_m_s2;
         let of_series = |series: &Series| series.unlikely(gravity_m_s2);
         let mut unlikely = self.structure.unlikely();
@@ -54,7 +49,7 @@ impl Scenario {
         }
         match &self.ground {
             Some(Ground::Record(record)) => unlikely.extend(record.series().flat_map(of_series)),
-            Some(Ground::Pulse(pulse)) => unlikely.extend(self.unlikely_pulse(pulse, starts_g)),
+            Some(Ground::Pulse(pulse)) => unlikely.extend(self.unlikely_pulse(pulse, model)),
             None => {}
         }
         // A wrong unit affects all tables, so only the first record is described.
@@ -68,13 +63,9 @@ impl Scenario {
         unlikely
     }
 
-    fn unlikely_pulse(
-        &self,
-        pulse: &PulseGround,
-        starts_g: impl FnOnce() -> Option<f64>,
-    ) -> Option<String> {
-        let (along_g, up_g) = (pulse.amplitude_g.abs(), pulse.vertical_amplitude_g.abs());
-        let peak_g = along_g.max(up_g);
+    fn unlikely_pulse(&self, pulse: &PulseGround, model: Option<&dyn Model>) -> Option<String> {
+        let peak_g = pulse.amplitude_g.abs();
+        let peak_g = peak_g.max(pulse.vertical_amplitude_g.abs());
         let unit = "is its amplitude in units of gravity?";
         if peak_g > *PEAK_G.end() {
             return Some(format!("the pulse peaks at {} g: {unit}", plain(peak_g)));
@@ -83,20 +74,33 @@ impl Scenario {
         if self.motion.supports().is_some() {
             return None;
         }
-        // Any push starts a structure on hinges that are held by ties.
-        let times = along_g / starts_g().filter(|starts_g| *starts_g > 0.0)?;
+        let [push_g, times] = match model {
+            Some(model) => self.largest_push(model)?,
+            None => self.largest_push(&*self.model().ok()?)?,
+        };
         (times > PEAK_OVER_INCIPIENT).then(|| {
-            let peak = plain(along_g);
-            format!(
-                "the pulse peaks at {peak} g, {times:.0} times what starts the structure: {unit}"
-            )
+            let push = plain(push_g);
+            format!("the pulse pushes the structure with {push} g, {times:.0} times as much as starts it: {unit}")
         })
+    }
+
+    /// Returns the largest push of the ground, in g, and its ratio to the push that starts the structure to the same side; of the side with the
+    /// larger ratio. `None` if no push starts the structure, or any push does, because ties hold it on its hinges.
+    fn largest_push(&self, model: &dyn Model) -> Option<[f64; 2]> {
+        let pushes_m_s2 = self.ground_motion().pushes_m_s2(f64::INFINITY);
+        let sides = [Sway::Right, Sway::Left].into_iter().zip(pushes_m_s2);
+        let ratios = sides.filter_map(|(sway, push_m_s2)| {
+            let starts_g = model.incipient_acceleration_g(sway)?;
+            let push_g = push_m_s2 / self.gravity_m_s2();
+            (starts_g > 0.0).then(|| [push_g, push_g / starts_g])
+        });
+        ratios.max_by(|one, other| one[1].total_cmp(&other[1]))
     }
 
     /// Returns a warning if a motion up to the end of the simulation takes long to compute.
     fn takes_long(&self) -> Option<String> {
         let request = self.request();
-        let begin = format!("the simulation lasts {} s", short(request.end_s));
+        let begin = format!("the simulation lasts {} s", plain(request.end_s));
         if !self.motion.hinges().has_joints() {
             return (request.end_s > DURATION_S).then(|| {
                 format!("{begin}: unless it rests or overturns before, that takes minutes or more")
@@ -111,13 +115,6 @@ impl Scenario {
             )
         })
     }
-}
-
-/// Returns the smallest acceleration that starts the structure of a model to either side, in g.
-fn starts_g(model: &dyn Model) -> Option<f64> {
-    let sides = Sway::ALL.iter();
-    let sides = sides.filter_map(|sway| model.incipient_acceleration_g(*sway));
-    sides.reduce(f64::min)
 }
 
 impl Structure {

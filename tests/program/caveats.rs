@@ -99,13 +99,20 @@ fn the_summary_lists_the_warnings() {
         assert!(warnings(&summary).contains(&unlikely), "{summary:#}");
         assert!(stderr(&output).contains(&format!("warning: {unlikely}")));
     }
-    // Static commands give these warnings too.
-    for command in ["limit", "capacity"] {
-        let said = stderr(&archrock(at, &[command, "s.toml"]));
+    // Static commands give these warnings too, and their JSON lists them.
+    let demand = "[demand]\nsoil = 'B'\ntopography = 'T1'\nslv = { ag_g = 0.2, f0 = 2.4, tc_star_s = 0.3 }\n";
+    let arch = ARCH.replace("= 5.0", "= 500") + "voussoirs = 15\n";
+    fs::write(at.join("s.toml"), arch + demand).unwrap();
+    for command in ["limit", "impact", "capacity", "spread", "verify"] {
+        let output = archrock(at, &[command, "s.toml", "--format", "json"]);
+        let (said, radius) = (stderr(&output), "the mean radius is 500 m");
         assert!(
-            said.contains("warning: the mean radius is 500 m"),
+            said.contains(&format!("warning: {radius}")),
             "{command}: {said}"
         );
+        let found = serde_json::from_slice(&output.stdout).unwrap();
+        let mut reported = warnings(&found).into_iter();
+        assert!(reported.any(|warning| warning.contains(radius)), "{found}");
     }
     // A column that barely rocks has none.
     fs::write(

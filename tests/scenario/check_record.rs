@@ -324,8 +324,16 @@ fn unlikely_input_is_pointed_out() {
                 pulse.replace("0.05", "0.5")
             ),
             Some(
-                "the pulse peaks at 0.5 g, 25 times what starts the structure: is its amplitude in units of gravity?",
+                "the pulse pushes the structure with 0.5 g, 25 times as much as starts it: is its amplitude in units of gravity?",
             ),
+        ),
+        // With a load on the left, 0.01 g starts the arch to the right and 0.19 g to the left, to which the ground pushes it.
+        (
+            format!(
+                "{ARCH}voussoirs = 24\n[[load]]\nmass_kg = 4000\nx_m = -2\n[free_hinges]\n{}",
+                pulse.replace("0.05", "0.3")
+            ),
+            None,
         ),
         (
             format!("{ARCH}{record}scale = 1e-5"),
@@ -388,6 +396,63 @@ fn unlikely_input_is_pointed_out() {
                 None => assert!(said.is_empty(), "{said}"),
             }
         }
+    }
+}
+
+/// Scenarios that no run accepts, with the messages of `check`.
+#[test]
+fn check_finds_faults_that_run_refuses() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let pulse =
+        "[ground.half_sine]\namplitude_g = 0.2\nduration_s = 0.4\n[simulation]\nduration_s = 1\n";
+    let arch = format!("{ARCH}voussoirs = 11\n");
+    let elastic = "[elastic_joints]\nnormal_stiffness_gpa_m = 10\n";
+    let stone =
+        "[column]\nheight_m = 2800\nwidth_m = 900\n[elastic_joints]\nstone_modulus_gpa = 1.3\n";
+    for (text, words) in [
+        (
+            stone.to_owned(),
+            "s.toml:5:21: `stone_modulus_gpa = 1.3` gives a joint `normal_stiffness_pa_m = 928571`, which must be a number from 1e6",
+        ),
+        (
+            format!("{arch}{elastic}shear_stiffness_gpa_m = 1e5\n"),
+            "s.toml:7:26: `normal_stiffness_gpa_m = 10` gives a joint `shear_ratio = 10000`",
+        ),
+        (
+            format!(
+                "{arch}[free_hinges]\n[supports]\nright = {{ spread_m = 0.01 }}\n[initial]\nsway = 'left'\nrotation_rad = 0.01\n"
+            ),
+            "s.toml:9:1: table `initial` cannot be combined with [supports]",
+        ),
+        (
+            format!("title = nan\n{arch}"),
+            "s.toml:1:9: `title = nan` is not finite; must be a string",
+        ),
+    ] {
+        fs::write(at.join("s.toml"), format!("{text}{pulse}")).unwrap();
+        for command in ["check", "run"] {
+            let said = refusal(&archrock(at, &[command, "s.toml"]));
+            assert!(said.contains(words), "{words}: {said}");
+        }
+    }
+    // Limit analysis and free hinges take this arch, four links do not.
+    let thick = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.25\nembrace_deg = 100\nvoussoirs = 7\n[free_hinges]\n";
+    fs::write(at.join("s.toml"), format!("{thick}{pulse}")).unwrap();
+    for command in ["impact", "capacity"] {
+        let said = refusal(&archrock(at, &[command, "s.toml"]));
+        assert!(said.starts_with("error: s.toml: "), "{said}");
+        let remedy = "; `limit` and [free_hinges] take any mechanism of voussoirs";
+        assert!(said.contains(remedy), "{said}");
+    }
+    // Soft joints that would not carry the arch on the Earth do so under less gravity.
+    let soft = format!("{arch}[elastic_joints]\nnormal_stiffness_gpa_m = 0.0015\n{pulse}");
+    fs::write(at.join("s.toml"), &soft).unwrap();
+    let said = refusal(&archrock(at, &["run", "s.toml"]));
+    assert!(said.contains("with joints as soft as these"), "{said}");
+    fs::write(at.join("s.toml"), format!("{soft}gravity_m_s2 = 0.07\n")).unwrap();
+    for command in ["check", "run"] {
+        stdout(&archrock(at, &[command, "s.toml"]));
     }
 }
 

@@ -15,6 +15,7 @@ use archrock::mechanics::four_link::self_weight::carries_its_weight;
 use archrock::mechanics::geometry::ring::Edge;
 use archrock::mechanics::geometry::ring::Ring;
 use archrock::scenario::Scenario;
+use archrock::studies::limit::limit;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
     DefaultSettings, DefaultSolver, IPSolver as _, NonnegativeConeT, SolverStatus,
@@ -235,6 +236,25 @@ fn the_least_thickness_of_a_semicircle_is_milankovitchs() {
         incipient(&ring(least - 1e-5, 180.0), HingeSites::Anywhere).unwrap_err(),
         LimitError::CannotStand
     );
+}
+
+/// A thick shallow arch does not start as four links at its joints. Limit analysis finds the mechanism that governs, in which a joint parts.
+#[test]
+fn voussoirs_that_start_with_another_mechanism_have_a_limit() {
+    let text =
+        "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.25\nembrace_deg = 100\nvoussoirs = 7\n";
+    let scenario = Scenario::parse(text, "s.toml").unwrap();
+    assert!(scenario.mechanisms().unwrap_err().is_other_mechanism());
+    let arch = ring(0.25, 100.0);
+    let statics_g = static_limit_g(&arch, &even_sections(&arch, 7)).unwrap();
+    let found = limit(&scenario).unwrap().json;
+    for side in ["right", "left"] {
+        let starts_g = found["incipient_acceleration_g"][side].as_f64().unwrap();
+        assert!(
+            (starts_g - statics_g).abs() < 1e-6,
+            "{starts_g} {statics_g}"
+        );
+    }
 }
 
 /// The margin by which the moments of the best thrust line under gravity are on the right side of all edge

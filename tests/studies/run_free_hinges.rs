@@ -745,7 +745,14 @@ fn repeatability_includes_other_outcomes() {
         &[("double steps", left), ("half steps", rests.clone())],
     );
     let scenario = parsed(&format!("{COLUMN}[free_hinges]\n"));
-    let summary = run::summary(&scenario, &model, &falls, Some(&Ok(spread))).unwrap();
+    let summary = run::summary(&run::ComputedRun {
+        scenario: &scenario,
+        model: &model,
+        history: &falls,
+        repeated: Some(&Ok(spread)),
+        varied: &[],
+    })
+    .unwrap();
     let spread = &summary["repeatability"];
     assert_eq!(spread["outcomes"]["double_steps"], "overturned");
     let sides =

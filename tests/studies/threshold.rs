@@ -644,7 +644,16 @@ fn a_scenario_without_a_threshold_is_refused() {
         );
         assert!(!folder.join("results").exists());
     }
+    // The ground accelerates downwards with 0.5 g, and as a free body at a factor of 2.
     file(folder, falling);
+    let said = printed(
+        folder,
+        &["threshold", "s.toml", "--from", "1.95", "--stride", "0.1"],
+    );
+    assert!(
+        said.contains("from factor 2.000 on, the ground falls"),
+        "{said}"
+    );
     golden(
         "threshold-of-free-fall",
         &printed(folder, &["threshold", "s.toml", "--from", "1"]),

@@ -359,14 +359,14 @@ class Record(Ground):
         cls,
         path: str | Path,
         *,
-        vertical: Record | None = None,
+        vertical: Record | str | Path | None = None,
         **keys: Any,
     ) -> Record:
         """Reads a record from a file, as ``[ground.record]`` of a scenario does.
 
         Args:
             path: the file; its contents are kept.
-            vertical: a record of the vertical component.
+            vertical: a record of the vertical component, or its file, which is then read in the same way.
             keys: keys of ``[ground.record]``: for tables at least ``unit``, perhaps ``time_column`` and
                 ``acceleration_column``, or ``dt_s`` and ``wrapped``; ``format``, if it does not follow from the file extension;
                 ``quantity``, ``remove_mean``; ``scale`` or ``peak_g``, ``start_s``, ``component``.
@@ -378,6 +378,11 @@ class Record(Ground):
         name = Path(path).name
         files = {name: read_file(path)}
         table: Tables = {"file": name, **keys}
+        if isinstance(vertical, (str, Path)):
+            own = ("scale", "peak_g", "start_s", "component", "acceleration_column")
+            vertical = cls.read(vertical, **{key: value for key, value in keys.items() if key not in own})
+        if not isinstance(vertical, (Record, type(None))):
+            raise TypeError(f"`vertical` must be a Record or the path of its file, not {type(vertical).__name__}")
         if vertical is not None:
             table["vertical"], held = vertical._as_vertical(name)
             files.update(held)
@@ -397,9 +402,8 @@ class Record(Ground):
         Raises:
             ValueError: as for :class:`Record`.
         """
-        data = np.ma.filled(trace.data, np.nan)
-        time = np.arange(len(data)) * float(trace.stats.delta)
-        return cls(time, data, unit=unit, **{"name": str(trace.id), **keys})
+        time = np.arange(len(trace.data)) * float(trace.stats.delta)
+        return cls(time, trace.data, unit=unit, **{"name": str(trace.id), **keys})
 
     @property
     def name(self) -> str:
@@ -471,6 +475,9 @@ def _csv(time: npt.ArrayLike, acceleration: npt.ArrayLike) -> bytes:
 
 def _column(name: str, values: npt.ArrayLike) -> npt.NDArray[np.float64]:
     try:
+        if isinstance(values, np.ma.MaskedArray):
+            # The library refuses samples that are no numbers, with their place.
+            values = values.astype(np.float64).filled(np.nan)
         array = np.asarray(values)
         if array.dtype.kind not in "fiub":
             raise TypeError

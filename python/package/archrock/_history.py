@@ -72,6 +72,7 @@ class History(Summarised):
 
     The keys of :attr:`summary` are attributes too, such as ``outcome``, ``outcome_time_s``, ``overturning_sway`` and
     ``largest_friction_demand``. Those of the same name come first: :attr:`impacts` are the impacts, and ``summary.impacts`` is their number.
+    ``outcome`` is the end of this history alone; :attr:`verdict` compares it with repetitions.
 
     Arrays use the memory of the history itself, without copies, and cannot be written to: copy an array to change it. In
     shapes, ``samples`` is the number of samples and ``bodies`` that of :attr:`bodies`. Rotations are positive anticlockwise,
@@ -281,11 +282,35 @@ class History(Summarised):
 
     @property
     def summary(self) -> Summary:
-        """The contents of the program's ``summary.json`` (a copy); see :meth:`repeatability`."""
-        return Summary._parse(self._once("summary", lambda native: native.summary_json(False)))
+        """The contents of the program's ``summary.json`` (a copy), with :attr:`verdict` and ``repeatability``.
+
+        At its first use a history with free hinges or elastic joints is simulated again in other, equally good ways, such as with double
+        steps, as the program does. Single numbers, such as ``history.steps``, need no repetitions.
+        """
+        if "summary" not in self._kept:
+            native = self._native or self.scenario.run()._native
+            assert native is not None, "a history that was run is there"
+            self._kept["summary"] = native.summary_json(True)
+        return Summary._parse(self._kept["summary"])
+
+    @property
+    def verdict(self) -> str:
+        """The program's verdict: ``"survives"``, ``"overturns"``, ``"uncertain"`` or ``"incomplete"``.
+
+        It is uncertain if the repetitions of :meth:`repeatability` disagree.
+        """
+        verdict: str = self.summary["verdict"]
+        return verdict
 
     def _numbers(self) -> Summary:
-        numbers: Summary = self._once("numbers", lambda _: self.summary)
+        """The summary of the history alone, which has no verdict."""
+
+        def make(native: _native.History) -> Summary:
+            numbers = Summary._parse(native.summary_json(False))
+            del numbers["verdict"]
+            return numbers
+
+        numbers: Summary = self._once("numbers", make)
         return numbers
 
     def __getattr__(self, name: str) -> Any:
@@ -301,16 +326,14 @@ class History(Summarised):
         raise AttributeError("`History.spread()` is now called `History.repeatability()`")
 
     def repeatability(self) -> Summary | None:
-        """How a history with free hinges depends on its steps, as ``repeatability`` of ``summary.json``; ``None`` for other histories.
-
-        Simulates the history again in other, equally good ways, such as with double steps.
+        """How a history of blocks depends on its steps, as ``repeatability`` of :attr:`summary`; ``None`` for other histories.
 
         Raises:
-            ValueError: when one of these fails.
+            ValueError: when a repetition fails.
         """
-        native = self._native or self.scenario.run()._native
-        assert native is not None, "a history that was run is there"
-        repeatability: Summary | None = Summary._parse(native.summary_json(True)).get("repeatability")
+        repeatability: Summary | None = self.summary.get("repeatability")
+        if repeatability is not None and "failed" in repeatability:
+            raise ValueError(repeatability.failed)
         return repeatability
 
     @property
@@ -377,7 +400,7 @@ class History(Summarised):
 
         figure = Figure(figsize=(9.0, 6.0), layout="constrained")
         ground, rotations = figure.subplots(2, 1, sharex=True, height_ratios=(1, 2))
-        gravity_m_s2 = self.summary["scenario"]["simulation"]["gravity_m_s2"]
+        gravity_m_s2 = self._numbers()["scenario"]["simulation"]["gravity_m_s2"]
         ground.plot(
             self.time, self.ground_acceleration_m_s2 / gravity_m_s2, color="0.3", label="ground"
         )
@@ -410,7 +433,7 @@ class History(Summarised):
         """The program's page ``report.html``: the structure in motion, with curves. Needs no network."""
 
         def make(native: _native.History) -> str:
-            return native.report(self._words())
+            return native.report()
 
         return make(self._native) if self._native else self.scenario.run().report_html()
 
@@ -427,7 +450,7 @@ class History(Summarised):
         return f'<iframe srcdoc="{page}" style="width: 100%; height: 760px; border: 0"></iframe>'
 
     def _words(self) -> str:
-        impacts = self.summary["impacts"]
+        impacts = self._numbers()["impacts"]
         at = f"at {self.outcome_time_s:.4f} s"
         # Elastic contact lasts, so impacts are not counted.
         if impacts is not None:
@@ -450,7 +473,7 @@ class History(Summarised):
         columns = _native.History.COLUMNS
         return (
             self.scenario == other.scenario
-            and self.summary == other.summary
+            and self._numbers() == other._numbers()
             and all(
                 np.array_equal(self._column(name), other._column(name), equal_nan=True)
                 for name in columns
@@ -467,9 +490,11 @@ class History(Summarised):
             "largest_body": self.largest_body,
             "ended": {key: getattr(self, key) for key in ("outcome", "outcome_time_s", "overturning_sway")},
             "events": self.events,
-            "summary": json.dumps(self.summary),
+            "numbers": self._numbers(),
             "scenario": self.scenario,
         }
+        if "summary" in self._kept:
+            kept["summary"] = self._kept["summary"]
         return _restored, (kept,)
 
 

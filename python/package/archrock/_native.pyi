@@ -12,7 +12,7 @@ import numpy.typing as npt
 Progress = Callable[[int, int], object]
 
 MEMORY_GB: float
-MODELS: list[str]
+MODELS: list[tuple[str, str]]
 
 class Scenario:
     def __init__(
@@ -60,7 +60,7 @@ class History:
     def scenario(self) -> Scenario: ...
     def summary_json(self, repeat: bool) -> str: ...
     def warnings(self) -> list[str]: ...
-    def report(self, words: str) -> str: ...
+    def report(self) -> str: ...
 
 def study(
     scenario: Scenario,

@@ -11,9 +11,9 @@ from ._described import Described
 from ._ground import Ground, Record
 from ._hinge import Limit
 from ._history import History
-from ._native import MEMORY_GB, MODELS
+from ._native import MEMORY_GB
 from ._native import Scenario as NativeScenario
-from ._settings import Settings
+from ._settings import Settings, long_name
 from ._structure import Model, Structure
 from ._tables import Tables, to_toml
 from ._warnings import warn
@@ -171,7 +171,7 @@ class Scenario(Described):
         tables.update(map=map, suite=suite, demand=demand, verify=verify)
         tables.update(uncertain=uncertain)
         # Statics of drums and of moved springings need no model: the tables choose the model unless the caller gives one.
-        return cls(tables, files=held, model=_model(chosen.model) if "model" in settings else None)
+        return cls(tables, files=held, model=cast(Model, long_name(chosen.model)) if "model" in settings else None)
 
     def run(self, *, memory_gb: float = MEMORY_GB) -> History:
         """Simulates the scenario and returns its history.
@@ -201,8 +201,9 @@ class Scenario(Described):
         Raises:
             ValueError: when the library cannot find such an onset.
         """
-        warn(self._native.unlikely())
-        return Limit(json.loads(self._native.limit_json()))
+        found = Limit(json.loads(self._native.limit_json()))
+        warn(found["warnings"])
+        return found
 
     def to_toml(self) -> str:
         """The scenario as the text of a file of the program.
@@ -271,12 +272,6 @@ def _contents(tables: Tables, folder: str | None, *, missing: bool) -> dict[str,
         return {}
     paths = {name: Path(folder or ".") / name for name in names}
     return {name: path.read_bytes() for name, path in paths.items() if path.is_file() or not missing}
-
-
-def _model(name: object) -> Model:
-    if name in MODELS:
-        return cast(Model, name)
-    raise ValueError(f"`model = {name!r}` is not one of {', '.join(MODELS)}")
 
 
 def _bytes(memory_gb: float) -> int:
@@ -405,7 +400,6 @@ def simulate(
     except (KeyError, TypeError, AttributeError):
         if not isinstance(structure, Structure):
             raise _not_a_structure(structure) from None
-        _model(model)
         base = structure._base(key)
     memory_bytes = _bytes(memory_gb)
     if ground is None:

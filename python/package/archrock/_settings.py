@@ -4,7 +4,18 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+from ._native import MODELS
 from ._tables import Tables
+
+_LONG_NAMES = {name: long for short, long in MODELS for name in (short, long)}
+
+
+def long_name(model: object) -> str:
+    """The name in results of a model of motion."""
+    found = _LONG_NAMES.get(model) if isinstance(model, str) else None
+    if found is None:
+        raise ValueError(f"`model = {model!r}` is not one of {', '.join(_LONG_NAMES)}")
+    return found
 
 
 class Settings(NamedTuple):
@@ -65,15 +76,16 @@ class Settings(NamedTuple):
             compressive_strength_mpa=self.compressive_strength_mpa,
             contact_points=self.contact_points,
         )
+        model = long_name(self.model)
         own = {"free_hinges": free_hinges, "elastic_joints": elastic_joints}
         for other, given in own.items():
-            if given and self.model != other:
+            if given and model != other:
                 raise ValueError(f"{_names(given)}: of {other.replace('_', ' ')} only; give model=\"{other}\", or leave it out")
-        if self.model == "elastic_joints":
+        if model == "elastic_joints":
             if "impact" in tables:
                 raise ValueError("`impact` and `restitution` go with four links: elastic joints have no impacts")
             tables["elastic_joints"] = {**of_blocks, **elastic_joints}
-        elif self.model == "free_hinges":
+        elif model == "free_hinges":
             if "impact" in tables:
                 raise ValueError(
                     "`impact` and `restitution` go with four links: with free hinges impacts follow from the blocks"

@@ -10,13 +10,13 @@ from typing import Any, Literal
 from ._described import Described, read_file
 from ._hinge import ChainLink, Limit
 from ._native import Scenario as NativeScenario
-from ._settings import Settings
+from ._settings import Settings, long_name
 from ._tables import Tables, arguments, plain_table, to_toml
 from ._warnings import warn
 
 _MOST_BASES = 64
 
-Model = Literal["four_links", "free_hinges", "elastic_joints"]
+Model = Literal["four", "four_links", "free", "free_hinges", "elastic", "elastic_joints"]
 
 
 class Structure(Described):
@@ -70,7 +70,7 @@ class Structure(Described):
         """The structure with these settings, on still ground."""
         settings = Settings(*key)
         tables = {**self._tables, **settings.tables()}
-        base = NativeScenario(to_toml(tables), None, self._files, settings.model, ())
+        base = NativeScenario(to_toml(tables), None, self._files, long_name(settings.model), ())
         if len(self._bases) >= _MOST_BASES:
             self._bases.clear()
         self._bases[key] = base
@@ -82,8 +82,9 @@ class Structure(Described):
         Raises:
             ValueError: when the library cannot find such an onset.
         """
-        warn(self._native.unlikely())
-        return Limit(json.loads(self._native.limit_json()))
+        found = Limit(json.loads(self._native.limit_json()))
+        warn(found["warnings"])
+        return found
 
     def chain(self, count: int = 5, sway: Literal["right", "left"] = "right") -> list[ChainLink]:
         """The mechanisms of the first ``count`` impacts, after a first sway to this side.

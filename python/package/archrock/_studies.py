@@ -805,8 +805,7 @@ def verify(
     records = {"slv_records": slv_records, "slc_records": slc_records}
     if _whole(of, {"demand": demand, "title": title, **records, **how}):
         assert isinstance(of, Scenario)
-        warn(of._native.unlikely())
-        return Check(_study("verify", of))
+        return _warned(Check(_study("verify", of)))
     assert isinstance(of, Structure)
     if demand is None:
         raise ValueError("a check needs a demand")
@@ -821,8 +820,7 @@ def verify(
     scenario = Scenario.of(
         of, title=title, demand=table, verify=how or None, files=files, model=of._model
     )
-    warn(scenario._native.unlikely())
-    return Check(_study("verify", scenario))
+    return _warned(Check(_study("verify", scenario)))
 
 
 def _with_points(demand: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, bytes]]:
@@ -888,8 +886,7 @@ def capacity(of: Structure | Scenario) -> Capacity:
     """
     if not isinstance(of, (Structure, Scenario)):
         raise TypeError(f"give a structure or a scenario, not {type(of).__name__}")
-    warn(of._native.unlikely())
-    return Capacity(_study("capacity", of))
+    return _warned(Capacity(_study("capacity", of)))
 
 
 def compute_part(

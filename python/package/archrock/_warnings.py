@@ -2,17 +2,28 @@
 
 from __future__ import annotations
 
+import re
 import sys
 import warnings
 from collections.abc import Iterable
 
 
+_NUMBER = re.compile(r"(?<![\w.-])-?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?(?![\w.-]*\w)")
+
+
 class ArchrockWarning(UserWarning):
     """An input is unlikely, or a result is of limited reliability.
 
-    ``warnings.simplefilter("ignore", ArchrockWarning)`` silences these warnings, ``"error"`` turns them into exceptions. Results keep
-    them as ``summary["warnings"]``.
+    The text has ``...`` in place of its numbers, so Python shows a warning of one kind once in a loop over many arches. ``details`` is the
+    whole sentence, and ``numbers`` are its numbers. Results keep the sentences as ``summary["warnings"]``.
+
+    ``warnings.simplefilter("ignore", ArchrockWarning)`` silences these warnings, ``"error"`` turns them into exceptions.
     """
+
+    def __init__(self, details: str = "") -> None:
+        super().__init__(_NUMBER.sub("...", details))
+        self.details = details
+        self.numbers = tuple(map(float, _NUMBER.findall(details)))
 
 
 def warn(texts: Iterable[str]) -> None:
@@ -21,4 +32,4 @@ def warn(texts: Iterable[str]) -> None:
         level, frame = 1, sys._getframe()
         while frame.f_back is not None and frame.f_globals.get("__package__") == __package__:
             level, frame = level + 1, frame.f_back
-        warnings.warn(text, ArchrockWarning, stacklevel=level)
+        warnings.warn(ArchrockWarning(text), stacklevel=level)

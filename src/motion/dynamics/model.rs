@@ -12,7 +12,7 @@ use super::recording::{History, MEMORY_BYTES, MemoryError, Recording};
 pub use super::request::{Initial, Request};
 use super::row::error::RowMotionError;
 use super::until::{EndCondition, SafetyMonitor};
-use crate::argument::ArgumentError;
+use crate::argument::{ArgumentError, plain};
 use crate::mechanics::blocks::Row;
 use crate::mechanics::capacity::Displaced;
 use crate::mechanics::chain::{Demand, Hinge};
@@ -295,8 +295,8 @@ pub enum SimulationError {
     Argument(#[from] ArgumentError),
     /// The ground accelerates downwards faster than a free body from this time on, in seconds.
     #[error(
-        "the ground falls as fast as a free body at {0:?} s and no longer carries the structure: \
-         vertical accelerations must stay above -1 g"
+        "the ground falls as fast as a free body at {} s and no longer carries the structure: \
+         vertical accelerations must stay above -1 g", plain(*.0)
     )]
     FreeFall(f64),
     /// The feet move differently, and the hinges cannot follow.

@@ -57,7 +57,7 @@ impl Size {
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum FourLinkError {
     /// The structure does not start as four links.
-    #[error(transparent)]
+    #[error("{}{}", .0, if *.0 == LimitError::CannotStand { "" } else { VOUSSOIRS })]
     Limit(#[from] LimitError),
     /// The structure is a free-standing stack.
     #[error("a stack on one support has no four links: give [free_hinges] or [elastic_joints]")]
@@ -80,6 +80,16 @@ pub enum FourLinkError {
     /// The restitution coefficient is out of range.
     #[error(transparent)]
     Argument(#[from] ArgumentError),
+}
+
+const VOUSSOIRS: &str = "; `limit` and [free_hinges] take any mechanism of voussoirs";
+
+impl FourLinkError {
+    /// Returns true if the structure is stable and does not start as four links.
+    #[must_use]
+    pub fn is_other_mechanism(&self) -> bool {
+        matches!(self, Self::Limit(error) | Self::Row(_, error) if *error != LimitError::CannotStand)
+    }
 }
 
 impl FourLinks {

@@ -234,9 +234,9 @@ impl Layout {
 /// Returns the rule for the name or number of a column.
 fn any_column() -> Custom<'static, TableColumn> {
     let allowed = format!("the name of a column, or {}", COLUMN_NUMBER.allowed());
-    let read = |value: &Value| match value {
-        Value::String(name) => Ok(TableColumn::Name(name.clone())),
-        _ => COLUMN_NUMBER.read(value).map(TableColumn::Number),
+    let read = |value: &Value| match string(value) {
+        Some(name) => Ok(TableColumn::Name(name.to_owned())),
+        None => COLUMN_NUMBER.read(value).map(TableColumn::Number),
     };
     let schema = json!({ "anyOf": [{ "type": "string" }, COLUMN_NUMBER.schema()] });
     Custom(allowed, schema, Box::new(read))

@@ -29,6 +29,8 @@ pub struct Summary {
     pub capacity: Sides<CapacitySide>,
     /// Parts of the structure whose centres carry the masses, in words.
     pub masses: String,
+    /// Warnings about unlikely numbers of the scenario.
+    pub warnings: Vec<String>,
     /// The scenario with all defaults.
     pub scenario: Value,
 }
@@ -101,6 +103,7 @@ pub fn report(
     let summary = Summary {
         capacity: sides.map(|side| CapacitySide::of(side, scenario.gravity_m_s2())),
         masses,
+        warnings: scenario.unlikely(),
         scenario: scenario.to_json(),
     };
     let title = scenario.title.as_deref().unwrap_or("Capacity");

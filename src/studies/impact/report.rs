@@ -38,6 +38,8 @@ pub struct Summary {
     /// The largest restitution of all admissible motions; absent unless requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub certificate: Option<Certificate>,
+    /// Warnings about unlikely numbers of the scenario.
+    pub warnings: Vec<String>,
     /// The mechanism before the first impact of each chain.
     #[serde(skip)]
     pub(super) starts: Vec<SwayingMechanism>,
@@ -414,6 +416,7 @@ impl Summary {
             impacts_after_left: sides.get(1).map(|side| chain(*side)),
             models: None,
             certificate: None,
+            warnings: scenario.unlikely(),
             starts: starts.collect(),
             count,
             chosen: String::new(),

@@ -26,7 +26,11 @@ use crate::scenario::Scenario;
 /// # Errors
 /// When the structure cannot stand, or the analysis does not apply or fails.
 pub fn limit(scenario: &Scenario) -> Result<PrintedResult, StudyError> {
-    Ok(PrintedResult::of(&summary(scenario)?)?)
+    let summary = Summary {
+        warnings: scenario.unlikely(),
+        ..summary(scenario)?
+    };
+    Ok(PrintedResult::of(&summary)?)
 }
 
 impl From<FrictionError> for StudyError {
@@ -80,6 +84,7 @@ fn of_row(scenario: &Scenario, row: &Row) -> Result<Summary, StabilityError> {
         Err(error) => FourLinks::None {
             none_because: match error {
                 FourLinkError::Ties => "four links take no ties, so there is no unstable equilibrium and no equivalent block".to_owned(),
+                FourLinkError::Limit(error) => error.to_string(),
                 error => error.to_string(),
             },
         },

@@ -53,6 +53,8 @@ pub struct Summary {
     /// The onset of motion with slipping joints; absent unless joints may slip.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub friction: Option<Friction>,
+    /// Warnings about unlikely numbers of the scenario.
+    pub warnings: Vec<String>,
     /// Names of the bodies of the first mechanism.
     #[serde(skip)]
     pub(super) bodies: Vec<String>,

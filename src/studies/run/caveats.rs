@@ -23,7 +23,7 @@ pub(super) fn first_peak_rad(history: &History) -> Option<f64> {
 /// package prints them too.
 #[must_use]
 pub fn warnings(scenario: &Scenario, model: &dyn Model, history: &History) -> Vec<String> {
-    let mut warnings = scenario.unlikely_of(model);
+    let mut warnings = scenario.unlikely_of(Some(model));
     let structure = &scenario.structure;
     // The ground cannot pull a column down. An arch moves as four links as long as its thrust line stays almost inside.
     let thrusts = structure.thrusts();

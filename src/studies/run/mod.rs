@@ -43,8 +43,8 @@ use self::points::ObservedPoints;
 use self::report::Report;
 pub use self::scales::Scales;
 use self::snapshots::Snapshots;
-use self::summary::{ComputedRun, Summary};
-pub use self::summary::{OutcomeSummary, summary};
+use self::summary::Summary;
+pub use self::summary::{ComputedRun, OutcomeSummary, summary};
 pub use self::words::heading;
 use self::words::{NotableImpacts, VerdictLine, Words};
 use super::results::{Results, StudyError};
@@ -52,7 +52,7 @@ use super::runner::{Progress, RunnerError, Watch};
 use crate::dynamics::fall::FallEnd;
 use crate::dynamics::history::{Event, Sample, Summary as History};
 use crate::dynamics::model::{Model, Recorder};
-use crate::dynamics::repeatability::Repetitions;
+use crate::dynamics::repeatability::{Repeatability, RepeatabilityError, Repetitions};
 use crate::dynamics::variation::{VariationResult, Variations};
 use crate::mechanics::sway::Sway;
 use crate::output::scene::Scene;
@@ -192,6 +192,24 @@ pub fn results(
     Ok(results)
 }
 
+/// Repeats a history of a scenario as a run does, which gives its verdict; `None` if the model has no repetitions.
+#[must_use]
+pub fn repeat(
+    scenario: &Scenario,
+    model: &dyn Model,
+    history: &History,
+) -> Option<Result<Repeatability, RepeatabilityError>> {
+    model.row()?;
+    let (ground, request) = (scenario.ground_motion(), scenario.request());
+    Some(Repetitions::start(model, ground, &request).compare(history))
+}
+
+/// Returns the verdict on a history in words, as a run prints it.
+#[must_use]
+pub fn verdict(computed: ComputedRun<'_>) -> String {
+    render(&VerdictLine(computed))
+}
+
 impl<'a> Run<'a> {
     fn new(
         scenario: &'a Scenario,
@@ -300,7 +318,7 @@ impl<'a> Run<'a> {
             impacts: &drawings.notable,
             all_models: self.all_models,
         };
-        let (verdict, mut words) = (render(&VerdictLine(computed)), render(&words));
+        let (verdict, mut words) = (verdict(computed), render(&words));
         words.insert_str(0, "  ");
         let summary = summary_of(&summary)?;
         let path = folder.as_ref().map(|folder| folder.path().to_owned());

@@ -74,6 +74,8 @@ pub struct Summary<'a> {
     /// Largest rotations of the bodies, in radians.
     #[serde(flatten)]
     pub peak_rotations_rad: Named<f64>,
+    /// Largest rotation of any body, in radians.
+    pub largest_peak_rotation_rad: f64,
     /// The push that starts the structure to each side, in units of gravity; null if no push starts it.
     pub incipient_acceleration_g: Sides<Option<f64>>,
     /// Largest error of the energy balance. Reference of four links and columns: the barrier of the first mechanism. Reference of a row of
@@ -167,8 +169,6 @@ pub struct Thrust {
 /// Results of a row of blocks.
 #[derive(Clone, Debug, Serialize)]
 pub struct RowResults<'a> {
-    /// Largest rotation of any block, in radians.
-    pub largest_peak_rotation_rad: f64,
     /// Half cycles whose peak is at least a thousandth of the largest rotation.
     pub half_cycles: Vec<HalfCycle>,
     /// Results of elastic joints.
@@ -288,6 +288,7 @@ impl<'a> Summary<'a> {
             outcome: OutcomeSummary::of(history),
             impacts: history.known_impacts(),
             peak_rotations_rad: Named(names.into_iter().zip(peaks_rad).collect()),
+            largest_peak_rotation_rad: history.largest_rotation_rad(),
             incipient_acceleration_g: Sides::of(|sway| model.incipient_acceleration_g(sway)),
             energy_defect_ratio: history.energy_defect_ratio,
             friction: history.thrust.as_ref().map(|thrust| FrictionDemand {
@@ -297,7 +298,6 @@ impl<'a> Summary<'a> {
             steps: history.cost.steps,
             mechanisms: mechanisms.map(|model| MechanismResults::of(scenario, model, history)),
             row: history.row().map(|row| RowResults {
-                largest_peak_rotation_rad: history.largest_rotation_rad(),
                 half_cycles: history.half_cycles(),
                 elastic: history.elastic(),
                 row,
@@ -382,22 +382,10 @@ impl<'a> VariationSummary<'a> {
 ///
 /// # Errors
 /// When a value is not finite.
-pub fn summary(
-    scenario: &Scenario,
-    model: &dyn Model,
-    history: &History,
-    repeated: Option<&Result<Repeatability, RepeatabilityError>>,
-) -> Result<Value, OutputError> {
-    let computed = ComputedRun {
-        scenario,
-        model,
-        history,
-        repeated,
-        varied: &[],
-    };
+pub fn summary(computed: &ComputedRun<'_>) -> Result<Value, OutputError> {
     // Computing time would differ between equal histories.
     summary_of(&Summary {
         longest_step_us: None,
-        ..Summary::of(&computed, Vec::new())
+        ..Summary::of(computed, Vec::new())
     })
 }

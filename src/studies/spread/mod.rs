@@ -176,6 +176,8 @@ pub struct Summary {
     pub weight_n: f64,
     /// The path for each direction.
     pub paths: Vec<SpreadPath>,
+    /// Warnings about unlikely numbers of the scenario.
+    pub warnings: Vec<String>,
     /// The scenario with all defaults.
     pub scenario: Value,
     /// The blocks of the arch.
@@ -216,6 +218,7 @@ pub fn spread(scenario: &Scenario, directions: &[Direction]) -> Result<Summary, 
         paths: paths.collect::<Result<_, _>>()?,
         clear_span_m,
         weight_n,
+        warnings: scenario.unlikely(),
         scenario: scenario.to_json(),
         friction_coefficient: scenario.motion.friction_coefficient(),
         row: row.clone(),

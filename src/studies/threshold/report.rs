@@ -305,7 +305,7 @@ fn words(scenarios: &[Scenario], thresholds: &[Threshold]) -> String {
             unsafe_from_first
                 .then(|| "  a smaller --from finds the factors that it survives".to_owned()),
         );
-        lines.extend(threshold.doubts_in_words());
+        lines.extend(threshold.doubts_in_words(&scenarios[0]));
         lines.extend(threshold.varied_in_words(peak_g));
     }
     let caveat = scenarios.iter().find_map(remarks::rough_guide);
@@ -347,7 +347,7 @@ impl Threshold {
     }
 
     /// Returns lines about uncertain, failed and incomplete histories.
-    fn doubts_in_words(&self) -> Vec<String> {
+    fn doubts_in_words(&self, scenario: &Scenario) -> Vec<String> {
         let falls =
             |sample: &&FactorSample| matches!(sample.result, Err(NoHistory::GroundFalls(_)));
         let histories = self.samples.iter().filter(|sample| !falls(sample));
@@ -366,8 +366,12 @@ impl Threshold {
             reasons.collect()
         };
         let mut lines = Vec::from_iter(listed("uncertain", reasons(false)));
-        lines.extend(self.samples.iter().find(falls).map(|first| {
-            let factor = rounded(first.factor);
+        let falls = self.samples.iter().any(|sample| falls(&sample));
+        let factor = scenario
+            .ground_motion()
+            .free_fall_factor(scenario.gravity_m_s2());
+        lines.extend(factor.filter(|_| falls).map(|factor| {
+            let factor = rounded(factor);
             format!("  from factor {factor} on, the ground falls as fast as a free body at some time, which this model does not cover")
         }));
         lines.extend(listed("failed", reasons(true)));

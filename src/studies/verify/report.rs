@@ -245,7 +245,7 @@ pub(super) fn add_notes(scenario: &Scenario, check: &mut Summary) {
     check.decisions = decisions.collect();
     check.assumptions = part();
     check.not_covered = part();
-    check.warnings = part();
+    check.warnings = [scenario.unlikely(), part()].concat();
 }
 
 /// Returns true if the left side is the mirror image of the right one, including all numbers.

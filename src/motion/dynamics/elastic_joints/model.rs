@@ -76,9 +76,21 @@ impl ElasticJoints {
     /// # Errors
     /// If a property is out of range, or the row does not carry its own weight; with the reason.
     pub fn new(row: Row, properties: ElasticProperties) -> Result<Self, RowModelError> {
+        Self::under(GRAVITY_M_S2, row, properties)
+    }
+
+    /// Returns the model of a row with elastic joints that is stable under this gravity, in m/s2. Under less gravity joints bend less.
+    ///
+    /// # Errors
+    /// As [`ElasticJoints::new`].
+    pub fn under(
+        gravity_m_s2: f64,
+        row: Row,
+        properties: ElasticProperties,
+    ) -> Result<Self, RowModelError> {
         let structure = ElasticStructure::of_row(&row, &properties)?;
         let rigid = RigidRow::new(row)?.with_friction(properties.friction_coefficient)?;
-        Self::standing(rigid, properties, structure, GRAVITY_M_S2)
+        Self::standing(rigid, properties, structure, gravity_m_s2)
     }
 
     fn standing(

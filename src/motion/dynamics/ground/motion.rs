@@ -243,6 +243,18 @@ impl GroundMotion {
         Some(middle(before_s, after_s))
     }
 
+    /// Returns the factor on this motion from which the ground falls as fast as a free body at some time, under either foot; `None` if it never
+    /// accelerates downwards.
+    #[must_use]
+    pub fn free_fall_factor(&self, gravity_m_s2: f64) -> Option<f64> {
+        let ends = self.pieces.iter().flat_map(Piece::ends_m_s2);
+        let down_m_s2 = ends.fold(0.0, |most, end| f64::max(most, -end.y));
+        let own = (down_m_s2 > 0.0).then(|| gravity_m_s2 / down_m_s2);
+        let right = self.right_foot();
+        let right = right.and_then(|right| right.free_fall_factor(gravity_m_s2));
+        own.into_iter().chain(right).reduce(f64::min)
+    }
+
     /// Returns this motion with all accelerations multiplied by a factor, from -1e9 to 1e9, under both feet.
     ///
     /// # Errors

@@ -1,6 +1,7 @@
 //! Steps of a motion, and times of its samples.
 
 use super::error::RowMotionError;
+use crate::argument::plain;
 use crate::dynamics::fall;
 
 /// Relative tolerance, in output steps, within which a start before a multiple of the output step counts as that multiple.
@@ -35,7 +36,8 @@ impl Settings {
         if steps <= most_steps {
             return Ok(self);
         }
-        let why = format!("a motion of {end_s} s takes {steps:.1e} steps: {remedy}");
+        let end = plain(end_s);
+        let why = format!("a motion of {end} s takes {steps:.1e} steps: {remedy}");
         Err(RowMotionError::Failed(why))
     }
 }

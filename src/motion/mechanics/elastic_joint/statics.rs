@@ -70,7 +70,7 @@ pub enum RestError {
     )]
     TieDuringMovement(usize, f64),
     /// No equilibrium was found.
-    #[error("no equilibrium was found under the weight of the structure")]
+    #[error("no equilibrium was found under the weight of the structure: give another stiffness")]
     NotFound,
 }
 

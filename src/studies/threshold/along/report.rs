@@ -96,7 +96,8 @@ impl Along<'_> {
         };
         let count = |what: &str, at: fn(&&Point) -> bool| {
             let count = points.iter().filter(at).count();
-            (count > 0).then(|| format!("{what} at {count} values"))
+            let values = ["value", "values"][usize::from(count > 1)];
+            (count > 0).then(|| format!("{what} at {count} {values}"))
         };
         let no_impact = || {
             let ends = range(
