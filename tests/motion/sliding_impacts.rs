@@ -47,6 +47,7 @@ fn run(
         merged_after: 0,
         may_halve: false,
         end_s,
+        outcome_by_s: None,
         output_step_s: Some(end_s / 200.0),
         friction_coefficient: Some(coefficient),
     };

@@ -688,6 +688,11 @@ pub struct ElasticSummary {
     pub rest_eccentricity_ratio: f64,
     /// Index of the joint with this eccentricity.
     pub rest_eccentricity_joint: usize,
+    /// Opening beyond the state at rest above which a joint counts as open, in m: the compression of the most compressed edge under self-weight.
+    pub opening_tolerance_m: f64,
+    /// Time in s since which the row rests or only vibrates, on quiet ground: its kinetic and potential energy are each below a tenth of the elastic
+    /// energy under self-weight, or below 0.03 of the barrier of the first mechanism. Null if it still moved more.
+    pub vibrates_since_s: Option<f64>,
 }
 
 /// Largest compressive stress, with its joint and time.

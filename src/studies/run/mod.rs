@@ -50,10 +50,11 @@ use self::words::{NotableImpacts, VerdictLine, Words};
 use super::results::{Results, StudyError};
 use super::runner::{Progress, RunnerError, Watch};
 use crate::dynamics::fall::FallEnd;
-use crate::dynamics::history::{Event, Sample, Summary as History};
+use crate::dynamics::history::{Event, OpenHinge, Sample, Summary as History};
 use crate::dynamics::model::{Model, Recorder};
 use crate::dynamics::repeatability::Repetitions;
 use crate::dynamics::variation::{VariationResult, Variations};
+use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::sway::Sway;
 use crate::output::scene::Scene;
 use crate::output::summary::summary_of;
@@ -599,6 +600,14 @@ impl Recorder for RunRecorder<'_, '_> {
         let drawings = &self.drawings;
         let shows_structure = drawings.film.is_some() || drawings.snapshots.is_some();
         drawings.report.is_some() || shows_structure
+    }
+
+    fn wants_steps(&self) -> bool {
+        self.drawings.points.any()
+    }
+
+    fn step(&mut self, time_s: f64, poses: &[Pose], hinges: &[OpenHinge]) {
+        self.drawings.points.note(time_s, poses, hinges);
     }
 
     fn wants_fall(&self) -> bool {

@@ -196,6 +196,7 @@ impl FreeHinges {
         settings = settings.for_ties(row);
         settings.may_halve = self.options.longest_step_s.is_none();
         settings.output_step_s = Some(request.output_step_s);
+        settings.outcome_by_s = request.outcome_by_s;
         settings.friction_coefficient = self.options.friction_coefficient;
         if self.merges_landings {
             settings.with_landings_merged()

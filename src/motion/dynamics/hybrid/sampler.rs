@@ -19,6 +19,9 @@ use crate::mechanics::geometry::pose::Pose;
 /// Relative error tolerance of a step of a fall, which is only drawn.
 const FALL_TOLERANCE: f64 = 1e-6;
 
+/// Longest time between instants at which the demand of a moving structure is computed, over the time scale of its fall.
+const DEMAND_STEP_RATIO: f64 = 1.0 / 32.0;
+
 /// Takes samples at multiples of the output step.
 pub(super) struct Sampler<'r, 'a, C: MechanismChain> {
     rocking: &'r Rocking<'a, C>,
@@ -111,8 +114,34 @@ impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
         sample
     }
 
+    /// Records the demand of a step, and sends the positions in it to a recorder that wants those of all steps.
+    fn note_step(&mut self, from: &StructureState<'a, C>, step: &Step<3>) {
+        let (rocking, span_s) = (self.rocking, step.end_s - step.start_s);
+        let Some(swing) = from.mode.swing().filter(|_| span_s > 0.0) else {
+            return;
+        };
+        let (link, wants_demand) = (swing.link, self.recorder.wants_demand());
+        let parts = (span_s / (DEMAND_STEP_RATIO * rocking.fall_s(link))).ceil();
+        for part in 1..=(parts as usize) {
+            let time_s = step.start_s + span_s * (part as f64 / parts);
+            let now = from.at(time_s, &rocking.between(step, time_s));
+            if wants_demand {
+                self.thrust.note_demand(time_s, &rocking.demand(&now));
+                if now.state[0] < link.critical_rad {
+                    self.thrust_before_critical = self.thrust;
+                }
+            }
+            if self.recorder.wants_steps() {
+                let sample = self.sample(&now);
+                self.recorder.step(time_s, &sample.poses, &sample.hinges);
+                self.buffer = sample;
+            }
+        }
+    }
+
     /// Takes the samples of a step.
     pub(super) fn step(&mut self, from: &StructureState<'a, C>, step: &Step<3>) -> ControlFlow<()> {
+        self.note_step(from, step);
         while self.next_s() < step.end_s {
             let time_s = self.next_s().max(step.start_s);
             let state = self.rocking.between(step, time_s);
