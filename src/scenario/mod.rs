@@ -282,7 +282,7 @@ impl Scenario {
         let gravity_m_s2 = simulated.map(|it| it.gravity_m_s2);
         let built = Structure::read(table, hinges, gravity_m_s2);
         let structure = built.as_ref().ok().map(|(structure, _)| structure);
-        let known = (known, gravity_m_s2);
+        let known = (known, gravity_m_s2, options.statics);
         let ground = GroundInput::read(table, known, options.statics);
         let motion = motion.complete(table);
         let right_foot = ground.as_ref().ok().and_then(|it| it.right_foot.as_ref());

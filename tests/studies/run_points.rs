@@ -50,7 +50,7 @@ fn the_top_of_a_column_turns_about_its_toes() {
         .unwrap();
     // The summary has the largest displacement of all steps, not of the rows alone.
     let between_m = of_summary.abs() - peak_m;
-    assert!((0.0..1e-4 * peak_m).contains(&between_m), "{between_m}");
+    assert!((-1e-12..1e-4 * peak_m).contains(&between_m), "{between_m}");
     let words = format!(
         "the point 0,4 moves by up to {:.3} mm",
         1e3 * of_summary.abs()
@@ -77,8 +77,11 @@ fn peaks_do_not_depend_on_the_output_step() {
             } else {
                 "0,4"
             };
-            let options = ["--no-repeat", "--set", &set];
-            run(folder.path(), &scenario, &[place], &options);
+            let options = ["--set", &set, "--no-repeat"];
+            let is_row =
+                scenario.contains("[free_hinges]") || scenario.contains("[elastic_joints]");
+            let given = &options[..2 + usize::from(is_row)];
+            run(folder.path(), &scenario, &[place], given);
             let told = summary(&folder.path().join("o"));
             let lasting = told["lasting_friction_demand"].as_f64();
             let friction = lasting.or(told["largest_friction_demand"].as_f64());

@@ -23,7 +23,8 @@ use crate::mechanics::tie::{Tie, TieMemory};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
-    /// Nothing moved: no joint opened or slipped, and elastic joints did not vibrate. The history is complete.
+    /// Nothing moved: no joint opened or slipped, and the kinetic energy of elastic joints stayed below 1e-9 of weight times size. They may have
+    /// followed the ground slowly, without vibration, and turned a little. The history is complete.
     NeverMoved,
     /// Elastic joints vibrated, but no joint opened beyond its state at rest by more than the weight compresses a joint, and the structure
     /// did not slide. The history is complete.

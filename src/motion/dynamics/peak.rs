@@ -1,7 +1,7 @@
 //! Largest values over time.
 
 /// Rise of a value, relative to it, below which it counts as constant.
-pub const CONSTANT: f64 = 1e-9;
+pub const CONSTANT: f64 = 1e-12;
 
 /// Largest value over time, and the time at which it is first reached.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -31,12 +31,7 @@ pub trait Recorder {
         false
     }
 
-    /// Returns whether the recorder needs the positions after all steps of the computation.
-    fn wants_steps(&self) -> bool {
-        false
-    }
-
-    /// Receives the positions after a step: the time in seconds, the poses of the bodies, and the open hinges of a mechanism.
+    /// Receives the positions after a step of the computation: the time in seconds, the poses of the bodies, and the open hinges of a mechanism.
     fn step(&mut self, _time_s: f64, _poses: &[Pose], _hinges: &[OpenHinge]) {}
 
     /// Returns whether the recorder needs samples after the structure has overturned.

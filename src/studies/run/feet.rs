@@ -7,9 +7,8 @@ use crate::dynamics::history::Summary as History;
 use crate::dynamics::peak::CONSTANT;
 use crate::scenario::Scenario;
 
-/// Time between instants at which the displacement is computed, in seconds, and their largest number.
-const STEP_S: f64 = 1e-4;
-const MOST_STEPS: f64 = 1e6;
+/// Number of equal steps at which the displacement is computed.
+const STEPS: u32 = 200_000;
 
 /// Displacements of the right foot relative to the left one, to the right and upwards.
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -29,13 +28,9 @@ impl FeetApart {
     pub(super) fn of(scenario: &Scenario, history: &History) -> Option<Self> {
         let ground = scenario.ground_motion();
         ground.right_foot()?;
-        let [start_s, end_s] = [ground.start_s(), history.end_s];
-        let step_s = STEP_S.max((end_s - start_s) / MOST_STEPS);
-        let first = (start_s / step_s).ceil() as i32;
-        let last = (end_s / step_s).floor() as i32;
-        let mut times_s = vec![start_s];
-        times_s.extend((first..=last).map(|step| step_s * f64::from(step)));
-        times_s.push(end_s);
+        let (start_s, lasts_s) = (ground.start_s(), history.end_s - ground.start_s());
+        let time_s = |step: u32| start_s + lasts_s * (f64::from(step) / f64::from(STEPS));
+        let times_s: Vec<f64> = (0..=STEPS).map(time_s).collect();
         let apart_m = ground.feet_apart_m(&times_s);
         let largest_m = apart_m.iter().map(|m| m.norm()).fold(0.0, f64::max);
         let farthest = apart_m

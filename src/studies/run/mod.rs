@@ -428,7 +428,8 @@ impl Drawings {
         for snapshots in self.film.iter_mut().chain(&mut self.snapshots) {
             snapshots.push(sample);
         }
-        self.points.push(sample);
+        let placed = (&sample.poses[..], &sample.hinges[..]);
+        self.points.push(sample.time_s, placed, true);
         self.curves.push(sample);
     }
 
@@ -602,12 +603,8 @@ impl Recorder for RunRecorder<'_, '_> {
         drawings.report.is_some() || shows_structure
     }
 
-    fn wants_steps(&self) -> bool {
-        self.drawings.points.any()
-    }
-
     fn step(&mut self, time_s: f64, poses: &[Pose], hinges: &[OpenHinge]) {
-        self.drawings.points.note(time_s, poses, hinges);
+        self.drawings.points.push(time_s, (poses, hinges), false);
     }
 
     fn wants_fall(&self) -> bool {

@@ -88,23 +88,19 @@ impl ObservedPoints {
         !self.observed.is_empty()
     }
 
-    /// Adds a sample. Samples come in the order of time.
-    pub(super) fn push(&mut self, sample: &Sample) {
-        for observed in &mut self.observed {
-            let displaced_m =
-                displacement_m(&self.scene, &observed.point, &sample.poses, &sample.hinges);
-            for (along, displaced_m) in observed.displacements.iter_mut().zip(displaced_m.iter()) {
-                along.millimetres.push(sample.time_s, 1e3 * displaced_m);
-            }
-        }
-        self.note(sample.time_s, &sample.poses, &sample.hinges);
-    }
-
-    /// Updates the largest displacements at an instant.
-    pub(super) fn note(&mut self, time_s: f64, poses: &[Pose], hinges: &[OpenHinge]) {
+    /// Updates the largest displacements at an instant, and the curves if it is that of a sample. Instants come in the order of time.
+    pub(super) fn push(
+        &mut self,
+        time_s: f64,
+        (poses, hinges): (&[Pose], &[OpenHinge]),
+        is_sample: bool,
+    ) {
         for observed in &mut self.observed {
             let displaced_m = displacement_m(&self.scene, &observed.point, poses, hinges);
             for (along, displaced_m) in observed.displacements.iter_mut().zip(displaced_m.iter()) {
+                if is_sample {
+                    along.millimetres.push(time_s, 1e3 * displaced_m);
+                }
                 if displaced_m.abs() > along.farthest_m.abs() * (1.0 + CONSTANT) {
                     (along.farthest_m, along.time_s) = (*displaced_m, time_s);
                 }

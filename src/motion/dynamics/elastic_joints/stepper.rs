@@ -235,6 +235,19 @@ impl<'a> Lane<'a> {
         slid
     }
 
+    /// Records whether the row moves more than by vibration.
+    fn note_vibration(&mut self, kinetic_j: f64, potential_j: f64) {
+        let most_j = self.monitor.vibration_j;
+        let vibrates = kinetic_j < most_j && potential_j < most_j;
+        // A row without motion that stands higher than before is held by friction.
+        if !vibrates && kinetic_j >= REST_ENERGY_RATIO * self.course.energy_unit {
+            self.quiet_since_s = self.course.time;
+            self.course.moved = true;
+        }
+        let since_s = self.quiet_since_s;
+        self.course.elastic.vibrates_since_s = self.lasts(since_s).then_some(since_s);
+    }
+
     /// Returns whether the row has been in a state since this time for long enough, on quiet ground.
     fn lasts(&self, since_s: f64) -> bool {
         self.course.is_quiet(since_s.max(self.quiet_s))
@@ -457,14 +470,7 @@ impl<'a, const L: usize> Group<'a, L> {
             || of(observation.largest_displacement_m2) >= far * far;
         let height = lane.feet.is_none().then_some(potential + dissipated_j);
         course.note_height(height);
-        let vibrates = kinetic < lane.monitor.vibration_j && potential < lane.monitor.vibration_j;
-        // A row without motion that stands higher than before is held by friction.
-        if !vibrates && kinetic >= REST_ENERGY_RATIO * course.energy_unit {
-            lane.quiet_since_s = time;
-            course.moved = true;
-        }
-        let since_s = lane.quiet_since_s;
-        lane.course.elastic.vibrates_since_s = lane.lasts(since_s).then_some(since_s);
+        lane.note_vibration(kinetic, potential);
         let course = &mut lane.course;
         let barrier_j = || *self.barrier_j.get_or_init(self.find_barrier_j);
         let (rigid_j, known_j) = (lane.barrier_j.unwrap_or(0.0), &mut lane.barrier_j);

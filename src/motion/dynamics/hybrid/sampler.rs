@@ -67,14 +67,11 @@ impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
     fn emit(&mut self, sample: &Sample) -> ControlFlow<()> {
         let moving = sample.state != State::Rest;
         self.thrust.note(sample.time_s, moving, &sample.demand);
-        let comes_back = |rotation: f64| rotation.abs() < 1.0;
-        if sample.rotation_over_critical.is_some_and(comes_back) {
-            self.thrust_before_critical = self.thrust;
-        }
+        self.note_return(sample);
         self.recorder.sample(sample)
     }
 
-    fn sample(&mut self, now: &StructureState<'a, C>) -> Sample {
+    fn sample(&mut self, now: &StructureState<'a, C>, thrust_line: bool) -> Sample {
         let rocking = self.rocking;
         let mut sample = mem::take(&mut self.buffer);
         let (ground_m_s2, _) = rocking.ground.pieces[now.piece].at(now.time_s);
@@ -102,7 +99,7 @@ impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
         } else {
             poses.resize(C::Mechanism::BODIES.len(), Pose::UNDEFORMED);
         }
-        if self.recorder.wants_thrust_line() {
+        if thrust_line && self.recorder.wants_thrust_line() {
             sample.eccentricity_ratios = rocking.eccentricity_ratios(now);
         }
         if self.recorder.wants_demand() {
@@ -114,28 +111,29 @@ impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
         sample
     }
 
-    /// Records the demand of a step, and sends the positions in it to a recorder that wants those of all steps.
+    /// Records the demand and the positions at several instants of a step.
     fn note_step(&mut self, from: &StructureState<'a, C>, step: &Step<3>) {
-        let (rocking, span_s) = (self.rocking, step.end_s - step.start_s);
+        let span_s = step.end_s - step.start_s;
         let Some(swing) = from.mode.swing().filter(|_| span_s > 0.0) else {
             return;
         };
-        let (link, wants_demand) = (swing.link, self.recorder.wants_demand());
-        let parts = (span_s / (DEMAND_STEP_RATIO * rocking.fall_s(link))).ceil();
+        let parts = (span_s / (DEMAND_STEP_RATIO * self.rocking.fall_s(swing.link))).ceil();
         for part in 1..=(parts as usize) {
             let time_s = step.start_s + span_s * (part as f64 / parts);
-            let now = from.at(time_s, &rocking.between(step, time_s));
-            if wants_demand {
-                self.thrust.note_demand(time_s, &rocking.demand(&now));
-                if now.state[0] < link.critical_rad {
-                    self.thrust_before_critical = self.thrust;
-                }
-            }
-            if self.recorder.wants_steps() {
-                let sample = self.sample(&now);
-                self.recorder.step(time_s, &sample.poses, &sample.hinges);
-                self.buffer = sample;
-            }
+            let now = from.at(time_s, &self.rocking.between(step, time_s));
+            let sample = self.sample(&now, false);
+            self.thrust.note_demand(time_s, &sample.demand);
+            self.note_return(&sample);
+            self.recorder.step(time_s, &sample.poses, &sample.hinges);
+            self.buffer = sample;
+        }
+    }
+
+    /// Records the thrust before the unstable equilibrium.
+    fn note_return(&mut self, sample: &Sample) {
+        let comes_back = |rotation: f64| rotation.abs() < 1.0;
+        if sample.rotation_over_critical.is_some_and(comes_back) {
+            self.thrust_before_critical = self.thrust;
         }
     }
 
@@ -145,7 +143,7 @@ impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
         while self.next_s() < step.end_s {
             let time_s = self.next_s().max(step.start_s);
             let state = self.rocking.between(step, time_s);
-            let sample = self.sample(&from.at(time_s, &state));
+            let sample = self.sample(&from.at(time_s, &state), true);
             self.next += 1;
             if let Some(last_sample) = self.last_sample.replace(sample) {
                 let flow = self.emit(&last_sample);
@@ -159,7 +157,7 @@ impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
     /// Takes the last sample, at the end of the simulation.
     pub(super) fn finish(&mut self, now: &StructureState<'a, C>) -> ControlFlow<()> {
         let piece = self.rocking.ground.piece_at(now.time_s);
-        let last = self.sample(&SystemState { piece, ..*now });
+        let last = self.sample(&SystemState { piece, ..*now }, true);
         // Replace a sample that differs from the end only by rounding error.
         if let Some(last_sample) = self.last_sample.take()
             && last_sample.time_s < now.time_s - 1e-9 * self.output_step_s
@@ -201,7 +199,7 @@ impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
                 while self.next_s() <= step.end_s {
                     let time_s = self.next_s();
                     let state = rocking.between(step, time_s);
-                    let sample = self.sample(&overturned.at(time_s, &state));
+                    let sample = self.sample(&overturned.at(time_s, &state), true);
                     self.next += 1;
                     ended = self.recorder.fall(&sample);
                     if let Some(at) = fall::end_at(&sample) {

@@ -159,12 +159,8 @@ pub trait Stepper<'a>: Sized {
         }
     }
 
-    /// Sends the poses of the blocks to a recorder that wants those of all steps. `poses` is reused.
+    /// Sends the poses of the blocks after a step to the recorder. `poses` is reused.
     fn report_poses(&mut self, poses: &mut Vec<Pose>) {
-        let wants = |recorder: &&mut dyn Recorder| recorder.wants_steps();
-        if !self.course().recorder.as_ref().is_some_and(wants) {
-            return;
-        }
         poses.clear();
         poses.extend(self.poses());
         let course = self.course_mut();
@@ -230,7 +226,9 @@ where
         let begun = longest_step.map(|_| Instant::now());
         stepper.step(marks.next_s())?;
         longest_step = longest_step.max(begun.map(|begun| begun.elapsed()));
-        stepper.report_poses(&mut poses);
+        if samples_are_made {
+            stepper.report_poses(&mut poses);
+        }
     };
     let course = stepper.course();
     if samples_are_made && sampled_s != Some(course.time) && !course.stopped {
