@@ -104,7 +104,9 @@ pub trait Stepper<'a>: Sized {
         };
         let hinge = |joint: usize| opens_at_once(joint).or_else(|| self.hinge(joint));
         let hinges = (0..course.task.row.joints.len()).filter_map(hinge);
-        let energy_after_j = (energy_before_j - taken_j).max(0.0);
+        // In a step that also starts the motion, part of the energy arises after its beginning.
+        let energy_before_j = energy_before_j.max(taken_j);
+        let energy_after_j = energy_before_j - taken_j;
         let event = self.event(EventKind::Impact, moves);
         // A row that lands in its initial position came from the other side.
         let sway = if moves { self.heading() } else { Sway::Right };
