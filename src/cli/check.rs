@@ -118,6 +118,7 @@ fn drawn(scenario: &Scenario) -> Result<Scene, Failure> {
     let request = scenario.request_on(scenario.ground_motion(), &scenario.structure);
     let request = Request {
         end_s: request.output_step_s,
+        outcome_by_s: None,
         ..request
     };
     let history = model.history(&GroundMotion::still(), &request)?;

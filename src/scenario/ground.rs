@@ -40,7 +40,7 @@ impl Ground {
     /// All faults of the text and of its records.
     pub fn of(source: &Source, gravity_m_s2: f64) -> Result<Self, ScenarioErrors> {
         table::read_text((&source.text, &source.folder), &[], |table| {
-            let known = (&[][..], Some(gravity_m_s2));
+            let known = (&[][..], Some(gravity_m_s2), false);
             let ground = table.given_table("ground", |table| Self::read(table, known))?;
             let missing =
                 "lacks a ground motion: give a table [ground.<kind>], such as [ground.rectangular]";
@@ -163,7 +163,7 @@ impl PulseGround {
         // Free fall of the ground does not depend on gravity, whose value may be faulty.
         let gravity_m_s2 = known.1.unwrap_or(1.0);
         let motion = pulse.motion(gravity_m_s2);
-        match motion.free_fall_s(gravity_m_s2) {
+        match motion.free_fall_s(gravity_m_s2).filter(|_| !known.2) {
             None => Ok((pulse, motion)),
             Some(time_s) => Err(table.wrong("vertical_amplitude_g", free_fall(time_s))),
         }

@@ -294,7 +294,7 @@ impl Scenario {
         let gravity_m_s2 = simulated.map(|it| it.gravity_m_s2);
         let built = Structure::read(table, hinges, gravity_m_s2);
         let structure = built.as_ref().ok().map(|(structure, _)| structure);
-        let known = (known, gravity_m_s2);
+        let known = (known, gravity_m_s2, options.statics);
         let ground = GroundInput::read(table, known, options.statics);
         let mut motion = motion.complete(table);
         if let (Ok((Motion::ElasticJoints(joints), _)), Some(it)) = (&mut motion, gravity_m_s2) {
@@ -522,9 +522,11 @@ impl Scenario {
     /// Returns the request for a history of a structure from rest on a ground motion; `[initial]` is ignored.
     #[must_use]
     pub fn request_on(&self, ground: &GroundMotion, structure: &Structure) -> Request {
+        let end_s = self.simulation.end_s(ground.end_s(), structure.size_m());
         Request {
             gravity_m_s2: self.simulation.gravity_m_s2,
-            end_s: self.simulation.end_s(ground.end_s(), structure.size_m()),
+            end_s,
+            outcome_by_s: self.simulation.outcome_by_s(ground.end_s(), end_s),
             output_step_s: self.simulation.output_step_s,
             initial: None,
             relative_tolerance: self.simulation.relative_tolerance,

@@ -87,6 +87,7 @@ pub fn request(end_s: f64) -> Request {
     Request {
         gravity_m_s2: GRAVITY,
         end_s,
+        outcome_by_s: None,
         output_step_s: end_s,
         initial: None,
         relative_tolerance: 1e-9,

@@ -20,6 +20,7 @@ pub fn run(
     let request = Request {
         gravity_m_s2,
         end_s,
+        outcome_by_s: None,
         output_step_s: 0.005,
         initial,
         relative_tolerance: 1e-10,

@@ -33,6 +33,7 @@ fn restitution(alpha: f64) -> f64 {
 const REQUEST: Request = Request {
     gravity_m_s2: GRAVITY_M_S2,
     end_s: 60.0,
+    outcome_by_s: None,
     output_step_s: 60.0,
     initial: None,
     relative_tolerance: 1e-12,

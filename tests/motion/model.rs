@@ -455,6 +455,7 @@ proptest! {
         let request = Request {
             gravity_m_s2,
             end_s,
+            outcome_by_s: None,
             output_step_s,
             initial: rotation_rad.map(|rotation_rad| Initial { sway, rotation_rad }),
             relative_tolerance,

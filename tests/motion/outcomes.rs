@@ -133,7 +133,7 @@ fn studies_follow_the_ground_motion_of_each_case() {
     assert_eq!(outcomes("p", "map.csv"), ["never_moved"; 2]);
     // A map counts histories without a verdict in its warnings: here one has not yet lost three quarters of the energy barrier.
     let column = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[ground.rectangular]\namplitude_g = 0.6\nduration_s = 0.2\n\
-                  [map]\nduration_s = [0.2]\namplitude_g = [0.1, 0.6]\n";
+                  [simulation]\nduration_s = 10.2\n[map]\nduration_s = [0.2]\namplitude_g = [0.1, 0.6]\n";
     fs::write(at.join("k.toml"), column).unwrap();
     let said = stderr(&archrock(at, &["map", "k.toml", "--out", "k"]));
     shows(&said, &[1.0, 2.0]);
@@ -142,7 +142,7 @@ fn studies_follow_the_ground_motion_of_each_case() {
     // Bisection passes levels without a verdict, so the first intensity that overturns is an upper bound.
     let pulse = "t,a\n0,1\n0.2,1\n0.201,0\n0.3,0\n";
     fs::write(at.join("pulse.csv"), pulse).unwrap();
-    let column = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[suite]\nrecords = [\"pulse.csv\"]\nunit = \"g\"\npeaks_g = [0.1, 3.0]\n";
+    let column = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[suite]\nrecords = [\"pulse.csv\"]\nunit = \"g\"\npeaks_g = [0.1, 3.0]\n[simulation]\nduration_s = 10.3\n";
     fs::write(at.join("b.toml"), column).unwrap();
     let said = stderr(&archrock(at, &["suite", "b.toml", "--out", "b"]));
     assert_eq!(
@@ -183,6 +183,27 @@ fn simulated(text: &str) -> Summary {
     let model = scenario.model().unwrap();
     let summary = model.simulate(scenario.ground_motion(), &scenario.request(), None);
     summary.unwrap()
+}
+
+/// By default a history goes on until its outcome is known: a slender block still has most of its energy ten seconds after the pulse, and
+/// comes to rest later. A given duration is kept.
+#[test]
+fn a_default_duration_is_lengthened_until_there_is_a_verdict() {
+    let block = "[column]\nheight_m = 7.0\nwidth_m = 1.2\n";
+    let pulse = "[ground.one_sine]\namplitude_g = 0.3\nduration_s = 1.0\n";
+    for model in ["", "[free_hinges]\n"] {
+        let text = format!("{block}{model}{pulse}");
+        let free = simulated(&text);
+        let cut = simulated(&format!("{text}[simulation]\nduration_s = 13.0\n"));
+        assert_eq!((cut.outcome, cut.end_s), (Outcome::Incomplete, 13.0));
+        assert!(
+            matches!(free.outcome, Outcome::Rest | Outcome::StillRocking),
+            "{free:?}"
+        );
+        assert!(free.end_s > 13.0, "{free:?}");
+        // The longer history continues the shorter one.
+        assert_eq!(free.peak_rotations_rad, cut.peak_rotations_rad);
+    }
 }
 
 /// On weak ground rigid joints never move, and elastic ones vibrate. A block rocks once a joint opens, by any amount.

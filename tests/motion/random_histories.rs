@@ -67,6 +67,7 @@ proptest! {
         let request = Request {
             gravity_m_s2: gravity,
             end_s: 15.0,
+            outcome_by_s: None,
             output_step_s: 0.01,
             initial: start.map(|(sway, part)| Initial {
                 sway,

@@ -101,3 +101,63 @@ fn the_largest_rotation_is_measured_against_the_mechanism_that_moved() {
     );
     assert!(over_critical < 1.0, "{over_critical}");
 }
+
+/// From the time of rest to the end, the rotations of elastic rows stay within a hundredth of the largest one; rows that move more still vibrate.
+/// A row that slipped stays deformed.
+#[test]
+fn an_elastic_row_at_rest_hardly_moves() {
+    let column = "[column]\nheight_m = 4.6\nwidth_m = 1.25\n[elastic_joints]\nnormal_stiffness_gpa_m = 10\ndamping_time_s = ";
+    let gabor = "\n[ground.gabor]\namplitude_g = -0.39\nduration_s = 0.63\n";
+    let arch = "[arch]\nmean_radius_m = 5.4\nthickness_ratio = 0.15\nembrace_deg = 110\nvoussoirs = 12\n[elastic_joints]\n\
+                normal_stiffness_gpa_m = 30\nfriction_coefficient = 0.66\ncontact_points = 3\ndamping_time_s = 1e-4\n\
+                [ground.one_cosine]\namplitude_g = 0.3\nduration_s = 0.9\n";
+    let slips = "[arch]\nmean_radius_m = 3.1\nthickness_ratio = 0.19\nembrace_deg = 143\nvoussoirs = 8\n[elastic_joints]\n\
+                 normal_stiffness_gpa_m = 10\nfriction_coefficient = 0.47\ndamping_time_s = 1e-3\n\
+                 [ground.windowed_sine]\namplitude_g = -1.6\nduration_s = 0.47\n";
+    // A rate of 1e-16 is no motion.
+    let pointed = "[pointed_arch]\nspan_m = 2.94\nrise_m = 2.48\nthickness_m = 0.36\nvoussoirs = 10\n\
+                   [piers]\nheight_m = 1.05\nwidth_m = 0.98\nblocks = 2\n[elastic_joints]\n\
+                   normal_stiffness_gpa_m = 100.0\nfriction_coefficient = 0.84\ndamping_time_s = 0.0003\n\
+                   [ground.gabor]\namplitude_g = -0.34\nduration_s = 0.15\nphase_deg = 120.0\n[simulation]\nduration_s = 4.0\n";
+    let mut outcomes = Vec::new();
+    for text in [
+        &format!("{column}1e-4{gabor}"),
+        &format!("{column}1e-3{gabor}"),
+        arch,
+        slips,
+        pointed,
+    ] {
+        let scenario = Scenario::parse(text, "s.toml").unwrap();
+        let model = scenario.model().unwrap();
+        let mut rotations: Vec<(f64, Vec<f64>)> = Vec::new();
+        let mut record = |sample: &Sample| {
+            rotations.push((sample.time_s, sample.rotations_rad.clone()));
+            ControlFlow::Continue(())
+        };
+        let ground = scenario.ground_motion();
+        let summary = model.simulate(ground, &scenario.request(), Some(&mut record));
+        let summary = summary.unwrap();
+        let elastic = summary.elastic().unwrap();
+        outcomes.push(summary.outcome);
+        if summary.outcome == Outcome::Rest {
+            let (_, last) = rotations.last().unwrap();
+            let apart = |all: &[f64]| {
+                let apart = all.iter().zip(last).map(|(one, end)| (one - end).abs());
+                apart.fold(0.0, f64::max)
+            };
+            let after = rotations
+                .iter()
+                .filter(|(time_s, _)| *time_s >= summary.outcome_time_s);
+            let most = after.map(|(_, all)| apart(all)).fold(0.0, f64::max);
+            assert!(
+                most < 0.01 * summary.largest_rotation_rad(),
+                "{text}: {most}"
+            );
+            assert!(summary.end_s >= ground.end_s());
+        }
+        // The vibration alone counts neither as rest nor as rocking.
+        assert!(elastic.vibrates_since_s.unwrap() <= summary.outcome_time_s);
+    }
+    let rest = Outcome::Rest;
+    assert_eq!(outcomes, [Outcome::StillRocking, rest, rest, rest, rest]);
+}

@@ -47,6 +47,7 @@ fn run(
         merged_after: 0,
         may_halve: false,
         end_s,
+        outcome_by_s: None,
         output_step_s: Some(end_s / 200.0),
         friction_coefficient: Some(coefficient),
     };
@@ -182,5 +183,32 @@ fn rows_of_an_arch_that_slips_add_up() {
             let rounding_j = 1e-9 * sliding.friction_j;
             assert!(taken_j(impact) > -rounding_j, "{time_s} {impact:?}");
         }
+    }
+}
+
+/// The losses of all impacts add up to the energy that impacts took, also if the motion starts again in the step of an impact.
+#[test]
+fn losses_of_impacts_add_up() {
+    for (amplitude_g, duration_s) in [(0.416, 0.5), (0.42, 0.3), (0.43, 0.5)] {
+        let scenario = crate::common::parsed(&format!(
+            "[column]\nheight_m = 3.134\nwidth_m = 1.302\n[free_hinges]\nfriction_coefficient = 0.631\n\
+             [ground.one_sine]\namplitude_g = {amplitude_g}\nduration_s = {duration_s}\n"
+        ));
+        let model = scenario.model().unwrap();
+        let history = model.history(scenario.ground_motion(), &scenario.request());
+        let history = history.unwrap();
+        let impacts = history
+            .events
+            .iter()
+            .filter_map(|event| event.impact.as_ref());
+        let losses = impacts.map(|impact| {
+            impact.energy_before_j - impact.energy_after_j - impact.friction_j.unwrap()
+        });
+        let sum_j: f64 = losses.sum();
+        let taken_j = history.summary.row().unwrap().energy_taken_j;
+        assert!(
+            sum_j > 1e-5 && (sum_j / taken_j - 1.0).abs() < 1e-12,
+            "{sum_j} {taken_j}"
+        );
     }
 }

@@ -1,9 +1,11 @@
 //! Motion of a row of rigid blocks with elastic joints.
 //!
 //! `motion` is the leapfrog of one or several parallel histories. `stepper` advances and evaluates each history, for the driver of all rows.
+//! `stillness` decides when a row is at rest.
 
 mod model;
 mod motion;
 mod stepper;
+mod stillness;
 
 pub use model::ElasticJoints;

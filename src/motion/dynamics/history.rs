@@ -23,7 +23,8 @@ use crate::mechanics::tie::{Tie, TieMemory};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
-    /// Nothing moved: no joint opened or slipped, and elastic joints did not vibrate. The history is complete.
+    /// Nothing moved: no joint opened or slipped, and the kinetic energy of elastic joints stayed below 1e-9 of weight times size. They may have
+    /// followed the ground slowly, without vibration, and turned a little. The history is complete.
     NeverMoved,
     /// Elastic joints vibrated, but no joint opened beyond its state at rest by more than the weight compresses a joint, and the structure
     /// did not slide. The history is complete.
@@ -688,6 +689,11 @@ pub struct ElasticSummary {
     pub rest_eccentricity_ratio: f64,
     /// Index of the joint with this eccentricity.
     pub rest_eccentricity_joint: usize,
+    /// Opening beyond the state at rest above which a joint counts as open, in m: the compression of the most compressed edge under self-weight.
+    pub opening_tolerance_m: f64,
+    /// Time in s since which the row rests or only vibrates, on quiet ground: its kinetic and potential energy are each below a tenth of the elastic
+    /// energy under self-weight, or below 0.03 of the barrier of the first mechanism. Null if it still moved more.
+    pub vibrates_since_s: Option<f64>,
 }
 
 /// Largest compressive stress, with its joint and time.

@@ -1,5 +1,8 @@
 //! Largest values over time.
 
+/// Rise of a value, relative to it, below which it counts as constant.
+pub const CONSTANT: f64 = 1e-12;
+
 /// Largest value over time, and the time at which it is first reached.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Peak {
@@ -11,7 +14,7 @@ pub struct Peak {
 
 impl Peak {
     pub(super) fn note(&mut self, value: f64, time_s: f64) {
-        if value > self.value {
+        if value > self.value * (1.0 + CONSTANT) {
             *self = Self { value, time_s };
         }
     }

@@ -3,7 +3,8 @@
 use std::ops::ControlFlow;
 
 use super::fall::FallEnd;
-use super::history::{Event, Sample};
+use super::history::{Event, OpenHinge, Sample};
+use crate::mechanics::geometry::pose::Pose;
 
 /// Receives the samples and events of a history. Breaking ends the history there.
 ///
@@ -29,6 +30,9 @@ pub trait Recorder {
     fn wants_thrust_line(&self) -> bool {
         false
     }
+
+    /// Receives the positions after a step of the computation: the time in seconds, the poses of the bodies, and the open hinges of a mechanism.
+    fn step(&mut self, _time_s: f64, _poses: &[Pose], _hinges: &[OpenHinge]) {}
 
     /// Returns whether the recorder needs samples after the structure has overturned.
     fn wants_fall(&self) -> bool {

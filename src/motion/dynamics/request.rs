@@ -16,6 +16,9 @@ pub struct Request {
     pub gravity_m_s2: f64,
     /// Latest end in seconds, from 1e-6 to 1e6. A history ends earlier if the structure overturns, or rests on quiet ground.
     pub end_s: f64,
+    /// Latest end of a history that would be incomplete at `end_s`, in seconds: the time after the ground motion is doubled until the outcome is known.
+    /// `None`: all histories end at `end_s`.
+    pub outcome_by_s: Option<f64>,
     /// Interval of the samples in seconds, from 1e-6 to 1e6, for at most 1e7 samples. Some models end their steps at samples.
     pub output_step_s: f64,
     /// Initial position; `None` starts from rest.
@@ -24,6 +27,16 @@ pub struct Request {
     pub relative_tolerance: f64,
     /// Fraction of the energy barrier of the first mechanism, from 1e-16 to 0.1. An impact that leaves less energy ends in rest.
     pub rest_energy_ratio: f64,
+}
+
+/// Returns the next end of a history that is incomplete at `end_s`, from [`Request::outcome_by_s`]; `None` if it must end there.
+pub(super) fn later_end_s(
+    outcome_by_s: Option<f64>,
+    ground: &GroundMotion,
+    end_s: f64,
+) -> Option<f64> {
+    let later_s = outcome_by_s.map(|latest_s| latest_s.min(2.0 * end_s - ground.end_s()));
+    later_s.filter(|later_s| *later_s > end_s)
 }
 
 /// Rotated position from which a structure is released at zero velocity.
@@ -59,6 +72,7 @@ impl Default for Request {
         Self {
             gravity_m_s2: 9.81,
             end_s: 10.0,
+            outcome_by_s: None,
             output_step_s: 0.005,
             initial: None,
             relative_tolerance: 1e-9,

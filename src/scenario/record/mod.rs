@@ -200,7 +200,7 @@ impl Record {
             vertical,
         };
         let motion = record.motion(gravity_m_s2);
-        if let Some(time_s) = motion.free_fall_s(gravity_m_s2) {
+        if let Some(time_s) = motion.free_fall_s(gravity_m_s2).filter(|_| !known.2) {
             let inside: &[_] = record.vertical.as_ref().map_or(&[], |_| &["vertical"]);
             return Err(table.wrong_in(inside, "file", free_fall(time_s)));
         }
@@ -208,8 +208,9 @@ impl Record {
     }
 }
 
-/// Input for reading records: records already in memory, and gravity if `[simulation]` gives a valid value.
-pub(super) type KnownRecords<'a> = (&'a [Series], Option<f64>);
+/// Input for reading the ground motion: records already in memory, gravity if `[simulation]` gives a valid value, and whether the ground may fall
+/// freely, for static analysis.
+pub(super) type KnownRecords<'a> = (&'a [Series], Option<f64>, bool);
 
 impl Series {
     /// Reads the unscaled samples of a file. The error is a phrase that follows the name of the file.
@@ -371,7 +372,7 @@ impl Series {
     }
 
     fn read(table: &mut Table<'_>, known: KnownRecords<'_>, start_s: f64) -> ReadResult<Self> {
-        let (known, gravity_m_s2) = known;
+        let (known, gravity_m_s2, _) = known;
         let file = table.required("file", &text());
         let format = Format::read_or_ending(table, &file);
         let scale = table.optional("scale", &SCALE);

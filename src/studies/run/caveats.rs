@@ -64,7 +64,7 @@ pub(super) fn coefficient(friction: f64, decimals: usize) -> String {
 
 /// Returns the friction that a motion without sliding needs; `None` if stone certainly has it.
 pub(super) fn friction_condition(scenario: &Scenario, history: &History) -> Option<String> {
-    let needed = history.thrust.as_ref()?.largest_friction.value;
+    let needed = history.thrust.as_ref()?.required_friction();
     let [low, high] = STONE_FRICTION;
     if scenario.motion.friction_coefficient().is_some() || needed <= low {
         return None;

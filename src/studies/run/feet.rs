@@ -4,16 +4,20 @@ use nalgebra::Vector2;
 use serde::Serialize;
 
 use crate::dynamics::history::Summary as History;
+use crate::dynamics::peak::CONSTANT;
 use crate::scenario::Scenario;
+
+/// Number of equal steps at which the displacement is computed.
+const STEPS: u32 = 200_000;
 
 /// Displacements of the right foot relative to the left one, to the right and upwards.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct FeetApart {
     /// Time at which the history starts, in seconds: zero or negative.
     pub start_s: f64,
-    /// The largest displacement of the right foot relative to the left one at output steps, in metres.
+    /// The largest displacement of the right foot relative to the left one, in metres.
     pub feet_farthest_apart_m: Vector2<f64>,
-    /// Time of the largest displacement, in seconds.
+    /// First time of the largest displacement, in seconds.
     pub feet_farthest_apart_time_s: f64,
     /// The displacement of the right foot relative to the left one at the end of the run, in metres.
     pub feet_apart_at_end_m: Vector2<f64>,
@@ -24,17 +28,17 @@ impl FeetApart {
     pub(super) fn of(scenario: &Scenario, history: &History) -> Option<Self> {
         let ground = scenario.ground_motion();
         ground.right_foot()?;
-        let step_s = scenario.simulation.output_step_s;
-        let first = (ground.start_s() / step_s).ceil() as i32;
-        let last = (history.end_s / step_s).floor() as i32;
-        let mut times_s = vec![ground.start_s()];
-        times_s.extend((first..=last).map(|step| step_s * f64::from(step)));
-        times_s.push(history.end_s);
+        let (start_s, lasts_s) = (ground.start_s(), history.end_s - ground.start_s());
+        let time_s = |step: u32| start_s + lasts_s * (f64::from(step) / f64::from(STEPS));
+        let times_s: Vec<f64> = (0..=STEPS).map(time_s).collect();
         let apart_m = ground.feet_apart_m(&times_s);
-        let all = || times_s.iter().copied().zip(apart_m.iter().copied());
+        let largest_m = apart_m.iter().map(|m| m.norm()).fold(0.0, f64::max);
+        let farthest = apart_m
+            .iter()
+            .position(|m| m.norm() >= largest_m * (1.0 - CONSTANT))?;
         let (feet_farthest_apart_time_s, feet_farthest_apart_m) =
-            all().max_by(|one, other| one.1.norm().total_cmp(&other.1.norm()))?;
-        let (_, feet_apart_at_end_m) = all().next_back()?;
+            (times_s[farthest], apart_m[farthest]);
+        let feet_apart_at_end_m = *apart_m.last()?;
         Some(Self {
             start_s: ground.start_s(),
             feet_farthest_apart_m,

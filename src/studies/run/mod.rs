@@ -50,10 +50,11 @@ use self::words::{NotableImpacts, VerdictLine, Words};
 use super::results::{Results, StudyError};
 use super::runner::{Progress, RunnerError, Watch};
 use crate::dynamics::fall::FallEnd;
-use crate::dynamics::history::{Event, Sample, Summary as History};
+use crate::dynamics::history::{Event, OpenHinge, Sample, Summary as History};
 use crate::dynamics::model::{Model, Recorder};
 use crate::dynamics::repeatability::{Repeatability, RepeatabilityError, Repetitions};
 use crate::dynamics::variation::{VariationResult, Variations};
+use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::sway::Sway;
 use crate::output::scene::Scene;
 use crate::output::summary::summary_of;
@@ -445,7 +446,8 @@ impl Drawings {
         for snapshots in self.film.iter_mut().chain(&mut self.snapshots) {
             snapshots.push(sample);
         }
-        self.points.push(sample);
+        let placed = (&sample.poses[..], &sample.hinges[..]);
+        self.points.push(sample.time_s, placed, true);
         self.curves.push(sample);
     }
 
@@ -617,6 +619,10 @@ impl Recorder for RunRecorder<'_, '_> {
         let drawings = &self.drawings;
         let shows_structure = drawings.film.is_some() || drawings.snapshots.is_some();
         drawings.report.is_some() || shows_structure
+    }
+
+    fn step(&mut self, time_s: f64, poses: &[Pose], hinges: &[OpenHinge]) {
+        self.drawings.points.push(time_s, (poses, hinges), false);
     }
 
     fn wants_fall(&self) -> bool {

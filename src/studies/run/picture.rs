@@ -208,7 +208,9 @@ impl Timeline {
             points.draw(&mut panels, states);
         }
         let energy = Mark::curve("energy", MAIN, self.energy.points());
-        if shows(Panel::Energy) && !energy.is_flat() {
+        // The energy of a structure that never moved is a rounding error.
+        let moves = history.outcome != Outcome::NeverMoved;
+        if shows(Panel::Energy) && moves && !energy.is_flat() {
             let label = match self.in_barriers {
                 true => "Total energy / barrier",
                 false => "Energy (J)",
@@ -231,7 +233,7 @@ impl Timeline {
         if shows(Panel::Rotation) && history.overturned_s().is_some() {
             panels.keys.push(overturns());
         }
-        panels.finish(history.outcome != Outcome::NeverMoved)
+        panels.finish(moves)
     }
 
     /// Adds the panel of the right foot, if it moves.

@@ -6,6 +6,8 @@ use serde_json::{Value, json};
 use super::packed::curve;
 use super::summary::PointPeaks;
 use crate::dynamics::history::{OpenHinge, Sample};
+use crate::dynamics::peak::CONSTANT;
+use crate::mechanics::geometry::pose::Pose;
 use crate::output::chart::Mark;
 use crate::output::envelope::Envelope;
 use crate::output::mechanisms::columns;
@@ -86,14 +88,21 @@ impl ObservedPoints {
         !self.observed.is_empty()
     }
 
-    /// Adds a sample. Samples come in the order of time.
-    pub(super) fn push(&mut self, sample: &Sample) {
+    /// Updates the largest displacements at an instant, and the curves if it is that of a sample. Instants come in the order of time.
+    pub(super) fn push(
+        &mut self,
+        time_s: f64,
+        (poses, hinges): (&[Pose], &[OpenHinge]),
+        is_sample: bool,
+    ) {
         for observed in &mut self.observed {
-            let displaced_m = displacement_m(&self.scene, &observed.point, sample);
+            let displaced_m = displacement_m(&self.scene, &observed.point, poses, hinges);
             for (along, displaced_m) in observed.displacements.iter_mut().zip(displaced_m.iter()) {
-                along.millimetres.push(sample.time_s, 1e3 * displaced_m);
-                if displaced_m.abs() > along.farthest_m.abs() {
-                    (along.farthest_m, along.time_s) = (*displaced_m, sample.time_s);
+                if is_sample {
+                    along.millimetres.push(time_s, 1e3 * displaced_m);
+                }
+                if displaced_m.abs() > along.farthest_m.abs() * (1.0 + CONSTANT) {
+                    (along.farthest_m, along.time_s) = (*displaced_m, time_s);
                 }
             }
         }
@@ -106,10 +115,13 @@ impl ObservedPoints {
             let (scene, point) = (self.scene.clone(), observed.point);
             let name = std::slice::from_ref(&observed.name);
             let names = AXES.map(|(axis, _)| columns(name, "point", &format!("{axis}_m")));
-            several(names.into_iter().flatten(), move |sample, cells| {
-                let displaced_m = displacement_m(&scene, &point, sample);
-                cells.extend(displaced_m.iter().map(|along_m| Cell::from(*along_m)));
-            })
+            several(
+                names.into_iter().flatten(),
+                move |sample: &Sample, cells| {
+                    let displaced_m = displacement_m(&scene, &point, &sample.poses, &sample.hinges);
+                    cells.extend(displaced_m.iter().map(|along_m| Cell::from(*along_m)));
+                },
+            )
         };
         self.observed.iter().map(column).collect()
     }
@@ -176,9 +188,14 @@ impl ObservedPoints {
     }
 }
 
-fn displacement_m(scene: &Scene, point: &StructurePoint, sample: &Sample) -> Vector2<f64> {
-    let carried = scene.body_point(point, &sample.hinges);
-    carried.moved(&sample.poses, 1.0) - point.at_m
+fn displacement_m(
+    scene: &Scene,
+    point: &StructurePoint,
+    poses: &[Pose],
+    hinges: &[OpenHinge],
+) -> Vector2<f64> {
+    let carried = scene.body_point(point, hinges);
+    carried.moved(poses, 1.0) - point.at_m
 }
 
 /// Returns a position in the format of `--point`.

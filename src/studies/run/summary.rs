@@ -120,11 +120,22 @@ pub struct OutcomeSummary {
 /// The friction that prevents sliding.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct FrictionDemand {
-    /// Largest coefficient of friction that a motion without sliding needs, outside impacts. Joints that carry less than a hundredth of the
-    /// weight do not count.
+    /// Largest coefficient of friction that a motion without sliding needs, over all steps outside impacts. Joints that carry less than a
+    /// hundredth of the weight do not count.
     pub largest_friction_demand: f64,
     /// Time of the largest friction demand, in seconds.
     pub largest_friction_demand_time_s: f64,
+    /// Coefficient of friction that a motion without sliding needs for more than a hundredth of the time in motion; null for mechanisms, whose
+    /// largest demand does not depend on the steps.
+    pub lasting_friction_demand: Option<f64>,
+}
+
+impl FrictionDemand {
+    /// Returns the friction coefficient that prevents sliding, except for short peaks of rows.
+    pub(super) fn required(&self) -> f64 {
+        self.lasting_friction_demand
+            .unwrap_or(self.largest_friction_demand)
+    }
 }
 
 /// Results of four links or of a column.
@@ -294,6 +305,7 @@ impl<'a> Summary<'a> {
             friction: history.thrust.as_ref().map(|thrust| FrictionDemand {
                 largest_friction_demand: thrust.largest_friction.value,
                 largest_friction_demand_time_s: thrust.largest_friction.time_s,
+                lasting_friction_demand: thrust.lasting_friction,
             }),
             steps: history.cost.steps,
             mechanisms: mechanisms.map(|model| MechanismResults::of(scenario, model, history)),

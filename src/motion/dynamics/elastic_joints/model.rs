@@ -272,6 +272,7 @@ impl ElasticJoints {
             may_halve: self.given_step_s.is_none(),
             shortest_step_s: step_s,
             end_s: request.end_s,
+            outcome_by_s: request.outcome_by_s,
             output_step_s: Some(request.output_step_s),
             ..Settings::default()
         };

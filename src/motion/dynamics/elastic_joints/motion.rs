@@ -446,7 +446,7 @@ impl<'a, const L: usize> Motion<'a, L> {
     }
 
     /// Returns the rotations in a lane relative to the reference, and their rates half a step before.
-    pub fn rotations_and_rates(&self, lane: usize) -> impl Iterator<Item = (f64, f64)> {
+    pub fn rotations_and_rates(&self, lane: usize) -> impl Iterator<Item = (f64, f64)> + Clone {
         let bodies = self.bodies.iter().zip(&self.datum);
         bodies
             .map(move |(body, datum)| (body.angle_rad.0[lane] - datum[2], body.rate_rad_s.0[lane]))

@@ -5,6 +5,7 @@ use std::cell::OnceCell;
 use nalgebra::Vector2;
 
 use super::motion::{GroundActivity, Motion, Observation, SlidingSupport, Step, joint_bodies};
+use super::stillness::Stillness;
 use crate::dynamics::ground::{FeetApart, GroundVelocity};
 use crate::dynamics::history::{
     EventKind, JointPressure, Sample, Sliding, Stress, Summary, TieSample,
@@ -26,11 +27,10 @@ use crate::mechanics::lanes::Lanes;
 
 /// Number of steps between observations of a motion: one to four periods of the fastest vibration. The structure rocks much more slowly.
 const STRIDE: u64 = 16;
-/// Energy of vibration, over the elastic energy under self-weight, below which a row is at rest. The vibration is then less than a third of the
-/// deflection under self-weight.
-const REST_STRAIN_RATIO: f64 = 0.1;
-/// Energy of vibration, over the barrier of the first mechanism, below which a row is at rest.
-const REST_BARRIER_RATIO: f64 = 0.03;
+/// Energy, over the elastic energy under self-weight, below which a row only vibrates: by less than a third of the deflection under self-weight.
+const VIBRATION_STRAIN_RATIO: f64 = 0.1;
+/// Energy, over the barrier of the first mechanism, below which a row only vibrates.
+const VIBRATION_BARRIER_RATIO: f64 = 0.03;
 /// Energy, over the barrier, below which a row on quiet ground cannot overturn.
 const SAFE: f64 = 0.5;
 /// Energy, over the largest one up to now, below which no block exceeds its largest rotation.
@@ -61,9 +61,9 @@ struct Lane<'a> {
     monitor: MotionMonitor,
     /// Barrier with rigid joints in J, if known; otherwise that with elastic joints, once computed.
     barrier_j: Option<f64>,
+    /// Last time at which the row moved more than by vibration, in seconds.
     quiet_since_s: f64,
-    /// Last time at which a joint was open beyond its state at rest.
-    last_open_s: f64,
+    stillness: Stillness,
     marks: Marks,
     /// Error that ends the motion.
     error: Option<RowMotionError>,
@@ -79,8 +79,8 @@ struct MotionMonitor {
     rest_sway_kg_m: f64,
     /// Gaps above which a joint counts as open, at intrados and extrados, in m; empty before the first observation, at rest.
     opening_m: Vec<[f64; 2]>,
-    /// Largest energy of a row at rest, in J.
-    rest_limit_j: f64,
+    /// Largest energy of a row that only vibrates, in J.
+    vibration_j: f64,
     /// Largest energy, in J.
     largest_j: f64,
     /// True while the centre of gravity moves back to its position at rest.
@@ -122,7 +122,10 @@ impl<'a> Lane<'a> {
             monitor: MotionMonitor::default(),
             barrier_j: task.barrier_j,
             quiet_since_s: start_s,
-            last_open_s: start_s,
+            stillness: Stillness::new(
+                task.undeformed_barrier_j,
+                REST_ENERGY_RATIO * task.row.mass_kg() * task.gravity_m_s2 * task.row.size_m,
+            ),
             marks: Marks::new(task.settings, start_s),
             error: None,
             tie_events: Vec::new(),
@@ -189,6 +192,7 @@ impl<'a> Lane<'a> {
         if self.monitor.opening_m.is_empty() {
             let at_rest: Vec<[f64; 2]> = penetrations_m.collect();
             let most_m = at_rest.iter().flatten().copied().fold(0.0, f64::max);
+            self.course.elastic.opening_tolerance_m = most_m;
             let opens = |end: f64| (-end).max(0.0) + most_m;
             self.monitor.opening_m = at_rest.iter().map(|ends| ends.map(opens)).collect();
             return false;
@@ -204,15 +208,12 @@ impl<'a> Lane<'a> {
         motion: &Motion<'_, L>,
         supports: &[SlidingSupport],
     ) -> f64 {
-        if self.course.has_rocked != Some(true) || !self.course.moved {
+        if self.course.has_rocked != Some(true) {
             let edges = motion.memories.iter().map(|edges| edges.penetrations_m);
             let is_open = self.is_open(edges.map(|ends| ends.map(|end| end.0[index])));
             let slips =
                 self.course.elastic.friction_j > REST_ENERGY_RATIO * self.course.energy_unit;
-            if is_open {
-                self.last_open_s = self.course.time;
-            }
-            self.course.has_rocked = Some(self.course.has_rocked == Some(true) || is_open || slips);
+            self.course.has_rocked = Some(is_open || slips);
         }
         let course = &mut self.course;
         let mut slid = 0.0;
@@ -234,15 +235,30 @@ impl<'a> Lane<'a> {
         slid
     }
 
+    /// Records whether the row moves more than by vibration.
+    fn note_vibration(&mut self, kinetic_j: f64, potential_j: f64) {
+        let most_j = self.monitor.vibration_j;
+        let vibrates = kinetic_j < most_j && potential_j < most_j;
+        // A row without motion that stands higher than before is held by friction.
+        if !vibrates && kinetic_j >= REST_ENERGY_RATIO * self.course.energy_unit {
+            self.quiet_since_s = self.course.time;
+            self.course.moved = true;
+        }
+        let since_s = self.quiet_since_s;
+        self.course.elastic.vibrates_since_s = self.lasts(since_s).then_some(since_s);
+    }
+
+    /// Returns whether the row has been in a state since this time for long enough, on quiet ground.
+    fn lasts(&self, since_s: f64) -> bool {
+        self.course.is_quiet(since_s.max(self.quiet_s))
+    }
+
     fn rests_since(&self) -> Option<f64> {
-        // A row may rock with no more energy than at rest.
-        let since_s = if self.course.moved {
-            self.quiet_since_s
-        } else {
-            self.last_open_s
-        };
-        let quiet = self.course.is_quiet(since_s.max(self.quiet_s));
-        quiet.then_some(since_s)
+        let mut since_s = self.quiet_since_s;
+        if self.course.has_rocked == Some(true) {
+            since_s = since_s.max(self.stillness.since_s);
+        }
+        self.lasts(since_s).then_some(since_s)
     }
 
     /// Returns whether the outcome is certain at this energy. On quiet ground a structure gains no energy.
@@ -265,7 +281,7 @@ impl<'a> Lane<'a> {
         if self.until == EndCondition::Settled {
             // Assume that the energy decays `SLOWER` times more slowly from now on.
             let rate = (quiet_j / energy_j).ln() / (self.course.time - quiet_s);
-            let rests_s = SLOWER * (energy_j / self.monitor.rest_limit_j).ln().max(0.0) / rate;
+            let rests_s = SLOWER * (energy_j / self.stillness.limit_j).ln().max(0.0) / rate;
             let rested_s = self.course.time + rests_s + self.course.rest_time_s();
             let rests = rate > 0.0 && rested_s < self.course.task.settings.end_s;
             if !(self.course.moved && rests && energy_j < DECAYED * self.monitor.largest_j) {
@@ -401,9 +417,9 @@ impl<'a, const L: usize> Group<'a, L> {
             return;
         }
         let rest_j = *lane.monitor.rest_j.get_or_insert_with(|| {
-            lane.monitor.rest_limit_j = (REST_ENERGY_RATIO * course.energy_unit)
-                .max(REST_STRAIN_RATIO * elastic)
-                .max(REST_BARRIER_RATIO * lane.barrier_j.unwrap_or(0.0));
+            lane.monitor.vibration_j = (REST_ENERGY_RATIO * course.energy_unit)
+                .max(VIBRATION_STRAIN_RATIO * elastic)
+                .max(VIBRATION_BARRIER_RATIO * lane.barrier_j.unwrap_or(0.0));
             lane.monitor.rest_sway_kg_m = of(observation.sway_kg_m);
             stored
         });
@@ -445,18 +461,17 @@ impl<'a, const L: usize> Group<'a, L> {
             .rotations_and_rates(index)
             .map(|(rotation, _)| rotation);
         lane.monitor.moves_back = sway.abs() < course.sway.abs();
-        course.observe(rotations, potential, kinetic, sway);
+        course.observe(rotations.clone(), potential, kinetic, sway);
+        let peak_rad = course.largest_rotation_rad();
+        lane.stillness
+            .note(time, [kinetic, potential], rotations, peak_rad);
         let far = OVERTURNED_RATIO * self.row.size_m;
         course.overturned |= of(observation.largest_rotation_rad) >= OVERTURNED_RAD
             || of(observation.largest_displacement_m2) >= far * far;
         let height = lane.feet.is_none().then_some(potential + dissipated_j);
         course.note_height(height);
-        let vibrates = kinetic < lane.monitor.rest_limit_j && potential < lane.monitor.rest_limit_j;
-        // A row without motion that stands higher than before is held by friction.
-        if !vibrates && kinetic >= REST_ENERGY_RATIO * course.energy_unit {
-            lane.quiet_since_s = time;
-            course.moved = true;
-        }
+        lane.note_vibration(kinetic, potential);
+        let course = &mut lane.course;
         let barrier_j = || *self.barrier_j.get_or_init(self.find_barrier_j);
         let (rigid_j, known_j) = (lane.barrier_j.unwrap_or(0.0), &mut lane.barrier_j);
         let scale_j = || *known_j.get_or_insert_with(|| barrier_j().unwrap_or(0.0));
@@ -481,8 +496,11 @@ impl<'a, const L: usize> Group<'a, L> {
         let course = &lane.course;
         let ending = course.ending(course.overturned_s(), || lane.rests_since());
         if let Some((outcome, time_s)) = ending {
-            let mut ended = self.lanes[index].take()?;
-            return Some(Ok(ended.course.end(outcome, time_s)));
+            let Some(end_s) = lane.course.lengthened_s(outcome) else {
+                let mut ended = self.lanes[index].take()?;
+                return Some(Ok(ended.course.end(outcome, time_s)));
+            };
+            lane.marks.settings.end_s = end_s;
         }
         while lane.marks.is_due(lane.course.time) {
             lane.marks.pass();
@@ -506,6 +524,15 @@ impl<'a> Group<'a, 1> {
         let (centre_m, body) = (self.row.blocks[index].centre_m, &self.motion.bodies[index]);
         let moved_m = Vector2::from(body.place.moved_m.map(|part| part.0[0]));
         Pose::about(centre_m, centre_m + moved_m, body.angle_rad.0[0])
+    }
+
+    /// Returns the friction coefficient without which joints would slide at this instant.
+    fn friction_demand(&self) -> f64 {
+        let least_n = self.course().least_load_n();
+        let pressures = (0..self.structure.joints.len()).map(|joint| self.pressure(joint));
+        let loaded = pressures.filter(|pressure| pressure.normal_n >= least_n);
+        let needed = loaded.map(|pressure| pressure.shear_n.abs() / pressure.normal_n);
+        needed.fold(0.0, f64::max)
     }
 
     /// Returns the elastic forces and stresses of a joint.
@@ -550,11 +577,16 @@ impl<'a> Stepper<'a> for Group<'a, 1> {
 
     /// Takes steps up to the next observation of the motion.
     fn step(&mut self, until: f64) -> Result<(), RowMotionError> {
-        let stood = !self.course().moved;
+        let (stood, from_s) = (!self.course().moved, self.course().time);
         self.lane_mut().until_s = until;
         self.stride();
         if let Some(error) = self.lane_mut().error.take() {
             return Err(error);
+        }
+        if self.course().has_recorder() {
+            let demand = self.friction_demand();
+            let course = self.course_mut();
+            course.note_friction(demand, course.time - from_s);
         }
         let course = self.course_mut();
         if stood && course.moved {
@@ -574,19 +606,15 @@ impl<'a> Stepper<'a> for Group<'a, 1> {
         for index in 0..self.row.blocks.len() {
             let [.., rate] = motion.velocity(index, &half);
             sample.rates_rad_s.push(rate.0[0]);
-            sample.poses.push(self.pose(index));
         }
         sample.feet_apart_m = self.lane().feet_apart_m;
         let observation = motion.observe(&half, &self.supports);
         for joint in 0..self.structure.joints.len() {
             let pressure = self.pressure(joint);
-            if pressure.normal_n >= self.course().least_load_n() {
-                let needed = pressure.shear_n.abs() / pressure.normal_n;
-                sample.demand.friction = sample.demand.friction.max(needed);
-            }
             sample.eccentricity_ratios.push(pressure.eccentricity_ratio);
             sample.pressures.push(pressure);
         }
+        sample.demand.friction = self.friction_demand();
         let ties = self.structure.ties.iter().zip(&motion.ties);
         let ties = ties.map(|(bound, memory)| TieSample::of(&bound.tie, memory));
         sample.ties.extend(ties);
@@ -598,6 +626,10 @@ impl<'a> Stepper<'a> for Group<'a, 1> {
 
     fn rotations_and_rates(&self) -> impl Iterator<Item = (f64, f64)> {
         self.motion.rotations_and_rates(0)
+    }
+
+    fn poses(&self) -> impl Iterator<Item = Pose> {
+        (0..self.row.blocks.len()).map(|index| self.pose(index))
     }
 
     fn gaps(&self, joint: usize) -> [f64; 2] {

@@ -82,6 +82,8 @@ impl RowOptions {
 
 /// Step length proposed after an error of the energy balance, over the longest step.
 const SHORTER: f64 = 0.2;
+/// Largest number of default steps of a row with ties, times the number of joints and ties: some minutes of computing.
+const MOST_TIE_WORK: f64 = 5e8;
 /// Error of the energy balance, relative to the largest energy of the motion, above which it is reported.
 pub const DOUBTFUL_ENERGY_ERROR: f64 = 1e-3;
 
@@ -196,6 +198,7 @@ impl FreeHinges {
         settings = settings.for_ties(row);
         settings.may_halve = self.options.longest_step_s.is_none();
         settings.output_step_s = Some(request.output_step_s);
+        settings.outcome_by_s = request.outcome_by_s;
         settings.friction_coefficient = self.options.friction_coefficient;
         if self.merges_landings {
             settings.with_landings_merged()
@@ -246,6 +249,15 @@ impl Model for FreeHinges {
     ) -> Result<Summary, SimulationError> {
         check(ground, request)?;
         let settings = self.settings(request);
+        if self.options.longest_step_s.is_none() && !self.row().ties.is_empty() {
+            let step_s = settings.longest_step_s;
+            let remedy = format!(
+                "the ties are too stiff; give them a smaller stiffness_n_m, combine ties that are close to each other, or give \
+                 longest_step_s = {step_s:.1e} in [free_hinges] to compute the motion nevertheless"
+            );
+            let parts = self.row().ties.len() + self.row().joints.len();
+            settings.within(MOST_TIE_WORK / parts as f64, &remedy)?;
+        }
         let initial = request.initial.map(|initial| self.rigid.released(initial));
         let task = self.rigid.task(ground, request.gravity_m_s2, settings);
         let initial_rad = initial.transpose()?;

@@ -28,6 +28,7 @@ use crate::dynamics::row::task::Task;
 use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::coulomb::{Mode, Program, TangentialMode};
+use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::joints::Placement;
 use crate::mechanics::slip::{Contact, Faces, Position};
@@ -549,11 +550,8 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
 
     fn write(&mut self, sample: &mut Sample, thrust_line: bool) -> Result<f64, RowMotionError> {
         let kinetic_j = self.synchronise();
-        let blocks = self.row.blocks.iter().zip(&self.positions);
-        for (index, (block, position)) in blocks.enumerate() {
-            sample.rates_rad_s.push(self.auxiliary.velocity(index).z);
-            sample.poses.push(position.pose(block.centre_m));
-        }
+        let rates = (0..self.positions.len()).map(|index| self.auxiliary.velocity(index).z);
+        sample.rates_rad_s.extend(rates);
         sample.feet_apart_m = self.right.displacement_m;
         sample.offsets_m.extend(&self.stick_offsets_m);
         sample.ties.extend(self.ties.samples());
@@ -570,6 +568,11 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
         let rotations = self.positions.iter().map(|position| position.rotation_rad);
         let rates = self.velocities.iter().map(|velocity| velocity.z);
         self.rest.relative_rotations_rad(rotations).zip(rates)
+    }
+
+    fn poses(&self) -> impl Iterator<Item = Pose> {
+        let blocks = self.row.blocks.iter().zip(&self.positions);
+        blocks.map(|(block, position)| position.pose(block.centre_m))
     }
 
     fn gaps(&self, joint: usize) -> [f64; 2] {

@@ -147,10 +147,10 @@ pub enum EngineError {
     TooManyTransitions(f64, usize),
 }
 
-/// Runs `system` from time zero until it is over, until the end in the settings, or until `observer` breaks.
+/// Runs `system` from time zero as [`resume`].
 ///
 /// # Errors
-/// When the integration breaks down or the number of transitions passes its bound.
+/// Those of [`resume`].
 pub fn simulate<S: HybridSystem<N>, const N: usize>(
     system: &S,
     mode: S::Mode,
@@ -158,13 +158,27 @@ pub fn simulate<S: HybridSystem<N>, const N: usize>(
     settings: &Settings,
     observer: &mut impl Observer<S, N>,
 ) -> Result<Finish<S::Mode, N>, EngineError> {
+    let now = SystemState {
+        time_s: 0.0,
+        piece: 0,
+        mode,
+        state,
+    };
+    resume(system, now, settings, observer)
+}
+
+/// Runs `system` from a state until it is over, until the end in the settings, or until `observer` breaks.
+///
+/// # Errors
+/// When the integration breaks down or the number of transitions passes its bound.
+pub fn resume<S: HybridSystem<N>, const N: usize>(
+    system: &S,
+    now: SystemState<S::Mode, N>,
+    settings: &Settings,
+    observer: &mut impl Observer<S, N>,
+) -> Result<Finish<S::Mode, N>, EngineError> {
     let mut finish = Finish {
-        now: SystemState {
-            time_s: 0.0,
-            piece: 0,
-            mode,
-            state,
-        },
+        now,
         stopped: false,
         cost: Cost::default(),
     };

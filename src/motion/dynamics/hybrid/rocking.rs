@@ -234,7 +234,7 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
     }
 
     /// Returns the time scale of a fall from `q = 0`: `1/p`, `p^2 = g S_y / (L M q_c)` with the coefficients at zero.
-    fn fall_s(&self, link: &Link<C::Mechanism>) -> f64 {
+    pub(super) fn fall_s(&self, link: &Link<C::Mechanism>) -> f64 {
         (link.at_zero.inertia * link.critical_rad / self.potential_slope(link)).sqrt()
     }
 

@@ -19,6 +19,9 @@ use crate::mechanics::geometry::pose::Pose;
 /// Relative error tolerance of a step of a fall, which is only drawn.
 const FALL_TOLERANCE: f64 = 1e-6;
 
+/// Longest time between instants at which the demand of a moving structure is computed, over the time scale of its fall.
+const DEMAND_STEP_RATIO: f64 = 1.0 / 32.0;
+
 /// Takes samples at multiples of the output step.
 pub(super) struct Sampler<'r, 'a, C: MechanismChain> {
     rocking: &'r Rocking<'a, C>,
@@ -64,14 +67,11 @@ impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
     fn emit(&mut self, sample: &Sample) -> ControlFlow<()> {
         let moving = sample.state != State::Rest;
         self.thrust.note(sample.time_s, moving, &sample.demand);
-        let comes_back = |rotation: f64| rotation.abs() < 1.0;
-        if sample.rotation_over_critical.is_some_and(comes_back) {
-            self.thrust_before_critical = self.thrust;
-        }
+        self.note_return(sample);
         self.recorder.sample(sample)
     }
 
-    fn sample(&mut self, now: &StructureState<'a, C>) -> Sample {
+    fn sample(&mut self, now: &StructureState<'a, C>, thrust_line: bool) -> Sample {
         let rocking = self.rocking;
         let mut sample = mem::take(&mut self.buffer);
         let (ground_m_s2, _) = rocking.ground.pieces[now.piece].at(now.time_s);
@@ -99,7 +99,7 @@ impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
         } else {
             poses.resize(C::Mechanism::BODIES.len(), Pose::UNDEFORMED);
         }
-        if self.recorder.wants_thrust_line() {
+        if thrust_line && self.recorder.wants_thrust_line() {
             sample.eccentricity_ratios = rocking.eccentricity_ratios(now);
         }
         if self.recorder.wants_demand() {
@@ -111,12 +111,39 @@ impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
         sample
     }
 
+    /// Records the demand and the positions at several instants of a step.
+    fn note_step(&mut self, from: &StructureState<'a, C>, step: &Step<3>) {
+        let span_s = step.end_s - step.start_s;
+        let Some(swing) = from.mode.swing().filter(|_| span_s > 0.0) else {
+            return;
+        };
+        let parts = (span_s / (DEMAND_STEP_RATIO * self.rocking.fall_s(swing.link))).ceil();
+        for part in 1..=(parts as usize) {
+            let time_s = step.start_s + span_s * (part as f64 / parts);
+            let now = from.at(time_s, &self.rocking.between(step, time_s));
+            let sample = self.sample(&now, false);
+            self.thrust.note_demand(time_s, &sample.demand);
+            self.note_return(&sample);
+            self.recorder.step(time_s, &sample.poses, &sample.hinges);
+            self.buffer = sample;
+        }
+    }
+
+    /// Records the thrust before the unstable equilibrium.
+    fn note_return(&mut self, sample: &Sample) {
+        let comes_back = |rotation: f64| rotation.abs() < 1.0;
+        if sample.rotation_over_critical.is_some_and(comes_back) {
+            self.thrust_before_critical = self.thrust;
+        }
+    }
+
     /// Takes the samples of a step.
     pub(super) fn step(&mut self, from: &StructureState<'a, C>, step: &Step<3>) -> ControlFlow<()> {
+        self.note_step(from, step);
         while self.next_s() < step.end_s {
             let time_s = self.next_s().max(step.start_s);
             let state = self.rocking.between(step, time_s);
-            let sample = self.sample(&from.at(time_s, &state));
+            let sample = self.sample(&from.at(time_s, &state), true);
             self.next += 1;
             if let Some(last_sample) = self.last_sample.replace(sample) {
                 let flow = self.emit(&last_sample);
@@ -130,7 +157,7 @@ impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
     /// Takes the last sample, at the end of the simulation.
     pub(super) fn finish(&mut self, now: &StructureState<'a, C>) -> ControlFlow<()> {
         let piece = self.rocking.ground.piece_at(now.time_s);
-        let last = self.sample(&SystemState { piece, ..*now });
+        let last = self.sample(&SystemState { piece, ..*now }, true);
         // Replace a sample that differs from the end only by rounding error.
         if let Some(last_sample) = self.last_sample.take()
             && last_sample.time_s < now.time_s - 1e-9 * self.output_step_s
@@ -172,7 +199,7 @@ impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
                 while self.next_s() <= step.end_s {
                     let time_s = self.next_s();
                     let state = rocking.between(step, time_s);
-                    let sample = self.sample(&overturned.at(time_s, &state));
+                    let sample = self.sample(&overturned.at(time_s, &state), true);
                     self.next += 1;
                     ended = self.recorder.fall(&sample);
                     if let Some(at) = fall::end_at(&sample) {

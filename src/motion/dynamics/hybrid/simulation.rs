@@ -2,7 +2,9 @@
 
 use std::ops::ControlFlow;
 
-use super::engine::{HybridSystem, Observer, Settings, Transition, falling_root, simulate};
+use super::engine::{
+    Finish, HybridSystem, Observer, Settings, Transition, falling_root, resume, simulate,
+};
 use super::integrator::Step;
 use super::posture::{StructureState, posture, seen_from_ground, state};
 use super::rocking::{Guard, Mode, Phase, Rocking, RockingState, Swing};
@@ -12,6 +14,7 @@ use crate::dynamics::history::{Details, Event, EventKind, Impact, Outcome, Summa
 use crate::dynamics::model::{
     Initial, MechanismModel, Model, Recorder, Request, SimulationError, check,
 };
+use crate::dynamics::request::later_end_s;
 use crate::dynamics::until::SAFE;
 use crate::mechanics::capacity::{Displaced, displaced, moving_bodies};
 use crate::mechanics::chain::{Hinge, Link, Mechanism, MechanismChain};
@@ -114,7 +117,7 @@ fn history_of<C: MechanismChain + MechanismModel>(
     let mode = request.initial.map_or(Phase::Rest, mode);
     let q_rad = request.initial.map_or(0.0, |initial| initial.rotation_rad);
     let state = RockingState::new(q_rad, 0.0, 0.0);
-    let settings = Settings {
+    let mut settings = Settings {
         end_s: request.end_s,
         relative_tolerance: request.relative_tolerance,
         max_transitions: MAX_TRANSITIONS,
@@ -132,8 +135,16 @@ fn history_of<C: MechanismChain + MechanismModel>(
         largest_defect: 0.0,
     };
     collector.note_peak(mode, &state);
-    let finish = simulate(&rocking, mode, state, &settings, &mut collector);
-    let finish = finish.map_err(SimulationError::computation)?;
+    let may_overturn = |now: &StructureState<'_, C>| match now.mode {
+        Phase::Rocking(swing) => {
+            rocking.energy(swing.link, &now.state) > SAFE * rocking.barrier_of(swing.link)
+        }
+        Phase::Rest | Phase::Overturned(_) => false,
+    };
+    let finish = simulate_lengthened(mode, state, &mut settings, &mut collector, |now, end_s| {
+        let later_s = later_end_s(request.outcome_by_s, ground, end_s);
+        later_s.filter(|_| may_overturn(now))
+    })?;
     let now = &finish.now;
     if let Some(sampler) = collector.sampler.as_mut().filter(|_| !finish.stopped) {
         // The history ends here in any case.
@@ -142,13 +153,10 @@ fn history_of<C: MechanismChain + MechanismModel>(
     }
     collector.note_peak(now.mode, &now.state);
     collector.check_energy(now.mode, &now.state);
-    let may_overturn = |swing: Swing<'_, C::Mechanism>| {
-        rocking.energy(swing.link, &now.state) > SAFE * rocking.barrier_of(swing.link)
-    };
     let outcome = match now.mode {
         Phase::Overturned(swing) => Outcome::Overturned(swing.sway),
         _ if now.time_s < ground.end_s() => Outcome::Incomplete,
-        Phase::Rocking(swing) if may_overturn(swing) => Outcome::Incomplete,
+        Phase::Rocking(_) if may_overturn(now) => Outcome::Incomplete,
         Phase::Rocking(_) => Outcome::StillRocking,
         Phase::Rest if collector.last_rest_s.is_some() => Outcome::Rest,
         Phase::Rest => Outcome::NeverMoved,
@@ -176,6 +184,30 @@ fn history_of<C: MechanismChain + MechanismModel>(
         cost: finish.cost,
         details: Details::Mechanisms(peak_over_critical),
     })
+}
+
+/// Runs a motion up to the end in the settings. `longer_s` returns a later end in seconds, `None` if the motion ends there.
+fn simulate_lengthened<'a, C: MechanismChain>(
+    mode: Mode<'a, C::Mechanism>,
+    state: RockingState,
+    settings: &mut Settings,
+    collector: &mut SummaryCollector<'_, 'a, C>,
+    longer_s: impl Fn(&StructureState<'a, C>, f64) -> Option<f64>,
+) -> Result<Finish<Mode<'a, C::Mechanism>, 3>, SimulationError> {
+    let rocking = collector.rocking;
+    let mut finish = simulate(rocking, mode, state, settings, collector)
+        .map_err(SimulationError::computation)?;
+    while !finish.stopped
+        && let Some(end_s) = longer_s(&finish.now, settings.end_s)
+    {
+        let cost = finish.cost;
+        settings.end_s = end_s;
+        finish = resume(rocking, finish.now, settings, collector)
+            .map_err(SimulationError::computation)?;
+        finish.cost.evaluations += cost.evaluations;
+        finish.cost.steps += cost.steps;
+    }
+    Ok(finish)
 }
 
 /// Duration after the end of the ground motion in which the first fall ends, in seconds. Close to the unstable equilibrium a motion may last for some

@@ -18,8 +18,10 @@ pub struct Settings {
     pub shortest_step_s: f64,
     /// Number of impacts within the shortest step after which landings are merged.
     pub merged_after: usize,
-    /// Latest end of the motion, in seconds.
+    /// End of the motion, in seconds.
     pub end_s: f64,
+    /// Latest end of a motion that is incomplete at its end, in seconds; see [`Request`](crate::dynamics::request::Request).
+    pub outcome_by_s: Option<f64>,
     /// Time between samples, in seconds; `None` without samples. Steps also end at these times if nobody records samples.
     pub output_step_s: Option<f64>,
     /// Coulomb's coefficient of friction at all joints; `None` prevents slip.
@@ -44,7 +46,7 @@ impl Settings {
 
 /// Times of samples, at which steps end: the start, and multiples of the output step after it.
 pub struct Marks {
-    pub(super) settings: Settings,
+    pub(in crate::dynamics) settings: Settings,
     start_s: f64,
     /// Index of the next multiple of the output step; the start precedes it.
     passed: f64,

@@ -9,7 +9,8 @@ use crate::dynamics::history::{
     Stress, Summary, TieSummary,
 };
 use crate::dynamics::recorder::Recorder;
-use crate::dynamics::thrust::ThrustRecord;
+use crate::dynamics::request::later_end_s;
+use crate::dynamics::thrust::{FrictionDemands, ThrustRecord};
 use crate::dynamics::until::SAFE;
 use crate::mechanics::chain::{Hinge, LEAST_LOAD};
 use crate::mechanics::lanes::Lanes;
@@ -104,6 +105,7 @@ pub struct Course<'a> {
     /// Events held back until an impact is reported; `None` if no impact is pending.
     pending_events: Option<Vec<Event>>,
     thrust: ThrustRecord,
+    friction: FrictionDemands,
 }
 
 /// Results up to a time.
@@ -116,6 +118,8 @@ struct PartialResults {
     half_cycles: usize,
     cycle: Option<HalfCycle>,
     thrust: ThrustRecord,
+    /// Number of steps with a friction demand, and their time in motion.
+    friction: (usize, f64),
     largest_slips_m: Vec<f64>,
     largest_stress: Stress,
     ties: Vec<TieSummary>,
@@ -191,6 +195,7 @@ impl<'a> Course<'a> {
             phase: 0,
             pending_events: None,
             thrust: ThrustRecord::default(),
+            friction: FrictionDemands::default(),
             impacts: 0,
             peak_rotations_rad: vec![0.0; row.blocks.len()],
             energy_defect_ratio: 0.0,
@@ -240,6 +245,18 @@ impl<'a> Course<'a> {
                 time,
             )
         })
+    }
+
+    /// Lengthens a motion that would end with this outcome, if it is incomplete. Returns its new end in seconds, `None` if it ends.
+    pub fn lengthened_s(&mut self, outcome: Outcome) -> Option<f64> {
+        let settings = &self.task.settings;
+        let is_known = self.stopped || matches!(outcome, Outcome::Overturned(_) | Outcome::Rest);
+        if is_known || !self.is_incomplete() {
+            return None;
+        }
+        let end_s = later_end_s(settings.outcome_by_s, self.task.ground, settings.end_s)?;
+        self.task.settings.end_s = end_s;
+        Some(end_s)
     }
 
     /// Returns the outcome while no joint has opened or slipped; `None` afterwards.
@@ -298,7 +315,17 @@ impl<'a> Course<'a> {
         }
         let least_n = &mut self.row_summary.least_normal_n;
         *least_n = least_n.min(least / lasts_s);
+        self.note_friction(friction, lasts_s);
         friction
+    }
+
+    /// Records the friction demand of a step that lasts so many seconds, for a recorder.
+    pub fn note_friction(&mut self, demand: f64, lasts_s: f64) {
+        if self.recorder.is_some() && !self.is_falling {
+            let moves = self.quiet_since_s == self.time;
+            self.friction.note(demand, lasts_s, moves);
+            self.thrust.largest_friction.note(demand, self.time);
+        }
     }
 
     /// Returns whether a row with small kinetic energy since `since_s` is at rest.
@@ -437,6 +464,7 @@ impl<'a> Course<'a> {
         before_fall.half_cycles = self.row_summary.half_cycles.len();
         before_fall.cycle = self.cycle;
         before_fall.thrust = self.thrust;
+        before_fall.friction = (self.friction.demands.len(), self.friction.moving_s);
         before_fall.largest_stress = self.elastic.largest_stress;
         if let Some(sliding) = &self.row_summary.sliding {
             let slips_m = &sliding.largest_offsets_m;
@@ -459,6 +487,9 @@ impl<'a> Course<'a> {
             self.row_summary.half_cycles.push(cycle);
         }
         self.thrust = before_fall.thrust;
+        let (steps, moving_s) = before_fall.friction;
+        self.friction.demands.truncate(steps);
+        self.friction.moving_s = moving_s;
         self.elastic.largest_stress = before_fall.largest_stress;
         if let Some(sliding) = &mut self.row_summary.sliding {
             sliding.largest_offsets_m = before_fall.largest_slips_m;
@@ -479,6 +510,11 @@ impl<'a> Course<'a> {
             largest = largest.max(rotation);
         }
         largest
+    }
+
+    /// Returns the largest rotation of a block up to now, in radians.
+    pub fn largest_rotation_rad(&self) -> f64 {
+        self.peak_rotations_rad.iter().copied().fold(0.0, f64::max)
     }
 
     /// Completes the current half cycle, with the remaining energy if known.
@@ -625,6 +661,7 @@ impl<'a> Course<'a> {
         self.row_summary.peak_potential_over_barrier = self.known_barrier_j().map(over);
         self.row_summary.energy_error = self.energy_error(self.task.energy_scale_j);
         let row = Box::new(self.row_summary.clone());
+        self.thrust.lasting_friction = Some(self.friction.lasting());
         let summary = Summary {
             outcome,
             outcome_time_s,

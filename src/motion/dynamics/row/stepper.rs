@@ -13,6 +13,7 @@ use crate::dynamics::history::{
 };
 use crate::dynamics::recorder::Recorder;
 use crate::mechanics::chain::Hinge;
+use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
 
@@ -22,11 +23,13 @@ pub trait Stepper<'a>: Sized {
     fn course_mut(&mut self) -> &mut Course<'a>;
     /// Takes one step, at most up to `until`, in seconds.
     fn step(&mut self, until: f64) -> Result<(), RowMotionError>;
-    /// Writes the current state into a blank sample: poses, rates at this time, offsets, friction demand and, on request, the thrust line. Returns
+    /// Writes the current state into a blank sample: rates at this time, offsets, friction demand and, on request, the thrust line. Returns
     /// the kinetic energy in J.
     fn write(&mut self, sample: &mut Sample, thrust_line: bool) -> Result<f64, RowMotionError>;
     /// Returns the rotations of the blocks, and their rates after the last step.
     fn rotations_and_rates(&self) -> impl Iterator<Item = (f64, f64)>;
+    /// Returns the poses of the blocks.
+    fn poses(&self) -> impl Iterator<Item = Pose>;
     /// Returns the gaps of a joint at intrados and extrados, in metres.
     fn gaps(&self, joint: usize) -> [f64; 2];
     /// Returns the current or last position of contact of a joint at an edge, in metres.
@@ -101,7 +104,9 @@ pub trait Stepper<'a>: Sized {
         };
         let hinge = |joint: usize| opens_at_once(joint).or_else(|| self.hinge(joint));
         let hinges = (0..course.task.row.joints.len()).filter_map(hinge);
-        let energy_after_j = (energy_before_j - taken_j).max(0.0);
+        // In a step that also starts the motion, part of the energy arises after its beginning.
+        let energy_before_j = energy_before_j.max(taken_j);
+        let energy_after_j = energy_before_j - taken_j;
         let event = self.event(EventKind::Impact, moves);
         // A row that lands in its initial position came from the other side.
         let sway = if moves { self.heading() } else { Sway::Right };
@@ -156,12 +161,23 @@ pub trait Stepper<'a>: Sized {
         }
     }
 
+    /// Sends the poses of the blocks after a step to the recorder. `poses` is reused.
+    fn report_poses(&mut self, poses: &mut Vec<Pose>) {
+        poses.clear();
+        poses.extend(self.poses());
+        let course = self.course_mut();
+        if let Some(recorder) = &mut course.recorder {
+            recorder.step(course.time, poses, &[]);
+        }
+    }
+
     /// Records a sample.
     fn sample(&mut self) -> Result<(), RowMotionError> {
         let (mut sample, thrust_line) = self.course_mut().blank_sample();
         let kinetic = self.write(&mut sample, thrust_line)?;
         let rotations = self.rotations_and_rates().map(|(rotation, _)| rotation);
         sample.rotations_rad.extend(rotations);
+        sample.poses.extend(self.poses());
         for joint in 0..self.course().task.row.joints.len() {
             let gaps = self.gaps(joint);
             sample.gaps_m.push(gaps);
@@ -191,6 +207,7 @@ where
     let mut sampled_s = None;
     let samples_are_made = settings.output_step_s.is_some() && stepper.course().has_recorder();
     let mut longest_step = samples_are_made.then_some(Duration::ZERO);
+    let mut poses = Vec::new();
     let (outcome, outcome_time_s) = loop {
         let course = stepper.course();
         let time = course.time;
@@ -203,11 +220,17 @@ where
             continue;
         }
         if let Some(ending) = course.ending(stepper.overturned_s(), || stepper.rests_since()) {
-            break ending;
+            let Some(end_s) = stepper.course_mut().lengthened_s(ending.0) else {
+                break ending;
+            };
+            marks.settings.end_s = end_s;
         }
         let begun = longest_step.map(|_| Instant::now());
         stepper.step(marks.next_s())?;
         longest_step = longest_step.max(begun.map(|begun| begun.elapsed()));
+        if samples_are_made {
+            stepper.report_poses(&mut poses);
+        }
     };
     let course = stepper.course();
     if samples_are_made && sampled_s != Some(course.time) && !course.stopped {

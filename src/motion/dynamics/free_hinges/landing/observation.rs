@@ -238,7 +238,6 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
         self.course.row_summary.ground_j += work;
         self.course.row_summary.right_foot_j -= right_j;
         sample.feet_apart_m = self.right.displacement_m;
-        sample.poses.extend(&self.placement.poses);
         sample.ties.extend(self.ties.samples());
         sample.demand.friction = self.friction_demand;
         Ok(kinetic_j)
@@ -248,6 +247,10 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
         let rates = self.program.velocities.iter().map(|twist| twist.rate);
         let rotations = self.placement.poses.iter().map(Pose::rotation_rad);
         self.rest.relative_rotations_rad(rotations).zip(rates)
+    }
+
+    fn poses(&self) -> impl Iterator<Item = Pose> {
+        self.placement.poses.iter().copied()
     }
 
     fn gaps(&self, joint: usize) -> [f64; 2] {
