@@ -71,9 +71,9 @@ pub fn checked(page: &Path, check: &str, data: &str, settings: &[&str]) -> Optio
     let copy = page.with_extension("checked.html");
     fs::write(&copy, html).unwrap();
     let framed = page.with_extension("framed.html");
-    let size = settings.iter();
-    let size = size.filter_map(|setting| setting.strip_prefix("--window-size=")?.split_once(','));
-    let shown = match size.last() {
+    let mut sizes = settings.iter();
+    let size = sizes.find_map(|setting| setting.strip_prefix("--window-size=")?.split_once(','));
+    let shown = match size {
         Some((width, height)) => {
             let frame = format!(
                 "<!doctype html><html><head></head><body><script>addEventListener('message', ({{ data }}) => {{\

@@ -343,7 +343,7 @@ fn a_pipe_among_the_results_does_not_block() {
         pipe(name);
     }
     // The program reads and replaces none of them.
-    for name in ["archrock.json", "rotations.csv", "summary.json"] {
+    for name in ["archrock.json", "summary.json", "rotations.csv"] {
         let (code, said) = within_a_minute(path, &["run", "s.toml"]);
         assert_eq!(code, Some(2), "{said}");
         assert!(said.contains(&format!("results/s/{name} ")), "{said}");
