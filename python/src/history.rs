@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use archrock::dynamics::fall::FallEnd;
 use archrock::dynamics::history::Summary;
 use archrock::dynamics::recording::{Recording, Samples};
-use archrock::dynamics::repeatability::{Repeatability, RepeatabilityError};
+use archrock::dynamics::repeatability::Repeatability;
 use archrock::mechanics::chain::Demand;
 use archrock::output::point::StructurePoint;
 use archrock::output::scene::Scene;
@@ -150,7 +150,7 @@ pub struct History {
 }
 
 /// The comparison of a history with its repetitions; `None` if its model has none.
-type Repeated = Option<Result<Repeatability, RepeatabilityError>>;
+type Repeated = Option<Repeatability>;
 
 /// Simulates while the interpreter's lock is released. A panic becomes an error; so does an exception that a signal raises.
 fn simulate<R: Recorder + Send>(

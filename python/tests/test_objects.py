@@ -362,7 +362,7 @@ def test_pictures(arch: Arch, pulse: Pulse, tmp_path: Path) -> None:
     assert names == ["left", "middle", "right"]
     page = history.report_html()
     assert page.startswith("<!DOCTYPE html>") or page.lower().startswith("<!doctype html>")
-    assert "incomplete at 1.0000 s without impact" in page
+    assert "NO VERDICT: at 1.0000 s, the end of the run" in page
     html = history._repr_html_()
     assert html.startswith("<iframe srcdoc=") and html.count("<iframe") == 1 and "<script" not in html
     history.save_report(tmp_path / "report.html")

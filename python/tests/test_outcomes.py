@@ -98,21 +98,22 @@ def test_elastic_joints_that_do_not_open_vibrate() -> None:
     assert "it vibrates, and no joint opens" in history.report_html()
 
 
-def test_an_uncertain_history_does_not_survive(program: Program, tmp_path: Path) -> None:
-    # Steps decide whether the column of three drums overturns.
-    drums = Column(height_m=4.0, width_m=0.8, drums=3)
-    verdicts = set()
-    for amplitude_g in (0.9, 1.0, 1.1, 1.2, 1.3, 1.4):
-        scenario = Scenario.of(drums, Pulse.one_sine(amplitude_g, 0.5), model="free", duration_s=6.0)
-        history = scenario.run()
-        run_by(program, scenario, tmp_path)
+def test_the_verdict_is_that_of_the_program(program: Program, tmp_path: Path) -> None:
+    # Steps decide whether the strong pulse overturns the arch.
+    shape: dict[str, Any] = {"mean_radius_m": 4.609197050803642, "thickness_ratio": 0.13306427265472975, "embrace_deg": 157.5}
+    arch, duration_s = Arch(**shape, voussoirs=5), 0.46925101434657324
+    verdicts = []
+    for amplitude_g in (0.5, 0.808543):
+        pulse = Pulse.one_sine(amplitude_g, duration_s)
+        history = simulate(arch, pulse, model="free", friction_coefficient=0.5969922684006939)
+        run_by(program, history.scenario, tmp_path)
         by_program = json.loads((tmp_path / "o" / "summary.json").read_text())
         restored = pickle.loads(pickle.dumps(history))
         assert history.verdict == by_program["verdict"] == restored.verdict
         assert history.repeatability() == by_program["repeatability"] == restored.repeatability()
         assert ("UNCERTAIN" in history.report_html()) == (history.verdict == "uncertain")
-        verdicts.add(history.verdict)
-    assert "uncertain" in verdicts, verdicts
+        verdicts.append(history.verdict)
+    assert verdicts == ["survives", "uncertain"]
 
 
 def test_the_largest_body_is_that_of_the_program(program: Program, tmp_path: Path) -> None:

@@ -88,7 +88,11 @@ def test_a_loop_shows_a_warning_of_one_kind_once() -> None:
         warnings.simplefilter("default")
         for radius_m in (200.0, 300.0, 4e3):
             Arch(radius_m, 0.01, 30.0, voussoirs=5).limit()
-    assert [str(one.message) for one in caught] == ["the mean radius is ... m: is it in centimetres?", "the thickness is ... m: is it in centimetres?", "the mean radius is ... m: is it in millimetres?"]
+    assert [str(one.message) for one in caught] == [
+        "the mean radius is ... m: is it in centimetres?",
+        "the mean radius is ... m: is it in millimetres?",
+        "the thickness is ... m: is it in centimetres?",
+    ]
     (first, *_) = (one.message for one in caught)
     assert isinstance(first, ArchrockWarning)
     for same in (first, pickle.loads(pickle.dumps(first))):

@@ -8,6 +8,7 @@ use serde_json::Value;
 
 use super::ending::{Ending, NoHistory, Verdict};
 use crate::dynamics::history::Outcome;
+use crate::dynamics::repeatability::OutcomeCount;
 use crate::scenario::{Hinges, Scenario};
 
 /// A failed or uncertain case, as results list it.
@@ -17,6 +18,9 @@ pub struct Remark {
     pub case: String,
     /// The reason.
     pub reason: String,
+    /// Count of the outcomes of an uncertain case; absent for failed cases.
+    #[serde(flatten)]
+    pub count: Option<OutcomeCount>,
 }
 
 impl Remark {
@@ -24,6 +28,7 @@ impl Remark {
         Self {
             case,
             reason: reason.to_owned(),
+            count: None,
         }
     }
 }
@@ -76,9 +81,10 @@ impl Remarks {
     pub(crate) fn note(&mut self, case: impl Fn() -> String, result: &Result<Ending, NoHistory>) {
         match result {
             Ok(ending) => {
-                let uncertain = ending.uncertain.as_ref();
-                let uncertain = uncertain.map(|reason| Remark::new(case(), reason));
-                self.uncertain.extend(uncertain);
+                self.uncertain.extend(ending.doubt().map(|count| Remark {
+                    count: Some(count.clone()),
+                    ..Remark::new(case(), &count.to_string())
+                }));
                 self.note_history(ending);
             }
             Err(NoHistory::CannotStand | NoHistory::NotFourLinks) => {}
@@ -189,7 +195,7 @@ impl Remarks {
     pub(crate) fn uncertain_in_words(&self, file: &str) -> Option<String> {
         let cases = first_of(&self.uncertain, file)?;
         Some(format!(
-            "uncertain cases end otherwise with other steps or with landings merged, or differ before the largest rotation; {cases}"
+            "uncertain cases overturn in some repetitions and survive in others; {cases}"
         ))
     }
 }
@@ -208,8 +214,8 @@ fn first_of(remarks: &[Remark], file: &str) -> Option<String> {
 pub(crate) type OutcomeLabel = (u8, &'static str);
 
 /// Returns the outcome of a case in words.
-pub(crate) const fn outcome_label(ending: &Ending) -> OutcomeLabel {
-    match (&ending.uncertain, ending.outcome) {
+pub(crate) fn outcome_label(ending: &Ending) -> OutcomeLabel {
+    match (ending.doubt(), ending.outcome) {
         (Some(_), _) => (5, "uncertain"),
         (None, Outcome::NeverMoved) => (0, "never moved"),
         (None, Outcome::Vibrates) => (1, "vibrated without opening"),

@@ -106,7 +106,7 @@ fn cells_of_a_map_are_runs() {
             };
             assert_is_of(ending, &own, axes);
             outcomes.push(own.outcome.name());
-            uncertain += usize::from(ending.uncertain.is_some());
+            uncertain += usize::from(ending.doubt().is_some());
         }
     }
     for outcome in ["overturned", "still_rocking"] {

@@ -504,11 +504,11 @@ fn the_verdict_names_repetitions_that_overturn_to_the_other_side() {
     fs::write(folder.path().join("s.toml"), text).unwrap();
     let words = printed(folder.path(), &["run", "s.toml", "--no-report"]);
     assert!(
-        words.contains("ANOTHER OUTCOME, overturned to the right and overturned to the left"),
+        words.contains("ANOTHER OUTCOME, overturned to the right with half steps"),
         "{words}"
     );
     assert!(
-        words.contains("overturns to the left, and to the right with half steps;"),
+        words.contains("overturns to the left, and to the right with half steps"),
         "{words}"
     );
     assert!(!words.contains("the same with other steps"), "{words}");

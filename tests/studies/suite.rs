@@ -11,6 +11,7 @@ use crate::common::program::{done, refused, scenarios};
 use crate::common::prose::{golden, shows};
 use crate::common::results::{Row, Table, json, named, texts};
 use archrock::dynamics::history::Outcome;
+use archrock::dynamics::repeatability::OutcomeCount;
 use archrock::mechanics::sway::Sway;
 use archrock::output::Figure;
 use archrock::scenario::{Format, Layout, Measure, Scenario};
@@ -564,7 +565,7 @@ fn results(rows: &[(&str, f64, Option<Outcome>)]) -> SuiteFragility {
                 energy_defect_ratio: 0.0,
                 steps: None,
                 safe_from_s: None,
-                uncertain: None,
+                count: None,
             }),
     });
     SuiteFragility::new(Measure::Scale, rows.collect())
@@ -582,7 +583,11 @@ fn levels_of(records: &[(&str, &str)]) -> Vec<CaseRow> {
                 b'.' => Outcome::Rest,
                 _ => Outcome::Overturned(side),
             };
-            let uncertain = (letter == b'~').then(|| "overturns; survives so".to_owned());
+            let count = (letter == b'~').then(|| OutcomeCount {
+                overturns_in: 3,
+                of: 7,
+                ..OutcomeCount::default()
+            });
             CaseRow {
                 record: record.clone(),
                 mirrored,
@@ -604,7 +609,7 @@ fn levels_of(records: &[(&str, &str)]) -> Vec<CaseRow> {
                         shortest_s: 1e-5,
                     }),
                     safe_from_s: None,
-                    uncertain: uncertain.map(String::into_boxed_str),
+                    count,
                 }),
             }
         });
@@ -688,7 +693,13 @@ fn uncertain_cases_are_counted_as_surviving_and_as_overturning() {
         overturned.fit.as_ref().unwrap().median
     );
     assert_eq!(json["uncertain_cases"].as_array().unwrap().len(), 3);
-    assert_eq!(json["uncertain_cases"][0]["case"], "a, scale 3");
+    let first = &json["uncertain_cases"][0];
+    assert_eq!(first["case"], "a, scale 3");
+    assert_eq!(first["reason"], "overturns in 3 of 7 repetitions");
+    assert_eq!(
+        (&first["overturns_in"], &first["of"]),
+        (&3.into(), &7.into())
+    );
     assert_eq!(json["longest_step_s"]["max"], 1e-4);
     // Neither the side nor impacts before overturning are given.
     assert_eq!(files["suite.csv"].matches(",uncertain,,0,,1.0,").count(), 3);

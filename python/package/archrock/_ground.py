@@ -477,7 +477,7 @@ def _column(name: str, values: npt.ArrayLike) -> npt.NDArray[np.float64]:
     try:
         if isinstance(values, np.ma.MaskedArray):
             # The library refuses samples that are no numbers, with their place.
-            values = values.astype(np.float64).filled(np.nan)
+            values = np.ma.filled(values.astype(np.float64), np.nan)
         array = np.asarray(values)
         if array.dtype.kind not in "fiub":
             raise TypeError

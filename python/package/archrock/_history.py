@@ -326,14 +326,8 @@ class History(Summarised):
         raise AttributeError("`History.spread()` is now called `History.repeatability()`")
 
     def repeatability(self) -> Summary | None:
-        """How a history of blocks depends on its steps, as ``repeatability`` of :attr:`summary`; ``None`` for other histories.
-
-        Raises:
-            ValueError: when a repetition fails.
-        """
+        """How a history of blocks depends on its steps, as ``repeatability`` of :attr:`summary`; ``None`` for other histories."""
         repeatability: Summary | None = self.summary.get("repeatability")
-        if repeatability is not None and "failed" in repeatability:
-            raise ValueError(repeatability.failed)
         return repeatability
 
     @property

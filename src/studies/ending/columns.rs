@@ -1,7 +1,8 @@
 //! The endings of histories as columns of a table.
 
-use super::{Ending, NoHistory, Outcome};
-use crate::output::table::{Column, column};
+use super::{Ending, NoHistory, Verdict};
+use crate::mechanics::sway::Sway;
+use crate::output::table::{Column, column, list};
 
 /// Outcome of a case whose history could not be computed.
 pub(crate) const FAILED: &str = "failed";
@@ -56,19 +57,17 @@ pub fn outcome_name(result: &Result<Ending, NoHistory>) -> &'static str {
 impl Ending {
     /// Returns the name of the outcome of a case.
     #[must_use]
-    pub const fn outcome_name(&self) -> &'static str {
-        match self.uncertain {
-            Some(_) => UNCERTAIN,
-            None => self.outcome.name(),
+    pub fn outcome_name(&self) -> &'static str {
+        match self.verdict() {
+            Verdict::Uncertain => UNCERTAIN,
+            _ => self.outcome.name(),
         }
     }
 
     /// Returns the side to which a case overturned; `None` unless overturning is certain.
-    pub(crate) const fn overturning_sway(&self) -> Option<&'static str> {
-        match (self.outcome, &self.uncertain) {
-            (Outcome::Overturned(sway), None) => Some(sway.name()),
-            _ => None,
-        }
+    pub(crate) fn overturning_sway(&self) -> Option<&'static str> {
+        let sway = self.outcome.overturning_sway();
+        sway.filter(|_| self.doubt().is_none()).map(Sway::name)
     }
 }
 
@@ -103,6 +102,13 @@ pub(crate) fn columns<'a, R: 'a>(free_hinges: bool, ended: Ended<R>) -> Vec<Colu
     if free_hinges {
         columns.push(column("peak_rotation_rad", move |row| {
             ended(row).ok()?.peak_of_row_rad()
+        }));
+        columns.push(list(["overturns_in", "of"], move |row| {
+            let count = ended(row).ok().and_then(|ending| ending.count.as_ref());
+            [
+                count.map(|count| count.overturns_in),
+                count.map(|count| count.of),
+            ]
         }));
     }
     columns

@@ -12,7 +12,7 @@ use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::{Outcome, Summary};
 use crate::dynamics::model::{Case, Model, Request, SimulationError};
 pub use crate::dynamics::repeatability::Verdict;
-use crate::dynamics::repeatability::{CheckedHistory, checked};
+use crate::dynamics::repeatability::{CheckedHistory, OutcomeCount, checked};
 use crate::dynamics::row::error::RowModelError;
 use crate::dynamics::until::EndCondition;
 use crate::mechanics::four_link::limit::LimitError;
@@ -54,9 +54,9 @@ pub struct Ending {
     /// Time steps of the computation of a row of blocks; `None` for mechanisms, whose steps follow from a tolerance.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub steps: Option<Steps>,
-    /// Reason why overturning is uncertain: the outcome, and the other outcome of a repetition. `None` if the verdict is certain.
+    /// Count of the outcomes of the history and its repetitions; `None` if the history was not repeated.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub uncertain: Option<Box<str>>,
+    pub count: Option<OutcomeCount>,
 }
 
 impl Ending {
@@ -106,9 +106,23 @@ impl Ending {
     /// Returns the verdict on overturning.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
-        match self.uncertain {
-            Some(_) => Verdict::Uncertain,
-            None => self.outcome.into(),
+        Verdict::counted(self.outcome, self.count.as_ref())
+    }
+
+    /// Returns the count of the outcomes if the verdict is uncertain; `None` otherwise.
+    #[must_use]
+    pub fn doubt(&self) -> Option<&OutcomeCount> {
+        let count = self.count.as_ref();
+        count.filter(|_| self.verdict() == Verdict::Uncertain)
+    }
+
+    /// Returns the share of the history and its repetitions that overturn: 0 or 1 if the verdict is certain. `None` for an incomplete history.
+    #[must_use]
+    pub fn overturning_share(&self) -> Option<f64> {
+        match (self.verdict(), &self.count) {
+            (Verdict::Uncertain, Some(count)) => Some(count.overturns_in as f64 / count.of as f64),
+            (Verdict::Incomplete, _) => None,
+            (verdict, _) => Some(f64::from(verdict == Verdict::Overturns)),
         }
     }
 
@@ -152,20 +166,20 @@ impl Ending {
         until: EndCondition,
     ) -> Vec<Result<Self, NoHistory>> {
         let ending = |checked: CheckedHistory| {
-            Self::from_summary(&checked.own?, checked.safe_from_s, checked.doubt)
+            Self::from_summary(&checked.own?, checked.safe_from_s, checked.count)
         };
         let checked = checked(model, cases, until).into_iter();
         checked.map(ending).collect()
     }
 
-    /// Makes the ending of a history. `uncertain` is the reason if the verdict is uncertain.
+    /// Makes the ending of a history. `count` is the count of the history and its repetitions.
     ///
     /// # Errors
     /// When a number is not finite.
     pub(super) fn from_summary(
         summary: &Summary,
         safe_from_s: Option<f64>,
-        uncertain: Option<String>,
+        count: Option<OutcomeCount>,
     ) -> Result<Self, NoHistory> {
         let ending = Self {
             outcome: summary.outcome,
@@ -179,7 +193,7 @@ impl Ending {
                 longest_s: row.longest_step_s,
                 shortest_s: row.shortest_step_s,
             }),
-            uncertain: uncertain.map(String::into_boxed_str),
+            count,
         };
         let peak = ending.peak_over_critical.unwrap_or(0.0);
         check_finite(&[ending.peak_rotation_rad, peak])?;

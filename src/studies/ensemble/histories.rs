@@ -190,7 +190,7 @@ impl Histories {
         let own = vec![model.simulate(ground, &request, Some(&mut record))];
         let checked = repeated(model, &[case], own).remove(0);
         let summary = checked.own.map_err(NoHistory::from)?;
-        let ending = Ending::from_summary(&summary, None, checked.doubt)?;
+        let ending = Ending::from_summary(&summary, None, checked.count)?;
         if ending.verdict() == Verdict::Incomplete {
             return Err(NoAnswer::Incomplete);
         }

@@ -5,6 +5,7 @@ pub mod picture;
 mod report;
 
 use std::cell::OnceCell;
+use std::collections::BTreeSet;
 use std::sync::{Arc, OnceLock};
 
 use nalgebra::Vector2;
@@ -16,7 +17,7 @@ use crate::argument::ArgumentError;
 use crate::dynamics::ground::{GroundMotion, PulseShape};
 use crate::dynamics::history::Summary;
 use crate::dynamics::model::{Case, Model, Repetition, SimulationError};
-use crate::dynamics::repeatability::objection;
+use crate::dynamics::repeatability::OutcomeCount;
 use crate::mechanics::arch::Arch;
 use crate::mechanics::four_link::impact::ImpactModel;
 use crate::mechanics::four_links::{FourLinkError, FourLinks};
@@ -367,19 +368,16 @@ fn all_outcomes(model: &dyn Model, cases: &[Case]) -> Vec<Result<Ended, NoHistor
     let repeated: Vec<(_, Vec<_>)> = repeated.collect();
     let outcomes = |(index, own): (usize, Result<Summary, SimulationError>)| {
         let own = own?;
-        let (mut names, mut doubt, mut failed) = (vec![own.outcome.name()], None, None);
-        for (name, repeated) in &repeated {
-            let repeated = &repeated[index];
-            doubt = doubt.or_else(|| objection(&own, name, repeated));
-            match repeated {
-                Ok(other) => names.push(other.outcome.name()),
-                Err(error) => failed = failed.or(Some(format!("with {name}: {error}"))),
-            }
-        }
-        names.sort_unstable();
-        names.dedup();
-        let outcomes = failed.map_or(Ok(names.len()), Err);
-        Ok((Ending::from_summary(&own, None, doubt)?, Some(outcomes)))
+        let others = || repeated.iter().map(|(name, all)| (*name, &all[index]));
+        let computed = others().filter_map(|(_, other)| other.as_ref().ok());
+        let outcomes = computed.chain([&own]).map(|one| one.outcome.name());
+        let outcomes: BTreeSet<&str> = outcomes.collect();
+        let count = OutcomeCount::new(&own, others());
+        let failed = count.failed.first();
+        let failed = failed.map(|failed| format!("with {failed}"));
+        let outcomes = failed.map_or(Ok(outcomes.len()), Err);
+        let ending = Ending::from_summary(&own, None, Some(count))?;
+        Ok((ending, Some(outcomes)))
     };
     let own = model.simulate_all(cases).into_iter();
     own.enumerate().map(outcomes).collect()

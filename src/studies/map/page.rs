@@ -23,8 +23,8 @@ pub fn page(title: &str, map: &OverturningMap<'_>, rows: &[CellRow], style: Styl
     let drawn = picture::drawn(title, map, rows, style);
     let kinds = rows.iter().map(|row| picture::kind_of(row, style));
     let doubt = |(index, row): (usize, &CellRow)| {
-        let doubt = row.result.as_ref().ok()?.uncertain.as_ref()?;
-        Some((index, doubt.clone()))
+        let doubt = row.result.as_ref().ok()?.doubt()?;
+        Some((index, doubt.to_string()))
     };
     let cells = Cells {
         palette: &Kind::ALL,
@@ -42,7 +42,7 @@ pub(crate) struct Cells<'c> {
     /// The kind of each cell.
     pub(crate) kinds: Vec<Kind>,
     /// Indices of the uncertain cells, with the reasons.
-    pub(crate) doubts: Vec<(usize, Box<str>)>,
+    pub(crate) doubts: Vec<(usize, String)>,
     /// Columns with a number for each cell: name and values; `None` for a cell without a value.
     pub(crate) columns: Vec<(&'static str, Vec<Option<f64>>)>,
 }

@@ -73,7 +73,7 @@ fn remarks(map: &OverturningMap<'_>, cells: &[CellRow]) -> Remarks {
 /// Returns the number of cells with each outcome, and remarks on doubtful and failed cells, in words.
 fn words(map: &OverturningMap<'_>, cells: &[CellRow], remarks: &Remarks) -> String {
     let words = |cell: &CellRow| match &cell.result {
-        Ok(ending) if ending.uncertain.is_none() && ending.outcome == Outcome::StillRocking => {
+        Ok(ending) if ending.outcome_name() == Outcome::StillRocking.name() => {
             (4, "still rocking at the end, which counts as survived")
         }
         Ok(ending) => outcome_label(ending),

@@ -52,7 +52,7 @@ use super::runner::{Progress, RunnerError, Watch};
 use crate::dynamics::fall::FallEnd;
 use crate::dynamics::history::{Event, OpenHinge, Sample, Summary as History};
 use crate::dynamics::model::{Model, Recorder};
-use crate::dynamics::repeatability::{Repeatability, RepeatabilityError, Repetitions};
+use crate::dynamics::repeatability::{Repeatability, Repetitions};
 use crate::dynamics::variation::{VariationResult, Variations};
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::sway::Sway;
@@ -195,11 +195,7 @@ pub fn results(
 
 /// Repeats a history of a scenario as a run does, which gives its verdict; `None` if the model has no repetitions.
 #[must_use]
-pub fn repeat(
-    scenario: &Scenario,
-    model: &dyn Model,
-    history: &History,
-) -> Option<Result<Repeatability, RepeatabilityError>> {
+pub fn repeat(scenario: &Scenario, model: &dyn Model, history: &History) -> Option<Repeatability> {
     model.row()?;
     let (ground, request) = (scenario.ground_motion(), scenario.request());
     Some(Repetitions::start(model, ground, &request).compare(history))

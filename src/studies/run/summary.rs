@@ -8,7 +8,7 @@ use super::caveats::{first_peak_rad, warnings};
 use super::feet::FeetApart;
 use crate::dynamics::history::{ElasticSummary, HalfCycle, RowSummary, Summary as History};
 use crate::dynamics::model::{MechanismModel, Model};
-use crate::dynamics::repeatability::{Repeatability, RepeatabilityError, Verdict, key};
+use crate::dynamics::repeatability::{Repeatability, Verdict, key};
 use crate::dynamics::thrust::ThrustRecord;
 use crate::dynamics::variation::VariationResult;
 use crate::mechanics::sides::Sides;
@@ -28,25 +28,16 @@ pub struct ComputedRun<'a> {
     /// The history.
     pub history: &'a History,
     /// The comparison with its repetitions; `None` if the history was not repeated.
-    pub repeated: Option<&'a Result<Repeatability, RepeatabilityError>>,
+    pub repeated: Option<&'a Repeatability>,
     /// The histories with other stiffness and contact, and with rigid joints.
     pub varied: &'a [VariationResult],
 }
 
 impl<'a> ComputedRun<'a> {
-    /// Returns the comparison with the repetitions; `None` if there are none, or one failed.
-    pub(super) fn repeatability(&self) -> Option<&'a Repeatability> {
-        self.repeated.and_then(|repeated| repeated.as_ref().ok())
-    }
-
     /// Returns the verdict; uncertain if the repetitions disagree.
     pub(super) fn verdict(&self) -> Verdict {
-        let own = Verdict::from(self.history.outcome);
-        let repeated = self.repeatability();
-        if own != Verdict::Incomplete && repeated.is_some_and(Repeatability::is_uncertain) {
-            return Verdict::Uncertain;
-        }
-        own
+        let count = self.repeated.map(|repeated| &repeated.count);
+        Verdict::counted(self.history.outcome, count)
     }
 }
 
@@ -200,23 +191,14 @@ pub struct RowResults<'a> {
 
 /// The comparison of a motion with its repetitions.
 #[derive(Clone, Debug, Serialize)]
-#[serde(untagged)]
-pub enum RepeatabilitySummary<'a> {
-    /// Comparison with all repetitions.
-    Compared {
-        /// Outcomes of the run itself (`own`) and of its repetitions, by name.
-        outcomes: Named<&'static str>,
-        /// The sides to which the structure overturned, by name.
-        overturning_sways: Named<Option<Sway>>,
-        /// The results.
-        #[serde(flatten)]
-        repeatability: &'a Repeatability,
-    },
-    /// A repetition failed.
-    Failed {
-        /// The reason.
-        failed: String,
-    },
+pub struct RepeatabilitySummary<'a> {
+    /// Outcomes of the run itself (`own`) and of its repetitions, by name.
+    pub outcomes: Named<&'static str>,
+    /// The sides to which the structure overturned, by name.
+    pub overturning_sways: Named<Option<Sway>>,
+    /// The results.
+    #[serde(flatten)]
+    pub repeatability: &'a Repeatability,
 }
 
 /// The end of a history with other properties.
@@ -317,12 +299,7 @@ impl<'a> Summary<'a> {
                 friction_coefficient: scenario.motion.friction_coefficient(),
                 iterations: history.cost.evaluations,
             }),
-            repeatability: computed.repeated.map(|repeated| match repeated {
-                Ok(repeatability) => RepeatabilitySummary::of(repeatability),
-                Err(reason) => RepeatabilitySummary::Failed {
-                    failed: reason.to_string(),
-                },
-            }),
+            repeatability: computed.repeated.map(RepeatabilitySummary::of),
             variations: computed.varied.iter().map(VariationSummary::of).collect(),
             points,
             longest_step_us: longest_step.map(|step| (step.as_secs_f64() * 1e6).round()),
@@ -366,7 +343,7 @@ impl<'a> RepeatabilitySummary<'a> {
         let named = names.map(key).zip(&repeatability.outcomes);
         let outcomes = named.clone().map(|(key, one)| (key, one.name()));
         let sways = named.map(|(key, one)| (key, one.overturning_sway()));
-        Self::Compared {
+        Self {
             outcomes: Named(outcomes.collect()),
             overturning_sways: Named(sways.collect()),
             repeatability,

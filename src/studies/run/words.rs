@@ -11,7 +11,7 @@ use super::tables::energy_loss_j;
 use crate::dynamics::free_hinges::DOUBTFUL_ENERGY_ERROR;
 use crate::dynamics::history::{Event, HalfCycle, Impact, Outcome, Sliding, Summary as History};
 use crate::dynamics::repeatability::{
-    Repeatability, RepeatedHalfCycle, RepeatedValue, SAME_PEAK_RATIO, Verdict,
+    FIRST_REPETITIONS, Repeatability, RepeatedHalfCycle, RepeatedValue, SAME_PEAK_RATIO, Verdict,
 };
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::sides::Sides;
@@ -44,26 +44,25 @@ pub fn heading(scenarios: &[Scenario]) -> String {
 pub(super) struct VerdictLine<'a>(pub ComputedRun<'a>);
 
 impl VerdictLine<'_> {
-    /// Returns the names of the repetitions whose outcome `differs` from that of the run.
-    fn others(
-        &self,
-        repeated: &Repeatability,
-        differs: impl Fn(Outcome, Outcome) -> bool,
-    ) -> String {
-        let outcomes = repeated.outcomes.iter().skip(1);
-        let named = repeated.repeated.iter().zip(outcomes);
-        let others = named.filter(|(_, other)| differs(self.0.history.outcome, **other));
-        let names: Vec<&str> = others.map(|(name, _)| *name).collect();
-        names.join(" and ")
-    }
-
-    fn other_verdicts(&self, repeated: &Repeatability) -> String {
-        let verdict = |outcome: Outcome| Verdict::from(outcome);
-        self.others(repeated, |own, other| verdict(own) != verdict(other))
-    }
-
-    fn other_sides(&self, repeated: &Repeatability) -> String {
-        self.others(repeated, |own, other| own != other)
+    /// Returns the certainty of a verdict, in words that follow it.
+    fn certainty(&self, all: &Repeatability) -> String {
+        let (count, others) = (&all.count, all.other_outcomes());
+        let other_side = others.iter().find_map(|(other, names)| {
+            let side = other.overturning_sway()?.name();
+            Some(format!(", and to the {side} with {names}"))
+        });
+        let agreement = if all.repeated.len() > FIRST_REPETITIONS {
+            let path = ["; the path does not repeat", ""][usize::from(count.path_repeats)];
+            let (of, without) = (count.of, count.without_verdict());
+            format!(", agrees in {of} of {of} repetitions{without}{path}")
+        } else if others.is_empty() {
+            ", the same with other steps".to_owned()
+        } else if other_side.is_none() {
+            ", and survives with other steps".to_owned()
+        } else {
+            String::new()
+        };
+        other_side.unwrap_or_default() + &agreement
     }
 
     /// Returns the conditions of the outcome: friction that stone may not have, and properties that change the outcome.

@@ -87,7 +87,7 @@ fn of_record(
         let Some(ending) = case.complete() else {
             continue;
         };
-        let is_certain = ending.uncertain.is_none();
+        let is_certain = ending.doubt().is_none();
         let mark = |certain: &'static str| match is_certain {
             true => (certain, plain, 2.2),
             false => ("uncertain", UNCERTAIN, 4.0),

@@ -7,6 +7,7 @@ use super::digits::rounded;
 use super::survival::{self, Survival};
 use super::{FactorRange, FactorSample, Factors, RangeEnd, Threshold, peak_g, picture};
 use crate::dynamics::history::Outcome;
+use crate::dynamics::repeatability::OutcomeCount;
 use crate::output::table::{column, csv, fields};
 use crate::output::{Figure, OutputError};
 use crate::scenario::{Ground, Scenario};
@@ -110,6 +111,9 @@ struct SampleSummary {
     outcome: &'static str,
     #[serde(flatten)]
     history: Option<HistorySummary>,
+    /// Count of the outcomes of the history and its repetitions; absent if the history was not repeated.
+    #[serde(flatten)]
+    count: Option<OutcomeCount>,
     /// Reason why the outcome is uncertain, or why there is no history.
     #[serde(skip_serializing_if = "Option::is_none")]
     reason: Option<String>,
@@ -268,8 +272,9 @@ impl SampleSummary {
                 peak_rotation_over_critical: ending.peak_over_critical,
                 peak_rotation_rad: Some(ending.peak_rotation_rad),
             }),
+            count: ending.ok().and_then(|ending| ending.count.clone()),
             reason: match ending {
-                Ok(ending) => ending.uncertain.as_ref().map(ToString::to_string),
+                Ok(ending) => ending.doubt().map(ToString::to_string),
                 Err(reason) => Some(reason.to_string()),
             },
         }

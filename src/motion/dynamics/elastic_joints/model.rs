@@ -56,6 +56,15 @@ const STEP_RATIO: [f64; 2] = [0.25, 0.5];
 const DAMPED: f64 = 0.3;
 /// Ratio of the steps in studies of many cases to those of a single run.
 const MANY_CASES_STEP_RATIO: f64 = 1.6;
+/// Steps of the repetitions, over those of the motion; none is longer, as steps may already be close to the largest stable one.
+const OTHER_STEPS: [(&str, f64); 6] = [
+    ("half steps", 0.5),
+    ("steps of two thirds", 2.0 / 3.0),
+    ("quarter steps", 0.25),
+    ("steps times 0.4", 0.4),
+    ("steps of three quarters", 0.75),
+    ("steps of nine tenths", 0.9),
+];
 /// Number of parallel histories; eight are slower, because they exceed the processor's first-level cache.
 const SIDE_BY_SIDE: usize = 4;
 /// Factor by which variations multiply and divide the stiffness.
@@ -189,16 +198,12 @@ impl ElasticJoints {
         ratio * structure.stable_step_s()
     }
 
-    /// Returns copies with other steps, for repetitions.
-    fn other_steps(&self) -> [(&'static str, Self); 2] {
-        let others = if self.many_cases {
-            [
-                ("steps of nine tenths", 0.9),
-                ("steps of three quarters", 0.75),
-            ]
-        } else {
-            [("half steps", 0.5), ("steps of two thirds", 2.0 / 3.0)]
-        };
+    /// Returns copies with other steps, for repetitions. In studies of many cases those with longer steps come first.
+    fn other_steps(&self) -> [(&'static str, Self); 6] {
+        let mut others = OTHER_STEPS;
+        if self.many_cases {
+            others.reverse();
+        }
         others.map(|(name, factor)| {
             let mut other = self.clone();
             other.steps_times *= factor;

@@ -80,6 +80,24 @@ impl RowOptions {
     }
 }
 
+/// Names of the repetitions without friction, their steps over those of the motion, and whether they merge landings.
+const OTHER_SETTINGS: [(&str, f64, bool); 6] = [
+    ("double steps", 2.0, false),
+    ("landings merged", 1.0, true),
+    ("half steps", 0.5, false),
+    ("quarter steps", 0.25, false),
+    ("steps times 0.7", 0.7, false),
+    ("steps times 1.4", 1.4, false),
+];
+/// Names of the repetitions with friction, and their steps over those of the motion.
+const OTHER_STEPS: [(&str, f64); 6] = [
+    ("half steps", 0.5),
+    ("double steps", 2.0),
+    ("quarter steps", 0.25),
+    ("steps times 0.35", 0.35),
+    ("steps times 0.7", 0.7),
+    ("steps times 1.4", 1.4),
+];
 /// Step length proposed after an error of the energy balance, over the longest step.
 const SHORTER: f64 = 0.2;
 /// Largest number of default steps of a row with ties, times the number of joints and ties: some minutes of computing.
@@ -211,8 +229,8 @@ impl FreeHinges {
 impl Model for FreeHinges {
     fn repetitions(&self) -> Vec<Repetition> {
         let others = match self.options.friction_coefficient {
-            None => [("double steps", 2.0, false), ("landings merged", 1.0, true)],
-            Some(_) => [("half steps", 0.5, false), ("double steps", 2.0, false)],
+            None => OTHER_SETTINGS,
+            Some(_) => OTHER_STEPS.map(|(name, steps_times)| (name, steps_times, false)),
         };
         let repetition = |(name, steps_times, merges_landings)| Repetition {
             name,
