@@ -54,7 +54,7 @@ use crate::dynamics::fall::FallEnd;
 use crate::dynamics::history::{Event, OpenHinge, Sample, Summary as History};
 use crate::dynamics::model::{Model, Recorder};
 use crate::dynamics::repeatability::{Repeatability, RepeatabilityError, Repetitions, Verdict};
-use crate::dynamics::variation::{VariationResult, Variations};
+use crate::dynamics::variation::Variations;
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::sway::Sway;
 use crate::output::scene::Scene;
