@@ -8,6 +8,7 @@ use archrock::scenario::Scenario;
 use archrock::studies::catalogue::{self, Options, StudyKind, merge as merged};
 use archrock::studies::ensemble::cells::CellsOfSamples;
 use archrock::studies::map::OverturningMap;
+use archrock::studies::quotable;
 use archrock::studies::results::{Results, Style};
 use clap::ValueEnum;
 use serde_json::Map;
@@ -162,9 +163,15 @@ fn compute(
         let name = scenario.motion.hinges().name();
         summaries.insert(name.to_owned(), results.summary.clone());
     }
+    let answers = all.iter().filter_map(|(_, found)| found.answer.clone());
+    let to_quote = quotable::in_words(&answers.collect::<Vec<_>>());
     if let Some(compared) = compared {
         print_status(&compared.words);
         summaries.insert("peaks".to_owned(), compared.summary);
+    }
+    if let Some(to_quote) = to_quote {
+        print_status(&to_quote);
+        summaries.insert("to_quote".to_owned(), to_quote.into());
     }
     match study.format {
         Format::Json if !all.is_empty() => print(&pretty(&summaries.into())),

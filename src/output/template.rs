@@ -102,14 +102,17 @@ pub(crate) mod filters {
         Ok(Safe(set))
     }
 
-    /// Formats a fraction in percent, rounded down, so that a limit that was not reached is not printed as reached.
+    /// Formats a fraction in percent. A limit that was not reached is not printed as reached: 99.96 % becomes "above 99.9 %".
     #[filter_fn]
     pub fn percent(part: &f64, _: &dyn Values, decimals: i32) -> Result<String> {
-        let percent = (10_f64.powi(2 + decimals) * part).floor() / 10_f64.powi(decimals);
-        Ok(if decimals == 0 && percent < 1.0 {
+        let (percent, step) = (100.0 * part, 10_f64.powi(-decimals));
+        let digits = decimals as usize;
+        Ok(if *part < 1.0 && percent > 100.0 - 0.5 * step {
+            format!("above {:.digits$} %", 100.0 - step)
+        } else if decimals == 0 && percent < 1.0 {
             "below 1 %".to_owned()
         } else {
-            format!("{percent:.0$} %", decimals as usize)
+            format!("{percent:.digits$} %")
         })
     }
 

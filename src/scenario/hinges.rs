@@ -27,8 +27,6 @@ pub struct ModelEntry {
     pub is_rigid: bool,
     /// Message about a table that the model ignores; `None` if it ignores no table.
     pub ignored: Option<&'static str>,
-    /// Reason to trust the outcome; printed if all other models of the run are less trustworthy.
-    pub trusted_because: &'static str,
 }
 
 /// All models of motion in the order of [`Hinges`], the least trustworthy first.
@@ -40,7 +38,6 @@ pub const MODELS: [ModelEntry; 3] = [
         has_joints: false,
         is_rigid: true,
         ignored: None,
-        trusted_because: "it is the only one",
     },
     ModelEntry {
         name: "free_hinges",
@@ -49,7 +46,6 @@ pub const MODELS: [ModelEntry; 3] = [
         has_joints: true,
         is_rigid: true,
         ignored: Some("[impact] is ignored: with free hinges impacts follow from the blocks"),
-        trusted_because: "hinges open at any joint",
     },
     ModelEntry {
         name: "elastic_joints",
@@ -58,7 +54,6 @@ pub const MODELS: [ModelEntry; 3] = [
         has_joints: true,
         is_rigid: false,
         ignored: Some("[impact] is ignored: elastic joints have no impacts"),
-        trusted_because: "the outcome is the same with the other stiffnesses and contact",
     },
 ];
 

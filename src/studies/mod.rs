@@ -26,6 +26,7 @@ pub mod map;
 pub mod part;
 pub mod peaks;
 pub mod pictures;
+pub mod quotable;
 mod remarks;
 pub mod results;
 pub mod run;

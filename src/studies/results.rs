@@ -8,6 +8,7 @@ use serde_json::Value;
 use thiserror::Error;
 
 use super::part::PartError;
+use super::quotable::ModelAnswer;
 use super::runner::{RunnerError, Study};
 use crate::dynamics::model::SimulationError;
 use crate::output::summary::summary_of;
@@ -83,6 +84,8 @@ pub struct Results {
     /// The largest rotation of each case of a suite or sample of a run, in radians, for the [comparison](super::peaks) of models of motion.
     /// Infinite if the case overturned.
     pub peaks: Vec<f64>,
+    /// The answer of a suite that may be quoted, for the comparison of models of motion.
+    pub answer: Option<ModelAnswer>,
 }
 
 impl Results {
@@ -110,6 +113,7 @@ impl Results {
             words,
             summary,
             peaks: Vec::new(),
+            answer: None,
         })
     }
 

@@ -10,6 +10,7 @@ mod map;
 mod map_accuracy;
 mod map_axes;
 mod peaks;
+mod quotable;
 mod repeatability;
 mod run_column;
 mod run_drawing_data;

@@ -99,7 +99,11 @@ fn each_record_of_a_suite_can_be_run_and_have_its_threshold() {
         &[&["threshold", "s.toml", "--suite"], &OPTIONS[..]].concat(),
     );
     let said = stdout(&all);
-    for (line, record) in said.lines().zip(["wave-1.at2", "wave-2.at2"]) {
+    for record in ["wave-1.at2", "wave-2.at2"] {
+        let mut lines = said.lines();
+        let line = lines
+            .find(|line| line.starts_with(&format!("  {record}: ")))
+            .unwrap();
         let found = json(&path.join("results/s").join(record).join("threshold.json"));
         assert_eq!(line, format!("  {record}: {}", words(&found)));
         let scenario = &found["models"][0]["scenario"];

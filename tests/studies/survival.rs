@@ -52,7 +52,7 @@ fn the_words_are_one_line_that_begins_with_the_safe_strengths() {
         ),
         (
             ".~.~/x~?x",
-            "survives up to 1.000 g; uncertain at 2.000 g, 4.000 g; no verdict, since the run ends too early, at 5.000 g; \
+            "survives up to 1.000 g; uncertain at 2.000 g, 4.000 g; no verdict at 5.000 g; \
              certainly overturns from 6.000 g (uncertain above: 7.000 g; not known above: 8.000 g)",
         ),
         ("xx", "overturns at 1.000 g already, the smallest tried"),
@@ -62,7 +62,7 @@ fn the_words_are_one_line_that_begins_with_the_safe_strengths() {
         ),
         (
             ".//",
-            "survives up to 1.000 g; no verdict, since the run ends too early, from there; does not certainly overturn up to 3.000 g",
+            "survives up to 1.000 g; no verdict from there; does not certainly overturn up to 3.000 g",
         ),
         (
             "..??",

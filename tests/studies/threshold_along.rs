@@ -258,7 +258,9 @@ fn parts_threads_and_interruptions_change_nothing() {
         ]
     );
     let table = String::from_utf8(whole["threshold_along.csv"].clone()).unwrap();
-    assert!(table.starts_with("arch.mean_radius_m,overturns_from_factor,overturns_from_g,"));
+    assert!(table.starts_with(
+        "arch.mean_radius_m,survives_up_to_factor,survives_up_to_g,overturns_from_factor,"
+    ));
     assert_eq!(table.lines().count(), 8);
 
     for part in ["1/3", "3/3", "2/3"] {

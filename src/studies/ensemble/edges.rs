@@ -88,11 +88,8 @@ impl Question for FirstEdges {
         let band = low.zip(median).zip(high);
         let band = band.map(|((low, median), high)| [low, median, high]);
         let at_one = share_up_to(samples, 1.0);
-        let safe = ascending(
-            samples
-                .answers()
-                .map(|edge| edge.survives_up_to.unwrap_or(0.0)),
-        );
+        let safe = samples.answers().map(FirstEdge::safe_or_zero);
+        let safe = ascending(safe);
         let safe = band.map(|_| BAND.map(|part| fractile(&safe, part).unwrap_or(0.0)));
         let own = samples.own.as_ref().ok();
         let count = |condition: fn(&&_) -> bool| samples.answers().filter(condition).count();
@@ -107,11 +104,7 @@ impl Question for FirstEdges {
         });
         Ok(Findings {
             first: band.zip(safe).map(|(band, safe)| {
-                format!(
-                    "{};\n    {}",
-                    safe_words(samples, safe),
-                    first_words(samples, band, at_one)
-                )
+                safe_words(samples, safe) + &first_words(samples, band, at_one)
             }),
             lines: Vec::new(),
             influences: vec![samples.influence(answer, false, strength)],
@@ -186,14 +179,11 @@ fn safe_words(samples: &Samples<'_, FirstEdge>, [low, median, _]: [f64; 3]) -> S
         true => rounded_down(factor),
         false => "less than the smallest factor".to_owned(),
     };
-    let own = samples
-        .own
-        .as_ref()
-        .map(|edge| edge.survives_up_to.unwrap_or(0.0));
+    let own = samples.own.as_ref().map(FirstEdge::safe_or_zero);
     let own = own.map_or("an unknown factor".to_owned(), up_to);
     let [low, median] = [low, median].map(up_to);
     format!(
-        "95 % of the samples certainly survive up to {low}, half of them up to {median}, the scenario itself up to {own}"
+        "95 % of the samples certainly survive up to {low}, half of them up to {median}, the scenario itself up to {own};\n    "
     )
 }
 

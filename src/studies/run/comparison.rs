@@ -2,22 +2,25 @@
 
 use std::fmt::Write as _;
 
-use super::{ModelResults, Run};
+use super::summary::ComputedRun;
+use super::{ModelResults, caveats};
 use crate::dynamics::history::{Outcome, Summary as History};
 use crate::dynamics::repeatability::Verdict;
 use crate::dynamics::variation::VariationResult;
 use crate::scenario::Hinges;
+use crate::studies::quotable::{self, ModelAnswer};
 
 /// Returns a table of the runs of one structure with different models of motion, followed by the conclusion.
 pub(super) fn comparison_words(runs: &[ModelResults<'_>]) -> String {
     let rows: Vec<[String; 3]> = runs
         .iter()
-        .map(|ModelResults { run, history, .. }| {
+        .map(|results| {
+            let (run, history) = (results.run, &results.history);
             let peak = match history.outcome {
                 Outcome::Overturned(_) => String::new(),
                 _ => format!("{:.6} rad", history.largest_rotation_rad()),
             };
-            [run.name().to_owned(), outcome_words(history), peak]
+            [run.name().to_owned(), outcome_words(results), peak]
         })
         .collect();
     let header = ["model", "what happened", "largest rotation"].map(str::to_owned);
@@ -33,60 +36,88 @@ pub(super) fn comparison_words(runs: &[ModelResults<'_>]) -> String {
     text + &conclusion(runs)
 }
 
-fn outcome_words(history: &History) -> String {
+fn outcome_words(results: &ModelResults<'_>) -> String {
+    let history = &results.history;
+    let uncertain = match results.verdict {
+        Verdict::Uncertain => " (uncertain)",
+        _ => "",
+    };
     match history.outcome {
-        outcome @ (Outcome::NeverMoved | Outcome::Vibrates) => outcome.to_string(),
-        outcome => format!("{outcome} at {:.4} s", history.outcome_time_s),
+        outcome @ (Outcome::NeverMoved | Outcome::Vibrates) => format!("{outcome}{uncertain}"),
+        outcome => format!("{outcome} at {:.4} s{uncertain}", history.outcome_time_s),
     }
 }
 
-/// Returns the conclusion: the model with the fewest assumptions, the dependence of its outcome on its joints, and the differences of the other
-/// models.
+/// Returns the differences between the model with the fewest assumptions and the others, and the answer that may be quoted.
 fn conclusion(runs: &[ModelResults<'_>]) -> String {
-    let rank = |run: &Run<'_>| run.scenario.motion.hinges() as usize;
-    let Some(best) = runs.iter().max_by_key(|results| rank(results.run)) else {
-        return String::new();
-    };
-    let (best, own, varied) = (best.run, &best.history, &best.varied);
-    let is_elastic = best.scenario.motion.hinges() == Hinges::Elastic;
-    let name = best.name();
-    let happens = match own.outcome {
-        Outcome::Incomplete => {
-            return format!("  {name}: no verdict, so there is nothing to compare\n");
-        }
-        Outcome::Overturned(_) => "overturns",
+    let rank = |results: &ModelResults<'_>| results.run.scenario.motion.hinges() as usize;
+    let best = runs.iter().max_by_key(|results| rank(results));
+    let others = best.into_iter().flat_map(|best| {
+        let others = runs.iter().filter(|results| rank(results) != rank(best));
+        others.filter_map(|other| {
+            let (name, best_name) = (other.run.name(), best.run.name());
+            let differs = difference(best, other)?;
+            Some(format!("{name}, compared with {best_name}: {differs}"))
+        })
+    });
+    let answers: Vec<_> = runs.iter().map(|results| results.answer.clone()).collect();
+    let lines = others.chain(quotable::in_words(&answers));
+    lines.map(|line| format!("  {line}\n")).collect()
+}
+
+/// Returns the difference of a model from the one with the fewest assumptions, in words; `None` if one has no verdict, or none moves.
+fn difference(best: &ModelResults<'_>, other: &ModelResults<'_>) -> Option<String> {
+    let late_s = other.history.outcome_time_s - best.history.outcome_time_s;
+    let when = if late_s < 0.0 { "earlier" } else { "later" };
+    let [own_rad, other_rad] = [best, other].map(|one| one.history.largest_rotation_rad());
+    Some(match (best.verdict, other.verdict) {
+        (Verdict::Incomplete, _) | (_, Verdict::Incomplete) => return None,
+        (Verdict::Uncertain, other) => other.name().to_owned(),
+        (own, other) if other != own => format!(
+            "ANOTHER OUTCOME: {} instead of {}",
+            other.name(),
+            own.name()
+        ),
+        (Verdict::Overturns, _) => format!("overturns too, {:.4} s {when}", late_s.abs()),
+        _ if own_rad == 0.0 => return None,
+        _ => format!(
+            "survives too, with {:.2} times that rotation",
+            other_rad / own_rad
+        ),
+    })
+}
+
+/// Returns the answer of a run that may be quoted: a certain outcome that does not depend on the stiffness and contact of its joints.
+pub(super) fn answer(run: &ComputedRun<'_>) -> ModelAnswer {
+    let (scenario, history, varied) = (run.scenario, run.history, run.varied);
+    let is_elastic = scenario.motion.hinges() == Hinges::Elastic;
+    let happens = match history.outcome {
+        Outcome::Overturned(_) => "overturns under",
         _ => "survives",
     };
-    let mut text = match changed_outcome(own, varied) {
-        Some(change) => format!(
-            "  {name}: THE OUTCOME DEPENDS ON JOINT STIFFNESS AND CONTACT: it {happens} as given, and {change}\n"
-        ),
-        None if is_elastic && !all_agree(own, varied) => {
-            format!(
-                "  {name} assume least, but the dependence of the outcome on joint stiffness is unknown\n"
-            )
+    let no_answer = match (run.verdict(), changed_outcome(history, varied)) {
+        (Verdict::Incomplete, _) => Some("the run has no verdict".to_owned()),
+        (Verdict::Uncertain, _) => Some("it is uncertain whether it overturns".to_owned()),
+        _ if run.model.row().is_some() && run.repeatability().is_none() => {
+            Some("the run was not repeated".to_owned())
         }
-        None => {
-            let why = best.scenario.motion.hinges().model().trusted_because;
-            format!("  believe {name}: {why}\n")
+        (_, Some(change)) => Some(format!(
+            "THE OUTCOME DEPENDS ON JOINT STIFFNESS AND CONTACT: it {happens} this motion as given, and {change}"
+        )),
+        _ if is_elastic && !all_agree(history, varied) => {
+            Some("the dependence of the outcome on joint stiffness is unknown".to_owned())
         }
+        _ => None,
     };
-    let others = runs.iter().map(|results| (results.run, &results.history));
-    for (run, other) in others.filter(|(run, _)| rank(run) != rank(best)) {
-        let (name, verdict) = (run.name(), Verdict::from(own.outcome));
-        let late_s = other.outcome_time_s - own.outcome_time_s;
-        let when = if late_s < 0.0 { "earlier" } else { "later" };
-        let times = other.largest_rotation_rad() / own.largest_rotation_rad();
-        let differs = match Verdict::from(other.outcome) {
-            Verdict::Incomplete => continue,
-            other if other != verdict => "ANOTHER OUTCOME".to_owned(),
-            Verdict::Overturns => format!("overturns too, {:.4} s {when}", late_s.abs()),
-            _ if own.largest_rotation_rad() == 0.0 => continue,
-            _ => format!("survives too, with {times:.2} times that rotation"),
-        };
-        let _ = writeln!(text, "  {name}: {differs}");
-    }
-    text
+    let condition = caveats::friction_condition(scenario, history);
+    let condition = condition.map_or_else(String::new, |condition| format!(" ({condition})"));
+    let answer = no_answer.map_or_else(|| Ok(format!("{happens} this motion{condition}")), Err);
+    let (hinges, is_arch) = (scenario.motion.hinges(), scenario.structure.thrusts());
+    let excess_ratio = history
+        .thrust
+        .as_ref()
+        .map(|thrust| thrust.largest_excess.value);
+    ModelAnswer::new(hinges, is_arch, excess_ratio, answer)
 }
 
 /// Returns the opposite outcome and the properties with which it occurs, in words; `None` if no property changes the outcome.

@@ -47,13 +47,14 @@ use self::summary::Summary;
 pub use self::summary::{ComputedRun, OutcomeSummary, summary};
 pub use self::words::heading;
 use self::words::{NotableImpacts, VerdictLine, Words};
+use super::quotable::ModelAnswer;
 use super::results::{Results, StudyError};
 use super::runner::{Progress, RunnerError, Watch};
 use crate::dynamics::fall::FallEnd;
 use crate::dynamics::history::{Event, OpenHinge, Sample, Summary as History};
 use crate::dynamics::model::{Model, Recorder};
-use crate::dynamics::repeatability::{Repeatability, Repetitions};
-use crate::dynamics::variation::{VariationResult, Variations};
+use crate::dynamics::repeatability::{Repeatability, Repetitions, Verdict};
+use crate::dynamics::variation::Variations;
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::sway::Sway;
 use crate::output::scene::Scene;
@@ -122,8 +123,8 @@ struct ModelResults<'r> {
     summary: Value,
     /// The summary of the motion.
     history: History,
-    /// The motions with other properties that are equally likely.
-    varied: Vec<VariationResult>,
+    verdict: Verdict,
+    answer: ModelAnswer,
     curves: Curves,
 }
 
@@ -308,11 +309,13 @@ impl<'a> Run<'a> {
             repeated: repeated.as_ref(),
             varied: &varied,
         };
+        let (computed_verdict, answer) = (computed.verdict(), comparison::answer(&computed));
         let summary = Summary::of(&computed, drawings.points.peaks());
         let words = Words {
             computed,
             summary: &summary,
             impacts: &drawings.notable,
+            answer: &answer,
             all_models: self.all_models,
         };
         let (verdict, mut words) = (verdict(computed), render(&words));
@@ -329,8 +332,9 @@ impl<'a> Run<'a> {
             folder: path,
             words: format!("  {verdict}{words}"),
             summary,
+            verdict: computed_verdict,
+            answer,
             history,
-            varied,
             curves: drawings.curves,
         })
     }

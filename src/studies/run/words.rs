@@ -20,6 +20,7 @@ use crate::output::mechanisms::by_body;
 use crate::output::range_ends;
 use crate::output::template::filters;
 use crate::scenario::{Hinges, Scenario, Series};
+use crate::studies::quotable::{self, ModelAnswer};
 
 /// Returns the heading of the words for the runs of scenarios that differ in their models: title, one line per record, and a note about an
 /// ignored table.
@@ -83,6 +84,7 @@ pub(super) struct Words<'a> {
     pub computed: ComputedRun<'a>,
     pub summary: &'a Summary<'a>,
     pub impacts: &'a NotableImpacts,
+    pub answer: &'a ModelAnswer,
     /// The models of motion of all runs whose words are printed together.
     pub all_models: &'a [Hinges],
 }
@@ -104,6 +106,12 @@ struct Slip {
 }
 
 impl<'a> Words<'a> {
+    /// Returns the answer that may be quoted, in words; `None` if several models are compared, which have one answer together.
+    fn to_quote(&self) -> Option<String> {
+        let single = self.all_models.len() == 1;
+        single.then(|| quotable::in_words(std::slice::from_ref(self.answer)))?
+    }
+
     /// Returns true if no block moved until the end of the run.
     fn is_unmoved(&self) -> bool {
         let history = self.computed.history;

@@ -6,7 +6,7 @@ use super::{CaseRow, SuiteFragility};
 use crate::argument::plain;
 use crate::output::Figure;
 use crate::output::axes::Scale;
-use crate::scenario::{MODELS, Measure, Spacing, Spectral};
+use crate::scenario::{Hinges, Measure, Spacing, Spectral};
 
 /// The parts of a scenario that the report of its suite needs. They come from the text of the resolved scenario, so that `merge` needs no record
 /// files.
@@ -40,8 +40,13 @@ impl Heading {
 
     /// Returns true if the model of motion has joints, whose cases may be uncertain.
     pub(super) fn has_joints(&self) -> bool {
-        let mut models = MODELS.iter().filter(|model| model.has_joints);
-        models.any(|model| self.scenario.get(model.table).is_some())
+        self.hinges().has_joints()
+    }
+
+    pub(super) fn hinges(&self) -> Hinges {
+        let mut rows = [Hinges::Elastic, Hinges::Free].into_iter();
+        let own = rows.find(|hinges| self.scenario.get(hinges.model().table).is_some());
+        own.unwrap_or(Hinges::Four)
     }
 
     pub(super) fn title(&self) -> &str {

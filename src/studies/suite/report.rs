@@ -12,9 +12,11 @@ use crate::output::{Figure, OutputError};
 use crate::scenario::{Measure, shown};
 use crate::studies::ending::Verdict;
 use crate::studies::ending::columns::{self, FAILED, yes};
+use crate::studies::quotable::{self, ModelAnswer};
 use crate::studies::remarks::{Remarks, outcome_counts, outcome_label, rough_guide_of};
 use crate::studies::results::Results;
-use crate::studies::threshold::{rounded, survival};
+use crate::studies::threshold::survival::{self, Survival};
+use crate::studies::threshold::{rounded, rounded_down};
 
 const FRAGILITY: &str = "fragility.json";
 
@@ -43,6 +45,8 @@ pub struct Summary<'a> {
     scenario: &'a Value,
     /// Warnings about unlikely numbers, limits of the model, and histories without a verdict.
     warnings: Vec<String>,
+    /// The answer that may be quoted, in words.
+    to_quote: Option<String>,
     /// The measure of the intensities.
     intensity: &'static str,
     #[serde(flatten)]
@@ -114,7 +118,10 @@ impl Heading {
         let capacities = results.capacities();
         let measures = efficiencies(&capacities);
         let remarks = self.remarks(&results);
-        let words = self.words(&results, &capacities, &measures, &remarks);
+        let answer = self.answer(&results);
+        let to_quote = quotable::in_words(std::slice::from_ref(&answer));
+        let mut words = self.words(&results, &capacities, &measures, &remarks);
+        words.extend(to_quote.iter().map(|quote| format!("\n  {quote}")));
         let efficiencies = csv(efficiency_columns(), &measures)?;
         let incomplete = remarks.incomplete_in_words();
         let second = &results.fit_with_uncertain;
@@ -123,6 +130,7 @@ impl Heading {
             version: env!("CARGO_PKG_VERSION"),
             scenario: &self.scenario,
             warnings: self.warnings.iter().cloned().chain(incomplete).collect(),
+            to_quote,
             intensity: self.measure.column(),
             curve: (&results.fit).into(),
             records: results.record_count(),
@@ -158,8 +166,29 @@ impl Heading {
         ];
         Ok(Results {
             peaks: ida::rotations_rad(&results.cases),
+            answer: Some(answer),
             ..Results::new(&FILES, &summary, words, others)?
         })
+    }
+
+    /// Returns the answer that may be quoted: the largest intensity that is safe under all records.
+    fn answer(&self, results: &SuiteFragility) -> ModelAnswer {
+        let survivals = results.survivals().into_iter();
+        let safe = |survival: &Survival| survival.survives_up_to.unwrap_or(0.0);
+        let lowest = survivals.min_by(|(_, a), (_, b)| safe(a).total_cmp(&safe(b)));
+        let answer = lowest.map_or(Err("there are no cases".to_owned()), |(case, survival)| {
+            let (record, unit) = (case.record_in_words(), unit(self.measure));
+            match survival.survives_up_to.map(rounded_down) {
+                Some(safe) => Ok(format!(
+                    "survives all records up to {safe}{unit} ({record})"
+                )),
+                None => Err(format!(
+                    "the lowest level of {record} is not certainly survived"
+                )),
+            }
+        });
+        let is_arch = self.scenario.get("column").is_none();
+        ModelAnswer::new(self.hinges(), is_arch, None, answer)
     }
 
     /// Returns the failed and uncertain cases, with the reasons.

@@ -13,12 +13,9 @@ pub fn rounded(value: f64) -> String {
 #[must_use]
 pub fn rounded_down(value: f64) -> String {
     let decimals = decimals(value);
-    let unit = 0.1_f64.powi(decimals as i32);
-    // The tolerance keeps decimal numbers such as 0.45 as they are.
-    format!(
-        "{:.decimals$}",
-        (value / unit * (1.0 + 1e-12)).floor() * unit
-    )
+    // A little less than half a digit, so that decimal numbers such as 0.45 stay as they are.
+    let lowered = value - (0.5 - 1e-9) * 0.1_f64.powi(decimals as i32);
+    format!("{lowered:.decimals$}")
 }
 
 /// Returns both ends of a range with four digits, or with as many as needed to distinguish them.

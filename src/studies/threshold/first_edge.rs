@@ -122,6 +122,11 @@ impl FirstEdge {
         ]
     }
 
+    /// Returns the largest safe factor; 0 if the smallest tried factor is not safe.
+    pub(in crate::studies) fn safe_or_zero(&self) -> f64 {
+        self.survives_up_to.unwrap_or(0.0)
+    }
+
     /// Returns the factor; infinite if no factor overturns the structure.
     #[must_use]
     pub fn strength(&self) -> f64 {

@@ -48,15 +48,7 @@ pub fn draw(
         let samples = thresholds.iter().flat_map(|threshold| &threshold.samples);
         are_over_critical(samples.map(|sample| &sample.result))
     };
-    // A history that overturned itself has no peak and interrupts the curve; an uncertain one that did not has one.
-    let peak = |sample: &FactorSample| {
-        let ending = sample.result.as_ref().ok();
-        let ending = ending.filter(|ending| !ending.overturned_itself())?;
-        match over_critical {
-            true => ending.peak_over_critical,
-            false => Some(ending.peak_rotation_rad),
-        }
-    };
+    let peak = |sample: &FactorSample| sample.peak(over_critical);
     let (least, y_label) = match over_critical {
         true => (1.0, "peak rotation / critical rotation"),
         false => (0.01, "peak rotation (rad)"),
@@ -109,13 +101,19 @@ pub fn draw(
     };
     chart.add_plot(&mut sheet);
     sheet.gap(BELOW_PX);
-    let frame = figure.right_of(LEFT_PX, Frame::default());
-    let narrow = narrow(thresholds, &names, &Axes { frame, x, y });
-    if !narrow.is_empty() {
-        sheet.caption(8.0, &narrow);
-        sheet.gap(8.0);
-    }
     sheet.finish()
+}
+
+impl FactorSample {
+    /// Returns the largest rotation, over the critical rotation or in radians; `None` if the history itself overturned.
+    fn peak(&self, over_critical: bool) -> Option<f64> {
+        let ending = self.result.as_ref().ok();
+        let ending = ending.filter(|ending| !ending.overturned_itself())?;
+        match over_critical {
+            true => ending.peak_over_critical,
+            false => Some(ending.peak_rotation_rad),
+        }
+    }
 }
 
 /// Returns strokes for the curves of the models, in colours that no outcome has.
@@ -126,38 +124,6 @@ fn curves() -> impl Iterator<Item = Stroke> {
         Stroke::new("#6a3d9a", 1.8, "2 2"),
     ];
     CURVES.into_iter().cycle()
-}
-
-/// Bands narrower than this, in pixels, are listed in words.
-const NARROW_PX: f64 = 4.0;
-/// Largest number of listed bands.
-const LISTED: usize = 8;
-
-/// Returns the bands and uncertain ranges that are too narrow to see in a strip, in words; empty without such ranges.
-fn narrow(thresholds: &[Threshold], names: &[String], axes: &Axes) -> String {
-    let place = |factor: f64| axes.place(factor, axes.y.low).x;
-    let mut listed = Vec::new();
-    for (threshold, name) in thresholds.iter().zip(names) {
-        let name = match names {
-            [_] => String::new(),
-            _ => format!("{name} "),
-        };
-        for (verdict, range) in &threshold.ranges {
-            if place(range.to) - place(range.from) < NARROW_PX {
-                let [from, to] = [range.from, range.to].map(rounded);
-                listed.push(format!("{name}{} {from} to {to}", verdict.name()));
-            }
-        }
-    }
-    let more = listed.len().saturating_sub(LISTED);
-    listed.truncate(LISTED);
-    if more > 0 {
-        listed.push(format!("{more} more in threshold.csv"));
-    }
-    match listed[..] {
-        [] => String::new(),
-        _ => format!("Narrow: {}", listed.join("; ")),
-    }
 }
 
 /// Returns the scale up to the largest rotation of a history that did not overturn.
@@ -186,30 +152,8 @@ fn edges(threshold: &Threshold) -> impl Iterator<Item = f64> {
     })
 }
 
-/// Largest number of labelled edges of a model.
+/// Largest number of labelled edges of a model: those of the lowest factors.
 const LABELLED: usize = 8;
-
-/// Returns the edges that are labelled, ascending: the end of the safe factors, the lowest that overturns, and those farthest from others.
-fn labelled(edges: &[f64], threshold: &Threshold) -> Vec<f64> {
-    let lowest = threshold.lowest_factor();
-    let distance = |index: usize| {
-        let from = |other: Option<&f64>| {
-            other.map_or(f64::INFINITY, |other| (edges[index] / other).ln().abs())
-        };
-        let is_lowest =
-            lowest.is_some_and(|lowest| (edges[index] / lowest - 1.0).abs() <= 2.0 * EDGE_WIDTH);
-        let below = index.checked_sub(1).map(|below| from(edges.get(below)));
-        match (below, is_lowest) {
-            (None, _) | (_, true) => f64::INFINITY,
-            (Some(below), _) => below.min(from(edges.get(index + 1))),
-        }
-    };
-    let mut order: Vec<usize> = (0..edges.len()).collect();
-    order.sort_by(|a, b| distance(*b).total_cmp(&distance(*a)));
-    order.truncate(LABELLED);
-    order.sort_unstable();
-    order.into_iter().map(|index| edges[index]).collect()
-}
 
 /// Draws the outcomes of a model along the factors, with the edges of its bands above.
 fn strip(drawing: &mut Drawing, axes: &Axes, threshold: &Threshold) {
@@ -254,7 +198,7 @@ fn strip(drawing: &mut Drawing, axes: &Axes, threshold: &Threshold) {
     }
     let Frame { left, width, .. } = axes.frame;
     drawing.outline(&axes.frame, Stroke::new(color::BLACK, 0.8, ""));
-    let labelled = labelled(&edges, threshold);
+    let labelled = &edges[..edges.len().min(LABELLED)];
     let places: Vec<f64> = labelled.iter().map(|edge| place(*edge)).collect();
     let besides = spread(&places, left, left + width);
     for ((edge, at), beside) in labelled.iter().zip(&places).zip(besides) {

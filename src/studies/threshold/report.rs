@@ -3,17 +3,22 @@
 use serde::Serialize;
 use serde_json::Value;
 
-use super::digits::rounded;
+use super::digits::{rounded, rounded_down};
 use super::survival::{self, Survival};
-use super::{FactorRange, FactorSample, Factors, RangeEnd, Threshold, peak_g, picture};
+use super::{
+    EDGE_WIDTH, FactorRange, FactorSample, Factors, RangeEnd, Threshold, VariedThreshold, peak_g,
+    picture,
+};
 use crate::dynamics::history::Outcome;
 use crate::dynamics::repeatability::OutcomeCount;
 use crate::output::table::{column, csv, fields};
 use crate::output::{Figure, OutputError};
-use crate::scenario::{Ground, Scenario};
+use crate::scenario::{Ground, Hinges, Scenario};
 use crate::studies::ending::{NoHistory, Verdict, outcome_name};
+use crate::studies::quotable::{self, ModelAnswer};
 use crate::studies::remarks::{self, Remarks};
 use crate::studies::results::Results;
+use crate::studies::statistics::ascending;
 
 /// Names of the files, the seal last.
 pub const FILES: [&str; 3] = ["threshold.svg", "threshold.csv", "threshold.json"];
@@ -31,6 +36,8 @@ pub struct Summary<'a> {
     factors: Factors,
     /// Warnings about unlikely numbers, limits of the models, and histories without a verdict.
     warnings: Vec<String>,
+    /// The answer that may be quoted, in words.
+    to_quote: Option<String>,
     /// The threshold of each model.
     models: Vec<ModelSummary<'a>>,
 }
@@ -78,28 +85,20 @@ struct RangeSummary {
 
 /// The lowest overturning factor of a structure with other properties.
 #[derive(Serialize)]
-#[serde(untagged)]
-enum VariedSummary<'a> {
-    /// The factors were computed.
-    Known {
-        /// The changed property.
-        with: &'a str,
-        /// The lowest factor that overturns the structure; null if no factor does.
-        factor: Option<f64>,
-        /// Reason why lower factors are not known to overturn the structure.
-        from_end: Option<RangeEnd>,
-        /// Peak ground acceleration at `factor`, in units of gravity.
-        peak_g: Option<f64>,
-        /// Number of histories that ended too early for a verdict.
-        incomplete: usize,
-    },
-    /// The factors could not be computed.
-    Unknown {
-        /// The changed property.
-        with: &'a str,
-        /// The reason.
-        failed: &'a str,
-    },
+struct VariedSummary<'a> {
+    /// The changed property.
+    with: &'a str,
+    /// The lowest factor that overturns the structure; null if no factor does, or it could not be computed.
+    factor: Option<f64>,
+    /// Reason why lower factors are not known to overturn the structure.
+    from_end: Option<RangeEnd>,
+    /// Peak ground acceleration at `factor`, in units of gravity.
+    peak_g: Option<f64>,
+    /// Number of histories that ended too early for a verdict.
+    incomplete: usize,
+    /// Reason why the factor could not be computed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    failed: Option<&'a str>,
 }
 
 /// The history at a factor.
@@ -149,19 +148,26 @@ pub fn report(
     let title = title.unwrap_or("Threshold of overturning");
     let peak_g = peak_g(scenario);
     let models = thresholds.iter().zip(scenarios);
+    let answers = models
+        .clone()
+        .map(|(one, scenario)| one.answer(scenario, peak_g));
+    let to_quote = quotable::in_words(&answers.collect::<Vec<_>>());
+    let mut words = words(scenarios, thresholds);
+    words.extend(to_quote.iter().map(|quote| format!("  {quote}\n")));
     let summary = Summary {
         program: env!("CARGO_PKG_NAME"),
         version: env!("CARGO_PKG_VERSION"),
         peak_acceleration_g: peak_g,
         factors: *factors,
         warnings: warnings(scenarios, thresholds),
+        to_quote,
         models: models
             .map(|(threshold, scenario)| threshold.summary(scenario, peak_g))
             .collect(),
     };
     let picture = picture::draw(figure, title, peak_g, factors, thresholds);
     let others = [picture.into_bytes(), table(&summary.models)?];
-    Results::new(&FILES, &summary, words(scenarios, thresholds), others)
+    Results::new(&FILES, &summary, words, others)
 }
 
 /// Makes the table of the samples, ordered by model, then by factor.
@@ -215,16 +221,14 @@ impl Threshold {
             false => RangeEnd::Edge,
         };
         let varied = self.varied.iter().map(|varied| {
-            let with = &varied.name;
-            match &varied.factor {
-                Ok(factor) => VariedSummary::Known {
-                    with,
-                    factor: *factor,
-                    from_end: factor.map(from_end),
-                    peak_g: factor.map(|factor| factor * peak_g),
-                    incomplete: varied.incomplete,
-                },
-                Err(failed) => VariedSummary::Unknown { with, failed },
+            let factor = varied.factor.as_ref().ok().copied().flatten();
+            VariedSummary {
+                with: &varied.name,
+                factor,
+                from_end: factor.map(from_end),
+                peak_g: factor.map(|factor| factor * peak_g),
+                incomplete: varied.incomplete,
+                failed: varied.factor.as_ref().err().map(String::as_str),
             }
         });
         ModelSummary {
@@ -241,6 +245,48 @@ impl Threshold {
             variations: varied.collect(),
             samples: self.samples.iter().map(SampleSummary::of).collect(),
         }
+    }
+
+    /// Returns the answer that may be quoted: the largest safe factor, with its range over other stiffness and contact.
+    fn answer(&self, scenario: &Scenario, peak_g: f64) -> ModelAnswer {
+        let is_known = |one: &VariedThreshold| one.factor.is_ok() && one.incomplete == 0;
+        let over = match scenario.motion.hinges() {
+            Hinges::Elastic if self.varied.is_empty() => ", other stiffness and contact unknown",
+            Hinges::Elastic if self.varied.iter().all(is_known) => " over stiffness and contact",
+            Hinges::Elastic => " over stiffness and contact, as far as they have verdicts",
+            _ => "",
+        };
+        let others = self
+            .varied
+            .iter()
+            .filter_map(|one| one.factor.clone().ok()?);
+        let others: Vec<f64> = others.collect();
+        let answer = match self.survives_up_to() {
+            Some(safe) if !others.iter().any(|other| self.is_first(*other)) => {
+                let safe = ascending(
+                    others
+                        .iter()
+                        .map(|other| other / (1.0 + EDGE_WIDTH))
+                        .chain([safe]),
+                );
+                let [least, most] = [safe[0], safe[safe.len() - 1]].map(|factor| {
+                    format!(
+                        "{} ({} g)",
+                        rounded_down(factor),
+                        rounded_down(factor * peak_g)
+                    )
+                });
+                let most = if most == least {
+                    String::new()
+                } else {
+                    format!(" to {most}")
+                };
+                Ok(format!("survives up to {least}{most}{over}"))
+            }
+            _ => Err("the smallest factor tried is not certainly survived".to_owned()),
+        };
+        let (hinges, is_arch) = (scenario.motion.hinges(), scenario.structure.thrusts());
+        ModelAnswer::new(hinges, is_arch, None, answer)
     }
 
     /// Returns the remarks on the histories.

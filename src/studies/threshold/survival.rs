@@ -1,7 +1,7 @@
 //! The strengths of a ground motion that a structure survives, in one line of words that begins with the safe ones.
 
 use super::Threshold;
-use super::digits::{rounded, rounded_down};
+use super::digits::{rounded, rounded_down, rounded_range};
 use crate::studies::ending::Verdict;
 
 /// A range of strengths with one verdict; `None` without histories.
@@ -54,60 +54,46 @@ impl Survival {
             runs,
         }
     }
-
-    /// Returns the words for the smallest tried strengths: the safe ones, or the reason why none is known to be safe.
-    fn first_words(&self, at: impl Fn(f64, fn(f64) -> String) -> String) -> String {
-        let Some((verdict, [from, to])) = self.runs.first() else {
-            return "no history".to_owned();
-        };
-        let what = match verdict {
-            Some(Verdict::Survives) => {
-                let all = if self.runs.len() == 1 {
-                    ", the largest tried"
-                } else {
-                    ""
-                };
-                let safe = self.survives_up_to.unwrap_or(*to);
-                return format!("survives up to {}{all}", at(safe, rounded_down));
-            }
-            Some(Verdict::Overturns) => "overturns",
-            other => doubt(*other),
-        };
-        format!(
-            "{what} at {} already, the smallest tried",
-            at(*from, rounded)
-        )
-    }
 }
 
-/// Returns the words for a verdict that is neither survival nor overturning.
-const fn doubt(verdict: Option<Verdict>) -> &'static str {
+/// Returns the word before strengths with a verdict; those that are survived are gaps above others that overturn.
+const fn word(verdict: Option<Verdict>) -> &'static str {
     match verdict {
+        Some(Verdict::Survives) => "gaps",
+        Some(Verdict::Incomplete) => "no verdict",
         Some(Verdict::Uncertain) => "uncertain",
-        Some(_) => "no verdict, since the run ends too early,",
+        Some(Verdict::Overturns) => "overturns",
         None => "not known",
     }
 }
 
-/// Verdicts without certainty.
-const DOUBTS: [Option<Verdict>; 3] = [Some(Verdict::Uncertain), Some(Verdict::Incomplete), None];
+/// Verdicts whose ranges are listed.
+const KINDS: [Option<Verdict>; 4] = [
+    Some(Verdict::Survives),
+    Some(Verdict::Uncertain),
+    Some(Verdict::Incomplete),
+    None,
+];
 
 /// Largest number of ranges of one verdict in a line of words.
 const LISTED: usize = 6;
 
-/// Returns the ranges with a verdict in words; `None` without such ranges.
-fn listed(runs: &[Run], verdict: Option<Verdict>, unit: &str) -> Option<String> {
-    let of_verdict = runs.iter().filter(|run| run.0 == verdict);
-    let mut all: Vec<String> = of_verdict
-        .map(|(_, ends)| match ends.map(rounded) {
-            [from, to] if from == to => format!("{to}{unit}"),
-            [from, to] => format!("{from} to {to}{unit}"),
-        })
-        .collect();
-    let more = all.len().saturating_sub(LISTED);
-    all.truncate(LISTED);
-    all.extend((more > 0).then(|| format!("{more} more")));
-    (!all.is_empty()).then(|| all.join(", "))
+/// Returns the ranges of each kind in words, with `beside` between kind and ranges.
+fn listed(runs: &[Run], kinds: &[Option<Verdict>], beside: &str, unit: &str) -> Vec<String> {
+    let of_kind = kinds.iter().filter_map(|kind| {
+        let of_kind = runs.iter().filter(|run| run.0 == *kind);
+        let mut all: Vec<String> = of_kind
+            .map(|(_, ends)| match rounded_range(*ends) {
+                _ if ends[0] == ends[1] => rounded(ends[0]) + unit,
+                [from, to] => format!("{from} to {to}{unit}"),
+            })
+            .collect();
+        let more = all.len().saturating_sub(LISTED);
+        all.truncate(LISTED);
+        all.extend((more > 0).then(|| format!("{more} more")));
+        (!all.is_empty()).then(|| format!("{}{beside} {}", word(*kind), all.join(", ")))
+    });
+    of_kind.collect()
 }
 
 /// Returns the line of words: `survives up to 2.113; uncertain from there; certainly overturns from 2.401 (gaps above: 2.604 to 2.871)`. The unit
@@ -116,54 +102,52 @@ fn listed(runs: &[Run], verdict: Option<Verdict>, unit: &str) -> Option<String> 
 pub fn in_words(survival: &Survival, unit: &str, peak_g: Option<f64>) -> String {
     let at = |strength: f64, rounded: fn(f64) -> String| match peak_g {
         Some(peak_g) => format!("{} ({} g)", rounded(strength), rounded(strength * peak_g)),
-        None => format!("{}{unit}", rounded(strength)),
+        None => rounded(strength) + unit,
     };
     let runs = &survival.runs[..];
-    let mut parts = vec![survival.first_words(at)];
-    let overturns = |run: &Run| run.0 == Some(Verdict::Overturns);
-    let first = runs.iter().position(overturns);
-    // The ranges between the safe strengths and the first that overturns.
-    let from = usize::from(survival.survives_up_to.is_some());
-    let between = runs.get(from..first.unwrap_or(runs.len())).unwrap_or(&[]);
-    match between {
-        // The first words are about this range.
-        [_] if from == 0 => {}
-        [(verdict, _)] => parts.push(format!("{} from there", doubt(*verdict))),
-        _ => parts.extend(DOUBTS.into_iter().filter_map(|verdict| {
-            let ranges = listed(between, verdict, unit)?;
-            Some(format!("{} at {ranges}", doubt(verdict)))
-        })),
+    let Some((verdict, [from, _])) = runs.first() else {
+        return "no history".to_owned();
+    };
+    let mut parts = vec![match survival.survives_up_to {
+        Some(safe) => format!("survives up to {}", at(safe, rounded_down)),
+        None => {
+            let (what, from) = (word(*verdict), at(*from, rounded));
+            format!("{what} at {from} already, the smallest tried")
+        }
+    }];
+    let overturns = runs
+        .iter()
+        .position(|run| run.0 == Some(Verdict::Overturns));
+    let (below, above) = runs.split_at(overturns.unwrap_or(runs.len()));
+    let is_certain = below.iter().all(|run| run.0 == Some(Verdict::Survives));
+    match below.get(1..).unwrap_or_default() {
+        [(verdict, _)] if survival.survives_up_to.is_some() => {
+            parts.push(format!("{} from there", word(*verdict)));
+        }
+        between => parts.extend(listed(between, &KINDS[1..], " at", unit)),
     }
-    let certainly = if between.is_empty() { "" } else { "certainly " };
-    match survival.overturns_from {
-        Some(_) if first == Some(0) => {}
-        Some(strength) => {
+    let certainly = if is_certain { "" } else { "certainly " };
+    let known = below.iter().rfind(|run| run.0.is_some());
+    match (survival.overturns_from, known) {
+        (Some(strength), _) if !below.is_empty() => {
+            let strength = at(strength, rounded);
             let from = if survival.at_most {
                 "at or below"
             } else {
                 "from"
             };
+            parts.push(format!("{certainly}overturns {from} {strength}"));
+        }
+        (None, Some(_)) if is_certain => parts[0] += ", the largest tried",
+        (None, Some((_, [_, to]))) => {
             parts.push(format!(
-                "{certainly}overturns {from} {}",
-                at(strength, rounded)
+                "does not certainly overturn up to {}",
+                at(*to, rounded)
             ));
         }
-        None => {
-            let known = runs.iter().rfind(|run| run.0.is_some());
-            let all = known.filter(|_| !between.is_empty()).map(|run| run.1[1]);
-            parts.extend(
-                all.map(|to| format!("does not certainly overturn up to {}", at(to, rounded))),
-            );
-        }
+        _ => {}
     }
-    let above = &runs[first.map_or(runs.len(), |first| first + 1)..];
-    let named = [("gaps", Some(Verdict::Survives))]
-        .into_iter()
-        .chain(DOUBTS.map(|verdict| (doubt(verdict).trim_end_matches(','), verdict)));
-    let above = named.filter_map(|(what, verdict)| {
-        Some(format!("{what} above: {}", listed(above, verdict, unit)?))
-    });
-    let above = above.collect::<Vec<_>>().join("; ");
+    let above = listed(above, &KINDS, " above:", unit).join("; ");
     let above = if above.is_empty() {
         above
     } else {

@@ -90,9 +90,14 @@ impl Along<'_> {
             let known = known.filter_map(|point| Some((of(point)?, point.value)));
             let least = known.clone().min_by(|a, b| a.0.total_cmp(&b.0))?;
             let most = known.max_by(|a, b| a.0.total_cmp(&b.0))?;
-            let [least, most] =
-                [least, most].map(|(g, value)| format!("{} g at {}", rounded(g), plain(value)));
-            Some(format!("{what} {least} to {most}"))
+            let at = |end: &str, (g, value): (f64, f64)| {
+                format!("{} g ({end}, at {})", rounded(g), plain(value))
+            };
+            Some(format!(
+                "{what} {} and {}",
+                at("lowest", least),
+                at("highest", most)
+            ))
         };
         let count = |what: &str, at: fn(&&Point) -> bool| {
             let count = points.iter().filter(at).count();

@@ -1,0 +1,70 @@
+//! The answer that may be quoted: one rule for runs, thresholds, suites and comparisons of models.
+//!
+//! The model with the fewest assumptions decides; other models only show how the answer depends on the model. It answers with the largest strength
+//! up to which the structure certainly survives, over all computed stiffnesses and contacts of its joints, or with an outcome that is certain and
+//! the same for all of them. Four links of an arch are quoted only if their thrust line was followed and stays almost inside the arch.
+
+use crate::dynamics::thrust::EXCESS_LEVELS;
+use crate::scenario::Hinges;
+
+/// The answer of a model of motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModelAnswer {
+    hinges: Hinges,
+    /// Name of the model in sentences.
+    label: &'static str,
+    /// The certain answer, in words; or the reason why there is none.
+    answer: Result<String, String>,
+}
+
+impl ModelAnswer {
+    /// Makes the answer of a model of motion. `excess_ratio` is the largest excess of the thrust line of four links over the thickness; `None` if it
+    /// was not followed.
+    #[must_use]
+    pub fn new(
+        hinges: Hinges,
+        is_arch: bool,
+        excess_ratio: Option<f64>,
+        answer: Result<String, String>,
+    ) -> Self {
+        let outside = (hinges == Hinges::Four && is_arch).then(|| outside_four_links(excess_ratio));
+        Self {
+            hinges,
+            label: match hinges {
+                Hinges::Four if !is_arch => "one rigid block",
+                _ => hinges.model().label,
+            },
+            answer: match outside.flatten() {
+                Some(why) => Err(why),
+                None => answer,
+            },
+        }
+    }
+}
+
+/// Returns the reason why four links of an arch are outside their model; `None` if they are inside.
+fn outside_four_links(excess_ratio: Option<f64>) -> Option<String> {
+    let why = match excess_ratio {
+        None => "their thrust line was not followed".to_owned(),
+        Some(ratio) if ratio > EXCESS_LEVELS[1] => {
+            format!("their thrust line leaves the arch by up to {ratio:.3} t")
+        }
+        Some(_) => return None,
+    };
+    Some(format!("{why}; compare with free hinges"))
+}
+
+/// Returns the answer that may be quoted, in words; `None` without models.
+#[must_use]
+pub fn in_words(answers: &[ModelAnswer]) -> Option<String> {
+    let best = answers.iter().max_by_key(|one| one.hinges as usize)?;
+    let label = best.label;
+    let more = match best.hinges {
+        Hinges::Free => "; the stiffness of joints is not considered",
+        Hinges::Four | Hinges::Elastic => "",
+    };
+    Some(match &best.answer {
+        Ok(answer) => format!("to quote: {answer}, with {label}{more}"),
+        Err(why) => format!("to quote: no answer with {label}: {why}"),
+    })
+}

@@ -1,0 +1,125 @@
+//! The answer that may be quoted: one rule for runs, thresholds, suites and comparisons of models.
+
+use std::fs;
+
+use crate::common::program::{printed, scenarios};
+use crate::common::results::json;
+use crate::common::{ARCH, COLUMN};
+use archrock::scenario::Hinges;
+use archrock::studies::quotable::{ModelAnswer, in_words};
+
+fn answer(hinges: Hinges, is_arch: bool, excess_ratio: Option<f64>, up_to: &str) -> ModelAnswer {
+    ModelAnswer::new(
+        hinges,
+        is_arch,
+        excess_ratio,
+        Ok(format!("survives up to {up_to}")),
+    )
+}
+
+/// The model with the fewest assumptions answers, also if all differ, and also if it has no answer. Four links of an arch answer only inside
+/// their model; one rigid block has no thrust line to leave.
+#[test]
+fn the_model_with_the_fewest_assumptions_answers() {
+    let quoted = |answers: &[ModelAnswer]| in_words(answers).unwrap();
+    let four = answer(Hinges::Four, true, Some(0.04), "3");
+    let free = answer(Hinges::Free, true, None, "2");
+    let elastic = answer(Hinges::Elastic, true, None, "1");
+    let all = [elastic.clone(), four.clone(), free.clone()];
+    assert_eq!(
+        quoted(&all),
+        "to quote: survives up to 1, with elastic joints"
+    );
+    assert!(
+        quoted(&[four.clone(), free.clone()])
+            .starts_with("to quote: survives up to 2, with free hinges;")
+    );
+    assert_eq!(
+        quoted(&[four.clone()]),
+        "to quote: survives up to 3, with four links"
+    );
+    let unknown = Err("it is uncertain whether it overturns".to_owned());
+    let unknown = ModelAnswer::new(Hinges::Elastic, true, None, unknown);
+    assert_eq!(
+        quoted(&[four, unknown, free]),
+        "to quote: no answer with elastic joints: it is uncertain whether it overturns"
+    );
+    for (excess, why) in [
+        (None, "was not followed"),
+        (Some(0.0501), "leaves the arch by up to 0.050 t"),
+        (Some(0.7), "leaves the arch by up to 0.700 t"),
+    ] {
+        let outside = quoted(&[answer(Hinges::Four, true, excess, "3")]);
+        assert!(
+            outside.starts_with("to quote: no answer with four links") && outside.contains(why),
+            "{outside}"
+        );
+    }
+    let block = answer(Hinges::Four, false, None, "3");
+    assert_eq!(
+        quoted(&[block]),
+        "to quote: survives up to 3, with one rigid block"
+    );
+    assert_eq!(in_words(&[]), None);
+}
+
+/// A comparison never recommends a model whose verdict is uncertain.
+#[test]
+fn an_uncertain_verdict_is_not_quoted() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.15\nembrace_deg = 157.5\nvoussoirs = 15\n[free_hinges]\n\
+                [ground.step_pair]\namplitude_g = 0.495\nduration_s = 0.5\n";
+    fs::write(folder.path().join("s.toml"), text).unwrap();
+    let run = |hinges| {
+        printed(
+            folder.path(),
+            &["run", "s.toml", "--hinges", hinges, "--no-report"],
+        )
+    };
+    let both = run("both");
+    let table: Vec<&str> = both.lines().take(3).collect();
+    assert!(
+        table[2].contains("free hinges") && table[2].contains("(uncertain)"),
+        "{both}"
+    );
+    let quoted = "\n  to quote: no answer with free hinges: it is uncertain whether it overturns\n";
+    assert_eq!(both.matches("to quote").count(), 1, "{both}");
+    assert!(both.contains(quoted) && !both.contains("believe"), "{both}");
+    assert!(run("free").contains(quoted));
+}
+
+/// The last line of a threshold is also in its summary: of a block the safe factor, of four links of an arch none.
+#[test]
+fn thresholds_and_runs_end_with_their_answer() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let pulse = "[ground.half_sine]\namplitude_g = 0.5\nduration_s = 0.5\n";
+    for (structure, named) in [
+        (COLUMN, "with one rigid block"),
+        (ARCH, "no answer with four links"),
+    ] {
+        fs::write(at.join("s.toml"), format!("{structure}{pulse}")).unwrap();
+        let said = printed(at, &["--quiet", "threshold", "s.toml", "--stride", "0.2"]);
+        let summary = json(&at.join("results/s/threshold.json"));
+        let quoted = summary["to_quote"].as_str().unwrap();
+        assert!(quoted.contains(named) && said.contains(quoted), "{said}");
+        let safe = summary["models"][0]["survives_up_to_factor"]
+            .as_f64()
+            .unwrap();
+        let lowest = summary["models"][0]["lowest_factor"].as_f64().unwrap();
+        assert!(safe < lowest && lowest < 1.1 * safe, "{safe} {lowest}");
+        let shown = &format!("{safe:.9}")[..5];
+        assert_eq!(
+            quoted.contains(&format!("survives up to {shown}")),
+            structure == COLUMN,
+            "{quoted}"
+        );
+    }
+    let arch = scenarios().join("semicircle-pulse.toml");
+    let said = printed(at, &["run", arch.to_str().unwrap(), "--out", "o"]);
+    let quoted = "to quote: no answer with four links: their thrust line leaves the arch by up to 0.786 t; compare with free hinges";
+    assert!(
+        said.contains(quoted) && said.contains("peak rotation 45 % of overturning"),
+        "{said}"
+    );
+}
