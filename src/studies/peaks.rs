@@ -46,7 +46,7 @@ pub fn distance(one: ModelPeaks<'_>, other: ModelPeaks<'_>) -> Option<Distance> 
         shares_there: [0.0; 2],
     };
     let sorted = both.map(|(_, peaks)| ascending(peaks.iter().copied()));
-    for (at_rad, _) in shares_up_to(sorted.concat()) {
+    for (at_rad, _) in shares_up_to(sorted.concat().into_iter().map(|peak| [peak, 1.0])) {
         let shares = sorted
             .each_ref()
             .map(|peaks| peaks.partition_point(|peak| *peak <= at_rad) as f64 / peaks.len() as f64);
@@ -76,7 +76,7 @@ pub fn results(
 ) -> Result<Results, OutputError> {
     let distributions = models.iter();
     let distributions: Vec<Distribution<'_>> = distributions
-        .map(|(name, peaks)| (*name, shares_up_to(peaks.to_vec())))
+        .map(|(name, peaks)| (*name, shares_up_to(peaks.iter().map(|peak| [*peak, 1.0]))))
         .collect();
     let pairs = models.iter().enumerate().flat_map(|(index, one)| {
         let others = models[index + 1..].iter();

@@ -6,13 +6,24 @@ use serde::Serialize;
 pub(super) const TWO_SIDED_95: f64 = 1.959_963_984_540_054;
 
 /// Number of samples with a property, and the estimated share among all possible samples.
+///
+/// # Interval
+///
+/// An uncertain sample has the property or not, and a sample without a verdict as well: the samples do not determine which. The interval of
+/// Wilson (Journal of the American Statistical Association 22, 1927) contains the true share with a probability of 95 % for each possible number
+/// of samples with the property. Both ends of his interval grow with this number. So the interval from his lower end, if none of these samples
+/// has the property, to his upper end, if all have it, contains every such interval, and the true share with at least 95 %.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Share {
-    /// The number of samples with the property.
+    /// The number of samples that certainly have the property.
     pub count: usize,
-    /// The number of all samples.
+    /// The number of uncertain samples; each counts with a fraction in `share`.
+    pub uncertain: usize,
+    /// The number of samples without a verdict. They count in the interval only.
+    pub no_verdict: usize,
+    /// The number of samples with a verdict, certain or not.
     pub of: usize,
-    /// The share of the samples.
+    /// The share of the samples with a verdict.
     pub share: f64,
     /// Lower end of the 95 % confidence interval.
     pub low: f64,
@@ -21,26 +32,36 @@ pub struct Share {
 }
 
 impl Share {
-    /// Computes the share and the interval of Wilson (1927), which holds for independent samples. Samples of a low-discrepancy sequence are more
-    /// even, so the interval is conservative. `None` without samples.
+    /// Computes the share of `count` samples among `of`, all certain. `None` without samples.
     #[must_use]
     pub fn of(count: usize, of: usize) -> Option<Self> {
-        if of == 0 {
-            return None;
-        }
-        let (n, z2) = (of as f64, TWO_SIDED_95 * TWO_SIDED_95);
-        let share = count as f64 / n;
-        let middle = (share + 0.5 * z2 / n) / (1.0 + z2 / n);
-        let half = TWO_SIDED_95 / (1.0 + z2 / n)
-            * (share * (1.0 - share) / n + 0.25 * z2 / (n * n)).sqrt();
-        let [low, high] = [middle - half, middle + half].map(|end| end.clamp(0.0, 1.0));
-        Some(Self {
+        Self::of_counts([count, count, of, 0], count as f64)
+    }
+
+    /// Computes the share of samples that have a property with these probabilities: 0 or 1, a fraction if it is uncertain, and `None` without a
+    /// verdict. `None` if no sample has a verdict.
+    #[must_use]
+    pub fn of_chances(chances: impl Iterator<Item = Option<f64>> + Clone) -> Option<Self> {
+        let known = chances.clone().flatten();
+        let count = |least: f64| known.clone().filter(|chance| *chance >= least).count();
+        let [certain, possible, of] = [1.0, f64::MIN_POSITIVE, 0.0].map(count);
+        let counts = [certain, possible, of, chances.count() - of];
+        Self::of_counts(counts, known.clone().sum())
+    }
+
+    /// Computes the share from the number of samples that certainly have the property, of those that may have it, of those with a verdict, and of
+    /// those without; `expected` is the sum of their probabilities.
+    pub(super) fn of_counts(counts: [usize; 4], expected: f64) -> Option<Self> {
+        let [count, possible, of, no_verdict] = counts;
+        let all = of + no_verdict;
+        (of > 0).then(|| Self {
             count,
+            uncertain: possible - count,
+            no_verdict,
             of,
-            share,
-            // The ends are exactly 0 and 1 if no sample or every sample has the property.
-            low: if count == 0 { 0.0 } else { low },
-            high: if count == of { 1.0 } else { high },
+            share: (expected / of as f64).min(1.0),
+            low: wilson(count, all)[0],
+            high: wilson(possible + no_verdict, all)[1],
         })
     }
 
@@ -50,6 +71,22 @@ impl Share {
     }
 }
 
+/// Computes the ends of Wilson's interval, which holds for independent samples. Samples of a low-discrepancy sequence are more even, so the
+/// interval is conservative.
+fn wilson(count: usize, of: usize) -> [f64; 2] {
+    let (n, z2) = (of as f64, TWO_SIDED_95 * TWO_SIDED_95);
+    let share = count as f64 / n;
+    let middle = (share + 0.5 * z2 / n) / (1.0 + z2 / n);
+    let half =
+        TWO_SIDED_95 / (1.0 + z2 / n) * (share * (1.0 - share) / n + 0.25 * z2 / (n * n)).sqrt();
+    let [low, high] = [middle - half, middle + half].map(|end| end.clamp(0.0, 1.0));
+    // The ends are exactly 0 and 1 if no sample or every sample has the property.
+    [
+        if count == 0 { 0.0 } else { low },
+        if count == of { 1.0 } else { high },
+    ]
+}
+
 /// Sorts values in ascending order.
 pub fn ascending(values: impl IntoIterator<Item = f64>) -> Vec<f64> {
     let mut values: Vec<f64> = values.into_iter().collect();
@@ -57,26 +94,46 @@ pub fn ascending(values: impl IntoIterator<Item = f64>) -> Vec<f64> {
     values
 }
 
-/// Returns the finite values in ascending order, each with the share of all values up to it.
-pub(super) fn shares_up_to(values: impl IntoIterator<Item = f64>) -> Vec<(f64, f64)> {
-    let values = ascending(values);
-    let all = values.len() as f64;
-    let shares = (1..).map(|count: u32| f64::from(count) / all);
-    let finite = values.into_iter().filter(|value| value.is_finite());
-    finite.zip(shares).collect()
+/// Sorts values with weights, given as `[value, weight]`, in ascending order of the values.
+pub fn ascending_weighted(values: impl IntoIterator<Item = [f64; 2]>) -> Vec<[f64; 2]> {
+    let values = values.into_iter().filter(|[_, weight]| *weight > 0.0);
+    let mut values: Vec<[f64; 2]> = values.collect();
+    values.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    values
+}
+
+/// Returns the finite values in ascending order, each with the share of all weights up to it, from values with weights in any order.
+pub(super) fn shares_up_to(values: impl IntoIterator<Item = [f64; 2]>) -> Vec<(f64, f64)> {
+    let values = ascending_weighted(values);
+    let all: f64 = values.iter().map(|[_, weight]| weight).sum();
+    let mut reached = 0.0;
+    let finite = values.into_iter().filter(|[value, _]| value.is_finite());
+    let share = |[value, weight]: [f64; 2]| {
+        reached += weight;
+        (value, reached / all)
+    };
+    finite.map(share).collect()
 }
 
 /// Computes a quantile of ascending values, for a `part` of 0 to 1. Value `i` of `n`, counted from 1, is the quantile of `(i - 1/2) / n`
 /// (Hazen). Quantiles between neighbours are interpolated linearly. Infinite if a neighbour is infinite; `None` without values.
 #[must_use]
 pub fn quantile(ascending: &[f64], part: f64) -> Option<f64> {
-    between(ascending, part, |low, high, way| low + way * (high - low))
+    between(&alike(ascending), part, |low, high, way| {
+        low + way * (high - low)
+    })
 }
 
 /// Computes a fractile of ascending values of at least 0 as [`quantile`] does, but interpolates logarithms: strengths and peaks scatter by
 /// ratios. 0 if the lower neighbour is 0.
 #[must_use]
 pub fn fractile(ascending: &[f64], part: f64) -> Option<f64> {
+    weighted_fractile(&alike(ascending), part)
+}
+
+/// Computes a fractile of values with weights, [ascending](ascending_weighted). A value lies in the middle of its weight.
+#[must_use]
+pub fn weighted_fractile(ascending: &[[f64; 2]], part: f64) -> Option<f64> {
     between(ascending, part, |low, high, way| {
         if low > 0.0 {
             low * libm::exp(way * libm::log(high / low))
@@ -86,26 +143,38 @@ pub fn fractile(ascending: &[f64], part: f64) -> Option<f64> {
     })
 }
 
-/// Interpolates between the neighbours of a quantile.
+fn alike(values: &[f64]) -> Vec<[f64; 2]> {
+    values.iter().map(|value| [*value, 1.0]).collect()
+}
+
+/// Interpolates between the neighbours of a quantile of values with weights.
 fn between(
-    ascending: &[f64],
+    ascending: &[[f64; 2]],
     part: f64,
     interpolate: impl Fn(f64, f64, f64) -> f64,
 ) -> Option<f64> {
-    let last = ascending.len().checked_sub(1)?;
-    let place = (part * ascending.len() as f64 - 0.5).clamp(0.0, last as f64);
+    let mut reached = 0.0;
+    let middle = |[_, weight]: &[f64; 2]| {
+        reached += weight;
+        reached - 0.5 * weight
+    };
+    let places: Vec<f64> = ascending.iter().map(middle).collect();
+    let place = part * reached;
     // A rounding error must not include the next value, which may be infinite.
-    let below = (place + 1e-9).floor();
-    let index = below as usize;
-    let (low, way) = (ascending[index], place - below);
-    if way <= 1e-9 || low.is_infinite() || ascending[index + 1] == low {
+    let above = places.partition_point(|at| *at <= place + 1e-9);
+    let below = above.saturating_sub(1);
+    let low = ascending.get(below)?[0];
+    let Some([high, _]) = ascending.get(above).filter(|_| above > 0) else {
+        return Some(low);
+    };
+    let way = (place - places[below]) / (places[above] - places[below]);
+    if way <= 1e-9 || low.is_infinite() || *high == low {
         return Some(low);
     }
-    let high = ascending[index + 1];
     Some(if high.is_infinite() {
-        high
+        *high
     } else {
-        interpolate(low, high, way)
+        interpolate(low, *high, way)
     })
 }
 
@@ -206,6 +275,52 @@ mod tests {
         let all = Share::of(29, 29).unwrap();
         assert!(all.high == 1.0 && (all.low - 0.8830).abs() < 5e-5);
         assert_eq!(Share::of(0, 0), None);
+    }
+
+    /// Of 12 samples 1 overturns, 9 are uncertain and count one half each, 2 survive: 5.5 of 12. The ends are those of 1 and of 10 of 12 by
+    /// Wilson. Three more samples without a verdict widen the interval to that of 1 and of 13 of 15.
+    #[test]
+    fn intervals_contain_both_ends_of_uncertain_samples() {
+        let chances = [vec![Some(1.0)], vec![Some(0.5); 9], vec![Some(0.0); 2]].concat();
+        let share = Share::of_chances(chances.iter().copied()).unwrap();
+        assert_eq!([share.count, share.uncertain, share.of], [1, 9, 12]);
+        assert!((share.share - 5.5 / 12.0).abs() < 1e-15);
+        let ends = |count, of| Share::of(count, of).unwrap();
+        assert_eq!(
+            [share.low, share.high],
+            [ends(1, 12).low, ends(10, 12).high]
+        );
+        let more = chances.into_iter().chain([None; 3]);
+        let more = Share::of_chances(more).unwrap();
+        assert_eq!([more.share, more.low], [share.share, ends(1, 15).low]);
+        assert_eq!((more.high, more.no_verdict), (ends(13, 15).high, 3));
+        // However the uncertain samples end, the interval contains that of Wilson.
+        for count in 1..=13 {
+            let one = ends(count, 15);
+            assert!(more.low <= one.low && one.high <= more.high, "{count}");
+        }
+        assert_eq!(Share::of_chances([None].into_iter()), None);
+    }
+
+    #[test]
+    fn weights_move_fractiles() {
+        let eight = [0.243, 0.281, 0.330, 0.342, 0.503, 0.559, 0.848, 0.859];
+        let alike = ascending_weighted(eight.iter().rev().map(|value| [*value, 0.5]));
+        for part in [0.0, 0.05, 0.16, 0.5, 0.84, 1.0] {
+            let [a, b] = [
+                weighted_fractile(&alike, part).unwrap(),
+                fractile(&eight, part).unwrap(),
+            ];
+            assert!((a / b - 1.0).abs() < 1e-12, "{part}: {a} {b}");
+        }
+        // One value, half at 1 and half at 4: its median lies between the two.
+        let halves = ascending_weighted([[4.0, 0.5], [1.0, 0.5]]);
+        assert!((weighted_fractile(&halves, 0.5).unwrap() - 2.0).abs() < 1e-12);
+        let infinite = ascending_weighted([[1.0, 0.9], [f64::INFINITY, 0.1], [7.0, 0.0]]);
+        let of = |part| weighted_fractile(&infinite, part);
+        assert_eq!([of(0.45), of(0.5)], [Some(1.0), Some(f64::INFINITY)]);
+        assert_eq!(shares_up_to(infinite), [(1.0, 0.9)]);
+        assert_eq!(weighted_fractile(&[], 0.5), None);
     }
 
     #[test]

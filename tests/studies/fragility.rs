@@ -17,7 +17,7 @@ fn counts(levels: &[(f64, usize, usize)]) -> Vec<Observation> {
         .enumerate()
         .map(|(record, (intensity, overturned))| Observation {
             intensity,
-            overturned,
+            overturned: f64::from(overturned),
             record,
         })
         .collect()
@@ -164,7 +164,7 @@ fn suite(random: &mut Random, records: usize, dispersion: f64, shared: f64) -> V
             let shift = shared * deviate(random);
             LEVELS.map(|intensity| Observation {
                 intensity,
-                overturned: MEDIAN.ln() + shift + own * deviate(random) < intensity.ln(),
+                overturned: f64::from(MEDIAN.ln() + shift + own * deviate(random) < intensity.ln()),
                 record,
             })
         })
@@ -388,7 +388,7 @@ fn log_likelihood<'a>(
     cases
         .map(|case| {
             let eta = (case.intensity.ln() - log_median) / dispersion;
-            log_normal(if case.overturned { eta } else { -eta })
+            log_normal(if case.overturned > 0.5 { eta } else { -eta })
         })
         .sum()
 }
@@ -630,14 +630,48 @@ fn messages_report_the_observed_cases() {
     );
 }
 
+/// A case whose repetitions overturn in a fraction counts as that part of a case: the likeliest curve of cases that are all doubled, with one
+/// of each uncertain pair overturned, is the same.
+#[test]
+fn uncertain_cases_count_with_their_fractions() {
+    let levels = [
+        (0.2, 4, 0),
+        (0.3, 5, 1),
+        (0.4, 6, 3),
+        (0.6, 5, 4),
+        (0.9, 4, 4),
+    ];
+    let mut halves = counts(&levels);
+    for (index, intensity) in [0.3, 0.6].into_iter().enumerate() {
+        let record = halves.len() + index;
+        halves.push(Observation {
+            intensity,
+            overturned: 0.5,
+            record,
+        });
+    }
+    let doubled = levels.map(|(intensity, cases, overturned)| {
+        let more = usize::from(intensity == 0.3 || intensity == 0.6);
+        (intensity, 2 * (cases + more), 2 * overturned + more)
+    });
+    let [one, two] = [halves, counts(&doubled)].map(|cases| fit(&cases).unwrap());
+    assert_close(one.median, two.median, 1e-9);
+    assert_close(one.dispersion, two.dispersion, 1e-9);
+    assert_close(
+        one.independent.median,
+        two.independent.median * 2_f64.sqrt(),
+        1e-9,
+    );
+}
+
 #[test]
 fn fractions_by_level() {
     let mut sample = counts(&[(0.4, 3, 3), (0.2, 2, 0), (0.3, 4, 1)]);
     sample.extend(counts(&[(0.2, 1, 1)]));
-    let level = |intensity, cases, overturned| Fraction {
+    let level = |intensity, cases, overturned: i32| Fraction {
         intensity,
         cases,
-        overturned,
+        overturned: f64::from(overturned),
     };
     assert_eq!(
         fractions(&sample),
@@ -670,7 +704,9 @@ fn sample() -> impl Strategy<Value = Vec<Observation>> {
             .into_iter()
             .map(|(intensity, flag, record, deviate)| Observation {
                 intensity,
-                overturned: noise.map_or(flag, |noise| (intensity / 0.35).ln() > noise * deviate),
+                overturned: f64::from(
+                    noise.map_or(flag, |noise| (intensity / 0.35).ln() > noise * deviate),
+                ),
                 record,
             })
             .collect()

@@ -17,6 +17,7 @@ use archrock::output::Figure;
 use archrock::scenario::{Format, Layout, Measure, Scenario};
 use archrock::studies::ending::{Ending, NoHistory, Steps, Verdict};
 use archrock::studies::suite::Heading;
+use archrock::studies::suite::strength::efficiencies;
 use archrock::studies::suite::{CaseRow, SuiteFragility};
 use roxmltree::Document;
 use serde_json::Value;
@@ -623,9 +624,10 @@ fn free_heading() -> Heading {
     Heading::of_resolved(scenario, Vec::new()).unwrap()
 }
 
-/// If uncertain cases are counted as survived or as overturned, the results equal those of suites in which they did so.
+/// Uncertain cases count by their fractions. If they are counted as survived or as overturned, the results equal those of suites in which they did
+/// so.
 #[test]
-fn uncertain_cases_are_counted_as_surviving_and_as_overturning() {
+fn uncertain_cases_are_counted_by_fractions_as_surviving_and_as_overturning() {
     let with = |letter: &str| {
         let records = [
             ("a", "..~xx"),
@@ -638,20 +640,26 @@ fn uncertain_cases_are_counted_as_surviving_and_as_overturning() {
         SuiteFragility::new(Measure::Scale, levels_of(&records))
     };
     let (doubtful, survived, overturned) = (with("~"), with("."), with("x"));
-    assert_eq!(doubtful.fit, survived.fit);
-    assert_eq!(doubtful.fit_with_uncertain, overturned.fit);
-    assert!(doubtful.fit.as_ref().unwrap().median > overturned.fit.as_ref().unwrap().median);
-    assert_eq!(survived.fit, survived.fit_with_uncertain);
+    assert_eq!(
+        doubtful.ends,
+        [survived.fit.clone(), overturned.fit.clone()]
+    );
+    let medians = [&overturned, &doubtful, &survived].map(|of| of.fit.as_ref().unwrap().median);
+    assert!(medians.is_sorted() && medians[0] < medians[1] && medians[1] < medians[2]);
+    assert_eq!(survived.ends, [survived.fit.clone(), survived.fit.clone()]);
     assert!(doubtful.has_uncertain() && !survived.has_uncertain());
     for (level, (low, high)) in pairs(
         &doubtful.levels,
         &pairs(&survived.levels, &overturned.levels).collect::<Vec<_>>(),
     ) {
         assert_eq!(level.counts.cases, 4);
-        assert_eq!(level.fraction(), low.fraction());
-        assert_eq!(level.fraction_with_uncertain(), high.fraction());
-        assert_eq!(level.curve, low.curve);
-        assert_eq!(level.curve_with_uncertain, high.curve);
+        let ends = [low.fraction().unwrap(), high.fraction().unwrap()];
+        assert_eq!(level.fraction_ends(), Some(ends));
+        assert_eq!(level.fraction(), Some(0.5 * (ends[0] + ends[1])));
+        // The band contains those of both ends.
+        let [at, from, to] = level.curve.unwrap();
+        let [low, high] = [low.curve.unwrap(), high.curve.unwrap()];
+        assert!(from <= low[1] && low[0] <= at && at <= high[0] && high[2] <= to);
     }
     assert_eq!(doubtful.always(Verdict::Survives), [""; 0]);
     let survivals = doubtful.survivals();
@@ -663,8 +671,8 @@ fn uncertain_cases_are_counted_as_surviving_and_as_overturning() {
     let Table { header, rows } = Table::parse(&files["fragility.csv"]);
     assert!(
         header
-            .windows(2)
-            .any(|pair| *pair == ["uncertain", "fraction_with_uncertain"])
+            .windows(3)
+            .any(|names| *names == ["uncertain", "fraction_certain", "fraction_with_uncertain"])
     );
     let counts: Vec<_> = rows
         .iter()
@@ -675,10 +683,6 @@ fn uncertain_cases_are_counted_as_surviving_and_as_overturning() {
         [["0", "0"], ["1", "1"], ["2", "1"], ["3", "0"], ["3", "1"]]
     );
     for row in &rows {
-        assert!(
-            row.number("probability") < row.number("probability_with_uncertain") || row[0] == "5.0",
-            "{row:?}"
-        );
         assert!(row.number("fraction") <= row.number("fraction_with_uncertain"));
     }
     let json: Value = files["fragility.json"].parse().unwrap();
@@ -686,7 +690,8 @@ fn uncertain_cases_are_counted_as_surviving_and_as_overturning() {
         (&json["overturned"], &json["uncertain"]),
         (&9.into(), &3.into())
     );
-    assert_eq!(json["median"], survived.fit.as_ref().unwrap().median);
+    assert_eq!(json["median"], medians[1]);
+    assert_eq!(json["with_uncertain_as_survived"]["median"], medians[2]);
     let with_uncertain = &json["with_uncertain_as_overturned"];
     assert_eq!(
         with_uncertain["median"],
@@ -707,7 +712,13 @@ fn uncertain_cases_are_counted_as_surviving_and_as_overturning() {
     let named =
         |picture: &str, name: &str| picture.matches(&format!("data-name=\"{name}\"")).count();
     let picture = &files["suite.svg"];
-    for name in ["fit", "fit-with-uncertain", "band", "between"] {
+    for name in [
+        "fit",
+        "fit-certain",
+        "fit-with-uncertain",
+        "band",
+        "between",
+    ] {
         assert_eq!(named(picture, name), 1, "{name}");
     }
     assert_eq!(named(picture, "uncertain"), 3);
@@ -717,6 +728,27 @@ fn uncertain_cases_are_counted_as_surviving_and_as_overturning() {
     let plain = result_files(&free_heading(), &survived);
     for name in ["fit-with-uncertain", "between", "uncertain"] {
         assert_eq!(named(&plain["suite.svg"], name), 0, "{name}");
+    }
+}
+
+/// Capacities that are only upper bounds have the order of the levels, and rank no measure of intensity.
+#[test]
+fn upper_bounds_rank_no_measure() {
+    let of = |letters: [&str; 4]| {
+        let records = ["a", "b", "c", "d"].into_iter().zip(letters);
+        let records: Vec<(&str, &str)> = records.collect();
+        SuiteFragility::new(Measure::Scale, levels_of(&records))
+    };
+    for (letters, bounds, ranked) in [
+        (["xxx"; 4], 4, 0),
+        (["xxx", "xxx", ".xx", "..x"], 2, 0),
+        (["xxx", ".xx", ".xx", "..x"], 1, 1),
+    ] {
+        let results = of(letters);
+        let capacities = results.capacities();
+        let at_most = capacities.iter().filter(|one| one.at_most).count();
+        assert_eq!(at_most, bounds, "{letters:?}");
+        assert_eq!(efficiencies(&capacities).len(), ranked, "{letters:?}");
     }
 }
 
@@ -846,7 +878,7 @@ fn a_level_with_only_failed_cases_has_no_fraction() {
     let files = result_files(&heading(), &results);
     let levels = &files["fragility.csv"];
     assert!(
-        levels.contains("\n1.0,0,0,0,0,1,,,,\n2.0,1,1,0,0,0,1.0,,,\n"),
+        levels.contains("\n1.0,0,0,0,0,1,,,,,0,,\n2.0,1,1,0,0,0,1.0,,,,0,1.0,1.0\n"),
         "{levels}"
     );
     let json: Value = files["fragility.json"].parse().unwrap();

@@ -496,6 +496,13 @@ fn maps_report_the_probability_of_each_cell() {
         between += u32::from((0.1..0.9).contains(&share));
     }
     assert!(between >= 4, "{between}");
+    // A single uncertain number has all of the influence.
+    let summary = json(&results.join("uncertain.json"));
+    let only = &summary["what_matters"]["part_that_overturns"][0];
+    assert_eq!(
+        [&only["first_order"], &only["first_order_interval"][0]],
+        [1.0, 1.0]
+    );
     let lines = Table::read(results.join("probability.csv"));
     for line in &lines.rows {
         let (mut low, mut high) = (0.2, 0.6);
@@ -635,6 +642,63 @@ fn the_smallest_tested_strength_is_no_edge() {
     assert!(summary["overturned_up_to_factor_1"].is_null());
 }
 
+/// Histories that end too early leave the probability open: its interval contains both ends, and so the share of the complete histories, in a run,
+/// a map and a threshold. Before, the incomplete samples did not count, and none of the others overturns.
+#[test]
+fn intervals_contain_samples_without_a_verdict() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let text = |duration_s: f64| {
+        format!(
+            "{COLUMN}[ground.half_sine]\namplitude_g = 0.33\nduration_s = 1.0\n[simulation]\nduration_s = {duration_s}\n\
+             [map]\nduration_s = [0.9, 1.0]\namplitude_g = [0.33, 0.34]\n\
+             [uncertain]\nsamples = 64\n'column.width_m' = {{ from = 0.7, to = 1.6 }}\n"
+        )
+    };
+    fs::write(at.join("early.toml"), text(1.02)).unwrap();
+    fs::write(at.join("late.toml"), text(60.0)).unwrap();
+    for name in ["early", "late"] {
+        let file = format!("{name}.toml");
+        done(at, &["run", &file, "--out", name, "--no-report"]);
+        done(at, &["map", &file, "--out", &format!("{name}-map")]);
+        let factors = ["--from", "0.5", "--to", "1", "--stride", "0.5"];
+        let out = format!("{name}-threshold");
+        printed(
+            at,
+            &[&["threshold", &file, "--out", &out][..], &factors].concat(),
+        );
+    }
+    let share = |name: &str| {
+        json(&at.join(name).join("uncertain/uncertain.json"))["outcomes"]["overturned"].clone()
+    };
+    let (early, late) = (share("early"), share("late"));
+    let number = |share: &serde_json::Value, key: &str| share[key].as_f64().unwrap();
+    let unknown = number(&early, "no_verdict") as usize;
+    assert!(unknown > 10 && early["count"] == 0 && late["no_verdict"] == 0);
+    let truth = number(&late, "share");
+    assert!(truth > 0.1 && number(&early, "low") <= truth && truth <= number(&early, "high"));
+    assert_eq!(number(&early, "high"), Share::of(unknown, 64).unwrap().high);
+    let cells = |name: &str| Table::read(at.join(format!("{name}-map/uncertain_map/map.csv")));
+    for (early, late) in cells("early").rows.iter().zip(&cells("late").rows) {
+        let truth = late.number("overturned");
+        assert!(
+            truth > 0.05 && early.number("overturned_high") >= truth,
+            "{early:?} {late:?}"
+        );
+    }
+    let threshold = |name: &str| {
+        json(&at.join(format!(
+            "{name}-threshold/uncertain_threshold/uncertain.json"
+        )))
+    };
+    let (early, late) = (threshold("early"), threshold("late"));
+    let [one, other] = [&early, &late].map(|of| &of["overturned_up_to_factor_1"]);
+    assert!(number(one, "high") >= number(other, "share") && number(other, "share") > 0.1);
+    // Half of the samples may overturn at the smallest factor already.
+    let low = &early["first_factor_if_uncertain_overturn"];
+    assert_eq!(low["quantile_05"], 0.5);
+}
+
 /// The first factor of a sample equals the threshold of its own scenario.
 #[test]
 fn thresholds_have_a_distribution() {
@@ -671,13 +735,17 @@ fn thresholds_have_a_distribution() {
     }
     // The distribution is a step curve of the samples.
     let steps = Table::read(results.join("probability.csv"));
-    let found = table.rows[1..]
-        .iter()
-        .filter(|row| !row["first_factor"].is_empty());
-    assert_eq!(found.count(), steps.rows.len());
-    let probabilities = steps.numbers("probability");
-    for (index, probability) in probabilities.iter().enumerate() {
-        assert_eq!(*probability, (index + 1) as f64 / 16.0);
+    let factors = table.rows[1..].iter();
+    let factors: Vec<f64> = factors
+        .filter_map(|row| row["first_factor"].parse().ok())
+        .collect();
+    let distinct: BTreeSet<u64> = factors.iter().map(|factor| factor.to_bits()).collect();
+    assert_eq!(distinct.len(), steps.rows.len());
+    for row in &steps.rows {
+        let reached = factors
+            .iter()
+            .filter(|factor| **factor <= row.number("factor"));
+        assert_eq!(row.number("probability"), reached.count() as f64 / 16.0);
     }
 }
 
@@ -1215,6 +1283,7 @@ fn suites_split_fragility_into_records_and_uncertain_input() {
         }
     }
     let summary = json(&results.join("uncertain.json"));
+    assert_eq!(summary["quote"], "both");
     let dispersion = |of: &str| summary["fragility"][of]["dispersion"].as_f64().unwrap();
     // The width is uncertain by 6 %, which changes the capacity by more than that. Over the three records, records and width
     // together scatter more than the width alone.

@@ -457,30 +457,36 @@ const LOCKS: &str = "[pointed_arch]\nspan_m = 2.02\nrise_m = 1.46\nthickness_m =
     [piers]\nheight_m = 2.62\nwidth_m = 2.09\nblocks = 2\n";
 const DRUMS: &str = "[column]\nheight_m = 4\nwidth_m = 0.8\ndrums = 5\n[free_hinges]\n";
 
-/// A linkage that locks: only the damage limit state and its multiple can be checked.
+/// A tie of 5 kN at 3.5 m on a column of 4 m by 0.8 m: by hand `alpha0` is 0.33937 to the right, against the tie.
+const TIED: &str = "[column]\nheight_m = 4\nwidth_m = 0.8\n[[tie]]\nfrom_m = [0.0, 3.5]\nto_m = [-4.0, 3.5]\n\
+    stiffness_n_m = 1e6\nprestress_n = 5000\nto_block = 0\n";
+
+/// With ties there is no curve: only the damage limit state and its multiple can be checked.
 #[test]
 fn c8_7_1_2_1_7_without_a_curve_there_is_the_simplified_check() {
-    for structure in [LOCKS] {
-        let check = check(&format!("{structure}{DEMAND}"));
-        for (sway, mechanism) in &check.mechanisms {
-            assert!(mechanism.curves.is_none() && mechanism.no_curve.is_some());
-            // The virtual work of the bodies reproduces the push of limit analysis.
-            let model = parsed(structure).model().unwrap();
-            let incipient_g = model.incipient_acceleration_g(*sway).unwrap();
-            assert!((mechanism.alpha0 / incipient_g - 1.0).abs() < 1e-9);
-        }
-        let (_, method, _) = governing(&check, LimitState::Slv).unwrap();
-        assert_eq!(method, Method::Simplified);
-        assert_eq!(governing(&check, LimitState::Slc), None);
-        // Its joints would slide first, which the page does not deny.
-        shows(&check.warnings.join("\n"), &[0.4288]);
-        golden("verify-without-curve", &words(&check));
-        let only = DEMAND.split_once("[demand.slc]").unwrap().1;
-        let only =
-            format!("{structure}[demand]\nsoil = 'B'\ntopography = 'T1'\n[demand.slc]{only}");
-        let error = verify(&parsed(&only)).unwrap_err();
-        assert!(matches!(error, VerifyError::NoCurve(_)));
-        assert!(error.to_string().contains("C8.7.1.2.1.7"), "{error}");
+    let check = check(&format!("{TIED}{DEMAND}"));
+    for mechanism in check.mechanisms.values() {
+        assert!(mechanism.curves.is_none() && mechanism.no_curve.is_some());
+    }
+    printed(check.mechanisms[&Sway::Right].alpha0, "0.33937");
+    let (_, method, _) = governing(&check, LimitState::Slv).unwrap();
+    assert_eq!(method, Method::Simplified);
+    assert_eq!(governing(&check, LimitState::Slc), None);
+    golden("verify-without-curve", &words(&check));
+    let only = DEMAND.split_once("[demand.slc]").unwrap().1;
+    let only = format!("{TIED}[demand]\nsoil = 'B'\ntopography = 'T1'\n[demand.slc]{only}");
+    let error = verify(&parsed(&only)).unwrap_err();
+    assert!(matches!(error, VerifyError::NoCurve(_)));
+    assert!(error.to_string().contains("C8.7.1.2.1.7"), "{error}");
+    // If one side is checked, the first sentence names it: the column does not pass to the left.
+    for (side, passes) in [("right", true), ("left", false)] {
+        let sides = format!("{TIED}{DEMAND}[verify]\nsides = '{side}'\n");
+        let said = words(&verify(&parsed(&sides)).unwrap());
+        let first = said.split_once('.').unwrap().0;
+        assert!(
+            first.contains(side) && first.contains("passes") == passes,
+            "{first}"
+        );
     }
 }
 
@@ -549,8 +555,7 @@ fn c8_7_1_2_1_3_a_stack_on_one_support_is_a_block_about_its_toe() {
     assert_eq!(method, Method::Displacement);
 }
 
-/// The least multiplier counts: if sliding has a smaller one than the mechanism without sliding, there is nothing to check. A block
-/// that needs more friction than the Circolare gives is checked, with a warning.
+/// The least multiplier counts: if sliding has a smaller one than the mechanism without sliding, there is nothing to check.
 #[test]
 fn c8_7_1_1_a_mechanism_that_slides_first_is_refused() {
     let lintel = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.3\nembrace_deg = 90\nvoussoirs = 5\n[free_hinges]\n";
@@ -560,11 +565,15 @@ fn c8_7_1_1_a_mechanism_that_slides_first_is_refused() {
         &["verify", "a.toml"],
         &["friction coefficient of 0.577", "to the right"],
     );
+    // A block slides at its coefficient, if that is less than its slenderness; a linkage that locks before it overturns slides as well.
     let squat = COLUMN.replace("width_m = 0.8", "width_m = 2.8");
-    shows(
-        &check(&format!("{squat}{DEMAND}")).warnings.join("\n"),
-        &[0.7, 0.577],
-    );
+    for (structure, known_g) in [(squat.as_str(), 0.577), (LOCKS, 0.4288)] {
+        let error = verify(&parsed(&format!("{structure}{DEMAND}"))).unwrap_err();
+        assert!(
+            matches!(error, VerifyError::Slides { at_g, .. } if (at_g - known_g).abs() < 5e-5),
+            "{error}"
+        );
+    }
     let slender = check(&format!("{COLUMN}{DEMAND}"));
     assert_eq!(slender.warnings, Vec::<String>::new());
 }
@@ -589,17 +598,27 @@ fn c8_7_1_1_the_friction_of_the_scenario_counts() {
     assert_eq!(json["allowed_friction"], 0.52);
     assert!(page(&enough, &check_enough, "").contains("0.52"));
     assert_eq!(check(&with(0.8)).allowed_friction, 0.577);
-    // The mechanism needs 0.590, and it does not slide first at 0.588.
-    let arch =
-        "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.2\nembrace_deg = 180\nvoussoirs = 20\n";
-    let slides = format!("{arch}[free_hinges]\nfriction_coefficient = 0.42\n{DEMAND}");
-    let error = verify(&parsed(&slides)).unwrap_err();
+    // This arch needs 0.590. With a smaller coefficient it slides first, with the same words whether the coefficient is that of the scenario or of
+    // the Circolare, and whether the arch has joints or is continuous.
+    let arch = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.2\nembrace_deg = 180\n";
+    let refusal = |more: &str| verify(&parsed(&format!("{arch}{more}{DEMAND}"))).unwrap_err();
+    let slips = |coefficient: f64| {
+        format!("voussoirs = 20\n[free_hinges]\nfriction_coefficient = {coefficient}\n")
+    };
+    let error = refusal(&slips(0.42));
     assert!(
         matches!(error, VerifyError::Slides { coefficient, at_g, .. } if coefficient == 0.42 && (at_g - 0.1204).abs() < 5e-5),
         "{error}"
     );
-    let warned = check(&format!("{arch}{DEMAND}")).warnings;
-    shows(&warned[0], &[0.590, 0.577]);
+    let without = refusal("voussoirs = 20\n");
+    assert_eq!(without, refusal(&slips(0.7)));
+    let continuous = refusal("");
+    for error in [without, continuous] {
+        assert!(
+            matches!(error, VerifyError::Slides { coefficient, at_g, .. } if coefficient == 0.577 && (at_g - 0.2725).abs() < 1e-3),
+            "{error}"
+        );
+    }
 }
 
 /// Sides with a number that differs are printed one by one: a tie that holds one side, a leaning stack, a demand that only words of the
@@ -775,7 +794,7 @@ fn page_and_json_agree() {
         format!("title = 'A <title> & more'\n{ARCH}{DEMAND}"),
         format!("{}{DEMAND}{HEIGHT}", on_piers()),
         format!("{COLUMN}{DEMAND}{free}"),
-        format!("{LOCKS}{DEMAND}"),
+        format!("{TIED}{DEMAND}"),
         format!("{DRUMS}{DEMAND}"),
         format!("{COLUMN}[demand.slv]\nspectrum = 'slv.csv'\n[demand.sld]\nspectrum = 'slv.csv'\n"),
     ] {

@@ -15,13 +15,20 @@ use crate::studies::results::{ReportedStudy, Results, Style};
 use crate::studies::runner::Study;
 use crate::studies::statistics::Share;
 
-/// The outcome of a cell of a sample, as an index of [`OUTCOMES`], or the reason why there is none.
-type CellRow = Result<usize, NoAnswer>;
+/// The outcome of a cell of a sample, as an index of [`OUTCOMES`], and its probability of overturning, in parts of [`PARTS`]; or the reason why
+/// there is none. Rows are small, because all must fit into memory.
+type CellRow = Result<(u8, u8), NoAnswer>;
+
+/// Number of parts of a probability: fractions of 2, 3, 5, 6 and 7 repetitions are exact, others almost.
+const PARTS: f64 = 210.0;
 
 fn cell_row(result: Result<Ending, NoHistory>) -> CellRow {
-    let outcome = result?.outcome_name();
+    let ending = result?;
+    let outcome = ending.outcome_name();
     let place = OUTCOMES.iter().position(|name| *name == outcome);
-    place.ok_or(NoAnswer::Incomplete)
+    let both = place.zip(ending.overturning_share());
+    let both = both.map(|(place, share)| (place as u8, (PARTS * share).round() as u8));
+    both.ok_or(NoAnswer::Incomplete)
 }
 
 /// Largest number of histories; their rows must fit into memory.
@@ -165,7 +172,7 @@ struct CellCounts {
     at: [f64; 2],
     /// Number of samples with an outcome of this cell.
     samples: usize,
-    /// Share of these samples that certainly overturn; `None` without samples.
+    /// Share of the samples that overturn; `None` without an outcome.
     overturned: Option<Share>,
     /// Number of samples with each of the [`OUTCOMES`].
     outcomes: [usize; OUTCOMES.len()],
@@ -174,27 +181,32 @@ struct CellCounts {
 }
 
 impl CellCounts {
-    fn of<'r>(at: [f64; 2], rows: impl Iterator<Item = &'r CellRow>) -> Self {
+    fn of<'r>(at: [f64; 2], rows: impl Iterator<Item = &'r CellRow> + Clone) -> Self {
         let (mut outcomes, mut without) = ([0; OUTCOMES.len()], [0; 3]);
-        for row in rows {
+        for row in rows.clone() {
             *match row {
-                Ok(outcome) => &mut outcomes[*outcome],
+                Ok((outcome, _)) => &mut outcomes[usize::from(*outcome)],
                 Err(NoAnswer::Invalid(_)) => &mut without[0],
                 Err(NoAnswer::Failed(_)) => &mut without[1],
                 Err(NoAnswer::Incomplete) => &mut without[2],
             } += 1;
         }
         let samples = outcomes.iter().sum();
+        let chances = rows.filter_map(|row| match row {
+            Ok((_, parts)) => Some(Some(f64::from(*parts) / PARTS)),
+            Err(NoAnswer::Invalid(_)) => None,
+            Err(_) => Some(None),
+        });
         Self {
             at,
             samples,
-            overturned: Share::of(outcomes[0], samples),
+            overturned: Share::of_chances(chances),
             outcomes,
             without,
         }
     }
 
-    /// Returns the share of samples that certainly overturn; `None` without samples.
+    /// Returns the share of samples that overturn; `None` without samples.
     fn probability(&self) -> Option<f64> {
         self.overturned.map(|share| share.share)
     }
@@ -271,7 +283,7 @@ impl CellsOfSamples<'_> {
         counts.chunks(values.len()).map(crossing).collect()
     }
 
-    /// Returns the share of cells that certainly overturn as the answer of each sample; the scenario itself comes first.
+    /// Returns the share of cells that overturn as the answer of each sample; the scenario itself comes first.
     fn parts(&self, rows: &[CellRow]) -> Vec<SampleRow<Share>> {
         let samples = rows.chunks(self.map.count()).enumerate();
         let part = |(sample, cells): (usize, &[CellRow])| {

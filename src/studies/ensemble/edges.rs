@@ -3,7 +3,7 @@
 
 use serde::Serialize;
 
-use super::report::{Band, Findings, Line, share_in_words, why_not};
+use super::report::{Band, Findings, Line, doubts_in_words, share_in_words, why_not};
 use super::{NoAnswer, Question, Samples};
 use crate::output::axes::Scale;
 use crate::output::chart::{Chart, Mark};
@@ -12,8 +12,10 @@ use crate::output::svg::{Stroke, color};
 use crate::output::table::{column, csv, list};
 use crate::output::{Figure, OutputError};
 use crate::scenario::Scenario;
-use crate::studies::statistics::{BAND, Share, ascending, fractile};
-use crate::studies::threshold::first_edge::FirstEdge;
+use crate::studies::statistics::{
+    BAND, Share, ascending, ascending_weighted, fractile, weighted_fractile,
+};
+use crate::studies::threshold::first_edge::{FirstEdge, TREATMENTS};
 use crate::studies::threshold::{Factors, check, rounded, rounded_down};
 
 /// The question for the first edge of each sample.
@@ -28,7 +30,8 @@ pub struct FirstEdges {
 pub struct FirstStrength {
     /// The strength; infinite if too few cases overturn.
     pub strength: f64,
-    /// True if the fractile may be lower, because cases overturn at the smallest strength already.
+    /// True if the fractile may be lower, because cases overturn at the smallest strength already, or because it lies below that of the lowest
+    /// case.
     pub at_most: bool,
 }
 
@@ -38,12 +41,20 @@ impl FirstStrength {
         edges: impl Iterator<Item = &'e FirstEdge> + Clone,
         part: f64,
     ) -> Option<Self> {
-        let sorted = |strength: fn(&FirstEdge) -> f64| ascending(edges.clone().map(strength));
-        // An upper bound counts as 0, so that all fractiles that depend on it are 0.
-        let lowest = sorted(|edge| if edge.at_most { 0.0 } else { edge.strength() });
+        let of = |lowest: bool| {
+            let strengths = |edge: &FirstEdge| match lowest && edge.at_most {
+                // An upper bound counts as 0, so that all fractiles that depend on it are 0.
+                true => vec![[0.0, 1.0]],
+                false => edge.strengths(TREATMENTS[0]),
+            };
+            ascending_weighted(edges.clone().flat_map(strengths))
+        };
+        let strengths = of(false);
+        // A part of less than half a case lies below the lowest one.
+        let is_below = part * (edges.clone().count() as f64) < 0.5 * strengths.first()?[1] - 1e-9;
         Some(Self {
-            strength: fractile(&sorted(FirstEdge::strength), part)?,
-            at_most: fractile(&lowest, part)? == 0.0,
+            strength: weighted_fractile(&strengths, part)?,
+            at_most: is_below || weighted_fractile(&of(true), part)? == 0.0,
         })
     }
 
@@ -143,7 +154,7 @@ struct Details {
     survives_up_to_factor: Band,
     /// The largest factor up to which the scenario itself certainly survives; null if it does not survive the smallest.
     own_survives_up_to_factor: Option<f64>,
-    /// The first factor that overturns a sample.
+    /// The first factor that overturns a sample; uncertain factors count with the fraction of the repetitions that overturn.
     first_factor: Band,
     /// Number of samples that overturn at the smallest factor already.
     at_smallest_factor: usize,
@@ -160,17 +171,27 @@ type ProbabilityAt = (f64, Share);
 
 /// Returns the distribution of the first factors of the samples, ascending.
 fn probabilities(samples: &Samples<'_, FirstEdge>) -> Vec<ProbabilityAt> {
-    let factors = ascending(samples.answers().filter_map(|edge| edge.factor));
-    let all = samples.answers().count();
-    let at = |(count, factor)| Some((factor, Share::of(count, all)?));
-    (1..).zip(factors).filter_map(at).collect()
+    let edges = samples.answers();
+    let strengths = |how| edges.clone().flat_map(move |edge| edge.strengths(how));
+    let [steps, possible, certain] = TREATMENTS.map(|how| ascending_weighted(strengths(how)));
+    let (all, mut expected) = (edges.clone().count(), 0.0);
+    let at = |alike: &[[f64; 2]]| {
+        let factor = alike[0][0];
+        expected += alike.iter().map(|[_, share]| share).sum::<f64>();
+        let [certain, possible] =
+            [&certain, &possible].map(|end| end.partition_point(|at| at[0] <= factor));
+        let share = Share::of_counts([certain, possible, all, samples.unknown()], expected);
+        factor.is_finite().then_some((factor, share?))
+    };
+    let alike = steps.chunk_by(|a, b| a[0] == b[0]);
+    alike.filter_map(at).collect()
 }
 
 /// Computes the share of samples that overturn up to this factor; `None` if the tried factors do not determine the share.
 fn share_up_to(samples: &Samples<'_, FirstEdge>, factor: f64) -> Option<Share> {
     let mut answers = samples.answers();
     let known = answers.all(|edge| edge.overturns_up_to(factor).is_some());
-    known.then(|| samples.share(|edge| edge.overturns_up_to(factor) == Some(true)))?
+    known.then(|| samples.share(|edge| edge.overturns_up_to(factor).unwrap_or(0.0)))?
 }
 
 /// Returns words for the factors that are safe for the samples, with these fractiles, and for the scenario itself.
@@ -198,7 +219,10 @@ fn first_words(
     let probability = at_one.map_or(
         "with an unknown probability up to the factor 1, which is outside the factors that were tried"
             .to_owned(),
-        |at_one| format!("up to the factor 1 with a probability of {}", share_in_words(&at_one)),
+        |at_one| {
+            let (share, doubts) = (share_in_words(&at_one), doubts_in_words(&at_one));
+            format!("up to the factor 1 with a probability of {share}{doubts}")
+        },
     );
     let own = match samples.own.as_ref().map(|own| (own.factor, own.at_most)) {
         Ok((Some(own), true)) => format!("at or below {}", rounded(own)),
@@ -232,7 +256,7 @@ fn draw(
         let rises = probabilities.iter().map(|at| (at.0, of(&at.1)));
         Mark::staircase(name, SHARE, (x, first), rises)
     };
-    let none = Share::of(0, samples.answers().count()).map_or(1.0, |none| none.high);
+    let none = samples.share(|_| 0.0).map_or(1.0, |none| none.high);
     let ends = [steps("", |at| at.low, 0.0), steps("", |at| at.high, none)];
     let [low, high] = ends.each_ref().map(|curve| curve.points().iter().copied());
     let mut marks = vec![steps("probability", |at| at.share, 0.0)];

@@ -5,7 +5,8 @@ use std::ops::ControlFlow;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
-use super::report::{Band, Findings, Line, of_answer, share_in_words};
+use super::influence::percent;
+use super::report::{Band, Findings, Line, doubts_in_words, of_answer, share_in_words};
 use super::{NoAnswer, Question, Samples};
 use crate::dynamics::history::Sample;
 use crate::dynamics::model::{Model, WithoutDemand};
@@ -112,12 +113,16 @@ impl Question for Histories {
         let peaks: Vec<f64> = samples.answers().map(peak_rad).collect();
         let peak_band = band(peaks.clone(), fractile);
         let (mut outcomes, mut lines) = (Map::new(), Vec::new());
-        for name in OUTCOMES {
-            let Some(share) = samples.share(|answer| answer.ending.outcome_name() == name) else {
+        for (index, name) in OUTCOMES.into_iter().enumerate() {
+            let share = samples.share(|answer| match index {
+                0 => answer.overturned(),
+                _ => f64::from(answer.ending.outcome_name() == name),
+            });
+            let Some(share) = share else {
                 continue;
             };
             outcomes.insert(name.to_owned(), json!(share));
-            if share.count > 0 {
+            if share.share > 0.0 {
                 let name = name.replace('_', " ");
                 lines.push(format!("{name}: {}", share_in_words(&share)));
             }
@@ -203,15 +208,11 @@ impl Histories {
 }
 
 impl HistoryAnswer {
-    /// Returns the weight of the sample as overturned: 1 or 0, and one half if overturning is uncertain.
+    /// Returns the weight of the sample as overturned: 1 or 0, or the fraction of its repetitions that overturn.
     #[must_use]
     pub fn overturned(&self) -> f64 {
-        match self.ending.verdict() {
-            Verdict::Survives => 0.0,
-            // A sample with an incomplete history has no answer.
-            Verdict::Incomplete | Verdict::Uncertain => 0.5,
-            Verdict::Overturns => 1.0,
-        }
+        let share = self.ending.overturning_share();
+        share.expect("a sample with an incomplete history has no answer")
     }
 
     /// Returns the rotation at a recorded time, in radians; infinite, with its sign, after the sample has overturned.
@@ -228,7 +229,8 @@ impl HistoryAnswer {
 /// The part of the summary that is specific to histories.
 #[derive(Serialize)]
 struct Details {
-    /// Share of the samples with each outcome.
+    /// Share of the samples with each outcome. In that of `overturned`, uncertain samples count with the fraction of their repetitions that
+    /// overturn.
     outcomes: Map<String, Value>,
     /// Largest rotation, in radians; quantiles in the range of overturned samples are null.
     peak_rotation_rad: Band,
@@ -261,11 +263,14 @@ fn table(bands: &[BandAt]) -> Result<Vec<u8>, OutputError> {
 
 /// Returns the probability of overturning, and the ending of the scenario itself, in words; `None` if no sample has an answer.
 fn first_words(samples: &Samples<'_, HistoryAnswer>) -> Option<String> {
-    let share = samples.share(|answer| answer.ending.verdict() == Verdict::Overturns)?;
+    let share = samples.share(HistoryAnswer::overturned)?;
     let own = match samples.own.as_ref().map(|own| (own, own.ending.verdict())) {
         Err(_) => "has no answer".to_owned(),
         Ok((_, Verdict::Overturns)) => "overturns".to_owned(),
-        Ok((_, Verdict::Uncertain)) => "is uncertain".to_owned(),
+        Ok((own, Verdict::Uncertain)) => {
+            let part = percent(own.overturned());
+            format!("is uncertain: {part} of its repetitions overturn")
+        }
         Ok((own, _)) => {
             let rotation = own.ending.peak_over_critical;
             let rotation = rotation.map(|part| (part, "rotation"));
@@ -277,9 +282,9 @@ fn first_words(samples: &Samples<'_, HistoryAnswer>) -> Option<String> {
             })
         }
     };
-    let share = share_in_words(&share);
+    let (doubts, share) = (doubts_in_words(&share), share_in_words(&share));
     Some(format!(
-        "overturns with a probability of {share} of [uncertain];\n    the scenario itself {own}"
+        "overturns with a probability of {share} of [uncertain]{doubts};\n    the scenario itself {own}"
     ))
 }
 

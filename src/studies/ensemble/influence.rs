@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 use serde::Serialize;
 
-use super::matters::Matters;
+use super::matters::{Matters, Total};
 use crate::output::Figure;
 use crate::output::axes::{Axes, Scale};
 use crate::output::chart::LEFT_PX;
@@ -36,8 +36,16 @@ impl<'a> Influence<'a> {
     pub(super) fn new(
         [name, answer]: [&'static str; 2],
         uncertain: &'a Uncertain,
-        matters: Option<Vec<Matters>>,
+        mut matters: Option<Vec<Matters>>,
     ) -> Self {
+        // A number without others has all of the influence.
+        if let Some([only]) = matters.as_deref_mut() {
+            (only.first_order, only.first_order_interval) = (1.0, [1.0; 2]);
+            only.total = only.total.map(|_| Total {
+                total: 1.0,
+                total_interval: [1.0; 2],
+            });
+        }
         let number = |(key, matters): (&'a str, Matters)| Number {
             key,
             spoken: spoken(key, uncertain),

@@ -14,9 +14,12 @@ use crate::output::table::{column, csv};
 use crate::output::{Figure, OutputError};
 use crate::scenario::{Scenario, Suite, shown};
 use crate::studies::ending::Ending;
-use crate::studies::statistics::{ascending, bootstrap, fractile, interval, shares_up_to};
+use crate::studies::statistics::{
+    ascending_weighted, bootstrap, interval, shares_up_to, weighted_fractile,
+};
 use crate::studies::suite::case;
-use crate::studies::threshold::first_edge::FirstEdge;
+use crate::studies::suite::strength::few;
+use crate::studies::threshold::first_edge::{FirstEdge, TREATMENTS, Treatment};
 use crate::studies::threshold::{Factors, rounded, rounded_range};
 
 /// Relative width to which bisection encloses an intensity: much less than the scatter between records.
@@ -80,6 +83,8 @@ impl Question for Capacities {
              in brackets: 95 % by bootstrap over records"
                 .to_owned(),
         );
+        lines.push(QUOTE.to_owned());
+        lines.extend(few(self.suite.records.len()));
         lines.extend((at_lowest > 0).then(|| {
             format!(
                 "{at_lowest} of {} records and samples overturn at the lowest level already, which counts as their intensity: the \
@@ -102,6 +107,7 @@ impl Question for Capacities {
             no_verdict: samples.no_verdict(),
             details: Details {
                 intensity: self.suite.measure.column(),
+                quote: "both",
                 fragility: fragilities,
                 at_lowest_level: at_lowest,
             },
@@ -116,22 +122,28 @@ impl Question for Capacities {
         let model = scenario.model().map_err(NoAnswer::invalid)?;
         let edges = (0..self.suite.records.len() * self.suite.signs()).map(|shake| {
             let (record, mirrored) = (shake / self.suite.signs(), shake % self.suite.signs() == 1);
-            let verdict = |level: f64| {
+            let share = |level: f64| {
                 let (ground, request) = case(scenario, &self.suite, record, level, mirrored);
                 let ending = Ending::of(&*model, &ground, &request);
-                ending.map(|ending| ending.verdict())
+                ending.map(|ending| ending.overturning_share())
             };
-            FirstEdge::search(&self.levels, WIDTH, verdict)
+            FirstEdge::search(&self.levels, WIDTH, share)
         });
         edges.collect()
     }
 }
+
+/// The median to quote, and the reason.
+const QUOTE: &str = "quote median and dispersion of \"both\", which have the scatter of the records and of the uncertain data; the other two omit \
+                     one of them, and the lognormal curve of the suite counts cases that survive above the first overturning";
 
 /// The part of the summary that is specific to suites.
 #[derive(Serialize)]
 struct Details {
     /// The measure of the intensities.
     intensity: &'static str,
+    /// Name of the distribution in `fragility` to quote: it has the scatter of records and of uncertain numbers.
+    quote: &'static str,
     /// Median and dispersion of the overturning intensities.
     fragility: Fragilities,
     /// Number of records and samples that overturn at the lowest level already.
@@ -152,9 +164,10 @@ struct Fragilities {
 /// A distribution, with 95 % intervals by bootstrap over the records.
 #[derive(Serialize)]
 struct Estimated {
-    /// Median; `None` if fewer than half of the cases overturn.
+    /// Median; `None` if fewer than half of the cases overturn. Uncertain intensities count with the fraction of the repetitions that overturn.
     median: Option<f64>,
-    /// Ends of the interval of the median; `None` if a draw has no median.
+    /// Ends of the interval of the median; `None` if a draw has no median. It contains both ends: uncertain intensities overturn, and samples without
+    /// a verdict at the lowest level, or all survive.
     median_interval: Option<[f64; 2]>,
     /// Dispersion; `None` if too few cases overturn for the 84 % fractile.
     dispersion: Option<f64>,
@@ -189,9 +202,9 @@ fn rounded_or_unknown(number: Option<f64>) -> String {
 /// Computes median and dispersion of overturning intensities from their 16, 50 and 84 % fractiles. The dispersion is half the logarithm of the
 /// ratio of the outer fractiles; for a lognormal distribution this is the standard deviation of the logarithm. Infinite intensities are cases
 /// that do not overturn.
-fn distribution(intensities: Vec<f64>) -> [Option<f64>; 2] {
-    let intensities = ascending(intensities);
-    let finite = |part| fractile(&intensities, part).filter(|at| at.is_finite());
+fn distribution(intensities: impl IntoIterator<Item = [f64; 2]>) -> [Option<f64>; 2] {
+    let intensities = ascending_weighted(intensities);
+    let finite = |part| weighted_fractile(&intensities, part).filter(|at| at.is_finite());
     let [low, median, high] = [0.16, 0.5, 0.84].map(finite);
     let dispersion = low.zip(high).map(|(low, high)| 0.5 * (high / low).ln());
     [median, dispersion]
@@ -204,6 +217,8 @@ struct Counted<'a> {
     /// The edges of each record, for the scenario itself; `samples` has them for each sample.
     own: Vec<&'a [FirstEdge]>,
     samples: Vec<Vec<&'a [FirstEdge]>>,
+    /// Number of samples without a verdict.
+    unknown: usize,
 }
 
 impl<'a> Counted<'a> {
@@ -227,6 +242,7 @@ impl<'a> Counted<'a> {
             question,
             own: own.map(counted).unwrap_or_default(),
             samples: samples.answers().map(counted).collect(),
+            unknown: samples.unknown(),
         }
     }
 
@@ -241,9 +257,13 @@ impl<'a> Counted<'a> {
     fn fragilities(&self) -> Fragilities {
         let count = self.question.suite.records.len();
         let all: Vec<usize> = (0..count).collect();
-        let found = self.distributions(&all);
+        let found = self.distributions(&all, TREATMENTS[0], None);
+        let lowest = self.question.levels.first().copied();
+        let ends = [(1, lowest), (2, Some(f64::INFINITY))];
+        let ends = ends.map(|(how, unknown)| self.distributions(&all, TREATMENTS[how], unknown));
         let draws = bootstrap(count);
-        let drawn: Vec<_> = draws.map(|drawn| self.distributions(&drawn)).collect();
+        let drawn = draws.map(|drawn| self.distributions(&drawn, TREATMENTS[0], None));
+        let drawn: Vec<_> = drawn.collect();
         let estimated = |which: usize| {
             let of = |number: usize| {
                 // There is no interval if a draw lacks the number.
@@ -253,7 +273,9 @@ impl<'a> Counted<'a> {
             let [median, dispersion] = found[which];
             Estimated {
                 median,
-                median_interval: of(0),
+                median_interval: of(0).and_then(|[low, high]| {
+                    Some([low.min(ends[0][which][0]?), high.max(ends[1][which][0]?)])
+                }),
                 dispersion,
                 dispersion_interval: of(1),
             }
@@ -266,24 +288,37 @@ impl<'a> Counted<'a> {
     }
 
     /// Computes the distributions due to the records, to the uncertain numbers and to both, for a list of records with repetitions.
-    fn distributions(&self, records: &[usize]) -> [[Option<f64>; 2]; 3] {
-        let chosen = |of: &Vec<&[FirstEdge]>| -> Vec<f64> {
+    /// Samples without a verdict have the intensity `unknown`, or do not count.
+    fn distributions(
+        &self,
+        records: &[usize],
+        treatment: Treatment,
+        unknown: Option<f64>,
+    ) -> [[Option<f64>; 2]; 3] {
+        let chosen = |of: &Vec<&[FirstEdge]>| -> Vec<[f64; 2]> {
             let edges = records.iter().filter_map(|record| of.get(*record).copied());
-            edges.flatten().map(FirstEdge::strength).collect()
+            let edges = edges.flatten();
+            edges.flat_map(|edge| edge.strengths(treatment)).collect()
         };
-        let median = |of: &Vec<&[FirstEdge]>| fractile(&ascending(chosen(of)), 0.5);
+        let median = |of: &Vec<&[FirstEdge]>| {
+            let median = weighted_fractile(&ascending_weighted(chosen(of)), 0.5);
+            median.map(|median| [median, 1.0])
+        };
+        let unknown = unknown.map(|at| [at, 1.0]).into_iter().cycle();
+        let unknown = |each: usize| unknown.clone().take(each * self.unknown);
+        let all = self.samples.iter();
         [
             distribution(chosen(&self.own)),
-            distribution(self.samples.iter().filter_map(median).collect()),
-            distribution(self.samples.iter().flat_map(chosen).collect()),
+            distribution(all.clone().filter_map(median).chain(unknown(1))),
+            distribution(all.flat_map(chosen).chain(unknown(records.len()))),
         ]
     }
 
     /// Makes the table of the shares that overturn up to each level: of the records with the scenario itself, and of all samples.
     fn at_levels(&self) -> Result<Vec<u8>, OutputError> {
         let share = |edges: Vec<&FirstEdge>, level: f64| {
-            let overturned = edges.iter().filter(|edge| edge.strength() <= level).count();
-            (!edges.is_empty()).then(|| overturned as f64 / edges.len() as f64)
+            let overturned = edges.iter().filter_map(|edge| edge.overturns_up_to(level));
+            (!edges.is_empty()).then(|| overturned.sum::<f64>() / edges.len() as f64)
         };
         let own = |level: &f64| share(self.of_itself().collect(), *level);
         let all = |level: &f64| share(self.of_samples().collect(), *level);
@@ -346,7 +381,8 @@ impl Capacities {
         let ends = ends.map(|level| level.copied().unwrap_or(1.0));
         let x = Scale::logarithmic(0.95 * ends[0], 1.05 * ends[1]);
         let steps = |name, stroke, edges: Vec<&FirstEdge>| {
-            let rises = shares_up_to(edges.into_iter().map(FirstEdge::strength));
+            let strengths = |edge: &FirstEdge| edge.strengths(TREATMENTS[0]);
+            let rises = shares_up_to(edges.into_iter().flat_map(strengths));
             Mark::staircase(name, stroke, (x, 0.0), rises)
         };
         let single = samples.answers().take(MOST_FAINT);
@@ -391,12 +427,12 @@ mod tests {
                 0.7 * (0.4 * low).exp()
             })
             .collect();
-        let [median, dispersion] = distribution(intensities);
+        let [median, dispersion] = distribution(intensities.into_iter().map(|at| [at, 1.0]));
         let (median, dispersion) = (median.unwrap(), dispersion.unwrap());
         assert!((median / 0.7 - 1.0).abs() < 1e-3, "{median}");
         assert!((dispersion - 0.4 * 0.9945).abs() < 1e-3, "{dispersion}");
         // The median is unknown if fewer than half of the intensities are finite.
-        let none = distribution(vec![1.0, f64::INFINITY, f64::INFINITY]);
+        let none = distribution([1.0, f64::INFINITY, f64::INFINITY].map(|at| [at, 1.0]));
         assert_eq!(none, [None, None]);
     }
 }

@@ -177,12 +177,12 @@ impl<'a, A: 'a, D: Serialize> Findings<'a, A, D> {
         let mut words = vec![first.unwrap_or("no sample has an answer".to_owned())];
         words.extend(self.lines);
         for (reasons, what) in [
-            (invalid, "make no valid structure"),
+            (invalid, "make no valid structure, and do not count"),
             (failed, "could not be computed"),
         ] {
             words.extend(reasons.first().map(|first| {
                 format!(
-                    "{} of {} samples {what}, and do not count; the first: {}",
+                    "{} of {} samples {what}; the first: {}",
                     reasons.len(),
                     samples.rows.len(),
                     first.reason()
@@ -210,6 +210,23 @@ impl<'a, A: 'a, D: Serialize> Findings<'a, A, D> {
 /// Returns a share with its interval in words.
 pub(super) fn share_in_words(share: &Share) -> String {
     let [part, low, high] = share.numbers().map(percent);
-    let Share { count, of, .. } = share;
-    format!("{part} (95 %: {low} to {high}), {count} of {of} samples")
+    let certain = match share.uncertain {
+        0 => share.count.to_string(),
+        uncertain => format!("{} certain and {uncertain} uncertain", share.count),
+    };
+    let of = share.of;
+    format!("{part} (95 %: {low} to {high}), {certain} of {of} samples")
+}
+
+/// Returns the treatment of uncertain samples, and of samples without a verdict, in a probability of overturning, in words; empty without such
+/// samples.
+pub(super) fn doubts_in_words(share: &Share) -> String {
+    let (uncertain, no_verdict) = (share.uncertain, share.no_verdict);
+    match uncertain + no_verdict {
+        0 => String::new(),
+        _ => format!(
+            ";\n    the interval holds whether {uncertain} uncertain samples, counted with the fraction of their repetitions that overturn, \
+             and {no_verdict} samples without a verdict survive or overturn"
+        ),
+    }
 }

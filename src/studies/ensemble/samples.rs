@@ -64,10 +64,20 @@ impl<'a, A> Samples<'a, A> {
         rows.filter_map(|(number, row)| Some((number, row.answer.as_ref().err()?)))
     }
 
-    /// Returns the share of answers that satisfy a condition; `None` without answers.
-    pub(crate) fn share(&self, condition: impl Fn(&A) -> bool) -> Option<Share> {
-        let count = self.answers().filter(|answer| condition(answer)).count();
-        Share::of(count, self.answers().count())
+    /// Returns the share of samples with a property, from its probability in each answer. Samples without an answer have no verdict, but those
+    /// that are no valid structure do not count. `None` without answers.
+    pub(crate) fn share(&self, chance: impl Fn(&A) -> f64) -> Option<Share> {
+        let chance = |row: &'a SampleRow<A>| match &row.answer {
+            Ok(answer) => Some(Some(chance(answer))),
+            Err(why) => (!matches!(why, NoAnswer::Invalid(_))).then_some(None),
+        };
+        Share::of_chances(self.rows.iter().filter_map(chance))
+    }
+
+    /// Returns the number of valid structures without an answer.
+    pub(super) fn unknown(&self) -> usize {
+        let valid = |(_, why): &(usize, &NoAnswer)| !matches!(why, NoAnswer::Invalid(_));
+        self.without().filter(valid).count()
     }
 
     /// Returns the number of samples whose histories ended too early for a verdict, and the remedy, in words; `None` if the number is zero.

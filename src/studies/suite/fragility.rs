@@ -37,8 +37,9 @@ use crate::studies::statistics::TWO_SIDED_95;
 pub struct Observation {
     /// Intensity of the ground motion, positive, in any unit; the median has the same unit.
     pub intensity: f64,
-    /// True if the structure overturned.
-    pub overturned: bool,
+    /// 1 if the structure overturned, 0 if it survived, and the fraction of the repetitions that overturn if this is uncertain. A fraction counts in
+    /// the likelihood as that part of a case that overturned, and the rest of a case that survived.
+    pub overturned: f64,
     /// Index of the record. Cases of one record are not independent.
     pub record: usize,
 }
@@ -50,8 +51,8 @@ pub struct Fraction {
     pub intensity: f64,
     /// Number of cases.
     pub cases: usize,
-    /// Number of cases that overturned.
-    pub overturned: usize,
+    /// Number of cases that overturned; uncertain ones count with their fractions.
+    pub overturned: f64,
 }
 
 /// Standard errors of the parameters of a [`Fragility`].
@@ -184,7 +185,8 @@ pub fn fractions(observations: &[Observation]) -> Vec<Fraction> {
         .map(|(intensity, cases)| Fraction {
             intensity,
             cases: cases.len(),
-            overturned: cases.iter().filter(|case| case.overturned).count(),
+            // Adding zero makes a negative zero positive.
+            overturned: cases.iter().map(|case| case.overturned).sum::<f64>() + 0.0,
         })
         .collect()
 }
@@ -214,12 +216,15 @@ fn demand_two_levels(levels: &[Fraction]) -> Result<(), NoFit> {
     };
     let (lowest, highest) = (lowest.intensity, highest.intensity);
     let cases = levels.iter().map(|level| level.cases).sum();
-    match levels.iter().map(|level| level.overturned).sum() {
-        0 => Err(NoFit::NoneOverturned(cases, highest)),
-        overturned if overturned == cases => Err(NoFit::AllOverturned(cases, lowest)),
-        overturned if highest.ln() == lowest.ln() => {
-            Err(NoFit::OneIntensity(lowest, cases, overturned))
-        }
+    let mut ends = [0, 1].map(|kind| levels.iter().map(move |level| level.numbers()[kind]));
+    match ends.each_mut().map(|numbers| numbers.sum::<f64>()) {
+        [overturned, _] if overturned <= 0.0 => Err(NoFit::NoneOverturned(cases, highest)),
+        [_, survived] if survived <= 0.0 => Err(NoFit::AllOverturned(cases, lowest)),
+        [overturned, _] if highest.ln() == lowest.ln() => Err(NoFit::OneIntensity(
+            lowest,
+            cases,
+            overturned.round() as usize,
+        )),
         _ => Ok(()),
     }
 }
@@ -231,10 +236,7 @@ impl Fraction {
 
     /// Returns the number of overturned cases and the number of survived cases.
     const fn numbers(&self) -> [f64; 2] {
-        [
-            self.overturned as f64,
-            (self.cases - self.overturned) as f64,
-        ]
+        [self.overturned, self.cases as f64 - self.overturned]
     }
 
     /// Returns the log-probability of the outcomes of the cases, at the linear predictor `eta`.
@@ -258,8 +260,8 @@ const ROUNDING: f64 = 1e-12;
 /// maximum has the sign of the derivative of the log-likelihood by the slope, at zero slope and the best level. With `n` cases this derivative
 /// is `n phi(a)` times the mean logarithm of the overturning intensities minus that of the survived intensities.
 fn demand_overlap_and_growth(levels: &[Fraction]) -> Result<(), NoFit> {
-    let last_survival = levels.iter().rfind(|level| level.overturned < level.cases);
-    let first_fall = levels.iter().find(|level| level.overturned > 0);
+    let last_survival = levels.iter().rfind(|level| level.numbers()[1] > 0.0);
+    let first_fall = levels.iter().find(|level| level.overturned > 0.0);
     let (Some(survival), Some(fall)) = (last_survival, first_fall) else {
         return Ok(());
     };
@@ -423,7 +425,7 @@ fn clustered_covariance(
     sorted.sort_by(|a, b| {
         (a.record.cmp(&b.record))
             .then(a.intensity.total_cmp(&b.intensity))
-            .then(a.overturned.cmp(&b.overturned))
+            .then(a.overturned.total_cmp(&b.overturned))
     });
     let mut records = 0;
     let mut squares = Matrix2::zeros();

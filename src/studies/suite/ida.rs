@@ -163,7 +163,8 @@ pub(super) fn rotations_rad(cases: &[CaseRow]) -> Vec<f64> {
 /// to the peak. The last share is below 1 if cases overturned.
 #[must_use]
 pub fn peaks(results: &SuiteFragility) -> Vec<(f64, f64)> {
-    shares_up_to(results.evidence().into_iter().filter_map(beyond))
+    let peaks = results.evidence().into_iter().filter_map(beyond);
+    shares_up_to(peaks.map(|peak| [peak, 1.0]))
 }
 
 /// Returns the peak of a case with a complete history, infinite if the case overturned.

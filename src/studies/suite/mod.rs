@@ -42,7 +42,7 @@ pub struct CaseRow {
     /// survives.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub edge: Option<f64>,
-    /// True if lower levels may overturn as well, because a level between the two has no verdict.
+    /// True if lower levels may overturn as well, because a level between the two has no certain verdict.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub edge_at_most: bool,
     /// The largest level up to which the bisection of the edge found certain survival. `None` without an edge, or if the level below does not survive.
@@ -74,6 +74,12 @@ impl CaseRow {
     #[must_use]
     pub fn verdict(&self) -> Option<Verdict> {
         self.result.as_ref().ok().map(Ending::verdict)
+    }
+
+    /// Returns the probability of overturning; `None` if there is no history, or the history is incomplete.
+    #[must_use]
+    pub fn overturning_share(&self) -> Option<f64> {
+        self.result.as_ref().ok()?.overturning_share()
     }
 
     /// Returns the ending of a complete history; `None` if there is no history, or the history is incomplete.
@@ -294,10 +300,8 @@ pub struct FragilityRow {
     pub intensity: f64,
     /// The number of cases with each outcome.
     pub counts: Counts,
-    /// The probability by the curve at this intensity, and the ends of its 95 % band; `None` without a curve.
+    /// The probability by the curve at this intensity, and the ends of the 95 % band, which contains the bands of both ends; `None` without a curve.
     pub curve: Option<[f64; 3]>,
-    /// The values of the curve that counts uncertain cases as overturned.
-    pub curve_with_uncertain: Option<[f64; 3]>,
 }
 
 /// The number of cases with each outcome.
@@ -309,13 +313,16 @@ pub struct Counts {
     pub overturned: usize,
     /// Number of cases whose overturning is uncertain.
     pub uncertain: usize,
+    /// Number of overturned cases, with uncertain ones by the fraction of their repetitions that overturn.
+    #[serde(skip)]
+    pub expected: f64,
     /// Number of cases that had neither overturned nor come to rest.
     #[serde(rename = "still_rocking_counted_as_not_overturned")]
     pub still_rocking: usize,
-    /// Number of cases whose history ended too early for a verdict. They do not count.
+    /// Number of cases whose history ended too early for a verdict. They count at both ends only.
     #[serde(rename = "incomplete_left_out")]
     pub incomplete: usize,
-    /// Number of cases whose history could not be computed. They do not count.
+    /// Number of cases whose history could not be computed. They count at both ends only.
     #[serde(rename = "failed_left_out")]
     pub failed: usize,
 }
@@ -327,7 +334,10 @@ impl Counts {
             cases.filter(|case| case.verdict() == verdict).count()
         };
         let (failed, incomplete) = (of(None), of(Some(Verdict::Incomplete)));
+        let shares = cases.iter().filter_map(|case| case.overturning_share());
         Self {
+            // Adding zero makes a negative zero positive.
+            expected: shares.sum::<f64>() + 0.0,
             cases: cases.len() - failed - incomplete,
             overturned: of(Some(Verdict::Overturns)),
             uncertain: of(Some(Verdict::Uncertain)),
@@ -338,27 +348,34 @@ impl Counts {
     }
 }
 
-impl FragilityRow {
-    /// Returns the fraction of cases that certainly overturned; `None` without cases.
+impl Counts {
+    /// Returns the number of doubtful cases: uncertain, incomplete or failed.
     #[must_use]
-    pub fn fraction(&self) -> Option<f64> {
-        self.part(self.counts.overturned)
-    }
-
-    /// Returns the fraction of cases that overturned or are uncertain; `None` without cases.
-    #[must_use]
-    pub fn fraction_with_uncertain(&self) -> Option<f64> {
-        self.part(self.counts.overturned + self.counts.uncertain)
-    }
-
-    fn part(&self, count: usize) -> Option<f64> {
-        let cases = self.counts.cases;
-        (cases > 0).then(|| count as f64 / cases as f64)
+    pub const fn doubtful(&self) -> usize {
+        self.uncertain + self.incomplete + self.failed
     }
 }
 
-/// The results of a suite. Cases that are still rocking count as survived; failed cases do not count. If cases are uncertain, there are two
-/// curves: one counts them as survived, the other as overturned.
+impl FragilityRow {
+    /// Returns the fraction of cases that overturned, with uncertain ones by their fractions; `None` without cases.
+    #[must_use]
+    pub fn fraction(&self) -> Option<f64> {
+        let cases = self.counts.cases;
+        (cases > 0).then(|| self.counts.expected / cases as f64)
+    }
+
+    /// Returns the fraction of cases that overturned if doubtful ones survive, and if they overturn; `None` without cases.
+    #[must_use]
+    pub fn fraction_ends(&self) -> Option<[f64; 2]> {
+        let (cases, overturned) = (self.counts.cases, self.counts.overturned);
+        let all = cases + self.counts.incomplete + self.counts.failed;
+        let ends = [overturned, overturned + self.counts.doubtful()];
+        (cases > 0).then(|| ends.map(|count| count as f64 / all as f64))
+    }
+}
+
+/// The results of a suite. Cases that are still rocking count as survived, and uncertain ones by the fraction of their repetitions that overturn.
+/// If cases are doubtful (uncertain, incomplete or failed), there are two more curves: one counts them as survived, the other as overturned.
 ///
 /// Both signs of a record count as cases of one record, which are not independent. If every mirrored case is exactly the mirror image of the
 /// original, as with four links on a symmetric structure, mirrored cases add no evidence and do not count. With free hinges rounding errors and
@@ -373,10 +390,10 @@ pub struct SuiteFragility {
     pub mirrored_count: bool,
     /// The intensities, lowest first.
     pub levels: Vec<FragilityRow>,
-    /// The curve with uncertain cases counted as survived, or the reason why there is none.
+    /// The curve with uncertain cases counted by their fractions, or the reason why there is none.
     pub fit: Result<Fragility, NoFit>,
-    /// The curve with uncertain cases counted as overturned, or the reason why there is none.
-    pub fit_with_uncertain: Result<Fragility, NoFit>,
+    /// The curves with doubtful cases counted as survived, and as overturned, or the reasons why there is none.
+    pub ends: [Result<Fragility, NoFit>; 2],
 }
 
 impl SuiteFragility {
@@ -386,35 +403,43 @@ impl SuiteFragility {
         let mirrored_count = !mirrored_are_images(&cases);
         let evidence = counting(&cases, mirrored_count);
         let indices: BTreeMap<&str, usize> = names(&cases).into_iter().zip(0..).collect();
-        let fit_from = |least: Verdict| {
+        // Each curve counts a share of 0 to 1 in its own way; `None` does not count.
+        let fit_of = |overturned: fn(Option<f64>) -> Option<f64>| {
             let known = evidence.iter().filter_map(|case| {
                 Some(Observation {
                     intensity: case.level(measure),
-                    overturned: case.known_verdict()? >= least,
+                    overturned: overturned(case.overturning_share())?,
                     record: indices[case.record.as_str()],
                 })
             });
             fit(&known.collect::<Vec<_>>())
         };
-        let fit = fit_from(Verdict::Overturns);
-        let fit_with_uncertain = fit_from(Verdict::Uncertain);
+        let fit = fit_of(|share| share);
+        let ends = [
+            fit_of(|share| Some(share.map_or(0.0, f64::floor))),
+            fit_of(|share| Some(share.map_or(1.0, f64::ceil))),
+        ];
         let curve = |fit: &Result<Fragility, NoFit>, intensity: f64| {
             let fit = fit.as_ref().ok()?;
             let (low, high) = fit.band(intensity);
             Some([fit.probability(intensity), low, high])
         };
         let levels = by_intensity(evidence, |case| case.level(measure));
-        let levels = levels.into_iter().map(|(intensity, cases)| FragilityRow {
-            intensity,
-            counts: Counts::of(&cases),
-            curve: curve(&fit, intensity),
-            curve_with_uncertain: curve(&fit_with_uncertain, intensity),
+        let levels = levels.into_iter().map(|(intensity, cases)| {
+            let others = ends.iter().filter_map(|fit| curve(fit, intensity));
+            let widened =
+                |[at, low, high]: [f64; 3], end: [f64; 3]| [at, low.min(end[1]), high.max(end[2])];
+            FragilityRow {
+                intensity,
+                counts: Counts::of(&cases),
+                curve: curve(&fit, intensity).map(|own| others.fold(own, widened)),
+            }
         });
         Self {
             measure,
             levels: levels.collect(),
             fit,
-            fit_with_uncertain,
+            ends,
             mirrored_count,
             cases,
         }
@@ -424,6 +449,13 @@ impl SuiteFragility {
     #[must_use]
     pub fn has_uncertain(&self) -> bool {
         self.levels.iter().any(|level| level.counts.uncertain > 0)
+    }
+
+    /// Returns the curve, and those of both ends if a case is doubtful.
+    pub(super) fn fits(&self) -> impl Iterator<Item = &Result<Fragility, NoFit>> {
+        let in_doubt = self.levels.iter().any(|level| level.counts.doubtful() > 0);
+        let shown = if in_doubt { 3 } else { 1 };
+        [&self.fit].into_iter().chain(&self.ends).take(shown)
     }
 
     /// Returns the first case of each record, and the intensities that the structure survives under the record; mirrored records only if their

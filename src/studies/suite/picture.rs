@@ -26,16 +26,15 @@ pub(super) fn draw(
     }
     let circle = |name, at| Mark::new(name, POINT, Shape::Circle(at, 4.5));
     for level in &results.levels {
-        let fractions = level.fraction().zip(level.fraction_with_uncertain());
-        let Some((certain, possible)) = fractions else {
+        let Some((fraction, [certain, possible])) = level.fraction().zip(level.fraction_ends())
+        else {
             continue;
         };
         let [low, high] = [certain, possible].map(|part| (level.intensity, part));
         if possible > certain {
             marks.push(Mark::curve("uncertain", POINT, [low, high]));
-            marks.push(circle("fraction-with-uncertain", high));
         }
-        marks.push(circle("fraction", low));
+        marks.push(circle("fraction", (level.intensity, fraction)));
     }
     let mut sheet = Sheet::new(figure, heading.title());
     sheet.legend(LEFT_PX, keys(results, &curves));
@@ -59,22 +58,21 @@ struct CurveStyle {
     line: Stroke,
 }
 
-const CURVE: CurveStyle = CurveStyle {
-    name: "fit",
-    label: "lognormal curve",
-    line: Stroke::new(color::BLUE, 2.0, ""),
-};
-const CURVE_WITH_UNCERTAIN: CurveStyle = CurveStyle {
-    name: "fit-with-uncertain",
-    label: "with uncertain cases as overturned",
-    line: Stroke::new(color::BLUE, 2.0, "7 4"),
-};
+/// The curve with uncertain cases counted by their fractions, then those with doubtful cases as survived and as overturned.
+const STYLES: [CurveStyle; 3] = [
+    style("fit", "lognormal curve", ""),
+    style("fit-certain", "uncertain cases survive", "2 4"),
+    style("fit-with-uncertain", "uncertain cases overturn", "7 4"),
+];
 
-/// Returns the curves to draw: with uncertain cases counted as survived, and, if there are uncertain cases, as overturned.
+const fn style(name: &'static str, label: &'static str, dashes: &'static str) -> CurveStyle {
+    let line = Stroke::new(color::BLUE, 2.0, dashes);
+    CurveStyle { name, label, line }
+}
+
+/// Returns the curves to draw.
 fn curves(results: &SuiteFragility) -> Vec<(&Fragility, CurveStyle)> {
-    let with_uncertain = (&results.fit_with_uncertain, CURVE_WITH_UNCERTAIN);
-    let with_uncertain = results.has_uncertain().then_some(with_uncertain);
-    let all = [(&results.fit, CURVE)].into_iter().chain(with_uncertain);
+    let all = results.fits().zip(STYLES);
     all.filter_map(|(fit, style)| Some((fit.as_ref().ok()?, style)))
         .collect()
 }
@@ -157,9 +155,9 @@ mod tests {
     /// However steep a curve is, it turns by a few degrees at most from one piece to the next on the sheet.
     #[test]
     fn steep_curves_have_no_kinks() {
-        let case = |intensity, overturned, record| Observation {
+        let case = |intensity, overturned: bool, record| Observation {
             intensity,
-            overturned,
+            overturned: f64::from(overturned),
             record,
         };
         let near = [0.99, 1.0, 1.01];
@@ -181,7 +179,7 @@ mod tests {
                 x,
                 y: Scale::exactly(0.0, 1.0, 5),
             };
-            let curves = [(&fit, CURVE)];
+            let curves = STYLES.map(|style| (&fit, style));
             let points: Vec<_> = along(&x, &curves)
                 .into_iter()
                 .map(|x| axes.place(x, fit.probability(x)))

@@ -5,7 +5,7 @@ use serde_json::Value;
 
 use super::fragility::{Errors, Fragility, NoFit};
 use super::ida::Fractiles;
-use super::strength::{Capacity, Efficiency, MEASURES, efficiencies};
+use super::strength::{Capacity, Efficiency, MEASURES, efficiencies, few};
 use super::{CaseRow, Counts, FragilityRow, Heading, SuiteFragility, ida, picture};
 use crate::output::table::{Column, column, csv, each, fields, list};
 use crate::output::{Figure, OutputError};
@@ -63,7 +63,10 @@ pub struct Summary<'a> {
     records_that_never_overturn: Vec<&'a str>,
     /// Records that overturn the structure at every level.
     records_that_always_overturn: Vec<&'a str>,
-    /// The curve with uncertain cases counted as overturned, if there are any.
+    /// The curve with uncertain, incomplete and failed cases counted as survived, if there are any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    with_uncertain_as_survived: Option<Curve>,
+    /// The curve with uncertain, incomplete and failed cases counted as overturned, if there are any.
     #[serde(skip_serializing_if = "Option::is_none")]
     with_uncertain_as_overturned: Option<Curve>,
     #[serde(flatten)]
@@ -124,7 +127,7 @@ impl Heading {
         words.extend(to_quote.iter().map(|quote| format!("\n  {quote}")));
         let efficiencies = csv(efficiency_columns(), &measures)?;
         let incomplete = remarks.incomplete_in_words();
-        let second = &results.fit_with_uncertain;
+        let end = |end: usize| results.fits().nth(1 + end).map(Into::into);
         let summary = Summary {
             program: env!("CARGO_PKG_NAME"),
             version: env!("CARGO_PKG_VERSION"),
@@ -139,7 +142,8 @@ impl Heading {
             mirrored_cases_count: results.mirrored_count,
             records_that_never_overturn: results.always(Verdict::Survives),
             records_that_always_overturn: results.always(Verdict::Overturns),
-            with_uncertain_as_overturned: results.has_uncertain().then(|| second.into()),
+            with_uncertain_as_survived: end(0),
+            with_uncertain_as_overturned: end(1),
             remarks,
         };
         let curves = results.curves().into_iter();
@@ -223,6 +227,9 @@ impl Heading {
             Err(reason) => format!("no fragility curve{taken}: {reason}"),
         }));
         lines.extend(self.measures_in_words(capacities, measures));
+        if results.fit.is_ok() || !measures.is_empty() {
+            lines.extend(few(results.record_count()));
+        }
         for (case, survival) in results.survivals() {
             let words = survival::in_words(&survival, unit(self.measure), None);
             lines.push(format!("{}: {words}", case.record_in_words()));
@@ -233,10 +240,10 @@ impl Heading {
             lines.push("those still rocking at the end count as not overturned".to_owned());
         }
         let incomplete = remarks.incomplete_in_words();
-        lines.extend(incomplete.map(|words| format!("{words}; they do not count")));
+        lines.extend(incomplete.map(|words| format!("{words}; {AT_ENDS}")));
         lines.extend(remarks.uncertain_in_words(FRAGILITY));
         let failed = remarks.failed_in_words(FRAGILITY);
-        lines.extend(failed.map(|words| format!("{words}; failed cases do not count")));
+        lines.extend(failed.map(|words| format!("{words}; {AT_ENDS}")));
         lines.join("\n  ")
     }
 
@@ -246,6 +253,12 @@ impl Heading {
         capacities: &[Capacity<'_>],
         measures: &[Efficiency],
     ) -> Option<String> {
+        let bounds = capacities.iter().filter(|one| one.at_most).count();
+        if measures.is_empty() && bounds > 0 {
+            return Some(format!(
+                "measures of intensity are not compared: {bounds} capacities are upper bounds; add lower levels"
+            ));
+        }
         let (best, others) = measures.split_first()?;
         let of = |one: &Efficiency| {
             let at = match one.measure {
@@ -265,9 +278,13 @@ impl Heading {
             0 => String::new(),
             count => format!("; {count} of {all} that do not overturn are left out"),
         };
+        let bounds = match bounds {
+            0 => String::new(),
+            count => format!("; {count} of {all} are upper bounds"),
+        };
         Some(format!(
             "most efficient measure of intensity: {}; {}\n    (dispersion of the factor on a record that overturns, 95 % by bootstrap over \
-             records; the first is the best in {:.0} % of the draws){left_out}",
+             records; the first is the best in {:.0} % of the draws){left_out}{bounds}",
             of(best),
             others.join(", "),
             100.0 * best.best_share
@@ -300,16 +317,13 @@ impl Heading {
             |level: &FragilityRow| level.counts => cases, overturned, still_rocking, incomplete, failed
         ));
         all.push(column("fraction", FragilityRow::fraction));
-        all.push(curve("probability", |level| level.curve));
-        if self.has_joints() {
-            // Columns of uncertain cases, which count as overturned here.
-            let fraction = FragilityRow::fraction_with_uncertain;
-            all.extend([
-                column("uncertain", |level: &FragilityRow| level.counts.uncertain),
-                column("fraction_with_uncertain", fraction),
-                curve("probability_with_uncertain", |of| of.curve_with_uncertain),
-            ]);
-        }
+        // Doubtful cases count as survived in the first of these columns, and as overturned in the second.
+        let ends = ["fraction_certain", "fraction_with_uncertain"];
+        all.extend([
+            curve("probability", |level| level.curve),
+            column("uncertain", |level: &FragilityRow| level.counts.uncertain),
+            list(ends, |level: &FragilityRow| each(level.fraction_ends())),
+        ]);
         all
     }
 }
@@ -356,24 +370,31 @@ impl SuiteFragility {
         }
     }
 
-    /// Returns the curves in words, or the reason why there is none. Before each is the treatment of uncertain cases: they count as survived,
-    /// and in a second curve as overturned.
+    /// Returns the curves in words, or the reason why there is none. Before each is the treatment of doubtful cases: uncertain ones count by their
+    /// fractions, and in two more curves all count as survived and as overturned.
     fn curves(&self) -> Vec<(String, Result<String, String>)> {
-        let uncertain = Counts::of(&self.evidence()).uncertain;
-        let curve = |fit: &Result<Fragility, NoFit>, how: &str| {
-            let taken = match uncertain {
+        let counts = Counts::of(&self.evidence());
+        let (doubtful, uncertain) = (counts.doubtful(), counts.uncertain);
+        let kind = if doubtful == uncertain {
+            "uncertain"
+        } else {
+            "doubtful"
+        };
+        let hows = [
+            (uncertain, "by their fractions"),
+            (doubtful, "taken as survived"),
+            (doubtful, "taken as overturned"),
+        ];
+        let curve = |(fit, (cases, how)): (&Result<Fragility, NoFit>, _)| {
+            let taken = match cases {
                 0 => String::new(),
-                1 => format!(", 1 uncertain case taken as {how}"),
-                _ => format!(", {uncertain} uncertain cases taken as {how}"),
+                1 => format!(", 1 {kind} case {how}"),
+                _ => format!(", {cases} {kind} cases {how}"),
             };
             let words = fit.as_ref().map(|fit| fit_in_words(fit, self.measure));
             (taken, words.map_err(ToString::to_string))
         };
-        let mut curves = vec![curve(&self.fit, "survived")];
-        if uncertain > 0 {
-            curves.push(curve(&self.fit_with_uncertain, "overturned"));
-        }
-        curves
+        self.fits().zip(hows).map(curve).collect()
     }
 }
 
@@ -400,6 +421,9 @@ fn fit_in_words(fit: &Fragility, measure: Measure) -> String {
 fn digits(error: f64) -> usize {
     (1.0 - error.log10().floor()).clamp(0.0, 12.0) as usize
 }
+
+/// Treatment of cases without a verdict.
+const AT_ENDS: &str = "they count only in the curves that take them as survived and as overturned";
 
 /// Definition of the fitted curve: its median differs from that of the capacities.
 const FIT: &str = "the lognormal curve that fits all cases best; cases that survive above the first overturning count too";

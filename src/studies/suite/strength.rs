@@ -126,6 +126,19 @@ impl SuiteFragility {
     }
 }
 
+/// Number of records below which a dispersion gets a note.
+const MANY_RECORDS: usize = 30;
+
+/// Returns the error of a dispersion from this number of records, in words; `None` with many records. The relative standard deviation of the
+/// standard deviation of `n` normal values is `1 / sqrt(2 (n - 1))`.
+pub(in crate::studies) fn few(records: usize) -> Option<String> {
+    let percent = 100.0 / (2.0 * (records.max(2) - 1) as f64).sqrt();
+    let words = "its intervals tend to be too narrow";
+    (records < MANY_RECORDS).then(|| {
+        format!("few records: a dispersion from {records} has a standard error of at least {percent:.0} %, and {words}")
+    })
+}
+
 /// Smallest number of capacities for a dispersion.
 const LEAST_CAPACITIES: usize = 3;
 
@@ -146,9 +159,13 @@ fn scatter<'a>(
 }
 
 /// Computes the efficiency of each measure of intensity, the best first, with intervals by bootstrap over the records. Records that do not
-/// overturn the structure are ignored. Empty with fewer than three capacities.
+/// overturn the structure are ignored. Empty with fewer than three capacities that are no upper bounds: bounds have the order of the levels.
 #[must_use]
 pub fn efficiencies(capacities: &[Capacity<'_>]) -> Vec<Efficiency> {
+    let known = |one: &&Capacity<'_>| one.scale.is_some() && !one.at_most;
+    if capacities.iter().filter(known).count() < LEAST_CAPACITIES {
+        return Vec::new();
+    }
     // Draws whole records, because a record and its mirror image are not independent.
     let records: Vec<&[Capacity<'_>]> = capacities
         .chunk_by(|a, b| a.record == b.record)

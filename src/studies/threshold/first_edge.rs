@@ -1,5 +1,7 @@
 //! The first edge: the strength from which a structure overturns. The search goes upwards and ends at the first edge.
 
+use std::cell::RefCell;
+
 use serde::{Deserialize, Serialize};
 
 use super::factors::{EDGE_WIDTH, Factors};
@@ -9,6 +11,7 @@ use crate::output::table::{Column, column};
 use crate::scenario::Scenario;
 use crate::studies::ending::columns::yes;
 use crate::studies::ending::{Ending, NoAnswer, NoHistory, Verdict};
+use crate::studies::statistics::ascending_weighted;
 
 /// The strengths of a ground motion that a structure certainly survives, and the smallest one that overturns it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -28,7 +31,16 @@ pub struct FirstEdge {
     /// True if the history at the factor after `tried_to` failed, so that nothing is known of stronger motions.
     #[serde(default)]
     pub failed_beyond: bool,
+    /// The uncertain factors below `factor`, ascending, each with the fraction of its repetitions that overturn.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub uncertain: Vec<[f64; 2]>,
 }
+
+/// Treatment of an uncertain factor: its probability to overturn the structure, from the fraction of the repetitions that overturn.
+pub type Treatment = fn(f64) -> f64;
+
+/// The treatments of uncertain factors: by their fractions, as overturning, and as survived.
+pub const TREATMENTS: [Treatment; 3] = [|share| share, f64::ceil, f64::floor];
 
 impl FirstEdge {
     /// Finds the first edge of a scenario that starts from rest, among these factors on its ground motion.
@@ -38,25 +50,34 @@ impl FirstEdge {
     pub fn of(scenario: &Scenario, factors: &Factors) -> Result<Self, NoAnswer> {
         let model = scenario.model().map_err(NoAnswer::invalid)?;
         let request = scenario.request_on(scenario.ground_motion(), &scenario.structure);
-        let verdict = |factor: f64| {
+        let share = |factor: f64| {
             let ground = scenario.ground_motion().scaled(factor);
             let ground = ground.map_err(SimulationError::from)?;
             let ending = Ending::of(&*model, &ground, &request);
-            ending.map(|ending| ending.verdict())
+            ending.map(|ending| ending.overturning_share())
         };
-        Self::search(&factors.values(), EDGE_WIDTH, verdict)
+        Self::search(&factors.values(), EDGE_WIDTH, share)
     }
 
     /// Finds the first edge. `strengths` are tried in ascending order, and bisection encloses the edge between two of them to this relative
-    /// width.
+    /// width. `share` is that of the repetitions that overturn; `None` if the history is incomplete.
     pub(in crate::studies) fn search(
         strengths: &[f64],
         width: f64,
-        verdict: impl Fn(f64) -> Result<Verdict, NoHistory>,
+        share: impl Fn(f64) -> Result<Option<f64>, NoHistory>,
     ) -> Result<Self, NoAnswer> {
-        let known = |strength| match verdict(strength) {
-            Ok(Verdict::Incomplete) => Err(NoAnswer::Incomplete),
-            found => Ok(found?),
+        let uncertain = RefCell::new(Vec::new());
+        let known = |strength| {
+            let share = share(strength)?.ok_or(NoAnswer::Incomplete)?;
+            if share <= 0.0 || share >= 1.0 {
+                return Ok(if share > 0.0 {
+                    Verdict::Overturns
+                } else {
+                    Verdict::Survives
+                });
+            }
+            uncertain.borrow_mut().push([strength, share]);
+            Ok(Verdict::Uncertain)
         };
         // The ends of the edge between a low and a high strength, of verdicts below and from `least` on, and the verdict at its upper end.
         let narrow = |low: f64, (high, mut verdict): (f64, Verdict), least: Verdict| {
@@ -105,6 +126,8 @@ impl FirstEdge {
                 break;
             }
         }
+        let below = |[strength, _]: &[f64; 2]| *strength < edge.strength();
+        edge.uncertain = ascending_weighted(uncertain.into_inner().into_iter().filter(below));
         Ok(edge)
     }
 
@@ -133,13 +156,32 @@ impl FirstEdge {
         self.factor.unwrap_or(f64::INFINITY)
     }
 
-    /// Returns true if the structure overturns up to this factor; `None` if the tried factors do not determine this.
-    pub(in crate::studies) fn overturns_up_to(&self, factor: f64) -> Option<bool> {
-        match self.factor {
-            Some(first) if first <= factor => Some(true),
-            Some(_) => (!self.at_most).then_some(false),
-            None => (factor <= self.tried_to).then_some(false),
-        }
+    /// Returns the distribution of the strength that first overturns the structure: strengths and their probabilities. The last strength is
+    /// infinite if no factor certainly overturns it.
+    #[must_use]
+    pub fn strengths(&self, treatment: Treatment) -> Vec<[f64; 2]> {
+        let mut reached = 0.0;
+        let certain = [self.strength(), 1.0];
+        let all = self.uncertain.iter().chain([&certain]);
+        let rises = all.map(|[strength, share]| {
+            // The probability to overturn up to a strength does not fall.
+            let rise = (treatment(*share) - reached).max(0.0);
+            reached += rise;
+            [*strength, rise]
+        });
+        rises.filter(|[_, rise]| *rise > 0.0).collect()
+    }
+
+    /// Returns the probability that the structure overturns up to this factor; `None` if the tried factors do not determine it.
+    pub(in crate::studies) fn overturns_up_to(&self, factor: f64) -> Option<f64> {
+        let is_known = match self.factor {
+            Some(first) if first <= factor => return Some(1.0),
+            Some(_) => !self.at_most,
+            None => factor <= self.tried_to,
+        };
+        let uncertain = self.uncertain.iter();
+        let reached = uncertain.filter(|[strength, _]| *strength <= factor);
+        is_known.then(|| reached.map(|[_, share]| *share).fold(0.0, f64::max))
     }
 }
 
@@ -174,13 +216,11 @@ mod tests {
     #[test]
     fn safe_strengths_end_where_doubt_begins() {
         let verdict = |strength: f64| {
-            Ok(match strength {
-                _ if (0.953..1.672).contains(&strength) && !(1.1..1.2).contains(&strength) => {
-                    Verdict::Uncertain
-                }
-                _ if strength >= 1.672 => Verdict::Overturns,
-                _ => Verdict::Survives,
-            })
+            Ok(Some(match strength {
+                _ if (0.953..1.672).contains(&strength) && !(1.1..1.2).contains(&strength) => 0.5,
+                _ if strength >= 1.672 => 1.0,
+                _ => 0.0,
+            }))
         };
         for strengths in [&[0.5, 1.0, 1.15, 2.0][..], &[0.5, 3.0], &[0.9, 1.15, 1.7]] {
             let edge = FirstEdge::search(strengths, EDGE_WIDTH, verdict).unwrap();
@@ -209,17 +249,40 @@ mod tests {
         );
     }
 
+    /// From 0.5 on three of four repetitions overturn, from 0.6 on one of four, from 0.7 on all: the probability does not fall again.
+    #[test]
+    fn uncertain_strengths_count_with_their_fractions() {
+        let share = |strength: f64| {
+            let shares = [(0.7, 1.0), (0.6, 0.25), (0.5, 0.75), (0.0, 0.0)];
+            let share = shares.into_iter().find(|(from, _)| strength >= *from);
+            Ok(share.map(|(_, share)| share))
+        };
+        let edge = FirstEdge::search(&[0.3, 0.65, 1.0], EDGE_WIDTH, share).unwrap();
+        let (from, first) = (edge.uncertain_from.unwrap(), edge.strength());
+        for (found, known) in [(from, 0.5), (first, 0.7)] {
+            assert!((found / known - 1.0).abs() < EDGE_WIDTH, "{found}");
+        }
+        let known = [
+            vec![[from, 0.75], [first, 0.25]],
+            vec![[from, 1.0]],
+            vec![[first, 1.0]],
+        ];
+        assert_eq!(TREATMENTS.map(|how| edge.strengths(how)), known);
+        let up_to = [0.4, from, 0.69, 0.71].map(|factor| edge.overturns_up_to(factor));
+        assert_eq!(up_to, [Some(0.0), Some(0.75), Some(0.75), Some(1.0)]);
+    }
+
     /// A history without a verdict is neither survived nor overturned, also where an edge is narrowed.
     #[test]
     fn an_incomplete_history_next_to_an_edge_answers_nothing() {
         let verdict = |incomplete_to: f64| {
             move |strength: f64| {
                 Ok(if strength >= 0.7 {
-                    Verdict::Overturns
+                    Some(1.0)
                 } else if strength >= 0.5 && strength < incomplete_to {
-                    Verdict::Incomplete
+                    None
                 } else {
-                    Verdict::Survives
+                    Some(0.0)
                 })
             }
         };

@@ -118,10 +118,6 @@ pub struct Mechanism {
     /// Motion of the mechanism up to the unstable equilibrium; `None` without a capacity curve.
     #[serde(skip)]
     pub curves: Option<CapacityCurves>,
-    /// The acceleration at which joints with the allowed friction coefficient first slide, in g, by the associated bound; `None` if they do not
-    /// slide, or if sliding is not checked.
-    #[serde(skip)]
-    pub slides_at_g: Option<f64>,
 }
 
 /// A mechanism with virtual displacements of arbitrary scale.
@@ -251,7 +247,6 @@ impl Mechanism {
             no_curve: found.curves.as_ref().err().cloned(),
             body_of_block: found.body_of_block,
             curves: found.curves.ok(),
-            slides_at_g: None,
         }
     }
 }
@@ -354,11 +349,17 @@ impl VirtualMechanism {
     }
 }
 
-/// Computes the acceleration in g at which the joints of a row slide to one side, by the associated bound. `None` if a joint opens first; zero
-/// if the joints slide under the weight of the row.
-fn slides_at_g(row: &Row, coefficient: f64, sway: Sway) -> Option<f64> {
+/// Number of voussoirs into which an arch without joints is cut to find its sliding mechanism.
+const CUT: usize = 60;
+
+/// Computes the acceleration in g at which the joints of a row slide to one side, by the associated bound, if this is below the load multiplier
+/// `alpha0` of the mechanism without sliding. Zero if the joints slide under the weight of the row.
+fn slides_at_g(row: &Row, coefficient: f64, sway: Sway, alpha0: f64) -> Option<f64> {
     match friction::onset(row, coefficient, sway) {
-        Ok(Some(onset)) => onset.sliding_governs().then_some(onset.acceleration_g),
+        Ok(Some(onset)) => {
+            let governs = onset.sliding_governs() && onset.acceleration_g < alpha0;
+            governs.then_some(onset.acceleration_g)
+        }
         Err(FrictionError::CannotStand(_)) => Some(0.0),
         Ok(None) | Err(_) => None,
     }
@@ -367,19 +368,24 @@ fn slides_at_g(row: &Row, coefficient: f64, sway: Sway) -> Option<f64> {
 /// Finds the mechanisms of a structure to the checked sides.
 ///
 /// # Errors
-/// When the structure cannot stand, no acceleration moves it to a side, or joints slide first. Sliding is checked if the scenario has a friction
-/// coefficient, or if there is no curve along which the required friction is known. A linkage that locks by friction is not an error without a
-/// coefficient; it has [`Mechanism::slides_at_g`].
+/// When the structure cannot stand, no acceleration moves it to a side, or joints slide first.
 pub(super) fn mechanisms(input: &CheckInput<'_>) -> Result<BTreeMap<Sway, Mechanism>, VerifyError> {
     let (structure, gravity_m_s2) = (&input.scenario.structure, input.gravity_m_s2);
     let coefficient = input.allowed_friction;
-    let slips = input.scenario.motion.friction_coefficient().is_some();
     let none =
         |sway: Sway| VerifyError::NoMechanism(format!("no push moves it to the {}", sway.name()));
     let model = structure.model(ImpactModel::MaxRestitution);
     let row = structure
         .row()
         .map_err(|error| VerifyError::NoMechanism(error.to_string()));
+    // An arch without joints may slide at any section.
+    let cut = match structure {
+        Structure::Arch(arch) => {
+            let arch = arch.clone().with_voussoirs(CUT);
+            arch.ok().and_then(|arch| arch.row().ok())
+        }
+        _ => None,
+    };
     let of = |sway: Sway| {
         let found = if let Ok(model) = &model {
             VirtualMechanism::of_model(structure, &**model, sway, gravity_m_s2)
@@ -391,18 +397,17 @@ pub(super) fn mechanisms(input: &CheckInput<'_>) -> Result<BTreeMap<Sway, Mechan
             let found = found.ok_or_else(|| none(sway))?;
             VirtualMechanism::of_onset(row, sway, &found, gravity_m_s2)
         };
-        let mut mechanism = Mechanism::new(found, input);
-        let sliding = slips || mechanism.curves.is_none();
-        let may_slide = row.as_ref().ok().filter(|_| sliding);
-        mechanism.slides_at_g = may_slide.and_then(|row| slides_at_g(row, coefficient, sway));
-        match mechanism.slides_at_g {
-            Some(at_g) if slips || model.is_err() => Err(VerifyError::Slides {
+        let mechanism = Mechanism::new(found, input);
+        let alpha0 = mechanism.alpha0;
+        let joints = row.as_ref().ok().or(cut.as_ref());
+        match joints.and_then(|row| slides_at_g(row, coefficient, sway, alpha0)) {
+            Some(at_g) => Err(VerifyError::Slides {
                 sway,
                 coefficient,
                 at_g,
-                alpha0: mechanism.alpha0,
+                alpha0,
             }),
-            _ => Ok((sway, mechanism)),
+            None => Ok((sway, mechanism)),
         }
     };
     let checked = match input.settings.sides {

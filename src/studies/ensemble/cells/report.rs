@@ -48,8 +48,12 @@ fn kind_of(cell: &CellCounts) -> Kind {
     let bounds = [0.0, 0.05, 0.25, 0.5, 0.75, 0.95];
     PALETTE[match cell.overturned {
         None => 8,
-        Some(share) if share.count == share.of => 7,
-        Some(share) => bounds.partition_point(|bound| *bound < share.share),
+        Some(share) if share.count == share.of + share.no_verdict => 7,
+        Some(share) => {
+            let in_doubt = usize::from(share.uncertain + share.no_verdict > 0);
+            let above = bounds.partition_point(|bound| *bound < share.share);
+            above.max(in_doubt)
+        }
     }]
 }
 
@@ -223,7 +227,7 @@ fn first_words(samples: &Samples<'_, Share>, counts: &[CellCounts], own: &[CellR
         format!("{} in {}", percent(level), cells.count())
     };
     let [few, half, most] = LEVELS.map(at_least);
-    let survives = |row: &CellRow| row.as_ref().is_ok_and(|outcome| *outcome > 0);
+    let survives = |row: &CellRow| row.as_ref().is_ok_and(|(outcome, _)| *outcome > 0);
     let in_doubt = counts
         .iter()
         .zip(own)
