@@ -239,12 +239,13 @@ fn kind(series: &Series) -> String {
         Format::At2 => "AT2 file (PEER)",
         Format::Asc => "ASC file (ESM)",
         Format::Knet => "file of K-NET",
-        Format::Csv if series.wrapped => "table with several samples a row",
+        Format::Csv if series.layout.wrapped => "table with several samples a row",
         Format::Csv => "table",
     };
     let quantity = match series.layout.quantity {
         RecordedQuantity::Acceleration => "accelerations",
         RecordedQuantity::Velocity => "velocities",
     };
-    format!("{format}, {quantity} in {}", series.unit.name())
+    let (unit, columns) = (series.unit.name(), &series.columns);
+    format!("{format}, {quantity} in {unit}{columns}")
 }

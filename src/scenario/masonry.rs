@@ -4,6 +4,7 @@
 //! ```toml
 //! [blocks]
 //! joints = "joints.csv"          # a row a joint: x and y of the intrados corner, then of the extrados corner, in m
+//! decimal = "point"              # or "comma": decimal mark of the numbers in these files
 //! outlines = "outlines.csv"      # optional: block (from 1), x, y
 //! supports = "both"              # or "left": a stack, whose last joint is its free top
 //! density_kg_m3 = 2000.0         # or an array, one for each block
@@ -15,10 +16,10 @@ use nalgebra::Vector2;
 
 use super::LineFault;
 use super::prelude::*;
-use super::record::{faulty, read_numbers};
+use super::record::{Decimal, faulty, read_numbers};
 use super::tie::{self, PULLS_OVER, TieTable};
 use crate::argument::ArgumentError;
-use crate::mechanics::arch::{DENSITY_KG_M3, DEPTH_M};
+use crate::mechanics::arch::{DENSITY_KG_M3, DEPTH_M, MeasuredAt};
 use crate::mechanics::blocks::{Joint, MAX_BLOCKS, RowError, Supports};
 use crate::mechanics::masonry::{
     BasketArch, Dimensions, Fill, FillLevel, GivenBlocks, Masonry, MasonryError, Material, Pier,
@@ -33,12 +34,12 @@ pub(super) const SHAPES: [&str; 4] = ["pointed_arch", "elliptic_arch", "basket_a
 
 /// Reads the shapes that have separate tables, and returns the first given one.
 pub(super) fn read_shapes(table: &mut Table<'_>) -> Option<Shape> {
-    let pointed = table.table("pointed_arch", read_dimensions);
-    let elliptic = table.table("elliptic_arch", read_dimensions);
+    let pointed = table.table("pointed_arch", |table| read_dimensions(table, true));
+    let elliptic = table.table("elliptic_arch", |table| read_dimensions(table, false));
     let basket = table.table("basket_arch", |table| {
         Ok(BasketArch {
             crown_deg: table.or("crown_deg", &above(0.0, 179.0), BasketArch::CROWN_DEG),
-            dimensions: read_dimensions(table)?,
+            dimensions: read_dimensions(table, false)?,
         })
     });
     let blocks = table.table("blocks", read_blocks);
@@ -49,11 +50,33 @@ pub(super) fn read_shapes(table: &mut Table<'_>) -> Option<Shape> {
     pointed.or(elliptic).or(basket).or(blocks)
 }
 
-fn read_dimensions(table: &mut Table<'_>) -> ReadResult<Dimensions> {
+/// Reads the dimensions and converts span and rise to those of the middle line.
+fn read_dimensions(table: &mut Table<'_>, is_pointed: bool) -> ReadResult<Dimensions> {
+    let lines = one_of(MeasuredAt::ALL, MeasuredAt::name);
+    let measured_at = table.or("measured_at", &lines, MeasuredAt::Mean);
+    let mut span_m = table.required("span_m", &MAGNITUDE);
+    let mut rise_m = table.required("rise_m", &MAGNITUDE);
+    let thickness_m = table.required("thickness_m", &within(&(1e-6..=1e6)));
+    if measured_at != MeasuredAt::Mean {
+        let outwards_m = measured_at.to_mean() * thickness_m;
+        // The arcs of a pointed arch keep their centres.
+        let centre_m = rise_m * rise_m / span_m - 0.25 * span_m;
+        span_m += 2.0 * outwards_m;
+        rise_m = match is_pointed {
+            true => (0.5 * span_m * (0.5 * span_m + 2.0 * centre_m)).sqrt(),
+            false => rise_m + outwards_m,
+        };
+        let wrong = format!("leaves no arch {} m thick", plain(thickness_m));
+        table.refuse(
+            span_m.min(rise_m).is_nan() || span_m <= 0.0 || rise_m <= 0.0,
+            "span_m",
+            wrong,
+        )?;
+    }
     Ok(Dimensions {
-        span_m: table.required("span_m", &MAGNITUDE),
-        rise_m: table.required("rise_m", &MAGNITUDE),
-        thickness_m: table.required("thickness_m", &within(&(1e-6..=1e6))),
+        span_m,
+        rise_m,
+        thickness_m,
         voussoirs: table.required("voussoirs", &VOUSSOIRS),
         material: Material {
             depth_m: table.or("depth_m", &MAGNITUDE, DEPTH_M),
@@ -65,6 +88,7 @@ fn read_dimensions(table: &mut Table<'_>) -> ReadResult<Dimensions> {
 fn read_blocks(table: &mut Table<'_>) -> ReadResult<GivenBlocks> {
     let joints_file = table.required("joints", &text());
     let outlines_file = table.optional("outlines", &text());
+    let decimal = Decimal::read(table);
     let kinds = one_of(Supports::ALL, Supports::name);
     let supports = table.or("supports", &kinds, Supports::Both);
     let depth_m = table.or("depth_m", &MAGNITUDE, DEPTH_M);
@@ -72,7 +96,7 @@ fn read_blocks(table: &mut Table<'_>) -> ReadResult<GivenBlocks> {
     let density_kg_m3 = table.or("density_kg_m3", &densities, vec![DENSITY_KG_M3]);
     table.sound()?;
     let path = table.path(&joints_file);
-    let rows = table.accept("joints", read_numbers::<4>(&path))?;
+    let rows = table.accept("joints", read_numbers::<4>(&path, decimal))?;
     table.note_file(&joints_file);
     let (count, most) = (rows.len(), MAX_BLOCKS + 1);
     let wrong = format!(
@@ -86,6 +110,7 @@ fn read_blocks(table: &mut Table<'_>) -> ReadResult<GivenBlocks> {
     let mut given = GivenBlocks {
         joints_file,
         outlines_file,
+        decimal: (decimal != Decimal::Point).then(|| decimal.name()),
         supports,
         depth_m,
         density_kg_m3,
@@ -98,7 +123,7 @@ fn read_blocks(table: &mut Table<'_>) -> ReadResult<GivenBlocks> {
     });
     table.accept("density_kg_m3", fits)?;
     if let Some(file) = &given.outlines_file {
-        let outlines = read_outlines(&table.path(file), &given);
+        let outlines = read_outlines(&table.path(file), decimal, &given);
         given.outlines = table.accept("outlines", outlines)?;
         table.note_file(file);
     }
@@ -111,7 +136,7 @@ fn read_blocks(table: &mut Table<'_>) -> ReadResult<GivenBlocks> {
             let line = rows.get(joint).map_or(1, |(line, _)| *line);
             faulty(&path, &LineFault::on(line)(why_no_row(&error)))
         }
-        Err(error) => error.to_string(),
+        Err(error) => faulty(&path, &LineFault::on(rows[0].0)(error.to_string())),
     };
     Err(table.wrong("joints", wrong))
 }
@@ -140,8 +165,8 @@ fn why_no_row(error: &RowError) -> String {
     }
 }
 
-fn read_outlines(path: &Path, given: &GivenBlocks) -> Result<Outlines, String> {
-    let rows = read_numbers::<3>(path)?;
+fn read_outlines(path: &Path, decimal: Decimal, given: &GivenBlocks) -> Result<Outlines, String> {
+    let rows = read_numbers::<3>(path, decimal)?;
     let blocks = given.joints.len() - 1;
     let fault = |line: usize, message: String| faulty(path, &LineFault::on(line)(message));
     let mut outlines = Outlines::new();
@@ -368,6 +393,14 @@ fn why_it_falls(table: &mut Table<'_>, masonry: &Masonry, joints: &str) -> Fault
                  its weight; {remedy}"
             );
             table.wrong("piers", wrong)
+        }
+        Remedy::LessLoad(factor) => {
+            let thicker = |factor| format!(", or an arch {factor:.4} times as thick");
+            let thicker = factor.map_or_else(String::new, thicker);
+            let wrong = format!(
+                "overloads the structure, which stands without it: joints {joints} open; give less load, or spread it{thicker}"
+            );
+            table.wrong("load", wrong)
         }
         Remedy::ThickerArch(Some(factor)) => {
             let wrong = format!("{falls}; it stands if it is {factor:.4} times as thick");

@@ -564,10 +564,7 @@ impl Scenario {
     #[must_use]
     pub fn to_json(&self) -> Value {
         let mut table = self.resolved();
-        let arch = table.get_mut("arch");
-        if let Some(arch) = arch.filter(|_| !self.as_given.contains_key("arch")) {
-            Circular::put_given(arch, &self.given_shape);
-        }
+        Circular::put_given(&mut table, &self.given_shape, &self.as_given);
         table
     }
 

@@ -13,10 +13,24 @@ use std::mem;
 use super::prelude::*;
 use crate::mechanics::arch::MeasuredAt;
 
+/// Tables of shapes with `measured_at`.
+const TABLES: [&str; 4] = ["arch", "pointed_arch", "elliptic_arch", "basket_arch"];
 /// Keys of the shape in a resolved scenario.
-const RESOLVED: [&str; 3] = ["mean_radius_m", "thickness_ratio", "embrace_deg"];
-/// Keys of `[arch]` that do not concern the shape.
-const OTHERS: [&str; 4] = ["depth_m", "density_kg_m3", "voussoirs", "joints_deg"];
+const RESOLVED: [&str; 5] = [
+    "mean_radius_m",
+    "thickness_ratio",
+    "embrace_deg",
+    "span_m",
+    "rise_m",
+];
+/// Keys that do not concern the shape.
+const OTHERS: [&str; 5] = [
+    "depth_m",
+    "density_kg_m3",
+    "voussoirs",
+    "joints_deg",
+    "crown_deg",
+];
 const LINES: &str = " beside it: \"intrados\", \"mean\" or \"extrados\"";
 const POSITIVE: Number = between(Excluded(0.0), Unbounded);
 /// Range of spans and rises, which may be smaller than any radius.
@@ -91,11 +105,14 @@ impl Circular {
         })
     }
 
-    /// Returns the keys of the shape as in the file; empty if the file does not give the span.
+    /// Returns the keys of the shape as in the file; empty if the file does not give the line of the span.
     pub(super) fn given(table: &Table<'_>) -> Map<String, Value> {
-        let arch = table.as_given("arch");
-        let arch = arch.as_ref().and_then(Value::as_object);
-        let given = arch.filter(|arch| arch.contains_key("span_m"));
+        let shapes: Vec<_> = TABLES
+            .iter()
+            .filter_map(|name| table.as_given(name))
+            .collect();
+        let mut shapes = shapes.iter().filter_map(Value::as_object);
+        let given = shapes.find(|shape| shape.contains_key("measured_at"));
         let given = given.into_iter().flatten();
         // A length may be written as an integer.
         let length = |value: &Value| value.as_f64().map_or_else(|| value.clone(), Value::from);
@@ -105,14 +122,23 @@ impl Circular {
             .collect()
     }
 
-    /// Replaces the resolved keys of the shape by the given ones.
-    pub(super) fn put_given(arch: &mut Value, given: &Map<String, Value>) {
-        if let Value::Object(resolved) = arch
-            && !given.is_empty()
+    /// Replaces the resolved keys of the shape by the given ones, unless its table is already as in the file.
+    pub(super) fn put_given(
+        tables: &mut Value,
+        given: &Map<String, Value>,
+        as_given: &Map<String, Value>,
+    ) {
+        for name in TABLES
+            .into_iter()
+            .filter(|name| !as_given.contains_key(*name))
         {
-            let others = mem::take(resolved).into_iter();
-            let others = others.filter(|(key, _)| !RESOLVED.contains(&key.as_str()));
-            *resolved = given.clone().into_iter().chain(others).collect();
+            if let Some(Value::Object(resolved)) = tables.get_mut(name)
+                && !given.is_empty()
+            {
+                let others = mem::take(resolved).into_iter();
+                let others = others.filter(|(key, _)| !RESOLVED.contains(&key.as_str()));
+                *resolved = given.clone().into_iter().chain(others).collect();
+            }
         }
     }
 }

@@ -33,7 +33,7 @@ use std::path::Path;
 
 use super::listing::{RecordListing, written};
 use super::prelude::*;
-use super::record::{Format, LineFault, Series, faulty, read_numbers};
+use super::record::{Decimal, Format, LineFault, Series, faulty, read_numbers};
 use crate::dynamics::demand::floor::Mode;
 use crate::dynamics::demand::ground::{GroundSpectrum, Hazard, Site, Soil, Topography};
 use crate::dynamics::demand::points::PointSpectrum;
@@ -351,6 +351,9 @@ pub struct ModeState {
 pub struct PointDemand {
     /// Name of the file.
     pub spectrum: String,
+    /// Decimal mark of its numbers.
+    #[serde(skip_serializing_if = "Decimal::is_point")]
+    pub decimal: Decimal,
     /// Damping of the given spectrum, in per cent.
     pub damping_percent: f64,
     /// Rule of the limit state; `None` for SLD, which is the onset of motion.
@@ -548,16 +551,18 @@ impl PointDemand {
     fn read(table: &mut Table<'_>, state: LimitState, confidence_factor: f64) -> ReadResult<Self> {
         let spectrum = table.required("spectrum", &text());
         let damping_percent = table.or("damping_percent", &DAMPING_PERCENT, 5.0);
+        let decimal = Decimal::read(table);
         let default = StateRule::circolare(state, confidence_factor);
         let rule = default.map(|default| {
             table.table_or_defaults("state", |table| StateRule::read(table, default))
         });
         table.sound()?;
-        let points = read_points(&table.path(&spectrum), damping_percent);
+        let points = read_points(&table.path(&spectrum), decimal, damping_percent);
         let points = table.accept("spectrum", points)?;
         table.note_file(&spectrum);
         Ok(Self {
             spectrum,
+            decimal,
             damping_percent,
             state: rule.transpose()?,
             points,
@@ -580,8 +585,12 @@ impl StateRule {
 }
 
 /// Reads the points of a spectrum from a file. The error is the fault in the file.
-fn read_points(path: &Path, damping_percent: f64) -> Result<PointSpectrum, String> {
-    let rows = read_numbers::<2>(path)?;
+fn read_points(
+    path: &Path,
+    decimal: Decimal,
+    damping_percent: f64,
+) -> Result<PointSpectrum, String> {
+    let rows = read_numbers::<2>(path, decimal)?;
     let points = rows.iter().map(|(_, [period_s, at_g])| (*period_s, *at_g));
     PointSpectrum::new(points.collect(), damping_percent).map_err(|error| {
         let (line, message) = (error.row.and_then(|row| rows.get(row)), error.to_string());

@@ -345,6 +345,174 @@ fn buttresses(folder: &Path, sides: usize) {
     fs::write(folder.join("outlines.csv"), outlines).unwrap();
 }
 
+/// Listed from the right, or with intrados and extrados exchanged, blocks would exchange left and right in all results: both are refused. The
+/// mirrored and reversed list is a list from left to right, and has the mirrored onsets.
+#[test]
+fn blocks_in_another_order_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let (radii_m, angles_deg) = (
+        [1.75, 2.25],
+        [0.0, 20.0, 45.0, 75.0, 100.0, 135.0, 155.0, 180.0],
+    );
+    let joints = |order: &dyn Fn([f64; 4]) -> [f64; 4], is_reversed: bool| {
+        let mut rows: Vec<_> = angles_deg
+            .iter()
+            .map(|angle: &f64| {
+                let (y, x) = angle.to_radians().sin_cos();
+                let [i, e] = radii_m;
+                let [xi, yi, xe, ye] = order([-i * x, i * y, -e * x, e * y]);
+                format!("{xi},{yi},{xe},{ye}\n")
+            })
+            .collect();
+        if is_reversed {
+            rows.reverse();
+        }
+        fs::write(folder.path().join("j.csv"), rows.concat()).unwrap();
+        let path = folder.path().join("s.toml");
+        fs::write(&path, "[blocks]\njoints = 'j.csv'\n[free_hinges]\n").unwrap();
+        Scenario::read(&path).map_err(|errors| errors.to_string())
+    };
+    let (as_is, exchanged) = (|row| row, |[a, b, c, d]: [f64; 4]| [c, d, a, b]);
+    let onsets = |scenario: &Scenario| {
+        [Sway::Left, Sway::Right].map(|sway| acceleration_g(&row(scenario), sway))
+    };
+    let [left, right] = onsets(&joints(&as_is, false).unwrap());
+    assert!((left / right - 1.0).abs() > 0.01);
+    let mirrored = joints(&|[a, b, c, d]| [-a, b, -c, d], true).unwrap();
+    let [there, here] = onsets(&mirrored);
+    assert!((left / here - 1.0).abs() < 1e-12 && (right / there - 1.0).abs() < 1e-12);
+    for (order, is_reversed, words) in [
+        (
+            &as_is as &dyn Fn([f64; 4]) -> [f64; 4],
+            true,
+            "from right to left, from x = 2.000 m to x = -2.000 m",
+        ),
+        (
+            &exchanged,
+            false,
+            "intrados and extrados are exchanged: list the intrados corner",
+        ),
+        (
+            &exchanged,
+            true,
+            "list joints, blocks and densities from left to right",
+        ),
+    ] {
+        let error = joints(order, is_reversed).unwrap_err();
+        assert!(
+            error.contains("j.csv:1: ") && error.contains(words),
+            "{error}"
+        );
+    }
+}
+
+/// Span and rise are those of the line `measured_at`, in every shape: the corners of the springings and of the joint at the crown are there.
+#[test]
+fn span_and_rise_are_measured_along_one_line_in_every_shape() {
+    let (span_m, rise_m, thickness_m) = (6.0, 3.6, 0.5);
+    for shape in ["pointed_arch", "elliptic_arch", "basket_arch"] {
+        for (line, part) in [
+            ("intrados", 0.0),
+            ("mean", 0.5),
+            ("extrados", 1.0),
+            ("", 0.5),
+        ] {
+            let rise_m = if shape == "pointed_arch" {
+                rise_m
+            } else {
+                0.5 * rise_m
+            };
+            let given =
+                format!("span_m = {span_m:?}\nrise_m = {rise_m:?}\nmeasured_at = \"{line}\"\n");
+            let given = given.replace("measured_at = \"\"\n", "");
+            let text = format!(
+                "[{shape}]\n{given}thickness_m = {thickness_m}\nvoussoirs = 12\n[free_hinges]\n"
+            );
+            let scenario = Scenario::parse(&text, "s.toml").unwrap();
+            let row = row(&scenario);
+            let at = |joint: usize| {
+                let joint = row.joints[joint];
+                joint.intrados_m + part * (joint.extrados_m - joint.intrados_m)
+            };
+            for (joint, sign) in [(0, -1.0), (12, 1.0)] {
+                assert!((at(joint).x - sign * 0.5 * span_m).abs() < 1e-12, "{text}");
+                assert!(at(joint).y.abs() < 1e-12, "{text}");
+            }
+            // The middle line of a pointed arch ends at its crown between those of intrados and extrados.
+            if shape != "pointed_arch" || part != 0.5 {
+                assert!((at(6).y - rise_m).abs() < 1e-12, "{text}: {}", at(6).y);
+            }
+            let written = scenario.to_toml();
+            assert_eq!(
+                written.contains("measured_at"),
+                !line.is_empty(),
+                "{written}"
+            );
+            assert!(written.contains("span_m = 6.0\n"), "{written}");
+            assert_eq!(Scenario::parse(&written, "s.toml").unwrap(), scenario);
+        }
+    }
+}
+
+/// Decimal commas of the files of blocks are announced by `decimal`.
+#[test]
+fn decimal_commas_of_blocks_are_read_where_they_are_announced() {
+    let folder = tempfile::tempdir().unwrap();
+    let points = "-1.5,0,-2.5,0\n-0.7,0.7,-1.4,1.4\n0.7,0.7,1.4,1.4\n1.5,0,2.5,0\n";
+    fs::write(folder.path().join("p.csv"), points).unwrap();
+    let commas = points.replace(',', ";").replace('.', ",");
+    fs::write(folder.path().join("c.csv"), commas).unwrap();
+    let rest = "[free_hinges]\n";
+    let point = parse(
+        folder.path(),
+        &format!("[blocks]\njoints = 'p.csv'\n{rest}"),
+    );
+    let comma = parse(
+        folder.path(),
+        &format!("[blocks]\njoints = 'c.csv'\ndecimal = 'comma'\n{rest}"),
+    );
+    assert_eq!(row(&point), row(&comma));
+    assert!(comma.to_toml().contains("decimal = \"comma\"\n"));
+    assert!(!point.to_toml().contains("decimal"));
+    let path = folder.path().join("s.toml");
+    fs::write(&path, format!("[blocks]\njoints = 'c.csv'\n{rest}")).unwrap();
+    let error = Scenario::read(&path).unwrap_err().to_string();
+    assert!(
+        error.contains("c.csv:1: `-1,5`") && error.contains("give `decimal = \"comma\"`"),
+        "{error}"
+    );
+}
+
+/// The error of an overload, and of a load beside a stack, names the load.
+#[test]
+fn errors_of_loads_name_the_load() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(
+        folder.path().join("w.csv"),
+        "-0.25,0,0.25,0\n-0.25,4,0.25,4\n",
+    )
+    .unwrap();
+    let arch =
+        "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.2\nembrace_deg = 160\nvoussoirs = 21\n";
+    for (structure, load, words) in [
+        (
+            "[blocks]\njoints = 'w.csv'\nsupports = 'left'\n",
+            "mass_kg = 500\nx_m = 0.1\n",
+            "must be on the extrados, which is no upper side here",
+        ),
+        (
+            arch,
+            "mass_kg = 40000\nx_m = 2\n",
+            "`[[load]]` overloads the structure, which stands without it",
+        ),
+    ] {
+        let path = folder.path().join("s.toml");
+        fs::write(&path, format!("{structure}[[load]]\n{load}[free_hinges]\n")).unwrap();
+        let error = Scenario::read(&path).unwrap_err().to_string();
+        assert!(error.contains(words), "{error}");
+    }
+}
+
 /// Drums given as blocks with one support equal the column of drums.
 #[test]
 fn a_stack_of_blocks_is_a_column() {
@@ -578,6 +746,7 @@ fn invalid_blocks_are_refused_by_the_type() {
         let given = GivenBlocks {
             joints_file: String::new(),
             outlines_file: None,
+            decimal: None,
             supports: Supports::Both,
             depth_m: 1.0,
             density_kg_m3: density_kg_m3.to_vec(),

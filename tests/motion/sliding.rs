@@ -536,6 +536,7 @@ fn the_lowest_level_faces_stand_on_unlimited_ground() {
         let given = GivenBlocks {
             joints_file: String::new(),
             outlines_file: None,
+            decimal: None,
             supports,
             depth_m: 1.0,
             density_kg_m3: vec![2000.0],

@@ -83,7 +83,7 @@ fn files(folder: &Path) -> Vec<(&'static str, &'static str)> {
         ("blanks.txt", "unit = 'g'\n"),
         ("single.csv", "unit = 'm/s^2'\ndt_s = 0.005\n"),
         ("nameless.xyz", "format = 'csv'\nunit = 'g'\n"),
-        ("six.txt", "unit = 'g'\ndt_s = 0.005\n"),
+        ("six.txt", "unit = 'g'\ndt_s = 0.005\nwrapped = true\n"),
         ("station.EW", ""),
     ]
 }
@@ -133,7 +133,7 @@ fn check_describes_a_record_the_same_in_all_formats() {
             "gal.at2" => "AT2 file (PEER), accelerations in cm/s2",
             "esm.ASC" => "ASC file (ESM), accelerations in cm/s2",
             "single.csv" => "table, accelerations in m/s2",
-            "six.txt" => "table with several samples a row, accelerations in g",
+            "six.txt" => "table with several samples a row, accelerations in g, 6 a row",
             "station.EW" => "file of K-NET, accelerations in cm/s2",
             _ => "table, accelerations in ",
         };
@@ -219,7 +219,7 @@ fn several_files_are_checked_at_once_and_one_is_drawn() {
         "{said}"
     );
     assert!(said.contains("--set unit=cm/s2"), "{said}");
-    let said = refusal(&check(&["single.csv", "--set", "unit=g"]));
+    let said = refusal(&check(&["single.csv", "--set", "unit=m/s2"]));
     assert!(
         said.contains("single.csv:2: there is no column 2"),
         "{said}"
@@ -250,6 +250,19 @@ fn several_files_are_checked_at_once_and_one_is_drawn() {
 fn a_record_in_the_place_of_a_scenario_is_one_error() {
     let folder = tempfile::tempdir().unwrap();
     files(folder.path());
+    for ending in ["smc", "acc", "g3", "th"] {
+        let file = format!("x.{ending}");
+        fs::copy(folder.path().join("blanks.txt"), folder.path().join(&file)).unwrap();
+        let said = refusal(&archrock(folder.path(), &["check", &file]));
+        assert!(
+            said.contains("give `format` as well, to `check` by --set format=csv"),
+            "{said}"
+        );
+        let read = ["check", &file, "--set", "format=csv", "--set", "unit=g"];
+        let said = stdout(&archrock(folder.path(), &read));
+        let columns = "table, accelerations in g from column 2, times from column 1\n  401 samples";
+        assert!(said.contains(columns), "{said}");
+    }
     for file in ["g.AT2", "esm.ASC", "comma.csv", "blanks.txt"] {
         let said = refusal(&archrock(folder.path(), &["run", file]));
         assert_eq!(said.lines().count(), 1, "{said}");

@@ -80,7 +80,7 @@ mod tests {
                 Ok(Contents {
                     samples: vec![(0.0, 0.1), (0.005, -1.2), (0.01, 0.3)],
                     unit: Unit::CentimetrePerS2,
-                    wrapped: false,
+                    columns: String::new(),
                 })
             );
         }

@@ -1,75 +1,108 @@
 //! Tables of samples with a column of times or a constant step; commas, semicolons, tabs or blanks separate the columns.
 
-mod wrapped;
-
 use std::borrow::Cow;
 use std::io::Read as _;
 
 use ::csv::{ReaderBuilder, StringRecord, Terminator};
 
-use super::layout::{COLUMN_NUMBER, Decimal, Layout, TableColumn, Times};
+use super::layout::{Decimal, Layout, TableColumn, Times};
 use super::samples::*;
+use super::unit::Unit;
 use crate::scenario::prelude::*;
 
 /// Reads the samples, in the unit of the file.
 ///
 /// Blank lines and lines that begin with `#` are skipped. The first of the other lines may contain the names of the columns; names are required
-/// if a column is chosen by name.
+/// if a column is chosen by name. All rows have the same number of cells; only the last of rows with several samples may have fewer.
 pub(super) fn parse(text: &str, layout: &Layout) -> Parsed<Contents> {
     let table = without_first(text, layout.skip_rows);
     let (Some(times), Some(unit)) = (&layout.times, layout.unit) else {
         return Err(LineFault::on(1)("a table needs its times and its unit"));
     };
-    if let (Times::Step(step_s), None) = (times, &layout.acceleration_column)
-        && (layout.wrapped || wrapped::is_shown(text, &table, layout))
-    {
-        return Ok(Contents {
-            wrapped: true,
-            ..Contents::new(wrapped::parse(&table, *step_s, layout.decimal)?, unit)
-        });
-    }
-    Ok(Contents::new(parse_columns(&table, layout, times)?, unit))
+    let chosen = [times.column(), layout.acceleration_column.as_ref()];
+    let by_name = chosen.iter().flatten().any(|column| column.is_name());
+    let contents = parse_table(&table, layout, times, unit, by_name);
+    // Times that increase are not the whole parts of decimal numbers.
+    let is_sure = by_name || contents.is_ok() && matches!(times, Times::Column(_));
+    let row = decimal_commas(&table, layout.decimal).filter(|_| !is_sure);
+    row.map_or(contents, |row| {
+        let text = excerpt(row.text);
+        Err(row.fault(format!(
+            "the commas in `{text}` look like decimal marks: give `decimal = \"comma\"`, or a blank after each comma that \
+             separates columns"
+        )))
+    })
 }
 
-/// Reads a table with one sample per row.
-fn parse_columns(text: &str, layout: &Layout, times: &Times) -> Parsed<Samples> {
-    let mut rows = Rows::new(text, layout.decimal);
-    let first = rows.next().ok_or_else(|| nothing(text, 0))?;
-    let columns = Columns::find(layout, times, &first)?;
-    let unit_s = columns.time_unit_s(&first);
+fn parse_table(
+    text: &str,
+    layout: &Layout,
+    times: &Times,
+    unit: Unit,
+    by_name: bool,
+) -> Parsed<Contents> {
+    let mut rows = Rows::new(text, layout.decimal).peekable();
+    let names = rows.next_if(|row| by_name || row.has_no_number(layout.decimal));
+    let line = names.as_ref().map_or(0, |row| row.line);
+    let first = rows.peek().ok_or_else(|| nothing(text, line))?;
+    let columns = Columns::find(layout, times.column(), names.as_ref(), first)?;
+    let unit_s = columns.time_unit_s();
+    unit.agrees(columns.name(columns.acceleration))
+        .map_err(LineFault::on(line.max(1)))?;
     let (mut times_s, mut values) = (Vec::new(), Values::default());
     values.line = first.line;
-    let begin = if columns.has_names {
-        let second = rows.next();
-        first.check_names(second.as_ref().filter(|_| columns.by_name))?;
-        second
-    } else {
-        Some(first)
-    };
-    for row in begin.into_iter().chain(rows) {
-        let [time_s, value] = columns.values(&row).map_err(|wrong| {
-            let rows = Rows::new(text, layout.decimal);
-            let hint = begin_below(&row, rows, &values, |row| columns.values(row).is_ok());
-            row.fault(wrong + &hint)
+    while let Some(row) = rows.next() {
+        let is_last = rows.peek().is_none();
+        columns
+            .check_width(&row, columns.wrapped && is_last)
+            .map_err(LineFault::on(row.line))?;
+        let (time_s, read) = columns.values(&row).map_err(|wrong| {
+            let is_of_table = |row: &Row<'_>| columns.values(row).is_ok();
+            row.fault(wrong + &hint(&row, Rows::new(text, layout.decimal), &values, is_of_table))
         })?;
         columns.check_count(&row).map_err(LineFault::on(row.line))?;
-        values.push(row.line, value)?;
+        for value in read {
+            values.push(row.line, value)?;
+        }
         if columns.time.is_some() {
             let time_s = time_s * unit_s;
             check_time(time_s, times_s.last().copied()).map_err(LineFault::on(row.line))?;
             times_s.push(time_s);
         }
     }
-    match *times {
+    let samples = match *times {
         Times::Step(step_s) => {
+            columns.check_header(&values, step_s)?;
             let line = values.line;
-            values.evenly(step_s, line, "`dt_s`")
+            values.evenly(step_s, line, "`dt_s`")?
         }
         Times::Column(_) => {
             values.check_enough()?;
-            Ok(times_s.into_iter().zip(values.values).collect())
+            times_s.into_iter().zip(values.values).collect()
         }
-    }
+    };
+    let columns = columns.described();
+    Ok(Contents {
+        columns,
+        ..Contents::new(samples, unit)
+    })
+}
+
+/// Returns the first row if the commas of a table look like decimal marks: they separate whole numbers, at most two in a word, and no names.
+fn decimal_commas(text: &str, decimal: Decimal) -> Option<Row<'_>> {
+    let is_whole = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
+    let is_decimal = |word: &str| {
+        let parts = || word.trim_start_matches('-').split(',');
+        parts().count() <= 2 && parts().all(is_whole)
+    };
+    let mut rows = Rows::new(text, decimal);
+    let has_commas = rows.delimiter == b',';
+    let first = rows
+        .find(|row| row.count() > 1 || !row.has_no_number(decimal))
+        .filter(|_| has_commas)?;
+    let are_decimal = |row: &Row<'_>| row.text.split_whitespace().all(is_decimal);
+    let are_all = are_decimal(&first) && rows.all(|row| are_decimal(&row));
+    Some(first).filter(|first| are_all && first.text.contains(','))
 }
 
 /// Returns the error that a table has no rows.
@@ -106,47 +139,133 @@ fn check_time(time_s: f64, before_s: Option<f64>) -> Result<(), String> {
     })
 }
 
-/// The indices of the columns of times and accelerations, counted from 0.
+/// The columns of times and accelerations, with indices from 0.
 struct Columns<'a> {
     layout: &'a Layout,
     /// Index of the column of times; `None` with a constant step.
     time: Option<usize>,
     acceleration: usize,
-    /// True if a column is chosen by its name.
-    by_name: bool,
-    /// True if the first row contains names instead of numbers.
-    has_names: bool,
+    /// True if a row contains several samples.
+    wrapped: bool,
+    /// Names of the columns; empty if there are not as many as columns.
+    names: Vec<&'a str>,
+    /// Text of the row of names; empty without one.
+    title: &'a str,
+    /// Text and line of the first row.
+    first: (&'a str, usize),
+    /// Least and largest number of cells of a row.
+    width: [usize; 2],
 }
 
 impl<'a> Columns<'a> {
-    fn find(layout: &'a Layout, times: &Times, first: &Row<'_>) -> Parsed<Self> {
-        let names: Vec<_> = first.cells().take(*COLUMN_NUMBER.0.end()).collect();
-        let index = |column: &TableColumn| column.index(&names).map_err(|wrong| first.fault(wrong));
-        let time = match times {
-            Times::Column(column) => Some(column),
-            Times::Step(_) => None,
-        };
-        let chosen = layout.acceleration_column.as_ref();
-        let is_name = |column: &&TableColumn| matches!(column, TableColumn::Name(_));
-        let by_name = time.iter().chain(&chosen).any(is_name);
-        let time = time.map(index).transpose()?;
-        let acceleration = chosen.map_or(Ok(usize::from(time.is_some())), index)?;
-        let mut read = time.iter().chain([&acceleration]).map(|at| names.get(*at));
-        let has_names =
-            by_name || read.all(|cell| cell.is_none_or(|cell| names_column(cell, layout.decimal)));
-        Ok(Self {
+    fn find(
+        layout: &'a Layout,
+        time: Option<&TableColumn>,
+        names: Option<&'a Row<'_>>,
+        first: &Row<'a>,
+    ) -> Parsed<Self> {
+        let fault = LineFault::on::<String>(names.map_or(first.line, |row| row.line));
+        let mut columns = Self {
             layout,
-            time,
-            acceleration,
-            by_name,
-            has_names,
-        })
+            time: None,
+            acceleration: 0,
+            wrapped: layout.wrapped && time.is_none() && layout.acceleration_column.is_none(),
+            names: Vec::new(),
+            title: names.map_or("", |row| row.text),
+            first: (first.text, first.line),
+            width: first.width(),
+        };
+        if let Some(row) = names.filter(|row| columns.fits(row)) {
+            columns.names = row.cells().collect();
+        } else if let Some(row) = names.filter(|row| !row.by_blanks && row.count() > 1) {
+            let (count, text) = (first.count(), excerpt(row.text));
+            let wrong = format!(
+                "the names `{text}` are not those of {count} columns: correct them or the row below"
+            );
+            ensure(count <= 1 || columns.wrapped, || fault(wrong))?;
+        }
+        if columns.wrapped {
+            let title = excerpt(columns.title);
+            let wrong = format!(
+                "`{title}` names columns, which hold samples of their own: give `acceleration_column` instead of `wrapped`, or \
+                 `skip_rows` if this is a title"
+            );
+            ensure(columns.names.len() <= 1, || fault(wrong))?;
+            return Ok(columns);
+        }
+        let time = time.map(|column| columns.time_index(column));
+        columns.time = time.transpose().map_err(fault)?;
+        let only = columns.others(first).next();
+        let only = only.unwrap_or(usize::from(columns.time == Some(0)));
+        let chosen = layout.acceleration_column.as_ref();
+        let acceleration = chosen.map_or(Ok(only), |column| columns.index(column));
+        columns.acceleration = acceleration.map_err(fault)?;
+        let wrong =
+            || fault("times and samples are in one column: give `acceleration_column`".into());
+        ensure(columns.time != Some(columns.acceleration), wrong)?;
+        Ok(columns)
+    }
+
+    fn index(&self, column: &TableColumn) -> Result<usize, String> {
+        let wanted = match column {
+            TableColumn::Number(number) => return Ok(number - 1),
+            TableColumn::Name(name) => name,
+        };
+        let mut found = (0..self.names.len()).filter(|index| self.names[*index] == wanted);
+        let (found, name) = ([found.next(), found.next()], excerpt(wanted));
+        let (title, count) = (excerpt(self.title), self.width[0]);
+        match found {
+            [Some(index), None] => Ok(index),
+            [Some(_), Some(_)] => Err(format!(
+                "there are two columns named `{name}`: choose one by its number"
+            )),
+            _ if self.names.is_empty() => Err(format!(
+                "`{title}` is not one name for each of {count} columns: choose columns by their numbers"
+            )),
+            _ => Err(format!("there is no column named `{name}` in `{title}`")),
+        }
+    }
+
+    /// Returns the index of the column of times. A column without a name beside one with the name of times contains row numbers.
+    fn time_index(&self, column: &TableColumn) -> Result<usize, String> {
+        const WORDS: [&str; 6] = ["t", "time", "times", "zeit", "temps", "tempo"];
+        let is_time = |name: &&str| {
+            let word = name.split(|c: char| !c.is_alphanumeric()).next();
+            word.is_some_and(|word| WORDS.contains(&&*word.to_lowercase()))
+        };
+        let time = self.index(column)?;
+        let own = self.names.get(time).filter(|name| !is_time(name));
+        let own = own.filter(|_| !column.is_name());
+        match own.zip(self.names.iter().position(|name| is_time(name))) {
+            Some((&"", other)) => Ok(other),
+            Some((own, other)) => {
+                let ([own, other], number) = ([own, self.names[other]].map(excerpt), time + 1);
+                Err(format!(
+                    "column {number} is named `{own}`, another one `{other}`: give the name of the times as `time_column`"
+                ))
+            }
+            None => Ok(time),
+        }
+    }
+
+    /// Returns the name of a column, or else the whole title.
+    fn name(&self, index: usize) -> &'a str {
+        self.names.get(index).unwrap_or(&self.title)
+    }
+
+    /// Returns the filled columns that may contain samples: not the times, and not row numbers, which have no name before the times.
+    fn others(&self, row: &Row<'_>) -> impl Iterator<Item = usize> {
+        let is_number = |index| Some(index) < self.time && self.names.get(index) == Some(&"");
+        let is_other = move |index| Some(index) != self.time && !is_number(index);
+        let filled = row.cells().zip(0..).filter(|(cell, _)| !cell.is_empty());
+        filled
+            .map(|(_, index)| index)
+            .filter(move |index| is_other(*index))
     }
 
     /// Returns the unit of the times in s, which their name may contain, as `time_ms` or `t [ms]`.
-    fn time_unit_s(&self, first: &Row<'_>) -> f64 {
-        let name = self.time.and_then(|index| first.cells().nth(index));
-        let name = name.filter(|_| self.has_names).unwrap_or_default();
+    fn time_unit_s(&self) -> f64 {
+        let name = self.time.map_or("", |index| self.name(index));
         let words = name.split(|c: char| !c.is_alphanumeric());
         let mut units = words.filter_map(|word| match word.to_ascii_lowercase().as_str() {
             "ms" | "msec" | "millisecond" | "milliseconds" => Some(1e-3),
@@ -156,30 +275,95 @@ impl<'a> Columns<'a> {
         units.next_back().unwrap_or(1.0)
     }
 
-    /// Returns time, or zero without a column of times, and acceleration.
-    fn values(&self, row: &Row<'_>) -> Result<[f64; 2], String> {
-        let value = |index: usize| match row.cells().nth(index) {
+    /// Returns the read columns, in words that follow the unit.
+    fn described(&self) -> String {
+        let column = |index: usize| {
+            let name = self.names.get(index).filter(|name| !name.is_empty());
+            let name = name.map_or_else(String::new, |name| format!(" `{}`", excerpt(name)));
+            format!("column {}{name}", index + 1)
+        };
+        if self.wrapped {
+            return format!(", {} a row", self.width[0]);
+        }
+        let (times, samples) = (self.time.map(column), column(self.acceleration));
+        let times = times.map(|times| format!(", times from {times}"));
+        format!(" from {samples}{}", times.unwrap_or_default())
+    }
+
+    /// Returns time, or zero without a column of times, and the samples of a row.
+    fn values(&self, row: &Row<'_>) -> Result<(f64, Vec<f64>), String> {
+        let number = |index: usize| match row.cells().nth(index) {
+            Some("") => Err(format!(
+                "column {} of `{}` is empty",
+                index + 1,
+                excerpt(row.text)
+            )),
             Some(cell) => self.layout.decimal.number(cell),
             None => Err(self.no_column(index, row)),
         };
-        let time_s = self.time.map_or(Ok(0.0), value)?;
-        Ok([time_s, in_range(value(self.acceleration)?)?])
+        if self.wrapped {
+            let cells = row.cells().take(row.count());
+            let samples = cells.map(|cell| in_range(self.layout.decimal.number(cell)?));
+            return Ok((0.0, samples.collect::<Result<_, _>>()?));
+        }
+        let time_s = self.time.map_or(Ok(0.0), number)?;
+        Ok((time_s, vec![in_range(number(self.acceleration)?)?]))
     }
 
-    /// Returns an error for a row with several columns if none was chosen.
+    fn fits(&self, row: &Row<'_>) -> bool {
+        let ([least, most], [filled, all]) = (self.width, row.width());
+        least <= all && filled <= most
+    }
+
+    /// Returns an error if the row has not as many cells as the first one. The last row of several samples may have fewer.
+    fn check_width(&self, row: &Row<'_>, may_end: bool) -> Result<(), String> {
+        let (count, [least, most], (first, line)) = (row.count(), self.width, self.first);
+        ensure(self.fits(row) || may_end && count <= most, || {
+            let [text, first] = [row.text, first].map(excerpt);
+            format!(
+                "`{text}` has {count} cells, but `{first}` on line {line} has {least}: complete the row, or give \
+                 `skip_rows = {line}` if the table begins below"
+            )
+        })
+    }
+
+    /// Returns an error for a row with several columns of samples if none was chosen.
     fn check_count(&self, row: &Row<'_>) -> Result<(), String> {
+        let is_chosen = self.wrapped || self.layout.acceleration_column.is_some();
+        let is_one = || self.others(row).all(|index| index == self.acceleration);
         let count = row.count();
-        let is_chosen = self.layout.acceleration_column.is_some();
-        let is_one = count - usize::from(self.time.is_some()) <= 1;
-        ensure(is_chosen || is_one, || match self.time {
-            None => format!(
-                "there are {count} columns: give `acceleration_column`, the one to read, or `wrapped = true`, if a \
-                 row holds {count} samples, one after another"
-            ),
-            Some(_) => format!(
-                "there are {count} columns: give `acceleration_column`, the one to read; or, if a row holds {count} \
-                 samples, one after another, `dt_s` and `wrapped = true`"
-            ),
+        ensure(is_chosen || is_one(), || {
+            let is_named = !self.names.is_empty();
+            let text = excerpt(if is_named { self.title } else { row.text });
+            let wrapped = match self.time {
+                _ if is_named => "",
+                None => ", or `wrapped = true`, if a row holds samples one after another",
+                Some(_) => {
+                    ", or `dt_s` and `wrapped = true`, if a row holds samples one after another"
+                }
+            };
+            format!(
+                "there are {count} columns: give `acceleration_column`, the one to read{wrapped}: `{text}`"
+            )
+        })
+    }
+
+    /// Returns an error if the first row looks like a header: it contains the number of samples below, or a large whole number and the step.
+    fn check_header(&self, values: &Values, step_s: f64) -> Parsed<()> {
+        let (text, line) = self.first;
+        let words = || text.split([' ', '\t', ',', ';']);
+        let has_step = words().count() > 1 && words().any(|word| number(word) == Ok(step_s));
+        let first = if self.wrapped { self.width[0] } else { 1 };
+        let below = values.values.len().saturating_sub(first);
+        let is_below = |count: usize| count == below || count + 1 == below;
+        let mut counts = words().filter_map(|word| word.parse().ok());
+        let count = counts.find(|count| *count >= 10 && (has_step || is_below(*count)));
+        count.map_or(Ok(()), |count| {
+            let text = excerpt(text);
+            Err(LineFault::on(line)(format!(
+                "`{text}` looks like a header that announces {count} samples: give `skip_rows = {line}`, or write a sample with \
+                 a decimal point"
+            )))
         })
     }
 
@@ -226,14 +410,17 @@ fn names_column(cell: &str, decimal: Decimal) -> bool {
 const MAX_NUMBER: f64 = 1e6;
 
 /// Reads rows of exactly `N` numbers. Returns each with its line. A first row without any number contains names.
-pub(super) fn numbers<const N: usize>(text: &str) -> Parsed<Vec<(usize, [f64; N])>> {
+pub(super) fn numbers<const N: usize>(
+    text: &str,
+    decimal: Decimal,
+) -> Parsed<Vec<(usize, [f64; N])>> {
     let mut found = Vec::new();
-    for row in Rows::new(text, Decimal::Point) {
-        if found.is_empty() && row.has_no_number(Decimal::Point) {
+    for row in Rows::new(text, decimal) {
+        if found.is_empty() && row.has_no_number(decimal) {
             continue;
         }
         let values = row.cells().map(|cell| {
-            let value = number(cell)?;
+            let value = decimal.number(cell)?;
             let wrong = || format!("`{value:?}` is out of range; must be within 1e6 of zero");
             ensure(value.abs() <= MAX_NUMBER, wrong).map(|()| value)
         });
@@ -253,7 +440,7 @@ pub(super) fn numbers<const N: usize>(text: &str) -> Parsed<Vec<(usize, [f64; N]
 /// The rows of a table that are neither blank nor comments.
 struct Rows<'a> {
     text: &'a str,
-    by_blanks: bool,
+    delimiter: u8,
     reader: ::csv::Reader<std::io::Chain<&'a [u8], &'static [u8]>>,
 }
 
@@ -298,7 +485,7 @@ impl<'a> Rows<'a> {
             .from_reader(text.as_bytes().chain(end));
         Self {
             text,
-            by_blanks: delimiter == b' ',
+            delimiter,
             reader,
         }
     }
@@ -319,7 +506,7 @@ impl<'a> Iterator for Rows<'a> {
                 return Some(Row {
                     line,
                     text,
-                    by_blanks: self.by_blanks,
+                    by_blanks: self.delimiter == b' ',
                     record,
                 });
             }
@@ -328,15 +515,25 @@ impl<'a> Iterator for Rows<'a> {
     }
 }
 
-/// Returns a hint for the error of the first row without values: the next row that begins the table; empty if there is none.
-fn begin_below(
-    first: &Row<'_>,
+/// Returns a hint for the error of a row: in the first one, the row with which the table begins; in a row of words below the table, how to skip it;
+/// empty if there is none.
+fn hint(
+    wrong: &Row<'_>,
     mut rows: Rows<'_>,
     before: &Values,
     is_of_table: impl Fn(&Row<'_>) -> bool,
 ) -> String {
-    let is_first = before.values.is_empty();
-    let row = rows.find(|row| is_first && row.line > first.line && is_of_table(row));
+    const BETWEEN: [char; 3] = [' ', '\t', ';'];
+    let is_number = |word: &str| number(word).is_ok();
+    if !before.values.is_empty() {
+        let has_number = wrong.text.split(BETWEEN).any(is_number);
+        return "; begin the line with `#` if it is not of the table".repeat((!has_number).into());
+    }
+    let is_of_numbers = |row: &Row<'_>| {
+        let mut words = row.text.split(BETWEEN).filter(|word| !word.is_empty());
+        words.all(is_number)
+    };
+    let row = rows.find(|row| row.line > wrong.line && (is_of_table(row) || is_of_numbers(row)));
     row.map_or_else(String::new, |row| {
         let (line, skipped) = (row.line, row.line - 1);
         format!("; numbers begin on line {line}: give `skip_rows = {skipped}` if the table does")
@@ -364,15 +561,9 @@ impl Row<'_> {
         self.cells().all(|cell| names_column(cell, decimal))
     }
 
-    /// Returns an error if the number of names separated by blanks differs from the number of columns, because a name contains a blank.
-    fn check_names(&self, below: Option<&Self>) -> Parsed<()> {
-        let names = self.cells().count();
-        let columns = below.map_or(names, |row| row.cells().count());
-        ensure(!self.by_blanks || names == columns, || {
-            self.fault(format!(
-                "there are {names} names between blanks for {columns} columns: choose columns by their numbers"
-            ))
-        })
+    /// Returns the number of columns of this row, without and with empty cells at its end.
+    fn width(&self) -> [usize; 2] {
+        [self.count(), self.cells().count()]
     }
 
     fn fault(&self, message: String) -> LineFault {
@@ -381,23 +572,16 @@ impl Row<'_> {
 }
 
 impl TableColumn {
-    /// Returns the index of the column, from 0.
-    fn index(&self, names: &[&str]) -> Result<usize, String> {
-        let wanted = match self {
-            Self::Number(number) => return Ok(number - 1),
-            Self::Name(name) => name,
-        };
-        let mut found = (0..names.len()).filter(|index| names[*index] == wanted);
-        let (found, name) = ([found.next(), found.next()], excerpt(wanted));
-        match found {
-            [Some(index), None] => Ok(index),
-            [Some(_), Some(_)] => Err(format!(
-                "there are two columns named `{name}`: choose one by its number"
-            )),
-            [None, _] => {
-                let names = excerpt(&names.join(", "));
-                Err(format!("there is no column named `{name}` in `{names}`"))
-            }
+    const fn is_name(&self) -> bool {
+        matches!(self, Self::Name(_))
+    }
+}
+
+impl Times {
+    const fn column(&self) -> Option<&TableColumn> {
+        match self {
+            Self::Column(column) => Some(column),
+            Self::Step(_) => None,
         }
     }
 }
@@ -451,7 +635,11 @@ mod tests {
         fault("# x\n\n", 1, "no samples");
         fault("t,b\n0,1", 1, "no column named `a` in `t, b`");
         fault("t,a,a\n0,1", 1, "two columns named `a`");
-        fault("t,a\n0,1\n# x\n1\n", 4, "no column 2 in `1`");
+        fault(
+            "t,a\n0,1\n# x\n1\n",
+            4,
+            "`1` has 1 cells, but `0,1` on line 2 has 2",
+        );
         fault("t,a\n0,1\n\n1,x\n", 4, "`x` is not a finite number");
         fault(
             "t,\"a\"\n\n0,\"1\"\r\n\n1,\"x\"",
@@ -505,7 +693,12 @@ mod tests {
         assert_eq!(parse(text, &named), Ok(vec![(0.0, 1.0), (0.5, -2.0)]));
         // A name with a blank would be two names.
         let text = "time (s) acc (g)\n0 1\n0.5 -2\n";
-        assert_fault(text, &named, 1, "4 names between blanks for 2 columns");
+        assert_fault(
+            text,
+            &named,
+            1,
+            "`time (s) acc (g)` is not one name for each of 2 columns",
+        );
     }
 
     #[test]
@@ -585,5 +778,202 @@ mod tests {
         assert_fault("0;1\n1;1.2,3", &comma, 2, "`1.2,3` is not a finite number");
         let point = numbered();
         assert_fault("0;1\n1;1,2", &point, 2, "give `decimal = \"comma\"`");
+    }
+
+    fn wrapped() -> Layout {
+        Layout {
+            wrapped: true,
+            ..Layout::table(Times::Step(0.5), Unit::Gravity)
+        }
+    }
+
+    #[test]
+    fn rows_of_several_samples_are_read_where_that_is_said() {
+        let comma = Layout {
+            decimal: Decimal::Comma,
+            ..wrapped()
+        };
+        for (text, layout) in [
+            ("1 -2 3\n4 5 6\n", &wrapped()),
+            ("  1.0E+00 -2.0 3.\r\n\r\n 4 5 6", &wrapped()),
+            ("1,-2,3,\n4,5,6,\n", &wrapped()),
+            ("1;-2;3;4\n5;6\n", &wrapped()),
+            ("acceleration in g\n1 -2\n3 4\n# half\n5 6\n", &wrapped()),
+            ("1\n-2\n3\n4\n5\n6\n", &wrapped()),
+            ("1 -2 3 4 5 6", &wrapped()),
+            ("1,0 -2,0 3,0\n4,0 5,0 6,0\n", &comma),
+        ] {
+            let times_s = (0..6).map(|i| 0.5 * f64::from(i));
+            let expected: Vec<_> = times_s.zip([1.0, -2.0, 3.0, 4.0, 5.0, 6.0]).collect();
+            assert_eq!(parse(text, layout), Ok(expected), "{text}");
+        }
+        let fault = |text: &str, line, words| assert_fault(text, &wrapped(), line, words);
+        fault("", 1, "no samples");
+        fault("a b\n", 1, "no samples");
+        fault("1\n", 1, "number of samples is 1");
+        fault("1 2\n3 x\n", 2, "`x` is not a finite number");
+        fault("1 2\n\n3 1e308\n", 3, "`1e308` is out of range");
+        fault(
+            "PEER\nNPTS= 4\n1 2\n3 4\n",
+            2,
+            "numbers begin on line 3: give `skip_rows = 2`",
+        );
+        // Only the last row may be shorter, and names of columns are no title.
+        fault(
+            "1 -2 3\n4 5\n6\n",
+            2,
+            "`4 5` has 2 cells, but `1 -2 3` on line 1 has 3",
+        );
+        fault("1 -2 3\n4 5 6 7\n", 2, "has 4 cells");
+        fault(
+            "N-S E-W U-D\n1 2 3\n4 5\n",
+            1,
+            "`N-S E-W U-D` names columns",
+        );
+    }
+
+    /// A header of numbers is not read as samples: it gives the number of samples or rows below, or a number beside the step.
+    #[test]
+    fn headers_of_numbers_are_refused() {
+        let column = "0.5\n".repeat(12);
+        let rows = "1.5 -2.5 3.5\n".repeat(4);
+        let one = Layout {
+            wrapped: false,
+            ..wrapped()
+        };
+        for (text, layout) in [
+            (format!("12\n{column}"), &one),
+            (format!("12\n0.01\n{column}"), &one),
+            (format!("12 0.01 0\n{rows}"), &wrapped()),
+            (format!("4000 0.5 0\n{rows}"), &wrapped()),
+        ] {
+            assert_fault(&text, layout, 1, "looks like a header that announces");
+        }
+        for (text, count, layout) in [
+            (format!("12.\n{column}"), 13, &one),
+            (format!("14\n{column}"), 13, &one),
+            (format!("4000 0.6 0\n{rows}"), 15, &wrapped()),
+        ] {
+            assert_eq!(parse(&text, layout).unwrap().len(), count, "{text}");
+        }
+    }
+
+    /// What a table does not say is refused, not guessed.
+    #[test]
+    fn columns_are_not_confused() {
+        let step = Layout::table(Times::Step(0.5), Unit::Gravity);
+        let second = |layout: Layout| Layout {
+            acceleration_column: Some(TableColumn::Number(2)),
+            ..layout
+        };
+        let say =
+            "there are 3 columns: give `acceleration_column`, the one to read, or `wrapped = true`";
+        for text in [
+            "1 -2 3\n4 5 6\n",
+            "# 6 samples\n1 -2 3\n4 5 6\n",
+            "1 -2 3\n4 5\n",
+        ] {
+            assert_fault(text, &step, 1 + usize::from(text.starts_with('#')), say);
+        }
+        let say = "there are 3 columns: give `acceleration_column`, the one to read, or `dt_s` and `wrapped = true`";
+        assert_fault("0 -2 3\n4 5 6\n", &numbered(), 1, say);
+        // Rows with a missing cell.
+        for (layout, text, line) in [
+            (second(step.clone()), "1 -2 3\n4 5\n", 2),
+            (second(numbered()), "t ns ew\n0.00 1 2\n0.02  2.2\n", 3),
+            (second(numbered()), "t ns ew\n0.00 1\n0.02 1 2.2\n", 3),
+            (second(numbered()), "t,ns,ew\n0,1\n1,2\n", 1),
+        ] {
+            let words = if line == 1 {
+                "not those of 2 columns"
+            } else {
+                "cells, but"
+            };
+            assert_fault(text, &layout, line, words);
+        }
+        // Empty columns, row numbers and other names of the times.
+        let expected = Ok(vec![(0.0, 1.5), (1.0, -2.0)]);
+        for text in [
+            "0,1.5,\n1,-2,\n",
+            "0\t\t1.5\n1\t\t-2\n",
+            ",time,acc\n0,0,1.5\n1,1,-2\n",
+            "t,acc,note\n0,1.5,\n1,-2,\n",
+        ] {
+            assert_eq!(parse(text, &numbered()), expected, "{text}");
+        }
+        assert_eq!(
+            parse("\t1.5\n\t-2\n", &step),
+            Ok(vec![(0.0, 1.5), (0.5, -2.0)])
+        );
+        let times = Layout {
+            times: Some(Times::Column(TableColumn::Number(2))),
+            ..numbered()
+        };
+        assert_eq!(parse("a,t\n1.5,0\n-2,1\n", &times), expected);
+        assert_fault(
+            "n,time,acc\n0,0,1\n",
+            &numbered(),
+            1,
+            "column 1 is named `n`, another one `time`",
+        );
+        assert_fault("0,1\n1,\n", &numbered(), 2, "column 2 of `1,` is empty");
+        assert_fault(
+            "0,1\n1,2\nend\n",
+            &second(numbered()),
+            3,
+            "`end` has 1 cells",
+        );
+        assert_fault("1\n2\nEND\n", &step, 3, "begin the line with `#`");
+    }
+
+    #[test]
+    fn decimal_commas_are_not_columns() {
+        let step = Layout::table(Times::Step(0.5), Unit::Gravity);
+        for (text, layout) in [
+            ("0,00 0,10\n0,01 0,25\n0,02 -0,3\n", &numbered()),
+            ("12,5\n-8,25\n30,1\n", &numbered()),
+            ("12,5\n-8,25\n30,1\n", &step),
+            (
+                "12,5\n18,25\n",
+                &Layout {
+                    wrapped: true,
+                    ..step.clone()
+                },
+            ),
+        ] {
+            assert_fault(
+                text,
+                layout,
+                1,
+                "look like decimal marks: give `decimal = \"comma\"`",
+            );
+        }
+        assert_eq!(parse("0,1\n1,2\n", &numbered()).unwrap().len(), 2);
+    }
+
+    #[test]
+    fn a_name_contradicts_the_unit() {
+        let metres = Layout {
+            unit: Some(Unit::MetrePerS2),
+            ..numbered()
+        };
+        for name in [
+            "acc(g)",
+            "a [cm/s^2]",
+            "acc_gal",
+            "acceleration in g",
+            "a (mg)",
+            "v [m/s]",
+        ] {
+            let text = format!("time,{name}\n0,1\n1,2\n");
+            assert_fault(&text, &metres, 1, "but `unit` is \"m/s2\"");
+        }
+        for name in ["acc (m/s^2)", "a", "a (NS)", "acc_ns", "a [M/SEC/SEC]"] {
+            assert!(
+                parse(&format!("time,{name}\n0,1\n1,2\n"), &metres).is_ok(),
+                "{name}"
+            );
+        }
+        assert_fault("time (s) acc (g)\n0 1\n1 2\n", &metres, 1, "but `unit`");
     }
 }

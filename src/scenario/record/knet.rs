@@ -67,15 +67,16 @@ fn read_step(frequency: &str) -> Result<f64, String> {
 
 /// Returns the factor that converts the integers to gal.
 fn read_scale(scale: &str) -> Result<f64, String> {
+    let part = |text: &str| number(text.trim()).ok();
     let parts = scale.split_once("(gal)/");
-    let factor =
-        |(gal, counts): (&str, &str)| Ok::<_, String>(number(gal.trim())? / number(counts.trim())?);
+    let factor = parts.and_then(|(gal, counts)| Some(part(gal)? / part(counts)?));
     // Products with samples of at most 1e12 stay finite.
-    let factor = parts.map(factor).transpose()?;
     let factor = factor.filter(|factor| (0.0..=1.0).contains(factor) && *factor > 0.0);
     factor.ok_or_else(|| {
         let scale = excerpt(scale);
-        format!("the {SCALE} is `{scale}`; must be like 3920(gal)/6182761")
+        format!(
+            "the {SCALE} is `{scale}`; must be like 3920(gal)/6182761, the gal at so many counts"
+        )
     })
 }
 
@@ -139,6 +140,12 @@ mod tests {
         fault("4Hz", "fast", 5, "`fast` is not a finite number");
         fault("3920(gal)/6182761", "1/2", 8, "must be like 3920(gal)");
         fault("/6182761", "/0", 8, "must be like 3920(gal)");
+        fault(
+            "3920(gal)",
+            "(gal)",
+            8,
+            "`(gal)/6182761`; must be like 3920(gal)",
+        );
         fault(
             "Duration Time(s)  3",
             "Duration Time(s)  9",

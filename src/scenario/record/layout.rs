@@ -65,7 +65,7 @@ pub struct Layout {
     #[serde(flatten)]
     pub times: Option<Times>,
     /// Column of accelerations or velocities of a table. `None` if there is only one such column, or if a row contains several samples and the
-    /// table shows this.
+    /// header gives their number.
     pub acceleration_column: Option<TableColumn>,
     /// True if a row of a table contains several consecutive samples, even if the table does not show this. Used only with a constant step, and
     /// if no column is chosen.
@@ -166,6 +166,17 @@ impl Format {
     }
 }
 
+impl Decimal {
+    pub(in crate::scenario) fn is_point(&self) -> bool {
+        *self == Self::Point
+    }
+
+    /// Reads the key `decimal`.
+    pub(in crate::scenario) fn read(table: &mut Table<'_>) -> Self {
+        table.or("decimal", &one_of(Self::ALL, Self::name), Self::Point)
+    }
+}
+
 impl Layout {
     /// Reads the keys that describe files of this format. `None` is an unknown format, whose fault is recorded elsewhere.
     pub(in crate::scenario) fn read(table: &mut Table<'_>, format: Option<Format>) -> Self {
@@ -174,13 +185,12 @@ impl Layout {
         let time_column = table.optional("time_column", &any_column());
         let acceleration_column = table.optional("acceleration_column", &any_column());
         let wrapped = table.or("wrapped", &switch(), false);
-        let decimals = one_of(Decimal::ALL, Decimal::name);
         let quantities = one_of(RecordedQuantity::ALL, RecordedQuantity::name);
         let mut layout = Self {
             acceleration_column,
             wrapped,
             skip_rows: table.or("skip_rows", &SKIPPED, 0),
-            decimal: table.or("decimal", &decimals, Decimal::Point),
+            decimal: Decimal::read(table),
             unit: table.optional("unit", &any_unit()),
             quantity: table.or("quantity", &quantities, RecordedQuantity::Acceleration),
             remove_mean: table.or("remove_mean", &switch(), false),

@@ -88,9 +88,9 @@ pub struct Series {
     /// Unit of the samples in the file.
     #[serde(skip)]
     pub unit: Unit,
-    /// True if a row of the table contains several samples.
+    /// The columns of a table, in words that follow the unit; empty for other files.
     #[serde(skip)]
-    pub wrapped: bool,
+    pub columns: String,
     /// Ascending times in s, and accelerations or velocities in the unit of the file, without their mean if the layout removes it.
     #[serde(skip)]
     pub samples: Arc<[(f64, f64)]>,
@@ -228,7 +228,7 @@ impl Series {
             layout,
             scaling: Scaling::Factor(1.0),
             unit: contents.unit,
-            wrapped: contents.wrapped,
+            columns: contents.columns,
             samples: contents.samples.into(),
         }
     }
@@ -456,9 +456,12 @@ fn mean(samples: &[(f64, f64)]) -> f64 {
 }
 
 /// Reads rows of `N` numbers from a file, each with its line. The first row may contain names.
-pub(super) fn read_numbers<const N: usize>(path: &Path) -> Result<Vec<(usize, [f64; N])>, String> {
+pub(super) fn read_numbers<const N: usize>(
+    path: &Path,
+    decimal: Decimal,
+) -> Result<Vec<(usize, [f64; N])>, String> {
     let bytes = read_bytes(path)?;
-    let numbers = legible(&bytes).and_then(|text| csv::numbers(&text));
+    let numbers = legible(&bytes).and_then(|text| csv::numbers(&text, decimal));
     numbers.map_err(|fault| faulty(path, &fault))
 }
 

@@ -27,16 +27,16 @@ pub struct Contents {
     pub samples: Vec<(f64, f64)>,
     /// The unit of the samples.
     pub unit: Unit,
-    /// True if a row of a table contains several samples.
-    pub wrapped: bool,
+    /// The columns of a table, in words that follow the unit: ` from column 2`. Empty for other files.
+    pub columns: String,
 }
 
 impl Contents {
-    pub(super) const fn new(samples: Samples, unit: Unit) -> Self {
+    pub(super) fn new(samples: Samples, unit: Unit) -> Self {
         Self {
             samples,
             unit,
-            wrapped: false,
+            columns: String::new(),
         }
     }
 }

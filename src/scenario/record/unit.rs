@@ -79,6 +79,28 @@ impl Unit {
         Err(format!("the unit is {}{wrong}", excerpt(text)))
     }
 
+    /// Returns an error if the name of a column contains another unit, as in `acc (g)` or `acc_gal`.
+    pub(super) fn agrees(self, name: &str) -> Result<(), String> {
+        /// Units without a name in scenarios.
+        const OTHERS: [&str; 6] = ["mg", "%g", "mm/s2", "mm/s^2", "in/s2", "ft/s2"];
+        let bracket = name
+            .strip_suffix([')', ']'])
+            .and_then(|name| name.rsplit(['(', '[']).next());
+        let last = name.rsplit([' ', '_', ',']).next();
+        let given = bracket.or(last).unwrap_or_default();
+        let is_other = match Self::written(given) {
+            Some(unit) => unit != self,
+            None => OTHERS.contains(&&*given.to_ascii_lowercase()),
+        };
+        ensure(!is_other, || {
+            let [name, given] = [name, given].map(excerpt);
+            let own = self.name();
+            format!(
+                "the column is named `{name}`, but `unit` is {own:?}: give `unit` as {given}, or correct the name"
+            )
+        })
+    }
+
     /// Parses one of the spellings in files: `cm/s^2`, `CM/SEC/SEC`, `gal`.
     pub(super) fn written(text: &str) -> Option<Self> {
         let plain = text.replace(|c: char| c.is_whitespace() || "^*()[]".contains(c), "");

@@ -72,7 +72,7 @@ impl ImpactModel {
 pub struct ImpactLaw {
     /// The model.
     pub model: ImpactModel,
-    /// Factor on its restitution coefficient; the product is at most one.
+    /// Factor on its restitution coefficient, a ratio of kinetic energies; the product is at most one.
     pub restitution_factor: f64,
 }
 

@@ -13,7 +13,7 @@ use crate::mechanics::geometry::curve::{Curve, distance, sides};
 /// Difference in height, over the size, below which corners are at one level.
 const LEVEL_RATIO: f64 = 1e-9;
 
-/// Reason, in words, why the outline of a block is not valid. Blocks are numbered from 1.
+/// Reason, in words, why given blocks are not valid: the order of their joints, or an outline. Blocks are numbered from 1.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[error("{0}")]
 pub struct OutlineError(String);
@@ -29,6 +29,8 @@ pub struct GivenBlocks {
     /// File of the outlines.
     #[serde(rename = "outlines")]
     pub outlines_file: Option<String>,
+    /// Decimal mark of the numbers in these files, as in scenarios; `None` for the point.
+    pub decimal: Option<&'static str>,
     /// The supports of the row.
     pub supports: Supports,
     /// Length out of plane, in metres.
@@ -67,6 +69,33 @@ impl GivenBlocks {
         let fits = blocks > 0 && (densities == 1 || densities == blocks);
         let allowed = format_args!("one number, or one for each of the {blocks} blocks");
         allow(fits, "density_kg_m3", densities as f64, allowed).map(|_| ())
+    }
+
+    /// Checks that the joints of an arch are listed from left to right, with the intrados corner below the extrados corner. Otherwise the results
+    /// would exchange left and right, or intrados and extrados.
+    ///
+    /// # Errors
+    /// When one of these does not hold.
+    pub fn check_order(&self) -> Result<(), OutlineError> {
+        let ([first, .., last], Supports::Both) = (&*self.joints, self.supports) else {
+            return Ok(());
+        };
+        let [from_m, to_m] = [first, last].map(|joint| joint.middle_m().x);
+        let blocks = self
+            .joints
+            .windows(2)
+            .map(|pair| pair[0].outline_m(&pair[1]));
+        let turn = |[a, b, c, d]: [Vector2<f64>; 4]| (c - a).perp(&(d - b));
+        Err(OutlineError(if to_m < from_m {
+            format!(
+                "the joints are listed from right to left, from x = {from_m:.3} m to x = {to_m:.3} m: list joints, blocks and \
+                 densities from left to right"
+            )
+        } else if blocks.map(turn).sum::<f64>() > 0.0 {
+            "intrados and extrados are exchanged: list the intrados corner (the lower side of the arch) first at every joint".to_owned()
+        } else {
+            return Ok(());
+        }))
     }
 
     /// Checks the outline of a block: its sides do not cross, and the corners of its joints are on them.

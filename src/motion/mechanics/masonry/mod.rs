@@ -216,7 +216,7 @@ pub enum MasonryError {
     /// A number of the load of this index, from 0, is out of range.
     #[error("load {number}: {1}", number = .0 + 1)]
     Load(usize, ArgumentError),
-    /// An outline of a block is not valid.
+    /// The order of the joints or the outline of a block is not valid.
     #[error(transparent)]
     Outline(#[from] OutlineError),
     /// The blocks do not form a row.
@@ -285,6 +285,7 @@ impl Masonry {
         let mut row = Row::new(courses.blocks, courses.joints, supports, shape.size_m())?
             .with_outlines_m(courses.outlines_m)
             .with_supports_that_extend(on_ground);
+        given.map_or(Ok(()), GivenBlocks::check_order)?;
         for (voussoir, extra) in extra.iter().enumerate() {
             if let Some(extra) = extra {
                 row = row.with_body(first + voussoir, extra);

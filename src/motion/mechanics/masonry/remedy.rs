@@ -8,6 +8,8 @@ use crate::bisection::{Width, try_bisect};
 pub enum Remedy {
     /// Factor on the width of its piers; on rigid ground the arch is stable.
     WiderPiers(Option<f64>),
+    /// Factor on the thickness of the arch; without its loads it is stable as it is.
+    LessLoad(Option<f64>),
     /// Factor on the thickness of the arch.
     ThickerArch(Option<f64>),
 }
@@ -22,9 +24,16 @@ impl Masonry {
                 self.is_stable_with(self.shape.clone(), self.piers.widened(factor))
             }));
         }
-        Remedy::ThickerArch(least_factor(|factor| {
+        let factor = least_factor(|factor| {
             self.is_stable_with(self.shape.thickened(factor)?, Piers::default())
-        }))
+        });
+        let (shape, piers) = (self.shape.clone(), self.piers);
+        let unloaded =
+            Self::new(shape, piers, self.fill, Vec::new()).and_then(|it| Ok(it.stands()));
+        match unloaded {
+            Ok(Ok(true)) if !self.loads.is_empty() => Remedy::LessLoad(factor),
+            _ => Remedy::ThickerArch(factor),
+        }
     }
 
     fn is_stable_with(&self, shape: Shape, piers: Piers) -> Option<bool> {
