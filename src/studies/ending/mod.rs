@@ -103,18 +103,6 @@ impl Ending {
         }
     }
 
-    /// Returns the fraction of the repetitions that overturn, if the verdict is uncertain; 0 or 1 if it is certain; `None` if the history is
-    /// incomplete.
-    #[must_use]
-    pub fn overturning_share(&self) -> Option<f64> {
-        match self.verdict() {
-            Verdict::Survives => Some(0.0),
-            Verdict::Uncertain => Some(0.5),
-            Verdict::Overturns => Some(1.0),
-            Verdict::Incomplete => None,
-        }
-    }
-
     /// Returns the verdict on overturning.
     #[must_use]
     pub fn verdict(&self) -> Verdict {

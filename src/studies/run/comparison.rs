@@ -98,7 +98,7 @@ pub(super) fn answer(run: &ComputedRun<'_>) -> ModelAnswer {
     let no_answer = match (run.verdict(), changed_outcome(history, varied)) {
         (Verdict::Incomplete, _) => Some("the run has no verdict".to_owned()),
         (Verdict::Uncertain, _) => Some("it is uncertain whether it overturns".to_owned()),
-        _ if run.model.row().is_some() && run.repeatability().is_none() => {
+        _ if run.model.row().is_some() && run.repeated.is_none() => {
             Some("the run was not repeated".to_owned())
         }
         (_, Some(change)) => Some(format!(
