@@ -808,7 +808,7 @@ fn neighbouring_ends_are_printed_with_distinct_digits() {
 fn all_totals_of_histories_agree() {
     let folder = tempfile::tempdir().unwrap();
     let text = "[column]\nheight_m = 4.0\nwidth_m = 1.0\n[free_hinges]\n[ground.half_sine]\namplitude_g = 0.9\n\
-                duration_s = 0.3\nvertical_amplitude_g = -0.9\n";
+                duration_s = 0.3\nvertical_amplitude_g = -0.9\n[simulation]\nduration_s = 3.0\n";
     fs::write(folder.path().join("s.toml"), text).unwrap();
     let words = printed(folder.path(), &["--quiet", "threshold", "s.toml"]);
     assert!(
