@@ -241,8 +241,7 @@ fn the_least_thickness_of_a_semicircle_is_milankovitchs() {
 /// A thick shallow arch does not start as four links at its joints. Limit analysis finds the mechanism that governs, in which a joint parts.
 #[test]
 fn voussoirs_that_start_with_another_mechanism_have_a_limit() {
-    let text =
-        "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.25\nembrace_deg = 100\nvoussoirs = 7\n[free_hinges]\n";
+    let text = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.25\nembrace_deg = 100\nvoussoirs = 7\n[free_hinges]\n";
     let scenario = Scenario::parse(text, "s.toml").unwrap();
     assert!(scenario.mechanisms().unwrap_err().is_other_mechanism());
     let arch = ring(0.25, 100.0);

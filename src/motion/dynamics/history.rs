@@ -658,6 +658,11 @@ pub struct Sliding {
 }
 
 impl Sliding {
+    /// Returns the largest slip of any joint, in metres.
+    pub(super) fn largest_m(&self) -> f64 {
+        self.largest_offsets_m.iter().copied().fold(0.0, f64::max)
+    }
+
     /// Returns a record without slip.
     #[must_use]
     pub fn none(joints: usize) -> Self {

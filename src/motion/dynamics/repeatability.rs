@@ -14,7 +14,7 @@ use std::fmt;
 use serde::{Deserialize, Serialize, Serializer};
 
 use super::ground::GroundMotion;
-use super::history::{Details, HalfCycle, Outcome, Summary};
+use super::history::{Details, HalfCycle, Outcome, Sliding, Summary};
 use super::model::{Case, Job, Jobs, Model, Repetition, Request, SimulationError};
 use super::until::EndCondition;
 use super::variation::MotionThread;
@@ -33,7 +33,7 @@ const AGREEMENT: f64 = 0.5;
 const LEAST_PEAK_RATIO: f64 = 1e-2;
 
 /// Smallest slip that counts, in metres.
-const LEAST_SLIP_M: f64 = 1e-6;
+pub const LEAST_SLIP_M: f64 = 1e-6;
 
 /// Count of a motion and its repetitions by outcome: the certainty of a verdict.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -136,6 +136,10 @@ pub struct Repeatability {
     pub largest_rad: Option<RepeatedValue>,
     /// Slips of the joints at the end; empty without slip, and if one of the motions overturns.
     pub slips_m: Vec<RepeatedValue>,
+    /// Largest slip of any joint at any time, in m; `None` without slip, and if one of the motions overturns.
+    pub largest_slip_m: Option<RepeatedValue>,
+    /// Energy dissipated by friction, in J; `None` without slip, and if one of the motions overturns.
+    pub friction_j: Option<RepeatedValue>,
 }
 
 /// Returns the name of a repetition as a key in results.
@@ -231,6 +235,10 @@ impl Repeatability {
             half_cycles,
             largest_rad: all_stand.then(largest_rad),
             slips_m: slips_m.unwrap_or_default(),
+            largest_slip_m: all_stand.then(|| slid(&runs, Sliding::largest_m)).flatten(),
+            friction_j: all_stand
+                .then(|| slid(&runs, |sliding| sliding.friction_j))
+                .flatten(),
         }
     }
 
@@ -269,6 +277,16 @@ impl Repeatability {
         }
         others
     }
+}
+
+/// Returns a quantity of the slip in all these motions; `None` if joints do not slip.
+fn slid(runs: &[&Summary], value: impl Fn(&Sliding) -> f64) -> Option<RepeatedValue> {
+    let values = runs
+        .iter()
+        .map(|run| Some(value(run.row()?.sliding.as_ref()?)));
+    let values: Vec<f64> = values.collect::<Option<_>>()?;
+    let (own, others) = values.split_first()?;
+    Some(RepeatedValue::of(*own, others.iter().copied()))
 }
 
 /// Returns the final slips of the joints in all these motions; `None` if joints do not slip.

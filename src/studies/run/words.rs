@@ -11,7 +11,8 @@ use super::tables::energy_loss_j;
 use crate::dynamics::free_hinges::DOUBTFUL_ENERGY_ERROR;
 use crate::dynamics::history::{Event, HalfCycle, Impact, Outcome, Sliding, Summary as History};
 use crate::dynamics::repeatability::{
-    FIRST_REPETITIONS, Repeatability, RepeatedHalfCycle, RepeatedValue, SAME_PEAK_RATIO, Verdict,
+    FIRST_REPETITIONS, LEAST_SLIP_M, Repeatability, RepeatedHalfCycle, RepeatedValue,
+    SAME_PEAK_RATIO, Verdict,
 };
 use crate::mechanics::chain::Hinge;
 use crate::mechanics::sides::Sides;
