@@ -53,6 +53,12 @@ pub(super) fn no_verdict(scenario: &Scenario, history: &History) -> Option<Strin
     is_incomplete.then(|| format!("NO VERDICT: {why}; give a longer duration_s in [simulation]"))
 }
 
+/// Returns the time since which elastic joints that still move at the end only vibrate, in s; `None` for other outcomes.
+pub(super) fn vibrates_since_s(history: &History) -> Option<f64> {
+    let moves = history.outcome == Outcome::StillRocking;
+    history.elastic().filter(|_| moves)?.vibrates_since_s
+}
+
 /// Returns a coefficient of friction as text. Values above 10, which no stone has, occur at almost unloaded joints.
 pub(super) fn coefficient(friction: f64, decimals: usize) -> String {
     if friction > 10.0 {

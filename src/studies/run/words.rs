@@ -125,11 +125,7 @@ impl<'a> Words<'a> {
 
     /// Returns the time since which elastic joints that still move at the end only vibrate, in s; `None` for other outcomes.
     fn vibrates_since_s(&self) -> Option<f64> {
-        let history = self.computed.history;
-        let elastic = history
-            .elastic()
-            .filter(|_| history.outcome == Outcome::StillRocking);
-        elastic?.vibrates_since_s
+        caveats::vibrates_since_s(self.computed.history)
     }
 
     /// Returns true if the model moves a row of blocks, false for mechanisms.
