@@ -224,7 +224,7 @@ impl Model for Rule {
             energy_defect_ratio: 0.0,
             thrust: None,
             cost: Cost::default(),
-            details: Details::Mechanisms(0.0),
+            details: Details::Mechanisms(MechanismSummary::default()),
         })
     }
 }

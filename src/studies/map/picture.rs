@@ -186,29 +186,61 @@ pub(super) fn drawn(
 ) -> Drawn {
     let kinds: Vec<_> = rows.iter().map(|row| kind_of(row, style)).collect();
     let sheet = Sheet::new(title, map, style);
-    let hatch = hatch(&sheet.edges, rows);
-    let sign = Sign::LineOn(CELL, "doubtful", DOUBTFUL);
-    let key = Key::new("another outcome in a repetition", sign);
-    let keys = map.repeat.then_some(key).into_iter().collect();
-    sheet.draw(&Kind::ALL, &kinds, keys, vec![hatch])
+    let doubtful = rows.iter().map(CellRow::is_doubtful);
+    let outside: Vec<bool> = rows.iter().map(CellRow::is_outside_model).collect();
+    let mut keys = Vec::new();
+    if map.repeat {
+        let sign = Sign::LineOn(CELL, "doubtful", DOUBTFUL);
+        keys.push(Key::new("another outcome in a repetition", sign));
+    }
+    keys.extend(outside_key(&outside));
+    let marks = vec![
+        sheet.hatch("doubtful", DOUBTFUL, [0.0, 1.0], doubtful),
+        sheet.hatch_outside(outside),
+    ];
+    sheet.draw(&Kind::ALL, &kinds, keys, marks)
 }
 
-/// Hatches the cells whose outcome depends on the computation.
-fn hatch([x_edges, y_edges]: &[Vec<f64>; 2], rows: &[CellRow]) -> Mark {
-    let count = y_edges.len() - 1;
-    let doubtful = (0..).zip(rows).filter(|(_, row)| row.is_doubtful());
-    let diagonals = doubtful.flat_map(|(index, _): (usize, _)| {
-        let [column, line] = [index / count, index % count];
-        let low = (x_edges[column], y_edges[line]);
-        [
-            low,
-            (x_edges[column + 1], y_edges[line + 1]),
-            (f64::NAN, f64::NAN),
-        ]
-    });
-    Mark::curve("doubtful", DOUBTFUL, diagonals)
+/// Returns the legend entry of cells outside the model of four links; `None` without such cells.
+pub(crate) fn outside_key(outside: &[bool]) -> Option<Key> {
+    let sign = Sign::LineOn(CELL, OUTSIDE, OUTSIDE_LINE);
+    let key = Key::new("outside the model of four links", sign);
+    outside.contains(&true).then_some(key)
+}
+
+impl Sheet<'_> {
+    /// Hatches cells outside the model of four links.
+    pub(crate) fn hatch_outside(&self, outside: Vec<bool>) -> Mark {
+        self.hatch(OUTSIDE, OUTSIDE_LINE, [1.0, 0.0], outside)
+    }
+
+    /// Hatches cells with a diagonal each, from the first to the second part of their height.
+    fn hatch(
+        &self,
+        name: &'static str,
+        line: Stroke,
+        parts: [f64; 2],
+        hatched: impl IntoIterator<Item = bool>,
+    ) -> Mark {
+        let [x_edges, y_edges] = &self.edges;
+        let count = y_edges.len() - 1;
+        let cells = (0..).zip(hatched).filter(|(_, hatched)| *hatched);
+        let diagonals = cells.flat_map(|(index, _): (usize, _)| {
+            let [column, row] = [index / count, index % count];
+            let ends = parts.map(|part| if part > 0.0 { row + 1 } else { row });
+            [
+                (x_edges[column], y_edges[ends[0]]),
+                (x_edges[column + 1], y_edges[ends[1]]),
+                (f64::NAN, f64::NAN),
+            ]
+        });
+        Mark::curve(name, line, diagonals)
+    }
 }
 
 /// Background of lines in the legend: light, as most cells.
 const CELL: &str = "#ffffff";
 const DOUBTFUL: Stroke = Stroke::new(color::BLACK, 1.2, "");
+/// Name and line of the hatching of cells outside the model of four links.
+const OUTSIDE: &str = "outside-model";
+const OUTSIDE_LINE: Stroke = Stroke::new(color::BLACK, 0.8, "");

@@ -1,5 +1,7 @@
 //! The first edge: the strength from which a structure overturns. The search goes upwards and ends at the first edge.
 
+use std::cell::{RefCell, RefMut};
+
 use serde::{Deserialize, Serialize};
 
 use super::factors::{EDGE_WIDTH, Factors};
@@ -28,6 +30,10 @@ pub struct FirstEdge {
     /// True if the history at the factor after `tried_to` failed, so that nothing is known of stronger motions.
     #[serde(default)]
     pub failed_beyond: bool,
+    /// Largest excess of the thrust line of four links in the history at `factor`, or at `tried_to` without it, over the thickness; `None` for other
+    /// models.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub thrust_excess_ratio: Option<f64>,
 }
 
 impl FirstEdge {
@@ -38,18 +44,37 @@ impl FirstEdge {
     pub fn of(scenario: &Scenario, factors: &Factors) -> Result<Self, NoAnswer> {
         let model = scenario.model().map_err(NoAnswer::invalid)?;
         let request = scenario.request_on(scenario.ground_motion(), &scenario.structure);
-        let verdict = |factor: f64| {
+        Self::among(&factors.values(), EDGE_WIDTH, |factor: f64| {
             let ground = scenario.ground_motion().scaled(factor);
             let ground = ground.map_err(SimulationError::from)?;
-            let ending = Ending::of(&*model, &ground, &request);
-            ending.map(|ending| ending.verdict())
+            Ending::of(&*model, &ground, &request)
+        })
+    }
+
+    /// Finds the first edge from the endings of histories, as [`FirstEdge::search`].
+    pub(in crate::studies) fn among(
+        strengths: &[f64],
+        width: f64,
+        ending: impl Fn(f64) -> Result<Ending, NoHistory>,
+    ) -> Result<Self, NoAnswer> {
+        let excesses = RefCell::default();
+        let verdict = |strength| {
+            let ending = ending(strength)?;
+            let mut excesses: RefMut<'_, Vec<_>> = excesses.borrow_mut();
+            excesses.push((strength, ending.thrust_excess_ratio));
+            Ok(ending.verdict())
         };
-        Self::search(&factors.values(), EDGE_WIDTH, verdict)
+        let mut edge = Self::search(strengths, width, verdict)?;
+        let last = edge.factor.unwrap_or(edge.tried_to);
+        let excesses = excesses.into_inner();
+        let known = excesses.iter().find(|(strength, _)| *strength == last);
+        edge.thrust_excess_ratio = known.and_then(|(_, ratio)| *ratio);
+        Ok(edge)
     }
 
     /// Finds the first edge. `strengths` are tried in ascending order, and bisection encloses the edge between two of them to this relative
     /// width.
-    pub(in crate::studies) fn search(
+    fn search(
         strengths: &[f64],
         width: f64,
         verdict: impl Fn(f64) -> Result<Verdict, NoHistory>,
@@ -112,13 +137,16 @@ impl FirstEdge {
     pub(in crate::studies) fn columns<'a, R: 'a>(
         factor: &'static str,
         of: impl Fn(&R) -> Option<&Self> + Copy + 'a,
-    ) -> [Column<'a, R>; 5] {
+    ) -> [Column<'a, R>; 6] {
         [
             column("survives_up_to", move |row| of(row)?.survives_up_to),
             column(factor, move |row| of(row)?.factor),
             column("tried_to", move |row| Some(of(row)?.tried_to)),
             column("uncertain_from", move |row| of(row)?.uncertain_from),
             column("at_most", move |row| Some(yes(of(row)?.at_most))),
+            column("thrust_excess_ratio", move |row| {
+                of(row)?.thrust_excess_ratio
+            }),
         ]
     }
 

@@ -11,7 +11,7 @@ use crate::output::table::{column, csv, fields};
 use crate::output::{Figure, OutputError};
 use crate::scenario::{Ground, Scenario};
 use crate::studies::ending::{NoHistory, Verdict, outcome_name};
-use crate::studies::remarks::{self, Remarks};
+use crate::studies::remarks::Remarks;
 use crate::studies::results::Results;
 
 /// Names of the files, the seal last.
@@ -128,6 +128,8 @@ struct HistorySummary {
     peak_rotation_over_critical: Option<f64>,
     /// Largest rotation of any body, in radians.
     peak_rotation_rad: Option<f64>,
+    /// Largest excess of the thrust line of four links, over the thickness; null for other models.
+    thrust_excess_ratio: Option<f64>,
 }
 
 /// Makes files and words of the thresholds of scenarios that differ only in their models of motion.
@@ -174,7 +176,7 @@ fn table(models: &[ModelSummary<'_>]) -> Result<Vec<u8>, OutputError> {
         Some(row.1.history?.outcome_time_s)
     }));
     columns.extend(fields!(
-        |row: &Row<'_>| row.1.history? => peak_rotation_over_critical, peak_rotation_rad
+        |row: &Row<'_>| row.1.history? => peak_rotation_over_critical, peak_rotation_rad, thrust_excess_ratio
     ));
     csv(columns, &rows.collect::<Vec<_>>())
 }
@@ -182,13 +184,13 @@ fn table(models: &[ModelSummary<'_>]) -> Result<Vec<u8>, OutputError> {
 /// Returns the warnings of all models without duplicates, and histories without a verdict.
 fn warnings(scenarios: &[Scenario], thresholds: &[Threshold]) -> Vec<String> {
     let mut warnings: Vec<String> = Vec::new();
-    for warning in scenarios.iter().flat_map(remarks::warnings) {
+    for warning in scenarios.iter().flat_map(Scenario::unlikely) {
         if !warnings.contains(&warning) {
             warnings.push(warning);
         }
     }
     let remarks = thresholds.iter().map(Threshold::remarks);
-    warnings.extend(remarks.filter_map(|remarks| remarks.incomplete_in_words()));
+    warnings.extend(remarks.flat_map(|remarks| remarks.warnings("histories")));
     let varied = thresholds.iter().flat_map(|threshold| &threshold.varied);
     warnings.extend(
         varied.filter_map(|varied| Some(format!("with {}: {}", varied.name, varied.no_verdict()?))),
@@ -267,6 +269,7 @@ impl SampleSummary {
                 outcome_time_s: ending.outcome_time_s,
                 peak_rotation_over_critical: ending.peak_over_critical,
                 peak_rotation_rad: Some(ending.peak_rotation_rad),
+                thrust_excess_ratio: ending.thrust_excess_ratio,
             }),
             reason: match ending {
                 Ok(ending) => ending.uncertain.as_ref().map(ToString::to_string),
@@ -307,9 +310,9 @@ fn words(scenarios: &[Scenario], thresholds: &[Threshold]) -> String {
         );
         lines.extend(threshold.doubts_in_words(&scenarios[0]));
         lines.extend(threshold.varied_in_words(peak_g));
+        let outside = threshold.remarks().model.in_words("histories");
+        lines.extend(outside.map(|words| format!("  {words}")));
     }
-    let caveat = scenarios.iter().find_map(remarks::rough_guide);
-    lines.extend(caveat.map(|caveat| format!("  {caveat}")));
     lines.join("\n") + "\n"
 }
 
