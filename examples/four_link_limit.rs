@@ -165,7 +165,9 @@ fn errors(cases: &[Case], limit: f64) -> [usize; 4] {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let cases: Vec<Case> = (0..).filter_map(Case::random).take(300).collect();
-    println!("pulse, duration, R, t/R, embrace, voussoirs | four links, free hinges (g), ratio | excess there");
+    println!(
+        "pulse, duration, R, t/R, embrace, voussoirs | four links, free hinges (g), ratio | excess there"
+    );
     for case in &cases {
         let least = if case.four.is_found { "" } else { ">" };
         println!(
@@ -179,7 +181,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         );
     }
     println!("limit | unsafe within it, of | agree beyond it, of");
-    for limit in [0.01, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 1.0, 1.5, 2.0, 5.0] {
+    for limit in [
+        0.01, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 1.0, 1.5, 2.0, 5.0,
+    ] {
         let [missed, all_unsafe, alarms, all_agree] = errors(&cases, limit);
         println!("{limit:5} | {missed:3} of {all_unsafe} | {alarms:3} of {all_agree}");
     }

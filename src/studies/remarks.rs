@@ -128,8 +128,20 @@ impl ModelCheck {
     /// Makes the check of histories with these excesses of the thrust line; `None` for other models.
     pub(crate) fn of(excess_ratios: impl IntoIterator<Item = Option<f64>>) -> Self {
         let mut check = Self::default();
-        excess_ratios.into_iter().for_each(|ratio| check.note(ratio));
+        excess_ratios
+            .into_iter()
+            .for_each(|ratio| check.note(ratio));
         check
+    }
+
+    /// Makes the check of a number of histories outside the model and of a number of all; `None` for other models.
+    pub(crate) fn counted(counts: Option<[usize; 2]>) -> Self {
+        let [outside, of] = counts.unwrap_or_default();
+        Self {
+            outside: counts.map(|_| outside),
+            of,
+            largest_ratio: 0.0,
+        }
     }
 
     /// Adds a history.

@@ -13,7 +13,7 @@ use crate::common::prose::{golden, shows, skeleton};
 use crate::common::pulse;
 use crate::common::results::{Row, Table, named};
 use crate::common::{GRAVITY, pairs, request, semicircle, seven_voussoirs};
-use archrock::dynamics::history::{Cost, Details};
+use archrock::dynamics::history::{Cost, Details, MechanismSummary};
 use archrock::dynamics::model::Repetition;
 use archrock::internals::hybrid::engine::EngineError;
 use archrock::output::Figure;

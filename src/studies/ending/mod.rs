@@ -95,7 +95,8 @@ impl Ending {
     /// Returns true if the thrust line leaves the structure so far that four links do not describe the history; false for other models.
     #[must_use]
     pub fn is_outside_model(&self) -> bool {
-        self.thrust_excess_ratio.is_some_and(|ratio| ratio > MODEL_LIMIT)
+        self.thrust_excess_ratio
+            .is_some_and(|ratio| ratio > MODEL_LIMIT)
     }
 
     /// Returns true if the history itself overturned, even if the verdict is uncertain.

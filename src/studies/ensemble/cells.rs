@@ -15,13 +15,22 @@ use crate::studies::results::{ReportedStudy, Results, Style};
 use crate::studies::runner::Study;
 use crate::studies::statistics::Share;
 
-/// The outcome of a cell of a sample, as an index of [`OUTCOMES`], or the reason why there is none.
+/// The outcome of a cell of a sample, as an index of [`OUTCOMES`], plus [`OUTSIDE`] for a history outside the model of four links; or the reason why
+/// there is none.
 type CellRow = Result<usize, NoAnswer>;
 
+const OUTSIDE: usize = 100;
+
 fn cell_row(result: Result<Ending, NoHistory>) -> CellRow {
-    let outcome = result?.outcome_name();
+    let ending = result?;
+    let outcome = ending.outcome_name();
     let place = OUTCOMES.iter().position(|name| *name == outcome);
-    place.ok_or(NoAnswer::Incomplete)
+    let outside = if ending.is_outside_model() {
+        OUTSIDE
+    } else {
+        0
+    };
+    Ok(place.ok_or(NoAnswer::Incomplete)? + outside)
 }
 
 /// Largest number of histories; their rows must fit into memory.
@@ -169,16 +178,19 @@ struct CellCounts {
     overturned: Option<Share>,
     /// Number of samples with each of the [`OUTCOMES`].
     outcomes: [usize; OUTCOMES.len()],
+    /// Number of samples with a history outside the model of four links.
+    outside: usize,
     /// Number of samples without an outcome: because of their values, because of a failure, and because their histories ended too early.
     without: [usize; 3],
 }
 
 impl CellCounts {
     fn of<'r>(at: [f64; 2], rows: impl Iterator<Item = &'r CellRow>) -> Self {
-        let (mut outcomes, mut without) = ([0; OUTCOMES.len()], [0; 3]);
+        let (mut outcomes, mut outside, mut without) = ([0; OUTCOMES.len()], 0, [0; 3]);
         for row in rows {
+            outside += usize::from(row.as_ref().is_ok_and(|outcome| *outcome >= OUTSIDE));
             *match row {
-                Ok(outcome) => &mut outcomes[*outcome],
+                Ok(outcome) => &mut outcomes[*outcome % OUTSIDE],
                 Err(NoAnswer::Invalid(_)) => &mut without[0],
                 Err(NoAnswer::Failed(_)) => &mut without[1],
                 Err(NoAnswer::Incomplete) => &mut without[2],
@@ -190,8 +202,14 @@ impl CellCounts {
             samples,
             overturned: Share::of(outcomes[0], samples),
             outcomes,
+            outside,
             without,
         }
+    }
+
+    /// Returns true if most samples have a history outside the model of four links.
+    const fn is_outside_model(&self) -> bool {
+        2 * self.outside > self.samples
     }
 
     /// Returns the share of samples that certainly overturn; `None` without samples.

@@ -162,7 +162,12 @@ impl<'a, A: 'a, D: Serialize> Findings<'a, A, D> {
             program: env!("CARGO_PKG_NAME"),
             version: env!("CARGO_PKG_VERSION"),
             scenario: samples.scenario.to_json(),
-            warnings: samples.scenario.unlikely().into_iter().chain(limits).collect(),
+            warnings: samples
+                .scenario
+                .unlikely()
+                .into_iter()
+                .chain(limits)
+                .collect(),
             samples: samples.rows.len(),
             answered: samples.answers().count(),
             invalid: invalid.len(),

@@ -70,10 +70,8 @@ impl Along<'_> {
     /// Returns the values without an answer, with the reasons.
     fn remarks(&self, rows: &[AlongRow]) -> Remarks {
         let edges = rows.iter().flat_map(|row| &row.edge);
-        let mut remarks = Remarks {
-            model: ModelCheck::of(edges.map(|edge| edge.thrust_excess_ratio)),
-            ..Remarks::default()
-        };
+        let mut remarks = Remarks::default();
+        remarks.model = ModelCheck::of(edges.map(|edge| edge.thrust_excess_ratio));
         for row in rows {
             let case = format!("{} = {}", self.options.along.key, plain(row.value));
             if let Err(NoAnswer::Invalid(reason) | NoAnswer::Failed(reason)) = &row.edge {
