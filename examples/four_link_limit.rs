@@ -197,7 +197,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// Draws the ratio of the thresholds over the excess, on logarithmic axes; a triangle if four links never overturn.
 fn draw(cases: &[Case]) -> Result<String, std::fmt::Error> {
     let (width, height, left, bottom) = (640.0, 420.0, 70.0, 370.0);
-    let ([x_low, x_high], [y_low, y_high]) = ([0.003_f64, 300.0_f64], [0.02_f64, 2.0_f64]);
+    let ([x_low, x_high], [y_low, y_high]) = ([0.003_f64, 10_000.0_f64], [0.02_f64, 2.0_f64]);
     let x = |excess: f64| {
         let part = (excess.clamp(x_low, x_high) / x_low).ln() / (x_high / x_low).ln();
         left + part * (width - left - 20.0)
@@ -229,7 +229,7 @@ fn draw(cases: &[Case]) -> Result<String, std::fmt::Error> {
             at + 4.0
         )?;
     }
-    for excess in [0.01, 0.1, 0.5, 1.0, 10.0, 100.0] {
+    for excess in [0.01, 0.1, 0.5, 10.0, 100.0, 1000.0] {
         let at = x(excess);
         writeln!(
             svg,

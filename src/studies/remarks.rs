@@ -134,13 +134,14 @@ impl ModelCheck {
         check
     }
 
-    /// Makes the check of a number of histories outside the model and of a number of all; `None` for other models.
+    /// Makes the check of a number of histories outside the model and of a number of all; `None` for other models. The excess of the others is at most
+    /// the limit.
     pub(crate) fn counted(counts: Option<[usize; 2]>) -> Self {
         let [outside, of] = counts.unwrap_or_default();
         Self {
             outside: counts.map(|_| outside),
             of,
-            largest_ratio: 0.0,
+            largest_ratio: MODEL_LIMIT,
         }
     }
 

@@ -450,8 +450,8 @@ pub struct Summary {
 pub struct MechanismSummary {
     /// Largest rotation over that at the unstable equilibrium of the moving mechanism; from 1 on, gravity alone overturns the structure.
     pub peak_over_critical: f64,
-    /// Largest excess of the thrust line up to the largest rotation, or up to overturning, over the thickness. It is computed at every step, at the
-    /// joints or at 49 sections of a continuous ring. `None` for a column.
+    /// Largest excess of the thrust line up to the largest rotation, or up to overturning, over the thickness. It is computed at every step below the
+    /// critical rotation, at the joints or at 49 sections of a continuous ring. `None` for a column.
     pub thrust_excess_ratio: Option<f64>,
 }
 

@@ -30,16 +30,10 @@ pub fn page(title: &str, map: &OverturningMap<'_>, rows: &[CellRow], style: Styl
         palette: &Kind::ALL,
         kinds: kinds.collect(),
         doubts: rows.iter().enumerate().filter_map(doubt).collect(),
-        outside: places(rows.iter().map(CellRow::is_outside_model)),
+        outside: rows.iter().map(CellRow::is_outside_model).collect(),
         columns: columns(rows),
     };
     cells.page(title, map, &drawn)
-}
-
-/// Returns the indices of the cells with true.
-pub(crate) fn places(cells: impl IntoIterator<Item = bool>) -> Vec<usize> {
-    let chosen = cells.into_iter().enumerate().filter(|(_, chosen)| *chosen);
-    chosen.map(|(index, _)| index).collect()
 }
 
 /// The cells of the page.
@@ -50,8 +44,8 @@ pub(crate) struct Cells<'c> {
     pub(crate) kinds: Vec<Kind>,
     /// Indices of the uncertain cells, with the reasons.
     pub(crate) doubts: Vec<(usize, Box<str>)>,
-    /// Indices of the cells outside the model of four links.
-    pub(crate) outside: Vec<usize>,
+    /// True for cells outside the model of four links.
+    pub(crate) outside: Vec<bool>,
     /// Columns with a number for each cell: name and values; `None` for a cell without a value.
     pub(crate) columns: Vec<(&'static str, Vec<Option<f64>>)>,
 }
@@ -98,13 +92,14 @@ impl Cells<'_> {
         let doubts: Map<String, Value> = doubts
             .map(|(index, doubt)| (index.to_string(), json!(doubt)))
             .collect();
+        let outside = (0..self.outside.len()).filter(|index| self.outside[*index]);
         let labels: Vec<&str> = self.palette.iter().map(|kind| kind.label).collect();
         json!({
             "axes": [axis(0), axis(1)],
             "sheet_px": { "width": Figure::SCREEN.width_px, "height": drawn.height_px },
             "kinds": BASE64_STANDARD.encode(kinds),
             "doubts": doubts,
-            "outside": self.outside,
+            "outside": outside.collect::<Vec<_>>(),
             "labels": labels,
             "columns": columns.collect::<Vec<_>>(),
             "command": command(map),

@@ -10,7 +10,7 @@ use crate::dynamics::history::Outcome;
 use crate::output::table::{column, csv, fields};
 use crate::output::{Figure, OutputError};
 use crate::scenario::{Ground, Scenario};
-use crate::studies::ending::{NoHistory, Verdict, outcome_name};
+use crate::studies::ending::{Ending, NoHistory, Verdict, outcome_name};
 use crate::studies::remarks::Remarks;
 use crate::studies::results::Results;
 
@@ -250,6 +250,16 @@ impl Threshold {
         remarks
     }
 
+    /// Returns words about the first history that overturns the structure, if it is outside the model of four links.
+    fn edge_outside_model(&self) -> &'static str {
+        let mut endings = self.samples.iter().flat_map(|sample| &sample.result);
+        let first = endings.find(|ending| ending.verdict() == Verdict::Overturns);
+        match first.is_some_and(Ending::is_outside_model) {
+            true => "; the first that overturns is one of them",
+            false => "",
+        }
+    }
+
     /// Returns true if a factor is the smallest tried factor, so that smaller ones may overturn the structure as well.
     fn is_first(&self, factor: f64) -> bool {
         let first = self.samples.first();
@@ -311,7 +321,7 @@ fn words(scenarios: &[Scenario], thresholds: &[Threshold]) -> String {
         lines.extend(threshold.doubts_in_words(&scenarios[0]));
         lines.extend(threshold.varied_in_words(peak_g));
         let outside = threshold.remarks().model.in_words("histories");
-        lines.extend(outside.map(|words| format!("  {words}")));
+        lines.extend(outside.map(|words| format!("  {words}{}", threshold.edge_outside_model())));
     }
     lines.join("\n") + "\n"
 }

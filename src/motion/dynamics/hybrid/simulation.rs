@@ -130,8 +130,9 @@ fn history_of<C: MechanismChain + MechanismModel>(
         rocking: &rocking,
         sampler: recorder.map(|recorder| Sampler::new(&rocking, every_s, recorder)),
         impacts: 0,
-        peaks: (vec![0.0; C::Mechanism::BODIES.len()], Peaks::default()),
+        peaks: (vec![0.0; C::Mechanism::BODIES.len()], 0.0),
         excess_ratio: 0.0,
+        excess_at_peak: 0.0,
         last_passage: None,
         last_rest_s: None,
         energy_without_work: mode.swing().map_or(0.0, energy),
@@ -170,7 +171,11 @@ fn history_of<C: MechanismChain + MechanismModel>(
         (Phase::Rest, _, Some(time_s)) => outcome_time_s = time_s,
         _ => {}
     }
-    let (peak_rotations_rad, peaks) = peaks;
+    let (peak_rotations_rad, peak_over_critical) = peaks;
+    let excess_ratio = match outcome {
+        Outcome::Overturned(_) => collector.excess_ratio,
+        _ => collector.excess_at_peak,
+    };
     let sampler = collector.sampler.as_ref();
     let demanding = sampler.filter(|sampler| sampler.recorder.wants_demand());
     Ok(Summary {
@@ -186,8 +191,8 @@ fn history_of<C: MechanismChain + MechanismModel>(
         }),
         cost: finish.cost,
         details: Details::Mechanisms(MechanismSummary {
-            peak_over_critical: peaks.over_critical,
-            thrust_excess_ratio: C::THRUSTS.then_some(peaks.excess_ratio),
+            peak_over_critical,
+            thrust_excess_ratio: C::THRUSTS.then_some(excess_ratio),
         }),
     })
 }
@@ -341,24 +346,19 @@ impl<'a, C: MechanismChain> Closing<'a, C> {
     }
 }
 
-/// Largest rotation over the critical one, and the largest excess of the thrust line up to then, over the thickness.
-#[derive(Clone, Copy, Default)]
-struct Peaks {
-    over_critical: f64,
-    excess_ratio: f64,
-}
-
 /// Collects the data of a summary, and takes samples for a recorder.
 struct SummaryCollector<'r, 'a, C: MechanismChain> {
     rocking: &'r Rocking<'a, C>,
     sampler: Option<Sampler<'r, 'a, C>>,
     impacts: usize,
-    /// Largest rotations of the bodies, and the other peaks.
-    peaks: (Vec<f64>, Peaks),
-    /// Largest excess of the thrust line up to now, over the thickness.
+    /// Largest rotations of the bodies, and largest rotation over the critical one.
+    peaks: (Vec<f64>, f64),
+    /// Largest excess of the thrust line up to now, over the thickness, at rotations below the critical one.
     excess_ratio: f64,
+    /// Largest excess of the thrust line up to the largest rotation.
+    excess_at_peak: f64,
     /// Time of the last outward passage of the unstable equilibrium, and the peaks up to then.
-    last_passage: Option<(f64, (Vec<f64>, Peaks))>,
+    last_passage: Option<(f64, (Vec<f64>, f64))>,
     last_rest_s: Option<f64>,
     /// Initial energy minus the energy dissipated by impacts.
     energy_without_work: f64,
@@ -370,24 +370,22 @@ impl<'a, C: MechanismChain> SummaryCollector<'_, 'a, C> {
     fn note_peak(&mut self, mode: Mode<'_, C::Mechanism>, state: &RockingState) {
         if let Some(Swing { sway, link, .. }) = mode.swing() {
             let rotations = seen_from_ground::<C>(sway, link.mechanism.rotations(state[0]), 1.0);
-            let (peaks, most) = &mut self.peaks;
+            let (peaks, over_critical) = &mut self.peaks;
             for (peak, rotation) in peaks.iter_mut().zip(rotations.as_ref()) {
                 *peak = peak.max(rotation.abs());
             }
-            let over_critical = state[0] / link.critical_rad;
-            if over_critical > most.over_critical {
-                let excess_ratio = self.excess_ratio;
-                *most = Peaks {
-                    over_critical,
-                    excess_ratio,
-                };
+            if state[0] / link.critical_rad > *over_critical {
+                *over_critical = state[0] / link.critical_rad;
+                self.excess_at_peak = self.excess_ratio;
             }
         }
     }
 
     /// Updates the largest excess of the thrust line.
     fn note_excess(&mut self, now: &StructureState<'a, C>) {
-        if let Phase::Rocking(swing) = now.mode {
+        if let Phase::Rocking(swing) = now.mode
+            && now.state[0] < swing.link.critical_rad
+        {
             let excess_ratio = self.rocking.excess_ratio(swing, now);
             self.excess_ratio = self.excess_ratio.max(excess_ratio);
         }
@@ -411,8 +409,7 @@ impl<'a, C: MechanismChain> SummaryCollector<'_, 'a, C> {
         };
         let rocking = self.rocking;
         let start = from.at(step.start_s, &step.start);
-        let over_critical = self.peaks.1.over_critical;
-        let follows = C::THRUSTS && !rocking.stays_below(over_critical, swing, &start);
+        let follows = C::THRUSTS && !rocking.stays_below(self.peaks.1, swing, &start);
         if follows && step.start_s == from.time_s {
             self.note_excess(&start);
         }

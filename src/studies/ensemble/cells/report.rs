@@ -14,8 +14,8 @@ use crate::studies::ending::columns::{OUTCOMES, yes};
 use crate::studies::ensemble::influence::percent;
 use crate::studies::ensemble::report::{Band, Findings};
 use crate::studies::kind::{Kind, kind};
-use crate::studies::map::page::{Cells, places};
-use crate::studies::map::picture::{Drawn, Sheet, outside_key};
+use crate::studies::map::page::Cells;
+use crate::studies::map::picture::{Drawn, Sheet};
 use crate::studies::remarks::{ModelCheck, no_verdict};
 use crate::studies::results::{Results, Style};
 use crate::studies::runner::Study as _;
@@ -200,9 +200,11 @@ fn draw(
         lines.push(Mark::curve(name, stroke, points));
     }
     let outside: Vec<bool> = counts.iter().map(CellCounts::is_outside_model).collect();
-    keys.extend(outside_key(&outside));
-    let marks = vec![sheet.hatch_outside(outside), Mark::clipped(lines)];
-    sheet.draw(&PALETTE, &kinds, keys, marks)
+    sheet.draw(
+        (&PALETTE, &kinds, &outside),
+        keys,
+        vec![Mark::clipped(lines)],
+    )
 }
 
 /// Returns the cells of the page.
@@ -220,7 +222,7 @@ fn page_cells(counts: &[CellCounts]) -> Cells<'static> {
         palette: &PALETTE,
         kinds: counts.iter().map(kind_of).collect(),
         doubts: Vec::new(),
-        outside: places(counts.iter().map(CellCounts::is_outside_model)),
+        outside: counts.iter().map(CellCounts::is_outside_model).collect(),
         columns: numbers.chain(others).collect(),
     }
 }
