@@ -166,17 +166,12 @@ fn cells_outside_the_model_are_hatched_and_counted() {
     // A map of samples counts histories in words and summary.
     let samples = "[uncertain]\nsamples = 4\n'arch.thickness_ratio' = { deviation = 0.002 }\n";
     fs::write(at.join("u.toml"), text + samples).unwrap();
-    let output = archrock(at, &["map", "u.toml", "--out", "u"]);
-    let found = counts(
-        &at.join("u/uncertain_map"),
-        &stdout(&output),
-        "uncertain.json",
-    );
+    let words = done(at, &["map", "u.toml", "--out", "u"]);
+    let found = counts(&at.join("u/uncertain_map"), &words, "uncertain.json");
     assert_eq!([found[3], found[4]], [found[0]; 2]);
     let table = Table::read(at.join("u/uncertain_map/map.csv"));
     let histories: f64 = table.numbers("outside_model").iter().sum();
     assert_eq!(found[1] as f64, histories);
-    assert!(stdout(&output).contains(&format!(
-        "{histories} of 48 histories are outside the model"
-    )));
+    let wanted = format!("{histories} of 48 histories are outside the model");
+    assert!(words.contains(&wanted), "{words}");
 }

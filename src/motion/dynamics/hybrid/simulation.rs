@@ -172,10 +172,6 @@ fn history_of<C: MechanismChain + MechanismModel>(
         _ => {}
     }
     let (peak_rotations_rad, peak_over_critical) = peaks;
-    let excess_ratio = match outcome {
-        Outcome::Overturned(_) => collector.excess_ratio,
-        _ => collector.excess_at_peak,
-    };
     let sampler = collector.sampler.as_ref();
     let demanding = sampler.filter(|sampler| sampler.recorder.wants_demand());
     Ok(Summary {
@@ -192,7 +188,7 @@ fn history_of<C: MechanismChain + MechanismModel>(
         cost: finish.cost,
         details: Details::Mechanisms(MechanismSummary {
             peak_over_critical,
-            thrust_excess_ratio: C::THRUSTS.then_some(excess_ratio),
+            thrust_excess_ratio: C::THRUSTS.then(|| collector.excess_of(outcome)),
         }),
     })
 }
@@ -378,6 +374,14 @@ impl<'a, C: MechanismChain> SummaryCollector<'_, 'a, C> {
                 *over_critical = state[0] / link.critical_rad;
                 self.excess_at_peak = self.excess_ratio;
             }
+        }
+    }
+
+    /// Returns the largest excess of the thrust line up to overturning, or else up to the largest rotation.
+    const fn excess_of(&self, outcome: Outcome) -> f64 {
+        match outcome {
+            Outcome::Overturned(_) => self.excess_ratio,
+            _ => self.excess_at_peak,
         }
     }
 
