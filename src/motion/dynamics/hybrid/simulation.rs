@@ -165,6 +165,7 @@ fn history_of<C: MechanismChain + MechanismModel>(
         Phase::Rest if collector.last_rest_s.is_some() => Outcome::Rest,
         Phase::Rest => Outcome::NeverMoved,
     };
+    let excess_ratio = collector.excess_of(outcome);
     let (mut outcome_time_s, mut peaks) = (now.time_s, collector.peaks);
     match (now.mode, collector.last_passage, collector.last_rest_s) {
         (Phase::Overturned(_), Some(passage), _) => (outcome_time_s, peaks) = passage,
@@ -188,7 +189,7 @@ fn history_of<C: MechanismChain + MechanismModel>(
         cost: finish.cost,
         details: Details::Mechanisms(MechanismSummary {
             peak_over_critical,
-            thrust_excess_ratio: C::THRUSTS.then(|| collector.excess_of(outcome)),
+            thrust_excess_ratio: C::THRUSTS.then_some(excess_ratio),
         }),
     })
 }
