@@ -166,7 +166,15 @@ impl Input<'_> {
 
     /// Makes a failure with this reason, after the name of the scenario file.
     pub fn input_error(&self, reason: impl Into<String>) -> Failure {
-        Failure::Input(format!("{}: {}", self.source.name(), reason.into()))
+        self.with_file_name(Failure::Input(reason.into()))
+    }
+
+    /// Adds the name of the scenario file before the message of a failure.
+    pub fn with_file_name(&self, failure: Failure) -> Failure {
+        match failure {
+            Failure::Input(message) => Failure::Input(format!("{}: {message}", self.source.name())),
+            other => other,
+        }
     }
 
     /// Returns the name of the folder for the results.
