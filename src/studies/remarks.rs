@@ -9,6 +9,7 @@ use serde_json::Value;
 use super::ending::{Ending, NoHistory, Verdict};
 use crate::dynamics::history::Outcome;
 use crate::dynamics::repeatability::OutcomeCount;
+use crate::dynamics::thrust::{EXCESS_LEVELS, MODEL_LIMIT};
 use crate::scenario::{Hinges, Scenario};
 
 /// A failed or uncertain case, as results list it.
@@ -42,6 +43,9 @@ pub struct Remarks {
     /// The cases for which it is uncertain whether they overturn, with the reasons.
     #[serde(rename = "uncertain_cases", skip_serializing_if = "Vec::is_empty")]
     pub uncertain: Vec<Remark>,
+    /// The histories of four links outside their model.
+    #[serde(flatten)]
+    pub(crate) model: ModelCheck,
     /// Number of histories that were computed.
     #[serde(skip)]
     histories: usize,
@@ -98,6 +102,7 @@ impl Remarks {
     pub(crate) fn note_history(&mut self, ending: &Ending) {
         self.histories += 1;
         self.incomplete += usize::from(ending.verdict() == Verdict::Incomplete);
+        self.model.note(ending.thrust_excess_ratio);
         if let Some(steps) = ending.steps {
             self.longest_step_s = StepRange::with(self.longest_step_s, steps.longest_s);
             self.shortest_step_s = StepRange::with(self.shortest_step_s, steps.shortest_s);
@@ -111,29 +116,69 @@ impl fmt::Display for Remark {
     }
 }
 
-/// Caveat of studies with four links: studies do not compute the thrust line. The text names no options, because the Python package prints it
-/// too.
-const FOUR_LINKS: &str = "four links are a rough guide, not on the safe side, unless the thrust line stays inside the arch, which is not \
-                          checked here: check it in single runs, and compare with free hinges";
-
-/// Returns the four-link caveat; `None` if the model of motion is not four links of an arch.
-pub(crate) fn rough_guide(scenario: &Scenario) -> Option<&'static str> {
-    let four = scenario.motion.hinges() == Hinges::Four && scenario.structure.thrusts();
-    four.then_some(FOUR_LINKS)
+/// Histories of four links, and those among them whose thrust line leaves the arch too far for the model.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub(crate) struct ModelCheck {
+    /// Number of histories of four links that are outside the model; absent for other models.
+    #[serde(rename = "outside_model", skip_serializing_if = "Option::is_none")]
+    pub(crate) outside: Option<usize>,
+    /// Number of histories of four links.
+    #[serde(skip)]
+    of: usize,
+    /// Largest excess of the thrust line, over the thickness.
+    #[serde(skip)]
+    largest_ratio: f64,
 }
 
-/// Returns the four-link caveat if it is among the warnings of a study.
-pub(crate) fn rough_guide_of(warnings: &[String]) -> Option<&'static str> {
-    let given = warnings.iter().any(|warning| warning == FOUR_LINKS);
-    given.then_some(FOUR_LINKS)
-}
+impl ModelCheck {
+    /// Makes the check of histories with these excesses of the thrust line; `None` for other models.
+    pub(crate) fn of(excess_ratios: impl IntoIterator<Item = Option<f64>>) -> Self {
+        let mut check = Self::default();
+        excess_ratios
+            .into_iter()
+            .for_each(|ratio| check.note(ratio));
+        check
+    }
 
-/// Returns warnings about the results of many cases: unlikely numbers of the scenario, and the four-link caveat.
-#[must_use]
-pub fn warnings(scenario: &Scenario) -> Vec<String> {
-    let mut warnings = scenario.unlikely();
-    warnings.extend(rough_guide(scenario).map(str::to_owned));
-    warnings
+    /// Makes the check of a number of histories outside the model and of a number of all; `None` for other models. The excess of the others is at most
+    /// the limit.
+    pub(crate) fn counted(counts: Option<[usize; 2]>) -> Self {
+        let [outside, of] = counts.unwrap_or_default();
+        Self {
+            outside: counts.map(|_| outside),
+            of,
+            largest_ratio: MODEL_LIMIT,
+        }
+    }
+
+    /// Adds a history.
+    fn note(&mut self, excess_ratio: Option<f64>) {
+        let Some(ratio) = excess_ratio else {
+            return;
+        };
+        self.of += 1;
+        *self.outside.get_or_insert(0) += usize::from(ratio > MODEL_LIMIT);
+        self.largest_ratio = self.largest_ratio.max(ratio);
+    }
+
+    /// Returns the number of `cases` outside the model, or the largest excess of the thrust line, and the remedy, in words. `None` if the thrust line
+    /// stays almost inside. The text names no options, because the Python package prints it too.
+    pub(crate) fn in_words(&self, cases: &str) -> Option<String> {
+        let (of, outside) = (self.of, self.outside?);
+        if outside > 0 {
+            return Some(format!(
+                "{outside} of {of} {cases} are outside the model of four links (the thrust line leaves the arch by more than {MODEL_LIMIT} \
+                 thicknesses), not on the safe side: compute them with free hinges"
+            ));
+        }
+        let ratio = self.largest_ratio;
+        (ratio > EXCESS_LEVELS[1]).then(|| {
+            format!(
+                "four links are a rough guide, not on the safe side: the thrust line leaves the arch by up to {ratio:.3} thicknesses; \
+                 compare with free hinges"
+            )
+        })
+    }
 }
 
 /// Summary of a study of many cases.
@@ -152,19 +197,19 @@ pub(crate) struct CaseSummary<'a, D> {
 }
 
 impl<'a, D> CaseSummary<'a, D> {
-    /// Makes the summary, with a warning about cases without a verdict and with details of the study.
+    /// Makes the summary, with warnings about the results and with details of the study.
     pub(crate) fn new(
         scenario: &Scenario,
         cases: usize,
         remarks: &'a Remarks,
-        no_verdict: Option<String>,
+        warnings: impl IntoIterator<Item = String>,
         details: D,
     ) -> Self {
         Self {
             program: env!("CARGO_PKG_NAME"),
             version: env!("CARGO_PKG_VERSION"),
             scenario: scenario.to_json(),
-            warnings: warnings(scenario).into_iter().chain(no_verdict).collect(),
+            warnings: scenario.unlikely().into_iter().chain(warnings).collect(),
             record_checksums: scenario.record_checksums(),
             cases,
             remarks,
@@ -180,6 +225,12 @@ pub(crate) fn no_verdict(incomplete: usize, of: usize, cases: &str) -> Option<St
 }
 
 impl Remarks {
+    /// Returns warnings about the model of four links, and about histories without a verdict; `cases` are the histories in words.
+    pub(crate) fn warnings(&self, cases: &str) -> impl Iterator<Item = String> + use<> {
+        let warnings = [self.model.in_words(cases), self.incomplete_in_words()];
+        warnings.into_iter().flatten()
+    }
+
     /// Returns the number of histories that ended too early for a verdict, and the remedy, in words; `None` if the number is zero.
     pub(crate) fn incomplete_in_words(&self) -> Option<String> {
         no_verdict(self.incomplete, self.histories, "histories")

@@ -7,6 +7,7 @@ use std::path::Path;
 use std::process::Command;
 
 use crate::common::program::{archrock, stderr};
+use archrock::dynamics::thrust::MODEL_LIMIT;
 use serde_json::{Value, json};
 
 const SCENARIO: &str = "[arch]\nmean_radius_m = 5.0\nthickness_m = 0.75\nembrace_deg = 180.0\n\
@@ -106,6 +107,7 @@ data.rows.forEach((row, index) => {
   const words = { never_moved: 'never moves', rest: 'comes to rest', overturned: 'overturns' }[row[2]];
   verify(text.includes(words), `${text} ${row}`);
   verify(text.includes(`impacts ${Number(row[4])}`), `${text} ${row}`);
+  verify(text.includes('outside the model') === Number(row[9]) > data.limit, `${text} ${row}`);
   verify(text.includes(`outcome_time_s ${Number(Number(row[6]).toPrecision(5))}`), `${text} ${row}`);
   const command = document.getElementById('command').textContent;
   verify(command.includes(`duration_s=${Number(row[0])} `), `${command} ${row}`);
@@ -133,7 +135,7 @@ verify(archrock.chosen().join() === '0,2', 'stays');
     browser::assert_checked(
         &page,
         script,
-        &json!({ "rows": cells }).to_string(),
+        &json!({ "rows": cells, "limit": MODEL_LIMIT }).to_string(),
         &[],
         150,
     );

@@ -9,6 +9,7 @@ mod limit;
 mod map;
 mod map_accuracy;
 mod map_axes;
+mod outside_model;
 mod peaks;
 mod quotable;
 mod repeatability;

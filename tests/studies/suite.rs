@@ -562,6 +562,7 @@ fn results(rows: &[(&str, f64, Option<Outcome>)]) -> SuiteFragility {
                 outcome_time_s: 1.0,
                 impacts: Some(0),
                 peak_over_critical: Some(0.5),
+                thrust_excess_ratio: None,
                 peak_rotation_rad: 0.1,
                 energy_defect_ratio: 0.0,
                 steps: None,
@@ -603,6 +604,7 @@ fn levels_of(records: &[(&str, &str)]) -> Vec<CaseRow> {
                     outcome_time_s: 1.0,
                     impacts: Some(0),
                     peak_over_critical: None,
+                    thrust_excess_ratio: None,
                     peak_rotation_rad: 0.5,
                     energy_defect_ratio: 0.0,
                     steps: Some(Steps {

@@ -13,7 +13,7 @@ use crate::common::prose::{golden, shows, skeleton};
 use crate::common::pulse;
 use crate::common::results::{Row, Table, named};
 use crate::common::{GRAVITY, pairs, request, semicircle, seven_voussoirs};
-use archrock::dynamics::history::{Cost, Details};
+use archrock::dynamics::history::{Cost, Details, MechanismSummary};
 use archrock::dynamics::model::Repetition;
 use archrock::internals::hybrid::engine::EngineError;
 use archrock::output::Figure;
@@ -224,7 +224,7 @@ impl Model for Rule {
             energy_defect_ratio: 0.0,
             thrust: None,
             cost: Cost::default(),
-            details: Details::Mechanisms(0.0),
+            details: Details::Mechanisms(MechanismSummary::default()),
         })
     }
 }

@@ -445,12 +445,21 @@ pub struct Summary {
     pub details: Details,
 }
 
+/// Results of mechanisms only.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MechanismSummary {
+    /// Largest rotation over that at the unstable equilibrium of the moving mechanism; from 1 on, gravity alone overturns the structure.
+    pub peak_over_critical: f64,
+    /// Largest excess of the thrust line up to the largest rotation, or up to overturning, over the thickness. It is computed at every step below the
+    /// critical rotation, at the joints or at 49 sections of a continuous ring. `None` for a column.
+    pub thrust_excess_ratio: Option<f64>,
+}
+
 /// Results of one kind of model only.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Details {
-    /// Largest rotation of four links or of a column over that at the unstable equilibrium of the moving mechanism; from 1 on, gravity alone
-    /// overturns the structure.
-    Mechanisms(f64),
+    /// Summary of four links or of a column.
+    Mechanisms(MechanismSummary),
     /// Summary of a row of blocks with rigid joints.
     Rigid(Box<RowSummary>),
     /// Summary of a row of blocks with elastic joints.
@@ -480,7 +489,16 @@ impl Summary {
     #[must_use]
     pub const fn peak_over_critical(&self) -> Option<f64> {
         match self.details {
-            Details::Mechanisms(peak_over_critical) => Some(peak_over_critical),
+            Details::Mechanisms(of) => Some(of.peak_over_critical),
+            Details::Rigid(_) | Details::Elastic(..) => None,
+        }
+    }
+
+    /// Returns the largest excess of the thrust line of four links, as in [`MechanismSummary`]; `None` for other models.
+    #[must_use]
+    pub const fn thrust_excess_ratio(&self) -> Option<f64> {
+        match self.details {
+            Details::Mechanisms(of) => of.thrust_excess_ratio,
             Details::Rigid(_) | Details::Elastic(..) => None,
         }
     }

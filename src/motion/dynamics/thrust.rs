@@ -58,6 +58,10 @@ impl FrictionDemands {
     }
 }
 
+/// Largest excess of the thrust line, over the thickness and up to the largest rotation, of histories that four links describe. Histories with a
+/// larger one are outside the model: the mechanism cannot transmit its own forces. `docs/models.md` has the data from which it was chosen.
+pub const MODEL_LIMIT: f64 = 0.5;
+
 impl ThrustRecord {
     /// Returns the friction coefficient that prevents sliding: the lasting demand of a row, the largest one of a mechanism.
     #[must_use]

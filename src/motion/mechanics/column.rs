@@ -420,6 +420,8 @@ impl MechanismChain for RockingColumn {
         self.incipient_g
     }
 
+    const THRUSTS: bool = false;
+
     /// The only section of the column is the base, where the ground's reaction acts at the toe. The excess is zero unless the reaction is tensile.
     fn demand(&self, mechanism: &Tilting, motion: &Motion) -> Demand {
         // Acceleration of the centre of gravity, on its circle about the toe.

@@ -217,6 +217,18 @@ impl MechanismChain for FourLinks {
         self.chain_from(sway).incipient.acceleration_g
     }
 
+    const THRUSTS: bool = true;
+
+    fn excess_ratio(
+        &self,
+        first: Sway,
+        impacts: usize,
+        mechanism: &Linkage,
+        motion: &Motion,
+    ) -> f64 {
+        mechanism.excess_ratio(motion, self.chain_from(first).sections(impacts))
+    }
+
     fn demand(&self, mechanism: &Linkage, motion: &Motion) -> Demand {
         mechanism.thrust_line(motion).demand(self.chain().sites)
     }

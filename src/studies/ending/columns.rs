@@ -98,6 +98,9 @@ pub(crate) fn columns<'a, R: 'a>(free_hinges: bool, ended: Ended<R>) -> Vec<Colu
         column("energy_defect_ratio", move |row| {
             Some(ended(row).ok()?.energy_defect_ratio)
         }),
+        column("thrust_excess_ratio", move |row| {
+            ended(row).ok()?.thrust_excess_ratio
+        }),
     ];
     if free_hinges {
         columns.push(column("peak_rotation_rad", move |row| {

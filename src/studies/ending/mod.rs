@@ -14,6 +14,7 @@ use crate::dynamics::model::{Case, Model, Request, SimulationError};
 pub use crate::dynamics::repeatability::Verdict;
 use crate::dynamics::repeatability::{CheckedHistory, OutcomeCount, checked};
 use crate::dynamics::row::error::RowModelError;
+use crate::dynamics::thrust::MODEL_LIMIT;
 use crate::dynamics::until::EndCondition;
 use crate::mechanics::four_link::limit::LimitError;
 use crate::mechanics::four_links::FourLinkError;
@@ -49,6 +50,9 @@ pub struct Ending {
     pub energy_defect_ratio: f64,
     /// Largest rotation over that at the unstable equilibrium; `None` for a row of blocks.
     pub peak_over_critical: Option<f64>,
+    /// Largest excess of the thrust line of four links up to the largest rotation, over the thickness; `None` for other models.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub thrust_excess_ratio: Option<f64>,
     /// Largest rotation of any body, in radians, for every model.
     pub peak_rotation_rad: f64,
     /// Time steps of the computation of a row of blocks; `None` for mechanisms, whose steps follow from a tolerance.
@@ -86,6 +90,13 @@ impl Ending {
     #[must_use]
     pub fn peak_of_row_rad(&self) -> Option<f64> {
         self.steps.map(|_| self.peak_rotation_rad)
+    }
+
+    /// Returns true if the thrust line leaves the structure so far that four links do not describe the history; false for other models.
+    #[must_use]
+    pub fn is_outside_model(&self) -> bool {
+        self.thrust_excess_ratio
+            .is_some_and(|ratio| ratio > MODEL_LIMIT)
     }
 
     /// Returns true if the history itself overturned, even if the verdict is uncertain.
@@ -188,6 +199,7 @@ impl Ending {
             impacts: summary.known_impacts(),
             energy_defect_ratio: summary.energy_defect_ratio,
             peak_over_critical: summary.peak_over_critical(),
+            thrust_excess_ratio: summary.thrust_excess_ratio(),
             peak_rotation_rad: summary.largest_rotation_rad(),
             steps: summary.row().map(|row| Steps {
                 longest_s: row.longest_step_s,
@@ -196,7 +208,8 @@ impl Ending {
             count,
         };
         let peak = ending.peak_over_critical.unwrap_or(0.0);
-        check_finite(&[ending.peak_rotation_rad, peak])?;
+        let excess = ending.thrust_excess_ratio.unwrap_or(0.0);
+        check_finite(&[ending.peak_rotation_rad, peak, excess])?;
         check_finite(&[ending.outcome_time_s, ending.energy_defect_ratio])?;
         Ok(ending)
     }

@@ -15,19 +15,27 @@ use crate::studies::results::{ReportedStudy, Results, Style};
 use crate::studies::runner::Study;
 use crate::studies::statistics::Share;
 
-/// The outcome of a cell of a sample, as an index of [`OUTCOMES`], and its probability of overturning, in parts of [`PARTS`]; or the reason why
-/// there is none. Rows are small, because all must fit into memory.
+/// The outcome of a cell of a sample, as an index of [`OUTCOMES`], plus [`OUTSIDE`] for a history outside the model of four links, and its
+/// probability of overturning, in parts of [`PARTS`]; or the reason why there is none. Rows are small, because all must fit into memory.
 type CellRow = Result<(u8, u8), NoAnswer>;
 
 /// Number of parts of a probability: fractions of 2, 3, 5, 6 and 7 repetitions are exact, others almost.
 const PARTS: f64 = 210.0;
 
+/// Added to the index of the outcome of a history outside the model of four links.
+const OUTSIDE: u8 = 100;
+
 fn cell_row(result: Result<Ending, NoHistory>) -> CellRow {
     let ending = result?;
     let outcome = ending.outcome_name();
     let place = OUTCOMES.iter().position(|name| *name == outcome);
+    let outside = if ending.is_outside_model() {
+        OUTSIDE
+    } else {
+        0
+    };
     let both = place.zip(ending.overturning_share());
-    let both = both.map(|(place, share)| (place as u8, (PARTS * share).round() as u8));
+    let both = both.map(|(place, share)| (place as u8 + outside, (PARTS * share).round() as u8));
     both.ok_or(NoAnswer::Incomplete)
 }
 
@@ -176,16 +184,19 @@ struct CellCounts {
     overturned: Option<Share>,
     /// Number of samples with each of the [`OUTCOMES`].
     outcomes: [usize; OUTCOMES.len()],
+    /// Number of samples with a history outside the model of four links.
+    outside: usize,
     /// Number of samples without an outcome: because of their values, because of a failure, and because their histories ended too early.
     without: [usize; 3],
 }
 
 impl CellCounts {
     fn of<'r>(at: [f64; 2], rows: impl Iterator<Item = &'r CellRow> + Clone) -> Self {
-        let (mut outcomes, mut without) = ([0; OUTCOMES.len()], [0; 3]);
+        let (mut outcomes, mut outside, mut without) = ([0; OUTCOMES.len()], 0, [0; 3]);
         for row in rows.clone() {
+            outside += usize::from(row.as_ref().is_ok_and(|(outcome, _)| *outcome >= OUTSIDE));
             *match row {
-                Ok((outcome, _)) => &mut outcomes[usize::from(*outcome)],
+                Ok((outcome, _)) => &mut outcomes[usize::from(*outcome % OUTSIDE)],
                 Err(NoAnswer::Invalid(_)) => &mut without[0],
                 Err(NoAnswer::Failed(_)) => &mut without[1],
                 Err(NoAnswer::Incomplete) => &mut without[2],
@@ -202,8 +213,14 @@ impl CellCounts {
             samples,
             overturned: Share::of_chances(chances),
             outcomes,
+            outside,
             without,
         }
+    }
+
+    /// Returns true if most samples have a history outside the model of four links.
+    const fn is_outside_model(&self) -> bool {
+        2 * self.outside > self.samples
     }
 
     /// Returns the share of samples that overturn; `None` without samples.

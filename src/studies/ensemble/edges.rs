@@ -12,6 +12,7 @@ use crate::output::svg::{Stroke, color};
 use crate::output::table::{column, csv, list};
 use crate::output::{Figure, OutputError};
 use crate::scenario::Scenario;
+use crate::studies::remarks::ModelCheck;
 use crate::studies::statistics::{
     BAND, Share, ascending, ascending_weighted, fractile, weighted_fractile,
 };
@@ -120,6 +121,8 @@ impl Question for FirstEdges {
             lines: Vec::new(),
             influences: vec![samples.influence(answer, false, strength)],
             no_verdict: samples.no_verdict(),
+            model: ModelCheck::of(samples.answers().map(|edge| edge.thrust_excess_ratio)),
+            checked: "thresholds of samples",
             details: Details {
                 survives_up_to_factor: safe.into(),
                 own_survives_up_to_factor: own.and_then(|edge| edge.survives_up_to),

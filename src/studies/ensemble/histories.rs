@@ -21,6 +21,7 @@ use crate::output::{Figure, OutputError};
 use crate::scenario::{Motion, Scenario, Structure};
 use crate::studies::ending::columns::{self, OUTCOMES};
 use crate::studies::ending::{Ending, NoHistory, Verdict};
+use crate::studies::remarks::ModelCheck;
 use crate::studies::statistics::{band, fractile, quantile};
 use crate::studies::threshold::Factors;
 
@@ -140,11 +141,15 @@ impl Question for Histories {
             false => of_answer("peak_rotation_rad", rotation),
         });
         let bands = self.bands(samples);
+        let answers = samples.answers();
+        let excess_ratios = answers.map(|answer| answer.ending.thrust_excess_ratio);
         Ok(Findings {
             first: first_words(samples),
             lines,
             influences,
             no_verdict: samples.no_verdict(),
+            model: ModelCheck::of(excess_ratios),
+            checked: "samples",
             details: Details {
                 outcomes,
                 peak_rotation_rad: peak_band.into(),

@@ -14,6 +14,7 @@ use crate::output::table::{column, csv};
 use crate::output::{Figure, OutputError};
 use crate::scenario::{Scenario, Suite, shown};
 use crate::studies::ending::Ending;
+use crate::studies::remarks::ModelCheck;
 use crate::studies::statistics::{
     ascending_weighted, bootstrap, interval, shares_up_to, weighted_fractile,
 };
@@ -105,6 +106,8 @@ impl Question for Capacities {
             lines,
             influences: vec![samples.influence(names, false, median)],
             no_verdict: samples.no_verdict(),
+            model: ModelCheck::of(counted.of_samples().map(|edge| edge.thrust_excess_ratio)),
+            checked: "edges of samples",
             details: Details {
                 intensity: self.suite.measure.column(),
                 quote: "both",
@@ -122,12 +125,10 @@ impl Question for Capacities {
         let model = scenario.model().map_err(NoAnswer::invalid)?;
         let edges = (0..self.suite.records.len() * self.suite.signs()).map(|shake| {
             let (record, mirrored) = (shake / self.suite.signs(), shake % self.suite.signs() == 1);
-            let share = |level: f64| {
+            FirstEdge::among(&self.levels, WIDTH, |level: f64| {
                 let (ground, request) = case(scenario, &self.suite, record, level, mirrored);
-                let ending = Ending::of(&*model, &ground, &request);
-                ending.map(|ending| ending.overturning_share())
-            };
-            FirstEdge::search(&self.levels, WIDTH, share)
+                Ending::of(&*model, &ground, &request)
+            })
         });
         edges.collect()
     }

@@ -8,7 +8,7 @@ use super::{NoAnswer, Samples};
 use crate::output::table::{Cell, Column, column, csv, each, list};
 use crate::output::{Figure, OutputError};
 use crate::scenario::Uncertain;
-use crate::studies::remarks::warnings;
+use crate::studies::remarks::ModelCheck;
 use crate::studies::results::Results;
 use crate::studies::statistics::Share;
 
@@ -22,6 +22,10 @@ pub struct Findings<'a, A, D> {
     pub(super) influences: Vec<Influence<'a>>,
     /// Number of histories without a verdict, and the remedy, in words; `None` if the number is zero.
     pub(super) no_verdict: Option<String>,
+    /// The histories of four links outside their model.
+    pub(super) model: ModelCheck,
+    /// The checked histories in words.
+    pub(super) checked: &'static str,
     /// The part of the summary that is specific to the question.
     pub(super) details: D,
     /// Pictures and pages.
@@ -106,6 +110,8 @@ struct SampleSummary<'a, D> {
     failed: usize,
     /// Number of samples whose histories ended too early for a verdict.
     incomplete: usize,
+    #[serde(flatten)]
+    model: ModelCheck,
     /// The samples without an answer, with the reasons.
     without_answer: Vec<Value>,
     /// The uncertainty that samples do not cover.
@@ -150,16 +156,24 @@ impl<'a, A: 'a, D: Serialize> Findings<'a, A, D> {
         let [invalid, failed] = ["invalid", "failed"].map(without);
         let reason = |(sample, why): (usize, &NoAnswer)| json!({ "sample": sample, "why": why.name(), "reason": why.reason() });
         let influences = self.influences.iter();
+        let outside = self.model.in_words(self.checked);
+        let limits = outside.clone().into_iter().chain(self.no_verdict);
         let summary = SampleSummary {
             program: env!("CARGO_PKG_NAME"),
             version: env!("CARGO_PKG_VERSION"),
             scenario: samples.scenario.to_json(),
-            warnings: [warnings(samples.scenario), Vec::from_iter(self.no_verdict)].concat(),
+            warnings: samples
+                .scenario
+                .unlikely()
+                .into_iter()
+                .chain(limits)
+                .collect(),
             samples: samples.rows.len(),
             answered: samples.answers().count(),
             invalid: invalid.len(),
             failed: failed.len(),
             incomplete: without("incomplete").len(),
+            model: self.model,
             without_answer: samples.without().map(reason).collect(),
             not_considered: NOT_CONSIDERED,
             details: &self.details,
@@ -176,6 +190,7 @@ impl<'a, A: 'a, D: Serialize> Findings<'a, A, D> {
         let first = first.map(|first| format!("{first};\n    {decides};\n    {NOT_CONSIDERED}"));
         let mut words = vec![first.unwrap_or("no sample has an answer".to_owned())];
         words.extend(self.lines);
+        words.extend(outside);
         for (reasons, what) in [
             (invalid, "make no valid structure, and do not count"),
             (failed, "could not be computed"),

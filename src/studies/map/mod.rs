@@ -40,6 +40,11 @@ pub struct CellRow {
 }
 
 impl CellRow {
+    /// Returns true if the history is outside the model of four links.
+    pub(super) fn is_outside_model(&self) -> bool {
+        self.result.as_ref().is_ok_and(Ending::is_outside_model)
+    }
+
     /// Returns true if the outcome depends on the computation.
     pub(super) const fn is_doubtful(&self) -> bool {
         matches!(self.outcomes, Some(Ok(2..)))

@@ -30,6 +30,7 @@ pub fn page(title: &str, map: &OverturningMap<'_>, rows: &[CellRow], style: Styl
         palette: &Kind::ALL,
         kinds: kinds.collect(),
         doubts: rows.iter().enumerate().filter_map(doubt).collect(),
+        outside: rows.iter().map(CellRow::is_outside_model).collect(),
         columns: columns(rows),
     };
     cells.page(title, map, &drawn)
@@ -43,6 +44,8 @@ pub(crate) struct Cells<'c> {
     pub(crate) kinds: Vec<Kind>,
     /// Indices of the uncertain cells, with the reasons.
     pub(crate) doubts: Vec<(usize, String)>,
+    /// True for cells outside the model of four links.
+    pub(crate) outside: Vec<bool>,
     /// Columns with a number for each cell: name and values; `None` for a cell without a value.
     pub(crate) columns: Vec<(&'static str, Vec<Option<f64>>)>,
 }
@@ -89,12 +92,14 @@ impl Cells<'_> {
         let doubts: Map<String, Value> = doubts
             .map(|(index, doubt)| (index.to_string(), json!(doubt)))
             .collect();
+        let outside = (0..self.outside.len()).filter(|index| self.outside[*index]);
         let labels: Vec<&str> = self.palette.iter().map(|kind| kind.label).collect();
         json!({
             "axes": [axis(0), axis(1)],
             "sheet_px": { "width": Figure::SCREEN.width_px, "height": drawn.height_px },
             "kinds": BASE64_STANDARD.encode(kinds),
             "doubts": doubts,
+            "outside": outside.collect::<Vec<_>>(),
             "labels": labels,
             "columns": columns.collect::<Vec<_>>(),
             "command": command(map),
@@ -105,12 +110,13 @@ impl Cells<'_> {
 /// Returns the columns with numbers of the cells.
 fn columns(rows: &[CellRow]) -> Vec<(&'static str, Vec<Option<f64>>)> {
     type Of = fn(&Ending) -> Option<f64>;
-    let all: [(&str, Of); 5] = [
+    let all: [(&str, Of); 6] = [
         ("impacts", |of| Some(of.known_impacts()? as f64)),
         ("outcome_time_s", Ending::known_time_s),
         ("peak_rotation_over_critical", |of| of.peak_over_critical),
         ("peak_rotation_rad", Ending::peak_of_row_rad),
         ("energy_defect_ratio", |of| Some(of.energy_defect_ratio)),
+        ("thrust_excess_ratio", |of| of.thrust_excess_ratio),
     ];
     let column = |(name, of): (_, Of)| {
         let cells = rows.iter().map(|row| of(row.result.as_ref().ok()?));

@@ -102,14 +102,33 @@ impl<'s> Sheet<'s> {
         (factors[0] * x, factors[1] * y)
     }
 
-    /// Fills the cells by their kinds, which the palette must contain, and draws marks over them. The legend has the kinds, then these keys.
+    /// Returns a diagonal in each chosen cell; `ends` are 0 at its lower edge and 1 at its upper edge.
+    fn hatch(&self, name: &'static str, line: Stroke, ends: [usize; 2], cells: &[bool]) -> Mark {
+        let [x_edges, y_edges] = &self.edges;
+        let count = y_edges.len() - 1;
+        let chosen = (0..).zip(cells).filter(|(_, chosen)| **chosen);
+        let diagonals = chosen.flat_map(|(index, _): (usize, _)| {
+            let [column, row] = [index / count, index % count];
+            let at = |side: usize| (x_edges[column + side], y_edges[row + ends[side]]);
+            [at(0), at(1), (f64::NAN, f64::NAN)]
+        });
+        Mark::curve(name, line, diagonals)
+    }
+
+    /// Fills the cells by their kinds, which the palette must contain, hatches cells outside the model of four links, and draws marks over them. The
+    /// legend has the kinds, then these keys.
     pub(crate) fn draw(
         self,
-        palette: &[Kind],
-        kinds: &[Kind],
-        keys: Vec<Key>,
-        marks: Vec<Mark>,
+        (palette, kinds, outside): (&[Kind], &[Kind], &[bool]),
+        mut keys: Vec<Key>,
+        mut marks: Vec<Mark>,
     ) -> Drawn {
+        if outside.contains(&true) {
+            let name = "outside-model";
+            let sign = Sign::LineOn(CELL, name, OUTSIDE);
+            keys.push(Key::new("outside the model of four links", sign));
+            marks.insert(0, self.hatch(name, OUTSIDE, [1, 0], outside));
+        }
         let Self {
             title,
             map,
@@ -186,29 +205,16 @@ pub(super) fn drawn(
 ) -> Drawn {
     let kinds: Vec<_> = rows.iter().map(|row| kind_of(row, style)).collect();
     let sheet = Sheet::new(title, map, style);
-    let hatch = hatch(&sheet.edges, rows);
     let sign = Sign::LineOn(CELL, "doubtful", DOUBTFUL);
     let key = Key::new("another outcome in a repetition", sign);
     let keys = map.repeat.then_some(key).into_iter().collect();
-    sheet.draw(&Kind::ALL, &kinds, keys, vec![hatch])
-}
-
-/// Hatches the cells whose outcome depends on the computation.
-fn hatch([x_edges, y_edges]: &[Vec<f64>; 2], rows: &[CellRow]) -> Mark {
-    let count = y_edges.len() - 1;
-    let doubtful = (0..).zip(rows).filter(|(_, row)| row.is_doubtful());
-    let diagonals = doubtful.flat_map(|(index, _): (usize, _)| {
-        let [column, line] = [index / count, index % count];
-        let low = (x_edges[column], y_edges[line]);
-        [
-            low,
-            (x_edges[column + 1], y_edges[line + 1]),
-            (f64::NAN, f64::NAN),
-        ]
-    });
-    Mark::curve("doubtful", DOUBTFUL, diagonals)
+    let doubtful: Vec<bool> = rows.iter().map(CellRow::is_doubtful).collect();
+    let hatch = sheet.hatch("doubtful", DOUBTFUL, [0, 1], &doubtful);
+    let outside: Vec<bool> = rows.iter().map(CellRow::is_outside_model).collect();
+    sheet.draw((&Kind::ALL, &kinds, &outside), keys, vec![hatch])
 }
 
 /// Background of lines in the legend: light, as most cells.
 const CELL: &str = "#ffffff";
 const DOUBTFUL: Stroke = Stroke::new(color::BLACK, 1.2, "");
+const OUTSIDE: Stroke = Stroke::new(color::BLACK, 0.8, "");

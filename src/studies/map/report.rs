@@ -7,7 +7,7 @@ use crate::output::OutputError;
 use crate::output::table::{Column, column, csv};
 use crate::scenario::{Quantity, Scenario};
 use crate::studies::ending::columns::{self, FAILED};
-use crate::studies::remarks::{self, CaseSummary, Remark, Remarks, outcome_counts, outcome_label};
+use crate::studies::remarks::{CaseSummary, Remark, Remarks, outcome_counts, outcome_label};
 use crate::studies::results::{ReportedStudy, Results, Style};
 use crate::studies::run::Scales;
 
@@ -20,8 +20,8 @@ impl ReportedStudy for OverturningMap<'_> {
         let scenario = self.scenario;
         let title = scenario.title.as_deref().unwrap_or("Overturning map");
         let remarks = remarks(self, &cells);
-        let incomplete = remarks.incomplete_in_words();
-        let summary = CaseSummary::new(scenario, cells.len(), &remarks, incomplete, ());
+        let warnings = remarks.warnings("cells");
+        let summary = CaseSummary::new(scenario, cells.len(), &remarks, warnings, ());
         let others = [
             picture::draw(title, self, &cells, style).into_bytes(),
             page::page(title, self, &cells, style).into_bytes(),
@@ -89,8 +89,7 @@ fn words(map: &OverturningMap<'_>, cells: &[CellRow], remarks: &Remarks) -> Stri
             cells.iter().filter(|cell| cell.is_doubtful()).count()
         ));
     }
-    lines.extend(remarks::rough_guide(map.scenario).map(str::to_owned));
-    lines.extend(remarks.incomplete_in_words());
+    lines.extend(remarks.warnings("cells"));
     lines.extend(remarks.uncertain_in_words(SUMMARY));
     lines.extend(remarks.failed_in_words(SUMMARY));
     lines.join("\n  ")

@@ -3,7 +3,7 @@
 use crate::dynamics::history::{Outcome, Summary as History};
 use crate::dynamics::model::Model;
 use crate::dynamics::peak::Peak;
-use crate::dynamics::thrust::EXCESS_LEVELS;
+use crate::dynamics::thrust::{EXCESS_LEVELS, MODEL_LIMIT};
 use crate::scenario::{Hinges, Scenario, Structure};
 
 /// Rotations up to this value are printed as zero: such a block slides without rocking.
@@ -83,9 +83,11 @@ pub(super) fn friction_condition(scenario: &Scenario, history: &History) -> Opti
     })
 }
 
-/// Returns a conjunction and the quality of four links, for an excess of the thrust line in thicknesses.
-const fn quality(excess_ratio: f64) -> [&'static str; 2] {
-    if excess_ratio <= EXCESS_LEVELS[0] {
+/// Returns a conjunction and the quality of four links, for an excess of the thrust line in thicknesses, and for the excess up to the largest rotation.
+fn quality(excess_ratio: f64, up_to_peak: Option<f64>) -> [&'static str; 2] {
+    if up_to_peak.is_some_and(|ratio| ratio > MODEL_LIMIT) {
+        ["but", "outside the model of four links"]
+    } else if excess_ratio <= EXCESS_LEVELS[0] {
         ["and", "four links suffice"]
     } else if excess_ratio <= EXCESS_LEVELS[1] {
         ["and", "four links are close"]
@@ -100,7 +102,8 @@ pub(super) fn four_link_quality(scenario: &Scenario, history: &History) -> Optio
     let four = scenario.motion.hinges() == Hinges::Four && is_arch;
     let thrust = history.thrust.as_ref().filter(|_| four)?;
     thrust.shares_within()?;
-    Some(quality(thrust.largest_excess.value).join(" "))
+    let excess_ratio = thrust.largest_excess.value;
+    Some(quality(excess_ratio, history.thrust_excess_ratio()).join(" "))
 }
 
 /// Returns the limits of four links, or of a column on its toe, in parts of a sentence, with `advice` if four links are not enough. `None` if
@@ -120,7 +123,7 @@ pub(super) fn four_link_limits(
         );
         return Some(Vec::from_iter((value > 0.0).then_some(flies)));
     }
-    let [_, quality] = quality(value);
+    let [_, quality] = quality(value, history.thrust_excess_ratio());
     if value <= close {
         return Some(vec![format!(
             "{quality}: the thrust line leaves the arch by {value:.4} t at most"

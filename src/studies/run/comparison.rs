@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use super::caveats::{self, vibrates_since_s};
 use super::ModelResults;
+use super::caveats::{self, vibrates_since_s};
 use super::summary::ComputedRun;
 use crate::dynamics::history::{Outcome, Summary as History};
 use crate::dynamics::repeatability::Verdict;
@@ -46,7 +46,10 @@ fn outcome_words(results: &ModelResults<'_>) -> String {
     match history.outcome {
         outcome @ (Outcome::NeverMoved | Outcome::Vibrates) => format!("{outcome}{uncertain}"),
         _ if vibrates_since_s(history).is_some() => {
-            format!("still vibrates at {:.4} s{uncertain}", history.outcome_time_s)
+            format!(
+                "still vibrates at {:.4} s{uncertain}",
+                history.outcome_time_s
+            )
         }
         outcome => format!("{outcome} at {:.4} s{uncertain}", history.outcome_time_s),
     }

@@ -134,6 +134,8 @@ impl FrictionDemand {
 pub struct MechanismResults {
     /// Largest rotation over that at the unstable equilibrium of the mechanism that moved. From 1 on, gravity alone overturns the structure.
     pub peak_rotation_over_critical: Option<f64>,
+    /// Largest excess of the thrust line of four links up to the largest rotation, or up to overturning, over the thickness; null for a column.
+    pub thrust_excess_ratio: Option<f64>,
     /// Dimensionless numbers; absent without an unstable equilibrium.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub dimensionless: Option<Dimensionless>,
@@ -329,6 +331,7 @@ impl MechanismResults {
         };
         Self {
             peak_rotation_over_critical: history.peak_over_critical(),
+            thrust_excess_ratio: history.thrust_excess_ratio(),
             dimensionless: Scales::new(model, scenario.gravity_m_s2()).map(dimensionless),
             thrust: history.thrust.as_ref().map(thrust),
             evaluations: history.cost.evaluations,

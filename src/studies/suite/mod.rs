@@ -15,7 +15,6 @@ use self::fragility::{Fragility, NoFit, Observation, by_intensity, fit};
 pub use self::heading::Heading;
 use self::strength::Strength;
 use super::ending::{Ending, NoHistory, Verdict, check_finite};
-use super::remarks::warnings;
 use super::results::{ReportedStudy, Results, Style};
 use super::runner::Study;
 use super::threshold::survival::Survival;
@@ -158,7 +157,7 @@ impl Study for RecordSuite<'_> {
     }
 
     fn warnings(&self) -> Vec<String> {
-        warnings(self.scenario)
+        self.scenario.unlikely()
     }
 
     fn count(&self) -> usize {
@@ -216,7 +215,7 @@ impl ReportedStudy for RecordSuite<'_> {
     const FILES: &'static [&'static str] = &report::FILES;
 
     fn results(&self, rows: Vec<CaseRow>, style: Style) -> Result<Results, OutputError> {
-        let heading = Heading::of_resolved(&self.scenario.to_toml(), warnings(self.scenario));
+        let heading = Heading::of_resolved(&self.scenario.to_toml(), self.scenario.unlikely());
         let heading = heading.expect("the scenario has a suite");
         heading.report(rows, style.figure)
     }

@@ -13,7 +13,7 @@ use crate::scenario::{Measure, shown};
 use crate::studies::ending::Verdict;
 use crate::studies::ending::columns::{self, FAILED, yes};
 use crate::studies::quotable::{self, ModelAnswer};
-use crate::studies::remarks::{Remarks, outcome_counts, outcome_label, rough_guide_of};
+use crate::studies::remarks::{Remarks, outcome_counts, outcome_label};
 use crate::studies::results::Results;
 use crate::studies::threshold::survival::{self, Survival};
 use crate::studies::threshold::{rounded, rounded_down};
@@ -126,13 +126,13 @@ impl Heading {
         let mut words = self.words(&results, &capacities, &measures, &remarks);
         words.extend(to_quote.iter().map(|quote| format!("\n  {quote}")));
         let efficiencies = csv(efficiency_columns(), &measures)?;
-        let incomplete = remarks.incomplete_in_words();
+        let limits = remarks.warnings("cases");
         let end = |end: usize| results.fits().nth(1 + end).map(Into::into);
         let summary = Summary {
             program: env!("CARGO_PKG_NAME"),
             version: env!("CARGO_PKG_VERSION"),
             scenario: &self.scenario,
-            warnings: self.warnings.iter().cloned().chain(incomplete).collect(),
+            warnings: self.warnings.iter().cloned().chain(limits).collect(),
             to_quote,
             intensity: self.measure.column(),
             curve: (&results.fit).into(),
@@ -235,7 +235,7 @@ impl Heading {
             lines.push(format!("{}: {words}", case.record_in_words()));
         }
         lines.push(searched(results));
-        lines.extend(rough_guide_of(&self.warnings).map(str::to_owned));
+        lines.extend(remarks.model.in_words("cases"));
         if results.cases.iter().any(CaseRow::still_rocking) {
             lines.push("those still rocking at the end count as not overturned".to_owned());
         }

@@ -34,6 +34,10 @@ pub struct FirstEdge {
     /// The uncertain factors below `factor`, ascending, each with the fraction of its repetitions that overturn.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub uncertain: Vec<[f64; 2]>,
+    /// Largest excess of the thrust line of four links in the history at `factor`, or at `tried_to` without it, over the thickness; `None` for other
+    /// models.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub thrust_excess_ratio: Option<f64>,
 }
 
 /// Treatment of an uncertain factor: its probability to overturn the structure, from the fraction of the repetitions that overturn.
@@ -50,18 +54,38 @@ impl FirstEdge {
     pub fn of(scenario: &Scenario, factors: &Factors) -> Result<Self, NoAnswer> {
         let model = scenario.model().map_err(NoAnswer::invalid)?;
         let request = scenario.request_on(scenario.ground_motion(), &scenario.structure);
-        let share = |factor: f64| {
+        Self::among(&factors.values(), EDGE_WIDTH, |factor: f64| {
             let ground = scenario.ground_motion().scaled(factor);
             let ground = ground.map_err(SimulationError::from)?;
-            let ending = Ending::of(&*model, &ground, &request);
-            ending.map(|ending| ending.overturning_share())
+            Ending::of(&*model, &ground, &request)
+        })
+    }
+
+    /// Finds the first edge from the endings of histories, as [`FirstEdge::search`].
+    pub(in crate::studies) fn among(
+        strengths: &[f64],
+        width: f64,
+        ending: impl Fn(f64) -> Result<Ending, NoHistory>,
+    ) -> Result<Self, NoAnswer> {
+        let excesses = RefCell::new(Vec::new());
+        let share = |strength| {
+            let ending = ending(strength)?;
+            excesses
+                .borrow_mut()
+                .push((strength, ending.thrust_excess_ratio));
+            Ok(ending.overturning_share())
         };
-        Self::search(&factors.values(), EDGE_WIDTH, share)
+        let mut edge = Self::search(strengths, width, share)?;
+        let last = edge.factor.unwrap_or(edge.tried_to);
+        let mut excesses = excesses.into_inner().into_iter();
+        let known = excesses.find(|(strength, _)| *strength == last);
+        edge.thrust_excess_ratio = known.and_then(|(_, ratio)| ratio);
+        Ok(edge)
     }
 
     /// Finds the first edge. `strengths` are tried in ascending order, and bisection encloses the edge between two of them to this relative
     /// width. `share` is that of the repetitions that overturn; `None` if the history is incomplete.
-    pub(in crate::studies) fn search(
+    fn search(
         strengths: &[f64],
         width: f64,
         share: impl Fn(f64) -> Result<Option<f64>, NoHistory>,
@@ -135,13 +159,16 @@ impl FirstEdge {
     pub(in crate::studies) fn columns<'a, R: 'a>(
         factor: &'static str,
         of: impl Fn(&R) -> Option<&Self> + Copy + 'a,
-    ) -> [Column<'a, R>; 5] {
+    ) -> [Column<'a, R>; 6] {
         [
             column("survives_up_to", move |row| of(row)?.survives_up_to),
             column(factor, move |row| of(row)?.factor),
             column("tried_to", move |row| Some(of(row)?.tried_to)),
             column("uncertain_from", move |row| of(row)?.uncertain_from),
             column("at_most", move |row| Some(yes(of(row)?.at_most))),
+            column("thrust_excess_ratio", move |row| {
+                of(row)?.thrust_excess_ratio
+            }),
         ]
     }
 

@@ -14,9 +14,9 @@ use crate::dynamics::repeatability::OutcomeCount;
 use crate::output::table::{column, csv, fields};
 use crate::output::{Figure, OutputError};
 use crate::scenario::{Ground, Hinges, Scenario};
-use crate::studies::ending::{NoHistory, Verdict, outcome_name};
+use crate::studies::ending::{Ending, NoHistory, Verdict, outcome_name};
 use crate::studies::quotable::{self, ModelAnswer};
-use crate::studies::remarks::{self, Remarks};
+use crate::studies::remarks::Remarks;
 use crate::studies::results::Results;
 use crate::studies::statistics::ascending;
 
@@ -131,6 +131,8 @@ struct HistorySummary {
     peak_rotation_over_critical: Option<f64>,
     /// Largest rotation of any body, in radians.
     peak_rotation_rad: Option<f64>,
+    /// Largest excess of the thrust line of four links, over the thickness; null for other models.
+    thrust_excess_ratio: Option<f64>,
 }
 
 /// Makes files and words of the thresholds of scenarios that differ only in their models of motion.
@@ -184,7 +186,7 @@ fn table(models: &[ModelSummary<'_>]) -> Result<Vec<u8>, OutputError> {
         Some(row.1.history?.outcome_time_s)
     }));
     columns.extend(fields!(
-        |row: &Row<'_>| row.1.history? => peak_rotation_over_critical, peak_rotation_rad
+        |row: &Row<'_>| row.1.history? => peak_rotation_over_critical, peak_rotation_rad, thrust_excess_ratio
     ));
     csv(columns, &rows.collect::<Vec<_>>())
 }
@@ -192,13 +194,13 @@ fn table(models: &[ModelSummary<'_>]) -> Result<Vec<u8>, OutputError> {
 /// Returns the warnings of all models without duplicates, and histories without a verdict.
 fn warnings(scenarios: &[Scenario], thresholds: &[Threshold]) -> Vec<String> {
     let mut warnings: Vec<String> = Vec::new();
-    for warning in scenarios.iter().flat_map(remarks::warnings) {
+    for warning in scenarios.iter().flat_map(Scenario::unlikely) {
         if !warnings.contains(&warning) {
             warnings.push(warning);
         }
     }
     let remarks = thresholds.iter().map(Threshold::remarks);
-    warnings.extend(remarks.filter_map(|remarks| remarks.incomplete_in_words()));
+    warnings.extend(remarks.flat_map(|remarks| remarks.warnings("histories")));
     let varied = thresholds.iter().flat_map(|threshold| &threshold.varied);
     warnings.extend(
         varied.filter_map(|varied| Some(format!("with {}: {}", varied.name, varied.no_verdict()?))),
@@ -298,6 +300,16 @@ impl Threshold {
         remarks
     }
 
+    /// Returns words about the first history that overturns the structure, if it is outside the model of four links.
+    fn edge_outside_model(&self) -> &'static str {
+        let mut endings = self.samples.iter().flat_map(|sample| &sample.result);
+        let first = endings.find(|ending| ending.verdict() == Verdict::Overturns);
+        match first.is_some_and(Ending::is_outside_model) {
+            true => "; the first that overturns is one of them",
+            false => "",
+        }
+    }
+
     /// Returns true if a factor is the smallest tried factor, so that smaller ones may overturn the structure as well.
     fn is_first(&self, factor: f64) -> bool {
         let first = self.samples.first();
@@ -317,6 +329,7 @@ impl SampleSummary {
                 outcome_time_s: ending.outcome_time_s,
                 peak_rotation_over_critical: ending.peak_over_critical,
                 peak_rotation_rad: Some(ending.peak_rotation_rad),
+                thrust_excess_ratio: ending.thrust_excess_ratio,
             }),
             count: ending.ok().and_then(|ending| ending.count.clone()),
             reason: match ending {
@@ -358,9 +371,9 @@ fn words(scenarios: &[Scenario], thresholds: &[Threshold]) -> String {
         );
         lines.extend(threshold.doubts_in_words(&scenarios[0]));
         lines.extend(threshold.varied_in_words(peak_g));
+        let outside = threshold.remarks().model.in_words("histories");
+        lines.extend(outside.map(|words| format!("  {words}{}", threshold.edge_outside_model())));
     }
-    let caveat = scenarios.iter().find_map(remarks::rough_guide);
-    lines.extend(caveat.map(|caveat| format!("  {caveat}")));
     lines.join("\n") + "\n"
 }
 

@@ -20,6 +20,7 @@ use crate::mechanics::four_links::FourLinkError;
 use crate::mechanics::sides::Sides;
 use crate::mechanics::sway::Sway;
 use crate::scenario::{LimitState, Series, StateRule};
+use crate::studies::remarks::ModelCheck;
 use crate::studies::statistics::{bootstrap, interval};
 
 /// Smallest number of records for which the mean of the peaks counts. With fewer records the largest peak counts (NTC 2018, § 7.3.5).
@@ -62,6 +63,8 @@ pub struct RecordPeaks {
     /// Peaks to the right and to the left.
     #[serde(flatten)]
     pub peaks: Sides<Peak>,
+    /// Largest excess of the thrust line of four links up to the largest rotation, over the thickness; `None` for a column.
+    pub thrust_excess_ratio: Option<f64>,
 }
 
 /// The results of all records to one side.
@@ -129,6 +132,8 @@ pub struct Histories {
     pub passed_over_fc: Option<bool>,
     /// Number of records with a history that ended too early for a verdict.
     pub incomplete: usize,
+    #[serde(flatten)]
+    pub(super) model: ModelCheck,
     /// The results of each record.
     pub records: Vec<RecordPeaks>,
     /// Comparison of the spectra.
@@ -222,6 +227,7 @@ pub(super) fn histories(
         passed: both_pass(&results, |side| side.passed),
         passed_over_fc: both_pass(&results, |side| side.passed_over_fc),
         incomplete: records.iter().filter(is_incomplete).count(),
+        model: ModelCheck::of(records.iter().map(|one| one.thrust_excess_ratio)),
         records,
         mean_spectrum: MeanSpectrum {
             from_s,
@@ -252,9 +258,9 @@ fn record_peaks(
         };
         peaks(model, &ground, &request, participating_kg)
     });
-    let both = both.collect::<Result<Vec<Sides<Peak>>, _>>()?;
+    let both = both.collect::<Result<Vec<(Sides<Peak>, Option<f64>)>, _>>()?;
     let larger = |sway| {
-        let (one, other) = (both[0].to(sway), both[1].to(sway));
+        let (one, other) = (both[0].0.to(sway), both[1].0.to(sway));
         let overturned = one.overturned || other.overturned;
         let incomplete = one.incomplete || other.incomplete;
         let displacement_m = one.displacement_m.max(other.displacement_m);
@@ -270,6 +276,7 @@ fn record_peaks(
         crc32: format!("{:08x}", series.checksum()),
         peak_g: series.peak_g(input.gravity_m_s2),
         peaks: Sides::of(larger),
+        thrust_excess_ratio: both[0].1.zip(both[1].1).map(|(one, other)| one.max(other)),
     })
 }
 
@@ -315,13 +322,13 @@ fn history_side(
     }
 }
 
-/// Computes the largest displacements of a history to the right and to the left.
+/// Computes the largest displacements of a history to the right and to the left, and the excess of its thrust line.
 fn peaks(
     model: &dyn MechanismModel,
     ground: &GroundMotion,
     request: &Request,
     participating_kg: Sides<f64>,
-) -> Result<Sides<Peak>, SimulationError> {
+) -> Result<(Sides<Peak>, Option<f64>), SimulationError> {
     let history = model.history(ground, request)?;
     // The chain of mechanisms starts with the side of the latest uplift.
     let mut first = Sway::Right;
@@ -354,7 +361,7 @@ fn peaks(
         Outcome::Incomplete => [peaks.right.incomplete, peaks.left.incomplete] = [true; 2],
         _ => {}
     }
-    Ok(peaks)
+    Ok((peaks, history.summary.thrust_excess_ratio()))
 }
 
 /// Computes the smallest and the largest ratio of the mean 5 % spectrum of records to another spectrum; `None` if the other spectrum is unknown

@@ -194,6 +194,33 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
         self.chain.demand(&swing.link.mechanism, &motion)
     }
 
+    /// Returns the excess of the thrust line of a moving mechanism, over the thickness: see [`MechanismChain::excess_ratio`].
+    #[must_use]
+    pub fn excess_ratio(
+        &self,
+        swing: Swing<'a, C::Mechanism>,
+        now: &SystemState<'a, C::Mechanism>,
+    ) -> f64 {
+        let (first, motion) = (swing.sway.before(swing.impacts), self.motion(swing, now));
+        let mechanism = &swing.link.mechanism;
+        (self.chain).excess_ratio(first, swing.impacts, mechanism, &motion)
+    }
+
+    /// Returns whether a motion on quiet ground has too little energy for a rotation of more than this multiple of the critical one.
+    #[must_use]
+    pub fn stays_below(
+        &self,
+        over_critical: f64,
+        swing: Swing<'a, C::Mechanism>,
+        now: &SystemState<'a, C::Mechanism>,
+    ) -> bool {
+        let link = swing.link;
+        let turned = RockingState::new(over_critical * link.critical_rad, 0.0, 0.0);
+        self.piece(now.piece).stays_still()
+            && over_critical < 1.0
+            && self.energy(link, &now.state) <= self.energy(link, &turned)
+    }
+
     /// Returns the thrust line over the sections from left to right: see [`MechanismChain::eccentricity_ratios`].
     #[must_use]
     pub fn eccentricity_ratios(&self, now: &SystemState<'a, C::Mechanism>) -> Vec<Option<f64>> {

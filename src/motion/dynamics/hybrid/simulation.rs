@@ -10,7 +10,9 @@ use super::posture::{StructureState, posture, seen_from_ground, state};
 use super::rocking::{Guard, Mode, Phase, Rocking, RockingState, Swing};
 use super::sampler::Sampler;
 use crate::dynamics::ground::GroundMotion;
-use crate::dynamics::history::{Details, Event, EventKind, Impact, Outcome, Summary};
+use crate::dynamics::history::{
+    Details, Event, EventKind, Impact, MechanismSummary, Outcome, Summary,
+};
 use crate::dynamics::model::{
     Initial, MechanismModel, Model, Recorder, Request, SimulationError, check,
 };
@@ -129,6 +131,8 @@ fn history_of<C: MechanismChain + MechanismModel>(
         sampler: recorder.map(|recorder| Sampler::new(&rocking, every_s, recorder)),
         impacts: 0,
         peaks: (vec![0.0; C::Mechanism::BODIES.len()], 0.0),
+        excess_ratio: 0.0,
+        excess_at_peak: 0.0,
         last_passage: None,
         last_rest_s: None,
         energy_without_work: mode.swing().map_or(0.0, energy),
@@ -161,6 +165,7 @@ fn history_of<C: MechanismChain + MechanismModel>(
         Phase::Rest if collector.last_rest_s.is_some() => Outcome::Rest,
         Phase::Rest => Outcome::NeverMoved,
     };
+    let excess_ratio = collector.excess_of(outcome);
     let (mut outcome_time_s, mut peaks) = (now.time_s, collector.peaks);
     match (now.mode, collector.last_passage, collector.last_rest_s) {
         (Phase::Overturned(_), Some(passage), _) => (outcome_time_s, peaks) = passage,
@@ -182,7 +187,10 @@ fn history_of<C: MechanismChain + MechanismModel>(
             _ => sampler.thrust,
         }),
         cost: finish.cost,
-        details: Details::Mechanisms(peak_over_critical),
+        details: Details::Mechanisms(MechanismSummary {
+            peak_over_critical,
+            thrust_excess_ratio: C::THRUSTS.then_some(excess_ratio),
+        }),
     })
 }
 
@@ -342,6 +350,10 @@ struct SummaryCollector<'r, 'a, C: MechanismChain> {
     impacts: usize,
     /// Largest rotations of the bodies, and largest rotation over the critical one.
     peaks: (Vec<f64>, f64),
+    /// Largest excess of the thrust line up to now, over the thickness, at rotations below the critical one.
+    excess_ratio: f64,
+    /// Largest excess of the thrust line up to the largest rotation.
+    excess_at_peak: f64,
     /// Time of the last outward passage of the unstable equilibrium, and the peaks up to then.
     last_passage: Option<(f64, (Vec<f64>, f64))>,
     last_rest_s: Option<f64>,
@@ -350,7 +362,7 @@ struct SummaryCollector<'r, 'a, C: MechanismChain> {
     largest_defect: f64,
 }
 
-impl<C: MechanismChain> SummaryCollector<'_, '_, C> {
+impl<'a, C: MechanismChain> SummaryCollector<'_, 'a, C> {
     /// Updates the peaks. All rotations increase with `q`, so the largest occur at its turning points, at the start or at the end.
     fn note_peak(&mut self, mode: Mode<'_, C::Mechanism>, state: &RockingState) {
         if let Some(Swing { sway, link, .. }) = mode.swing() {
@@ -359,7 +371,28 @@ impl<C: MechanismChain> SummaryCollector<'_, '_, C> {
             for (peak, rotation) in peaks.iter_mut().zip(rotations.as_ref()) {
                 *peak = peak.max(rotation.abs());
             }
-            *over_critical = over_critical.max(state[0] / link.critical_rad);
+            if state[0] / link.critical_rad > *over_critical {
+                *over_critical = state[0] / link.critical_rad;
+                self.excess_at_peak = self.excess_ratio;
+            }
+        }
+    }
+
+    /// Returns the largest excess of the thrust line up to overturning, or else up to the largest rotation.
+    const fn excess_of(&self, outcome: Outcome) -> f64 {
+        match outcome {
+            Outcome::Overturned(_) => self.excess_ratio,
+            _ => self.excess_at_peak,
+        }
+    }
+
+    /// Updates the largest excess of the thrust line.
+    fn note_excess(&mut self, now: &StructureState<'a, C>) {
+        if let Phase::Rocking(swing) = now.mode
+            && now.state[0] < swing.link.critical_rad
+        {
+            let excess_ratio = self.rocking.excess_ratio(swing, now);
+            self.excess_ratio = self.excess_ratio.max(excess_ratio);
         }
     }
 
@@ -370,12 +403,21 @@ impl<C: MechanismChain> SummaryCollector<'_, '_, C> {
         }
     }
 
-    /// Records turning points and passages of the unstable equilibrium in a step.
-    fn note_step(&mut self, mode: Mode<'_, C::Mechanism>, step: &Step<3>) {
-        let Phase::Rocking(Swing { link, .. }) = mode else {
+    /// Records turning points, passages of the unstable equilibrium, and the excess of the thrust line in a step.
+    ///
+    /// The excess is largest near impacts, at corners of the ground motion, and where the ground pushes most. Steps begin and end there, and are short
+    /// compared with the motion between. After the largest rotation the excess does not count, so it is not computed once no larger one can follow.
+    fn note_step(&mut self, from: &StructureState<'a, C>, step: &Step<3>) {
+        let mode = from.mode;
+        let Phase::Rocking(swing @ Swing { link, .. }) = mode else {
             return;
         };
         let rocking = self.rocking;
+        let start = from.at(step.start_s, &step.start);
+        let follows = C::THRUSTS && !rocking.stays_below(self.peaks.1, swing, &start);
+        if follows && step.start_s == from.time_s {
+            self.note_excess(&start);
+        }
         // The first step after uplift starts at zero rate, and may contain a turning point.
         if step.start[1] >= 0.0 && step.end[1] <= 0.0 {
             let bend = step.end_slope[1] - step.start_slope[1];
@@ -383,7 +425,11 @@ impl<C: MechanismChain> SummaryCollector<'_, '_, C> {
                 let part = bend * (time_s - step.start_s) / (step.end_s - step.start_s);
                 (rocking.between(step, time_s)[1], step.start_slope[1] + part)
             });
-            self.note_peak(mode, &rocking.between(step, turn_s));
+            let turned = from.at(turn_s, &rocking.between(step, turn_s));
+            if follows {
+                self.note_excess(&turned);
+            }
+            self.note_peak(mode, &turned.state);
             self.check_energy(mode, &step.end);
         }
         if step.start[0] < link.critical_rad && step.end[0] >= link.critical_rad {
@@ -394,12 +440,15 @@ impl<C: MechanismChain> SummaryCollector<'_, '_, C> {
             self.note_peak(mode, &rocking.between(step, passage_s));
             self.last_passage = Some((passage_s, self.peaks.clone()));
         }
+        if follows {
+            self.note_excess(&from.at(step.end_s, &step.end));
+        }
     }
 }
 
 impl<'a, C: MechanismChain> Observer<Rocking<'a, C>, 3> for SummaryCollector<'_, 'a, C> {
     fn step(&mut self, from: &StructureState<'a, C>, step: &Step<3>) -> ControlFlow<()> {
-        self.note_step(from.mode, step);
+        self.note_step(from, step);
         let sampler = self.sampler.as_mut();
         sampler.map_or(ControlFlow::Continue(()), |one| one.step(from, step))
     }

@@ -11,6 +11,7 @@ use super::impulse_line::ImpulseLine;
 use super::limit::Incipient;
 use super::linkage::Linkage;
 use super::mechanism::{FourLink, HingeSites};
+use super::thrust::Section;
 use crate::mechanics::chain::{Link, critical_rad};
 use crate::mechanics::geometry::profile::Profile;
 
@@ -53,6 +54,8 @@ impl ArchLink {
 pub struct Chain {
     /// The profile in the frames in which the mechanisms with an even and with an odd number of impacts sway right.
     profiles: [Arc<dyn Profile>; 2],
+    /// Sections of both profiles at which the excess of thrust lines is computed.
+    sections: [Vec<Section>; 2],
     /// Sections at which hinges may form.
     pub sites: HingeSites,
     law: ImpactLaw,
@@ -73,8 +76,11 @@ impl Chain {
         incipient: Incipient,
         law: ImpactLaw,
     ) -> Self {
+        let sections = profiles.each_ref();
+        let sections = sections.map(|profile| Section::all(&**profile, sites));
         Self {
             profiles,
+            sections,
             sites,
             law,
             incipient,
@@ -87,6 +93,11 @@ impl Chain {
     #[must_use]
     pub fn profile(&self, impacts: usize) -> &dyn Profile {
         &*self.profiles[impacts % 2]
+    }
+
+    /// Returns the sections of that profile at which the excess of thrust lines is computed.
+    pub(crate) fn sections(&self, impacts: usize) -> &[Section] {
+        &self.sections[impacts % 2]
     }
 
     /// Returns the mechanism after `index` impacts. `None` if an earlier impact stops the ring, because no admissible mechanism can follow.

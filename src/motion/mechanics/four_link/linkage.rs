@@ -11,7 +11,7 @@ use std::sync::Arc;
 use nalgebra::Vector2;
 
 use super::mechanism::FourLink;
-use super::thrust::{Load, Part, ThrustLine};
+use super::thrust::{Load, Part, Section, ThrustLine, largest_excess_ratio};
 use crate::mechanics::chain::{Coefficients, Mechanism, Motion};
 use crate::mechanics::geometry::field::{Momentum, turned};
 use crate::mechanics::geometry::pose::{Pose, product};
@@ -62,6 +62,8 @@ impl Body {
 pub struct Linkage {
     profile: Arc<dyn Profile>,
     mechanism: FourLink,
+    /// Mass moments before the hinges.
+    before: [MassMoments; 4],
     /// Bar A-B.
     left: Body,
     /// Bar B-C.
@@ -100,17 +102,23 @@ impl Linkage {
     /// Returns the linkage of `mechanism`.
     #[must_use]
     pub fn new(profile: &dyn Profile, mechanism: &FourLink) -> Self {
-        let [a, b, c, d] = mechanism.hinges_rad;
+        let before = mechanism.hinges_rad.map(|hinge| profile.moments_to(hinge));
         let [point_a, point_b, point_c, point_d] = mechanism.points;
-        let middle = profile.sector(b, c);
+        let [left, middle, right] = Self::sectors(&before);
         Self {
             profile: profile.shared(),
             mechanism: *mechanism,
-            left: Body::new(&profile.sector(a, b), point_a, point_b - point_a).loaded(middle.mass),
+            before,
+            left: Body::new(&left, point_a, point_b - point_a).loaded(middle.mass),
             middle: Body::new(&middle, point_b, point_c - point_b),
-            right: Body::new(&profile.sector(c, d), point_d, point_c - point_d),
+            right: Body::new(&right, point_d, point_c - point_d),
             ground: point_d - point_a,
         }
+    }
+
+    /// Returns the mass moments of the three bodies.
+    fn sectors(before: &[MassMoments; 4]) -> [MassMoments; 3] {
+        std::array::from_fn(|body| before[body + 1] - before[body])
     }
 
     /// Solves the loop A-B-C-D for the pose at `q`, on the branch continuous with `q = 0`.
@@ -159,6 +167,16 @@ impl Linkage {
     /// The equation of motion makes the line pass through B on the left body's side as well.
     #[must_use]
     pub fn thrust_line(&self, motion: &Motion) -> ThrustLine {
+        ThrustLine::new(&*self.profile, self.parts(motion).to_vec())
+    }
+
+    /// Returns the largest excess of the thrust line in motion at these sections of the profile, over the thickness; zero inside.
+    pub(crate) fn excess_ratio(&self, motion: &Motion, sections: &[Section]) -> f64 {
+        largest_excess_ratio(&self.parts(motion), sections)
+    }
+
+    /// Returns the parts of the thrust line in motion.
+    fn parts(&self, motion: &Motion) -> [Part; 5] {
         let bars = self.bars(motion.q_rad);
         let (middle_rate, right_rate) = Self::rates(&bars);
         let (middle_slope, right_slope) = Self::slopes(&bars, middle_rate, right_rate);
@@ -184,9 +202,10 @@ impl Linkage {
         let right = Load::of_body(point_d, rotate_back(turn_right, force), right_spin);
 
         let [a, b, c, d] = self.mechanism.hinges_rad;
-        let on_left = left.resultant(&self.profile.sector(a, b));
-        let on_middle = middle.resultant(&self.profile.sector(b, c));
-        let on_right = right.resultant(&self.profile.sector(c, d));
+        let sectors = Self::sectors(&self.before);
+        let on_left = left.resultant(&sectors[0]);
+        let on_middle = middle.resultant(&sectors[1]);
+        let on_right = right.resultant(&sectors[2]);
         let force_c = (bars.right * on_middle.about(point_b)
             + bars.middle * on_right.about(point_d))
             * bars.per_cross;
@@ -197,17 +216,15 @@ impl Linkage {
         let still = Load::uniform(force);
         let part = |hinge: usize, end_rad: f64, load: Load, force: Vector2<f64>| {
             let at_hinge = Momentum::applied_at(self.mechanism.points[hinge], force);
-            let known = (self.mechanism.hinges_rad[hinge], at_hinge);
-            Part::new(&*self.profile, end_rad, load, known)
+            Part::after(&self.before[hinge], end_rad, load, at_hinge)
         };
-        let parts = vec![
+        [
             part(0, a, still, force_a),
             part(0, b, left, rotate_back(turn_left, force_a)),
             part(1, c, middle, rotate_back(turn_middle, force_b)),
             part(2, d, right, rotate_back(turn_right, force_c)),
             part(3, self.profile.end(), still, force_d),
-        ];
-        ThrustLine::new(&*self.profile, parts)
+        ]
     }
 
     /// Returns the limit position: the smallest `q` at which A, B, C, or else C, D, A, are on one line, so that the right body or the ground bar

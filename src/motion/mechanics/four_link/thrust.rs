@@ -46,15 +46,12 @@ impl Demand {
 
     /// Returns the demand of one section; a negative excess is the distance inside.
     fn of_section(section: &SectionResultant, weight: f64) -> Self {
-        let thickness = section.thickness;
         let least = LEAST_LOAD * weight;
-        let normal = section.normal.max(least);
-        let beyond = section.moment.abs() - 0.5 * section.normal * thickness;
-        let counts = section.normal >= least;
-        let friction = section.tangential.abs() / normal;
+        let SectionResultant { normal, moment, .. } = *section;
+        let friction = section.tangential.abs() / normal.max(least);
         Self {
-            excess_ratio: beyond / (normal * thickness),
-            friction: if counts { friction } else { 0.0 },
+            excess_ratio: excess_ratio(normal, moment, section.thickness, least),
+            friction: if normal >= least { friction } else { 0.0 },
         }
     }
 
@@ -67,6 +64,67 @@ impl Demand {
         }
         larger
     }
+}
+
+/// Returns the excess of a normal force and its moment about the axis, as in [`Demand::of_sections`]; negative inside.
+fn excess_ratio(normal: f64, moment: f64, thickness: f64, least: f64) -> f64 {
+    let beyond = moment.abs() - 0.5 * normal * thickness;
+    beyond / (normal.max(least) * thickness)
+}
+
+/// Section of a profile with its constants, for many thrust lines through it.
+#[derive(Clone, Copy, Debug)]
+pub struct Section {
+    place: f64,
+    before: MassMoments,
+    onward: Vector2<f64>,
+    middle: Vector2<f64>,
+    thickness: f64,
+}
+
+/// Parts of a continuous ring between the sections of [`Section::all`].
+const EXCESS_PARTS: usize = 48;
+
+impl Section {
+    /// Returns the joints of a profile, or equidistant sections of a continuous ring. Between these the excess exceeds the largest of them by some
+    /// per cent of its value at most.
+    pub(crate) fn all(profile: &dyn Profile, sites: HingeSites) -> Vec<Self> {
+        let parts = match sites {
+            HingeSites::Voussoirs(count) => count,
+            HingeSites::Anywhere => EXCESS_PARTS,
+        };
+        let of = |place: f64| Self {
+            place,
+            before: profile.moments_to(place),
+            onward: profile.onward(place),
+            middle: profile.middle(place),
+            thickness: profile.thickness(place),
+        };
+        profile.sections(parts).into_iter().map(of).collect()
+    }
+}
+
+/// Returns the largest excess of the thrust line over these parts at sections in ascending order, over the thickness; zero inside.
+pub(crate) fn largest_excess_ratio(parts: &[Part], sections: &[Section]) -> f64 {
+    let weight = sections.last().map_or(0.0, |section| section.before.mass);
+    let (mut parts, mut largest) = (parts, ROUNDING);
+    for section in sections {
+        while let [part, _, ..] = parts
+            && part.end_rad < section.place
+        {
+            parts = &parts[1..];
+        }
+        let Some(part) = parts.first() else {
+            break;
+        };
+        let resultant = part.start + part.load.resultant(&section.before);
+        let normal = resultant.linear.dot(&section.onward);
+        // As in `SectionResultant`; the sign does not matter.
+        let moment = resultant.about(section.middle);
+        let least = LEAST_LOAD * weight;
+        largest = largest.max(excess_ratio(normal, moment, section.thickness, least));
+    }
+    if largest > ROUNDING { largest } else { 0.0 }
 }
 
 /// Load per unit mass `c + alpha k x r + kappa r` on a part of the ring, in the frame of its material.
@@ -133,10 +191,16 @@ impl Part {
         load: Load,
         (known_rad, known): (f64, Momentum),
     ) -> Self {
+        Self::after(&profile.moments_to(known_rad), end_rad, load, known)
+    }
+
+    /// Returns the part that ends at `end_rad`, under `load`, with the resultant `known` at the section behind a part of these mass moments.
+    pub(crate) fn after(before: &MassMoments, end_rad: f64, load: Load, known: Momentum) -> Self {
+        let start = known - load.resultant(before);
         Self {
             end_rad,
             load,
-            start: known - load.resultant(&profile.moments_to(known_rad)),
+            start,
         }
     }
 

@@ -3,19 +3,20 @@
 use serde::Serialize;
 use serde_json::Value;
 
-use super::{CellCounts, CellRow, CellsOfSamples, Crossing, LEVELS, Samples};
+use super::{CellCounts, CellRow, CellsOfSamples, Crossing, LEVELS, OUTSIDE, Samples};
 use crate::output::chart::Mark;
 use crate::output::sheet::Key;
 use crate::output::svg::{Stroke, color};
 use crate::output::table::{column, csv, each, list};
 use crate::output::{Figure, OutputError};
+use crate::scenario::Hinges;
 use crate::studies::ending::columns::{OUTCOMES, yes};
 use crate::studies::ensemble::influence::percent;
 use crate::studies::ensemble::report::{Band, Findings};
 use crate::studies::kind::{Kind, kind};
 use crate::studies::map::page::Cells;
 use crate::studies::map::picture::{Drawn, Sheet};
-use crate::studies::remarks::no_verdict;
+use crate::studies::remarks::{ModelCheck, no_verdict};
 use crate::studies::results::{Results, Style};
 use crate::studies::runner::Study as _;
 use crate::studies::statistics::{Share, band, quantile};
@@ -98,6 +99,9 @@ pub(super) fn report(
             first.reason()
         )
     }));
+    let four = study.scenario.motion.hinges() == Hinges::Four && study.scenario.structure.thrusts();
+    let outside = counts.iter().map(|cell| cell.outside);
+    let answered = counts.iter().map(|cell| cell.samples);
     let title = samples.title("Probability of overturning");
     let screen = Style {
         figure: Figure::SCREEN,
@@ -109,6 +113,8 @@ pub(super) fn report(
         first: Some(first_words(samples, &counts, own)),
         lines,
         influences: vec![samples.influence(names, false, |share: &Share| share.share)],
+        model: ModelCheck::counted(four.then(|| [outside.sum(), answered.sum()])),
+        checked: "histories",
         no_verdict: no_verdict(count("incomplete"), rows.len(), "histories"),
         details: Details {
             cells,
@@ -142,6 +148,7 @@ fn table(study: &CellsOfSamples<'_>, counts: &[CellCounts]) -> Result<Vec<u8>, O
                 .collect::<Vec<_>>()
         }),
         list(WITHOUT, |cell: &CellCounts| cell.without),
+        column("outside_model", |cell: &CellCounts| cell.outside),
     ];
     csv(columns, counts)
 }
@@ -196,7 +203,12 @@ fn draw(
             .map(|crossing| sheet.point(crossing.x, crossing.inside(level).unwrap_or(f64::NAN)));
         lines.push(Mark::curve(name, stroke, points));
     }
-    sheet.draw(&PALETTE, &kinds, keys, vec![Mark::clipped(lines)])
+    let outside: Vec<bool> = counts.iter().map(CellCounts::is_outside_model).collect();
+    sheet.draw(
+        (&PALETTE, &kinds, &outside),
+        keys,
+        vec![Mark::clipped(lines)],
+    )
 }
 
 /// Returns the cells of the page.
@@ -214,6 +226,7 @@ fn page_cells(counts: &[CellCounts]) -> Cells<'static> {
         palette: &PALETTE,
         kinds: counts.iter().map(kind_of).collect(),
         doubts: Vec::new(),
+        outside: counts.iter().map(CellCounts::is_outside_model).collect(),
         columns: numbers.chain(others).collect(),
     }
 }
@@ -227,7 +240,10 @@ fn first_words(samples: &Samples<'_, Share>, counts: &[CellCounts], own: &[CellR
         format!("{} in {}", percent(level), cells.count())
     };
     let [few, half, most] = LEVELS.map(at_least);
-    let survives = |row: &CellRow| row.as_ref().is_ok_and(|(outcome, _)| *outcome > 0);
+    let survives = |row: &CellRow| {
+        row.as_ref()
+            .is_ok_and(|(outcome, _)| *outcome % OUTSIDE > 0)
+    };
     let in_doubt = counts
         .iter()
         .zip(own)

@@ -40,7 +40,8 @@
       .map(([name, value]) => `${name} ${Number(value.toPrecision(5))}`);
     const place = data.axes.map(({ label }, i) => `${label} ${Number([xs[column], ys[line]][i].toPrecision(6))}`);
     const label = data.doubts[index] ? `uncertain: ${data.doubts[index]}` : data.labels[kinds[index]];
-    find("numbers").textContent = `${place.join(", ")}: ${[label, ...numbers].join(", ")}`;
+    const outside = data.outside.includes(index) ? ["outside the model of four links"] : [];
+    find("numbers").textContent = `${place.join(", ")}: ${[label, ...outside, ...numbers].join(", ")}`;
     find("command").textContent = command(column, line);
   }
 

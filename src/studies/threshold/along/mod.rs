@@ -157,6 +157,8 @@ struct Point {
     no_impact_factor: Option<f64>,
     /// The peak ground acceleration at `no_impact_factor`, in units of gravity.
     no_impact_g: Option<f64>,
+    /// Largest excess of the thrust line of four links at `overturns_from_factor`, or at the largest tried factor without it; null for other models.
+    thrust_excess_ratio: Option<f64>,
     /// Reason why the threshold is unknown.
     why_not: Option<&'static str>,
 }
@@ -180,6 +182,7 @@ impl Point {
             failed_beyond: edge.is_some_and(|edge| edge.failed_beyond),
             no_impact_factor,
             no_impact_g: in_g(no_impact_factor),
+            thrust_excess_ratio: edge.and_then(|edge| edge.thrust_excess_ratio),
             why_not: row.edge.as_ref().err().map(NoAnswer::name),
         }
     }

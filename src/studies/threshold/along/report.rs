@@ -7,7 +7,7 @@ use crate::argument::plain;
 use crate::output::OutputError;
 use crate::output::table::{column, csv, fields};
 use crate::studies::ending::NoAnswer;
-use crate::studies::remarks::{self, CaseSummary, Remark, Remarks, no_verdict};
+use crate::studies::remarks::{CaseSummary, ModelCheck, Remark, Remarks, no_verdict};
 use crate::studies::results::{ReportedStudy, Results, Style};
 use crate::studies::threshold::{Factors, rounded, rounded_down};
 
@@ -43,21 +43,22 @@ impl ReportedStudy for Along<'_> {
             factors,
             values: &points,
         };
-        let no_verdict_too = no_verdict.clone();
-        let summary =
-            CaseSummary::new(self.scenario, rows.len(), &remarks, no_verdict_too, details);
+        let limits = [remarks.model.in_words("thresholds"), no_verdict];
+        let limits = limits.into_iter().flatten();
+        let cases = rows.len();
+        let summary = CaseSummary::new(self.scenario, cases, &remarks, limits.clone(), details);
         let key = along.key.as_str();
         let mut columns = vec![column(key, |point: &Point| point.value)];
         columns.extend(fields!(
             |point: &Point| point => survives_up_to_factor, survives_up_to_g, overturns_from_factor,
-            overturns_from_g, at_most, uncertain_from_factor, tried_to_factor, failed_beyond, no_impact_factor, no_impact_g, why_not
+            overturns_from_g, at_most, uncertain_from_factor, tried_to_factor, failed_beyond, no_impact_factor, no_impact_g,
+            thrust_excess_ratio, why_not
         ));
         let title = self.scenario.title.as_deref();
         let title = title.unwrap_or("Threshold of overturning");
         let picture = picture::draw(figure, title, key, &points);
         let mut words = vec![self.first_words(&points)];
-        words.extend(remarks::rough_guide(self.scenario).map(str::to_owned));
-        words.extend(no_verdict);
+        words.extend(limits);
         words.extend(remarks.failed_in_words("threshold_along.json"));
         words.push(factors.in_words());
         let others = [picture.into_bytes(), csv(columns, &points)?];
@@ -68,7 +69,9 @@ impl ReportedStudy for Along<'_> {
 impl Along<'_> {
     /// Returns the values without an answer, with the reasons.
     fn remarks(&self, rows: &[AlongRow]) -> Remarks {
+        let edges = rows.iter().flat_map(|row| &row.edge);
         let mut remarks = Remarks::default();
+        remarks.model = ModelCheck::of(edges.map(|edge| edge.thrust_excess_ratio));
         for row in rows {
             let case = format!("{} = {}", self.options.along.key, plain(row.value));
             if let Err(NoAnswer::Invalid(reason) | NoAnswer::Failed(reason)) = &row.edge {
