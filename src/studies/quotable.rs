@@ -2,9 +2,9 @@
 //!
 //! The model with the fewest assumptions decides; other models only show how the answer depends on the model. It answers with the largest strength
 //! up to which the structure certainly survives, over all computed stiffnesses and contacts of its joints, or with an outcome that is certain and
-//! the same for all of them. Four links of an arch are quoted only if their thrust line was followed and stays almost inside the arch.
+//! the same for all of them. Four links of an arch are quoted only if their thrust line was followed, and inside their model.
 
-use crate::dynamics::thrust::EXCESS_LEVELS;
+use crate::dynamics::thrust::MODEL_LIMIT;
 use crate::scenario::Hinges;
 
 /// The answer of a model of motion.
@@ -46,7 +46,7 @@ impl ModelAnswer {
 fn outside_four_links(excess_ratio: Option<f64>) -> Option<String> {
     let why = match excess_ratio {
         None => "their thrust line was not followed".to_owned(),
-        Some(ratio) if ratio > EXCESS_LEVELS[1] => {
+        Some(ratio) if ratio > MODEL_LIMIT => {
             format!("their thrust line leaves the arch by up to {ratio:.3} t")
         }
         Some(_) => return None,

@@ -10,7 +10,7 @@ use super::ending::{Ending, NoHistory, Verdict};
 use crate::dynamics::history::Outcome;
 use crate::dynamics::repeatability::OutcomeCount;
 use crate::dynamics::thrust::{EXCESS_LEVELS, MODEL_LIMIT};
-use crate::scenario::{Hinges, Scenario};
+use crate::scenario::Scenario;
 
 /// A failed or uncertain case, as results list it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]

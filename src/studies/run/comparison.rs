@@ -120,11 +120,7 @@ pub(super) fn answer(run: &ComputedRun<'_>) -> ModelAnswer {
     let condition = condition.map_or_else(String::new, |condition| format!(" ({condition})"));
     let answer = no_answer.map_or_else(|| Ok(format!("{happens} this motion{condition}")), Err);
     let (hinges, is_arch) = (scenario.motion.hinges(), scenario.structure.thrusts());
-    let excess_ratio = history
-        .thrust
-        .as_ref()
-        .map(|thrust| thrust.largest_excess.value);
-    ModelAnswer::new(hinges, is_arch, excess_ratio, answer)
+    ModelAnswer::new(hinges, is_arch, history.thrust_excess_ratio(), answer)
 }
 
 /// Returns the opposite outcome and the properties with which it occurs, in words; `None` if no property changes the outcome.

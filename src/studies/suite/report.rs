@@ -179,7 +179,12 @@ impl Heading {
     fn answer(&self, results: &SuiteFragility) -> ModelAnswer {
         let survivals = results.survivals().into_iter();
         let safe = |survival: &Survival| survival.survives_up_to.unwrap_or(0.0);
+        let excess = |case: &CaseRow| case.result.as_ref().ok()?.thrust_excess_ratio;
         let lowest = survivals.min_by(|(_, a), (_, b)| safe(a).total_cmp(&safe(b)));
+        let quoted = lowest.as_ref().map_or(0.0, |(_, survival)| safe(survival));
+        let cases = results.cases.iter();
+        let cases = cases.filter(|case| case.level(self.measure) <= quoted);
+        let excess_ratio = cases.filter_map(excess).reduce(f64::max);
         let answer = lowest.map_or(Err("there are no cases".to_owned()), |(case, survival)| {
             let (record, unit) = (case.record_in_words(), unit(self.measure));
             match survival.survives_up_to.map(rounded_down) {
@@ -192,7 +197,7 @@ impl Heading {
             }
         });
         let is_arch = self.scenario.get("column").is_none();
-        ModelAnswer::new(self.hinges(), is_arch, None, answer)
+        ModelAnswer::new(self.hinges(), is_arch, excess_ratio, answer)
     }
 
     /// Returns the failed and uncertain cases, with the reasons.
