@@ -633,7 +633,7 @@ mod tests {
         let fault = |text: &str, line, words| assert_fault(text, &csv_layout(), line, words);
         fault("", 1, "no samples");
         fault("# x\n\n", 1, "no samples");
-        fault("t,b\n0,1", 1, "no column named `a` in `t, b`");
+        fault("t,b\n0,1", 1, "no column named `a` in `t,b`");
         fault("t,a,a\n0,1", 1, "two columns named `a`");
         fault(
             "t,a\n0,1\n# x\n1\n",
