@@ -8,13 +8,14 @@ use std::error::Error;
 use std::fmt::Write as _;
 use std::ops::ControlFlow;
 
-use archrock::dynamics::model::WithoutDemand;
-use archrock::dynamics::thrust::MODEL_LIMIT;
 use archrock::{
-    Arch, FourLinks, FreeHinges, ImpactModel, Model, Outcome, Pulse, PulseShape, Request, Sample,
+    Arch, FourLinks, FreeHinges, ImpactModel, Model, Outcome, Pulse, PulseShape, Recorder, Request,
+    Sample,
 };
 
 const GRAVITY_M_S2: f64 = 9.81;
+/// The limit of the program, in thicknesses.
+const MODEL_LIMIT: f64 = 0.5;
 /// Amplitudes are tried from the incipient one up to this multiple of it, in these strides; bisection encloses an edge to a tenth of a stride.
 const MOST: f64 = 40.0;
 const STRIDE: f64 = 1.15;
@@ -40,6 +41,25 @@ impl Random {
     }
 }
 
+/// Ends a history on quiet ground: a motion with a quarter of the energy that overturns it survives.
+struct Stop {
+    quiet_s: f64,
+}
+
+impl Recorder for Stop {
+    fn wants_demand(&self) -> bool {
+        false
+    }
+
+    fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
+        let is_safe = sample.energy_ratio.is_some_and(|ratio| ratio < 0.25);
+        match sample.time_s > self.quiet_s && is_safe {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    }
+}
+
 /// A history: whether the arch overturns, and the excess of the thrust line of four links.
 fn history(model: &dyn Model, pulse: &PulseShape, amplitude_g: f64) -> Option<(bool, f64)> {
     let ground = pulse.horizontal_m_s2(amplitude_g * GRAVITY_M_S2).ok()?;
@@ -48,14 +68,7 @@ fn history(model: &dyn Model, pulse: &PulseShape, amplitude_g: f64) -> Option<(b
         end_s: quiet_s + 20.0,
         ..Request::default()
     };
-    // A motion with a quarter of the energy that overturns it survives.
-    let mut stop = WithoutDemand(|sample: &Sample| {
-        let is_safe = sample.energy_ratio.is_some_and(|ratio| ratio < 0.25);
-        match sample.time_s > quiet_s && is_safe {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
-        }
-    });
+    let mut stop = Stop { quiet_s };
     let found = model.simulate(&ground, &request, Some(&mut stop)).ok()?;
     let overturns = matches!(found.outcome, Outcome::Overturned(_));
     Some((overturns, found.thrust_excess_ratio().unwrap_or(0.0)))

@@ -65,7 +65,12 @@ fn histories_outside_the_model_of_four_links_are_counted_in_every_study() {
                     usize::from(is_arch),
                     "{command} {reported:?}"
                 );
-                assert!(reported.iter().all(|warning| warning.contains(OUTSIDE)));
+                // Thresholds of samples may be inside the model.
+                assert!(
+                    reported
+                        .iter()
+                        .all(|warning| warning.contains("not on the safe side"))
+                );
             }
         }
     }

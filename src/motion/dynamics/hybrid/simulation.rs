@@ -157,14 +157,8 @@ fn history_of<C: MechanismChain + MechanismModel>(
     }
     collector.note_peak(now.mode, &now.state);
     collector.check_energy(now.mode, &now.state);
-    let outcome = match now.mode {
-        Phase::Overturned(swing) => Outcome::Overturned(swing.sway),
-        _ if now.time_s < ground.end_s() => Outcome::Incomplete,
-        Phase::Rocking(_) if may_overturn(now) => Outcome::Incomplete,
-        Phase::Rocking(_) => Outcome::StillRocking,
-        Phase::Rest if collector.last_rest_s.is_some() => Outcome::Rest,
-        Phase::Rest => Outcome::NeverMoved,
-    };
+    let is_incomplete = now.time_s < ground.end_s() || may_overturn(now);
+    let outcome = outcome_of(now.mode, is_incomplete, collector.last_rest_s.is_some());
     let excess_ratio = collector.excess_of(outcome);
     let (mut outcome_time_s, mut peaks) = (now.time_s, collector.peaks);
     match (now.mode, collector.last_passage, collector.last_rest_s) {
@@ -192,6 +186,17 @@ fn history_of<C: MechanismChain + MechanismModel>(
             thrust_excess_ratio: C::THRUSTS.then_some(excess_ratio),
         }),
     })
+}
+
+/// Returns the outcome of a motion that ends in this mode.
+const fn outcome_of<M>(mode: Mode<'_, M>, is_incomplete: bool, has_rested: bool) -> Outcome {
+    match mode {
+        Phase::Overturned(swing) => Outcome::Overturned(swing.sway),
+        _ if is_incomplete => Outcome::Incomplete,
+        Phase::Rocking(_) => Outcome::StillRocking,
+        Phase::Rest if has_rested => Outcome::Rest,
+        Phase::Rest => Outcome::NeverMoved,
+    }
 }
 
 /// Runs a motion up to the end in the settings. `longer_s` returns a later end in seconds, `None` if the motion ends there.
