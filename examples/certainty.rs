@@ -10,10 +10,10 @@ use std::env;
 use std::error::Error;
 use std::f64::consts::TAU;
 
-use archrock::dynamics::repeatability::Verdict;
 use archrock::{
     Arch, Contact, ElasticJoints, ElasticProperties, EndCondition, Ending, FreeHinges,
     GroundMotion, JointStiffness, Model, Outcome, Pulse, Request, RowOptions, Stiffness, Sway,
+    Verdict,
 };
 
 /// Steps of the judging histories over the default ones. With elastic joints, longer steps may be unstable.

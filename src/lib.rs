@@ -108,7 +108,7 @@ pub use mechanics::geometry::pose::Pose;
 pub use mechanics::masonry::Masonry;
 pub use mechanics::sway::Sway;
 pub use scenario::{Scenario, Structure};
-pub use studies::ending::{Ending, NoHistory};
+pub use studies::ending::{Ending, NoHistory, Verdict};
 pub use studies::map::OverturningMap;
 pub use studies::runner::Runner;
 pub use studies::threshold::{Factors, Threshold, thresholds};

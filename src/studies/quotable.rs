@@ -61,6 +61,7 @@ pub fn in_words(answers: &[ModelAnswer]) -> Option<String> {
     let label = best.label;
     let more = match best.hinges {
         Hinges::Free => "; the stiffness of joints is not considered",
+        Hinges::Four if label == best.hinges.model().label => "; compare with free hinges",
         Hinges::Four | Hinges::Elastic => "",
     };
     Some(match &best.answer {

@@ -276,6 +276,7 @@ fn overturning_of_the_arch_on_buttresses_agrees_with_a_prototype() {
         let model = scenario.model().unwrap();
         let request = Request {
             end_s: 12.0,
+            outcome_by_s: None,
             ..scenario.request()
         };
         let summary = model

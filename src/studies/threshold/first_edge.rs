@@ -259,7 +259,7 @@ mod tests {
             };
             near(edge.factor, 1.672);
             // A safe range above a missed uncertain one is not known to be unsafe.
-            let doubt = if strengths[1] == 1.15 { 1.2 } else { 0.953 };
+            let doubt = if strengths.contains(&1.0) { 0.953 } else { 1.2 };
             near(edge.survives_up_to, doubt);
             near(edge.uncertain_from, doubt);
             assert!(edge.survives_up_to < edge.uncertain_from);
