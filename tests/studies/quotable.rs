@@ -109,15 +109,12 @@ fn thresholds_and_runs_end_with_their_answer() {
         let lowest = summary["models"][0]["lowest_factor"].as_f64().unwrap();
         assert!(safe < lowest && lowest < 1.1 * safe, "{safe} {lowest}");
         let shown = &format!("{safe:.9}")[..5];
-        assert_eq!(
-            quoted.contains(&format!("survives up to {shown}")),
-            structure == COLUMN,
-            "{quoted}"
-        );
+        let shown = format!("survives up to {shown}");
+        assert!(quoted.contains(&shown), "{quoted}");
     }
     let arch = scenarios().join("semicircle-pulse.toml");
     let said = printed(at, &["run", arch.to_str().unwrap(), "--out", "o"]);
-    let quoted = "to quote: no answer with four links: their thrust line leaves the arch by up to 0.786 t; compare with free hinges";
+    let quoted = "to quote: survives this motion (needs a friction of 0.54), with four links; compare with free hinges";
     assert!(
         said.contains(quoted) && said.contains("peak rotation 45 % of overturning"),
         "{said}"

@@ -634,7 +634,7 @@ mod tests {
         fault("", 1, "no samples");
         fault("# x\n\n", 1, "no samples");
         fault("t,b\n0,1", 1, "no column named `a` in `t,b`");
-        fault("t,a,a\n0,1", 1, "two columns named `a`");
+        fault("t,a,a\n0,1,2", 1, "two columns named `a`");
         fault(
             "t,a\n0,1\n# x\n1\n",
             4,
