@@ -236,7 +236,7 @@ impl<'a> Columns<'a> {
         let time = self.index(column)?;
         let own = self.names.get(time).filter(|name| !is_time(name));
         let own = own.filter(|_| !column.is_name());
-        match own.zip(self.names.iter().position(|name| is_time(name))) {
+        match own.zip(self.names.iter().position(is_time)) {
             Some((&"", other)) => Ok(other),
             Some((own, other)) => {
                 let ([own, other], number) = ([own, self.names[other]].map(excerpt), time + 1);

@@ -200,10 +200,10 @@ impl Heading {
         ModelAnswer::new(self.hinges(), is_arch, excess_ratio, answer)
     }
 
-    /// Returns the failed and uncertain cases, with the reasons.
+    /// Returns the failed and uncertain cases among those that count, with the reasons.
     fn remarks(&self, results: &SuiteFragility) -> Remarks {
         let mut remarks = Remarks::default();
-        for case in &results.cases {
+        for case in results.evidence() {
             let name = || format!("{}, {}", case.record_in_words(), self.level(case));
             remarks.note(name, &case.result);
         }

@@ -28,8 +28,7 @@ impl Masonry {
             self.is_stable_with(self.shape.thickened(factor)?, Piers::default())
         });
         let (shape, piers) = (self.shape.clone(), self.piers);
-        let unloaded =
-            Self::new(shape, piers, self.fill, Vec::new()).and_then(|it| Ok(it.stands()));
+        let unloaded = Self::new(shape, piers, self.fill, Vec::new()).map(|it| it.stands());
         match unloaded {
             Ok(Ok(true)) if !self.loads.is_empty() => Remedy::LessLoad(factor),
             _ => Remedy::ThickerArch(factor),
