@@ -72,9 +72,12 @@ impl Random {
 
 /// A structure with one of the models.
 enum Joints {
-    Rigid(FreeHinges, RowOptions),
-    Elastic(ElasticJoints),
+    Rigid(Box<FreeHinges>, RowOptions),
+    Elastic(Box<ElasticJoints>),
 }
+
+/// A structure, its ground motion, and the request for its history.
+type Case = (Joints, GroundMotion, Request);
 
 impl Joints {
     fn new(kind: &str, arch: &Arch, random: &mut Random) -> Result<Self, Box<dyn Error>> {
@@ -92,23 +95,22 @@ impl Joints {
                 compressive_strength_pa: None,
                 contact: Contact::Continuous,
             };
-            return Ok(Self::Elastic(ElasticJoints::new(arch.row()?, properties)?));
+            let model = ElasticJoints::new(arch.row()?, properties)?;
+            return Ok(Self::Elastic(Box::new(model)));
         }
         let friction_coefficient = (kind == "friction").then_some(coefficient);
         let options = RowOptions {
             friction_coefficient,
             ..RowOptions::default()
         };
-        Ok(Self::Rigid(
-            FreeHinges::of_arch(arch)?.with_options(options)?,
-            options,
-        ))
+        let model = FreeHinges::of_arch(arch)?.with_options(options)?;
+        Ok(Self::Rigid(Box::new(model), options))
     }
 
     fn model(&self) -> &dyn Model {
         match self {
-            Self::Rigid(model, _) => model,
-            Self::Elastic(model) => model,
+            Self::Rigid(model, _) => &**model,
+            Self::Elastic(model) => &**model,
         }
     }
 
@@ -117,13 +119,13 @@ impl Joints {
         Ok(match self {
             Self::Rigid(model, options) => {
                 let longest_step_s = Some(times * model.longest_step_s(request));
-                Box::new(model.clone().with_options(RowOptions {
+                Box::new((**model).clone().with_options(RowOptions {
                     longest_step_s,
                     ..*options
                 })?)
             }
             Self::Elastic(model) => Box::new(
-                model
+                (**model)
                     .clone()
                     .with_longest_step_s(times * model.longest_step_s())?,
             ),
@@ -210,7 +212,7 @@ fn case(
     random: &mut Random,
     is_record: bool,
     is_near: bool,
-) -> Result<Option<(Joints, GroundMotion, Request)>, Box<dyn Error>> {
+) -> Result<Option<Case>, Box<dyn Error>> {
     let embrace_deg = random.one_of(&[120.0, 140.0, 157.5, 180.0]);
     let voussoirs = random.one_of(&[5, 6, 7, 8]);
     let arch = Arch::new(

@@ -35,7 +35,7 @@ fn the_model_with_the_fewest_assumptions_answers() {
             .starts_with("to quote: survives up to 2, with free hinges;")
     );
     assert_eq!(
-        quoted(&[four.clone()]),
+        quoted(std::slice::from_ref(&four)),
         "to quote: survives up to 3, with four links; compare with free hinges"
     );
     let unknown = Err("it is uncertain whether it overturns".to_owned());

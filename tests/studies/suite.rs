@@ -642,13 +642,10 @@ fn uncertain_cases_are_counted_by_fractions_as_surviving_and_as_overturning() {
         SuiteFragility::new(Measure::Scale, levels_of(&records))
     };
     let (doubtful, survived, overturned) = (with("~"), with("."), with("x"));
-    assert_eq!(
-        doubtful.ends,
-        [survived.fit.clone(), overturned.fit.clone()]
-    );
+    assert_eq!(doubtful.ends, [survived.fit, overturned.fit]);
     let medians = [&overturned, &doubtful, &survived].map(|of| of.fit.as_ref().unwrap().median);
     assert!(medians.is_sorted() && medians[0] < medians[1] && medians[1] < medians[2]);
-    assert_eq!(survived.ends, [survived.fit.clone(), survived.fit.clone()]);
+    assert_eq!(survived.ends, [survived.fit, survived.fit]);
     assert!(doubtful.has_uncertain() && !survived.has_uncertain());
     for (level, (low, high)) in pairs(
         &doubtful.levels,

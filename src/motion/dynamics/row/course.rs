@@ -274,7 +274,7 @@ impl<'a> Course<'a> {
 
     /// Returns whether the history ends too early to decide the outcome; see [`Outcome`].
     fn is_incomplete(&self) -> bool {
-        if self.is_safe {
+        if self.is_safe || self.elastic.vibrates_since_s.is_some() {
             return false;
         }
         let lies = |barrier_j: &f64| self.elastic.crushed_j <= SLIPPED_RATIO * barrier_j;
