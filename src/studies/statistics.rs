@@ -277,7 +277,7 @@ mod tests {
         assert_eq!(Share::of(0, 0), None);
     }
 
-    /// Of 12 samples 1 overturns, 9 are uncertain and count one half each, 2 survive: 5.5 of 12. The ends are those of 1 and of 10 of 12 by
+    /// One of 12 samples overturns, nine are uncertain and count one half each, and two survive: 5.5 of 12. The ends are those of 1 and of 10 of 12 by
     /// Wilson. Three more samples without a verdict widen the interval to that of 1 and of 13 of 15.
     #[test]
     fn intervals_contain_both_ends_of_uncertain_samples() {

@@ -185,7 +185,7 @@ fn simulated(text: &str) -> Summary {
     summary.unwrap()
 }
 
-/// By default a history goes on until its outcome is known: a slender block still has most of its energy ten seconds after the pulse, and
+/// By default a history lasts until its outcome is known: a slender block still has most of its energy ten seconds after the pulse, and
 /// comes to rest later. A given duration is kept.
 #[test]
 fn a_default_duration_is_lengthened_until_there_is_a_verdict() {

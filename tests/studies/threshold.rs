@@ -326,7 +326,7 @@ fn uncertain_factors_are_ranges_of_their_own() {
     assert_eq!(picture.matches("data-name=\"model uncertain\"").count(), 3);
     assert!(picture.contains("uncertain whether it overturns"));
     assert!(picture.contains("survives up to 1.9"));
-    // The curve of peaks goes on through uncertain factors whose own history survives (1.99 to 2), and not where it overturns.
+    // The curve of peaks includes uncertain factors whose own history survives (1.99 to 2), and is interrupted where it overturns.
     let document = roxmltree::Document::parse(&picture).unwrap();
     let curve = named(&document, "model peak")[0].attribute("d").unwrap();
     assert_eq!(curve.matches('M').count(), 2, "{curve}");

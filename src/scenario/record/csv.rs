@@ -858,7 +858,7 @@ mod tests {
         }
     }
 
-    /// What a table does not say is refused, not guessed.
+    /// A table that can be read in two ways is refused.
     #[test]
     fn columns_are_not_confused() {
         let step = Layout::table(Times::Step(0.5), Unit::Gravity);

@@ -13,7 +13,7 @@ pub fn rounded(value: f64) -> String {
 #[must_use]
 pub fn rounded_down(value: f64) -> String {
     let decimals = decimals(value);
-    // A little less than half a digit, so that decimal numbers such as 0.45 stay as they are.
+    // A little less than half a digit keeps decimal numbers such as 0.45 unchanged.
     let lowered = value - (0.5 - 1e-9) * 0.1_f64.powi(decimals as i32);
     format!("{lowered:.decimals$}")
 }
