@@ -1,7 +1,7 @@
 //! Repeatability of a motion: its agreement with its repetitions, which have [other, equally valid numerical settings](Model::repetitions).
 //!
 //! The first two repetitions decide if they agree on the outcome and either all motions survive far below the barrier, or the path repeats: all half
-//! cycles up to and including the largest agree. Otherwise all repetitions follow, and the verdict is their [count](OutcomeCount): **uncertain** if
+//! cycles up to and including the largest agree, and a survivor does not come close to the barrier. Otherwise all repetitions follow, and the verdict is their [count](OutcomeCount): **uncertain** if
 //! some overturn and others survive. The side of overturning, and whether a survivor comes to rest, do not count. Motions whose outcome no later
 //! impact can change need no repetition (`needs_no_repetition`).
 //!
@@ -391,9 +391,11 @@ fn suffice<'a>(
 ) -> bool {
     let verdict = Verdict::from(own.outcome);
     let is_clear = |motion: &Summary| needs_no_repetition(model, request, motion);
+    let is_close = verdict == Verdict::Survives
+        && energy_over_barrier(model, request, own).is_some_and(|ratio| ratio > CLOSE_TO_BARRIER);
     let confirms = |other: &Summary| {
-        Verdict::from(other.outcome) == verdict
-            && (is_clear(own) && is_clear(other) || path_repeats(own, other))
+        let repeats = || !is_close && path_repeats(own, other);
+        Verdict::from(other.outcome) == verdict && (is_clear(own) && is_clear(other) || repeats())
     };
     let mut first = first.into_iter();
     verdict == Verdict::Incomplete || first.all(|other| other.as_ref().is_ok_and(confirms))
@@ -601,6 +603,9 @@ pub(super) const LARGEST_LOSS_RATIO: f64 = 0.01;
 /// Largest energy, over the energy barrier of the first mechanism, below which a survivor is certain without a repetition of its path.
 const FAR_FROM_OVERTURNING: f64 = 0.5;
 
+/// Largest energy, over the same barrier, above which a survivor is certain only with all repetitions, although its path repeats.
+const CLOSE_TO_BARRIER: f64 = 0.8;
+
 /// Returns whether repetitions can be skipped: the history is incomplete, the structure never moved, it overturned before its first change of side,
 /// or it survived far from overturning. Up to the first change of side all settings agree.
 fn needs_no_repetition(model: &dyn Model, request: &Request, own: &Summary) -> bool {
@@ -608,19 +613,23 @@ fn needs_no_repetition(model: &dyn Model, request: &Request, own: &Summary) -> b
         Outcome::NeverMoved | Outcome::Incomplete => true,
         Outcome::Overturned(_) => own.row().is_some_and(|row| row.half_cycles_with_fall <= 1),
         Outcome::Vibrates | Outcome::Rest | Outcome::StillRocking => {
-            let ratio = match &own.details {
-                Details::Mechanisms(_) => None,
-                Details::Rigid(row) => row.peak_potential_over_barrier,
-                // Elastic joints overturn below the barrier of rigid joints.
-                Details::Elastic(row, elastic) => {
-                    let barrier_j = model.elastic_barrier_j(request.gravity_m_s2);
-                    let gone_j = elastic.friction_j + elastic.crushed_j;
-                    let barrier_j =
-                        barrier_j.filter(|barrier_j| gone_j < LARGEST_LOSS_RATIO * barrier_j);
-                    barrier_j.map(|barrier_j| row.largest_potential_j / barrier_j)
-                }
-            };
-            ratio.is_some_and(|ratio| ratio < FAR_FROM_OVERTURNING)
+            energy_over_barrier(model, request, own)
+                .is_some_and(|ratio| ratio < FAR_FROM_OVERTURNING)
+        }
+    }
+}
+
+/// Returns the largest potential energy of a motion over the energy barrier of the first mechanism; `None` if the barrier is not known.
+fn energy_over_barrier(model: &dyn Model, request: &Request, own: &Summary) -> Option<f64> {
+    match &own.details {
+        Details::Mechanisms(_) => None,
+        Details::Rigid(row) => row.peak_potential_over_barrier,
+        // Elastic joints overturn below the barrier of rigid joints.
+        Details::Elastic(row, elastic) => {
+            let barrier_j = model.elastic_barrier_j(request.gravity_m_s2)?;
+            let gone_j = elastic.friction_j + elastic.crushed_j;
+            (gone_j < LARGEST_LOSS_RATIO * barrier_j)
+                .then_some(row.largest_potential_j / barrier_j)
         }
     }
 }
