@@ -600,8 +600,10 @@ impl Jobs for Checks<'_> {
 /// Energy dissipated by slip and crushing, over the barrier, above which the barrier of elastic joints is no longer valid.
 pub(super) const LARGEST_LOSS_RATIO: f64 = 0.01;
 
-/// Largest energy, over the energy barrier of the first mechanism, below which a survivor is certain without a repetition of its path.
+/// Largest energy, over the energy barrier of the first mechanism, below which a survivor is certain without a repetition of its path. Under records,
+/// elastic joints between a third and half of the barrier overturned with other steps.
 const FAR_FROM_OVERTURNING: f64 = 0.5;
+const ELASTIC_FAR_FROM_OVERTURNING: f64 = 0.25;
 
 /// Largest energy, over the same barrier, above which a survivor is certain only with all repetitions, although its path repeats.
 const CLOSE_TO_BARRIER: f64 = 0.8;
@@ -613,8 +615,11 @@ fn needs_no_repetition(model: &dyn Model, request: &Request, own: &Summary) -> b
         Outcome::NeverMoved | Outcome::Incomplete => true,
         Outcome::Overturned(_) => own.row().is_some_and(|row| row.half_cycles_with_fall <= 1),
         Outcome::Vibrates | Outcome::Rest | Outcome::StillRocking => {
-            energy_over_barrier(model, request, own)
-                .is_some_and(|ratio| ratio < FAR_FROM_OVERTURNING)
+            let far = match own.details {
+                Details::Elastic(..) => ELASTIC_FAR_FROM_OVERTURNING,
+                _ => FAR_FROM_OVERTURNING,
+            };
+            energy_over_barrier(model, request, own).is_some_and(|ratio| ratio < far)
         }
     }
 }
