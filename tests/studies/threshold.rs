@@ -685,7 +685,7 @@ fn names(models: &[(String, Value)]) -> Vec<&str> {
 fn both_models_have_their_own_scenario() {
     let root = tempfile::tempdir().unwrap();
     let folder = root.path();
-    let impact = "[impact]\nmodel = \"same_sections\"\n[simulation]\nduration_s = 12.0\n";
+    let impact = "[impact]\nmodel = \"same_sections\"\n[simulation]\nduration_s = 8.0\n";
     file(
         folder,
         &SCENARIO.replace("[ground", &format!("voussoirs = 7\n{impact}[ground")),
@@ -768,39 +768,6 @@ fn a_column_of_drums_has_a_threshold_with_free_hinges() {
         outcomes.contains(&&"overturned".into()) && outcomes[0] != "overturned",
         "{outcomes:?}"
     );
-}
-
-/// Ends of ranges are printed with as many digits as distinguish them.
-#[test]
-fn neighbouring_ends_are_printed_with_distinct_digits() {
-    let folder = tempfile::tempdir().unwrap();
-    let text = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.15\nembrace_deg = 157.5\nvoussoirs = 15\n[free_hinges]\n\
-                [ground.step_pair]\namplitude_g = 0.45\nduration_s = 0.5\n";
-    fs::write(folder.path().join("s.toml"), text).unwrap();
-    let words = printed(
-        folder.path(),
-        &[
-            "--quiet",
-            "threshold",
-            "s.toml",
-            "--from",
-            "1.1",
-            "--to",
-            "1.15",
-        ],
-    );
-    // The ranges are about 0.1 % wide.
-    let line = words.lines().next().unwrap();
-    let ranges: Vec<&str> = line
-        .split([',', ':', ';'])
-        .filter(|part| part.contains(" to "))
-        .collect();
-    for range in &ranges {
-        let (from, to) = range.rsplit_once(" to ").unwrap();
-        let from = from.rsplit_once(' ').unwrap().1;
-        assert_ne!(from, to.trim_end_matches(')'), "{line}");
-    }
-    assert!(ranges.len() > 1, "{words}");
 }
 
 /// Histories are counted once: factors at which the ground falls freely have none, and are in no total.

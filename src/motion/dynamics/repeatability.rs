@@ -633,8 +633,7 @@ fn energy_over_barrier(model: &dyn Model, request: &Request, own: &Summary) -> O
         Details::Elastic(row, elastic) => {
             let barrier_j = model.elastic_barrier_j(request.gravity_m_s2)?;
             let gone_j = elastic.friction_j + elastic.crushed_j;
-            (gone_j < LARGEST_LOSS_RATIO * barrier_j)
-                .then_some(row.largest_potential_j / barrier_j)
+            (gone_j < LARGEST_LOSS_RATIO * barrier_j).then_some(row.largest_potential_j / barrier_j)
         }
     }
 }

@@ -32,3 +32,18 @@ fn decimals(value: f64) -> usize {
     let power = if value > 0.0 { value.log10() } else { 0.0 };
     (4.0 - (power.floor() + 1.0)).max(0.0) as usize
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn neighbouring_ends_are_printed_with_distinct_digits() {
+        assert_eq!(rounded_range([1.0, 1.5]), ["1.000", "1.500"]);
+        assert_eq!(rounded_range([1.10351, 1.10362]), ["1.1035", "1.1036"]);
+        assert_eq!(
+            rounded_range([0.994_201, 0.994_204]),
+            ["0.994201", "0.994204"]
+        );
+    }
+}
