@@ -2,9 +2,12 @@
 //! breaking by areas; energies; histories side by side; and the output of a run about ties.
 
 use std::f64::consts::PI;
+use std::fs;
 use std::os::unix::fs::symlink;
 
-use crate::common::program::{assert_shown_output_is_printed, done, printed, refused, scenarios};
+use crate::common::program::{
+    archrock, assert_shown_output_is_printed, done, printed, refused, scenarios, stderr,
+};
 use crate::common::prose::{golden, shows};
 use crate::common::results::{Table, json, named};
 use crate::common::{parsed, pulse, run_sampled, sampled};
@@ -754,4 +757,32 @@ fn commands_print_the_output_shown_in_docs_ties() {
         assert_shown_output_is_printed("docs/ties.md", folder.path()),
         6
     );
+}
+
+/// Two hundred bars of 1e10 N/m at the haunches of an arch need steps of 3.5 microseconds. The run is refused before it starts, with the remedies.
+#[test]
+fn ties_too_stiff_for_the_steps_are_refused_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let ties: String = (0..200)
+        .map(|tie| {
+            format!(
+                "[[tie]]\nheight_m = {:.4}\nstiffness_n_m = 1e10\nprestress_n = 100\n",
+                0.5 + 0.0175 * f64::from(tie)
+            )
+        })
+        .collect();
+    let arch = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.15\nembrace_deg = 180\nvoussoirs = 24\n[free_hinges]\n";
+    let ground = "[ground.one_sine]\namplitude_g = 0.5\nduration_s = 0.5\n";
+    fs::write(
+        folder.path().join("s.toml"),
+        format!("{arch}{ground}{ties}"),
+    )
+    .unwrap();
+    let output = archrock(folder.path(), &["run", "s.toml"]);
+    let message = stderr(&output);
+    assert_eq!(output.status.code(), Some(1), "{message}");
+    for words in ["the ties are too stiff", "combine ties", "longest_step_s"] {
+        assert!(message.contains(words), "{message}");
+    }
+    assert!(!folder.path().join("results").exists());
 }

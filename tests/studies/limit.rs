@@ -3,7 +3,10 @@
 //! The independent reference is the static theorem: the largest push under which some thrust line stays in
 //! the ring, by linear programming over the reaction at the left springing. It uses no mechanism.
 
+use std::fs;
+
 use crate::common;
+use crate::common::program::printed;
 use crate::common::{Random, assert_hinges, climb, ring};
 use archrock::mechanics::chain::{Mechanism, critical_rad};
 use archrock::mechanics::four_link::limit::{
@@ -587,4 +590,24 @@ fn limit_describes_ties_as_check_does() {
     let page = folder.path().join("results/s/verify.html");
     let page = std::fs::read_to_string(page).unwrap();
     assert!(notes.iter().all(|note| page.contains(note)));
+}
+
+/// Statics do not depend on the ground motion: neither with half of gravity taken away nor when the ground falls freely.
+#[test]
+fn statics_do_not_depend_on_the_vertical_ground() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 157.5\nvoussoirs = 7\n[free_hinges]\n\
+                [ground.half_sine]\namplitude_g = 0.9\nduration_s = 0.3\n";
+    fs::write(folder.path().join("s.toml"), text).unwrap();
+    for command in ["limit", "capacity", "spread"] {
+        let words = ["0", "-0.5", "-1.2"].map(|amplitude_g| {
+            let set = format!("ground.half_sine.vertical_amplitude_g={amplitude_g}");
+            printed(
+                folder.path(),
+                &["--quiet", command, "s.toml", "--set", &set],
+            )
+        });
+        assert!(words[0] == words[1] && words[1] == words[2], "{words:#?}");
+        assert!(!words[0].is_empty());
+    }
 }

@@ -513,3 +513,47 @@ fn the_verdict_names_repetitions_that_overturn_to_the_other_side() {
     );
     assert!(!words.contains("the same with other steps"), "{words}");
 }
+
+/// The block on three contact points slips a little at each impact, and more with shorter steps. The printed range is that of the repetitions,
+/// here computed again with half steps.
+#[test]
+fn the_largest_slip_has_the_range_of_its_repetitions() {
+    let scenario = "[column]\nheight_m = 5.44\nwidth_m = 1.922\n[elastic_joints]\nnormal_stiffness_gpa_m = 100\n\
+                    friction_coefficient = 1.14\ndamping_time_s = 1e-4\ncontact_points = 3\n[ground.half_sine]\namplitude_g = 0.7\n\
+                    duration_s = 0.3\n[simulation]\nduration_s = 2.0\n";
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("s.toml"), scenario).unwrap();
+    let words = printed(folder.path(), &["run", "s.toml", "--out", "here"]);
+    let summary = json(&folder.path().join("here/summary.json"));
+    let slip_m = &summary["repeatability"]["largest_slip_m"];
+    let [own_m, least_m, most_m] = ["own", "min", "max"].map(|key| slip_m[key].as_f64().unwrap());
+    assert!(least_m <= own_m && own_m < most_m, "{slip_m}");
+    let ends = format!(
+        "LARGEST SLIP {:.3} to {:.3} mm",
+        1e3 * least_m,
+        1e3 * most_m
+    );
+    assert!(words.contains(&ends), "{words}");
+    let half_s = 0.5 * summary["longest_step_s"].as_f64().unwrap();
+    let half = format!("elastic_joints.longest_step_s={half_s}");
+    printed(
+        folder.path(),
+        &[
+            "run",
+            "s.toml",
+            "--set",
+            &half,
+            "--no-repeat",
+            "--out",
+            "finer",
+        ],
+    );
+    let joints = Table::read(folder.path().join("finer/joints.csv"));
+    let slips_m = joints.numbers("slip_0_m").into_iter().map(f64::abs);
+    let finer_m = slips_m.fold(0.0, f64::max);
+    // The table has a row every 5 ms, and may miss the largest slip.
+    assert!(
+        1.1 * own_m < finer_m && finer_m <= most_m,
+        "{finer_m} {slip_m}"
+    );
+}

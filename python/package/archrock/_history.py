@@ -449,13 +449,14 @@ class History(Summarised):
         # Elastic contact lasts, so impacts are not counted.
         if impacts is not None:
             at += " without impact" if impacts == 0 else f" after {impacts} impact{'s'[: impacts > 1]}"
+        vibrates = self._numbers().get("vibrates_since_s") is not None
         return {
             "never_moved": "never moved",
             "vibrates": "vibrated without opening",
             "incomplete": f"incomplete {at}",
             "rest": f"came to rest {at}",
             "overturned": f"overturned to the {self.overturning_sway} {at}",
-            "still_rocking": f"still rocking {at}",
+            "still_rocking": f"still vibrates {at}" if vibrates else f"still rocking {at}",
         }[self.outcome]
 
     def __repr__(self) -> str:
