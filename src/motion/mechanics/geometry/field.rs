@@ -4,6 +4,7 @@
 //! acceleration field such as gravity, and the change of velocity in an impact. Two fields have a scalar product, the integral of `rho v . w`. It is
 //! twice a kinetic energy for `v = w`, and a virtual power if one of the fields is a load per unit mass.
 
+use std::mem;
 use std::ops::Add;
 
 use super::profile::Profile;
@@ -106,8 +107,11 @@ impl Field {
     pub fn momentum_to(&self, profile: &dyn Profile, angle_rad: f64) -> Momentum {
         let sectors = self.sectors(profile.end());
         let before = sectors.take_while(|(start, ..)| *start < angle_rad);
-        let momenta = before
-            .map(|(start, end, twist)| twist.momentum(&profile.sector(start, end.min(angle_rad))));
+        let mut from = profile.moments_to(0.0);
+        let momenta = before.map(|(_, end, twist)| {
+            let to = profile.moments_to(end.min(angle_rad));
+            twist.momentum(&(to - mem::replace(&mut from, to)))
+        });
         momenta.fold(Momentum::ZERO, Add::add)
     }
 
@@ -115,14 +119,20 @@ impl Field {
     /// of both fields.
     #[must_use]
     pub fn product(&self, other: &Self, profile: &dyn Profile) -> f64 {
-        let mut sum = 0.0;
-        for (start, end, twist) in self.sectors(profile.end()) {
-            for (other_start, other_end, other_twist) in other.sectors(profile.end()) {
-                let (from, to) = (start.max(other_start), end.min(other_end));
-                if from < to {
-                    sum += twist.power(&other_twist.momentum(&profile.sector(from, to)));
-                }
+        let end_of =
+            |field: &Self, sector| field.cuts_rad.get(sector).map_or(profile.end(), |cut| *cut);
+        let (mut from, mut before) = (0.0, profile.moments_to(0.0));
+        let (mut own, mut others, mut sum) = (0, 0, 0.0);
+        while own < self.twists.len() && others < other.twists.len() {
+            let ends = [end_of(self, own), end_of(other, others)];
+            let to = ends[0].min(ends[1]);
+            if from < to {
+                let after = profile.moments_to(to);
+                sum += self.twists[own].power(&other.twists[others].momentum(&(after - before)));
+                (from, before) = (to, after);
             }
+            own += usize::from(ends[0] <= to);
+            others += usize::from(ends[1] <= to);
         }
         sum
     }

@@ -57,6 +57,8 @@ pub struct Ring {
     pub thickness_ratio: f64,
     /// Embrace angle in radians, also the angle of the right springing.
     pub embrace_rad: f64,
+    /// Unit vector from the centre through the left springing.
+    left: Vector2<f64>,
 }
 
 impl Ring {
@@ -67,10 +69,13 @@ impl Ring {
     pub fn new(thickness_ratio: f64, embrace_rad: f64) -> Result<Self, ArgumentError> {
         let has_hole = thickness_ratio > 0.0 && thickness_ratio < 2.0;
         let is_arch = embrace_rad > 0.0 && embrace_rad <= PI;
-        Ok(Self {
+        let mut ring = Self {
             thickness_ratio: allow(has_hole, "thickness_ratio", thickness_ratio, "in (0, 2)")?,
             embrace_rad: allow(is_arch, "embrace_rad", embrace_rad, "in (0, pi]")?,
-        })
+            left: Vector2::zeros(),
+        };
+        ring.left = ring.radial(0.0);
+        Ok(ring)
     }
 
     /// Radius of an edge, in mean radii.
@@ -128,7 +133,7 @@ impl Ring {
     /// radial unit vector, the mass is `t` and the polar moment `t (1 + t^2/4)` per radian.
     #[must_use]
     pub fn moments_to(&self, angle_rad: f64) -> MassMoments {
-        let (start, end) = (self.radial(0.0), self.radial(angle_rad));
+        let (start, end) = (self.left, self.radial(angle_rad));
         let slice = self.slice(angle_rad);
         MassMoments {
             mass: slice.mass * angle_rad,
