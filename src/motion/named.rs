@@ -17,7 +17,6 @@ macro_rules! named {
             pub const ALL: &[Self] = &[$(Self::$variant),+];
 
             /// Returns the name in scenarios and results.
-            #[must_use]
             pub const fn name(self) -> &'static str {
                 match self { $(Self::$variant => $name,)+ }
             }

@@ -42,7 +42,6 @@ pub enum Outcome {
 
 impl Outcome {
     /// Returns the side to which the structure overturned; `None` if it did not.
-    #[must_use]
     pub const fn overturning_sway(self) -> Option<Sway> {
         match self {
             Self::Overturned(sway) => Some(sway),
@@ -51,7 +50,6 @@ impl Outcome {
     }
 
     /// Returns the name in machine-readable results.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::NeverMoved => "never_moved",
@@ -93,7 +91,6 @@ pub enum State {
 
 impl State {
     /// Returns the name in machine-readable results: `rest`, `right`, `left` or `overturned`.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Rest => "rest",
@@ -103,7 +100,6 @@ impl State {
     }
 
     /// Returns the side to which the structure sways or has overturned; `None` at rest.
-    #[must_use]
     pub const fn sway(self) -> Option<Sway> {
         match self {
             Self::Rest => None,
@@ -410,7 +406,6 @@ pub struct Impact {
 
 impl Impact {
     /// Returns the sway of the mechanism that opened.
-    #[must_use]
     pub const fn sway_after(&self) -> Sway {
         self.sway_before.opposite()
     }
@@ -468,7 +463,6 @@ pub enum Details {
 
 impl Summary {
     /// Returns the results of a row of blocks; `None` for mechanisms.
-    #[must_use]
     pub const fn row(&self) -> Option<&RowSummary> {
         match &self.details {
             Details::Mechanisms(_) => None,
@@ -477,7 +471,6 @@ impl Summary {
     }
 
     /// Returns the results of elastic joints; `None` for other models.
-    #[must_use]
     pub const fn elastic(&self) -> Option<&ElasticSummary> {
         match &self.details {
             Details::Elastic(_, elastic) => Some(elastic),
@@ -486,7 +479,6 @@ impl Summary {
     }
 
     /// Returns the largest rotation over that at the unstable equilibrium of the moving mechanism; `None` for rows of blocks.
-    #[must_use]
     pub const fn peak_over_critical(&self) -> Option<f64> {
         match self.details {
             Details::Mechanisms(of) => Some(of.peak_over_critical),
@@ -495,7 +487,6 @@ impl Summary {
     }
 
     /// Returns the largest excess of the thrust line of four links, as in [`MechanismSummary`]; `None` for other models.
-    #[must_use]
     pub const fn thrust_excess_ratio(&self) -> Option<f64> {
         match self.details {
             Details::Mechanisms(of) => of.thrust_excess_ratio,
@@ -504,19 +495,16 @@ impl Summary {
     }
 
     /// Returns the largest potential energy over the barrier of the first mechanism, as in [`RowSummary`]; `None` for mechanisms.
-    #[must_use]
     pub fn peak_potential_over_barrier(&self) -> Option<f64> {
         self.row()?.peak_potential_over_barrier
     }
 
     /// Returns the largest rotation of any body, without sign, in radians.
-    #[must_use]
     pub fn largest_rotation_rad(&self) -> f64 {
         self.peak_rotations_rad.iter().copied().fold(0.0, f64::max)
     }
 
     /// Returns the index of the body with the largest rotation; the last one of several.
-    #[must_use]
     pub fn largest_body(&self) -> usize {
         let most_rad = self.largest_rotation_rad();
         let mut peaks_rad = self.peak_rotations_rad.iter();
@@ -525,20 +513,17 @@ impl Summary {
     }
 
     /// Returns the number of impacts; `None` for elastic joints, which have no instantaneous impacts.
-    #[must_use]
     pub fn known_impacts(&self) -> Option<usize> {
         self.elastic().is_none().then_some(self.impacts)
     }
 
     /// Returns the time of overturning, in seconds; `None` if the structure did not overturn.
-    #[must_use]
     pub fn overturned_s(&self) -> Option<f64> {
         matches!(self.outcome, Outcome::Overturned(_)).then_some(self.outcome_time_s)
     }
 
     /// Returns the half cycles of a row of blocks with peaks of at least a thousandth of the largest peak; empty for other structures. Smaller half
     /// cycles are vibration, and their number is arbitrary.
-    #[must_use]
     pub fn half_cycles(&self) -> Vec<HalfCycle> {
         let all = self.row().map_or(&[][..], |row| &row.half_cycles);
         let peaks_rad = all.iter().map(|cycle| cycle.peak_rad);
@@ -636,14 +621,12 @@ pub struct HalfCycle {
 
 impl HalfCycle {
     /// Returns the end of the half cycle, in seconds.
-    #[must_use]
     pub fn end_s(&self) -> f64 {
         self.start_s + self.duration_s
     }
 
     /// Returns the corresponding half cycle of another motion: to the same side, overlapping in time, and with the nearest peak in time; `None` if
     /// there is none.
-    #[must_use]
     pub fn counterpart<'a>(&self, others: &'a [Self]) -> Option<&'a Self> {
         let coincides = |other: &&Self| {
             other.sway == self.sway
@@ -682,7 +665,6 @@ impl Sliding {
     }
 
     /// Returns a record without slip.
-    #[must_use]
     pub fn none(joints: usize) -> Self {
         Self {
             offsets_m: vec![0.0; joints],

@@ -77,13 +77,11 @@ pub struct Samples {
 
 impl Samples {
     /// Returns the number of samples.
-    #[must_use]
     pub const fn len(&self) -> usize {
         self.time_s.len()
     }
 
     /// Returns whether there are no samples.
-    #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.time_s.is_empty()
     }
@@ -118,7 +116,6 @@ impl Samples {
     }
 
     /// Returns a sample; `None` beyond the last.
-    #[must_use]
     pub fn get(&self, index: usize) -> Option<Sample> {
         let time_s = *self.time_s.get(index)?;
         let samples = self.len();

@@ -87,14 +87,12 @@ impl OutcomeCount {
     }
 
     /// Returns whether the verdict is uncertain: some motions overturn and others survive, or at most half of them have a verdict.
-    #[must_use]
     pub const fn is_uncertain(&self) -> bool {
         let is_mixed = 0 < self.overturns_in && self.overturns_in < self.of;
         is_mixed || self.of <= self.incomplete.len() + self.failed.len()
     }
 
     /// Returns the repetitions without a verdict, in words that follow the count; empty if all have one.
-    #[must_use]
     pub fn without_verdict(&self) -> String {
         let named = |words: &str, names: &[String]| match names {
             [] => String::new(),
@@ -143,7 +141,6 @@ pub struct Repeatability {
 }
 
 /// Returns the name of a repetition as a key in results.
-#[must_use]
 pub fn key(repetition: &str) -> String {
     repetition.replace(' ', "_")
 }
@@ -164,7 +161,6 @@ fn peak_time<S: Serializer>(cycle: &HalfCycle, serializer: S) -> Result<S::Ok, S
 
 impl RepeatedHalfCycle {
     /// Returns whether the peak is certain.
-    #[must_use]
     pub fn is_certain(&self) -> bool {
         self.peak_rad.is_some_and(|peak| peak.is_certain())
     }
@@ -192,7 +188,6 @@ impl RepeatedValue {
     }
 
     /// Returns whether the value is certain to [`SAME_PEAK_RATIO`].
-    #[must_use]
     pub fn is_certain(&self) -> bool {
         self.max - self.min <= AGREEMENT * SAME_PEAK_RATIO * self.max
     }
@@ -200,7 +195,6 @@ impl RepeatedValue {
 
 impl Repeatability {
     /// Compares a motion of a row with its repetitions, given with their names.
-    #[must_use]
     pub fn new(own: &Summary, repetitions: &[NamedResult]) -> Self {
         let named = || repetitions.iter().map(|(name, other)| (*name, other));
         let computed = named().filter_map(|(name, other)| Some((name, other.as_ref().ok()?)));
@@ -243,7 +237,6 @@ impl Repeatability {
     }
 
     /// Returns whether any joint has slipped at the end.
-    #[must_use]
     pub fn has_slipped(&self) -> bool {
         self.most_slip_m() > LEAST_SLIP_M
     }
@@ -255,7 +248,6 @@ impl Repeatability {
 
     /// Returns the joint whose final slips differ most, if they are not certain to [`SAME_PEAK_RATIO`] of the largest slip of any joint; `None` if
     /// all are certain.
-    #[must_use]
     pub fn uncertain_slip(&self) -> Option<usize> {
         let range_m = |joint: &usize| self.slips_m[*joint].max - self.slips_m[*joint].min;
         let joints = 0..self.slips_m.len();
@@ -265,7 +257,6 @@ impl Repeatability {
     }
 
     /// Returns the other outcomes, including those that differ in the side of overturning alone, each with the names of its repetitions.
-    #[must_use]
     pub fn other_outcomes(&self) -> Vec<(Outcome, String)> {
         let mut others: Vec<(Outcome, String)> = Vec::new();
         for (name, outcome) in self.repeated.iter().zip(&self.outcomes[1..]) {
@@ -346,7 +337,6 @@ pub struct Repetitions<'a> {
 
 impl<'a> Repetitions<'a> {
     /// Starts the first repetitions.
-    #[must_use]
     pub fn start(model: &'a dyn Model, ground: &'a GroundMotion, request: &'a Request) -> Self {
         let mut first = model.repetitions();
         let others = first.split_off(FIRST_REPETITIONS.min(first.len()));
@@ -360,7 +350,6 @@ impl<'a> Repetitions<'a> {
     }
 
     /// Waits for the repetitions, computes all others if the first ones do not suffice, and compares the motion with them.
-    #[must_use]
     pub fn compare(self, own: &Summary) -> Repeatability {
         let ended = |(name, running): (_, MotionThread)| (name, running.wait());
         let mut repeated: Vec<_> = self.first.into_iter().map(ended).collect();
@@ -430,7 +419,6 @@ impl From<Outcome> for Verdict {
 
 impl Verdict {
     /// Returns the verdict on a motion with this outcome, uncertain if the count of its repetitions says so.
-    #[must_use]
     pub fn counted(outcome: Outcome, count: Option<&OutcomeCount>) -> Self {
         match Self::from(outcome) {
             Self::Incomplete => Self::Incomplete,

@@ -94,7 +94,6 @@ impl Request {
     pub const MOST_SAMPLES: f64 = 1e7;
 
     /// Returns the maximum number of samples of a history on this ground: one at the start, at every output step and at the end.
-    #[must_use]
     pub fn most_samples(&self, ground: &GroundMotion) -> u64 {
         let before = if ground.start_s() < 0.0 { 1 } else { 0 };
         // Invalid numbers are rejected elsewhere.

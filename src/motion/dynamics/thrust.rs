@@ -64,7 +64,6 @@ pub const MODEL_LIMIT: f64 = 0.5;
 
 impl ThrustRecord {
     /// Returns the friction coefficient that prevents sliding: the lasting demand of a row, the largest one of a mechanism.
-    #[must_use]
     pub fn required_friction(&self) -> f64 {
         self.lasting_friction.unwrap_or(self.largest_friction.value)
     }
@@ -87,7 +86,6 @@ impl ThrustRecord {
     }
 
     /// Returns the fractions of the time in motion in which the excess is at most each of [`EXCESS_LEVELS`]; `None` if no sample is in motion.
-    #[must_use]
     pub fn shares_within(&self) -> Option<[f64; 2]> {
         (self.moving > 0).then(|| self.within.map(|count| count as f64 / self.moving as f64))
     }

@@ -49,7 +49,6 @@ pub struct Variations(Vec<(String, Result<MotionThread, String>)>);
 
 impl Variations {
     /// Starts the computations.
-    #[must_use]
     pub fn start(variations: Vec<Variation>, ground: &GroundMotion, request: &Request) -> Self {
         let running = |model| MotionThread::start(model, ground, request);
         let start = |variation: Variation| (variation.name, variation.model.map(running));
@@ -57,7 +56,6 @@ impl Variations {
     }
 
     /// Waits for all results.
-    #[must_use]
     pub fn wait(self) -> Vec<VariationResult> {
         let ended = |(name, running): (_, Result<MotionThread, String>)| VariationResult {
             name,

@@ -46,7 +46,6 @@ named! {
 
 impl MeasuredAt {
     /// Returns the line in words.
-    #[must_use]
     pub const fn in_words(self) -> &'static str {
         match self {
             Self::Intrados => "at the intrados",
@@ -56,7 +55,6 @@ impl MeasuredAt {
     }
 
     /// Returns the distance outwards from this line to the mean line, in thicknesses.
-    #[must_use]
     pub const fn to_mean(self) -> f64 {
         match self {
             Self::Intrados => 0.5,
@@ -211,13 +209,11 @@ impl Arch {
     }
 
     /// Returns the radius of a line, in metres.
-    #[must_use]
     pub fn radius_at_m(&self, line: MeasuredAt) -> f64 {
         self.mean_radius_m * (1.0 - line.to_mean() * self.thickness_ratio)
     }
 
     /// Returns span and rise of a line, in metres.
-    #[must_use]
     pub fn span_and_rise_m(&self, line: MeasuredAt) -> [f64; 2] {
         let radius_m = self.radius_at_m(line);
         let (sin, cos) = (0.5 * self.embrace_deg.to_radians()).sin_cos();
@@ -239,21 +235,18 @@ impl Arch {
     }
 
     /// Returns the sections at which hinges may open.
-    #[must_use]
     pub fn sites(&self) -> HingeSites {
         (self.voussoirs).map_or(HingeSites::Anywhere, HingeSites::Voussoirs)
     }
 
     /// Returns the sections at which thrust lines are reported, in radians from the left springing: the joints, or 61 sections of an arch with hinges
     /// anywhere.
-    #[must_use]
     pub(crate) fn thrust_sections_rad(&self) -> Vec<f64> {
         let parts = self.voussoirs.unwrap_or(60);
         self.ring().sections(parts)
     }
 
     /// Returns the shape: the ring of unit mean radius.
-    #[must_use]
     pub fn ring(&self) -> Ring {
         Ring::new(self.thickness_ratio, self.embrace_deg.to_radians())
             .expect("the constructors check what makes a ring")

@@ -21,14 +21,12 @@ pub struct Block {
 
 impl Block {
     /// Returns a prism with a simple polygon as outline, given by its corners (m) in order, clockwise or anticlockwise.
-    #[must_use]
     pub fn prism(corners_m: &[Vector2<f64>], depth_m: f64, density_kg_m3: f64) -> Self {
         let pole = corners_m.first().copied().unwrap_or_else(Vector2::zeros);
         Self::bounded(polygon(corners_m), pole, depth_m, density_kg_m3)
     }
 
     /// Returns a prism with a closed outline (m), clockwise or anticlockwise; `pole_m` is a point near it, which limits rounding errors.
-    #[must_use]
     pub(crate) fn bounded(
         outline_m: impl IntoIterator<Item = Curve>,
         pole_m: Vector2<f64>,
@@ -47,7 +45,6 @@ impl Block {
     }
 
     /// Returns this block and another one combined as one rigid body.
-    #[must_use]
     pub fn with(&self, other: &Self) -> Self {
         let mass_kg = self.mass_kg + other.mass_kg;
         let apart_m = other.centre_m - self.centre_m;
@@ -61,7 +58,6 @@ impl Block {
     }
 
     /// Returns the mirror image about the y axis.
-    #[must_use]
     pub fn mirrored(&self) -> Self {
         Self {
             centre_m: mirrored(self.centre_m),
@@ -70,7 +66,6 @@ impl Block {
     }
 
     /// Returns mass, first and polar moment about the origin, for a centre of gravity at `centre_m`.
-    #[must_use]
     pub fn moments_at(&self, centre_m: Vector2<f64>) -> MassMoments {
         MassMoments {
             mass: self.mass_kg,
@@ -91,31 +86,26 @@ pub struct Joint {
 
 impl Joint {
     /// Returns the distance of the corners in metres.
-    #[must_use]
     pub fn thickness_m(&self) -> f64 {
         (self.extrados_m - self.intrados_m).norm()
     }
 
     /// Returns the midpoint of the corners in metres.
-    #[must_use]
     pub fn middle_m(&self) -> Vector2<f64> {
         (self.intrados_m + self.extrados_m) * 0.5
     }
 
     /// Returns the unit vector from the intrados to the extrados.
-    #[must_use]
     pub fn along(&self) -> Vector2<f64> {
         (self.extrados_m - self.intrados_m) / self.thickness_m()
     }
 
     /// Returns the corner on an edge, in metres.
-    #[must_use]
     pub const fn corner_m(&self, edge: Edge) -> Vector2<f64> {
         [self.intrados_m, self.extrados_m][edge as usize]
     }
 
     /// Returns the mirror image about the y axis.
-    #[must_use]
     pub fn mirrored(&self) -> Self {
         Self {
             intrados_m: mirrored(self.intrados_m),
@@ -124,7 +114,6 @@ impl Joint {
     }
 
     /// Returns the corners of the quadrilateral between this joint and the next one, in order around it.
-    #[must_use]
     pub const fn outline_m(&self, next: &Self) -> [Vector2<f64>; 4] {
         [
             self.intrados_m,

@@ -241,7 +241,6 @@ impl Row {
 
     /// Returns the mirror image about the y axis, in which the right support becomes the left one. `None` for a stack, whose blocks would keep their
     /// order.
-    #[must_use]
     pub fn mirrored(&self) -> Option<Self> {
         if self.supports == Supports::Left {
             return None;
@@ -370,7 +369,6 @@ impl Row {
     }
 
     /// Returns the middles of the joints on the left and the right support, in metres; twice the same point for a stack.
-    #[must_use]
     pub fn feet_m(&self) -> [Vector2<f64>; 2] {
         let last = match self.supports {
             Supports::Left => 0,
@@ -380,7 +378,6 @@ impl Row {
     }
 
     /// Returns the mass of all blocks in kg.
-    #[must_use]
     pub fn mass_kg(&self) -> f64 {
         self.blocks.iter().map(|block| block.mass_kg).sum()
     }

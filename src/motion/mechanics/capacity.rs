@@ -41,7 +41,6 @@ pub struct Displaced {
 }
 
 /// Returns the first mechanism to a side at a fraction `part` of the rotation at its unstable equilibrium. `None` without such a mechanism.
-#[must_use]
 pub fn displaced<C: MechanismChain>(structure: &C, sway: Sway, part: f64) -> Option<Displaced> {
     let link = structure.link_from(sway, 0)?;
     let q_rad = part * link.critical_rad;
@@ -67,7 +66,6 @@ pub fn displaced<C: MechanismChain>(structure: &C, sway: Sway, part: f64) -> Opt
 
 /// Returns the rigid bodies of the first mechanism to a side, from left to right, with their virtual displacements per radian of its coordinate, in
 /// metres. Parts at rest are omitted. `None` without such a mechanism.
-#[must_use]
 pub fn moving_bodies<C: MechanismChain>(structure: &C, sway: Sway) -> Option<Vec<MovingBody>> {
     let mechanism = &structure.link_from(sway, 0)?.mechanism;
     let (mut poses, mut hinges) = (Vec::new(), Vec::new());
@@ -112,7 +110,6 @@ pub struct Control {
 
 impl Control {
     /// Returns a control point at a point of the structure.
-    #[must_use]
     pub fn point(point: BodyPoint) -> Self {
         Self {
             at_m: point.at_m,
@@ -121,7 +118,6 @@ impl Control {
     }
 
     /// Returns the common centre of the moving masses, given in kg, as control point.
-    #[must_use]
     pub fn centre_of(masses: &[(f64, BodyPoint)]) -> Self {
         let moving = || masses.iter().filter(|(_, point)| point.body.is_some());
         let whole_kg: f64 = moving().map(|(mass_kg, _)| mass_kg).sum();
@@ -320,7 +316,6 @@ impl Capacity {
     ///
     /// # Panics
     /// Never: a curve has points.
-    #[must_use]
     pub fn start(&self) -> &CurvePoint {
         self.curve.first().expect("a curve has points")
     }
@@ -329,14 +324,12 @@ impl Capacity {
     ///
     /// # Panics
     /// Never: a curve has points.
-    #[must_use]
     pub fn end(&self) -> &CurvePoint {
         self.curve.last().expect("a curve has points")
     }
 
     /// Returns the acceleration of the equivalent oscillator, in multiples of gravity, at a fraction of `d0*` between 0 and 1, by linear
     /// interpolation of the curve.
-    #[must_use]
     pub fn oscillator_acceleration_g(&self, part: f64) -> f64 {
         let wanted_m = part * self.end().oscillator_displacement_m;
         let mut pairs = self.curve.windows(2);
@@ -351,7 +344,6 @@ impl Capacity {
     }
 
     /// Returns the secant period, in seconds, at a fraction of the ultimate displacement between 0 and 1; `None` at the end of the curve.
-    #[must_use]
     pub fn secant_period_s(&self, part: f64, gravity_m_s2: f64) -> Option<f64> {
         let wanted_m = part * self.end().oscillator_displacement_m;
         let acceleration_g = self.oscillator_acceleration_g(part);

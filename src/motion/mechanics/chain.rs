@@ -127,7 +127,6 @@ fn as_toe<S: Serializer>(side: &Sway, serializer: S) -> Result<S::Ok, S::Error> 
 
 impl<M: Mechanism> Link<M> {
     /// Returns the link of a mechanism with its unstable equilibrium and its limit, and with the impact that starts it.
-    #[must_use]
     pub fn new(
         mechanism: M,
         critical_rad: f64,
@@ -237,7 +236,6 @@ pub trait MechanismChain: std::fmt::Debug + Send + Sync {
 
 /// Returns the unstable equilibrium under gravity: the first `q` in `(0, limit_rad)` at which `S_y`, the slope of the potential energy, becomes zero.
 /// Returns the limit if there is none.
-#[must_use]
 pub fn critical_rad(mechanism: &impl Mechanism, limit_rad: f64) -> f64 {
     let rise = |q| mechanism.coefficients(q).s_y;
     // The potential energy has one maximum before the limit; the scan only brackets it.

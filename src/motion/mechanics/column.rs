@@ -241,7 +241,6 @@ impl Column {
     }
 
     /// Returns half the diagonal of its outline, in metres, for a top as wide as the base.
-    #[must_use]
     pub fn half_diagonal_m(&self) -> f64 {
         0.5 * self.height_m.hypot(self.width_m)
     }
@@ -264,21 +263,18 @@ impl Column {
     }
 
     /// Returns the heights of its drums from the base up, in metres; its own height for a single block.
-    #[must_use]
     pub fn drum_heights_m(&self) -> Vec<f64> {
         let drums = self.drum_heights_m.clone();
         drums.unwrap_or_else(|| vec![self.height_m])
     }
 
     /// Returns whether it is one prismatic block without ties, as in Housner's model.
-    #[must_use]
     pub fn is_one_prism(&self) -> bool {
         let prism = self.drum_heights_m().len() == 1 && self.top_width_m() == self.width_m;
         prism && self.ties.is_empty()
     }
 
     /// Returns the width at the top, in metres.
-    #[must_use]
     pub fn top_width_m(&self) -> f64 {
         self.top_width_m.unwrap_or(self.width_m)
     }
@@ -302,14 +298,12 @@ impl Column {
     }
 
     /// Returns the sections at which the thrust line of a single block is reported, in metres above the base: 21, from the base to the top.
-    #[must_use]
     pub fn thrust_sections_m(&self) -> Vec<f64> {
         let parts = thrust_section_parts();
         parts.map(|part| part * self.height_m).collect()
     }
 
     /// Returns the slenderness `alpha`, the angle of the diagonal with the vertical, in radians.
-    #[must_use]
     pub fn slenderness_rad(&self) -> f64 {
         self.width_m.atan2(self.height_m)
     }

@@ -17,7 +17,6 @@ const ROUNDING: f64 = 1e-12;
 /// Solves for `z`. `matrix` should be scaled to a unit diagonal where the diagonal is not zero.
 ///
 /// `None` if the method ends on a ray or needs too many pivots.
-#[must_use]
 pub fn solve(matrix: &DMatrix<f64>, constant: &[f64]) -> Option<Vec<f64>> {
     let n = constant.len();
     if constant.iter().all(|q| *q >= 0.0) {

@@ -83,7 +83,6 @@ pub struct Load {
 
 impl Load {
     /// Returns the zero load of a row with all joints closed.
-    #[must_use]
     pub fn none(row: &Row) -> Self {
         let (blocks, joints) = (row.blocks.len(), row.joints.len());
         Self {
@@ -131,7 +130,6 @@ pub struct Program {
 
 impl Program {
     /// Returns a program for the undeformed row. The initial active set has all joints of a stack closed, or three pins in an arch.
-    #[must_use]
     pub fn new(row: &Row) -> Self {
         let (blocks, joints) = (row.blocks.len(), row.joints.len());
         let mut program = Self {
@@ -180,7 +178,6 @@ impl Program {
     }
 
     /// Returns the mass moments about the origin of all blocks before each joint.
-    #[must_use]
     pub fn moments(&self) -> &[MassMoments] {
         &self.factor.row.moments
     }
@@ -193,7 +190,6 @@ impl Program {
     }
 
     /// Returns the impulses in N s at the corners of every joint: intrados, extrados.
-    #[must_use]
     pub(crate) fn corner_impulses(&self) -> &[[f64; 2]] {
         &self.answer.corners
     }

@@ -143,7 +143,6 @@ pub struct Program {
 
 impl Program {
     /// Returns a problem for a row with all joints closed and zero impulses.
-    #[must_use]
     pub fn new(row: &Row, coefficient: f64) -> Self {
         let (blocks, joints) = (row.blocks.len(), row.joints.len());
         let roots = row.blocks.iter().map(|block| {
@@ -181,13 +180,11 @@ impl Program {
     }
 
     /// Returns the velocity (x, y) in m/s and the rotation rate in rad/s of a block in the last solution.
-    #[must_use]
     pub fn velocity(&self, block: usize) -> Vector3<f64> {
         self.velocities[block].component_div(&self.roots[block])
     }
 
     /// Returns twice the kinetic energy of the last solution, in J.
-    #[must_use]
     pub(crate) fn twice_kinetic_j(&self) -> f64 {
         self.velocities.iter().map(Vector3::norm_squared).sum()
     }
@@ -241,7 +238,6 @@ impl Program {
     }
 
     /// Returns the rates of the coordinates of a joint in the last solution, in m/s.
-    #[must_use]
     pub fn joint_rate(&self, joint: usize) -> Vector3<f64> {
         self.rate(joint, &self.velocities)
     }

@@ -44,7 +44,6 @@ pub struct Equivalent {
 }
 
 /// Returns the blocks equivalent to the first mechanism of `structure` to a side under gravity. `None` without such a mechanism.
-#[must_use]
 pub fn equivalent_towards<C: MechanismChain>(
     structure: &C,
     sway: Sway,

@@ -86,7 +86,6 @@ const VOUSSOIRS: &str = "; `limit` and [free_hinges] take any mechanism of vouss
 
 impl FourLinkError {
     /// Returns true if the structure is stable and does not start as four links.
-    #[must_use]
     pub fn is_other_mechanism(&self) -> bool {
         matches!(self, Self::Limit(error) | Self::Row(_, error) if *error != LimitError::CannotStand)
     }
@@ -159,7 +158,6 @@ impl FourLinks {
     }
 
     /// Returns the model of an arch with this shape and another size, which shares the sequences of mechanisms.
-    #[must_use]
     pub fn with_size_of(&self, arch: &Arch) -> Self {
         Self {
             size: Size::of(arch),
@@ -179,19 +177,16 @@ impl FourLinks {
     }
 
     /// Returns the sequence of mechanisms after a first sway to the right; for a symmetric structure, to either side.
-    #[must_use]
     pub fn chain(&self) -> &Chain {
         self.chain_from(Sway::Right)
     }
 
     /// Returns the sequence of mechanisms after a first sway to this side.
-    #[must_use]
     pub fn chain_from(&self, first: Sway) -> &Chain {
         self.chains.to(first)
     }
 
     /// Returns the unit of the impulses of an impact: N s per metre of depth and per rad/s of the closing mechanism.
-    #[must_use]
     pub const fn impulse_unit_n_s_per_m(&self) -> f64 {
         self.size.impulse_n_s_per_m
     }

@@ -47,7 +47,6 @@ pub struct FrictionOnset {
 
 impl FrictionOnset {
     /// Returns whether a joint of the mechanism slips.
-    #[must_use]
     pub fn sliding_governs(&self) -> bool {
         self.yields.iter().any(|joint| joint.slips.is_some())
     }

@@ -35,7 +35,6 @@ pub struct Frame {
 
 impl Frame {
     /// Returns the corner on an edge, in metres.
-    #[must_use]
     pub fn corner_m(&self, edge: Edge) -> Vector2<f64> {
         match edge {
             Edge::Intrados => self.intrados_m,
@@ -85,7 +84,6 @@ pub struct Closure {
 
 impl Placement {
     /// Returns the placement of the undeformed row.
-    #[must_use]
     pub fn new(row: &Row) -> Self {
         let faces = row.joints.iter().map(|joint| Face {
             joint: *joint,
@@ -117,33 +115,28 @@ impl Placement {
     }
 
     /// Returns the length of the closure error in metres.
-    #[must_use]
     pub fn closure_error(&self) -> f64 {
         self.closure.map_or(0.0, |closure| closure.error_m.norm())
     }
 
     /// Returns whether both corners of a joint are in contact.
-    #[must_use]
     pub(crate) fn is_shut(&self, joint: usize) -> bool {
         self.gaps_m[joint] == [0.0; 2]
     }
 
     /// Returns the first joint that is open at both edges.
-    #[must_use]
     pub(crate) fn parted_joint(&self) -> Option<usize> {
         let mut gaps_m = self.gaps_m.iter();
         gaps_m.position(|gaps| gaps.iter().all(|gap| *gap > 0.0))
     }
 
     /// Returns the number of open corners.
-    #[must_use]
     pub(crate) fn open_corners(&self) -> usize {
         let corners = self.gaps_m.iter().flatten();
         corners.filter(|gap| **gap > 0.0).count()
     }
 
     /// Returns the largest gap over the thickness of its joint.
-    #[must_use]
     pub(crate) fn largest_gap_ratio(&self) -> f64 {
         let corners = self.gaps_m.iter().zip(&self.faces);
         let ratios = corners.flat_map(|(gaps, face)| gaps.map(|gap| gap / face.thickness));

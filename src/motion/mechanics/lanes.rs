@@ -169,7 +169,6 @@ macro_rules! remembered {
     ($type:ident { $($field:ident),* $(; $($pair:ident),+ $(; $($part:ident: $of:ident),+)?)? }) => {
         impl<R: Real> $type<R> {
             /// Returns the initial state, with all values zero.
-            #[must_use]
             pub fn none() -> Self {
                 let zero = R::of(0.0);
                 Self { $($field: zero,)* $($($pair: [zero; 2],)+ $($($part: $of::none(),)+)?)? }
@@ -187,7 +186,6 @@ macro_rules! remembered {
             }
 
             /// Returns one lane.
-            #[must_use]
             pub(crate) fn lane(&self, lane: usize) -> $type<Lanes<1>> {
                 $type {
                     $($field: Lanes([self.$field.0[lane]]),)*
@@ -210,7 +208,6 @@ pub struct Dual<const D: usize> {
 
 impl<const D: usize> Dual<D> {
     /// Returns the variable with this index.
-    #[must_use]
     pub(crate) fn variable(value: f64, index: usize) -> Self {
         Self::with(value, |other| if other == index { 1.0 } else { 0.0 })
     }

@@ -252,7 +252,6 @@ impl Parts for Row {
 
 impl Row {
     /// Returns the blocks that contain a point, given in metres, or have it on their edge.
-    #[must_use]
     pub fn blocks_at(&self, at_m: Vector2<f64>) -> Vec<usize> {
         let blocks = 0..self.outlines_m.len();
         blocks
@@ -261,7 +260,6 @@ impl Row {
     }
 
     /// Returns the distance of a point from a block, in metres; 0 inside the block.
-    #[must_use]
     pub fn distance_m(&self, block: usize, at_m: Vector2<f64>) -> f64 {
         let outline = &self.outlines_m[block];
         if contains(outline, at_m) {

@@ -88,7 +88,6 @@ linear!(Movements { left, right });
 
 impl Movements {
     /// Returns whether neither support has moved.
-    #[must_use]
     pub fn is_none(&self) -> bool {
         *self == Self::default()
     }
@@ -102,7 +101,6 @@ impl Movements {
     }
 
     /// Returns the displacements of the left and the right support: to the right and upwards in metres, and anticlockwise in radians.
-    #[must_use]
     pub fn displacements(&self) -> [[f64; 3]; 2] {
         [(-1.0, self.left), (1.0, self.right)].map(|(outwards, moved)| {
             let outwards_m = outwards * moved.spread_m;
@@ -111,7 +109,6 @@ impl Movements {
     }
 
     /// Returns the poses of the left and the right support of a row after these movements.
-    #[must_use]
     pub fn poses(&self, row: &Row) -> [Pose; 2] {
         let joints = &row.joints;
         let pose = |joint: usize, [x, y, rotation_rad]: [f64; 3]| {
@@ -187,7 +184,6 @@ pub enum SettlingError {
 
 impl SettlingError {
     /// Returns the position along the path at which the row was lost; `None` if unknown.
-    #[must_use]
     pub const fn at(&self) -> Option<f64> {
         match self {
             Self::NoEquilibrium(at) | Self::Parted { at, .. } => Some(*at),
@@ -241,14 +237,12 @@ impl<'a> Follower<'a> {
     }
 
     /// Returns whether the row stands on more than three hinges, which is only possible with ties.
-    #[must_use]
     pub fn is_held_by_ties(&self) -> bool {
         let hinges = self.hinges.as_ref();
         hinges.is_some_and(|pins| pins.hinges.len() > 3)
     }
 
     /// Returns the present forces and rotations; `None` while the row is undeformed, where the forces are indeterminate.
-    #[must_use]
     pub fn state(&self) -> Option<HingeState> {
         self.state_in(&self.condition)
     }

@@ -37,7 +37,6 @@ impl Position {
     };
 
     /// Returns the position of a block with a given centre and rotation.
-    #[must_use]
     pub fn new(centre_m: Vector2<f64>, rotation_rad: f64) -> Self {
         Self {
             centre_m,
@@ -47,13 +46,11 @@ impl Position {
     }
 
     /// Returns the position of a support; its faces are given relative to the origin.
-    #[must_use]
     pub fn of(support: &Pose) -> Self {
         Self::new(support.translation, support.rotation_rad())
     }
 
     /// Returns this position after a displacement.
-    #[must_use]
     pub fn moved(&self, by_m: Vector2<f64>) -> Self {
         Self {
             centre_m: self.centre_m + by_m,
@@ -62,13 +59,11 @@ impl Position {
     }
 
     /// Returns the pose relative to the undeformed row, in which the centre of gravity is at `undeformed_m`.
-    #[must_use]
     pub fn pose(&self, undeformed_m: Vector2<f64>) -> Pose {
         Pose::about(undeformed_m, self.centre_m, self.rotation_rad)
     }
 
     /// Returns the current position of the point at `arm_m` from the centre in the undeformed row.
-    #[must_use]
     pub(crate) fn of_arm(&self, arm_m: Vector2<f64>) -> Vector2<f64> {
         self.centre_m + self.turned(arm_m)
     }
@@ -94,7 +89,6 @@ pub struct Faces {
 
 impl Faces {
     /// Returns the joints of a row.
-    #[must_use]
     pub fn of_row(row: &Row) -> Vec<Self> {
         let centre = |block: Option<usize>| {
             let block = block.and_then(|block| row.blocks.get(block));
@@ -118,7 +112,6 @@ impl Faces {
     }
 
     /// Returns the joint between two blocks at given positions.
-    #[must_use]
     pub fn contact(&self, left: &Position, right: &Position) -> Contact {
         if let Some(side) = self.on_support {
             let bodies = [left, right];
@@ -192,7 +185,6 @@ pub struct Contact {
 
 impl Contact {
     /// Returns the end of the overlap at an edge.
-    #[must_use]
     pub fn corner_m(&self, edge: Edge) -> Vector2<f64> {
         let intrados_m = self.middle_m + self.along * self.ends_m[0];
         match edge {
@@ -212,7 +204,6 @@ impl Contact {
     }
 
     /// Returns the rates of the three coordinates for a translation of the right block.
-    #[must_use]
     pub fn carried(&self, faces: &Faces, velocity_m_s: Vector2<f64>) -> Vector3<f64> {
         let [_, right] = self.gradients(faces, self.middle_m, self.middle_m);
         right * velocity_m_s.push(0.0)
@@ -220,7 +211,6 @@ impl Contact {
 
     /// Returns the gradients of the three coordinates, one row each, by the velocity (x, y) and the rotation rate of the left block, then of the
     /// right block. `left_m` and `right_m` are the centres of the blocks.
-    #[must_use]
     pub fn gradients(
         &self,
         faces: &Faces,

@@ -17,7 +17,6 @@ pub struct Stance {
 
 impl Stance {
     /// Returns the state of the undeformed row.
-    #[must_use]
     pub fn undeformed(row: &Row) -> Self {
         Self {
             placement: Placement::new(row),
@@ -46,7 +45,6 @@ impl Stance {
     }
 
     /// Returns the index of the first broken tie.
-    #[must_use]
     pub fn broken_tie(&self) -> Option<usize> {
         self.ties.iter().position(TieMemory::is_broken)
     }

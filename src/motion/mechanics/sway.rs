@@ -35,7 +35,6 @@ impl Sway {
     }
 
     /// Returns +1 to the right and -1 to the left: the sign of x in the frame in which this sway goes right.
-    #[must_use]
     pub const fn sign(self) -> f64 {
         match self {
             Self::Right => 1.0,
@@ -45,7 +44,6 @@ impl Sway {
 
     /// Converts a section from the frame in which this sway goes right to the frame of the ground, or back. A section is an angle in radians from the
     /// left springing, or a joint.
-    #[must_use]
     pub fn from_left(self, profile: &dyn Profile, section: f64) -> f64 {
         match self {
             Self::Right => section,

@@ -21,7 +21,6 @@ pub struct Anchor {
 
 impl Anchor {
     /// Returns the support of an end that is on no block, 0 or 1: the horizontally nearer one.
-    #[must_use]
     pub fn support(&self, feet_m: [Vector2<f64>; 2]) -> usize {
         let [left, right] = feet_m.map(|foot_m| (self.at_m.x - foot_m.x).abs());
         usize::from(right < left)
@@ -125,25 +124,21 @@ impl Tie {
     }
 
     /// Returns the length in the undeformed structure, in metres.
-    #[must_use]
     pub fn length_m(&self) -> f64 {
         (self.ends[1].at_m - self.ends[0].at_m).norm()
     }
 
     /// Returns the unstressed length, in metres.
-    #[must_use]
     pub fn slack_length_m(&self) -> f64 {
         self.length_m() - self.prestress_n / self.stiffness_n_m
     }
 
     /// Returns the unit vector from its first end to its second one, in the undeformed structure.
-    #[must_use]
     pub fn along(&self) -> Vector2<f64> {
         (self.ends[1].at_m - self.ends[0].at_m) / self.length_m()
     }
 
     /// Returns the line of action for given positions of its ends, in metres.
-    #[must_use]
     pub fn line(&self, ends_m: [Vector2<f64>; 2]) -> TieLine {
         let moved = [0, 1].map(|end| ends_m[end] - self.ends[end].at_m);
         let span = self.span(moved.map(|by| [Lanes([by.x]), Lanes([by.y])]));
@@ -171,7 +166,6 @@ impl Tie {
     ///
     /// The difference of the squared lengths avoids cancellation for small displacements.
     #[inline(always)]
-    #[must_use]
     pub fn span<R: Real>(&self, moved_m: [[R; 2]; 2]) -> TieSpan<R> {
         let apart = self.ends[1].at_m - self.ends[0].at_m;
         let length_m = self.length_m();
@@ -188,7 +182,6 @@ impl Tie {
     }
 
     /// Returns the force in N for a plastic elongation and a stretch beyond the unstressed length, both in m. The tie does not break here.
-    #[must_use]
     pub(crate) fn pull_n<R: Real>(&self, yielded_m: f64, stretch_m: R) -> R {
         let elastic_n = (stretch_m - R::of(yielded_m)) * self.stiffness_n_m;
         elastic_n.max(R::of(0.0)).min(R::of(self.yield_force_n))
@@ -196,7 +189,6 @@ impl Tie {
 }
 
 /// Returns an upper bound of the square of the highest angular frequency, in (rad/s)2, of free blocks held by ties.
-#[must_use]
 pub(crate) fn square_frequency(ties: &[Tie], blocks: &[Block]) -> f64 {
     let flexibility = |anchor: &Anchor| {
         let block = anchor.block.and_then(|block| blocks.get(block));
@@ -265,7 +257,6 @@ impl TieLine {
     }
 
     /// Returns the rate at which the tie lengthens for given velocities of the blocks; supports are at rest.
-    #[must_use]
     pub fn lengthening(&self, velocities: &[Twist]) -> f64 {
         let pull = self.unit_pull();
         let power = |block: usize| velocities[block].power(&pull);
@@ -345,7 +336,6 @@ remembered!(TieMemory {
 impl<R: Real> TieMemory<R> {
     /// Returns the state of a tie after slow stretching to `stretch_m` beyond its unstressed length; `yielded_m` is the plastic elongation before.
     /// The dissipated energy starts from zero.
-    #[must_use]
     pub fn stretched(tie: &Tie, yielded_m: f64, stretch_m: R) -> Self {
         let mut memory = Self {
             stretch_m,
@@ -388,14 +378,12 @@ impl<R: Real> TieMemory<R> {
     }
 
     /// Returns the state of a tie in the undeformed structure.
-    #[must_use]
     pub fn undeformed(tie: &Tie) -> Self {
         Self::stretched(tie, 0.0, R::of(tie.prestress_n / tie.stiffness_n_m))
     }
 
     /// Returns the elastic energy, in J.
     #[inline(always)]
-    #[must_use]
     pub fn energy_j(&self, tie: &Tie) -> R {
         self.force_n * self.force_n * (0.5 / tie.stiffness_n_m)
     }
@@ -403,7 +391,6 @@ impl<R: Real> TieMemory<R> {
 
 impl TieMemory<Lanes<1>> {
     /// Returns the state after slow stretching to `stretch_m`, without dissipated energy.
-    #[must_use]
     pub fn then(&self, tie: &Tie, stretch_m: f64) -> Self {
         let stretch_m = Lanes([stretch_m]);
         if self.is_broken() {
@@ -413,7 +400,6 @@ impl TieMemory<Lanes<1>> {
     }
 
     /// Returns whether the tie has broken.
-    #[must_use]
     pub fn is_broken(&self) -> bool {
         self.intact.0[0] == 0.0
     }

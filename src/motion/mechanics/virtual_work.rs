@@ -29,7 +29,6 @@ pub struct MovingTie {
 
 /// Returns the load multiplier `alpha0`: the horizontal acceleration, in multiples of gravity, at which the work of the inertia forces equals the
 /// work against weights and ties, `(sum P delta_y + sum F delta_l) / sum P delta_x`.
-#[must_use]
 pub fn load_multiplier(bodies: &[MovingBody], ties: &[MovingTie]) -> f64 {
     let work = |component: fn(&MovingBody) -> f64| -> f64 {
         let each = bodies.iter().map(|body| body.mass_kg * component(body));
@@ -55,7 +54,6 @@ pub struct Participation {
 
 impl Participation {
     /// Computes the participation of moving masses in kg, each with its horizontal virtual displacement.
-    #[must_use]
     pub fn of(masses: impl IntoIterator<Item = (f64, f64)>) -> Self {
         let (mut whole, mut first, mut second) = (0.0, 0.0, 0.0);
         for (mass_kg, displacement) in masses {
@@ -73,7 +71,6 @@ impl Participation {
     }
 
     /// Computes the participation of rigid bodies.
-    #[must_use]
     pub fn of_bodies(bodies: &[MovingBody]) -> Self {
         let bodies = bodies.iter();
         Self::of(bodies.map(|body| (body.mass_kg, body.displacement.x)))
@@ -81,7 +78,6 @@ impl Participation {
 }
 
 /// Returns the factor on virtual displacements for which the centre of all masses moves by one.
-#[must_use]
 pub fn per_displacement_of_centre(bodies: &[MovingBody]) -> f64 {
     let mass_kg: f64 = bodies.iter().map(|body| body.mass_kg).sum();
     let first = bodies.iter().map(|body| body.mass_kg * body.displacement.x);

@@ -25,7 +25,6 @@ named! {
 
 impl Soil {
     /// Returns the coefficient `S_S` (Tab. 3.2.IV) for `x = F_o a_g / g`.
-    #[must_use]
     pub fn amplification(self, x: f64) -> f64 {
         let (most, slope, range) = match self {
             Self::A => return 1.0,
@@ -38,7 +37,6 @@ impl Soil {
     }
 
     /// Returns the coefficient `C_C` (Tab. 3.2.IV) for `T_C*` in seconds.
-    #[must_use]
     pub fn period_coefficient(self, tc_star_s: f64) -> f64 {
         match self {
             Self::A => 1.0,
@@ -50,7 +48,6 @@ impl Soil {
     }
 
     /// Returns the period `T_E` (Tab. 3.2.VII), in seconds.
-    #[must_use]
     pub const fn t_e_s(self) -> f64 {
         match self {
             Self::A => 4.5,
@@ -79,7 +76,6 @@ named! {
 
 impl Topography {
     /// Returns the largest coefficient `S_T` of the category (Tab. 3.2.V), that at the top.
-    #[must_use]
     pub const fn factor(self) -> f64 {
         match self {
             Self::T1 => 1.0,
@@ -185,7 +181,6 @@ impl GroundSpectrum {
     }
 
     /// Returns the spectral acceleration `S_e` [3.2.2] at a period and a damping, in g.
-    #[must_use]
     pub fn acceleration_g(&self, period_s: f64, damping_percent: f64) -> f64 {
         let (t, amplified) = (period_s, damping_factor(damping_percent) * self.hazard.f0);
         let shape = if t < self.t_b_s {
@@ -202,7 +197,6 @@ impl GroundSpectrum {
     }
 
     /// Returns the spectral displacement `S_De` (§ 3.2.3.2.3) at a period and a damping, in metres.
-    #[must_use]
     pub fn displacement_m(&self, period_s: f64, damping_percent: f64, gravity_m_s2: f64) -> f64 {
         if period_s <= self.t_e_s {
             let acceleration_g = self.acceleration_g(period_s, damping_percent);
@@ -214,14 +208,12 @@ impl GroundSpectrum {
     }
 
     /// Returns the peak displacement of the ground, `d_g = 0.025 a_g S T_C T_D`, in metres.
-    #[must_use]
     pub fn peak_displacement_m(&self, gravity_m_s2: f64) -> f64 {
         0.025 * self.peak_g * gravity_m_s2 * self.t_c_s * self.t_d_s
     }
 
     /// Returns the largest spectral displacement up to a period, in metres. The displacement decreases beyond `T_E`, and a structure that softens
     /// passes this period.
-    #[must_use]
     pub fn largest_displacement_m(
         &self,
         period_s: f64,

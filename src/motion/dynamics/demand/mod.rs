@@ -12,13 +12,11 @@ pub mod points;
 use std::f64::consts::PI;
 
 /// Returns the factor from ordinates at 5 % damping to those at another damping: `sqrt(10 / (5 + xi))`, at least 0.55 (§ 3.2.3.2.1).
-#[must_use]
 pub fn damping_factor(damping_percent: f64) -> f64 {
     (10.0 / (5.0 + damping_percent)).sqrt().max(0.55)
 }
 
 /// Returns the spectral displacement, in metres, that corresponds to a spectral acceleration, in g, at a period: `S T^2 / (4 pi^2)`.
-#[must_use]
 pub fn displacement_m(acceleration_g: f64, period_s: f64, gravity_m_s2: f64) -> f64 {
     let circular = period_s / (2.0 * PI);
     acceleration_g * gravity_m_s2 * circular * circular

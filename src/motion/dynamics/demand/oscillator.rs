@@ -10,7 +10,6 @@ use std::f64::consts::PI;
 ///
 /// Over equal steps the motion follows one linear map. The relative error of a peak between two steps is at most `(pi h / T)^2 / 2` for the step `h`;
 /// steps are cut until this is below a thousandth.
-#[must_use]
 pub fn peak_displacement(samples: &[(f64, f64)], period_s: f64, damping_percent: f64) -> f64 {
     let omega = 2.0 * PI / period_s;
     let mut state = [0.0, 0.0];

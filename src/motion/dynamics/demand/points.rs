@@ -133,7 +133,6 @@ impl PointSpectrum {
     }
 
     /// Returns the first and last period, in seconds.
-    #[must_use]
     pub fn range_s(&self) -> [f64; 2] {
         [self.points[0].0, self.points[self.points.len() - 1].0]
     }

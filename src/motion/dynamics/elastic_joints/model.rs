@@ -156,7 +156,6 @@ impl ElasticJoints {
     }
 
     /// Returns the row of blocks.
-    #[must_use]
     pub const fn row(&self) -> &Row {
         &self.rigid.row
     }
@@ -174,13 +173,11 @@ impl ElasticJoints {
     }
 
     /// Returns the energy in J that the first mechanism of the row with rigid joints needs to overturn; `None` if unknown.
-    #[must_use]
     pub fn barrier_j(&self, gravity_m_s2: f64) -> Option<f64> {
         self.rigid.barrier_j(gravity_m_s2)
     }
 
     /// Returns the longest step of a motion, in seconds.
-    #[must_use]
     pub fn longest_step_s(&self) -> f64 {
         let mut default_s = Self::default_step_s(&self.structure);
         if self.many_cases {
@@ -212,7 +209,6 @@ impl ElasticJoints {
     }
 
     /// Returns copies with other plausible properties: lower stiffness, higher stiffness, and another integration of the stress.
-    #[must_use]
     pub fn variations(&self) -> Vec<Variation> {
         let softer = 1.0 / OTHER_STIFFNESS;
         let stiffness = |factor, words: &str| {

@@ -174,19 +174,16 @@ impl FreeHinges {
     }
 
     /// Returns Coulomb's coefficient of friction; `None` if joints do not slip.
-    #[must_use]
     pub const fn friction_coefficient(&self) -> Option<f64> {
         self.options.friction_coefficient
     }
 
     /// Returns the row of blocks.
-    #[must_use]
     pub const fn row(&self) -> &Row {
         &self.rigid.row
     }
 
     /// Returns the energy in J that the first mechanism needs to overturn, to the weaker side; `None` if unknown.
-    #[must_use]
     pub fn barrier_j(&self, gravity_m_s2: f64) -> Option<f64> {
         self.rigid.barrier_j(gravity_m_s2)
     }

@@ -20,7 +20,6 @@ const TIE_STEP_RATIO: f64 = 0.2;
 impl Settings {
     /// Returns settings for steps that end at landings: at most about 0.35 ms for a size of 10 m. For other sizes the step is proportional to the
     /// square root of size over gravity. The shortest step is a thirtieth of the longest.
-    #[must_use]
     pub fn to_landings(row: &Row, gravity_m_s2: f64, end_s: f64) -> Self {
         let longest_step_s = 3.4e-4 * (row.size_m / gravity_m_s2).sqrt();
         Self {
@@ -33,7 +32,6 @@ impl Settings {
     }
 
     /// Returns settings for equal steps, for joints that slip: 0.1 ms for a size of 10 m.
-    #[must_use]
     pub fn equal(row: &Row, gravity_m_s2: f64, end_s: f64) -> Self {
         let step_s = 1e-4 * (row.size_m / gravity_m_s2).sqrt();
         Self {
@@ -54,7 +52,6 @@ impl Settings {
     }
 
     /// Returns these settings with all steps multiplied by a factor.
-    #[must_use]
     pub fn times(&self, factor: f64) -> Self {
         Self {
             longest_step_s: self.longest_step_s * factor,

@@ -31,7 +31,6 @@ pub struct Intensity {
 impl Intensity {
     /// Computes the intensity of samples: times in s, increasing except at jumps of the acceleration, and accelerations in m/s2. Gravity, in m/s2, is
     /// used in the Arias intensity.
-    #[must_use]
     pub fn of(samples: &[(f64, f64)], gravity_m_s2: f64) -> Self {
         let mut intensity = Self {
             significant_s: [samples.first().map_or(0.0, |sample| sample.0); 2],
@@ -66,7 +65,6 @@ impl Intensity {
     }
 
     /// Returns the duration from 5 % to 95 % of the Arias intensity, in s.
-    #[must_use]
     pub fn significant_duration_s(&self) -> f64 {
         let [from_s, to_s] = self.significant_s;
         to_s - from_s

@@ -26,7 +26,6 @@ pub struct GroundMotion {
 
 impl GroundMotion {
     /// Returns ground without motion.
-    #[must_use]
     pub fn still() -> Self {
         Self::from_pieces(0.0, Vec::new())
     }
@@ -92,7 +91,6 @@ impl GroundMotion {
     }
 
     /// Returns the time at which the motion begins, in seconds: zero, or negative if the right foot accelerates before time zero.
-    #[must_use]
     pub fn start_s(&self) -> f64 {
         self.pieces.first().map_or(0.0, |piece| piece.start_s)
     }
@@ -122,7 +120,6 @@ impl GroundMotion {
     }
 
     /// Returns the motion under the right foot; `None` if both feet move alike.
-    #[must_use]
     pub fn right_foot(&self) -> Option<&Self> {
         self.right.as_deref()
     }
@@ -174,7 +171,6 @@ impl GroundMotion {
 
     /// Returns the largest horizontal and vertical acceleration up to a time, without sign, in m/s2. Pieces are monotone, so the largest values are
     /// at ends of pieces, or at that time.
-    #[must_use]
     pub fn peaks_m_s2(&self, until_s: f64) -> Vector2<f64> {
         let ends = self.ends_until_m_s2(until_s);
         ends.fold(Vector2::zeros(), |peaks, at| peaks.sup(&at.abs()))
@@ -182,7 +178,6 @@ impl GroundMotion {
 
     /// Returns the largest accelerations up to a time that push a structure to the right and to the left, in m/s2: those of the ground to the left
     /// and to the right.
-    #[must_use]
     pub fn pushes_m_s2(&self, until_s: f64) -> [f64; 2] {
         let ends = self.ends_until_m_s2(until_s);
         ends.fold([0.0; 2], |[right, left], at| {
@@ -200,21 +195,18 @@ impl GroundMotion {
     }
 
     /// Returns the end of the ground motion, in seconds; afterwards the acceleration is zero under both feet.
-    #[must_use]
     pub fn end_s(&self) -> f64 {
         let [left_s, right_s] = self.ends_s();
         left_s.max(right_s)
     }
 
     /// Returns the ends of the motion of the left and of the right foot, in seconds.
-    #[must_use]
     pub fn ends_s(&self) -> [f64; 2] {
         let own_s = self.pieces.last().map_or(0.0, |piece| piece.start_s);
         [own_s, self.right_foot().map_or(own_s, Self::end_s)]
     }
 
     /// Returns whether the ground ever moves vertically, under either foot.
-    #[must_use]
     pub fn has_vertical(&self) -> bool {
         let mut ends = self.pieces.iter().flat_map(Piece::ends_m_s2);
         ends.any(|end| end.y != 0.0) || self.right_foot().is_some_and(Self::has_vertical)
@@ -222,7 +214,6 @@ impl GroundMotion {
 
     /// Returns the first time at which the ground accelerates downwards as fast as a free body, `g + a_v <= 0`, so that it no longer carries a
     /// structure; `None` if that does not happen. With two feet, the first time of either foot.
-    #[must_use]
     pub fn free_fall_s(&self, gravity_m_s2: f64) -> Option<f64> {
         let right = self.right_foot();
         let right_s = right.and_then(|right| right.free_fall_s(gravity_m_s2));
@@ -245,7 +236,6 @@ impl GroundMotion {
 
     /// Returns the factor on this motion from which the ground falls as fast as a free body at some time, under either foot; `None` if it never
     /// accelerates downwards.
-    #[must_use]
     pub fn free_fall_factor(&self, gravity_m_s2: f64) -> Option<f64> {
         let ends = self.pieces.iter().flat_map(Piece::ends_m_s2);
         let down_m_s2 = ends.fold(0.0, |most, end| f64::max(most, -end.y));
@@ -274,7 +264,6 @@ impl GroundMotion {
     }
 
     /// Returns this motion with additional corners at given times, where the integration begins a new step.
-    #[must_use]
     pub fn cut_at(&self, times_s: &[f64]) -> Self {
         let mut cut = self.clone();
         for time_s in times_s {

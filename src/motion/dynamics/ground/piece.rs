@@ -69,19 +69,16 @@ impl Piece {
 
     /// Returns the acceleration in m/s2 and its rate of change in m/s3, horizontal and vertical (positive to the right and upwards), at a time in the
     /// piece. At its ends the values are limits from inside.
-    #[must_use]
     pub fn at(&self, time_s: f64) -> (Vector2<f64>, Vector2<f64>) {
         self.formula.at(time_s - self.origin_s)
     }
 
     /// Returns the horizontal acceleration in m/s2, as [`Piece::at`].
-    #[must_use]
     pub fn acceleration_m_s2(&self, time_s: f64) -> f64 {
         self.at(time_s).0.x
     }
 
     /// Returns whether the piece is the last one, with zero acceleration from here on.
-    #[must_use]
     pub fn stays_still(&self) -> bool {
         self.end_s == f64::INFINITY
     }
@@ -92,7 +89,6 @@ impl Piece {
     }
 
     /// Returns the longest step that resolves the shape of the piece, in seconds.
-    #[must_use]
     pub fn longest_step_s(&self) -> f64 {
         match self.formula {
             Formula::Linear(..) => f64::INFINITY,

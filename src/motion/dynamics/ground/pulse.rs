@@ -58,13 +58,11 @@ named! {
 
 impl Pulse {
     /// Returns whether the pulse pushes to one side only.
-    #[must_use]
     pub const fn is_one_sided(self) -> bool {
         matches!(self, Self::Rectangular | Self::HalfSine | Self::Triangular)
     }
 
     /// Returns whether the shape depends on a [`WaveTrain`].
-    #[must_use]
     pub const fn is_wave_train(self) -> bool {
         matches!(
             self,
@@ -73,7 +71,6 @@ impl Pulse {
     }
 
     /// Returns a pulse with duration `duration_s` (1e-12 to 1e9) that starts at time zero. A wave train has [`WaveTrain::default`].
-    #[must_use]
     pub fn lasting_s(self, duration_s: f64) -> PulseShape {
         PulseShape {
             pulse: self,

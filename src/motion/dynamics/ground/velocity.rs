@@ -15,7 +15,6 @@ pub struct GroundVelocity<'a> {
 
 impl<'a> GroundVelocity<'a> {
     /// Returns the velocity of a ground motion.
-    #[must_use]
     pub fn new(ground: &'a GroundMotion) -> Self {
         let (mut velocity_m_s, mut at_starts_m_s) = (Vector2::zeros(), Vec::new());
         for piece in &ground.pieces {
@@ -35,7 +34,6 @@ impl<'a> GroundVelocity<'a> {
 
     /// Returns the velocity in m/s, horizontal and vertical (positive to the right and upwards), at a time not before the start. For feet that move
     /// differently it is that of the left foot.
-    #[must_use]
     pub fn at(&self, time_s: f64) -> Vector2<f64> {
         let index = self.ground.piece_at(time_s);
         self.at_starts_m_s[index] + self.ground.pieces[index].velocity_gained_m_s(time_s)
@@ -43,7 +41,6 @@ impl<'a> GroundVelocity<'a> {
 
     /// Returns the displacements of the ground at ascending times from the start on, in m from its position at the start. Simpson's rule is applied
     /// between times and corners; it is exact for records and constant accelerations.
-    #[must_use]
     pub fn displacements_m(&self, times_s: &[f64]) -> Vec<Vector2<f64>> {
         let mut path = Path::new(self.clone());
         times_s.iter().map(|time_s| path.to(*time_s)).collect()
@@ -53,7 +50,6 @@ impl<'a> GroundVelocity<'a> {
 impl GroundMotion {
     /// Returns the displacement of the right foot relative to the left one, to the right and upwards in m, at ascending times from the start on; zero
     /// if both feet move alike.
-    #[must_use]
     pub fn feet_apart_m(&self, times_s: &[f64]) -> Vec<Vector2<f64>> {
         let Some(right) = self.right_foot() else {
             return vec![Vector2::zeros(); times_s.len()];

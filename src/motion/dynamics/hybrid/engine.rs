@@ -25,7 +25,6 @@ pub struct SystemState<M, const N: usize> {
 
 impl<M: Copy, const N: usize> SystemState<M, N> {
     /// Returns another time and state in the same mode and on the same piece.
-    #[must_use]
     pub const fn at(&self, time_s: f64, state: &State<N>) -> Self {
         Self {
             time_s,

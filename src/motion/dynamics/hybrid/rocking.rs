@@ -50,7 +50,6 @@ pub struct SwingOf<L> {
 
 impl<S: Copy> Phase<S> {
     /// Returns the current or last mechanism; `None` at rest.
-    #[must_use]
     pub const fn swing(self) -> Option<S> {
         match self {
             Self::Rest => None,
@@ -105,7 +104,6 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
     /// of its first mechanism.
     ///
     /// The ground must press on the structure at all times: see [`GroundMotion::free_fall_s`].
-    #[must_use]
     pub fn new(
         chain: &'a C,
         ground: &'a GroundMotion,
@@ -133,13 +131,11 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
     }
 
     /// Returns the energy that a mechanism needs to overturn under gravity alone.
-    #[must_use]
     pub fn barrier_of(&self, link: &Link<C::Mechanism>) -> f64 {
         self.gravity_m_s2 / self.chain.length_m() * link.barrier
     }
 
     /// Returns the sum of kinetic and potential energy of a mechanism.
-    #[must_use]
     pub fn energy(&self, link: &Link<C::Mechanism>, state: &RockingState) -> f64 {
         let kinetic = 0.5 * link.mechanism.coefficients(state[0]).inertia * state[1] * state[1];
         let rise = link.mechanism.displacement(state[0]).y;
@@ -147,7 +143,6 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
     }
 
     /// Returns the mode of a structure released on one side.
-    #[must_use]
     pub fn released(&self, sway: Sway) -> Mode<'a, C::Mechanism> {
         let link = self.chain.link_from(sway, 0);
         let swing = |link| Swing {
@@ -184,7 +179,6 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
     }
 
     /// Returns the thrust excess and friction demand.
-    #[must_use]
     pub fn demand(&self, now: &SystemState<'a, C::Mechanism>) -> Demand {
         let Some(swing) = now.mode.swing() else {
             let body_force_g = self.body_force_g(Sway::Right, now);
@@ -195,7 +189,6 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
     }
 
     /// Returns the excess of the thrust line of a moving mechanism, over the thickness: see [`MechanismChain::excess_ratio`].
-    #[must_use]
     pub fn excess_ratio(
         &self,
         swing: Swing<'a, C::Mechanism>,
@@ -207,7 +200,6 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
     }
 
     /// Returns whether a motion on quiet ground has too little energy for a rotation of more than this multiple of the critical one.
-    #[must_use]
     pub fn stays_below(
         &self,
         over_critical: f64,
@@ -222,7 +214,6 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
     }
 
     /// Returns the thrust line over the sections from left to right: see [`MechanismChain::eccentricity_ratios`].
-    #[must_use]
     pub fn eccentricity_ratios(&self, now: &SystemState<'a, C::Mechanism>) -> Vec<Option<f64>> {
         let Some(swing) = now.mode.swing() else {
             let body_force_g = self.body_force_g(Sway::Right, now);

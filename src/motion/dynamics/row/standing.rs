@@ -110,7 +110,6 @@ impl RigidRow {
     }
 
     /// Returns the energy in J that the first mechanism needs to overturn, to the weaker side; `None` if unknown.
-    #[must_use]
     pub fn barrier_j(&self, gravity_m_s2: f64) -> Option<f64> {
         if self.is_on_hinges() || !self.row.ties.is_empty() {
             return None;

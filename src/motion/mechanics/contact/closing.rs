@@ -19,7 +19,6 @@ pub struct ClosureSolver {
 
 impl ClosureSolver {
     /// Returns a solver for placements of a row.
-    #[must_use]
     pub fn new(row: &Row) -> Self {
         let thicknesses = row.joints.iter().map(|joint| joint.thickness_m());
         Self {

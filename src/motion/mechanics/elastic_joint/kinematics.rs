@@ -15,7 +15,6 @@ remembered!(BodyPosition { ; moved_m, half_turn });
 
 impl<R: Real> BodyPosition<R> {
     /// Returns the position for displacements in m and a rotation in rad.
-    #[must_use]
     pub fn at(moved: &[f64; 3]) -> Self {
         let quarter = (0.25 * moved[2]).sin();
         let half_turn = [-2.0 * quarter * quarter, (0.5 * moved[2]).sin()];
@@ -91,7 +90,6 @@ impl JointGeometry {
     /// - `along`: unit vector along the joint, from edge 0 (intrados) to edge 1 (extrados).
     /// - `handedness`: 1 if the second body is left of that vector, -1 if it is right.
     /// - `length_m`: length of the joint, in m.
-    #[must_use]
     pub fn new(
         bodies: [usize; 2],
         arms_m: [[f64; 2]; 2],

@@ -92,7 +92,6 @@ impl Equilibrium {
     }
 
     /// Returns the joint with the largest eccentricity of the thrust, and this eccentricity over the length of the joint.
-    #[must_use]
     pub fn largest_eccentricity(&self, structure: &ElasticStructure) -> (usize, f64) {
         let each = structure.fibres();
         let moved = |body: usize| self.moved.get(body).unwrap_or(structure.support(body));
@@ -241,7 +240,6 @@ impl ElasticStructure {
     /// The structure is pushed over slowly. This path may be lost if the joints are too stiff or have contact points. The path of softer joints with
     /// continuous contact then gives a lower bound: their energy is lower in every shape, because a sum over points, as the trapezoidal rule,
     /// overestimates a convex function.
-    #[must_use]
     pub fn barrier_j(&self, rest: &Equilibrium, gravity_m_s2: f64) -> Option<f64> {
         // Ties are not supported.
         if !self.ties.is_empty() {

@@ -82,7 +82,6 @@ impl ElasticProperties {
 
     /// Returns joints with this normal stiffness and default properties: shear stiffness 0.4 of it (shear modulus over Young's modulus), friction
     /// coefficient 0.7, damping time 0.1 ms, continuous contact, no crushing, depth 1 m.
-    #[must_use]
     pub const fn of_stiffness(normal_pa_m: f64) -> Self {
         Self {
             stiffness: Stiffness::Uniform(JointStiffness {
@@ -226,7 +225,6 @@ impl ElasticStructure {
     }
 
     /// Returns a structure of given bodies and joints, without ties.
-    #[must_use]
     pub fn new(
         bodies: Vec<Block>,
         joints: Vec<ElasticJoint>,
@@ -261,13 +259,11 @@ impl ElasticStructure {
     }
 
     /// Returns the displacements (m) and the rotation (rad) of the support with an index as in joints.
-    #[must_use]
     pub fn support(&self, body: usize) -> &[f64; 3] {
         &self.supports[usize::from(body > self.bodies.len())]
     }
 
     /// Returns whether a support has moved.
-    #[must_use]
     pub fn has_settled(&self) -> bool {
         self.supports != [[0.0; 3]; 2]
     }
@@ -288,19 +284,16 @@ impl ElasticStructure {
     }
 
     /// Returns whether joints may slip permanently.
-    #[must_use]
     pub const fn slips(&self) -> bool {
         self.law.friction[1] == 0.0
     }
 
     /// Returns the mass of all bodies, in kg.
-    #[must_use]
     pub fn mass_kg(&self) -> f64 {
         self.bodies.iter().map(|body| body.mass_kg).sum()
     }
 
     /// Returns the number of positions along each joint with a state of crushing.
-    #[must_use]
     pub fn fibres(&self) -> usize {
         self.law.section.fibres()
     }
@@ -361,7 +354,6 @@ impl ElasticStructure {
     }
 
     /// Returns the elastic forces of a joint at rest: the normal forces at its edges and the shear force, in N.
-    #[must_use]
     pub(crate) fn elastic_n(
         &self,
         joint: &ElasticJoint,
@@ -390,7 +382,6 @@ impl ElasticStructure {
     /// Each joint gets a part of the mass of its bodies, in proportion to its stiffness. By Rayleigh's quotient, the highest frequency of such a
     /// joint with its mass is not below the highest frequency of the structure (Irons and Treharne, "A bound theorem in eigenvalues and its practical
     /// applications", 1971). Partly open joints are softer than closed ones.
-    #[must_use]
     pub(crate) fn frequency_bound_rad_s(&self) -> f64 {
         let mut held_n_m = vec![0.0; self.bodies.len()];
         for joint in &self.joints {
@@ -433,7 +424,6 @@ impl ElasticStructure {
     ///
     /// By Jury's criterion this is `2/w (sqrt(1 + z^2) - z)` for the frequency `w` and `z = beta w/2`, with the damping time `beta`; it decreases
     /// with `w`.
-    #[must_use]
     pub fn stable_step_s(&self) -> f64 {
         let frequency = self.frequency_bound_rad_s();
         let z = 0.5 * self.damping_time_s * frequency;

@@ -45,7 +45,6 @@ impl BoundTie {
 
     /// Returns length, stretch and direction of the tie for given positions of its bodies.
     #[inline(always)]
-    #[must_use]
     pub fn span<R: Real>(&self, places: [&BodyPosition<R>; 2]) -> TieSpan<R> {
         let swings = both!(end: places[end].swing(self.arms_m[end]));
         let first = both!(i: places[0].moved_m[i] + swings[0][i]);
@@ -55,7 +54,6 @@ impl BoundTie {
 
     /// Returns the forces of the tie on its bodies for a given tie force.
     #[inline(always)]
-    #[must_use]
     pub fn action<R: Real>(
         &self,
         places: [&BodyPosition<R>; 2],

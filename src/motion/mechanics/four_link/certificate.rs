@@ -83,7 +83,6 @@ pub struct ProjectionError {
 ///
 /// In a continuous ring the hinges of `mechanism`, if given, replace the joints nearest to them. The cone then contains this mechanism, and bounds
 /// its restitution coefficient from above for any number of joints.
-#[must_use]
 pub fn joints_rad(
     profile: &dyn Profile,
     sites: HingeSites,

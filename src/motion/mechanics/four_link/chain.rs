@@ -90,7 +90,6 @@ impl Chain {
     }
 
     /// Returns the profile in the frame in which the mechanism after `impacts` impacts sways right.
-    #[must_use]
     pub fn profile(&self, impacts: usize) -> &dyn Profile {
         &*self.profiles[impacts % 2]
     }
@@ -101,7 +100,6 @@ impl Chain {
     }
 
     /// Returns the mechanism after `index` impacts. `None` if an earlier impact stops the ring, because no admissible mechanism can follow.
-    #[must_use]
     pub fn link(&self, index: usize) -> Option<&ArchLink> {
         for known in 0..MAX_CHAIN_LENGTH {
             let wanted = match self.pair.get() {

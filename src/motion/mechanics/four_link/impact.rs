@@ -54,7 +54,6 @@ impl ImpactModel {
     }
 
     /// Returns the name in scenarios and results.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::MaxRestitution => "max_restitution",
@@ -125,14 +124,12 @@ pub struct Impact {
 }
 
 /// Returns the velocity field of the ring when `mechanism` closes at unit rate, in the frame of the mechanism that follows.
-#[must_use]
 pub fn closing_field(mechanism: &FourLink, profile: &dyn Profile) -> Field {
     mechanism.field().scaled(-1.0).mirrored(profile)
 }
 
 /// Returns the impact when `mechanism` closes, by the given model; `None` when no admissible mechanism can follow. The profile is given in the frame
 /// of the mechanism that follows: the mirrored one, for a structure that is not its own mirror image.
-#[must_use]
 pub fn impact(
     mechanism: &FourLink,
     profile: &dyn Profile,
@@ -184,7 +181,6 @@ pub(crate) fn impact_onto(
 ///
 /// The impulses act at hinges of the new mechanism and so do no work on it: `<u', u' q'> = <u', before>`.
 /// The restitution coefficient is then a squared cosine. It solves Eqs. (7)-(10) of the paper.
-#[must_use]
 pub fn projection(mechanism: &FourLink, before: &Field, profile: &dyn Profile) -> (f64, f64) {
     let field = mechanism.field();
     let [own, shared] = [&field, before].map(|other| field.product(other, profile));

@@ -29,7 +29,6 @@ impl ImpulseLine {
     ///
     /// `after` has to be the projection of `before` onto the mechanism ([`super::impact::projection`]); the line
     /// then passes through all four hinges.
-    #[must_use]
     pub fn new(profile: &dyn Profile, mechanism: &FourLink, before: &Field, after: &Field) -> Self {
         Self {
             mechanism: *mechanism,
@@ -41,7 +40,6 @@ impl ImpulseLine {
     /// and C these bodies act on the middle one.
     ///
     /// The outer two are the unknowns `F' dt` of Eqs. (7)-(10) of the paper.
-    #[must_use]
     pub fn hinge_impulses(&self) -> [Vector2<f64>; 4] {
         let sides = [1.0, 1.0, -1.0, -1.0];
         let hinges = self.mechanism.hinges_rad;
@@ -49,7 +47,6 @@ impl ImpulseLine {
     }
 
     /// Returns [`Self::hinge_impulses`] at the hinges from left to right, in the frame of the ground, when the new mechanism sways to the given side.
-    #[must_use]
     pub fn hinge_impulses_from_left(&self, sway: Sway) -> [Vector2<f64>; 4] {
         let mut impulses = self.hinge_impulses();
         if sway == Sway::Left {
@@ -62,7 +59,6 @@ impl ImpulseLine {
     }
 
     /// Returns the resultant at a section, by its angle from the left springing, when the new mechanism sways to the given side.
-    #[must_use]
     pub fn section_from_left(&self, angle_rad: f64, sway: Sway) -> SectionResultant {
         let angle_rad = sway.from_left(&*self.resultants.profile, angle_rad);
         let mut section = self.resultants.section(angle_rad);
@@ -72,7 +68,6 @@ impl ImpulseLine {
     }
 
     /// Returns [`ResultantLine::extremes`], with angles from the left springing when the new mechanism sways to the given side.
-    #[must_use]
     pub fn extremes_from_left(&self, sites: HingeSites, sway: Sway) -> Extremes {
         let mut extremes = self.resultants.extremes(sites);
         for extremum in [

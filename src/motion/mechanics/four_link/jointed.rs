@@ -20,7 +20,6 @@ pub struct JointedProfile {
 
 impl JointedProfile {
     /// Returns the profile of a row; `None` for a stack, which has no right support.
-    #[must_use]
     pub fn new(row: &Row) -> Option<Self> {
         if row.supports == Supports::Left {
             return None;

@@ -163,7 +163,6 @@ fn push_only() -> Field {
 }
 
 /// Returns the push, in multiples of gravity, at which `mechanism` starts to move.
-#[must_use]
 pub fn acceleration_g(mechanism: &FourLink, profile: &dyn Profile) -> f64 {
     let field = mechanism.field();
     let up = Twist::translation(Vector2::new(0.0, 1.0));

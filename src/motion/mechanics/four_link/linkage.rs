@@ -100,7 +100,6 @@ fn angle_between(from: Vector2<f64>, to: Vector2<f64>) -> f64 {
 
 impl Linkage {
     /// Returns the linkage of `mechanism`.
-    #[must_use]
     pub fn new(profile: &dyn Profile, mechanism: &FourLink) -> Self {
         let before = mechanism.hinges_rad.map(|hinge| profile.moments_to(hinge));
         let [point_a, point_b, point_c, point_d] = mechanism.points;
@@ -165,7 +164,6 @@ impl Linkage {
     /// The moments of the right body about D and of the middle body about B give the force at C, and the
     /// equilibrium of forces the others. `B-C` and `C-D` are never on one line before the limit position.
     /// The equation of motion makes the line pass through B on the left body's side as well.
-    #[must_use]
     pub fn thrust_line(&self, motion: &Motion) -> ThrustLine {
         ThrustLine::new(&*self.profile, self.parts(motion).to_vec())
     }
@@ -229,7 +227,6 @@ impl Linkage {
 
     /// Returns the limit position: the smallest `q` at which A, B, C, or else C, D, A, are on one line, so that the right body or the ground bar
     /// cannot move further.
-    #[must_use]
     pub fn limit_rad(&self) -> f64 {
         let [left, middle, right, base] =
             [self.left.bar, self.middle.bar, self.right.bar, self.ground].map(|bar| bar.norm());

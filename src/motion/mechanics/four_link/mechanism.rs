@@ -61,7 +61,6 @@ impl FourLink {
     ///
     /// `None` when the sections are not in ascending order within the ring, or when a hinge would
     /// have to close.
-    #[must_use]
     pub fn new(profile: &dyn Profile, hinges_rad: [f64; 4]) -> Option<Self> {
         let [first, .., last] = hinges_rad;
         if !(first >= 0.0 && last <= profile.end() && hinges_rad.is_sorted_by(|a, b| a < b)) {
@@ -78,7 +77,6 @@ impl FourLink {
 
     /// Returns the sections (in radians from the left springing) and edges of the hinges from left to right, as seen when the mechanism sways to the
     /// given side.
-    #[must_use]
     pub fn hinges_from_left(&self, profile: &dyn Profile, sway: Sway) -> [(f64, Edge); 4] {
         std::array::from_fn(|i| match sway {
             Sway::Right => (self.hinges_rad[i], EDGES[i]),
@@ -90,7 +88,6 @@ impl FourLink {
     }
 
     /// Returns the hinges from left to right with the names of their sections: angles of a ring, joints of a row.
-    #[must_use]
     pub fn named_hinges_from_left(&self, profile: &dyn Profile, sway: Sway) -> [Hinge; 4] {
         self.hinges_from_left(profile, sway)
             .map(|(section, edge)| match profile.joint(section) {
@@ -109,7 +106,6 @@ impl FourLink {
     ///
     /// Every hinge adds a rotation about itself to the motion of all that lies to its right; this
     /// needs no division by distances between centres, unlike Eq. (2) of the paper.
-    #[must_use]
     pub fn field(&self) -> Field {
         let jumps: [(f64, Twist); 4] = std::array::from_fn(|i| {
             (

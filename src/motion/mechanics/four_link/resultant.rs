@@ -42,7 +42,6 @@ pub struct SectionResultant {
 
 impl SectionResultant {
     /// Returns components and position, at a section, of a force with its moment about the centre of the ring.
-    #[must_use]
     pub fn new(profile: &dyn Profile, angle_rad: f64, resultant: &Momentum) -> Self {
         let normal = resultant.linear.dot(&profile.onward(angle_rad));
         // A force N at distance e outwards from the axis has the moment -e N about its point there.
@@ -80,7 +79,6 @@ pub struct Extremes {
 
 impl Extremes {
     /// Returns whether the line is compressive and stays inside the ring, to [`EDGE_TOLERANCE`].
-    #[must_use]
     pub fn is_admissible(&self) -> bool {
         self.normal.value > 0.0 && self.eccentricity_ratio.value <= 0.5 + EDGE_TOLERANCE
     }
@@ -91,7 +89,6 @@ impl ResultantLine {
     ///
     /// A mechanism makes the ring statically determinate except for one number: the line passes through C
     /// as well when the load does no work on the mechanism.
-    #[must_use]
     pub fn through_hinges(profile: &dyn Profile, mechanism: &FourLink, load: Field) -> Self {
         let hinges = [0, 1, 3];
         let points = mechanism.points;
@@ -115,20 +112,17 @@ impl ResultantLine {
     }
 
     /// Returns the force (impulse) at a section, with its moment about the centre of the ring.
-    #[must_use]
     pub fn at(&self, angle_rad: f64) -> Momentum {
         self.start + self.load.momentum_to(&*self.profile, angle_rad)
     }
 
     /// Returns components and position of the resultant at a section.
-    #[must_use]
     pub fn section(&self, angle_rad: f64) -> SectionResultant {
         SectionResultant::new(&*self.profile, angle_rad, &self.at(angle_rad))
     }
 
     /// Returns the extremes over all sections where hinges may form anywhere, or over the joints of voussoirs, which are rigid: there the line may
     /// leave the ring between joints.
-    #[must_use]
     pub fn extremes(&self, sites: HingeSites) -> Extremes {
         let mut normal = self.largest(sites, &|section| -section.normal);
         normal.value = -normal.value;

@@ -27,7 +27,6 @@ use crate::bisection::{Width, bisect};
 use crate::mechanics::geometry::ring::{Edge, Ring};
 
 /// Returns whether the ring is stable under its own weight.
-#[must_use]
 pub fn carries_its_weight(ring: &Ring, sites: HingeSites) -> bool {
     let margin = SymmetricLines::new(ring, sites).largest_margin();
     margin.is_none_or(|margin| margin > 0.0)

@@ -37,7 +37,6 @@ impl Demand {
     /// The excess is `|M| / (N t) - 1/2` and the friction `|V| / N`, with the moment `M` about the axis and the components `N` and `V`. For
     /// `N < 0.01 weight` ([`LEAST_LOAD`]) the line is hardly ever inside. The excess is then `(|M| - N t / 2) / (0.01 weight t)`. This is a
     /// continuous extension, finite, and increases with the tension. The friction demand is then zero.
-    #[must_use]
     pub fn of_sections(sections: impl Iterator<Item = SectionResultant>, weight: f64) -> Self {
         sections.fold(Self::default(), |demand, section| {
             demand.max(Self::of_section(&section, weight))
@@ -138,7 +137,6 @@ pub struct Load {
 
 impl Load {
     /// Returns the load of one force per unit mass everywhere.
-    #[must_use]
     pub const fn uniform(force: Vector2<f64>) -> Self {
         Self {
             turning: Twist::translation(force),
@@ -148,7 +146,6 @@ impl Load {
 
     /// Returns the body force minus the inertia force of a rotating body: `at_pole` is the body force minus the acceleration of the body's point
     /// `pole`, `(alpha, omega^2)` its angular acceleration and squared rate.
-    #[must_use]
     pub(crate) fn of_body(
         pole: Vector2<f64>,
         at_pole: Vector2<f64>,
@@ -164,7 +161,6 @@ impl Load {
     }
 
     /// Returns the resultant on a body of the given moments.
-    #[must_use]
     pub fn resultant(&self, body: &MassMoments) -> Momentum {
         let mut resultant = self.turning.momentum(body);
         resultant.linear += body.first * self.centrifugal;
@@ -184,7 +180,6 @@ pub struct Part {
 
 impl Part {
     /// Returns the part that ends at `end_rad`, under `load`, with the resultant `known` at the section `known_rad`.
-    #[must_use]
     pub fn new(
         profile: &dyn Profile,
         end_rad: f64,
@@ -205,7 +200,6 @@ impl Part {
     }
 
     /// Returns the resultant at a section.
-    #[must_use]
     pub fn at(&self, profile: &dyn Profile, angle_rad: f64) -> Momentum {
         self.start + self.load.resultant(&profile.moments_to(angle_rad))
     }
@@ -236,7 +230,6 @@ impl ThrustLine {
     /// the two limit lines, at `A_L` to the right and to the left (the latter as its mirror image, which sways right). The weights are such that the
     /// loads add up to the given load. Moments and normal forces are linear in the load, so the mean is inside if both limit lines are. At the onset
     /// of rocking it equals the line of the mechanism.
-    #[must_use]
     pub fn at_rest(
         to_right: &Incipient,
         to_left: &Incipient,
@@ -257,21 +250,18 @@ impl ThrustLine {
     }
 
     /// Returns the resultant at a section; at the end of a part, that of the part before.
-    #[must_use]
     pub fn at(&self, angle_rad: f64) -> Momentum {
         let index = self.parts.partition_point(|part| part.end_rad < angle_rad);
         self.parts[index.min(self.parts.len() - 1)].at(&*self.profile, angle_rad)
     }
 
     /// Components and position at a section.
-    #[must_use]
     pub fn section(&self, angle_rad: f64) -> SectionResultant {
         SectionResultant::new(&*self.profile, angle_rad, &self.at(angle_rad))
     }
 
     /// Returns the crossings of the line with these sections, outwards from the axis over the thickness: -0.5 to 0.5 inside the ring. `None` for a
     /// section without compression.
-    #[must_use]
     pub fn eccentricity_ratios(&self, sections_rad: &[f64]) -> Vec<Option<f64>> {
         let sections = sections_rad
             .iter()
@@ -282,7 +272,6 @@ impl ThrustLine {
     }
 
     /// Returns the largest demands over the joints, or over all sections of a continuous ring.
-    #[must_use]
     pub fn demand(&self, sites: HingeSites) -> Demand {
         let weight = self.profile.moments_to(self.profile.end()).mass;
         match sites {

@@ -61,7 +61,6 @@ impl Curve {
     }
 
     /// Returns the point at a parameter from 0 to 1, and its derivative by the parameter.
-    #[must_use]
     pub fn at(&self, part: f64) -> (Vector2<f64>, Vector2<f64>) {
         match *self {
             Self::Line { from, to } => (from + (to - from) * part, to - from),
@@ -95,13 +94,11 @@ impl Curve {
     }
 
     /// Returns the point at a parameter from 0 to 1.
-    #[must_use]
     pub fn point(&self, part: f64) -> Vector2<f64> {
         self.at(part).0
     }
 
     /// Returns the piece between two parameters; reversed if the first one is larger.
-    #[must_use]
     pub fn between(&self, from: f64, to: f64) -> Self {
         let mut piece = *self;
         match &mut piece {
@@ -115,13 +112,11 @@ impl Curve {
     }
 
     /// Returns the curve with reversed direction.
-    #[must_use]
     pub fn reversed(&self) -> Self {
         self.between(1.0, 0.0)
     }
 
     /// Returns the mirror image about the y axis with reversed direction, so that a curve from left to right stays one.
-    #[must_use]
     pub fn mirrored(&self) -> Self {
         let mut image = self.reversed();
         match &mut image {
@@ -158,7 +153,6 @@ impl Curve {
     }
 
     /// Returns its length.
-    #[must_use]
     pub fn length(&self) -> f64 {
         match self {
             Self::Line { from, to } => (to - from).norm(),
@@ -172,7 +166,6 @@ impl Curve {
     }
 
     /// Returns the parameter at which the curve has reached a length.
-    #[must_use]
     pub fn part_at(&self, length: f64) -> f64 {
         match self {
             Self::Line { .. } | Self::Arc { .. } => length / self.length(),
@@ -188,7 +181,6 @@ impl Curve {
 
     /// Returns the moments, about a pole, of the area swept by the line from the pole to the point on the curve; positive if the line rotates
     /// anticlockwise.
-    #[must_use]
     pub fn swept(&self, pole: Vector2<f64>) -> MassMoments {
         if let Self::Line { from, to } = self {
             // A triangle.

@@ -30,7 +30,6 @@ pub struct Field {
 
 impl Field {
     /// Returns a field with the same motion everywhere.
-    #[must_use]
     pub fn uniform(twist: Twist) -> Self {
         Self {
             cuts_rad: Vec::new(),
@@ -39,7 +38,6 @@ impl Field {
     }
 
     /// Returns a field that jumps by `jumps[i].1` at section `jumps[i].0` (angles ascending) and is zero before the first of them.
-    #[must_use]
     pub fn from_jumps(jumps: &[(f64, Twist)]) -> Self {
         let mut twist = Twist::ZERO;
         let mut twists = vec![twist];
@@ -54,7 +52,6 @@ impl Field {
     }
 
     /// Returns the motion at a section.
-    #[must_use]
     pub fn at(&self, angle_rad: f64, side: Side) -> Twist {
         let index = self.cuts_rad.partition_point(|cut| match side {
             Side::Before => *cut < angle_rad,
@@ -64,7 +61,6 @@ impl Field {
     }
 
     /// Returns this field times `factor`.
-    #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         Self {
             cuts_rad: self.cuts_rad.clone(),
@@ -73,7 +69,6 @@ impl Field {
     }
 
     /// Returns the mirror image about the vertical axis of the profile.
-    #[must_use]
     pub fn mirrored(&self, profile: &dyn Profile) -> Self {
         let cuts_rad = self.cuts_rad.iter().rev().map(|cut| profile.end() - cut);
         Self {
@@ -83,7 +78,6 @@ impl Field {
     }
 
     /// Returns this field minus another: rigid on the sectors between the cuts of both.
-    #[must_use]
     pub fn minus(&self, other: &Self) -> Self {
         let mut cuts_rad = [self.cuts_rad.as_slice(), other.cuts_rad.as_slice()].concat();
         cuts_rad.sort_by(f64::total_cmp);
@@ -103,7 +97,6 @@ impl Field {
     }
 
     /// Returns the momentum of the part of the profile from the left springing to `angle_rad`.
-    #[must_use]
     pub fn momentum_to(&self, profile: &dyn Profile, angle_rad: f64) -> Momentum {
         let sectors = self.sectors(profile.end());
         let before = sectors.take_while(|(start, ..)| *start < angle_rad);
@@ -117,7 +110,6 @@ impl Field {
 
     /// Returns the scalar product with another field: the integral of `rho v . w` over the ring. The sum runs over the sectors between the sections
     /// of both fields.
-    #[must_use]
     pub fn product(&self, other: &Self, profile: &dyn Profile) -> f64 {
         let end_of =
             |field: &Self, sector| field.cuts_rad.get(sector).map_or(profile.end(), |cut| *cut);

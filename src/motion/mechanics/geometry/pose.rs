@@ -23,7 +23,6 @@ impl Pose {
     };
 
     /// Returns the pose after a rotation by `rotation_rad` about the origin and a displacement.
-    #[must_use]
     pub fn new(rotation_rad: f64, translation: Vector2<f64>) -> Self {
         Self {
             rotation_rad,
@@ -33,7 +32,6 @@ impl Pose {
     }
 
     /// Returns the pose after a rotation by `rotation_rad` about the point `pole` of the body, which moves to `moved`.
-    #[must_use]
     pub fn about(pole: Vector2<f64>, moved: Vector2<f64>, rotation_rad: f64) -> Self {
         // Adding zero makes a negative zero positive.
         let turned = Self::new(rotation_rad + 0.0, Vector2::zeros());
@@ -44,25 +42,21 @@ impl Pose {
     }
 
     /// Returns the rotation in radians, positive anticlockwise.
-    #[must_use]
     pub const fn rotation_rad(&self) -> f64 {
         self.rotation_rad
     }
 
     /// Returns the present position of a point of the undeformed body.
-    #[must_use]
     pub fn of(&self, point: Vector2<f64>) -> Vector2<f64> {
         self.turned(point) + self.translation
     }
 
     /// Returns the present direction of a vector of the undeformed body.
-    #[must_use]
     pub fn turned(&self, vector: Vector2<f64>) -> Vector2<f64> {
         product(self.turn, vector)
     }
 
     /// Returns this pose with lengths in a unit `per_unit` times smaller.
-    #[must_use]
     pub fn scaled(&self, per_unit: f64) -> Self {
         Self {
             translation: self.translation * per_unit,
@@ -71,7 +65,6 @@ impl Pose {
     }
 
     /// Returns the mirror image about the vertical through the origin.
-    #[must_use]
     pub fn mirrored(&self) -> Self {
         // Adding zero makes a negative zero positive.
         Self {
@@ -108,7 +101,6 @@ pub struct BodyPoint {
 impl BodyPoint {
     /// Returns the current position of the point, with its displacement multiplied by `exaggeration`. At any exaggeration, coincident points
     /// stay coincident and closed joints stay closed; in return, bodies grow with the square of their rotation.
-    #[must_use]
     pub fn moved(&self, poses: &[Pose], exaggeration: f64) -> Vector2<f64> {
         let (pose, at_m) = (self.body.and_then(|body| poses.get(body)), self.at_m);
         pose.map_or(at_m, |pose| at_m + (pose.of(at_m) - at_m) * exaggeration)

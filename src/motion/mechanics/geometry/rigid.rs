@@ -57,7 +57,6 @@ impl Twist {
     };
 
     /// Returns a rotation at `rate` about `pole`.
-    #[must_use]
     pub fn rotation(pole: Vector2<f64>, rate: f64) -> Self {
         Self {
             at_center: -turned(pole) * rate,
@@ -66,7 +65,6 @@ impl Twist {
     }
 
     /// Returns a translation, with the same velocity everywhere.
-    #[must_use]
     pub const fn translation(velocity: Vector2<f64>) -> Self {
         Self {
             at_center: velocity,
@@ -75,13 +73,11 @@ impl Twist {
     }
 
     /// Returns the velocity at `point`.
-    #[must_use]
     pub fn at(&self, point: Vector2<f64>) -> Vector2<f64> {
         self.at_center + turned(point) * self.rate
     }
 
     /// Returns the momentum of a body of the given moments that moves with this twist.
-    #[must_use]
     pub fn momentum(&self, body: &MassMoments) -> Momentum {
         Momentum {
             linear: self.at_center * body.mass + turned(body.first) * self.rate,
@@ -90,7 +86,6 @@ impl Twist {
     }
 
     /// Returns the power of `momentum` (or of a wrench) on this motion.
-    #[must_use]
     pub fn power(&self, momentum: &Momentum) -> f64 {
         self.at_center.dot(&momentum.linear) + self.rate * momentum.angular
     }
@@ -124,7 +119,6 @@ impl Momentum {
     };
 
     /// Returns the force `linear` applied at `point`.
-    #[must_use]
     pub fn applied_at(point: Vector2<f64>, linear: Vector2<f64>) -> Self {
         Self {
             linear,
@@ -133,7 +127,6 @@ impl Momentum {
     }
 
     /// Returns the angular momentum (moment) about `pole`.
-    #[must_use]
     pub fn about(&self, pole: Vector2<f64>) -> f64 {
         self.angular - pole.perp(&self.linear)
     }
@@ -154,13 +147,11 @@ pub struct MassMoments {
 
 impl MassMoments {
     /// Returns the centre of gravity.
-    #[must_use]
     pub fn centroid(&self) -> Vector2<f64> {
         self.first / self.mass
     }
 
     /// Returns the polar moment of inertia about the centre of gravity (Steiner).
-    #[must_use]
     pub fn central_polar(&self) -> f64 {
         self.polar - self.first.norm_squared() / self.mass
     }

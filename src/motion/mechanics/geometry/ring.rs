@@ -33,7 +33,6 @@ impl Edge {
     }
 
     /// Returns the only edge, intrados or extrados, with the value true; `None` if none or both are true.
-    #[must_use]
     pub const fn only(edges: [bool; 2]) -> Option<Self> {
         match edges {
             [true, false] => Some(Self::Intrados),
@@ -79,7 +78,6 @@ impl Ring {
     }
 
     /// Radius of an edge, in mean radii.
-    #[must_use]
     pub fn radius(&self, edge: Edge) -> f64 {
         match edge {
             Edge::Intrados => 1.0 - 0.5 * self.thickness_ratio,
@@ -88,26 +86,22 @@ impl Ring {
     }
 
     /// Returns the unit vector from the centre through the section at `angle_rad`.
-    #[must_use]
     pub fn radial(&self, angle_rad: f64) -> Vector2<f64> {
         let (sin, cos) = (angle_rad - 0.5 * self.embrace_rad).sin_cos();
         Vector2::new(sin, cos)
     }
 
     /// Returns the unit vector along the axis at `angle_rad`, towards the right springing.
-    #[must_use]
     pub fn tangent(&self, angle_rad: f64) -> Vector2<f64> {
         -turned(self.radial(angle_rad))
     }
 
     /// Returns the point of the section at `angle_rad` on `edge`.
-    #[must_use]
     pub fn point(&self, angle_rad: f64, edge: Edge) -> Vector2<f64> {
         self.radial(angle_rad) * self.radius(edge)
     }
 
     /// Returns the corners of the sector between two sections, from the first section outwards; its arcs as straight lines of 3 degrees at most.
-    #[must_use]
     pub fn sector_outline(&self, start_rad: f64, end_rad: f64) -> Vec<Vector2<f64>> {
         let lines = ((end_rad - start_rad) / OUTLINE_STEP_RAD).ceil().max(1.0);
         let count = lines as u32;
@@ -121,7 +115,6 @@ impl Ring {
     }
 
     /// Returns the sections that cut the ring into `parts` equal parts, springings included, in radians.
-    #[must_use]
     pub fn sections(&self, parts: usize) -> Vec<f64> {
         let part = |i: usize| i as f64 / parts as f64;
         (0..=parts).map(|i| self.embrace_rad * part(i)).collect()
@@ -131,7 +124,6 @@ impl Ring {
     ///
     /// Annular sector: with `c = t (1 + t^2/12)` the first moment is `c` times the integral of the
     /// radial unit vector, the mass is `t` and the polar moment `t (1 + t^2/4)` per radian.
-    #[must_use]
     pub fn moments_to(&self, angle_rad: f64) -> MassMoments {
         let (start, end) = (self.left, self.radial(angle_rad));
         let slice = self.slice(angle_rad);
@@ -143,13 +135,11 @@ impl Ring {
     }
 
     /// Mass moments of the sector between two sections.
-    #[must_use]
     pub fn sector(&self, from_rad: f64, to_rad: f64) -> MassMoments {
         self.moments_to(to_rad) - self.moments_to(from_rad)
     }
 
     /// Mass moments per radian at a section: the derivative of [`Ring::moments_to`].
-    #[must_use]
     pub fn slice(&self, angle_rad: f64) -> MassMoments {
         let t = self.thickness_ratio;
         MassMoments {

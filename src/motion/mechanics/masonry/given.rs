@@ -207,7 +207,6 @@ impl GivenBlocks {
     }
 
     /// Returns the index, from 0, of the block or joint of an error, as a line of the file of joints; `None` for other errors.
-    #[must_use]
     pub fn joint_of(error: &RowError) -> Option<usize> {
         match error {
             RowError::Crossing(joint) => Some(joint + 1),

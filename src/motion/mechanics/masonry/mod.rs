@@ -114,7 +114,6 @@ pub enum Shape {
 
 impl Shape {
     /// Returns its name in scenarios and results.
-    #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
             Self::Circular(_) => "arch",
@@ -126,7 +125,6 @@ impl Shape {
     }
 
     /// Returns its material; for blocks with individual densities, that of the first block.
-    #[must_use]
     pub fn material(&self) -> Material {
         match self {
             Self::Circular(arch) => arch.material(),
@@ -317,7 +315,6 @@ impl Masonry {
     }
 
     /// Returns the joints at the springings of the arch; `None` for given blocks, whose springings are unknown.
-    #[must_use]
     pub fn springings(&self) -> Option<[Joint; 2]> {
         let joints = self.springing_joints()?;
         Some(joints.map(|joint| self.row.joints[joint]))
@@ -332,7 +329,6 @@ impl Masonry {
     }
 
     /// Returns the indices of the joints at the left and the right springing; `None` for given blocks, whose springings are unknown.
-    #[must_use]
     pub fn springing_joints(&self) -> Option<[usize; 2]> {
         if matches!(self.shape, Shape::Blocks(_)) {
             return None;

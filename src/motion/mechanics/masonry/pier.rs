@@ -20,7 +20,6 @@ pub struct Piers {
 
 impl Piers {
     /// Returns whether there is no pier.
-    #[must_use]
     pub const fn are_none(&self) -> bool {
         self.left.is_none() && self.right.is_none()
     }

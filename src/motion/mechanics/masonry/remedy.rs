@@ -16,7 +16,6 @@ pub enum Remedy {
 
 impl Masonry {
     /// Returns the change that makes masonry stable that falls under its own weight.
-    #[must_use]
     pub fn remedy(&self) -> Remedy {
         let arch_stands = || self.is_stable_with(self.shape.clone(), Piers::default());
         if !self.piers.are_none() && arch_stands() == Some(true) {

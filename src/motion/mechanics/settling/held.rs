@@ -89,7 +89,6 @@ impl<'a> Held<'a> {
     }
 
     /// Returns the number of moving bodies.
-    #[must_use]
     pub fn bodies(&self) -> usize {
         match self.row.supports {
             Supports::Left => 1,
@@ -101,7 +100,6 @@ impl<'a> Held<'a> {
     ///
     /// # Panics
     /// Never: the bodies meet at all displacements of the mechanism.
-    #[must_use]
     pub fn displaced(&self, part: f64) -> Displaced {
         let q_rad = part * self.end_rad;
         let poses = self.poses(q_rad).expect("its bodies meet on its way");
@@ -125,7 +123,6 @@ impl<'a> Held<'a> {
     }
 
     /// Returns the fractions of the ultimate rotation at which each tie yields and breaks. Yielding after the break does not count.
-    #[must_use]
     pub fn tie_event_fractions(&self) -> Vec<TieEventFractions> {
         let ties = self.row.ties.iter().enumerate().map(|(index, tie)| {
             let yields_m = tie.yield_force_n / tie.stiffness_n_m;

@@ -76,7 +76,6 @@ pub struct HingeState {
 impl HingeState {
     /// Returns the safety margin of the hinges: the least of all openings in radians and of all normal forces over the weight. A state is admissible
     /// if the margin is not negative.
-    #[must_use]
     pub fn margin(&self) -> f64 {
         let forces = self.compressive_forces().map(|(_, force)| force);
         let openings = self.openings_rad.iter().copied();
@@ -94,7 +93,6 @@ impl HingeState {
     }
 
     /// Returns the joints with less than this margin: those where the thrust line leaves the joint, with the edge there, and hinges that close.
-    #[must_use]
     pub fn pins_below_margin(&self, margin: f64) -> Vec<Pin> {
         let pull = self
             .compressive_forces()
@@ -125,7 +123,6 @@ impl HingeState {
 
 impl Pins {
     /// Returns hinges of a row, given from left to right; three or more between two supports.
-    #[must_use]
     pub fn new(row: &Row, hinges: Vec<Pin>) -> Self {
         let pin_m = |hinge: &Pin| row.joints[hinge.joint].corner_m(hinge.edge);
         Self {
@@ -135,7 +132,6 @@ impl Pins {
     }
 
     /// Returns the open joints of a placement as hinges; `None` if these are fewer than three, or if a joint is open at both edges.
-    #[must_use]
     pub fn of(row: &Row, placement: &Placement) -> Option<Self> {
         let open = placement.gaps_m.iter().enumerate();
         let mut hinges = Vec::with_capacity(3);
@@ -181,7 +177,6 @@ impl Pins {
 
     /// Returns positions and forces of a row on these hinges that comes from the state `before`. `None` if the pins cannot meet, the equilibrium
     /// equations are singular, or no stable equilibrium is found.
-    #[must_use]
     pub fn state(&self, row: &Row, condition: &Condition, before: &Stance) -> Option<HingeState> {
         let mut poses = vec![condition.supports[0]];
         poses.extend(self.bodies(row, condition, before)?);
