@@ -91,10 +91,9 @@ impl Distribution {
     fn read(table: &mut Table<'_>) -> ReadResult<Self> {
         let from = table.optional("from", &ANY_NUMBER);
         let to = table.optional("to", &ANY_NUMBER);
-        let spacing = table.optional("spacing", &one_of(Spacing::ALL, Spacing::name));
+        let spacing = table.optional("spacing", &one_of(Spacing::ALL));
         let deviation = table.optional("deviation", &above(0.0, 1e12));
-        let distributions = one_of(DistributionForm::ALL, DistributionForm::name);
-        let distribution = table.optional("distribution", &distributions);
+        let distribution = table.optional("distribution", &one_of(DistributionForm::ALL));
         let relations = [
             OneOf(&["from", "deviation"], Some(DISTRIBUTION)),
             Together(&["from", "to"]),
