@@ -120,19 +120,16 @@ impl Distribution {
     /// Computes the quantile: the value below which the fraction `part` of all values lies, from 0 to 1. `own` is the value in the scenario.
     fn at(self, part: f64, own: f64) -> f64 {
         match self {
-            Self::Range {
-                from,
-                to,
-                spacing: Spacing::Linear,
-            } => from * (1.0 - part) + to * part,
-            Self::Range { from, to, .. } => {
-                (from * libm::exp(part * libm::log(to / from))).clamp(from, to)
-            }
-            Self::About {
-                deviation,
-                form: DistributionForm::Normal,
-            } => own + deviation * cut_normal(part),
-            Self::About { deviation, .. } => own * libm::exp(deviation * cut_normal(part)),
+            Self::Range { from, to, spacing } => match spacing {
+                Spacing::Linear => from * (1.0 - part) + to * part,
+                Spacing::Logarithmic => {
+                    (from * libm::exp(part * libm::log(to / from))).clamp(from, to)
+                }
+            },
+            Self::About { deviation, form } => match form {
+                DistributionForm::Normal => own + deviation * cut_normal(part),
+                DistributionForm::Lognormal => own * libm::exp(deviation * cut_normal(part)),
+            },
         }
     }
 }
