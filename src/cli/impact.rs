@@ -55,7 +55,7 @@ impl Arguments {
 
 pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
     let input = arguments.scenario.open()?;
-    let scenario = input.read_as_built()?;
+    let scenario = input.as_built(input.read(None)?)?;
     warn(&scenario.unlikely());
     let (first, count) = (arguments.first.sway, usize::from(arguments.count));
     if !scenario.structure.thrusts() && !arguments.of_arches_only() {
