@@ -5,9 +5,11 @@ use std::path::{Path, PathBuf};
 use archrock::dynamics::ground::GroundMotion;
 use archrock::dynamics::ground::intensity::Intensity;
 use archrock::dynamics::model::Request;
+use archrock::dynamics::peak::Peak;
 use archrock::output::scene::Scene;
 use archrock::output::{elevation, record as output};
 use archrock::scenario::{Format, Layout, RecordedQuantity, Scenario, Series};
+use archrock::studies::results::StudyError;
 use serde_json::{Value, json};
 
 use super::figure::FigureOption;
@@ -121,7 +123,8 @@ fn drawn(scenario: &Scenario) -> Result<Scene, Failure> {
         outcome_by_s: None,
         ..request
     };
-    let history = model.history(&GroundMotion::still(), &request)?;
+    let history = model.history(&GroundMotion::still(), &request);
+    let history = history.map_err(StudyError::from)?;
     let first = history.samples.iter().next();
     scene.stands = first.map_or_else(Default::default, |first| {
         (first.poses.to_vec(), first.hinges.to_vec())
@@ -197,39 +200,29 @@ fn record_json(series: &Series, intensity: &Intensity) -> Value {
 }
 
 fn record_text(series: &Series, intensity: &Intensity) -> String {
-    let [acceleration, velocity, displacement] = [
-        intensity.acceleration_m_s2,
-        intensity.velocity_m_s,
-        intensity.displacement_m,
-    ];
+    let peak = |peak: Peak, unit| format!("{:.4} {unit} at {:.3} s", peak.value, peak.time_s);
+    let acceleration_g = intensity.acceleration_m_s2.value / GRAVITY_M_S2;
+    let acceleration = peak(intensity.acceleration_m_s2, "m/s2");
+    let velocity = peak(intensity.velocity_m_s, "m/s");
+    let displacement = peak(intensity.displacement_m, "m");
     let mean = match series.layout.remove_mean {
         true => "removed".to_owned(),
         false => format!("{:.3e} g", series.mean_g(GRAVITY_M_S2)),
     };
-    let [from_s, to_s] = intensity.significant_s;
+    let (name, kind, sampling) = (series.name(), kind(series), series.sampling());
+    let ([from_s, to_s], lasts_s) = (intensity.significant_s, intensity.significant_duration_s());
+    let arias_m_s = intensity.arias_m_s;
     format!(
-        "{}: {}
-  {}
-  peak acceleration {:.4} g = {:.4} m/s2 at {:.3} s
+        "{name}: {kind}
+  {sampling}
+  peak acceleration {acceleration_g:.4} g = {acceleration}
   mean acceleration {mean}
-  peak velocity {:.4} m/s at {:.3} s
-  peak displacement {:.4} m at {:.3} s
-  Arias intensity {:.4} m/s
-  significant duration (5 to 95 %) {:.3} s, from {from_s:.3} to {to_s:.3} s
+  peak velocity {velocity}
+  peak displacement {displacement}
+  Arias intensity {arias_m_s:.4} m/s
+  significant duration (5 to 95 %) {lasts_s:.3} s, from {from_s:.3} to {to_s:.3} s
   velocity and displacement are integrated from zero, without baseline correction; g = {GRAVITY_M_S2} m/s2
-",
-        series.name(),
-        kind(series),
-        series.sampling(),
-        acceleration.value / GRAVITY_M_S2,
-        acceleration.value,
-        acceleration.time_s,
-        velocity.value,
-        velocity.time_s,
-        displacement.value,
-        displacement.time_s,
-        intensity.arias_m_s,
-        intensity.significant_duration_s()
+"
     )
 }
 

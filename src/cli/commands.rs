@@ -4,25 +4,17 @@ use std::path::{Path, PathBuf};
 
 use archrock::FourLinkError;
 use archrock::FourLinks;
-use archrock::dynamics::model::MechanismModel;
 use archrock::output::print::{PictureFormat, PrintError};
 use archrock::output::scene::Scene;
-use archrock::output::{pretty, write_named_file};
+use archrock::output::write_named_file;
 use archrock::scenario::Scenario;
 use archrock::studies::limit;
 use archrock::studies::pictures;
-use archrock::studies::results::PrintedResult;
 
 use super::figure::FigureOption;
-use super::first::FirstOption;
+use super::parsers::FirstOption;
 use super::scenario_file::ScenarioFile;
-use super::{Failure, Format, print, warn};
-
-/// Makes the model of mechanisms of a scenario.
-pub fn model(scenario: &Scenario) -> Result<Box<dyn MechanismModel>, Failure> {
-    let model = scenario.mechanisms();
-    model.map_err(|error| Failure::Input(error.to_string()))
-}
+use super::{Failure, Format, show, warn};
 
 #[derive(clap::Args)]
 pub struct LimitArguments {
@@ -48,7 +40,7 @@ pub fn limit(arguments: &LimitArguments) -> Result<(), Failure> {
     }
     warn(&scenario.unlikely());
     if let Some(plot) = &arguments.plot {
-        let first = arguments.first.get();
+        let first = arguments.first.sway;
         let model =
             four_links(&scenario, "--plot is").map_err(|wrong| input.with_file_name(wrong))?;
         let (figure, scene) = (arguments.figure.get()?, Scene::new(&scenario.structure));
@@ -56,15 +48,7 @@ pub fn limit(arguments: &LimitArguments) -> Result<(), Failure> {
         write_picture(plot, &picture)?;
     }
     let found = limit::limit(&scenario).map_err(|wrong| input.with_file_name(wrong.into()))?;
-    print_result(&found, arguments.format)
-}
-
-/// Prints a result without files.
-pub fn print_result(result: &PrintedResult, format: Format) -> Result<(), Failure> {
-    match format {
-        Format::Json => print(&pretty(&result.json)),
-        Format::Text => print(&result.text),
-    }
+    show(&found.json, &found.text, arguments.format)
 }
 
 /// Makes the four-link model of a scenario. `what` is the subject and verb of the error for a column.

@@ -4,7 +4,7 @@ use archrock::output::figure::{Figure, Height, Panel};
 use archrock::output::print::PictureFormat;
 
 use super::Failure;
-use super::number::number;
+use super::parsers::number;
 use super::scenario_file::Destination;
 
 /// The options of every command that draws.

@@ -8,9 +8,9 @@ use archrock::studies::impact::{ImpactOptions, LinkImpact, chain_result, four_li
 use archrock::studies::pictures;
 
 use super::figure::FigureOption;
-use super::first::FirstOption;
+use super::parsers::FirstOption;
 use super::scenario_file::ScenarioFile;
-use super::{Failure, Format, commands, print, warn};
+use super::{Failure, Format, commands, print, show, warn};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -55,13 +55,14 @@ impl Arguments {
 
 pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
     let input = arguments.scenario.open()?;
-    let scenario = input.read_as_built()?;
+    let scenario = input.as_built(input.read(None)?)?;
     warn(&scenario.unlikely());
-    let (first, count) = (arguments.first.get(), usize::from(arguments.count));
+    let (first, count) = (arguments.first.sway, usize::from(arguments.count));
     if !scenario.structure.thrusts() && !arguments.of_arches_only() {
-        let model = commands::model(&scenario).map_err(|wrong| input.with_file_name(wrong))?;
+        let model = scenario.mechanisms();
+        let model = model.map_err(|error| input.input_error(error.to_string()))?;
         let answer = chain_result(&scenario, &*model, first, count)?;
-        return commands::print_result(&answer, arguments.format);
+        return show(&answer.json, &answer.text, arguments.format);
     }
     let options = "--models, --certificate, --line and --plot are";
     let model = commands::four_links(&scenario, options);
@@ -111,7 +112,7 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
         joints: arguments.joints.map(usize::from),
     };
     let answer = four_links_result(&scenario, &impact, &options)?;
-    commands::print_result(&answer, arguments.format)
+    show(&answer.json, &answer.text, arguments.format)
 }
 
 fn write_line(path: &Path, impact: &LinkImpact<'_>) -> Result<(), Failure> {

@@ -3,21 +3,18 @@
 //! Data goes to standard output, everything else to standard error. Exit codes: 0 done, 1 the run failed,
 //! 2 bad usage or bad input, 130 interrupted by Ctrl-C.
 
-mod capacity;
 mod check;
 mod commands;
 mod examples;
 mod figure;
-mod first;
 mod impact;
 mod init;
 mod models;
-mod number;
+mod parsers;
 mod progress;
 mod run;
 mod scenario_file;
 mod short_study;
-mod spread;
 mod studies;
 mod study;
 mod threshold;
@@ -25,18 +22,12 @@ mod threshold;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-use archrock::dynamics::model::SimulationError;
 use archrock::output::{OutputError, pretty};
 use archrock::scenario::{ScenarioErrors, shown_lines};
-use archrock::studies::catalogue::{Options, VERIFY};
-use archrock::studies::results::{Results, StudyError};
 use clap::error::{ContextKind, ContextValue};
 use clap::{CommandFactory as _, Parser, Subcommand, ValueEnum};
 
 use serde_json::Value;
-
-use figure::FigureOption;
-use short_study::run_short_study;
 
 /// Simulates masonry arches and free-standing columns that rock under ground motion.
 #[derive(Parser)]
@@ -65,10 +56,10 @@ enum Command {
     Impact(impact::Arguments),
     /// Find the quasi-static capacity curve of the first mechanism and its equivalent oscillator.
     #[command(after_help = examples::CAPACITY)]
-    Capacity(capacity::Arguments),
+    Capacity(short_study::CapacityArguments),
     /// Find how far a springing may move until the arch falls, and what push it bears on the way.
     #[command(after_help = examples::SPREAD)]
-    Spread(spread::Arguments),
+    Spread(short_study::SpreadArguments),
     /// Check the first mechanism by the Circolare 7/2019 (C8.7.1.2.1) against [demand] of the scenario: one page, JSON.
     #[command(after_help = examples::VERIFY)]
     Verify(short_study::CommonArguments),
@@ -135,12 +126,6 @@ impl From<ScenarioErrors> for Failure {
     }
 }
 
-impl From<SimulationError> for Failure {
-    fn from(error: SimulationError) -> Self {
-        StudyError::from(error).into()
-    }
-}
-
 impl From<OutputError> for Failure {
     fn from(error: OutputError) -> Self {
         if error.is_closed_pipe() {
@@ -182,11 +167,9 @@ pub fn main() -> ExitCode {
         Command::Run(run) => run::run(&run, arguments.quiet),
         Command::Limit(limit) => commands::limit(&limit),
         Command::Impact(arguments) => impact::impact(&arguments),
-        Command::Capacity(capacity) => capacity::capacity(&capacity),
-        Command::Spread(spread) => spread::spread(&spread),
-        Command::Verify(verify) => {
-            run_short_study(VERIFY, &verify, FigureOption::default(), Options::default())
-        }
+        Command::Capacity(capacity) => short_study::capacity(&capacity),
+        Command::Spread(spread) => short_study::spread(&spread),
+        Command::Verify(verify) => short_study::verify(&verify),
         Command::Map(map) => studies::map(&map),
         Command::Suite(suite) => studies::suite(&suite),
         Command::Threshold(threshold) => threshold::threshold(&threshold),
@@ -263,11 +246,11 @@ fn completions(shell: clap_complete::Shell) -> Result<(), Failure> {
     print(&String::from_utf8_lossy(&script))
 }
 
-/// Prints the summary of results, without their files.
-fn show(results: &Results, format: Format) -> Result<(), Failure> {
+/// Prints results: their summary as JSON, or in words.
+fn show(summary: &Value, words: &str, format: Format) -> Result<(), Failure> {
     match format {
-        Format::Json => print(&pretty(&results.summary)),
-        Format::Text => print(&results.words),
+        Format::Json => print(&pretty(summary)),
+        Format::Text => print(words),
     }
 }
 

@@ -12,7 +12,7 @@ use nalgebra::Vector2;
 
 use super::figure::{FigureOption, PanelsOption};
 use super::models::ModelsOption;
-use super::number::{number, point_m};
+use super::parsers::{number, point_m};
 use super::scenario_file::{Destination, ScenarioTask, SetOption, SuiteOption};
 use super::study::{Session, WorkOptions};
 use super::{Failure, Format, check_no_errors, collect_input_error, print, print_all};

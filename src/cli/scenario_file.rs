@@ -152,11 +152,6 @@ impl Input<'_> {
         })
     }
 
-    /// Reads the scenario for computations on the undeformed structure; moved springings are an error.
-    pub fn read_as_built(&self) -> Result<Scenario, Failure> {
-        self.as_built(self.read(None)?)
-    }
-
     /// Returns an error for a scenario with moved springings.
     pub fn as_built(&self, scenario: Scenario) -> Result<Scenario, Failure> {
         let built = scenario.check_as_built();

@@ -2,11 +2,15 @@
 
 use std::path::PathBuf;
 
+use archrock::mechanics::sway::Sway;
 use archrock::output::Origin;
-use archrock::studies::catalogue::{Options, StudyKind, VERIFY};
+use archrock::studies::catalogue::{CAPACITY, Options, SPREAD, StudyKind, VERIFY};
 use archrock::studies::results::Style;
+use archrock::studies::spread::Direction;
+use nalgebra::Vector2;
 
 use super::figure::FigureOption;
+use super::parsers::{number, point_m, side};
 use super::scenario_file::ScenarioFile;
 use super::study::{Session, WorkOptions};
 use super::{Failure, Format, warn};
@@ -24,8 +28,67 @@ pub struct CommonArguments {
     format: Format,
 }
 
+#[derive(clap::Args)]
+pub struct CapacityArguments {
+    #[command(flatten)]
+    common: CommonArguments,
+    /// Control point in metres, such as `--point 0,5.4` [default: the crown, or the top of a column].
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = point_m)]
+    point: Option<Vector2<f64>>,
+    #[command(flatten)]
+    figure: FigureOption,
+}
+
+#[derive(clap::Args)]
+pub struct SpreadArguments {
+    #[command(flatten)]
+    common: CommonArguments,
+    /// The springing that moves.
+    #[arg(long, value_name = "SIDE", default_value = "right", value_parser = side(["left", "right"]))]
+    springing: Sway,
+    /// Direction in degrees from outwards (0) over down (90) to inwards (180); up is -90. Can be repeated [default: 0, 180 and 90].
+    #[arg(long = "angle", value_name = "DEG", allow_hyphen_values = true, value_parser = angle)]
+    angles_deg: Vec<f64>,
+    #[command(flatten)]
+    figure: FigureOption,
+}
+
+fn angle(text: &str) -> Result<f64, String> {
+    let remedy = "give a direction in degrees, from -180 to 180";
+    number(text.trim(), -180.0..=180.0, remedy)
+}
+
+pub fn capacity(arguments: &CapacityArguments) -> Result<(), Failure> {
+    let options = Options {
+        point_m: arguments.point,
+        ..Options::default()
+    };
+    run(CAPACITY, &arguments.common, arguments.figure, options)
+}
+
+pub fn spread(arguments: &SpreadArguments) -> Result<(), Failure> {
+    let angles_deg = match &arguments.angles_deg[..] {
+        [] => &Direction::DEFAULT_DEG[..],
+        given => given,
+    };
+    let direction = |angle_deg: &f64| Direction {
+        springing: arguments.springing,
+        angle_deg: *angle_deg,
+    };
+    let options = Options {
+        directions: angles_deg.iter().map(direction).collect(),
+        ..Options::default()
+    };
+    run(SPREAD, &arguments.common, arguments.figure, options)
+}
+
+pub fn verify(arguments: &CommonArguments) -> Result<(), Failure> {
+    let figure = FigureOption::default();
+    run(VERIFY, arguments, figure, Options::default())
+}
+
 /// Computes a study, writes its results and prints their summary.
-pub fn run_short_study(
+fn run(
     kind: StudyKind,
     arguments: &CommonArguments,
     figure: FigureOption,

@@ -252,7 +252,7 @@ impl<'s> Session<'s> {
         self.publish(Some(place))?;
         found.map_or(Ok(()), |found| {
             print_status(&format!("results in {}", place.describe(&found)));
-            show(&found, format)
+            show(&found.summary, &found.words, format)
         })
     }
 

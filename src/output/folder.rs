@@ -241,8 +241,7 @@ impl Inner {
     /// Returns an error if a result with this path would replace an input of the scenario, or another file than an earlier result of the command.
     fn check(&self, path: &Path) -> Result<(), OutputError> {
         if self.origin.is_input(path) {
-            let path = path.to_owned();
-            return Err(OutputError::IsInput { path });
+            return Err(OutputError::IsInput(path.to_owned()));
         }
         let is_there = path.symlink_metadata().is_ok();
         let is_foreign = is_there && !self.last().contains(&self.relative(path));
@@ -264,13 +263,8 @@ impl Inner {
         self.manifest
             .set(&self.command, &self.origin, files, complete);
         let text = serde_json::to_value(&self.manifest).map(|it| pretty(&it));
-        let write = || {
-            let mut file = hidden_file(&self.path, MANIFEST)?;
-            file.write_all(text?.as_bytes())?;
-            file.as_file().sync_data()?;
-            file.persist(&path).map_err(|error| error.error)
-        };
-        let written = write().map(drop);
+        let text = text.map_err(io::Error::from);
+        let written = text.and_then(|text| write_whole(&path, text.as_bytes()));
         written.map_err(OutputError::io(format!("cannot write {}", path.display())))
     }
 }
@@ -399,24 +393,23 @@ pub fn write_named_file(path: &Path, contents: &[u8]) -> Result<(), OutputError>
         return fs::write(path, contents).map_err(cannot());
     }
     if path.exists() && beginning(&fs::read(path).map_err(cannot())?) != beginning(contents) {
-        return Err(OutputError::NotWrittenHere {
-            path: path.to_owned(),
-        });
+        return Err(OutputError::NotWrittenHere(path.to_owned()));
     }
     let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    write_whole(&path, contents).map_err(|error| cannot()(error.kind().into()))
+}
+
+/// Writes a file under a hidden name, and then gives it its name, so the file is complete or absent.
+fn write_whole(path: &Path, contents: &[u8]) -> io::Result<()> {
     let folder = path
         .parent()
         .filter(|folder| !folder.as_os_str().is_empty());
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let write = || {
-        let mut file = hidden_file(folder.unwrap_or(Path::new(".")), &name)?;
-        file.write_all(contents)?;
-        file.as_file().sync_data()?;
-        file.persist(&path).map_err(|error| error.error)
-    };
-    write()
-        .map(drop)
-        .map_err(|error| cannot()(error.kind().into()))
+    let mut file = hidden_file(folder.unwrap_or(Path::new(".")), &name)?;
+    file.write_all(contents)?;
+    file.as_file().sync_data()?;
+    file.persist(path)?;
+    Ok(())
 }
 
 /// Returns what files of one kind have in common: the first line of a text without its numbers, and the first bytes of other files.
@@ -452,9 +445,7 @@ fn lock(path: &Path, alone: bool) -> Result<Option<File>, OutputError> {
     };
     match locked {
         Ok(()) => Ok(Some(folder)),
-        Err(TryLockError::WouldBlock) => Err(OutputError::InUse {
-            folder: path.to_owned(),
-        }),
+        Err(TryLockError::WouldBlock) => Err(OutputError::InUse(path.to_owned())),
         Err(TryLockError::Error(_)) => Ok(None),
     }
 }

@@ -57,27 +57,23 @@ impl Manifest {
     /// When the file with its name is not such a list.
     pub fn read(folder: &Path) -> Result<Self, OutputError> {
         let path = folder.join(MANIFEST);
-        let name = |name: &String| {
+        let text = match fs::metadata(&path) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Self::default()),
+            // Reading a pipe of that name would never end.
+            Ok(found) if found.is_file() => fs::read(&path).unwrap_or_default(),
+            _ => Vec::new(),
+        };
+        // No file outside the folder is a result.
+        let is_below = |name: &String| {
             let mut parts = Path::new(name).components();
             parts.all(|part| matches!(part, Component::Normal(_)))
         };
-        match fs::metadata(&path) {
-            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Self::default()),
-            // Reading a pipe of that name would never end.
-            Ok(found) if found.is_file() => {
-                let text = fs::read(&path).unwrap_or_default();
-                let found = serde_json::from_slice::<Self>(&text).ok();
-                let found = found.filter(|found| found.program == env!("CARGO_PKG_NAME"));
-                // No file outside the folder is a result.
-                let found =
-                    found.filter(|it| it.results.values().all(|it| it.files.iter().all(name)));
-                if let Some(found) = found {
-                    return Ok(found);
-                }
-            }
-            _ => {}
-        }
-        Err(OutputError::NoManifest { path })
+        let is_sound = |found: &Self| {
+            let mut files = found.results.values().flat_map(|results| &results.files);
+            found.program == env!("CARGO_PKG_NAME") && files.all(is_below)
+        };
+        let found = serde_json::from_slice::<Self>(&text).ok();
+        found.filter(is_sound).ok_or(OutputError::NoManifest(path))
     }
 
     /// Returns the files of the last run of a command, in the order in which they were written.

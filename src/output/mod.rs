@@ -49,17 +49,11 @@ pub enum OutputError {
         source: io::Error,
     },
     /// Another run is writing to the folder.
-    #[error("the folder {} is being written to by another run", folder.display())]
-    InUse {
-        /// Path of the folder.
-        folder: PathBuf,
-    },
+    #[error("the folder {} is being written to by another run", .0.display())]
+    InUse(PathBuf),
     /// A result would replace an input of the scenario.
-    #[error("{} is an input of the scenario, and a result has its name", path.display())]
-    IsInput {
-        /// Path of the file.
-        path: PathBuf,
-    },
+    #[error("{} is an input of the scenario, and a result has its name", .0.display())]
+    IsInput(PathBuf),
     /// A result would replace a file that the command has not written.
     #[error("{} is there, and archrock.json does not list it as a result of `archrock {command}`", path.display())]
     Taken {
@@ -69,23 +63,14 @@ pub enum OutputError {
         command: String,
     },
     /// A file with the name of a manifest is none.
-    #[error("{} does not list results of this program", path.display())]
-    NoManifest {
-        /// Path of the file.
-        path: PathBuf,
-    },
+    #[error("{} does not list results of this program", .0.display())]
+    NoManifest(PathBuf),
     /// A file that the user named is there and was not written by this program.
-    #[error("{} is there, and archrock did not write it", path.display())]
-    NotWrittenHere {
-        /// Path of the file.
-        path: PathBuf,
-    },
-    /// A result is not a finite number. This is a bug in the program; nothing is written.
-    #[error("the result {what} is not a finite number: please report the scenario")]
-    NotFinite {
-        /// Name of the column or key.
-        what: String,
-    },
+    #[error("{} is there, and archrock did not write it", .0.display())]
+    NotWrittenHere(PathBuf),
+    /// The result with this column or key is not a finite number. This is a bug in the program; nothing is written.
+    #[error("the result {0} is not a finite number: please report the scenario")]
+    NotFinite(String),
 }
 
 impl OutputError {

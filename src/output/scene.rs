@@ -181,11 +181,17 @@ impl Scene {
     /// Returns the fill in pieces while these hinges are open.
     #[must_use]
     pub fn fill(&self, hinges: &[OpenHinge]) -> Vec<Piece> {
-        let pieces = self.fill_m.iter().map(|(block, outline_m)| Piece {
-            body: self.body_of(*block, hinges),
-            outline_m: outline_m.clone(),
-        });
+        let columns = self.fill_m.iter();
+        let pieces = columns.map(|(block, outline_m)| self.piece(*block, outline_m, hinges));
         pieces.collect()
+    }
+
+    /// Returns an outline that moves with a block.
+    fn piece(&self, block: usize, outline_m: &[Vector2<f64>], hinges: &[OpenHinge]) -> Piece {
+        Piece {
+            body: self.body_of(block, hinges),
+            outline_m: outline_m.to_vec(),
+        }
     }
 
     /// Returns the loads while these hinges are open, each with the position of its middle.
@@ -241,18 +247,12 @@ impl Scene {
     #[must_use]
     pub fn pieces(&self, hinges: &[OpenHinge]) -> Vec<Piece> {
         match &self.outline {
-            Outline::Block(outline_m) => vec![Piece {
-                body: Some(0),
-                outline_m: outline_m.clone(),
-            }],
+            Outline::Block(outline_m) => vec![self.piece(0, outline_m, hinges)],
             Outline::Row(outlines_m) => {
                 let outlines = outlines_m.iter().enumerate();
-                outlines
-                    .map(|(block, outline_m)| Piece {
-                        body: self.body_of(block, hinges),
-                        outline_m: outline_m.clone(),
-                    })
-                    .collect()
+                let pieces =
+                    outlines.map(|(block, outline_m)| self.piece(block, outline_m, hinges));
+                pieces.collect()
             }
             Outline::Ring {
                 ring,

@@ -12,7 +12,7 @@ use super::OutputError;
 /// # Errors
 /// When a number is not finite: JSON would contain null instead.
 pub(crate) fn summary_of(result: &impl Serialize) -> Result<Value, OutputError> {
-    let failed = |what: String| OutputError::NotFinite { what };
+    let failed = OutputError::NotFinite;
     let json = serde_json::to_value(result).map_err(|error| failed(error.to_string()))?;
     let numbers = numbers_of(result).map_err(|error| failed(error.to_string()))?;
     not_finite(&numbers, &json).map_or(Ok(json), |path| Err(failed(path)))

@@ -193,29 +193,22 @@ impl Drawing {
 
     /// Adds a circle, filled white so that lines below it are hidden.
     pub fn circle(&mut self, name: &str, center: Vector2<f64>, radius: f64, stroke: Stroke) {
+        let (name, [x, y]) = (attribute("data-name", name), [center.x, center.y]);
+        let Stroke { color, width, .. } = stroke;
         let _ = writeln!(
             self.0,
-            "<circle{} cx=\"{:.3}\" cy=\"{:.3}\" r=\"{radius}\" fill=\"#ffffff\" \
-             stroke=\"{}\" stroke-width=\"{}\"/>",
-            attribute("data-name", name),
-            center.x,
-            center.y,
-            stroke.color,
-            stroke.width,
+            "<circle{name} cx=\"{x:.3}\" cy=\"{y:.3}\" r=\"{radius}\" fill=\"#ffffff\" \
+             stroke=\"{color}\" stroke-width=\"{width}\"/>"
         );
     }
 
     /// Adds a shaded rectangle.
     pub fn band(&mut self, name: &str, frame: &Frame, fill: &str, opacity: f64) {
+        let (name, [left, top, wide, high]) = (attribute("data-name", name), frame.parts());
         let _ = writeln!(
             self.0,
-            "<rect{} x=\"{:.2}\" y=\"{:.2}\" width=\"{:.2}\" height=\"{:.2}\" \
-             fill=\"{fill}\" fill-opacity=\"{opacity}\"/>",
-            attribute("data-name", name),
-            frame.left,
-            frame.top,
-            frame.width,
-            frame.height,
+            "<rect{name} x=\"{left:.2}\" y=\"{top:.2}\" width=\"{wide:.2}\" height=\"{high:.2}\" \
+             fill=\"{fill}\" fill-opacity=\"{opacity}\"/>"
         );
     }
 
@@ -262,11 +255,8 @@ impl Drawing {
 
     /// Adds an unfilled rectangle.
     pub fn outline(&mut self, frame: &Frame, stroke: Stroke) {
-        let (wide, high) = (frame.width, frame.height);
-        let path = format!(
-            "M{:.2} {:.2}h{wide:.2}v{high:.2}h-{wide:.2}Z",
-            frame.left, frame.top
-        );
+        let [left, top, wide, high] = frame.parts();
+        let path = format!("M{left:.2} {top:.2}h{wide:.2}v{high:.2}h-{wide:.2}Z");
         self.path("", &path, "none", stroke);
     }
 }

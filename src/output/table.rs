@@ -195,7 +195,7 @@ impl<'a, R, W: Write> TableWriter<'a, R, W> {
             if let Some(wrong) = numbers.iter().position(|number| !number.is_finite()) {
                 let mut names = self.columns.iter().flat_map(|column| &column.names);
                 let what = names.nth(at + wrong).map_or("", |name| name).to_owned();
-                return Err(OutputError::NotFinite { what });
+                return Err(OutputError::NotFinite(what));
             }
             at += width;
         }

@@ -2,6 +2,7 @@
 
 use std::str::FromStr;
 
+use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::toml_text::quoted;
@@ -39,7 +40,8 @@ impl FromStr for Assignment {
         };
         let (key, value) = given.split_once('=').ok_or_else(wrong)?;
         let (key, value) = (key.trim(), value.trim());
-        let depth = depth(key).ok_or_else(wrong)?;
+        let zero = format!("{key} = 0");
+        let zero = DeTable::parse(&zero).map_err(|_| wrong())?;
         if value.is_empty() {
             return Err(wrong());
         }
@@ -51,28 +53,17 @@ impl FromStr for Assignment {
         Ok(Self {
             given: given.to_owned(),
             text,
-            depth,
+            depth: depth(zero.get_ref()),
         })
     }
 }
 
-/// Returns the number of parts of a key; `None` if the text is not a key.
-fn depth(key: &str) -> Option<usize> {
-    let text = format!("{key} = 0");
-    let table = DeTable::parse(&text).ok()?;
-    let mut parts = 1;
-    let mut table = table.get_ref();
-    while let Some(DeValue::Table(inner)) = only(table) {
-        (parts, table) = (parts + 1, inner);
+/// Returns the number of parts of the key of an assignment.
+fn depth(table: &DeTable<'_>) -> usize {
+    match table.values().next().map(Spanned::get_ref) {
+        Some(DeValue::Table(inner)) => 1 + depth(inner),
+        _ => 1,
     }
-    Some(parts)
-}
-
-/// Returns the only value of a table; `None` if the table has none or several.
-fn only<'a, 'i>(table: &'a DeTable<'i>) -> Option<&'a DeValue<'i>> {
-    let mut values = table.values();
-    let value = values.next()?;
-    values.next().is_none().then(|| value.get_ref())
 }
 
 #[cfg(test)]

@@ -89,7 +89,7 @@ impl ElasticTable {
             supports: Movements::default(),
             gravity_m_s2: Request::default().gravity_m_s2,
         };
-        table.optional("contact", &one_of(&["continuous"], |name| name));
+        table.optional("contact", &one_of(&["continuous"]));
         table.relate(RELATIONS)?;
         Ok(read)
     }

@@ -13,7 +13,7 @@ const MODELS: [ImpactModel; 4] = [
 /// Reads `[impact]`.
 pub(super) fn read(table: &mut Table<'_>) -> ReadResult<ImpactLaw> {
     let names = MODELS.map(|model| model.name());
-    let name = table.or("model", &one_of(&names, |name| name), names[0]);
+    let name = table.or("model", &one_of(&names), names[0]);
     let restitution = table.optional("restitution", &RESTITUTION);
     // Upper bound far above measured values, which are 0.67 to 0.97 times the theory.
     let restitution_factor = table.or("restitution_factor", &within(&(0.0..=100.0)), 1.0);

@@ -21,7 +21,7 @@ pub(super) fn read(
                  [initial] out";
     table.refuse_all(!hinges.model().is_rigid, wrong)?;
     let initial = Initial {
-        sway: table.required("sway", &one_of(Sway::ALL, Sway::name)),
+        sway: table.required("sway", &one_of(Sway::ALL)),
         rotation_rad: table.required("rotation_rad", &ROTATION_RAD),
     };
     table.sound()?;

@@ -181,38 +181,26 @@ impl Map {
             };
             return Err(format!("`{}` in [map] {wrong}", axis.key));
         }
-        let pulse = match ground {
-            Ground::Pulse(pulse) => pulse,
-            Ground::Record(record) => {
-                return ends_within("a record that lasts", record.end_s(), simulation);
+        let (what, end_s) = match ground {
+            Ground::Record(record) => ("a record that lasts", record.end_s()),
+            Ground::Pulse(pulse) => {
+                let longest_s = axes.into_iter().find_map(|axis| {
+                    let values = axis.sequence.values();
+                    match axis.quantity {
+                        Duration => values.last().copied(),
+                        Frequency => values.first().map(|frequency_hz| 1.0 / frequency_hz),
+                        _ => None,
+                    }
+                });
+                let longest = PulseGround {
+                    duration_s: longest_s.unwrap_or(pulse.duration_s),
+                    ..pulse.clone()
+                };
+                ("pulses that last", longest.motion(1.0).end_s())
             }
         };
-        let longest_s = axes.into_iter().find_map(|axis| {
-            let values = axis.sequence.values();
-            match axis.quantity {
-                Duration => values.last().copied(),
-                Frequency => values.first().map(|frequency_hz| 1.0 / frequency_hz),
-                _ => None,
-            }
-        });
-        let longest = PulseGround {
-            duration_s: longest_s.unwrap_or(pulse.duration_s),
-            ..pulse.clone()
-        };
-        let end_s = longest.motion(1.0).end_s();
-        ends_within("pulses that last", end_s, simulation)
+        simulation.check_covers(end_s, |last| format!("[map] has {what} until {last} s"))
     }
-}
-
-/// Rejects ground motion that lasts longer than the simulation.
-fn ends_within(what: &str, end_s: f64, simulation: &Simulation) -> Result<(), String> {
-    let duration_s = simulation.duration_s.unwrap_or(f64::INFINITY);
-    ensure(end_s <= duration_s, || {
-        let [last, end] = [end_s, duration_s].map(plain);
-        format!(
-            "[map] has {what} until {last} s and would be cut off at {end} s; give a longer `duration_s` in [simulation]"
-        )
-    })
 }
 
 impl Serialize for Map {

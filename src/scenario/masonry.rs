@@ -52,8 +52,7 @@ pub(super) fn read_shapes(table: &mut Table<'_>) -> Option<Shape> {
 
 /// Reads the dimensions and converts span and rise to those of the middle line.
 fn read_dimensions(table: &mut Table<'_>, is_pointed: bool) -> ReadResult<Dimensions> {
-    let lines = one_of(MeasuredAt::ALL, MeasuredAt::name);
-    let measured_at = table.or("measured_at", &lines, MeasuredAt::Mean);
+    let measured_at = table.or("measured_at", &one_of(MeasuredAt::ALL), MeasuredAt::Mean);
     let mut span_m = table.required("span_m", &MAGNITUDE);
     let mut rise_m = table.required("rise_m", &MAGNITUDE);
     let thickness_m = table.required("thickness_m", &within(&(1e-6..=1e6)));
@@ -89,8 +88,7 @@ fn read_blocks(table: &mut Table<'_>) -> ReadResult<GivenBlocks> {
     let joints_file = table.required("joints", &text());
     let outlines_file = table.optional("outlines", &text());
     let decimal = Decimal::read(table);
-    let kinds = one_of(Supports::ALL, Supports::name);
-    let supports = table.or("supports", &kinds, Supports::Both);
+    let supports = table.or("supports", &one_of(Supports::ALL), Supports::Both);
     let depth_m = table.or("depth_m", &MAGNITUDE, DEPTH_M);
     let densities = one_or_more(&MAGNITUDE);
     let density_kg_m3 = table.or("density_kg_m3", &densities, vec![DENSITY_KG_M3]);

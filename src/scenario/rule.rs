@@ -174,15 +174,20 @@ fn any<T: 'static>(allowed: &str, kind: &str, read: fn(&Value) -> Option<T>) -> 
 }
 
 /// Returns the rule for a value that is named by a string.
-pub(super) fn one_of<T: Copy>(all: &[T], name: fn(T) -> &'static str) -> Custom<'_, T> {
-    let names: Vec<_> = all.iter().map(|one| name(*one)).collect();
-    let quoted: Vec<_> = names.iter().map(|name| format!("{name:?}")).collect();
+pub(super) fn one_of<T: Copy + Serialize>(all: &[T]) -> Custom<'_, T> {
+    let names: Vec<_> = all.iter().map(|one| json!(one)).collect();
+    let quoted: Vec<_> = names.iter().map(Value::to_string).collect();
     let allowed = format!("one of {}", quoted.join(", "));
     let schema = json!({ "enum": names });
     let read = move |value: &Value| {
         let text = string(value).ok_or_else(|| is(value))?;
         let index = names.iter().position(|name| *name == text);
-        let unknown = || format!("is unknown{}", did_you_mean(text, &names));
+        let unknown = || {
+            format!(
+                "is unknown{}",
+                did_you_mean(text, names.iter().filter_map(Value::as_str))
+            )
+        };
         index.map(|index| all[index]).ok_or_else(unknown)
     };
     Custom(allowed, schema, Box::new(read))
@@ -225,13 +230,12 @@ fn is(value: &Value) -> String {
 }
 
 /// Returns a suggestion of the known name nearest to `name`; empty if none is near.
-pub(super) fn did_you_mean(name: &str, known: &[impl AsRef<str>]) -> String {
+pub(super) fn did_you_mean<'k>(name: &str, known: impl Iterator<Item = &'k str>) -> String {
     // At least half of the name must agree: this finds names with a missing unit or prefix, but no unrelated names.
     const NEAR: f64 = 0.5;
     let name = excerpt(name);
-    let known = known.iter().map(AsRef::as_ref);
     known
-        .map(|known: &str| (strsim::normalized_damerau_levenshtein(&name, known), known))
+        .map(|known| (strsim::normalized_damerau_levenshtein(&name, known), known))
         .filter(|(likeness, _)| *likeness > NEAR)
         .max_by(|(a, _), (b, _)| a.total_cmp(b))
         .map(|(_, known)| format!(" (did you mean `{known}`?)"))

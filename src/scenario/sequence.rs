@@ -102,8 +102,7 @@ impl Sequence {
         let from = table.required("from", rule);
         let to = table.required("to", rule);
         let count = table.required("count", &COUNT);
-        let spacings = one_of(Spacing::ALL, Spacing::name);
-        let spacing = table.or("spacing", &spacings, Spacing::Linear);
+        let spacing = table.or("spacing", &one_of(Spacing::ALL), Spacing::Linear);
         table.sound()?;
         let wrong = format!("is not above `from`; must be above {}", short(from));
         table.refuse(to <= from, "to", wrong)?;

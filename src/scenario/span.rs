@@ -10,26 +10,21 @@
 
 use std::mem;
 
+use super::document::Entries;
 use super::prelude::*;
 use crate::mechanics::arch::MeasuredAt;
 
 /// Tables of shapes with `measured_at`.
 const TABLES: [&str; 4] = ["arch", "pointed_arch", "elliptic_arch", "basket_arch"];
-/// Keys of the shape in a resolved scenario.
-const RESOLVED: [&str; 5] = [
+/// Keys of the shape, as given and in a resolved scenario.
+const SHAPE: [&str; 7] = [
     "mean_radius_m",
     "thickness_ratio",
+    "thickness_m",
     "embrace_deg",
     "span_m",
     "rise_m",
-];
-/// Keys that do not concern the shape.
-const OTHERS: [&str; 5] = [
-    "depth_m",
-    "density_kg_m3",
-    "voussoirs",
-    "joints_deg",
-    "crown_deg",
+    "measured_at",
 ];
 const LINES: &str = " beside it: \"intrados\", \"mean\" or \"extrados\"";
 const POSITIVE: Number = between(Excluded(0.0), Unbounded);
@@ -54,8 +49,7 @@ impl Circular {
         let thickness_m = table.optional("thickness_m", &POSITIVE);
         let embrace_deg = table.optional("embrace_deg", &EMBRACE_DEG);
         let rise_m = table.optional("rise_m", &LENGTH);
-        let lines = one_of(MeasuredAt::ALL, MeasuredAt::name);
-        let measured_at = table.optional("measured_at", &lines);
+        let measured_at = table.optional("measured_at", &one_of(MeasuredAt::ALL));
         let radius = format!(
             "lacks `mean_radius_m`: give {}, or `span_m` where it is `measured_at`",
             MAGNITUDE.allowed()
@@ -106,37 +100,26 @@ impl Circular {
     }
 
     /// Returns the keys of the shape as in the file; empty if the file does not give the line of the span.
-    pub(super) fn given(table: &Table<'_>) -> Map<String, Value> {
-        let shapes: Vec<_> = TABLES
-            .iter()
-            .filter_map(|name| table.as_given(name))
-            .collect();
-        let mut shapes = shapes.iter().filter_map(Value::as_object);
-        let given = shapes.find(|shape| shape.contains_key("measured_at"));
-        let given = given.into_iter().flatten();
+    pub(super) fn given(table: &Table<'_>) -> Entries {
+        let mut shapes = TABLES.iter();
+        let measured = shapes.find(|name| table.gives_in(name, "measured_at"));
+        let given = measured.and_then(|name| table.as_given(name));
         // A length may be written as an integer.
-        let length = |value: &Value| value.as_f64().map_or_else(|| value.clone(), Value::from);
-        given
-            .filter(|(key, _)| !OTHERS.contains(&key.as_str()))
+        let length = |value: &Value| value.as_f64().map_or(value.clone(), Value::from);
+        let given = given.iter().filter_map(Value::as_object).flatten();
+        let shape = given.filter(|(key, _)| SHAPE.contains(&key.as_str()));
+        shape
             .map(|(key, value)| (key.clone(), length(value)))
             .collect()
     }
 
     /// Replaces the resolved keys of the shape by the given ones, unless its table is already as in the file.
-    pub(super) fn put_given(
-        tables: &mut Value,
-        given: &Map<String, Value>,
-        as_given: &Map<String, Value>,
-    ) {
-        for name in TABLES
-            .into_iter()
-            .filter(|name| !as_given.contains_key(*name))
-        {
-            if let Some(Value::Object(resolved)) = tables.get_mut(name)
-                && !given.is_empty()
-            {
-                let others = mem::take(resolved).into_iter();
-                let others = others.filter(|(key, _)| !RESOLVED.contains(&key.as_str()));
+    pub(super) fn put_given(tables: &mut Value, given: &Entries, as_given: &Entries) {
+        let is_resolved = |name: &&str| !given.is_empty() && !as_given.contains_key(*name);
+        for name in TABLES.into_iter().filter(is_resolved) {
+            if let Some(Value::Object(resolved)) = tables.get_mut(name) {
+                resolved.retain(|key, _| !SHAPE.contains(&key.as_str()));
+                let others = mem::take(resolved);
                 *resolved = given.clone().into_iter().chain(others).collect();
             }
         }

@@ -190,13 +190,7 @@ fn suits(series: &Series, strongest: Scaling, simulation: &Simulation) -> Result
     let strongest = series.scaled(strongest);
     strongest.check_strength(simulation.gravity_m_s2)?;
     let lasts_s = start_s(series) + series.last_s();
-    let duration_s = simulation.duration_s.unwrap_or(f64::INFINITY);
-    ensure(lasts_s <= duration_s, || {
-        let [lasts, end] = [lasts_s, duration_s].map(plain);
-        format!(
-            "lasts {lasts} s and would be cut off at {end} s; give a longer `duration_s` in [simulation]"
-        )
-    })
+    simulation.check_covers(lasts_s, |lasts| format!("lasts {lasts} s"))
 }
 
 /// Returns the horizontal ground motion of a record.

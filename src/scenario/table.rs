@@ -510,7 +510,7 @@ impl<'a> Table<'a> {
                     "unknown key `{}` in {}{}; known keys: {}",
                     excerpt(key),
                     self.name,
-                    did_you_mean(key, &known),
+                    did_you_mean(key, known.iter().copied()),
                     known.join(", ")
                 ),
             };

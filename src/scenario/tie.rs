@@ -87,11 +87,10 @@ impl TieTable {
     }
 
     fn read(table: &mut Table<'_>) -> ReadResult<Self> {
-        let names = one_of(TieEnds::ALL, TieEnds::name);
         let stiffness = within(&(1e-3..=STIFFEST_N_M));
         let stress = within(&(1e-3..=1e5));
         let read = Self {
-            between: table.optional("between", &names),
+            between: table.optional("between", &one_of(TieEnds::ALL)),
             height_m: table.optional("height_m", &COORDINATE_M),
             from_m: read_point(table, "from_m"),
             from_block: table.optional("from_block", &BLOCK),

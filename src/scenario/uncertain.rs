@@ -91,10 +91,9 @@ impl Distribution {
     fn read(table: &mut Table<'_>) -> ReadResult<Self> {
         let from = table.optional("from", &ANY_NUMBER);
         let to = table.optional("to", &ANY_NUMBER);
-        let spacing = table.optional("spacing", &one_of(Spacing::ALL, Spacing::name));
+        let spacing = table.optional("spacing", &one_of(Spacing::ALL));
         let deviation = table.optional("deviation", &above(0.0, 1e12));
-        let distributions = one_of(DistributionForm::ALL, DistributionForm::name);
-        let distribution = table.optional("distribution", &distributions);
+        let distribution = table.optional("distribution", &one_of(DistributionForm::ALL));
         let relations = [
             OneOf(&["from", "deviation"], Some(DISTRIBUTION)),
             Together(&["from", "to"]),
@@ -121,19 +120,16 @@ impl Distribution {
     /// Computes the quantile: the value below which the fraction `part` of all values lies, from 0 to 1. `own` is the value in the scenario.
     fn at(self, part: f64, own: f64) -> f64 {
         match self {
-            Self::Range {
-                from,
-                to,
-                spacing: Spacing::Linear,
-            } => from * (1.0 - part) + to * part,
-            Self::Range { from, to, .. } => {
-                (from * libm::exp(part * libm::log(to / from))).clamp(from, to)
-            }
-            Self::About {
-                deviation,
-                form: DistributionForm::Normal,
-            } => own + deviation * cut_normal(part),
-            Self::About { deviation, .. } => own * libm::exp(deviation * cut_normal(part)),
+            Self::Range { from, to, spacing } => match spacing {
+                Spacing::Linear => from * (1.0 - part) + to * part,
+                Spacing::Logarithmic => {
+                    (from * libm::exp(part * libm::log(to / from))).clamp(from, to)
+                }
+            },
+            Self::About { deviation, form } => match form {
+                DistributionForm::Normal => own + deviation * cut_normal(part),
+                DistributionForm::Lognormal => own * libm::exp(deviation * cut_normal(part)),
+            },
         }
     }
 }

@@ -208,11 +208,10 @@ impl Default for Verify {
 impl Verify {
     /// Reads `[verify]` with its records.
     pub(super) fn read(table: &mut Table<'_>, gravity_m_s2: Option<f64>) -> ReadResult<Self> {
-        let sides = one_of(CheckedSides::ALL, CheckedSides::name);
         Ok(Self {
             confidence_factor: table.or("confidence_factor", &CONFIDENCE, CONFIDENCE_FACTOR),
             behaviour_factor: table.or("behaviour_factor", &BEHAVIOUR, BEHAVIOUR_FACTOR),
-            sides: table.or("sides", &sides, CheckedSides::Both),
+            sides: table.or("sides", &one_of(CheckedSides::ALL), CheckedSides::Both),
             free_standing: table.table("free_standing", FreeStanding::read),
             records: Records::read(table, gravity_m_s2)?,
         })
@@ -452,9 +451,8 @@ impl Demand {
 
 impl CodeDemand {
     fn read(table: &mut Table<'_>) -> ReadResult<Self> {
-        let soil = table.required("soil", &one_of(Soil::ALL, Soil::name));
-        let categories = one_of(Topography::ALL, Topography::name);
-        let category = table.optional("topography", &categories);
+        let soil = table.required("soil", &one_of(Soil::ALL));
+        let category = table.optional("topography", &one_of(Topography::ALL));
         let factor = table.optional("topographic_factor", &TOPOGRAPHIC_FACTOR);
         let is_site = table.agrees(&[OneOf(&["topography", "topographic_factor"], None)]);
         let category = category.map(SiteTopography::Topography);

@@ -148,7 +148,7 @@ impl Format {
     }
 
     pub(in crate::scenario) fn read(table: &mut Table<'_>) -> Option<Self> {
-        table.optional("format", &one_of(Self::ALL, Self::name))
+        table.optional("format", &one_of(Self::ALL))
     }
 
     /// Reads the format, or determines it from the file name if there is one.
@@ -173,7 +173,7 @@ impl Decimal {
 
     /// Reads the key `decimal`.
     pub(in crate::scenario) fn read(table: &mut Table<'_>) -> Self {
-        table.or("decimal", &one_of(Self::ALL, Self::name), Self::Point)
+        table.or("decimal", &one_of(Self::ALL), Self::Point)
     }
 }
 
@@ -185,7 +185,7 @@ impl Layout {
         let time_column = table.optional("time_column", &any_column());
         let acceleration_column = table.optional("acceleration_column", &any_column());
         let wrapped = table.or("wrapped", &switch(), false);
-        let quantities = one_of(RecordedQuantity::ALL, RecordedQuantity::name);
+        let quantities = one_of(RecordedQuantity::ALL);
         let mut layout = Self {
             acceleration_column,
             wrapped,

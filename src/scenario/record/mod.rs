@@ -182,8 +182,7 @@ impl Record {
         table: &mut Table<'_>,
         known: KnownRecords<'_>,
     ) -> ReadResult<(Self, GroundMotion)> {
-        let components = one_of(Component::ALL, Component::name);
-        let component = table.or("component", &components, Component::Horizontal);
+        let component = table.or("component", &one_of(Component::ALL), Component::Horizontal);
         let start_s = table.or("start_s", &START_S, 0.0);
         let main = Series::read(table, known, start_s);
         let vertical = table.table("vertical", |table| Series::read(table, known, start_s));

@@ -117,7 +117,7 @@ impl Unit {
 
 /// Returns the rule for a unit, by its name or a spelling in files.
 pub(super) fn any_unit() -> Custom<'static, Unit> {
-    let names = one_of(Unit::ALL, Unit::name);
+    let names = one_of(Unit::ALL);
     let allowed = format!("{} or \"gal\"", names.allowed());
     let read = move |value: &Value| {
         let written = value.as_str().and_then(Unit::written);
