@@ -11,9 +11,7 @@ use super::part::PartError;
 use super::quotable::ModelAnswer;
 use super::runner::{RunnerError, Study};
 use crate::dynamics::model::SimulationError;
-use crate::output::summary::summary_of;
-use crate::output::template::render;
-use crate::output::{Figure, Folder, OutputError, pretty};
+use crate::output::{Figure, Folder, OutputError, pretty, render, summary_of};
 use crate::scenario::ScenarioErrors;
 
 /// Errors of studies.

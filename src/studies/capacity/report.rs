@@ -11,10 +11,7 @@ use crate::mechanics::capacity::{Capacity, CurvePoint, TieEventDisplacements};
 use crate::mechanics::parts::Parts as _;
 use crate::mechanics::sides::Sides;
 use crate::mechanics::sway::Sway;
-use crate::output::summary::Named;
-use crate::output::table::{column, csv, fields};
-use crate::output::template::{filters, render};
-use crate::output::{Figure, OutputError};
+use crate::output::{Figure, Named, OutputError, column, csv, fields, filters, render};
 use crate::scenario::Scenario;
 use crate::studies::results::Results;
 

@@ -11,13 +11,10 @@ use super::{NoAnswer, Question, Samples};
 use crate::dynamics::history::Sample;
 use crate::dynamics::model::{Model, WithoutDemand};
 use crate::dynamics::repeatability::repeated;
-use crate::output::axes::Scale;
-use crate::output::chart::Mark;
-use crate::output::panels::{MAIN, Panels, Subject, scale_around};
-use crate::output::sheet::{Key, Sign};
-use crate::output::svg::{Stroke, color};
-use crate::output::table::{column, csv, list};
-use crate::output::{Figure, OutputError};
+use crate::output::panels::{MAIN, scale_around};
+use crate::output::{
+    Figure, Key, Mark, OutputError, Panels, Scale, Sign, Stroke, Subject, color, column, csv, list,
+};
 use crate::scenario::{Motion, Scenario, Structure};
 use crate::studies::ending::columns::{self, OUTCOMES};
 use crate::studies::ending::{Ending, NoHistory, Verdict};

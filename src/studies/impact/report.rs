@@ -17,10 +17,8 @@ use crate::mechanics::four_link::mechanism::HingeSites;
 use crate::mechanics::geometry::profile::Profile;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
-use crate::output::OutputError;
 use crate::output::mechanisms::{HINGES, degrees};
-use crate::output::table::{Cell, column, csv};
-use crate::output::template::filters;
+use crate::output::{Cell, OutputError, column, csv, filters};
 use crate::scenario::Scenario;
 
 /// Impacts of the structure of a scenario.

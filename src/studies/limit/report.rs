@@ -14,8 +14,7 @@ use crate::mechanics::sides::Sides;
 use crate::mechanics::stability::RowOnset;
 use crate::mechanics::sway::Sway;
 use crate::output::mechanisms::{HINGES, by_body, columns, degrees};
-use crate::output::summary::Named;
-use crate::output::template::filters;
+use crate::output::{Named, filters};
 
 /// The onset of motion of a structure, to either side.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Template)]

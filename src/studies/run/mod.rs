@@ -57,11 +57,9 @@ use crate::dynamics::repeatability::{Repeatability, Repetitions, Verdict};
 use crate::dynamics::variation::Variations;
 use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::sway::Sway;
-use crate::output::scene::Scene;
-use crate::output::summary::summary_of;
-use crate::output::table::TableWriter;
-use crate::output::template::render;
-use crate::output::{Figure, Folder, OutputError, Subject, pretty};
+use crate::output::{
+    Figure, Folder, OutputError, Scene, Subject, TableWriter, pretty, render, summary_of,
+};
 use crate::scenario::{Hinges, Scenario};
 
 const ROTATIONS: &str = "rotations.csv";

@@ -25,10 +25,10 @@ use crate::mechanics::geometry::pose::{BodyPoint, Pose};
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
 use crate::output::caption::ground_in_words;
-use crate::output::envelope::Envelope;
 use crate::output::ground::curve_g;
 use crate::output::page::{escaped, fill_template, script_safe};
-use crate::output::scene::{FARTHEST, Piece, Scene};
+use crate::output::scene::FARTHEST;
+use crate::output::{Envelope, Piece, Scene};
 use crate::scenario::Scenario;
 use crate::scenario::metres;
 

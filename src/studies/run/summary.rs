@@ -13,9 +13,8 @@ use crate::dynamics::thrust::ThrustRecord;
 use crate::dynamics::variation::VariationResult;
 use crate::mechanics::sides::Sides;
 use crate::mechanics::sway::Sway;
-use crate::output::OutputError;
 use crate::output::mechanisms::columns;
-use crate::output::summary::{Named, summary_of};
+use crate::output::{Named, OutputError, summary_of};
 use crate::scenario::{Ground, Scenario};
 
 /// A computed motion, with its repetitions and variations.

@@ -7,7 +7,7 @@ use crate::mechanics::chain::Hinge;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::sway::Sway;
 use crate::output::mechanisms::columns;
-use crate::output::table::{Cell, Column, column, list, numbers, row_number, several};
+use crate::output::{Cell, Column, column, list, numbers, row_number, several};
 
 use super::Scales;
 

@@ -18,8 +18,7 @@ use crate::mechanics::chain::Hinge;
 use crate::mechanics::sides::Sides;
 use crate::mechanics::sway::Sway;
 use crate::output::mechanisms::by_body;
-use crate::output::range_ends;
-use crate::output::template::filters;
+use crate::output::{filters, range_ends};
 use crate::scenario::{Hinges, Scenario, Series};
 use crate::studies::quotable::{self, ModelAnswer};
 

@@ -21,7 +21,7 @@ use crate::mechanics::settling::{
 };
 use crate::mechanics::sides::Sides;
 use crate::mechanics::sway::Sway;
-use crate::output::template::filters;
+use crate::output::filters;
 use crate::scenario::Scenario;
 
 /// Number of equal parts of a movement, with a stage at the end of each.

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::factors::{EDGE_WIDTH, Factors};
 use crate::bisection::{Width, try_bisect};
 use crate::dynamics::model::SimulationError;
-use crate::output::table::{Column, column};
+use crate::output::{Column, column};
 use crate::scenario::Scenario;
 use crate::studies::ending::columns::yes;
 use crate::studies::ending::{Ending, NoAnswer, NoHistory, Verdict};

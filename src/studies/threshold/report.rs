@@ -11,8 +11,7 @@ use super::{
 };
 use crate::dynamics::history::Outcome;
 use crate::dynamics::repeatability::OutcomeCount;
-use crate::output::table::{column, csv, fields};
-use crate::output::{Figure, OutputError};
+use crate::output::{Figure, OutputError, column, csv, fields};
 use crate::scenario::{Ground, Hinges, Scenario};
 use crate::studies::ending::{Ending, NoHistory, Verdict, outcome_name};
 use crate::studies::quotable::{self, ModelAnswer};

@@ -8,13 +8,11 @@ use super::{Body, Mechanism, Summary};
 use crate::dynamics::history::OpenHinge;
 use crate::mechanics::geometry::field::turned;
 use crate::mechanics::sway::Sway;
-use crate::output::Figure;
-use crate::output::axes::Scale;
-use crate::output::chart::{Chart, Mark, Shape};
 use crate::output::elevation::{BODIES, SheetTransform, View, draw_dimensions, room_px};
-use crate::output::scene::Scene;
-use crate::output::sheet::{Key, PartHeight, Sheet};
-use crate::output::svg::{Anchor, CURVES, Drawing, Stroke, color};
+use crate::output::{
+    Anchor, CURVES, Chart, Drawing, Figure, Key, Mark, PartHeight, Scale, Scene, Shape, Sheet,
+    Stroke, color,
+};
 use crate::scenario::{DimensionSide, Structure};
 
 /// Colour of parts that do not move.

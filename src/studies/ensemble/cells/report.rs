@@ -4,11 +4,7 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::{CellCounts, CellRow, CellsOfSamples, Crossing, LEVELS, OUTSIDE, Samples};
-use crate::output::chart::Mark;
-use crate::output::sheet::Key;
-use crate::output::svg::{Stroke, color};
-use crate::output::table::{column, csv, each, list};
-use crate::output::{Figure, OutputError};
+use crate::output::{Figure, Key, Mark, OutputError, Stroke, color, column, csv, each, list};
 use crate::scenario::Hinges;
 use crate::studies::ending::columns::{OUTCOMES, yes};
 use crate::studies::ensemble::influence::percent;

@@ -4,8 +4,7 @@ use serde::Serialize;
 
 use super::{Along, AlongOptions, AlongRow, KeyRange, Point, picture};
 use crate::argument::plain;
-use crate::output::OutputError;
-use crate::output::table::{column, csv, fields};
+use crate::output::{OutputError, column, csv, fields};
 use crate::studies::ending::NoAnswer;
 use crate::studies::remarks::{CaseSummary, ModelCheck, Remark, Remarks, no_verdict};
 use crate::studies::results::{ReportedStudy, Results, Style};
