@@ -137,6 +137,11 @@ impl Ending {
         }
     }
 
+    /// Returns [`Ending::overturning_share`] and the thrust excess ratio.
+    pub(super) fn share_and_excess(&self) -> [Option<f64>; 2] {
+        [self.overturning_share(), self.thrust_excess_ratio]
+    }
+
     /// Returns the ending of the mirrored case.
     pub(super) fn mirrored(&self) -> Self {
         let mut mirrored = self.clone();

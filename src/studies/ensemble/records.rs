@@ -122,7 +122,8 @@ impl Question for Capacities {
             let (record, mirrored) = (shake / self.suite.signs(), shake % self.suite.signs() == 1);
             FirstEdge::among(&self.levels, WIDTH, |level: f64| {
                 let (ground, request) = case(scenario, &self.suite, record, level, mirrored);
-                Ending::of(&*model, &ground, &request)
+                let ending = Ending::of(&*model, &ground, &request)?;
+                Ok(ending.share_and_excess())
             })
         });
         edges.collect()

@@ -18,9 +18,8 @@ use crate::dynamics::ground::{GroundMotion, PulseShape};
 use crate::dynamics::history::Summary;
 use crate::dynamics::model::{Case, Model, Repetition, SimulationError};
 use crate::dynamics::repeatability::OutcomeCount;
-use crate::mechanics::arch::Arch;
 use crate::mechanics::four_link::impact::ImpactModel;
-use crate::mechanics::four_links::{FourLinkError, FourLinks};
+use crate::mechanics::four_links::FourLinkError;
 use crate::scenario::{Axis, Ground, ModelError, Motion, Quantity, Scaling, Scenario, Structure};
 
 /// A cell of a map.
@@ -63,7 +62,7 @@ pub struct OverturningMap<'a> {
     /// True if the repetitions of each cell are computed, to count its outcomes.
     pub(super) repeat: bool,
     /// Models that several cells share.
-    structures: Shared<Result<Standing, ModelError>>,
+    models: Shared<Result<Arc<dyn Model>, ModelError>>,
     pulses: Shared<PulseShape>,
     /// The scenario, or a sample of it. `variants` are the scenarios with other values of keys outside `[map]`.
     base: Arc<Scenario>,
@@ -97,23 +96,6 @@ pub(super) fn described(axis: &Axis) -> Described<'_> {
         Quantity::Other => (&*axis.key, "", &[]),
     };
     Described { label, table, keys }
-}
-
-/// The model of motion of a cell.
-#[derive(Clone, Debug)]
-enum Standing {
-    /// An arch of four links, of any size.
-    Arch(Arch, FourLinks),
-    Model(Arc<dyn Model>),
-}
-
-impl Standing {
-    fn model(&self) -> &dyn Model {
-        match self {
-            Self::Arch(_, links) => links,
-            Self::Model(model) => &**model,
-        }
-    }
 }
 
 /// Values that depend on one axis or on none. Each value is computed at its first use.
@@ -185,15 +167,13 @@ impl<'a> OverturningMap<'a> {
         let values = axes.map(|axis| axis.sequence.values());
         let counts = [values[0].len(), values[1].len()];
         let depends = |on: &[Quantity]| axes.map(|axis| on.contains(&axis.quantity));
-        let mut shapes = vec![
+        let shapes = [
+            Quantity::MeanRadius,
             Quantity::ThicknessRatio,
             Quantity::Embrace,
             Quantity::Restitution,
             Quantity::Other,
         ];
-        if scenario.motion.hinges().has_joints() {
-            shapes.push(Quantity::MeanRadius);
-        }
         let durations = [Quantity::Duration, Quantity::Frequency, Quantity::Other];
         let variants = depends(&[Quantity::Other]);
         let has_variants = variants.contains(&true);
@@ -201,7 +181,7 @@ impl<'a> OverturningMap<'a> {
             scenario,
             axes,
             repeat: map.repeat,
-            structures: Shared::new(counts, depends(&shapes)),
+            models: Shared::new(counts, depends(&shapes)),
             pulses: Shared::new(counts, depends(&durations)),
             base: Arc::new(sample),
             variants: has_variants.then(|| Shared::new(counts, variants)),
@@ -246,29 +226,12 @@ impl<'a> OverturningMap<'a> {
     }
 
     /// Returns the model of motion of a cell.
-    fn standing(&self, index: usize, scenario: &Scenario) -> Result<Standing, ModelError> {
-        let make = || {
+    fn model(&self, index: usize, scenario: &Scenario) -> Result<Arc<dyn Model>, ModelError> {
+        self.models.get(self.place(index), || {
             let structure = self.structure(index, scenario);
             let structure = structure.map_err(FourLinkError::from)?;
-            Ok(match (self.moves(index, scenario), structure) {
-                (Motion::FourLinks(law), Structure::Arch(arch)) => {
-                    let links = FourLinks::of_arch(&arch, law)?;
-                    Standing::Arch(arch, links)
-                }
-                (motion, structure) => {
-                    Standing::Model(motion.model_for_many_cases(&structure)?.into())
-                }
-            })
-        };
-        let standing = self.structures.get(self.place(index), make)?;
-        Ok(match (standing, self.value(index, Quantity::MeanRadius)) {
-            (Standing::Arch(arch, links), Some(mean_radius_m)) => {
-                let arch = arch.with_mean_radius_m(mean_radius_m);
-                let arch = arch.map_err(FourLinkError::from)?;
-                let links = links.with_size_of(&arch);
-                Standing::Arch(arch, links)
-            }
-            (standing, _) => standing,
+            let motion = self.moves(index, scenario);
+            Ok(motion.model_for_many_cases(&structure)?.into())
         })
     }
 
@@ -283,7 +246,6 @@ impl<'a> OverturningMap<'a> {
         if let Some(embrace_deg) = self.value(index, Quantity::Embrace) {
             arch = arch.with_embrace_deg(embrace_deg)?;
         }
-        // Arches of one shape use the same limit analysis.
         if let Some(mean_radius_m) = self.value(index, Quantity::MeanRadius) {
             arch = arch.with_mean_radius_m(mean_radius_m)?;
         }
@@ -335,14 +297,14 @@ impl<'a> OverturningMap<'a> {
     }
 
     /// Returns the model of a cell, with its ground motion and request.
-    fn case(&self, index: usize) -> Result<(Standing, Case), NoHistory> {
+    fn case(&self, index: usize) -> Result<(Arc<dyn Model>, Case), NoHistory> {
         let scenario = self.variant(index).map_err(NoHistory::Failed)?;
-        let standing = self.standing(index, &scenario)?;
+        let model = self.model(index, &scenario)?;
         let ground = self.motion(index, &scenario).map_err(NoHistory::Failed)?;
         let structure = self.structure(index, &scenario);
         let structure = structure.map_err(|error| ModelError::from(FourLinkError::from(error)))?;
         let request = scenario.request_on(&ground, &structure);
-        Ok((standing, (ground, request)))
+        Ok((model, (ground, request)))
     }
 
     /// Computes the endings of cells with the same structure, and, if requested, the number of outcomes of each with its repetitions.
@@ -404,19 +366,19 @@ impl Study for OverturningMap<'_> {
     /// Returns the family of cells with the same structure; `None` unless their model computes several motions faster together.
     fn family(&self, index: usize) -> Option<usize> {
         let together = self.scenario.motion.is_faster_together();
-        together.then(|| self.structures.place(self.place(index)))?
+        together.then(|| self.models.place(self.place(index)))?
     }
 
     fn rows(&self, indices: &[usize]) -> Vec<CellRow> {
-        let standing = OnceCell::new();
+        let first = OnceCell::new();
         let cases = indices.iter().map(|index| {
-            let (structure, case) = self.case(*index)?;
-            standing.get_or_init(|| structure);
+            let (model, case) = self.case(*index)?;
+            first.get_or_init(|| model);
             Ok(case)
         });
         let ended = answered(cases, |cases| {
-            let standing = standing.get();
-            standing.map_or(Vec::new(), |one| self.endings(one.model(), cases))
+            let model = first.get();
+            model.map_or(Vec::new(), |model| self.endings(&**model, cases))
         });
         let row = |(index, ended): (&usize, Result<Ended, NoHistory>)| {
             let [x, y] = self.coordinates(*index);
