@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use super::ending::{Ending, NoHistory, answered};
 use super::runner::Study;
 use crate::argument::ArgumentError;
-use crate::dynamics::ground::{GroundMotion, PulseShape};
+use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::Summary;
 use crate::dynamics::model::{Case, Model, Repetition, SimulationError};
 use crate::dynamics::repeatability::OutcomeCount;
@@ -63,7 +63,6 @@ pub struct OverturningMap<'a> {
     pub(super) repeat: bool,
     /// Models that several cells share.
     models: Shared<Result<Arc<dyn Model>, ModelError>>,
-    pulses: Shared<PulseShape>,
     /// The scenario, or a sample of it. `variants` are the scenarios with other values of keys outside `[map]`.
     base: Arc<Scenario>,
     variants: Option<Shared<Result<Arc<Scenario>, String>>>,
@@ -174,7 +173,6 @@ impl<'a> OverturningMap<'a> {
             Quantity::Restitution,
             Quantity::Other,
         ];
-        let durations = [Quantity::Duration, Quantity::Frequency, Quantity::Other];
         let variants = depends(&[Quantity::Other]);
         let has_variants = variants.contains(&true);
         Some(Self {
@@ -182,7 +180,6 @@ impl<'a> OverturningMap<'a> {
             axes,
             repeat: map.repeat,
             models: Shared::new(counts, depends(&shapes)),
-            pulses: Shared::new(counts, depends(&durations)),
             base: Arc::new(sample),
             variants: has_variants.then(|| Shared::new(counts, variants)),
             values,
@@ -270,16 +267,13 @@ impl<'a> OverturningMap<'a> {
         let value = |quantity| self.value(index, quantity);
         let motion = match scenario.ground.as_ref() {
             Some(Ground::Pulse(pulse)) => {
-                let shape = self.pulses.get(self.place(index), || {
-                    let of_frequency = value(Quantity::Frequency).map(f64::recip);
-                    let duration_s = of_frequency.or(value(Quantity::Duration));
-                    let mut pulse = pulse.clone();
-                    pulse.duration_s = duration_s.unwrap_or(pulse.duration_s);
-                    pulse.shape()
-                });
+                let mut pulse = pulse.clone();
+                let of_frequency = value(Quantity::Frequency).map(f64::recip);
+                let duration_s = of_frequency.or(value(Quantity::Duration));
+                pulse.duration_s = duration_s.unwrap_or(pulse.duration_s);
                 let amplitude_g = value(Quantity::Amplitude).unwrap_or(pulse.amplitude_g);
                 let amplitude_g = Vector2::new(amplitude_g, pulse.vertical_amplitude_g);
-                let motion = shape.inclined_m_s2(amplitude_g * gravity_m_s2);
+                let motion = pulse.shape().inclined_m_s2(amplitude_g * gravity_m_s2);
                 Some(motion.expect("the amplitudes of a scenario are those of a ground motion"))
             }
             Some(Ground::Record(record)) => {

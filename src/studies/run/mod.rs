@@ -11,7 +11,6 @@ mod animation;
 mod caveats;
 mod comparison;
 mod feet;
-mod film;
 mod open_joints;
 mod overlay;
 mod packed;
@@ -35,7 +34,6 @@ use serde_json::Value;
 
 pub use self::caveats::warnings;
 use self::comparison::comparison_words;
-use self::film::FILM;
 use self::overlay::Curves;
 use self::picture::Timeline;
 pub use self::points::MAX_POINTS;
@@ -74,6 +72,8 @@ const PICTURE: &str = "history.svg";
 const SUMMARY: &str = "summary.json";
 /// Several models of motion in one picture, beside the folders of the models.
 const OVERLAY: &str = "overlay.svg";
+/// The folder of the pictures of a film, in that of the results.
+const FILM: &str = "film";
 
 /// All files that a run may write, except the pictures of a film, in the order in which they are listed.
 pub const FILES: [&str; 10] = [
@@ -487,7 +487,10 @@ impl Drawings {
             return Ok(String::new());
         };
         let pictures = film.film_pictures(run.figure, title(run.scenario));
-        film::add(folder, &pictures)?;
+        for (number, picture) in (1..).zip(&pictures) {
+            let name = format!("{FILM}/frame-{number:04}.svg");
+            folder.add(&name, picture.as_bytes())?;
+        }
         let (count, path) = (pictures.len(), folder.path().join(FILM));
         let path = path.display();
         Ok(format!("  {count} pictures of a film in {path}\n"))

@@ -37,11 +37,6 @@ impl Heading {
         })
     }
 
-    /// Returns true if the model of motion has joints, whose cases may be uncertain.
-    pub(super) fn has_joints(&self) -> bool {
-        self.hinges().has_joints()
-    }
-
     pub(super) fn hinges(&self) -> Hinges {
         let mut rows = [Hinges::Elastic, Hinges::Free].into_iter();
         let own = rows.find(|hinges| self.scenario.get(hinges.model().table).is_some());

@@ -303,9 +303,10 @@ impl Heading {
             column("scale", |case: &CaseRow| case.scale),
             column("peak_g", |case: &CaseRow| case.peak_g),
         ];
-        all.extend(columns::columns(self.has_joints(), |case: &CaseRow| {
-            case.result.as_ref().map_err(|_| FAILED)
-        }));
+        all.extend(columns::columns(
+            self.hinges().has_joints(),
+            |case: &CaseRow| case.result.as_ref().map_err(|_| FAILED),
+        ));
         all
     }
 
