@@ -7,17 +7,13 @@ use nalgebra::Vector2;
 use thiserror::Error;
 
 pub use self::report::{CapacitySide, FILES, Oscillator, Summary, report};
-use crate::dynamics::model::MechanismModel;
 use crate::mechanics::blocks::{Row, RowError};
 use crate::mechanics::capacity::{Capacity, CapacityError, Control};
-use crate::mechanics::chain::Hinge;
-use crate::mechanics::four_links::FourLinkError;
 use crate::mechanics::geometry::pose::BodyPoint;
 use crate::mechanics::parts::Parts;
 use crate::mechanics::settling::{Held, HeldError};
 use crate::mechanics::sides::Sides;
-use crate::mechanics::sway::Sway;
-use crate::scenario::{Scenario, Structure};
+use crate::{FourLinkError, Hinge, MechanismModel, Scenario, Structure, Sway};
 
 /// Reasons why a scenario has no capacity curves.
 #[derive(Clone, Debug, PartialEq, Error)]

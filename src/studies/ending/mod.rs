@@ -8,18 +8,16 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 pub use self::columns::outcome_name;
-use crate::dynamics::ground::GroundMotion;
-use crate::dynamics::history::{Outcome, Summary};
-use crate::dynamics::model::{Case, Model, Request, SimulationError};
 pub use crate::dynamics::repeatability::Verdict;
 use crate::dynamics::repeatability::{CheckedHistory, OutcomeCount, checked};
-use crate::dynamics::row::error::RowModelError;
 use crate::dynamics::thrust::MODEL_LIMIT;
-use crate::dynamics::until::EndCondition;
 use crate::mechanics::four_link::limit::LimitError;
-use crate::mechanics::four_links::FourLinkError;
 use crate::mechanics::stability::StabilityError;
 use crate::scenario::ModelError;
+use crate::{
+    Case, EndCondition, FourLinkError, GroundMotion, Model, Outcome, Request, RowModelError,
+    SimulationError, Summary,
+};
 
 /// The steps of a history.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -8,18 +8,15 @@ use serde::Serialize;
 
 use super::LinkImpact;
 use crate::argument::fixed;
-use crate::dynamics::model::MechanismModel;
-use crate::mechanics::chain::Hinge;
 use crate::mechanics::four_link::certificate::Projection;
 use crate::mechanics::four_link::impact::{Impact, ImpactModel};
 use crate::mechanics::four_link::impulse_line::ImpulseLine;
 use crate::mechanics::four_link::mechanism::HingeSites;
 use crate::mechanics::geometry::profile::Profile;
 use crate::mechanics::geometry::ring::Edge;
-use crate::mechanics::sway::Sway;
 use crate::output::mechanisms::{HINGES, degrees};
 use crate::output::{Cell, OutputError, column, csv, filters};
-use crate::scenario::Scenario;
+use crate::{Hinge, MechanismModel, Scenario, Sway};
 
 /// Impacts of the structure of a scenario.
 #[derive(Clone, Debug, PartialEq, Serialize, Template)]

@@ -13,14 +13,10 @@ use serde::{Deserialize, Serialize};
 
 use super::ending::{Ending, NoHistory, answered};
 use super::runner::Study;
-use crate::argument::ArgumentError;
-use crate::dynamics::ground::GroundMotion;
-use crate::dynamics::history::Summary;
 use crate::dynamics::model::{Case, Model, Repetition, SimulationError};
 use crate::dynamics::repeatability::OutcomeCount;
-use crate::mechanics::four_link::impact::ImpactModel;
-use crate::mechanics::four_links::FourLinkError;
 use crate::scenario::{Axis, Ground, ModelError, Motion, Quantity, Scaling, Scenario, Structure};
+use crate::{ArgumentError, FourLinkError, GroundMotion, ImpactModel, Summary};
 
 /// A cell of a map.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

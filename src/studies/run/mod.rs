@@ -50,15 +50,13 @@ use super::results::{Results, StudyError};
 use super::runner::{Progress, RunnerError, Watch};
 use crate::dynamics::fall::FallEnd;
 use crate::dynamics::history::{Event, OpenHinge, Sample, Summary as History};
-use crate::dynamics::model::{Model, Recorder};
 use crate::dynamics::repeatability::{Repeatability, Repetitions, Verdict};
 use crate::dynamics::variation::Variations;
-use crate::mechanics::geometry::pose::Pose;
-use crate::mechanics::sway::Sway;
 use crate::output::{
     Figure, Folder, OutputError, Scene, Subject, TableWriter, pretty, render, summary_of,
 };
 use crate::scenario::{Hinges, Scenario};
+use crate::{Model, Pose, Recorder, Sway};
 
 const ROTATIONS: &str = "rotations.csv";
 const REPORT: &str = "report.html";

@@ -1,10 +1,9 @@
 //! The open joints of a row of blocks over time, as a panel of `history.svg`.
 
-use crate::dynamics::history::Sample;
 use crate::mechanics::blocks::{Row, Supports};
-use crate::mechanics::chain::Hinge;
 use crate::mechanics::geometry::ring::Edge;
 use crate::output::{Figure, Key, Mark, Panels, Scale, Shape, Sign, Stroke, Thinned, color};
+use crate::{Hinge, Sample};
 
 /// Height of the strip of a joint below which the strip is not divided by edges.
 const NARROW_PX: f64 = 5.0;

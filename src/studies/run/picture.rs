@@ -3,8 +3,6 @@
 use super::open_joints::OpenJoints;
 use super::points::ObservedPoints;
 use crate::dynamics::history::{Event, HalfCycle, Outcome, Sample, State, Summary as History};
-use crate::dynamics::model::Model;
-use crate::mechanics::sway::Sway;
 use crate::output::envelope::COLUMNS;
 use crate::output::figure::Panel;
 use crate::output::panels::{MAIN, overturning, overturns, scale_around};
@@ -12,6 +10,7 @@ use crate::output::{
     CURVES, Envelope, Figure, Key, Mark, Panels, Scale, Shape, Sign, StateHistory, Stroke, Subject,
     color,
 };
+use crate::{Model, Sway};
 
 /// Upper limit of the drawn excess of the thrust line, in thicknesses. The values of a falling structure would hide all others.
 pub(super) const LARGEST_EXCESS: f64 = 1.0;

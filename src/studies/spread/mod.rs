@@ -13,16 +13,13 @@ use serde_json::Value;
 
 pub use self::report::{FILES, report};
 use super::results::StudyError;
-use crate::mechanics::blocks::Row;
-use crate::mechanics::geometry::pose::Pose;
 use crate::mechanics::parts::Parts as _;
 use crate::mechanics::settling::{
     Follower, HingeState, Movement, Movements, Pin, SettlingError, Snap,
 };
 use crate::mechanics::sides::Sides;
-use crate::mechanics::sway::Sway;
 use crate::output::filters;
-use crate::scenario::Scenario;
+use crate::{Pose, Row, Scenario, Sway};
 
 /// Number of equal parts of a movement, with a stage at the end of each.
 const STEPS: u32 = 20;

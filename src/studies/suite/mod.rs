@@ -19,10 +19,9 @@ use super::results::{ReportedStudy, Results, Style};
 use super::runner::Study;
 use super::threshold::survival::Survival;
 use crate::bisection::{Width, bisect};
-use crate::dynamics::history::Outcome;
-use crate::dynamics::model::{Case, Model};
 use crate::output::OutputError;
 use crate::scenario::{Measure, Scenario, Suite};
+use crate::{Case, Model, Outcome};
 
 /// A case of a suite: a record at a level, and the end of its history.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -6,12 +6,11 @@ use serde::{Deserialize, Serialize};
 
 use super::factors::{EDGE_WIDTH, Factors};
 use crate::bisection::{Width, try_bisect};
-use crate::dynamics::model::SimulationError;
 use crate::output::{Column, column};
-use crate::scenario::Scenario;
 use crate::studies::ending::columns::yes;
 use crate::studies::ending::{Ending, NoAnswer, NoHistory, Verdict};
 use crate::studies::statistics::ascending_weighted;
+use crate::{Scenario, SimulationError};
 
 /// The strengths of a ground motion that a structure certainly survives, and the smallest one that overturns it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

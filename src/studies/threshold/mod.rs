@@ -26,10 +26,8 @@ use super::ending::{Ending, NoHistory, Verdict, answered};
 use super::results::{Results, StudyError};
 use super::runner::{Progress, Runner, Watch};
 use crate::bisection::{Width, next_middles, try_bisect};
-use crate::dynamics::ground::GroundMotion;
-use crate::dynamics::model::{Model, Request, SimulationError};
 use crate::output::Figure;
-use crate::scenario::Scenario;
+use crate::{GroundMotion, Model, Request, Scenario, SimulationError};
 
 /// Number of bisection steps computed ahead for models that compute histories faster together: three steps are seven histories.
 const STEPS_AHEAD: usize = 3;
