@@ -13,14 +13,13 @@ use super::ensemble::records::Capacities;
 use super::ensemble::{Ensemble, Question};
 use super::map::OverturningMap;
 use super::part::{self, PartFile};
-use super::results::{ReportedStudy, Results, StudyError, Style};
 use super::run::{self, OpenFolder, RotationsOutput, RunOptions};
-use super::runner::{Runner, Task, Watch};
 use super::spread::{self, Direction};
 use super::suite::{Heading, RecordSuite};
 use super::threshold::along::{Along, AlongOptions};
 use super::threshold::{self, Factors};
 use super::verify;
+use super::{ReportedStudy, Results, Runner, StudyError, Style, Task, Watch};
 use crate::scenario::Scenario;
 
 /// Options of studies that are not part of the scenario.

@@ -8,8 +8,6 @@ use super::report::{Findings, lines, of_answer, why_not};
 use super::{NoAnswer, Question, Samples};
 use crate::output::{Chart, Figure, Key, Mark, OutputError, Scale, Stroke, color, column, csv};
 use crate::scenario::{Scenario, Suite, shown};
-use crate::studies::ending::Ending;
-use crate::studies::remarks::ModelCheck;
 use crate::studies::statistics::{
     ascending_weighted, bootstrap, interval, shares_up_to, weighted_fractile,
 };
@@ -17,6 +15,7 @@ use crate::studies::suite::case;
 use crate::studies::suite::strength::few;
 use crate::studies::threshold::first_edge::{FirstEdge, TREATMENTS, Treatment};
 use crate::studies::threshold::{Factors, rounded, rounded_range};
+use crate::studies::{Ending, ModelCheck};
 
 /// Relative width to which bisection encloses an intensity: much less than the scatter between records.
 const WIDTH: f64 = 2e-3;

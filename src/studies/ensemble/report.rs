@@ -7,9 +7,8 @@ use super::influence::{self, Influence, percent};
 use super::{NoAnswer, Samples};
 use crate::output::{Cell, Column, Figure, OutputError, column, csv, each, list};
 use crate::scenario::Uncertain;
-use crate::studies::remarks::ModelCheck;
-use crate::studies::results::Results;
 use crate::studies::statistics::Share;
+use crate::studies::{ModelCheck, Results};
 
 /// The findings about the answers to a question.
 pub struct Findings<'a, A, D> {

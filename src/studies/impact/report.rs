@@ -447,11 +447,6 @@ impl Summary {
         }
     }
 
-    /// Returns the distance of a line outside the structure, in per cent of the thickness.
-    fn beyond_percent(&self, eccentricity_ratio: &f64) -> f64 {
-        100.0 * (eccentricity_ratio - 0.5)
-    }
-
     /// Returns a hinge for the column of a table.
     fn hinge(&self, hinge: &Hinge) -> String {
         match hinge {

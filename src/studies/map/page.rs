@@ -10,9 +10,8 @@ use super::{CellRow, Described, OverturningMap, described};
 use crate::output::page::{PROGRAM, script_safe};
 use crate::output::{Figure, filters, render};
 use crate::scenario::{Ground, Quantity, toml_text};
-use crate::studies::ending::Ending;
 use crate::studies::kind::Kind;
-use crate::studies::results::Style;
+use crate::studies::{Ending, Style};
 
 /// Makes the page of a map.
 #[must_use]

@@ -15,9 +15,8 @@ use self::fragility::{Fragility, NoFit, Observation, by_intensity, fit};
 pub use self::heading::Heading;
 use self::strength::Strength;
 use super::ending::{Ending, NoHistory, Verdict, check_finite};
-use super::results::{ReportedStudy, Results, Style};
-use super::runner::Study;
 use super::threshold::survival::Survival;
+use super::{ReportedStudy, Results, Study, Style};
 use crate::bisection::{Width, bisect};
 use crate::output::OutputError;
 use crate::scenario::{Measure, Scenario, Suite};
@@ -344,9 +343,7 @@ impl Counts {
             failed,
         }
     }
-}
 
-impl Counts {
     /// Returns the number of doubtful cases: uncertain, incomplete or failed.
     #[must_use]
     pub const fn doubtful(&self) -> usize {

@@ -9,13 +9,12 @@ use super::strength::{Capacity, Efficiency, MEASURES, efficiencies, few};
 use super::{CaseRow, Counts, FragilityRow, Heading, SuiteFragility, ida, picture};
 use crate::output::{Column, Figure, OutputError, column, csv, each, fields, list};
 use crate::scenario::{Measure, shown};
-use crate::studies::ending::Verdict;
 use crate::studies::ending::columns::{self, FAILED, yes};
 use crate::studies::quotable::{self, ModelAnswer};
-use crate::studies::remarks::{Remarks, outcome_counts, outcome_label};
-use crate::studies::results::Results;
 use crate::studies::threshold::survival::{self, Survival};
-use crate::studies::threshold::{rounded, rounded_down};
+use crate::studies::{
+    Remarks, Results, Verdict, outcome_counts, outcome_label, rounded, rounded_down,
+};
 
 const FRAGILITY: &str = "fragility.json";
 

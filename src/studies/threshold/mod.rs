@@ -23,8 +23,7 @@ use std::ops::ControlFlow;
 use serde::Serialize;
 
 use super::ending::{Ending, NoHistory, Verdict, answered};
-use super::results::{Results, StudyError};
-use super::runner::{Progress, Runner, Watch};
+use super::{Progress, Results, Runner, StudyError, Watch};
 use crate::bisection::{Width, next_middles, try_bisect};
 use crate::output::Figure;
 use crate::{GroundMotion, Model, Request, Scenario, SimulationError};

@@ -15,9 +15,8 @@ use crate::output::{Figure, OutputError, column, csv, fields};
 use crate::scenario::{Ground, Hinges, Scenario};
 use crate::studies::ending::{Ending, NoHistory, Verdict, outcome_name};
 use crate::studies::quotable::{self, ModelAnswer};
-use crate::studies::remarks::Remarks;
-use crate::studies::results::Results;
 use crate::studies::statistics::ascending;
+use crate::studies::{Remarks, Results};
 
 /// Names of the files, the seal last.
 pub const FILES: [&str; 3] = ["threshold.svg", "threshold.csv", "threshold.json"];

@@ -19,8 +19,7 @@ use crate::dynamics::demand::damping_factor;
 use crate::mechanics::geometry::ring::Edge;
 use crate::output::{Figure, OutputError, filters, render};
 use crate::scenario::{CONFIDENCE_FACTOR, CheckedSides, LimitState, Scenario, StateRule};
-use crate::studies::remarks::no_verdict;
-use crate::studies::results::Results;
+use crate::studies::{Results, no_verdict};
 use crate::{Hinge, Sway};
 
 /// Names of the files, the seal last.

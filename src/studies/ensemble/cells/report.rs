@@ -12,11 +12,9 @@ use crate::studies::ensemble::report::{Band, Findings};
 use crate::studies::kind::{Kind, kind};
 use crate::studies::map::page::Cells;
 use crate::studies::map::picture::{Drawn, Sheet};
-use crate::studies::remarks::{ModelCheck, no_verdict};
-use crate::studies::results::{Results, Style};
 use crate::studies::runner::Study as _;
 use crate::studies::statistics::{Share, band, quantile};
-use crate::studies::threshold::rounded;
+use crate::studies::{ModelCheck, Results, Style, no_verdict, rounded};
 
 /// Names of the files, the seal last.
 pub const FILES: [&str; 6] = [
