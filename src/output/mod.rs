@@ -28,11 +28,23 @@ pub mod text;
 use std::io;
 use std::path::PathBuf;
 
+pub(crate) use axes::{Axes, Scale};
+pub(crate) use chart::{BELOW_PX, Chart, LEFT_PX, Mark, Shape};
+pub(crate) use envelope::{Envelope, Thinned};
 pub use figure::Figure;
 pub use folder::{Batch, Folder, write_named_file};
 pub use manifest::{Manifest, Origin};
 pub use panels::Subject;
+pub(crate) use panels::{Panels, StateHistory};
+pub(crate) use scene::{Piece, Scene};
 use serde_json::Value;
+pub(crate) use sheet::{Key, PartHeight, Sheet, Sign};
+pub(crate) use summary::{Named, summary_of};
+pub(crate) use svg::{Anchor, CURVES, Drawing, Frame, Stroke, color};
+pub(crate) use table::{
+    Cell, Column, TableWriter, column, csv, each, fields, list, numbers, row_number, several,
+};
+pub(crate) use template::{filters, render};
 use thiserror::Error;
 
 use crate::scenario::shown_lines;

@@ -13,14 +13,13 @@ use super::ensemble::records::Capacities;
 use super::ensemble::{Ensemble, Question};
 use super::map::OverturningMap;
 use super::part::{self, PartFile};
-use super::results::{ReportedStudy, Results, StudyError, Style};
 use super::run::{self, OpenFolder, RotationsOutput, RunOptions};
-use super::runner::{Runner, Task, Watch};
 use super::spread::{self, Direction};
 use super::suite::{Heading, RecordSuite};
 use super::threshold::along::{Along, AlongOptions};
 use super::threshold::{self, Factors};
 use super::verify;
+use super::{ReportedStudy, Results, Runner, StudyError, Style, Task, Watch};
 use crate::scenario::Scenario;
 
 /// Options of studies that are not part of the scenario.
@@ -94,18 +93,14 @@ impl PartialEq for StudyKind {
 impl Eq for StudyKind {}
 
 /// The history of a scenario, with one or several models of motion.
-pub const RUN: StudyKind = StudyKind {
-    name: "run",
-    files: &run::FILES,
-    has_parts: false,
-    run: |scenarios, options, style, rows| {
+pub const RUN: StudyKind =
+    StudyKind::without_parts("run", &run::FILES, |scenarios, options, style, rows| {
         let RowSource::Stream(open, rotations, watch) = rows else {
             return Err(StudyError::scenario("a run has no parts"));
         };
         let (options, figure) = (&options.run, style.figure);
         run::results(scenarios, options, figure, open, rotations, watch).map(complete)
-    },
-};
+    });
 /// The map of the pulses that overturn the structure, over two quantities.
 pub const MAP: StudyKind = StudyKind::of::<OverturningMap<'_>>(|scenarios, _, style, rows| {
     computed(OverturningMap::of(&scenarios[0]), style, rows)
@@ -115,17 +110,16 @@ pub const SUITE: StudyKind = StudyKind::of::<RecordSuite<'_>>(|scenarios, _, sty
     computed(RecordSuite::of(&scenarios[0]), style, rows)
 });
 /// The factors by which the ground motion overturns the structure, for one or several models of motion.
-pub const THRESHOLD: StudyKind = StudyKind {
-    name: "threshold",
-    files: &threshold::FILES,
-    has_parts: false,
-    run: |scenarios, options, style, rows| {
+pub const THRESHOLD: StudyKind = StudyKind::without_parts(
+    "threshold",
+    &threshold::FILES,
+    |scenarios, options, style, rows| {
         let RowSource::Compute(runner, _, watch) = rows else {
             return Err(StudyError::scenario("a threshold has no parts"));
         };
         threshold::results(scenarios, &options.factors, style.figure, &runner, watch).map(complete)
     },
-};
+);
 /// The threshold for each value of a key along a range.
 pub const THRESHOLD_ALONG: StudyKind =
     StudyKind::of::<Along<'_>>(|scenarios, options, style, rows| {
@@ -136,34 +130,26 @@ pub const THRESHOLD_ALONG: StudyKind =
         computed(study, style, rows)
     });
 /// The capacity curves of the first mechanism.
-pub const CAPACITY: StudyKind = StudyKind {
-    name: "capacity",
-    files: &capacity::FILES,
-    has_parts: false,
-    run: |scenarios, options, style, _| {
+pub const CAPACITY: StudyKind = StudyKind::without_parts(
+    "capacity",
+    &capacity::FILES,
+    |scenarios, options, style, _| {
         let scenario = &scenarios[0];
         scenario.check_as_built().map_err(StudyError::Scenario)?;
         let sides = capacity(scenario, options.point_m).map_err(StudyError::scenario)?;
         Ok(complete(capacity::report(scenario, &sides, style.figure)?))
     },
-};
+);
 /// The movement of a springing at which the arch falls.
-pub const SPREAD: StudyKind = StudyKind {
-    name: "spread",
-    files: &spread::FILES,
-    has_parts: false,
-    run: |scenarios, options, style, _| {
+pub const SPREAD: StudyKind =
+    StudyKind::without_parts("spread", &spread::FILES, |scenarios, options, style, _| {
         let (scenario, directions) = (&scenarios[0], &options.directions);
-        let found = spread::spread(scenario, directions).map_err(StudyError::scenario)?;
+        let found = spread::spread(scenario, directions)?;
         Ok(complete(spread::report(scenario, &found, style.figure)?))
-    },
-};
+    });
 /// The check of the first mechanism by the Circolare 7/2019.
-pub const VERIFY: StudyKind = StudyKind {
-    name: "verify",
-    files: &verify::FILES,
-    has_parts: false,
-    run: |scenarios, _, _, _| {
+pub const VERIFY: StudyKind =
+    StudyKind::without_parts("verify", &verify::FILES, |scenarios, _, _, _| {
         let scenario = &scenarios[0];
         scenario.check_as_built().map_err(StudyError::Scenario)?;
         if scenario.right_foot.is_some() {
@@ -173,8 +159,7 @@ pub const VERIFY: StudyKind = StudyKind {
         }
         let check = verify::verify(scenario).map_err(StudyError::scenario)?;
         Ok(complete(verify::report(scenario, &check)?))
-    },
-};
+    });
 /// Endings and courses of histories for samples of the uncertain numbers.
 pub const UNCERTAIN: StudyKind = StudyKind::of_samples::<Histories>();
 /// The factor from which samples of the uncertain numbers overturn.
@@ -220,6 +205,19 @@ impl StudyKind {
         let has_all = |kind: &Self| names.iter().all(|name| kind.files.contains(name));
         let mut kinds = Self::ALL.into_iter();
         kinds.find(|kind| has_all(kind) && kind.files.last() == names.last())
+    }
+
+    const fn without_parts(
+        name: &'static str,
+        files: &'static [&'static str],
+        run: Compute,
+    ) -> Self {
+        Self {
+            name,
+            files,
+            has_parts: false,
+            run,
+        }
     }
 
     const fn of<S: ReportedStudy>(run: Compute) -> Self {

@@ -2,8 +2,7 @@
 
 use super::ending::columns::{CANNOT_STAND, FAILED, GROUND_FALLS, NOT_FOUR_LINKS, UNCERTAIN};
 use super::ending::{Ending, NoHistory, outcome_name};
-use crate::output::sheet::{Key, Sign};
-use crate::output::svg::color;
+use crate::output::{Key, Sign, color};
 
 /// Kind of outcome, which sets the colour of a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

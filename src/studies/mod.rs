@@ -36,3 +36,12 @@ pub mod statistics;
 pub mod suite;
 pub mod threshold;
 pub mod verify;
+
+use ending::{Ending, NoAnswer, NoHistory, Verdict};
+use quotable::ModelAnswer;
+use remarks::{
+    CaseSummary, ModelCheck, Remark, Remarks, no_verdict, outcome_counts, outcome_label,
+};
+use results::{ReportedStudy, Results, StudyError, Style};
+use runner::{Progress, Runner, RunnerError, Study, Task, Watch};
+use threshold::{rounded, rounded_down};

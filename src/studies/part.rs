@@ -326,9 +326,6 @@ pub fn read_header(path: &Path) -> Result<Header, PartError> {
 /// Returns the number of complete rows in a file; `None` if the file is not a part file.
 #[must_use]
 pub fn rows_in(path: &Path) -> Option<usize> {
-    if !path.is_file() {
-        return None;
-    }
     let lines = Lines::of(path).ok()?;
     lines.header().ok()?;
     Some(lines.count())

@@ -9,12 +9,7 @@ use serde_json::json;
 
 use super::results::Results;
 use super::statistics::{ascending, fractile, shares_up_to};
-use crate::output::Figure;
-use crate::output::OutputError;
-use crate::output::axes::Scale;
-use crate::output::chart::{Chart, Mark};
-use crate::output::svg::CURVES;
-use crate::output::table::{column, csv};
+use crate::output::{CURVES, Chart, Figure, Mark, OutputError, Scale, column, csv};
 
 /// The name of a model in words, and the largest rotation of a body in each case, in radians, infinite if the case overturned.
 pub type ModelPeaks<'a> = (&'a str, &'a [f64]);

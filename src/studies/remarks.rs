@@ -7,10 +7,9 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::ending::{Ending, NoHistory, Verdict};
-use crate::dynamics::history::Outcome;
 use crate::dynamics::repeatability::OutcomeCount;
 use crate::dynamics::thrust::{EXCESS_LEVELS, MODEL_LIMIT};
-use crate::scenario::Scenario;
+use crate::{Outcome, Scenario};
 
 /// A failed or uncertain case, as results list it.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]

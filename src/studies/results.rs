@@ -8,12 +8,9 @@ use serde_json::Value;
 use thiserror::Error;
 
 use super::part::PartError;
-use super::quotable::ModelAnswer;
-use super::runner::{RunnerError, Study};
+use super::{ModelAnswer, RunnerError, Study};
 use crate::dynamics::model::SimulationError;
-use crate::output::summary::summary_of;
-use crate::output::template::render;
-use crate::output::{Figure, Folder, OutputError, pretty};
+use crate::output::{Figure, Folder, OutputError, pretty, render, summary_of};
 use crate::scenario::ScenarioErrors;
 
 /// Errors of studies.

@@ -7,17 +7,13 @@ use nalgebra::Vector2;
 use thiserror::Error;
 
 pub use self::report::{CapacitySide, FILES, Oscillator, Summary, report};
-use crate::dynamics::model::MechanismModel;
 use crate::mechanics::blocks::{Row, RowError};
 use crate::mechanics::capacity::{Capacity, CapacityError, Control};
-use crate::mechanics::chain::Hinge;
-use crate::mechanics::four_links::FourLinkError;
 use crate::mechanics::geometry::pose::BodyPoint;
 use crate::mechanics::parts::Parts;
 use crate::mechanics::settling::{Held, HeldError};
 use crate::mechanics::sides::Sides;
-use crate::mechanics::sway::Sway;
-use crate::scenario::{Scenario, Structure};
+use crate::{FourLinkError, Hinge, MechanismModel, Scenario, Structure, Sway};
 
 /// Reasons why a scenario has no capacity curves.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -48,25 +44,30 @@ pub fn capacity(
     scenario: &Scenario,
     point_m: Option<Vector2<f64>>,
 ) -> Result<Sides<Capacity>, CapacityCurveError> {
+    let gravity_m_s2 = scenario.gravity_m_s2();
     if let Some(row) = held_row(&scenario.structure)? {
-        return of_row(&row, point_m, scenario.gravity_m_s2());
+        let control = control(&row, point_m)?;
+        return Sides::try_of(|sway| {
+            let held = Held::new(&row, sway)?;
+            let displaced = |part| held.displaced(part);
+            let (masses, control) = Bodies::of_row(&held).masses(&row, control);
+            let capacity = Capacity::new(sway, displaced, &masses, control, gravity_m_s2)?;
+            // Ties change the push that the first mechanism of a row resists.
+            Ok(capacity.with_ties(&held.tie_event_fractions(), displaced, gravity_m_s2))
+        });
     }
     let model = scenario.mechanisms()?;
     let structure = scenario.structure.as_parts();
     let control = control(structure, point_m)?;
-    let side = |sway| {
-        let bodies = Bodies::of_model(&*model, sway);
+    Sides::try_of(|sway| {
         let displaced = |part| {
             let displaced = model.displaced(sway, part);
             displaced.expect("a structure has its first mechanism")
         };
-        let gravity_m_s2 = scenario.gravity_m_s2();
-        let control = Control::point(bodies.body_point(control));
-        let masses = bodies.masses(structure);
-        Capacity::new(sway, displaced, &masses, control, gravity_m_s2)
-            .map_err(CapacityCurveError::from)
-    };
-    Sides::try_of(side)
+        let (masses, control) = Bodies::of_model(&*model, sway).masses(structure, control);
+        let capacity = Capacity::new(sway, displaced, &masses, control, gravity_m_s2)?;
+        Ok(capacity)
+    })
 }
 
 /// Returns the blocks of a structure whose first mechanism is that of a row: a structure with ties, or a stack on one support other than
@@ -78,27 +79,6 @@ fn held_row(structure: &Structure) -> Result<Option<Row>, RowError> {
     is_held.then(|| structure.row()).transpose()
 }
 
-/// Computes the capacity of a row. Ties change the push that its first mechanism resists.
-fn of_row(
-    row: &Row,
-    point_m: Option<Vector2<f64>>,
-    gravity_m_s2: f64,
-) -> Result<Sides<Capacity>, CapacityCurveError> {
-    let control = control(row, point_m)?;
-    let side = |sway| -> Result<Capacity, CapacityCurveError> {
-        let held = Held::new(row, sway)?;
-        let bodies = Bodies::of_row(&held);
-        let (masses, control) = (
-            bodies.masses(row),
-            Control::point(bodies.body_point(control)),
-        );
-        let displaced = |part| held.displaced(part);
-        let capacity = Capacity::new(sway, displaced, &masses, control, gravity_m_s2)?;
-        Ok(capacity.with_ties(&held.tie_event_fractions(), displaced, gravity_m_s2))
-    };
-    Sides::try_of(side)
-}
-
 /// Returns the control point with its place along the structure: the given point, or the crown.
 fn control(
     structure: &dyn Parts,
@@ -106,10 +86,8 @@ fn control(
 ) -> Result<(f64, Vector2<f64>), CapacityCurveError> {
     match point_m {
         Some(at_m) => {
-            let place = structure
-                .place_of(at_m)
-                .ok_or(CapacityCurveError::Outside(at_m))?;
-            Ok((place, at_m))
+            let place = structure.place_of(at_m);
+            Ok((place.ok_or(CapacityCurveError::Outside(at_m))?, at_m))
         }
         None => Ok(structure.crown()),
     }
@@ -152,12 +130,15 @@ impl Bodies {
         BodyPoint { at_m, body }
     }
 
-    /// Returns the parts of a structure as points with masses.
-    fn masses(&self, structure: &dyn Parts) -> Vec<(f64, BodyPoint)> {
+    /// Returns the parts of a structure as points with masses, and its control point.
+    fn masses(
+        &self,
+        structure: &dyn Parts,
+        control: (f64, Vector2<f64>),
+    ) -> (Vec<(f64, BodyPoint)>, Control) {
         let parts = structure.parts().into_iter();
         let points = parts.map(|part| (part.mass_kg, (part.place, part.centre_m)));
-        points
-            .map(|(mass_kg, at)| (mass_kg, self.body_point(at)))
-            .collect()
+        let masses = points.map(|(mass_kg, at)| (mass_kg, self.body_point(at)));
+        (masses.collect(), Control::point(self.body_point(control)))
     }
 }

@@ -2,9 +2,7 @@
 
 use crate::mechanics::capacity::Capacity;
 use crate::mechanics::sides::Sides;
-use crate::output::Figure;
-use crate::output::chart::{Chart, Mark};
-use crate::output::svg::CURVES;
+use crate::output::{CURVES, Chart, Figure, Mark};
 
 pub(super) fn draw(figure: Figure, title: &str, sides: &Sides<Capacity>) -> String {
     let curves = sides.iter().zip(CURVES).map(|((sway, side), stroke)| {

@@ -10,13 +10,9 @@ use super::picture::draw;
 use crate::mechanics::capacity::{Capacity, CurvePoint, TieEventDisplacements};
 use crate::mechanics::parts::Parts as _;
 use crate::mechanics::sides::Sides;
-use crate::mechanics::sway::Sway;
-use crate::output::summary::Named;
-use crate::output::table::{column, csv, fields};
-use crate::output::template::{filters, render};
-use crate::output::{Figure, OutputError};
-use crate::scenario::Scenario;
+use crate::output::{Figure, Named, OutputError, column, csv, fields, filters, render};
 use crate::studies::results::Results;
+use crate::{Scenario, Sway};
 
 /// Names of the files, the seal last.
 pub const FILES: [&str; 3] = ["capacity.svg", "capacity.csv", "capacity.json"];

@@ -2,7 +2,7 @@
 
 use super::{Ending, NoHistory, Verdict};
 use crate::mechanics::sway::Sway;
-use crate::output::table::{Column, column, list};
+use crate::output::{Column, column, list};
 
 /// Outcome of a case whose history could not be computed.
 pub(crate) const FAILED: &str = "failed";

@@ -8,18 +8,16 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 pub use self::columns::outcome_name;
-use crate::dynamics::ground::GroundMotion;
-use crate::dynamics::history::{Outcome, Summary};
-use crate::dynamics::model::{Case, Model, Request, SimulationError};
 pub use crate::dynamics::repeatability::Verdict;
 use crate::dynamics::repeatability::{CheckedHistory, OutcomeCount, checked};
-use crate::dynamics::row::error::RowModelError;
 use crate::dynamics::thrust::MODEL_LIMIT;
-use crate::dynamics::until::EndCondition;
 use crate::mechanics::four_link::limit::LimitError;
-use crate::mechanics::four_links::FourLinkError;
 use crate::mechanics::stability::StabilityError;
 use crate::scenario::ModelError;
+use crate::{
+    Case, EndCondition, FourLinkError, GroundMotion, Model, Outcome, Request, RowModelError,
+    SimulationError, Summary,
+};
 
 /// The steps of a history.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -135,6 +133,11 @@ impl Ending {
             (Verdict::Incomplete, _) => None,
             (verdict, _) => Some(f64::from(verdict == Verdict::Overturns)),
         }
+    }
+
+    /// Returns [`Ending::overturning_share`] and the thrust excess ratio.
+    pub(super) fn share_and_excess(&self) -> [Option<f64>; 2] {
+        [self.overturning_share(), self.thrust_excess_ratio]
     }
 
     /// Returns the ending of the mirrored case.

@@ -9,11 +9,9 @@ use super::{NoAnswer, SampleRow, Samples, uncertain};
 use crate::output::OutputError;
 use crate::scenario::{Axis, Scenario, Uncertain, UncertainKey};
 use crate::studies::ending::columns::OUTCOMES;
-use crate::studies::ending::{Ending, NoHistory};
 use crate::studies::map::{OverturningMap, described};
-use crate::studies::results::{ReportedStudy, Results, Style};
-use crate::studies::runner::Study;
 use crate::studies::statistics::Share;
+use crate::studies::{Ending, NoHistory, ReportedStudy, Results, Study, Style};
 
 /// The outcome of a cell of a sample, as an index of [`OUTCOMES`], plus [`OUTSIDE`] for a history outside the model of four links, and its
 /// probability of overturning, in parts of [`PARTS`]; or the reason why there is none. Rows are small, because all must fit into memory.

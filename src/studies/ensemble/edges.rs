@@ -5,12 +5,9 @@ use serde::Serialize;
 
 use super::report::{Band, Findings, Line, doubts_in_words, share_in_words, why_not};
 use super::{NoAnswer, Question, Samples};
-use crate::output::axes::Scale;
-use crate::output::chart::{Chart, Mark};
-use crate::output::sheet::{Key, Sign};
-use crate::output::svg::{Stroke, color};
-use crate::output::table::{column, csv, list};
-use crate::output::{Figure, OutputError};
+use crate::output::{
+    Chart, Figure, Key, Mark, OutputError, Scale, Sign, Stroke, color, column, csv, list,
+};
 use crate::scenario::Scenario;
 use crate::studies::remarks::ModelCheck;
 use crate::studies::statistics::{

@@ -8,22 +8,17 @@ use serde_json::{Map, Value, json};
 use super::influence::percent;
 use super::report::{Band, Findings, Line, doubts_in_words, of_answer, share_in_words};
 use super::{NoAnswer, Question, Samples};
-use crate::dynamics::history::Sample;
 use crate::dynamics::model::{Model, WithoutDemand};
 use crate::dynamics::repeatability::repeated;
-use crate::output::axes::Scale;
-use crate::output::chart::Mark;
-use crate::output::panels::{MAIN, Panels, Subject, scale_around};
-use crate::output::sheet::{Key, Sign};
-use crate::output::svg::{Stroke, color};
-use crate::output::table::{column, csv, list};
-use crate::output::{Figure, OutputError};
+use crate::output::panels::{MAIN, scale_around};
+use crate::output::{
+    Figure, Key, Mark, OutputError, Panels, Scale, Sign, Stroke, Subject, color, column, csv, list,
+};
 use crate::scenario::{Motion, Scenario, Structure};
 use crate::studies::ending::columns::{self, OUTCOMES};
-use crate::studies::ending::{Ending, NoHistory, Verdict};
 use crate::studies::remarks::ModelCheck;
 use crate::studies::statistics::{band, fractile, quantile};
-use crate::studies::threshold::Factors;
+use crate::{Ending, Factors, NoHistory, Sample, Verdict};
 
 /// Largest number of times at which samples are compared.
 const MOST_TIMES: usize = 300;

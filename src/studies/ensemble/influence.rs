@@ -4,11 +4,9 @@ use nalgebra::Vector2;
 use serde::Serialize;
 
 use super::matters::{Matters, Total};
-use crate::output::Figure;
-use crate::output::axes::{Axes, Scale};
-use crate::output::chart::LEFT_PX;
-use crate::output::sheet::{PartHeight, Sheet};
-use crate::output::svg::{Anchor, Drawing, Frame, Stroke, color};
+use crate::output::{
+    Anchor, Axes, Drawing, Figure, Frame, LEFT_PX, PartHeight, Scale, Sheet, Stroke, color,
+};
 use crate::scenario::Uncertain;
 
 /// The influence of the uncertain numbers on an answer.

@@ -20,9 +20,8 @@ use serde::de::DeserializeOwned;
 pub use self::report::Findings;
 pub use self::samples::{SampleRow, Samples};
 pub use super::ending::NoAnswer;
-use super::results::{ReportedStudy, Results, Style};
-use super::runner::Study;
 use super::threshold::Factors;
+use super::{ReportedStudy, Results, Study, Style};
 use crate::output::{Figure, OutputError};
 use crate::scenario::{Scenario, Uncertain};
 

@@ -6,15 +6,8 @@ use serde::Serialize;
 use super::edges::FirstStrength;
 use super::report::{Findings, lines, of_answer, why_not};
 use super::{NoAnswer, Question, Samples};
-use crate::output::axes::Scale;
-use crate::output::chart::{Chart, Mark};
-use crate::output::sheet::Key;
-use crate::output::svg::{Stroke, color};
-use crate::output::table::{column, csv};
-use crate::output::{Figure, OutputError};
+use crate::output::{Chart, Figure, Key, Mark, OutputError, Scale, Stroke, color, column, csv};
 use crate::scenario::{Scenario, Suite, shown};
-use crate::studies::ending::Ending;
-use crate::studies::remarks::ModelCheck;
 use crate::studies::statistics::{
     ascending_weighted, bootstrap, interval, shares_up_to, weighted_fractile,
 };
@@ -22,6 +15,7 @@ use crate::studies::suite::case;
 use crate::studies::suite::strength::few;
 use crate::studies::threshold::first_edge::{FirstEdge, TREATMENTS, Treatment};
 use crate::studies::threshold::{Factors, rounded, rounded_range};
+use crate::studies::{Ending, ModelCheck};
 
 /// Relative width to which bisection encloses an intensity: much less than the scatter between records.
 const WIDTH: f64 = 2e-3;
@@ -127,7 +121,8 @@ impl Question for Capacities {
             let (record, mirrored) = (shake / self.suite.signs(), shake % self.suite.signs() == 1);
             FirstEdge::among(&self.levels, WIDTH, |level: f64| {
                 let (ground, request) = case(scenario, &self.suite, record, level, mirrored);
-                Ending::of(&*model, &ground, &request)
+                let ending = Ending::of(&*model, &ground, &request)?;
+                Ok(ending.share_and_excess())
             })
         });
         edges.collect()

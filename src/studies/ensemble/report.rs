@@ -5,12 +5,10 @@ use serde_json::{Map, Value, json};
 
 use super::influence::{self, Influence, percent};
 use super::{NoAnswer, Samples};
-use crate::output::table::{Cell, Column, column, csv, each, list};
-use crate::output::{Figure, OutputError};
+use crate::output::{Cell, Column, Figure, OutputError, column, csv, each, list};
 use crate::scenario::Uncertain;
-use crate::studies::remarks::ModelCheck;
-use crate::studies::results::Results;
 use crate::studies::statistics::Share;
+use crate::studies::{ModelCheck, Results};
 
 /// The findings about the answers to a question.
 pub struct Findings<'a, A, D> {

@@ -5,7 +5,6 @@ mod report;
 pub use self::report::chain;
 use self::report::{Certificate, ModelComparison, Summary, chain_of_four_links};
 use super::results::{PrintedResult, StudyError};
-use crate::dynamics::model::MechanismModel;
 use crate::mechanics::four_link::certificate::{
     DEFAULT_JOINTS, Projection, ProjectionError, joints_rad, project,
 };
@@ -13,10 +12,8 @@ use crate::mechanics::four_link::chain::{ArchLink, Chain};
 use crate::mechanics::four_link::impact::{ImpactModel, closing_field, impact as impact_by};
 use crate::mechanics::four_link::impulse_line::ImpulseLine;
 use crate::mechanics::four_link::mechanism::FourLink;
-use crate::mechanics::four_links::FourLinks;
 use crate::mechanics::geometry::profile::Profile;
-use crate::mechanics::sway::Sway;
-use crate::scenario::Scenario;
+use crate::{FourLinks, MechanismModel, Scenario, Sway};
 
 /// The impact that leads to a link of the chain of four links, after a first sway to a given side.
 #[derive(Clone, Copy, Debug)]

@@ -8,20 +8,15 @@ use serde::Serialize;
 
 use super::LinkImpact;
 use crate::argument::fixed;
-use crate::dynamics::model::MechanismModel;
-use crate::mechanics::chain::Hinge;
 use crate::mechanics::four_link::certificate::Projection;
 use crate::mechanics::four_link::impact::{Impact, ImpactModel};
 use crate::mechanics::four_link::impulse_line::ImpulseLine;
 use crate::mechanics::four_link::mechanism::HingeSites;
 use crate::mechanics::geometry::profile::Profile;
 use crate::mechanics::geometry::ring::Edge;
-use crate::mechanics::sway::Sway;
-use crate::output::OutputError;
 use crate::output::mechanisms::{HINGES, degrees};
-use crate::output::table::{Cell, column, csv};
-use crate::output::template::filters;
-use crate::scenario::Scenario;
+use crate::output::{Cell, OutputError, column, csv, filters};
+use crate::{Hinge, MechanismModel, Scenario, Sway};
 
 /// Impacts of the structure of a scenario.
 #[derive(Clone, Debug, PartialEq, Serialize, Template)]
@@ -450,11 +445,6 @@ impl Summary {
             Edge::Intrados => "I",
             Edge::Extrados => "E",
         }
-    }
-
-    /// Returns the distance of a line outside the structure, in per cent of the thickness.
-    fn beyond_percent(&self, eccentricity_ratio: &f64) -> f64 {
-        100.0 * (eccentricity_ratio - 0.5)
     }
 
     /// Returns a hinge for the column of a table.

@@ -8,17 +8,13 @@ pub use self::report::{
     Ties, YieldingJoint, YieldingTies,
 };
 use super::results::{PrintedResult, StudyError};
-use crate::dynamics::row::error::RowModelError;
-use crate::mechanics::blocks::Row;
-use crate::mechanics::four_links::FourLinkError;
 use crate::mechanics::friction::{self, FrictionError, FrictionOnset};
 use crate::mechanics::settling::{Follower, Movements};
 use crate::mechanics::sides::Sides;
 use crate::mechanics::stability::{
     RowOnset, StabilityError, limit_with_yielding_ties, onset, onset_at,
 };
-use crate::mechanics::sway::Sway;
-use crate::scenario::Scenario;
+use crate::{FourLinkError, Row, RowModelError, Scenario, Sway};
 
 /// Computes the onset of motion of the structure of a scenario, to both sides; with slipping joints, also for their coefficient of friction.
 /// With moved springings, also the hinges on which the structure stands, and the push at which it collapses.

@@ -4,18 +4,14 @@ use askama::Template;
 use serde::Serialize;
 
 use crate::argument::fixed;
-use crate::dynamics::model::MechanismModel;
-use crate::mechanics::blocks::Row;
-use crate::mechanics::chain::Hinge;
 use crate::mechanics::equivalent::Equivalent;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::settling::Pin;
 use crate::mechanics::sides::Sides;
 use crate::mechanics::stability::RowOnset;
-use crate::mechanics::sway::Sway;
 use crate::output::mechanisms::{HINGES, by_body, columns, degrees};
-use crate::output::summary::Named;
-use crate::output::template::filters;
+use crate::output::{Named, filters};
+use crate::{Hinge, MechanismModel, Row, Sway};
 
 /// The onset of motion of a structure, to either side.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Template)]

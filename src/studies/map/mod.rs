@@ -13,15 +13,10 @@ use serde::{Deserialize, Serialize};
 
 use super::ending::{Ending, NoHistory, answered};
 use super::runner::Study;
-use crate::argument::ArgumentError;
-use crate::dynamics::ground::{GroundMotion, PulseShape};
-use crate::dynamics::history::Summary;
 use crate::dynamics::model::{Case, Model, Repetition, SimulationError};
 use crate::dynamics::repeatability::OutcomeCount;
-use crate::mechanics::arch::Arch;
-use crate::mechanics::four_link::impact::ImpactModel;
-use crate::mechanics::four_links::{FourLinkError, FourLinks};
 use crate::scenario::{Axis, Ground, ModelError, Motion, Quantity, Scaling, Scenario, Structure};
+use crate::{ArgumentError, FourLinkError, GroundMotion, ImpactModel, Summary};
 
 /// A cell of a map.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -63,8 +58,7 @@ pub struct OverturningMap<'a> {
     /// True if the repetitions of each cell are computed, to count its outcomes.
     pub(super) repeat: bool,
     /// Models that several cells share.
-    structures: Shared<Result<Standing, ModelError>>,
-    pulses: Shared<PulseShape>,
+    models: Shared<Result<Arc<dyn Model>, ModelError>>,
     /// The scenario, or a sample of it. `variants` are the scenarios with other values of keys outside `[map]`.
     base: Arc<Scenario>,
     variants: Option<Shared<Result<Arc<Scenario>, String>>>,
@@ -97,23 +91,6 @@ pub(super) fn described(axis: &Axis) -> Described<'_> {
         Quantity::Other => (&*axis.key, "", &[]),
     };
     Described { label, table, keys }
-}
-
-/// The model of motion of a cell.
-#[derive(Clone, Debug)]
-enum Standing {
-    /// An arch of four links, of any size.
-    Arch(Arch, FourLinks),
-    Model(Arc<dyn Model>),
-}
-
-impl Standing {
-    fn model(&self) -> &dyn Model {
-        match self {
-            Self::Arch(_, links) => links,
-            Self::Model(model) => &**model,
-        }
-    }
 }
 
 /// Values that depend on one axis or on none. Each value is computed at its first use.
@@ -185,24 +162,20 @@ impl<'a> OverturningMap<'a> {
         let values = axes.map(|axis| axis.sequence.values());
         let counts = [values[0].len(), values[1].len()];
         let depends = |on: &[Quantity]| axes.map(|axis| on.contains(&axis.quantity));
-        let mut shapes = vec![
+        let shapes = [
+            Quantity::MeanRadius,
             Quantity::ThicknessRatio,
             Quantity::Embrace,
             Quantity::Restitution,
             Quantity::Other,
         ];
-        if scenario.motion.hinges().has_joints() {
-            shapes.push(Quantity::MeanRadius);
-        }
-        let durations = [Quantity::Duration, Quantity::Frequency, Quantity::Other];
         let variants = depends(&[Quantity::Other]);
         let has_variants = variants.contains(&true);
         Some(Self {
             scenario,
             axes,
             repeat: map.repeat,
-            structures: Shared::new(counts, depends(&shapes)),
-            pulses: Shared::new(counts, depends(&durations)),
+            models: Shared::new(counts, depends(&shapes)),
             base: Arc::new(sample),
             variants: has_variants.then(|| Shared::new(counts, variants)),
             values,
@@ -246,29 +219,12 @@ impl<'a> OverturningMap<'a> {
     }
 
     /// Returns the model of motion of a cell.
-    fn standing(&self, index: usize, scenario: &Scenario) -> Result<Standing, ModelError> {
-        let make = || {
+    fn model(&self, index: usize, scenario: &Scenario) -> Result<Arc<dyn Model>, ModelError> {
+        self.models.get(self.place(index), || {
             let structure = self.structure(index, scenario);
             let structure = structure.map_err(FourLinkError::from)?;
-            Ok(match (self.moves(index, scenario), structure) {
-                (Motion::FourLinks(law), Structure::Arch(arch)) => {
-                    let links = FourLinks::of_arch(&arch, law)?;
-                    Standing::Arch(arch, links)
-                }
-                (motion, structure) => {
-                    Standing::Model(motion.model_for_many_cases(&structure)?.into())
-                }
-            })
-        };
-        let standing = self.structures.get(self.place(index), make)?;
-        Ok(match (standing, self.value(index, Quantity::MeanRadius)) {
-            (Standing::Arch(arch, links), Some(mean_radius_m)) => {
-                let arch = arch.with_mean_radius_m(mean_radius_m);
-                let arch = arch.map_err(FourLinkError::from)?;
-                let links = links.with_size_of(&arch);
-                Standing::Arch(arch, links)
-            }
-            (standing, _) => standing,
+            let motion = self.moves(index, scenario);
+            Ok(motion.model_for_many_cases(&structure)?.into())
         })
     }
 
@@ -283,7 +239,6 @@ impl<'a> OverturningMap<'a> {
         if let Some(embrace_deg) = self.value(index, Quantity::Embrace) {
             arch = arch.with_embrace_deg(embrace_deg)?;
         }
-        // Arches of one shape use the same limit analysis.
         if let Some(mean_radius_m) = self.value(index, Quantity::MeanRadius) {
             arch = arch.with_mean_radius_m(mean_radius_m)?;
         }
@@ -308,16 +263,13 @@ impl<'a> OverturningMap<'a> {
         let value = |quantity| self.value(index, quantity);
         let motion = match scenario.ground.as_ref() {
             Some(Ground::Pulse(pulse)) => {
-                let shape = self.pulses.get(self.place(index), || {
-                    let of_frequency = value(Quantity::Frequency).map(f64::recip);
-                    let duration_s = of_frequency.or(value(Quantity::Duration));
-                    let mut pulse = pulse.clone();
-                    pulse.duration_s = duration_s.unwrap_or(pulse.duration_s);
-                    pulse.shape()
-                });
+                let mut pulse = pulse.clone();
+                let of_frequency = value(Quantity::Frequency).map(f64::recip);
+                let duration_s = of_frequency.or(value(Quantity::Duration));
+                pulse.duration_s = duration_s.unwrap_or(pulse.duration_s);
                 let amplitude_g = value(Quantity::Amplitude).unwrap_or(pulse.amplitude_g);
                 let amplitude_g = Vector2::new(amplitude_g, pulse.vertical_amplitude_g);
-                let motion = shape.inclined_m_s2(amplitude_g * gravity_m_s2);
+                let motion = pulse.shape().inclined_m_s2(amplitude_g * gravity_m_s2);
                 Some(motion.expect("the amplitudes of a scenario are those of a ground motion"))
             }
             Some(Ground::Record(record)) => {
@@ -335,14 +287,14 @@ impl<'a> OverturningMap<'a> {
     }
 
     /// Returns the model of a cell, with its ground motion and request.
-    fn case(&self, index: usize) -> Result<(Standing, Case), NoHistory> {
+    fn case(&self, index: usize) -> Result<(Arc<dyn Model>, Case), NoHistory> {
         let scenario = self.variant(index).map_err(NoHistory::Failed)?;
-        let standing = self.standing(index, &scenario)?;
+        let model = self.model(index, &scenario)?;
         let ground = self.motion(index, &scenario).map_err(NoHistory::Failed)?;
         let structure = self.structure(index, &scenario);
         let structure = structure.map_err(|error| ModelError::from(FourLinkError::from(error)))?;
         let request = scenario.request_on(&ground, &structure);
-        Ok((standing, (ground, request)))
+        Ok((model, (ground, request)))
     }
 
     /// Computes the endings of cells with the same structure, and, if requested, the number of outcomes of each with its repetitions.
@@ -404,19 +356,19 @@ impl Study for OverturningMap<'_> {
     /// Returns the family of cells with the same structure; `None` unless their model computes several motions faster together.
     fn family(&self, index: usize) -> Option<usize> {
         let together = self.scenario.motion.is_faster_together();
-        together.then(|| self.structures.place(self.place(index)))?
+        together.then(|| self.models.place(self.place(index)))?
     }
 
     fn rows(&self, indices: &[usize]) -> Vec<CellRow> {
-        let standing = OnceCell::new();
+        let first = OnceCell::new();
         let cases = indices.iter().map(|index| {
-            let (structure, case) = self.case(*index)?;
-            standing.get_or_init(|| structure);
+            let (model, case) = self.case(*index)?;
+            first.get_or_init(|| model);
             Ok(case)
         });
         let ended = answered(cases, |cases| {
-            let standing = standing.get();
-            standing.map_or(Vec::new(), |one| self.endings(one.model(), cases))
+            let model = first.get();
+            model.map_or(Vec::new(), |model| self.endings(&**model, cases))
         });
         let row = |(index, ended): (&usize, Result<Ended, NoHistory>)| {
             let [x, y] = self.coordinates(*index);

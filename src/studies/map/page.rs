@@ -1,17 +1,17 @@
 //! `map.html`: a map with a cursor. It shows the numbers of a cell, and the command that runs the cell.
 
+use askama::Template;
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use serde_json::{Map, Value, json};
 
 use super::picture::{self, Drawn};
 use super::{CellRow, Described, OverturningMap, described};
-use crate::output::Figure;
-use crate::output::page::{escaped, fill_template, script_safe};
+use crate::output::page::{PROGRAM, script_safe};
+use crate::output::{Figure, filters, render};
 use crate::scenario::{Ground, Quantity, toml_text};
-use crate::studies::ending::Ending;
 use crate::studies::kind::Kind;
-use crate::studies::results::Style;
+use crate::studies::{Ending, Style};
 
 /// Makes the page of a map.
 #[must_use]
@@ -50,21 +50,26 @@ pub(crate) struct Cells<'c> {
     pub(crate) columns: Vec<(&'static str, Vec<Option<f64>>)>,
 }
 
+const SCRIPT: &str = include_str!("page/page.js");
+
+#[derive(Template)]
+#[template(path = "studies/map/page/page.html")]
+struct Page<'p> {
+    title: &'p str,
+    picture: &'p str,
+    scenario: String,
+    data: String,
+}
+
 impl Cells<'_> {
     /// Makes the page from a picture for the screen.
     pub(crate) fn page(&self, title: &str, map: &OverturningMap<'_>, drawn: &Drawn) -> String {
-        let version = format!("{} {}", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"));
-        fill_template(
-            include_str!("page/page.html"),
-            &[
-                ("PROGRAM", &version),
-                ("TITLE", &escaped(title)),
-                ("PICTURE", &drawn.picture),
-                ("SCENARIO", &escaped(&map.scenario.to_toml())),
-                ("DATA", &script_safe(&self.data(map, drawn))),
-                ("SCRIPT", include_str!("page/page.js")),
-            ],
-        )
+        render(&Page {
+            title,
+            picture: &drawn.picture,
+            scenario: map.scenario.to_toml(),
+            data: script_safe(&self.data(map, drawn)),
+        })
     }
 
     fn data(&self, map: &OverturningMap<'_>, drawn: &Drawn) -> Value {

@@ -2,12 +2,9 @@
 
 use super::{CellRow, OverturningMap, described};
 use crate::dynamics::history::Outcome;
-use crate::output::Figure;
-use crate::output::axes::{Axes, Scale};
 use crate::output::caption::caption;
-use crate::output::chart::{Chart, LEFT_PX, Mark, Shape};
-use crate::output::sheet::{self as output, Key, Sign};
-use crate::output::svg::{Stroke, color};
+use crate::output::sheet::{self as output};
+use crate::output::{Axes, Chart, Figure, Key, LEFT_PX, Mark, Scale, Shape, Sign, Stroke, color};
 use crate::scenario::{Axis, Quantity};
 use crate::studies::kind::{self, Kind};
 use crate::studies::results::Style;

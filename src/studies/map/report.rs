@@ -3,13 +3,13 @@
 use super::{CellRow, NoHistory, OverturningMap, page, picture};
 use crate::argument::plain;
 use crate::dynamics::history::Outcome;
-use crate::output::OutputError;
-use crate::output::table::{Column, column, csv};
+use crate::output::{Column, OutputError, column, csv};
 use crate::scenario::{Quantity, Scenario};
 use crate::studies::ending::columns::{self, FAILED};
-use crate::studies::remarks::{CaseSummary, Remark, Remarks, outcome_counts, outcome_label};
-use crate::studies::results::{ReportedStudy, Results, Style};
 use crate::studies::run::Scales;
+use crate::studies::{
+    CaseSummary, Remark, Remarks, ReportedStudy, Results, Style, outcome_counts, outcome_label,
+};
 
 const SUMMARY: &str = "map.json";
 

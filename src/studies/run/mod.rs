@@ -11,7 +11,6 @@ mod animation;
 mod caveats;
 mod comparison;
 mod feet;
-mod film;
 mod open_joints;
 mod overlay;
 mod packed;
@@ -35,7 +34,6 @@ use serde_json::Value;
 
 pub use self::caveats::warnings;
 use self::comparison::comparison_words;
-use self::film::FILM;
 use self::overlay::Curves;
 use self::picture::Timeline;
 pub use self::points::MAX_POINTS;
@@ -47,22 +45,16 @@ use self::summary::Summary;
 pub use self::summary::{ComputedRun, OutcomeSummary, summary};
 pub use self::words::heading;
 use self::words::{NotableImpacts, VerdictLine, Words};
-use super::quotable::ModelAnswer;
-use super::results::{Results, StudyError};
-use super::runner::{Progress, RunnerError, Watch};
+use super::{ModelAnswer, Progress, Results, RunnerError, StudyError, Watch};
 use crate::dynamics::fall::FallEnd;
 use crate::dynamics::history::{Event, OpenHinge, Sample, Summary as History};
-use crate::dynamics::model::{Model, Recorder};
 use crate::dynamics::repeatability::{Repeatability, Repetitions, Verdict};
 use crate::dynamics::variation::Variations;
-use crate::mechanics::geometry::pose::Pose;
-use crate::mechanics::sway::Sway;
-use crate::output::scene::Scene;
-use crate::output::summary::summary_of;
-use crate::output::table::TableWriter;
-use crate::output::template::render;
-use crate::output::{Figure, Folder, OutputError, Subject, pretty};
+use crate::output::{
+    Figure, Folder, OutputError, Scene, Subject, TableWriter, pretty, render, summary_of,
+};
 use crate::scenario::{Hinges, Scenario};
+use crate::{Model, Pose, Recorder, Sway};
 
 const ROTATIONS: &str = "rotations.csv";
 const REPORT: &str = "report.html";
@@ -76,6 +68,8 @@ const PICTURE: &str = "history.svg";
 const SUMMARY: &str = "summary.json";
 /// Several models of motion in one picture, beside the folders of the models.
 const OVERLAY: &str = "overlay.svg";
+/// The folder of the pictures of a film, in that of the results.
+const FILM: &str = "film";
 
 /// All files that a run may write, except the pictures of a film, in the order in which they are listed.
 pub const FILES: [&str; 10] = [
@@ -489,7 +483,10 @@ impl Drawings {
             return Ok(String::new());
         };
         let pictures = film.film_pictures(run.figure, title(run.scenario));
-        film::add(folder, &pictures)?;
+        for (number, picture) in (1..).zip(&pictures) {
+            let name = format!("{FILM}/frame-{number:04}.svg");
+            folder.add(&name, picture.as_bytes())?;
+        }
         let (count, path) = (pictures.len(), folder.path().join(FILM));
         let path = path.display();
         Ok(format!("  {count} pictures of a film in {path}\n"))

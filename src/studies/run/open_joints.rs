@@ -1,16 +1,9 @@
 //! The open joints of a row of blocks over time, as a panel of `history.svg`.
 
-use crate::dynamics::history::Sample;
 use crate::mechanics::blocks::{Row, Supports};
-use crate::mechanics::chain::Hinge;
 use crate::mechanics::geometry::ring::Edge;
-use crate::output::Figure;
-use crate::output::axes::Scale;
-use crate::output::chart::{Mark, Shape};
-use crate::output::envelope::Thinned;
-use crate::output::panels::Panels;
-use crate::output::sheet::{Key, Sign};
-use crate::output::svg::{Stroke, color};
+use crate::output::{Figure, Key, Mark, Panels, Scale, Shape, Sign, Stroke, Thinned, color};
+use crate::{Hinge, Sample};
 
 /// Height of the strip of a joint below which the strip is not divided by edges.
 const NARROW_PX: f64 = 5.0;

@@ -1,12 +1,8 @@
 //! `overlay.svg`: histories of one structure by several models of motion in one picture.
 
-use crate::dynamics::history::Sample;
-use crate::mechanics::sway::Sway;
-use crate::output::Figure;
-use crate::output::chart::Mark;
-use crate::output::envelope::Envelope;
-use crate::output::panels::{Panels, Subject, scale_around};
-use crate::output::svg::CURVES;
+use crate::output::panels::scale_around;
+use crate::output::{CURVES, Envelope, Figure, Mark, Panels, Subject};
+use crate::{Sample, Sway};
 
 /// Curves of a history that every model of motion has, thinned.
 #[derive(Clone, Debug, Default)]

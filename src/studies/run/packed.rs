@@ -5,7 +5,7 @@ use base64::prelude::BASE64_STANDARD;
 use serde_json::{Value, json};
 
 use crate::dynamics::history::{OpenHinge, Sample};
-use crate::output::scene::{Piece, Scene};
+use crate::output::{Piece, Scene};
 
 /// Largest integer of an encoded rotation or displacement.
 pub(super) const LARGEST_I16: f64 = 32767.0;

@@ -3,18 +3,14 @@
 use super::open_joints::OpenJoints;
 use super::points::ObservedPoints;
 use crate::dynamics::history::{Event, HalfCycle, Outcome, Sample, State, Summary as History};
-use crate::dynamics::model::Model;
-use crate::mechanics::sway::Sway;
-use crate::output::Figure;
-use crate::output::axes::Scale;
-use crate::output::chart::{Mark, Shape};
-use crate::output::envelope::{COLUMNS, Envelope};
+use crate::output::envelope::COLUMNS;
 use crate::output::figure::Panel;
-use crate::output::panels::{
-    MAIN, Panels, StateHistory, Subject, overturning, overturns, scale_around,
+use crate::output::panels::{MAIN, overturning, overturns, scale_around};
+use crate::output::{
+    CURVES, Envelope, Figure, Key, Mark, Panels, Scale, Shape, Sign, StateHistory, Stroke, Subject,
+    color,
 };
-use crate::output::sheet::{Key, Sign};
-use crate::output::svg::{CURVES, Stroke, color};
+use crate::{Model, Sway};
 
 /// Upper limit of the drawn excess of the thrust line, in thicknesses. The values of a falling structure would hide all others.
 pub(super) const LARGEST_EXCESS: f64 = 1.0;

@@ -5,17 +5,11 @@ use serde_json::{Value, json};
 
 use super::packed::curve;
 use super::summary::PointPeaks;
-use crate::dynamics::history::{OpenHinge, Sample};
 use crate::dynamics::peak::CONSTANT;
-use crate::mechanics::geometry::pose::Pose;
-use crate::output::chart::Mark;
-use crate::output::envelope::Envelope;
 use crate::output::mechanisms::columns;
-use crate::output::panels::{Panels, StateHistory};
 use crate::output::point::StructurePoint;
-use crate::output::scene::Scene;
-use crate::output::svg::CURVES;
-use crate::output::table::{Cell, Column, several};
+use crate::output::{CURVES, Cell, Column, Envelope, Mark, Panels, Scene, StateHistory, several};
+use crate::{OpenHinge, Pose, Sample};
 
 /// Largest number of points: each has two curves with different strokes in the pictures.
 pub const MAX_POINTS: usize = CURVES.len() / 2;

@@ -4,6 +4,7 @@
 //! displacements and thrust as 16-bit multiples of a unit, states and joints as 8-bit numbers. Frames and curves are thinned, so that the page
 //! of a row of a few dozen blocks is smaller than half a megabyte.
 
+use askama::Template;
 use nalgebra::Vector2;
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -19,18 +20,15 @@ use super::title;
 use crate::dynamics::fall::FallEnd;
 use crate::dynamics::ground::{GroundMotion, GroundVelocity};
 use crate::dynamics::history::{OpenHinge, Sample, State, Summary as History};
-use crate::dynamics::model::Model;
-use crate::mechanics::chain::Hinge;
 use crate::mechanics::geometry::pose::{BodyPoint, Pose};
 use crate::mechanics::geometry::ring::Edge;
-use crate::mechanics::sway::Sway;
 use crate::output::caption::ground_in_words;
-use crate::output::envelope::Envelope;
 use crate::output::ground::curve_g;
-use crate::output::page::{escaped, fill_template, script_safe};
-use crate::output::scene::{FARTHEST, Piece, Scene};
-use crate::scenario::Scenario;
+use crate::output::page::{PROGRAM, script_safe};
+use crate::output::scene::FARTHEST;
+use crate::output::{Envelope, Piece, Scene, filters, render};
 use crate::scenario::metres;
+use crate::{Hinge, Model, Scenario, Sway};
 
 /// Largest size of the frames of a page, in bytes.
 const FRAME_BYTES: usize = 280_000;
@@ -48,6 +46,9 @@ const COORDINATE_RATIO: f64 = 5e-5;
 const NO_THRUST: i16 = i16::MIN;
 
 // uPlot, the library that draws the curves.
+const STYLE: &str = include_str!("report/page.css");
+const STAGE: &str = include_str!("report/stage.js");
+const SCRIPT: &str = include_str!("report/page.js");
 const PLOT_STYLE: &str = include_str!("../../../vendor/uplot/uPlot.min.css");
 const PLOT_SCRIPT: &str = include_str!("../../../vendor/uplot/uPlot.iife.min.js");
 const PLOT_LICENCE: &str = include_str!("../../../vendor/uplot/LICENSE");
@@ -65,6 +66,19 @@ pub struct Report {
     energy: Envelope,
     in_barriers: bool,
     excess_ratio: Envelope,
+}
+
+#[derive(Template)]
+#[template(path = "studies/run/report/page.html")]
+struct Page<'p> {
+    title: &'p str,
+    uncertainty: &'p str,
+    verdict: &'p str,
+    what: String,
+    words: &'p str,
+    scenario: String,
+    frames: usize,
+    data: String,
 }
 
 impl Report {
@@ -123,34 +137,21 @@ impl Report {
         words: &str,
     ) -> String {
         let ground = scenario.ground_motion();
-        let title = title(scenario);
         let mut frames = self.motion.frames();
         let ends_at = frames.len();
         frames.extend(self.fall.frames());
         let (structure, shaken) = (scenario.structure.described(), ground_in_words(scenario));
-        let what = format!("{structure}; {shaken}");
         let data = self.data(ground, &frames, ends_at, (history, points));
-        let program = format!("{} {}", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"));
-        fill_template(
-            include_str!("report/page.html"),
-            &[
-                ("PROGRAM", &program),
-                ("TITLE", &escaped(title)),
-                ("UNCERTAINTY", &escaped(uncertainty.trim_end())),
-                ("OUTCOME", &escaped(verdict.trim_end())),
-                ("WHAT", &escaped(&what)),
-                ("WORDS", &escaped(words.trim_end())),
-                ("SCENARIO", &escaped(&scenario.to_toml())),
-                ("FRAMES", &frames.len().to_string()),
-                ("STYLE", include_str!("report/page.css")),
-                ("STAGE", include_str!("report/stage.js")),
-                ("SCRIPT", include_str!("report/page.js")),
-                ("PLOT_STYLE", PLOT_STYLE),
-                ("PLOT_SCRIPT", PLOT_SCRIPT),
-                ("PLOT_LICENCE", PLOT_LICENCE),
-                ("DATA", &script_safe(&data)),
-            ],
-        )
+        render(&Page {
+            title: title(scenario),
+            uncertainty: uncertainty.trim_end(),
+            verdict: verdict.trim_end(),
+            what: format!("{structure}; {shaken}"),
+            words: words.trim_end(),
+            scenario: scenario.to_toml(),
+            frames: frames.len(),
+            data: script_safe(&data),
+        })
     }
 
     /// Returns all data that the page draws. The frames of the fall begin at index `fall_from`.

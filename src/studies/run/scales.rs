@@ -1,7 +1,6 @@
 //! Scales that make a history dimensionless, as in papers.
 
-use crate::dynamics::model::MechanismModel;
-use crate::mechanics::sway::Sway;
+use crate::{MechanismModel, Sway};
 
 /// Scales that make a history dimensionless, as in papers.
 #[derive(Clone, Copy, Debug, PartialEq)]

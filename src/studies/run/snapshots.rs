@@ -6,11 +6,8 @@ use nalgebra::Vector2;
 
 use crate::dynamics::history::{Sample, State};
 use crate::mechanics::geometry::pose::BodyPoint;
-use crate::output::Figure;
 use crate::output::elevation::{BODIES, STONE, SheetTransform, TIE, View};
-use crate::output::scene::Scene;
-use crate::output::sheet::{PartHeight, Sheet};
-use crate::output::svg::{Anchor, Drawing, Stroke, color};
+use crate::output::{Anchor, Drawing, Figure, PartHeight, Scene, Sheet, Stroke, color};
 
 /// Collects the samples nearest to chosen times, and draws them.
 #[derive(Clone, Debug)]

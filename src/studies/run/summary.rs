@@ -7,16 +7,14 @@ use super::Scales;
 use super::caveats::{first_peak_rad, warnings};
 use super::feet::FeetApart;
 use crate::dynamics::history::{ElasticSummary, HalfCycle, RowSummary, Summary as History};
-use crate::dynamics::model::{MechanismModel, Model};
 use crate::dynamics::repeatability::{Repeatability, Verdict, key};
 use crate::dynamics::thrust::ThrustRecord;
 use crate::dynamics::variation::VariationResult;
 use crate::mechanics::sides::Sides;
-use crate::mechanics::sway::Sway;
-use crate::output::OutputError;
 use crate::output::mechanisms::columns;
-use crate::output::summary::{Named, summary_of};
+use crate::output::{Named, OutputError, summary_of};
 use crate::scenario::{Ground, Scenario};
+use crate::{MechanismModel, Model, Sway};
 
 /// A computed motion, with its repetitions and variations.
 #[derive(Clone, Copy)]

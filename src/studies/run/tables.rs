@@ -1,13 +1,10 @@
 //! The tables of a run: `rotations.csv`, `poses.csv`, `joints.csv`, `events.csv` and `impacts.csv`.
 
-use crate::dynamics::ground::GroundMotion;
 use crate::dynamics::history::{Event, Impact, Sample, TieSample};
-use crate::dynamics::model::{MechanismModel, Model};
-use crate::mechanics::chain::Hinge;
 use crate::mechanics::geometry::ring::Edge;
-use crate::mechanics::sway::Sway;
 use crate::output::mechanisms::columns;
-use crate::output::table::{Cell, Column, column, list, numbers, row_number, several};
+use crate::output::{Cell, Column, column, list, numbers, row_number, several};
+use crate::{GroundMotion, Hinge, MechanismModel, Model, Sway};
 
 use super::Scales;
 

@@ -14,14 +14,12 @@ use crate::dynamics::repeatability::{
     FIRST_REPETITIONS, LEAST_SLIP_M, Repeatability, RepeatedHalfCycle, RepeatedValue,
     SAME_PEAK_RATIO, Verdict,
 };
-use crate::mechanics::chain::Hinge;
 use crate::mechanics::sides::Sides;
-use crate::mechanics::sway::Sway;
 use crate::output::mechanisms::by_body;
-use crate::output::range_ends;
-use crate::output::template::filters;
+use crate::output::{filters, range_ends};
 use crate::scenario::{Hinges, Scenario, Series};
 use crate::studies::quotable::{self, ModelAnswer};
+use crate::{Hinge, Sway};
 
 /// Returns the heading of the words for the runs of scenarios that differ in their models: title, one line per record, and a note about an
 /// ignored table.

@@ -10,19 +10,16 @@ use rayon::iter::{
 };
 use serde::Serialize;
 use serde_json::Value;
-use thiserror::Error;
 
 pub use self::report::{FILES, report};
-use crate::mechanics::blocks::{Row, RowError};
-use crate::mechanics::geometry::pose::Pose;
+use super::results::StudyError;
 use crate::mechanics::parts::Parts as _;
 use crate::mechanics::settling::{
     Follower, HingeState, Movement, Movements, Pin, SettlingError, Snap,
 };
 use crate::mechanics::sides::Sides;
-use crate::mechanics::sway::Sway;
-use crate::output::template::filters;
-use crate::scenario::Scenario;
+use crate::output::filters;
+use crate::{Pose, Row, Scenario, Sway};
 
 /// Number of equal parts of a movement, with a stage at the end of each.
 const STEPS: u32 = 20;
@@ -188,24 +185,13 @@ pub struct Summary {
     pub friction_coefficient: Option<f64>,
 }
 
-/// Errors of moved springings.
-#[derive(Clone, Debug, PartialEq, Error)]
-pub enum SpreadError {
-    /// The structure is not a row of blocks.
-    #[error(transparent)]
-    Row(#[from] RowError),
-    /// The movement cannot be computed.
-    #[error(transparent)]
-    Settling(#[from] SettlingError),
-}
-
 /// Moves a springing of the arch of a scenario in each of these directions, from the undeformed position or the position of `[supports]`.
 ///
 /// # Errors
 /// When the structure is not a row of blocks between two supports, or cannot stand. If a movement cannot be computed further, its path ends
 /// there.
-pub fn spread(scenario: &Scenario, directions: &[Direction]) -> Result<Summary, SpreadError> {
-    let row = scenario.structure.row()?;
+pub fn spread(scenario: &Scenario, directions: &[Direction]) -> Result<Summary, StudyError> {
+    let row = scenario.structure.row().map_err(StudyError::scenario)?;
     let weight_n = row.mass_kg() * scenario.gravity_m_s2();
     let joints = &row.joints;
     let across = joints[joints.len() - 1].intrados_m - joints[0].intrados_m;
@@ -214,8 +200,9 @@ pub fn spread(scenario: &Scenario, directions: &[Direction]) -> Result<Summary, 
     let sizes = [clear_span_m, weight_n];
     let paths = directions.par_iter().with_max_len(1);
     let paths = paths.map(|direction| path(&row, settled, *direction, sizes));
+    let paths = paths.collect::<Result<_, _>>();
     Ok(Summary {
-        paths: paths.collect::<Result<_, _>>()?,
+        paths: paths.map_err(StudyError::scenario)?,
         clear_span_m,
         weight_n,
         warnings: scenario.unlikely(),

@@ -5,12 +5,12 @@ use nalgebra::Vector2;
 use super::{Push, SpreadPath, Stage, Summary};
 use crate::mechanics::blocks::Row;
 use crate::mechanics::geometry::pose::BodyPoint;
-use crate::output::Figure;
-use crate::output::chart::{Chart, Mark};
 use crate::output::elevation::{HINGE, HINGE_PX, STONE, SheetTransform, View};
-use crate::output::scene::{Scene, widened};
-use crate::output::sheet::{Key, PartHeight, Sheet};
-use crate::output::svg::{Anchor, CURVES, Drawing, Frame, Stroke, color};
+use crate::output::scene::widened;
+use crate::output::{
+    Anchor, CURVES, Chart, Drawing, Figure, Frame, Key, Mark, PartHeight, Scene, Sheet, Stroke,
+    color,
+};
 
 /// Largest number of pictures of the arch side by side.
 const COLUMNS: usize = 3;

@@ -3,10 +3,7 @@
 use super::picture::draw;
 use super::{SpreadPath, Stage, Summary};
 use crate::mechanics::sides::Sides;
-use crate::output::scene::Scene;
-use crate::output::table::{Cell, column, csv, list, several};
-use crate::output::template::render;
-use crate::output::{Figure, OutputError};
+use crate::output::{Cell, Figure, OutputError, Scene, column, csv, list, render, several};
 use crate::scenario::Scenario;
 use crate::studies::results::Results;
 

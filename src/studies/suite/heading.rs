@@ -4,8 +4,7 @@ use serde_json::Value;
 
 use super::{CaseRow, SuiteFragility};
 use crate::argument::plain;
-use crate::output::Figure;
-use crate::output::axes::Scale;
+use crate::output::{Figure, Scale};
 use crate::scenario::{Hinges, Measure, Spacing, Spectral};
 
 /// The parts of a scenario that the report of its suite needs. They come from the text of the resolved scenario, so that `merge` needs no record
@@ -36,11 +35,6 @@ impl Heading {
             measure,
             warnings,
         })
-    }
-
-    /// Returns true if the model of motion has joints, whose cases may be uncertain.
-    pub(super) fn has_joints(&self) -> bool {
-        self.hinges().has_joints()
     }
 
     pub(super) fn hinges(&self) -> Hinges {

@@ -2,11 +2,7 @@
 
 use super::fragility::by_intensity;
 use super::{CaseRow, Heading, SuiteFragility};
-use crate::output::Figure;
-use crate::output::axes::Scale;
-use crate::output::chart::{Chart, Mark, Shape};
-use crate::output::sheet::{Key, Sign};
-use crate::output::svg::{CURVES, Stroke, color};
+use crate::output::{CURVES, Chart, Figure, Key, Mark, Scale, Shape, Sign, Stroke, color};
 use crate::studies::ending::Ending;
 use crate::studies::ending::columns::are_over_critical;
 use crate::studies::statistics::{ascending, fractile, shares_up_to};

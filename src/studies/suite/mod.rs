@@ -15,14 +15,12 @@ use self::fragility::{Fragility, NoFit, Observation, by_intensity, fit};
 pub use self::heading::Heading;
 use self::strength::Strength;
 use super::ending::{Ending, NoHistory, Verdict, check_finite};
-use super::results::{ReportedStudy, Results, Style};
-use super::runner::Study;
 use super::threshold::survival::Survival;
+use super::{ReportedStudy, Results, Study, Style};
 use crate::bisection::{Width, bisect};
-use crate::dynamics::history::Outcome;
-use crate::dynamics::model::{Case, Model};
 use crate::output::OutputError;
 use crate::scenario::{Measure, Scenario, Suite};
+use crate::{Case, Model, Outcome};
 
 /// A case of a suite: a record at a level, and the end of its history.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -345,9 +343,7 @@ impl Counts {
             failed,
         }
     }
-}
 
-impl Counts {
     /// Returns the number of doubtful cases: uncertain, incomplete or failed.
     #[must_use]
     pub const fn doubtful(&self) -> usize {

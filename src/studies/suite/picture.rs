@@ -2,11 +2,9 @@
 
 use super::fragility::Fragility;
 use super::{Counts, Heading, SuiteFragility};
-use crate::output::Figure;
-use crate::output::axes::Scale;
-use crate::output::chart::{BELOW_PX, Chart, LEFT_PX, Mark, Shape};
-use crate::output::sheet::{Key, Sheet, Sign};
-use crate::output::svg::{Stroke, color};
+use crate::output::{
+    BELOW_PX, Chart, Figure, Key, LEFT_PX, Mark, Scale, Shape, Sheet, Sign, Stroke, color,
+};
 use crate::studies::statistics::ascending;
 
 /// Draws fractions, curve and band, with the curve in words.

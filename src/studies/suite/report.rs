@@ -7,16 +7,14 @@ use super::fragility::{Errors, Fragility, NoFit};
 use super::ida::Fractiles;
 use super::strength::{Capacity, Efficiency, MEASURES, efficiencies, few};
 use super::{CaseRow, Counts, FragilityRow, Heading, SuiteFragility, ida, picture};
-use crate::output::table::{Column, column, csv, each, fields, list};
-use crate::output::{Figure, OutputError};
+use crate::output::{Column, Figure, OutputError, column, csv, each, fields, list};
 use crate::scenario::{Measure, shown};
-use crate::studies::ending::Verdict;
 use crate::studies::ending::columns::{self, FAILED, yes};
 use crate::studies::quotable::{self, ModelAnswer};
-use crate::studies::remarks::{Remarks, outcome_counts, outcome_label};
-use crate::studies::results::Results;
 use crate::studies::threshold::survival::{self, Survival};
-use crate::studies::threshold::{rounded, rounded_down};
+use crate::studies::{
+    Remarks, Results, Verdict, outcome_counts, outcome_label, rounded, rounded_down,
+};
 
 const FRAGILITY: &str = "fragility.json";
 
@@ -304,9 +302,10 @@ impl Heading {
             column("scale", |case: &CaseRow| case.scale),
             column("peak_g", |case: &CaseRow| case.peak_g),
         ];
-        all.extend(columns::columns(self.has_joints(), |case: &CaseRow| {
-            case.result.as_ref().map_err(|_| FAILED)
-        }));
+        all.extend(columns::columns(
+            self.hinges().has_joints(),
+            |case: &CaseRow| case.result.as_ref().map_err(|_| FAILED),
+        ));
         all
     }
 

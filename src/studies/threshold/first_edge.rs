@@ -6,12 +6,11 @@ use serde::{Deserialize, Serialize};
 
 use super::factors::{EDGE_WIDTH, Factors};
 use crate::bisection::{Width, try_bisect};
-use crate::dynamics::model::SimulationError;
-use crate::output::table::{Column, column};
-use crate::scenario::Scenario;
+use crate::output::{Column, column};
 use crate::studies::ending::columns::yes;
 use crate::studies::ending::{Ending, NoAnswer, NoHistory, Verdict};
 use crate::studies::statistics::ascending_weighted;
+use crate::{Scenario, SimulationError};
 
 /// The strengths of a ground motion that a structure certainly survives, and the smallest one that overturns it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -57,51 +56,28 @@ impl FirstEdge {
         Self::among(&factors.values(), EDGE_WIDTH, |factor: f64| {
             let ground = scenario.ground_motion().scaled(factor);
             let ground = ground.map_err(SimulationError::from)?;
-            Ending::of(&*model, &ground, &request)
+            let ending = Ending::of(&*model, &ground, &request)?;
+            Ok(ending.share_and_excess())
         })
     }
 
-    /// Finds the first edge from the endings of histories, as [`FirstEdge::search`].
+    /// Finds the first edge. `strengths` are tried in ascending order, and bisection encloses the edge between two of them to this relative
+    /// width. `history` returns the share of the repetitions that overturn, `None` if the history is incomplete, and its thrust excess ratio.
     pub(in crate::studies) fn among(
         strengths: &[f64],
         width: f64,
-        ending: impl Fn(f64) -> Result<Ending, NoHistory>,
+        history: impl Fn(f64) -> Result<[Option<f64>; 2], NoHistory>,
     ) -> Result<Self, NoAnswer> {
-        let excesses = RefCell::new(Vec::new());
-        let share = |strength| {
-            let ending = ending(strength)?;
-            excesses
-                .borrow_mut()
-                .push((strength, ending.thrust_excess_ratio));
-            Ok(ending.overturning_share())
-        };
-        let mut edge = Self::search(strengths, width, share)?;
-        let last = edge.factor.unwrap_or(edge.tried_to);
-        let mut excesses = excesses.into_inner().into_iter();
-        let known = excesses.find(|(strength, _)| *strength == last);
-        edge.thrust_excess_ratio = known.and_then(|(_, ratio)| ratio);
-        Ok(edge)
-    }
-
-    /// Finds the first edge. `strengths` are tried in ascending order, and bisection encloses the edge between two of them to this relative
-    /// width. `share` is that of the repetitions that overturn; `None` if the history is incomplete.
-    fn search(
-        strengths: &[f64],
-        width: f64,
-        share: impl Fn(f64) -> Result<Option<f64>, NoHistory>,
-    ) -> Result<Self, NoAnswer> {
-        let uncertain = RefCell::new(Vec::new());
+        let tried = RefCell::new(Vec::new());
         let known = |strength| {
-            let share = share(strength)?.ok_or(NoAnswer::Incomplete)?;
-            if share <= 0.0 || share >= 1.0 {
-                return Ok(if share > 0.0 {
-                    Verdict::Overturns
-                } else {
-                    Verdict::Survives
-                });
-            }
-            uncertain.borrow_mut().push([strength, share]);
-            Ok(Verdict::Uncertain)
+            let [share, excess_ratio] = history(strength)?;
+            let share = share.ok_or(NoAnswer::Incomplete)?;
+            tried.borrow_mut().push(([strength, share], excess_ratio));
+            Ok(match share {
+                ..=0.0 => Verdict::Survives,
+                1.0.. => Verdict::Overturns,
+                _ => Verdict::Uncertain,
+            })
         };
         // The ends of the edge between a low and a high strength, of verdicts below and from `least` on, and the verdict at its upper end.
         let narrow = |low: f64, (high, mut verdict): (f64, Verdict), least: Verdict| {
@@ -150,8 +126,13 @@ impl FirstEdge {
                 break;
             }
         }
-        let below = |[strength, _]: &[f64; 2]| *strength < edge.strength();
-        edge.uncertain = ascending_weighted(uncertain.into_inner().into_iter().filter(below));
+        let tried = tried.into_inner();
+        let last = edge.factor.unwrap_or(edge.tried_to);
+        let of_last = tried.iter().find(|([strength, _], _)| *strength == last);
+        edge.thrust_excess_ratio = of_last.and_then(|(_, ratio)| *ratio);
+        let below = |[strength, share]: &[f64; 2]| *strength < edge.strength() && *share < 1.0;
+        let shares = tried.into_iter().map(|(share, _)| share);
+        edge.uncertain = ascending_weighted(shares.filter(below));
         Ok(edge)
     }
 
@@ -239,6 +220,16 @@ pub(super) fn lowest<E>(
 mod tests {
     use super::*;
 
+    /// The first edge of histories with these shares.
+    fn edge_among(
+        strengths: &[f64],
+        share: impl Fn(f64) -> Result<Option<f64>, NoHistory>,
+    ) -> Result<FirstEdge, NoAnswer> {
+        FirstEdge::among(strengths, EDGE_WIDTH, |strength| {
+            Ok([share(strength)?, None])
+        })
+    }
+
     /// The safe strengths end at the first doubt, whose edge is narrowed as well; so does the lowest overturning strength.
     #[test]
     fn safe_strengths_end_where_doubt_begins() {
@@ -250,7 +241,7 @@ mod tests {
             }))
         };
         for strengths in [&[0.5, 1.0, 1.15, 2.0][..], &[0.5, 3.0], &[0.9, 1.15, 1.7]] {
-            let edge = FirstEdge::search(strengths, EDGE_WIDTH, verdict).unwrap();
+            let edge = edge_among(strengths, verdict).unwrap();
             let near = |found: Option<f64>, known: f64| {
                 assert!(
                     (found.unwrap() / known - 1.0).abs() <= EDGE_WIDTH,
@@ -264,12 +255,12 @@ mod tests {
             near(edge.uncertain_from, doubt);
             assert!(edge.survives_up_to < edge.uncertain_from);
         }
-        let edge = FirstEdge::search(&[0.96, 2.0], EDGE_WIDTH, verdict).unwrap();
+        let edge = edge_among(&[0.96, 2.0], verdict).unwrap();
         assert_eq!(
             (edge.survives_up_to, edge.uncertain_from),
             (None, Some(0.96))
         );
-        let edge = FirstEdge::search(&[1.7, 2.0], EDGE_WIDTH, verdict).unwrap();
+        let edge = edge_among(&[1.7, 2.0], verdict).unwrap();
         assert_eq!(
             (edge.survives_up_to, edge.factor, edge.at_most),
             (None, Some(1.7), true)
@@ -284,7 +275,7 @@ mod tests {
             let share = shares.into_iter().find(|(from, _)| strength >= *from);
             Ok(share.map(|(_, share)| share))
         };
-        let edge = FirstEdge::search(&[0.3, 0.65, 1.0], EDGE_WIDTH, share).unwrap();
+        let edge = edge_among(&[0.3, 0.65, 1.0], share).unwrap();
         let (from, first) = (edge.uncertain_from.unwrap(), edge.strength());
         for (found, known) in [(from, 0.5), (first, 0.7)] {
             assert!((found / known - 1.0).abs() < EDGE_WIDTH, "{found}");
@@ -313,7 +304,7 @@ mod tests {
                 })
             }
         };
-        let edge = |to| FirstEdge::search(&[0.4, 1.0], EDGE_WIDTH, verdict(to));
+        let edge = |to| edge_among(&[0.4, 1.0], verdict(to));
         assert!(matches!(edge(0.7), Err(NoAnswer::Incomplete)));
         let found = edge(0.0).unwrap().factor.unwrap();
         assert!((found - 0.7).abs() < 0.7 * EDGE_WIDTH, "{found}");

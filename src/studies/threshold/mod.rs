@@ -23,13 +23,10 @@ use std::ops::ControlFlow;
 use serde::Serialize;
 
 use super::ending::{Ending, NoHistory, Verdict, answered};
-use super::results::{Results, StudyError};
-use super::runner::{Progress, Runner, Watch};
+use super::{Progress, Results, Runner, StudyError, Watch};
 use crate::bisection::{Width, next_middles, try_bisect};
-use crate::dynamics::ground::GroundMotion;
-use crate::dynamics::model::{Model, Request, SimulationError};
 use crate::output::Figure;
-use crate::scenario::Scenario;
+use crate::{GroundMotion, Model, Request, Scenario, SimulationError};
 
 /// Number of bisection steps computed ahead for models that compute histories faster together: three steps are seven histories.
 const STEPS_AHEAD: usize = 3;

@@ -5,11 +5,10 @@ use nalgebra::Vector2;
 use super::digits::rounded;
 use super::survival::{self, Survival};
 use super::{EDGE_WIDTH, FactorSample, Factors, RangeEnd, Threshold};
-use crate::output::Figure;
-use crate::output::axes::{Axes, Scale};
-use crate::output::chart::{BELOW_PX, Chart, LEFT_PX, Mark};
-use crate::output::sheet::{Key, PartHeight, Sheet};
-use crate::output::svg::{Anchor, Drawing, Frame, Stroke, color};
+use crate::output::{
+    Anchor, Axes, BELOW_PX, Chart, Drawing, Figure, Frame, Key, LEFT_PX, Mark, PartHeight, Scale,
+    Sheet, Stroke, color,
+};
 use crate::studies::ending::Verdict;
 use crate::studies::ending::columns::are_over_critical;
 use crate::studies::kind::{self, Kind};

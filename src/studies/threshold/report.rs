@@ -11,14 +11,12 @@ use super::{
 };
 use crate::dynamics::history::Outcome;
 use crate::dynamics::repeatability::OutcomeCount;
-use crate::output::table::{column, csv, fields};
-use crate::output::{Figure, OutputError};
+use crate::output::{Figure, OutputError, column, csv, fields};
 use crate::scenario::{Ground, Hinges, Scenario};
 use crate::studies::ending::{Ending, NoHistory, Verdict, outcome_name};
 use crate::studies::quotable::{self, ModelAnswer};
-use crate::studies::remarks::Remarks;
-use crate::studies::results::Results;
 use crate::studies::statistics::ascending;
+use crate::studies::{Remarks, Results};
 
 /// Names of the files, the seal last.
 pub const FILES: [&str; 3] = ["threshold.svg", "threshold.csv", "threshold.json"];

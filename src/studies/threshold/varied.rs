@@ -5,14 +5,11 @@ use std::ops::ControlFlow;
 
 use super::first_edge::lowest;
 use super::{EDGE_WIDTH, Factors};
-use crate::dynamics::ground::GroundMotion;
-use crate::dynamics::history::Summary;
-use crate::dynamics::model::{Case, Model, Request, SimulationError};
 use crate::dynamics::repeatability::Verdict;
-use crate::dynamics::until::EndCondition;
 use crate::dynamics::variation::Variation;
 use crate::studies::ending::answered;
 use crate::studies::runner::{Progress, Runner, RunnerError};
+use crate::{Case, EndCondition, GroundMotion, Model, Request, SimulationError, Summary};
 
 /// The threshold of a variation.
 #[derive(Clone, Debug, PartialEq)]

@@ -13,15 +13,14 @@ use super::mechanism::Mechanism;
 use super::spectrum::Spectrum;
 use super::{CheckInput, SideCheck, VerifyError};
 use crate::dynamics::demand::oscillator::peak_displacement;
-use crate::dynamics::ground::GroundMotion;
-use crate::dynamics::history::{EventKind, Outcome, State};
-use crate::dynamics::model::{MechanismModel, Request, SimulationError};
-use crate::mechanics::four_links::FourLinkError;
 use crate::mechanics::sides::Sides;
-use crate::mechanics::sway::Sway;
 use crate::scenario::{LimitState, Series, StateRule};
 use crate::studies::remarks::ModelCheck;
 use crate::studies::statistics::{bootstrap, interval};
+use crate::{
+    EventKind, FourLinkError, GroundMotion, MechanismModel, Outcome, Request, SimulationError,
+    State, Sway,
+};
 
 /// Smallest number of records for which the mean of the peaks counts. With fewer records the largest peak counts (NTC 2018, § 7.3.5).
 pub const FOR_THE_MEAN: usize = 7;

@@ -6,23 +6,19 @@ use nalgebra::Vector2;
 use serde::Serialize;
 
 use super::{CheckInput, VerifyError};
-use crate::dynamics::model::MechanismModel;
-use crate::mechanics::blocks::Row;
 use crate::mechanics::capacity::{Capacity, Control, Displaced};
-use crate::mechanics::chain::Hinge;
-use crate::mechanics::four_link::impact::ImpactModel;
 use crate::mechanics::friction::{self, FrictionError};
 use crate::mechanics::geometry::pose::BodyPoint;
 use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::parts::Parts as _;
 use crate::mechanics::settling::Held;
 use crate::mechanics::stability::{RowOnset, onset};
-use crate::mechanics::sway::Sway;
 use crate::mechanics::virtual_work::{
     MovingBody, MovingTie, Participation, load_multiplier, per_displacement_of_centre,
 };
 use crate::scenario::{CheckedSides, Structure};
 use crate::studies::capacity::Bodies;
+use crate::{Hinge, ImpactModel, MechanismModel, Row, Sway};
 
 /// A hinge with its position.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

@@ -23,7 +23,7 @@ use crate::dynamics::demand::ground::{GroundSpectrum, Hazard, Site};
 use crate::dynamics::demand::points::PeriodOutOfRange;
 use crate::mechanics::capacity::Capacity;
 use crate::mechanics::sway::Sway;
-use crate::output::template::filters;
+use crate::output::filters;
 use crate::scenario::{
     CheckedSides, Demand, InputFile, LimitState, Scenario, StateRule, Verify, sha256,
 };

@@ -5,17 +5,14 @@ use std::f64::consts::PI;
 use nalgebra::Vector2;
 
 use super::{Body, Mechanism, Summary};
-use crate::dynamics::history::OpenHinge;
 use crate::mechanics::geometry::field::turned;
-use crate::mechanics::sway::Sway;
-use crate::output::Figure;
-use crate::output::axes::Scale;
-use crate::output::chart::{Chart, Mark, Shape};
 use crate::output::elevation::{BODIES, SheetTransform, View, draw_dimensions, room_px};
-use crate::output::scene::Scene;
-use crate::output::sheet::{Key, PartHeight, Sheet};
-use crate::output::svg::{Anchor, CURVES, Drawing, Stroke, color};
+use crate::output::{
+    Anchor, CURVES, Chart, Drawing, Figure, Key, Mark, PartHeight, Scale, Scene, Shape, Sheet,
+    Stroke, color,
+};
 use crate::scenario::{DimensionSide, Structure};
+use crate::{OpenHinge, Sway};
 
 /// Colour of parts that do not move.
 const STILL: &str = "#e9e9e9";

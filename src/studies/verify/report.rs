@@ -16,14 +16,11 @@ use super::{
     Verdict, alike, picture,
 };
 use crate::dynamics::demand::damping_factor;
-use crate::mechanics::chain::Hinge;
 use crate::mechanics::geometry::ring::Edge;
-use crate::mechanics::sway::Sway;
-use crate::output::template::{filters, render};
-use crate::output::{Figure, OutputError};
+use crate::output::{Figure, OutputError, filters, render};
 use crate::scenario::{CONFIDENCE_FACTOR, CheckedSides, LimitState, Scenario, StateRule};
-use crate::studies::remarks::no_verdict;
-use crate::studies::results::Results;
+use crate::studies::{Results, no_verdict};
+use crate::{Hinge, Sway};
 
 /// Names of the files, the seal last.
 pub const FILES: [&str; 2] = ["verify.html", "verify.json"];

@@ -4,11 +4,7 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::{CellCounts, CellRow, CellsOfSamples, Crossing, LEVELS, OUTSIDE, Samples};
-use crate::output::chart::Mark;
-use crate::output::sheet::Key;
-use crate::output::svg::{Stroke, color};
-use crate::output::table::{column, csv, each, list};
-use crate::output::{Figure, OutputError};
+use crate::output::{Figure, Key, Mark, OutputError, Stroke, color, column, csv, each, list};
 use crate::scenario::Hinges;
 use crate::studies::ending::columns::{OUTCOMES, yes};
 use crate::studies::ensemble::influence::percent;
@@ -16,11 +12,9 @@ use crate::studies::ensemble::report::{Band, Findings};
 use crate::studies::kind::{Kind, kind};
 use crate::studies::map::page::Cells;
 use crate::studies::map::picture::{Drawn, Sheet};
-use crate::studies::remarks::{ModelCheck, no_verdict};
-use crate::studies::results::{Results, Style};
 use crate::studies::runner::Study as _;
 use crate::studies::statistics::{Share, band, quantile};
-use crate::studies::threshold::rounded;
+use crate::studies::{ModelCheck, Results, Style, no_verdict, rounded};
 
 /// Names of the files, the seal last.
 pub const FILES: [&str; 6] = [

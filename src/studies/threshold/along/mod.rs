@@ -13,8 +13,7 @@ use super::check;
 use super::factors::Factors;
 use super::first_edge::FirstEdge;
 use crate::scenario::{Scenario, Sequence, Spacing};
-use crate::studies::ending::NoAnswer;
-use crate::studies::runner::Study;
+use crate::studies::{NoAnswer, Study};
 
 /// Equally spaced values of a key of the scenario, ends included.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -1,9 +1,7 @@
 //! The picture of thresholds along a range.
 
 use super::Point;
-use crate::output::Figure;
-use crate::output::chart::{Chart, Mark, Shape};
-use crate::output::svg::CURVES;
+use crate::output::{CURVES, Chart, Figure, Mark, Shape};
 
 /// Function that returns a quantity of a point, in g.
 type Quantity = fn(&Point) -> Option<f64>;

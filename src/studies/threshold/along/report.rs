@@ -4,12 +4,11 @@ use serde::Serialize;
 
 use super::{Along, AlongOptions, AlongRow, KeyRange, Point, picture};
 use crate::argument::plain;
-use crate::output::OutputError;
-use crate::output::table::{column, csv, fields};
-use crate::studies::ending::NoAnswer;
-use crate::studies::remarks::{CaseSummary, ModelCheck, Remark, Remarks, no_verdict};
-use crate::studies::results::{ReportedStudy, Results, Style};
+use crate::output::{OutputError, column, csv, fields};
 use crate::studies::threshold::{Factors, rounded, rounded_down};
+use crate::studies::{
+    CaseSummary, ModelCheck, NoAnswer, Remark, Remarks, ReportedStudy, Results, Style, no_verdict,
+};
 
 /// The part of the summary that is specific to thresholds along a key.
 #[derive(Serialize)]
