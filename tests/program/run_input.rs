@@ -63,8 +63,16 @@ fn the_printed_json_summary_equals_the_file() {
     assert_eq!(printed["outcome"], "rest");
 
     let both: Value = serde_json::from_str(&stdout(&run(&["--hinges", "both"]))).unwrap();
-    // The computing time of a step varies.
+    // The computing time of a step varies, and several models have one answer together.
     let mut printed = printed;
+    assert!(
+        printed
+            .as_object_mut()
+            .unwrap()
+            .remove("to_quote")
+            .is_some()
+    );
+    assert!(both["to_quote"].is_string());
     printed["longest_step_us"] = both["free"]["longest_step_us"].clone();
     assert_eq!(both["free"], printed);
     assert_eq!(both["four"]["outcome"], "rest");

@@ -307,7 +307,7 @@ class History(Summarised):
 
         def make(native: _native.History) -> Summary:
             numbers = Summary._parse(native.summary_json(False))
-            del numbers["verdict"]
+            del numbers["verdict"], numbers["to_quote"]
             return numbers
 
         numbers: Summary = self._once("numbers", make)

@@ -304,12 +304,14 @@ impl<'a> Run<'a> {
             varied: &varied,
         };
         let (computed_verdict, answer) = (computed.verdict(), comparison::answer(&computed));
-        let summary = Summary::of(&computed, drawings.points.peaks());
+        let mut summary = Summary::of(&computed, drawings.points.peaks());
+        if self.all_models.len() > 1 {
+            summary.to_quote = None;
+        }
         let words = Words {
             computed,
             summary: &summary,
             impacts: &drawings.notable,
-            answer: &answer,
             all_models: self.all_models,
         };
         let (verdict, mut words) = (verdict(computed), render(&words));

@@ -5,6 +5,7 @@ use serde_json::Value;
 
 use super::Scales;
 use super::caveats::{first_peak_rad, warnings};
+use super::comparison;
 use super::feet::FeetApart;
 use crate::dynamics::history::{ElasticSummary, HalfCycle, RowSummary, Summary as History};
 use crate::dynamics::repeatability::{Repeatability, Verdict, key};
@@ -14,6 +15,7 @@ use crate::mechanics::sides::Sides;
 use crate::output::mechanisms::columns;
 use crate::output::{Named, OutputError, summary_of};
 use crate::scenario::{Ground, Scenario};
+use crate::studies::quotable;
 use crate::{MechanismModel, Model, Sway};
 
 /// A computed motion, with its repetitions and variations.
@@ -90,6 +92,9 @@ pub struct Summary<'a> {
     /// Largest displacements of the points that were chosen with `--point`, relative to the ground.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub points: Vec<PointPeaks>,
+    /// The answer that may be quoted, in words; absent from the summary of one of several models, which have one answer together.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub to_quote: Option<String>,
     /// Computing time of the longest step, in microseconds. It is the only number that differs between computations.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub longest_step_us: Option<f64>,
@@ -302,6 +307,7 @@ impl<'a> Summary<'a> {
             repeatability: computed.repeated.map(RepeatabilitySummary::of),
             variations: computed.varied.iter().map(VariationSummary::of).collect(),
             points,
+            to_quote: quotable::in_words(&[comparison::answer(computed)]),
             longest_step_us: longest_step.map(|step| (step.as_secs_f64() * 1e6).round()),
         }
     }

@@ -18,7 +18,6 @@ use crate::mechanics::sides::Sides;
 use crate::output::mechanisms::by_body;
 use crate::output::{filters, range_ends};
 use crate::scenario::{Hinges, Scenario, Series};
-use crate::studies::quotable::{self, ModelAnswer};
 use crate::{Hinge, Sway};
 
 /// Returns the heading of the words for the runs of scenarios that differ in their models: title, one line per record, and a note about an
@@ -83,7 +82,6 @@ pub(super) struct Words<'a> {
     pub computed: ComputedRun<'a>,
     pub summary: &'a Summary<'a>,
     pub impacts: &'a NotableImpacts,
-    pub answer: &'a ModelAnswer,
     /// The models of motion of all runs whose words are printed together.
     pub all_models: &'a [Hinges],
 }
@@ -105,12 +103,6 @@ struct Slip {
 }
 
 impl<'a> Words<'a> {
-    /// Returns the answer that may be quoted, in words; `None` if several models are compared, which have one answer together.
-    fn to_quote(&self) -> Option<String> {
-        let single = self.all_models.len() == 1;
-        single.then(|| quotable::in_words(std::slice::from_ref(self.answer)))?
-    }
-
     /// Returns true if no block moved until the end of the run.
     fn is_unmoved(&self) -> bool {
         let history = self.computed.history;
