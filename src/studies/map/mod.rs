@@ -16,7 +16,9 @@ use super::runner::Study;
 use crate::dynamics::model::{Case, Model, Repetition, SimulationError};
 use crate::dynamics::repeatability::OutcomeCount;
 use crate::scenario::{Axis, Ground, ModelError, Motion, Quantity, Scaling, Scenario, Structure};
-use crate::{ArgumentError, FourLinkError, GroundMotion, ImpactModel, Summary};
+use crate::{
+    Arch, ArgumentError, FourLinkError, FourLinks, GroundMotion, ImpactModel, PulseShape, Summary,
+};
 
 /// A cell of a map.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -58,7 +60,8 @@ pub struct OverturningMap<'a> {
     /// True if the repetitions of each cell are computed, to count its outcomes.
     pub(super) repeat: bool,
     /// Models that several cells share.
-    models: Shared<Result<Arc<dyn Model>, ModelError>>,
+    structures: Shared<Result<Standing, ModelError>>,
+    pulses: Shared<PulseShape>,
     /// The scenario, or a sample of it. `variants` are the scenarios with other values of keys outside `[map]`.
     base: Arc<Scenario>,
     variants: Option<Shared<Result<Arc<Scenario>, String>>>,
@@ -91,6 +94,23 @@ pub(super) fn described(axis: &Axis) -> Described<'_> {
         Quantity::Other => (&*axis.key, "", &[]),
     };
     Described { label, table, keys }
+}
+
+/// The model of motion of a cell.
+#[derive(Clone, Debug)]
+enum Standing {
+    /// An arch of four links, of any size.
+    Arch(Arch, FourLinks),
+    Model(Arc<dyn Model>),
+}
+
+impl Standing {
+    fn model(&self) -> &dyn Model {
+        match self {
+            Self::Arch(_, links) => links,
+            Self::Model(model) => &**model,
+        }
+    }
 }
 
 /// Values that depend on one axis or on none. Each value is computed at its first use.
@@ -162,20 +182,24 @@ impl<'a> OverturningMap<'a> {
         let values = axes.map(|axis| axis.sequence.values());
         let counts = [values[0].len(), values[1].len()];
         let depends = |on: &[Quantity]| axes.map(|axis| on.contains(&axis.quantity));
-        let shapes = [
-            Quantity::MeanRadius,
+        let mut shapes = vec![
             Quantity::ThicknessRatio,
             Quantity::Embrace,
             Quantity::Restitution,
             Quantity::Other,
         ];
+        if scenario.motion.hinges().has_joints() {
+            shapes.push(Quantity::MeanRadius);
+        }
+        let durations = [Quantity::Duration, Quantity::Frequency, Quantity::Other];
         let variants = depends(&[Quantity::Other]);
         let has_variants = variants.contains(&true);
         Some(Self {
             scenario,
             axes,
             repeat: map.repeat,
-            models: Shared::new(counts, depends(&shapes)),
+            structures: Shared::new(counts, depends(&shapes)),
+            pulses: Shared::new(counts, depends(&durations)),
             base: Arc::new(sample),
             variants: has_variants.then(|| Shared::new(counts, variants)),
             values,
@@ -219,12 +243,29 @@ impl<'a> OverturningMap<'a> {
     }
 
     /// Returns the model of motion of a cell.
-    fn model(&self, index: usize, scenario: &Scenario) -> Result<Arc<dyn Model>, ModelError> {
-        self.models.get(self.place(index), || {
+    fn standing(&self, index: usize, scenario: &Scenario) -> Result<Standing, ModelError> {
+        let make = || {
             let structure = self.structure(index, scenario);
             let structure = structure.map_err(FourLinkError::from)?;
-            let motion = self.moves(index, scenario);
-            Ok(motion.model_for_many_cases(&structure)?.into())
+            Ok(match (self.moves(index, scenario), structure) {
+                (Motion::FourLinks(law), Structure::Arch(arch)) => {
+                    let links = FourLinks::of_arch(&arch, law)?;
+                    Standing::Arch(arch, links)
+                }
+                (motion, structure) => {
+                    Standing::Model(motion.model_for_many_cases(&structure)?.into())
+                }
+            })
+        };
+        let standing = self.structures.get(self.place(index), make)?;
+        Ok(match (standing, self.value(index, Quantity::MeanRadius)) {
+            (Standing::Arch(arch, links), Some(mean_radius_m)) => {
+                let arch = arch.with_mean_radius_m(mean_radius_m);
+                let arch = arch.map_err(FourLinkError::from)?;
+                let links = links.with_size_of(&arch);
+                Standing::Arch(arch, links)
+            }
+            (standing, _) => standing,
         })
     }
 
@@ -239,6 +280,7 @@ impl<'a> OverturningMap<'a> {
         if let Some(embrace_deg) = self.value(index, Quantity::Embrace) {
             arch = arch.with_embrace_deg(embrace_deg)?;
         }
+        // Arches of one shape use the same limit analysis.
         if let Some(mean_radius_m) = self.value(index, Quantity::MeanRadius) {
             arch = arch.with_mean_radius_m(mean_radius_m)?;
         }
@@ -263,13 +305,16 @@ impl<'a> OverturningMap<'a> {
         let value = |quantity| self.value(index, quantity);
         let motion = match scenario.ground.as_ref() {
             Some(Ground::Pulse(pulse)) => {
-                let mut pulse = pulse.clone();
-                let of_frequency = value(Quantity::Frequency).map(f64::recip);
-                let duration_s = of_frequency.or(value(Quantity::Duration));
-                pulse.duration_s = duration_s.unwrap_or(pulse.duration_s);
+                let shape = self.pulses.get(self.place(index), || {
+                    let of_frequency = value(Quantity::Frequency).map(f64::recip);
+                    let duration_s = of_frequency.or(value(Quantity::Duration));
+                    let mut pulse = pulse.clone();
+                    pulse.duration_s = duration_s.unwrap_or(pulse.duration_s);
+                    pulse.shape()
+                });
                 let amplitude_g = value(Quantity::Amplitude).unwrap_or(pulse.amplitude_g);
                 let amplitude_g = Vector2::new(amplitude_g, pulse.vertical_amplitude_g);
-                let motion = pulse.shape().inclined_m_s2(amplitude_g * gravity_m_s2);
+                let motion = shape.inclined_m_s2(amplitude_g * gravity_m_s2);
                 Some(motion.expect("the amplitudes of a scenario are those of a ground motion"))
             }
             Some(Ground::Record(record)) => {
@@ -287,14 +332,14 @@ impl<'a> OverturningMap<'a> {
     }
 
     /// Returns the model of a cell, with its ground motion and request.
-    fn case(&self, index: usize) -> Result<(Arc<dyn Model>, Case), NoHistory> {
+    fn case(&self, index: usize) -> Result<(Standing, Case), NoHistory> {
         let scenario = self.variant(index).map_err(NoHistory::Failed)?;
-        let model = self.model(index, &scenario)?;
+        let standing = self.standing(index, &scenario)?;
         let ground = self.motion(index, &scenario).map_err(NoHistory::Failed)?;
         let structure = self.structure(index, &scenario);
         let structure = structure.map_err(|error| ModelError::from(FourLinkError::from(error)))?;
         let request = scenario.request_on(&ground, &structure);
-        Ok((model, (ground, request)))
+        Ok((standing, (ground, request)))
     }
 
     /// Computes the endings of cells with the same structure, and, if requested, the number of outcomes of each with its repetitions.
@@ -356,19 +401,19 @@ impl Study for OverturningMap<'_> {
     /// Returns the family of cells with the same structure; `None` unless their model computes several motions faster together.
     fn family(&self, index: usize) -> Option<usize> {
         let together = self.scenario.motion.is_faster_together();
-        together.then(|| self.models.place(self.place(index)))?
+        together.then(|| self.structures.place(self.place(index)))?
     }
 
     fn rows(&self, indices: &[usize]) -> Vec<CellRow> {
-        let first = OnceCell::new();
+        let standing = OnceCell::new();
         let cases = indices.iter().map(|index| {
-            let (model, case) = self.case(*index)?;
-            first.get_or_init(|| model);
+            let (structure, case) = self.case(*index)?;
+            standing.get_or_init(|| structure);
             Ok(case)
         });
         let ended = answered(cases, |cases| {
-            let model = first.get();
-            model.map_or(Vec::new(), |model| self.endings(&**model, cases))
+            let standing = standing.get();
+            standing.map_or(Vec::new(), |one| self.endings(one.model(), cases))
         });
         let row = |(index, ended): (&usize, Result<Ended, NoHistory>)| {
             let [x, y] = self.coordinates(*index);
