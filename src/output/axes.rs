@@ -27,7 +27,6 @@ enum TickSpacing {
 
 impl Scale {
     /// Makes a scale that contains all `values`, with about `ticks` ticks; from 0 to 1 without values.
-    #[must_use]
     pub fn around(values: impl IntoIterator<Item = f64>, ticks: u32) -> Self {
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for value in values {
@@ -50,7 +49,6 @@ impl Scale {
     }
 
     /// Makes a scale from `low` to `high` exactly, with about `ticks` ticks.
-    #[must_use]
     pub fn exactly(low: f64, high: f64, ticks: u32) -> Self {
         Self {
             low,
@@ -60,7 +58,6 @@ impl Scale {
     }
 
     /// Makes a logarithmic scale from `low` to `high` exactly; `low` is raised to the smallest positive number if necessary.
-    #[must_use]
     pub const fn logarithmic(low: f64, high: f64) -> Self {
         Self {
             low: low.max(f64::MIN_POSITIVE),
@@ -120,7 +117,6 @@ impl Scale {
     }
 
     /// Returns the value at a fraction of the axis, from 0 to 1.
-    #[must_use]
     pub fn at(&self, part: f64) -> f64 {
         match self.spacing {
             TickSpacing::Linear(_) => self.low + part * (self.high - self.low),
@@ -163,7 +159,6 @@ pub struct Axes {
 
 impl Axes {
     /// Returns the position of a pair of values.
-    #[must_use]
     pub fn place(&self, x: f64, y: f64) -> Vector2<f64> {
         let [left, top, width, height] = self.frame.parts();
         let x = left + width * self.x.part(x);

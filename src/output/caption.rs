@@ -9,7 +9,6 @@ use crate::scenario::{
 type Varies<'a> = &'a dyn Fn(&str) -> bool;
 
 /// Returns the caption without the values that vary along the axes.
-#[must_use]
 pub fn caption(scenario: &Scenario, axes: &[&Axis]) -> String {
     let varied: Vec<String> = axes.iter().map(|axis| varied_key(axis)).collect();
     let varies = |key: &str| varied.iter().any(|varied| varied == key);
@@ -91,7 +90,6 @@ fn four_digits(value: f64) -> f64 {
 }
 
 /// Returns the ground motion in words: the pulse, or the record with its scale; and the motion of the right foot.
-#[must_use]
 pub fn ground_in_words(scenario: &Scenario) -> String {
     let words = ground(scenario, &|_| false);
     words.unwrap_or_else(|| "the ground stays still".to_owned())

@@ -68,7 +68,6 @@ impl SheetTransform {
 
 /// Draws a structure at rest with its dimensions, the numbers of its joints, and a text below. On moved supports it is drawn displaced; dashed
 /// lines then show the undeformed structure, to which the dimensions refer.
-#[must_use]
 pub fn draw(figure: Figure, title: &str, scene: &Scene, text: &str) -> String {
     let room = |side: DimensionSide| room_px(scene, side).max(24.0);
     let [low_m, high_m] = scene.frame_m();

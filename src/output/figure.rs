@@ -109,7 +109,6 @@ impl Figure {
     }
 
     /// Returns true if a panel of a history is drawn. `watched` is true if there are observed points.
-    #[must_use]
     pub fn shows(&self, panel: Panel, watched: bool) -> bool {
         match (self.panels, panel) {
             (Some(shown), panel) => shown[panel as usize],
@@ -126,7 +125,6 @@ impl Figure {
     }
 
     /// Returns the height of a plot, from its height on the screen: a little less in narrow pictures.
-    #[must_use]
     pub fn height_px(&self, on_screen_px: f64) -> f64 {
         let with_width = 0.35 + 0.65 * self.width_px / Self::SCREEN.width_px;
         on_screen_px * with_width
@@ -146,14 +144,12 @@ impl Figure {
     }
 
     /// Returns the number of ticks along the width, from the number on the screen.
-    #[must_use]
     pub fn ticks(&self, on_screen: u32) -> u32 {
         let ticks = (f64::from(on_screen) * self.width_px / Self::SCREEN.width_px).round() as u32;
         ticks.max(3)
     }
 
     /// Returns the number of columns of at least this width that fit side by side, at most `wanted`.
-    #[must_use]
     pub fn columns(&self, wanted: usize, least_px: f64) -> usize {
         let fit = (self.width_px / least_px) as usize;
         fit.clamp(1, wanted)

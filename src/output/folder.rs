@@ -98,7 +98,6 @@ impl Batch {
     }
 
     /// Returns true if another command has a result with this path.
-    #[must_use]
     pub fn is_of_other_command(&self, path: &Path) -> bool {
         let inner = self.inner();
         inner
@@ -107,7 +106,6 @@ impl Batch {
     }
 
     /// Returns warnings about results of other commands in the folder that come from another scenario.
-    #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let inner = self.inner();
         inner
@@ -289,7 +287,6 @@ impl Folder {
     }
 
     /// Returns the path of the folder.
-    #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }

@@ -88,7 +88,6 @@ impl Manifest {
     }
 
     /// Returns a scenario file other than this one, if the folder holds its results.
-    #[must_use]
     pub fn other_scenario_file(&self, own: &str) -> Option<&str> {
         let mut files = self
             .results
@@ -116,7 +115,6 @@ impl Manifest {
     }
 
     /// Returns warnings about results of other commands that come from another scenario.
-    #[must_use]
     pub fn warnings(&self, folder: &Path, command: &str, own: &Origin) -> Vec<String> {
         let others = self.results.iter().filter(|(name, _)| *name != command);
         let warning = |(name, other): (&String, &CommandResults)| {
@@ -147,7 +145,6 @@ const OF_SOME: [&str; 6] = ["title", "map", "suite", "demand", "verify", "uncert
 
 impl Origin {
     /// Returns the origin of results that this scenario will have.
-    #[must_use]
     pub fn of(scenario: &Scenario) -> Self {
         let inputs = scenario.input_paths();
         Self {
@@ -159,7 +156,6 @@ impl Origin {
     }
 
     /// Reads the origin of results from their summary.
-    #[must_use]
     pub fn of_summary(summary: &Value) -> Self {
         let of_models = summary.pointer("/models/0");
         let summary = of_models.unwrap_or(summary);

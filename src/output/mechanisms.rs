@@ -13,7 +13,6 @@ pub(crate) fn columns(bodies: &[String], quantity: &str, unit: &str) -> Vec<Stri
 }
 
 /// Returns the values of the bodies with their names, from left to right.
-#[must_use]
 pub fn by_body(bodies: &[String], values: &[f64]) -> String {
     let named = bodies.iter().zip(values);
     let texts: Vec<_> = named

@@ -87,7 +87,6 @@ pub enum OutputError {
 
 impl OutputError {
     /// Returns true if the reader of a pipe has closed it, which is not a failure.
-    #[must_use]
     pub fn is_closed_pipe(&self) -> bool {
         matches!(self, Self::Io { source, .. } if source.kind() == io::ErrorKind::BrokenPipe)
     }
@@ -110,7 +109,6 @@ impl OutputError {
 }
 
 /// Formats JSON for people: indented, with invisible characters escaped.
-#[must_use]
 pub fn pretty(value: &Value) -> String {
     shown_lines(&format!("{value:#}\n"))
 }

@@ -58,7 +58,6 @@ impl Scene {
     }
 
     /// Returns a point with the body that carries it while these hinges are open.
-    #[must_use]
     pub fn body_point(&self, point: &StructurePoint, hinges: &[OpenHinge]) -> BodyPoint {
         let body = match (point.part, &self.outline) {
             (PointLocation::Section(angle_rad), _) => link(&sections_rad(hinges), angle_rad),

@@ -11,7 +11,6 @@ use crate::dynamics::ground::intensity::Intensity;
 
 /// Draws acceleration, velocity, displacement and the build-up of the Arias intensity, with the significant duration shaded. `samples` are times
 /// in s and accelerations in m/s2.
-#[must_use]
 pub fn draw(
     figure: Figure,
     title: &str,

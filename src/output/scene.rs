@@ -48,7 +48,6 @@ pub struct CompressedJoint {
 
 impl CompressedJoint {
     /// Returns the stress as a wedge on the joint, with this height in metres per Pa.
-    #[must_use]
     pub fn wedge(&self, metres_per_pa: f64) -> [BodyPoint; 4] {
         let [first, last] = self.ends;
         let top = |end: BodyPoint, stress_pa: f64| BodyPoint {
@@ -71,7 +70,6 @@ pub struct Piece {
 
 impl Piece {
     /// Returns the current positions of the corners, with their displacements multiplied by `exaggeration`.
-    #[must_use]
     pub fn moved(&self, poses: &[Pose], exaggeration: f64) -> Vec<Vector2<f64>> {
         let (body, corners) = (self.body, self.outline_m.iter());
         let corners =
@@ -82,14 +80,12 @@ impl Piece {
 
 impl Scene {
     /// Makes the scene of a structure that rocks as mechanisms; the blocks of an arch are linked.
-    #[must_use]
     pub fn new(structure: &Structure) -> Self {
         let (parts, ties) = (structure.as_parts(), structure.ties());
         Self::of(structure, parts, structure.thrusts(), ties)
     }
 
     /// Makes the scene of a structure that moves as the blocks of this row.
-    #[must_use]
     pub fn of_row(row: &Row, structure: &Structure) -> Self {
         Self::of(structure, row, false, &row.ties)
     }
@@ -114,13 +110,11 @@ impl Scene {
     }
 
     /// Returns true if a support has moved.
-    #[must_use]
     pub fn has_settled(&self) -> bool {
         self.supports != [Pose::UNDEFORMED; 2]
     }
 
     /// Returns the ends of the ties while these hinges are open.
-    #[must_use]
     pub fn ties(&self, hinges: &[OpenHinge]) -> Vec<[BodyPoint; 2]> {
         let end = |anchor: Anchor| BodyPoint {
             body: anchor.block.and_then(|block| self.body_of(block, hinges)),
@@ -131,7 +125,6 @@ impl Scene {
 
     /// Returns the faces of the supports of an arch, in metres, from the intrados to the extrados, with their displacements multiplied by
     /// `exaggeration`. Empty for a column, which stands on the ground.
-    #[must_use]
     pub fn supports_m(&self, exaggeration: f64) -> Vec<[Vector2<f64>; 2]> {
         let is_arch = match &self.outline {
             Outline::Ring { .. } => true,
@@ -153,14 +146,12 @@ impl Scene {
     }
 
     /// Returns the lower left and the upper right corner of the undeformed structure, in metres.
-    #[must_use]
     pub fn bounds_m(&self) -> [Vector2<f64>; 2] {
         let ends = self.ties.iter().flat_map(|tie| &tie.ends);
         widened(self.blocks_m(), ends.map(|end| end.at_m))
     }
 
     /// Returns the lower left and the upper right corner of the undeformed blocks, in metres.
-    #[must_use]
     pub fn blocks_m(&self) -> [Vector2<f64>; 2] {
         let empty = [f64::INFINITY, f64::NEG_INFINITY].map(Vector2::repeat);
         let pieces = self.pieces(&[]).into_iter();
@@ -168,7 +159,6 @@ impl Scene {
     }
 
     /// Returns the lower left and the upper right corner of the structure with fill and loads, undeformed and at rest, in metres.
-    #[must_use]
     pub fn frame_m(&self) -> [Vector2<f64>; 2] {
         let (fill, loads) = (self.fill(&[]), self.loads.iter());
         let built = fill.iter().flat_map(|piece| piece.outline_m.clone());
@@ -179,7 +169,6 @@ impl Scene {
     }
 
     /// Returns the fill in pieces while these hinges are open.
-    #[must_use]
     pub fn fill(&self, hinges: &[OpenHinge]) -> Vec<Piece> {
         let columns = self.fill_m.iter();
         let pieces = columns.map(|(block, outline_m)| self.piece(*block, outline_m, hinges));
@@ -195,7 +184,6 @@ impl Scene {
     }
 
     /// Returns the loads while these hinges are open, each with the position of its middle.
-    #[must_use]
     pub fn loads(&self, hinges: &[OpenHinge]) -> Vec<(BodyPoint, &PlacedLoad)> {
         let loads = self.loads.iter().map(|((block, at_m), load)| {
             let (body, at_m) = (self.body_of(*block, hinges), *at_m);
@@ -205,7 +193,6 @@ impl Scene {
     }
 
     /// Returns dimensions and loads in words, for pictures without space to draw them; may be empty.
-    #[must_use]
     pub fn sizes_in_words(&self) -> String {
         let lengths = self.dimensions.iter();
         let lengths = lengths.map(|dimension| dimension.words.clone());
@@ -216,7 +203,6 @@ impl Scene {
 
     /// Returns the joints from left to right, or from bottom to top, each from the intrados to the extrados, in metres. Empty if hinges may open
     /// anywhere.
-    #[must_use]
     pub fn joints_m(&self) -> Vec<[Vector2<f64>; 2]> {
         match &self.outline {
             Outline::Ring { joints_rad, .. } => {
@@ -244,7 +230,6 @@ impl Scene {
     }
 
     /// Returns the bodies as pieces while these hinges are open. A ring is divided at its hinges and its joints.
-    #[must_use]
     pub fn pieces(&self, hinges: &[OpenHinge]) -> Vec<Piece> {
         match &self.outline {
             Outline::Block(outline_m) => vec![self.piece(0, outline_m, hinges)],
@@ -279,7 +264,6 @@ impl Scene {
     }
 
     /// Returns the positions of the open hinges, as points of the body to the right of the hinge, or above it.
-    #[must_use]
     pub fn hinges(&self, hinges: &[OpenHinge]) -> Vec<BodyPoint> {
         let last = hinges.len().saturating_sub(1);
         let marks = hinges.iter().enumerate();
@@ -328,7 +312,6 @@ impl Scene {
 
     /// Returns the corners of a joint of a row at intrados and extrados, as points of the block after it; `None` if several blocks move as one
     /// body.
-    #[must_use]
     pub fn joint(&self, joint: usize) -> Option<[BodyPoint; 2]> {
         match &self.outline {
             Outline::Row(_) if !self.linked => self.corners(joint),
@@ -350,7 +333,6 @@ impl Scene {
     }
 
     /// Returns the compressed parts of the elastic joints of a row; empty for rigid joints.
-    #[must_use]
     pub fn compressed_joints(&self, sample: &Sample) -> Vec<CompressedJoint> {
         let pressures = sample.pressures.iter().enumerate();
         pressures
@@ -379,7 +361,6 @@ impl Scene {
     }
 
     /// Returns the unit normal of an undeformed joint of a row, towards the block after it.
-    #[must_use]
     pub fn across(&self, joint: usize) -> Option<Vector2<f64>> {
         let Outline::Row(outlines_m) = &self.outline else {
             return None;
@@ -398,7 +379,6 @@ impl Scene {
     }
 
     /// Returns the body that carries each of [`Scene::sections`] while these hinges are open.
-    #[must_use]
     pub fn bodies_of_sections(&self, hinges: &[OpenHinge]) -> Vec<Option<usize>> {
         let hinges_rad = sections_rad(hinges);
         let sections = self.sections.iter().enumerate();
@@ -417,7 +397,6 @@ impl Scene {
     }
 
     /// Returns the thrust line of a sample, as stretches of consecutive compressed sections.
-    #[must_use]
     pub fn thrust_line(&self, sample: &Sample) -> Vec<Vec<BodyPoint>> {
         let bodies = self.bodies_of_sections(&sample.hinges);
         let sections = self.sections.iter().zip(bodies);

@@ -52,7 +52,6 @@ pub struct Stroke {
 
 impl Stroke {
     /// Makes a stroke with these properties.
-    #[must_use]
     pub const fn new(color: &'static str, width: f64, dash: &'static str) -> Self {
         Self { color, width, dash }
     }
@@ -96,7 +95,6 @@ pub struct Drawing(String);
 
 impl Drawing {
     /// Returns the complete file, with this width and height in pixels and this width in print.
-    #[must_use]
     pub fn finish(self, size_px: [f64; 2], width_mm: Option<f64>) -> String {
         let [width_px, height_px] = size_px.map(|length| (length * 1e3).round() / 1e3);
         let [wide, high] = match width_mm {

@@ -59,7 +59,6 @@ impl Text {
 }
 
 /// Returns the width of a text in pixels, in Helvetica or a font with equal widths, such as Arial and Liberation Sans.
-#[must_use]
 pub fn text_px(text: &str) -> f64 {
     Text::from(text).px()
 }

@@ -24,7 +24,6 @@ pub struct Assignment {
 
 impl Assignment {
     /// Returns the key in the text of the user.
-    #[must_use]
     pub fn key(&self) -> &str {
         self.given.split('=').next().unwrap_or_default().trim()
     }

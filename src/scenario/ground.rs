@@ -121,7 +121,6 @@ pub struct PulseGround {
 
 impl PulseGround {
     /// Returns the pulse without its amplitudes.
-    #[must_use]
     pub fn shape(&self) -> PulseShape {
         let default = WaveTrain::default();
         let train = WaveTrain {

@@ -59,13 +59,11 @@ pub const MODELS: [ModelEntry; 3] = [
 
 impl Hinges {
     /// Returns the entry of the model in [`MODELS`].
-    #[must_use]
     pub const fn model(self) -> &'static ModelEntry {
         &MODELS[self as usize]
     }
 
     /// Returns true for free hinges and elastic joints: see [`ModelEntry::has_joints`].
-    #[must_use]
     pub const fn has_joints(self) -> bool {
         self.model().has_joints
     }

@@ -177,7 +177,6 @@ impl Scenario {
     }
 
     /// Returns name and checksum of each record file of the ground and of the suite, separated by a space.
-    #[must_use]
     pub fn record_checksums(&self) -> Vec<String> {
         let named = |series: &Series| format!("{} {:08x}", series.file, series.checksum());
         self.all_series().map(named).collect()
@@ -208,19 +207,16 @@ impl Scenario {
     }
 
     /// Returns the scenario file, the files of its structure, and those of `[demand]` and `[verify]`, with their hashes.
-    #[must_use]
     pub fn files(&self) -> &[InputFile] {
         &self.files.files
     }
 
     /// Returns the acceleration of gravity, in m/s2.
-    #[must_use]
     pub const fn gravity_m_s2(&self) -> f64 {
         self.simulation.gravity_m_s2
     }
 
     /// Returns the message about a table that the model of motion ignores; `None` if it ignores no table of the file.
-    #[must_use]
     pub fn ignored(&self) -> Option<&'static str> {
         let message = self.motion.hinges().model().ignored;
         message.filter(|_| self.ignores_impact)
@@ -248,7 +244,6 @@ impl Scenario {
     }
 
     /// Returns the JSON schema of scenarios for editors: all tables and keys with their rules and defaults.
-    #[must_use]
     pub fn schema() -> Value {
         // With a set model, tables of several models are allowed together.
         let options = ReadOptions {
@@ -362,7 +357,6 @@ impl Scenario {
     }
 
     /// Returns the scenario with another ground motion, without tables of studies, because they were checked against the original ground.
-    #[must_use]
     pub fn with_ground(&self, ground: Option<Ground>) -> Self {
         let left = ground.as_ref().map_or_else(GroundMotion::still, |ground| {
             ground.motion_under(self.simulation.gravity_m_s2)
@@ -396,7 +390,6 @@ impl Scenario {
 
     /// Returns one scenario for each record of the suite, with the unscaled record as ground motion and without other studies. Empty without a
     /// suite.
-    #[must_use]
     pub fn by_record(&self) -> Vec<(String, Self)> {
         let records = self.suite.iter().flat_map(|suite| &suite.records);
         records
@@ -409,7 +402,6 @@ impl Scenario {
     }
 
     /// Returns the ground motion of a record multiplied by a factor, with both feet moving together, for the gravity of this scenario.
-    #[must_use]
     pub(crate) fn shaken_by(&self, series: &Series, factor: f64) -> GroundMotion {
         suite::scaled_record(series, Scaling::Factor(factor)).motion(self.simulation.gravity_m_s2)
     }
@@ -431,7 +423,6 @@ impl Scenario {
     }
 
     /// Returns the name of the model of motion in results.
-    #[must_use]
     pub const fn model_name(&self) -> &'static str {
         self.motion.name(&self.structure)
     }
@@ -473,7 +464,6 @@ impl Scenario {
     }
 
     /// Returns the ground motion; it is zero if the scenario has no `[ground]`.
-    #[must_use]
     pub fn ground_motion(&self) -> &GroundMotion {
         &self.ground_motion
     }
@@ -505,13 +495,11 @@ impl Scenario {
     }
 
     /// Returns the request for the simulation, with samples at every output step.
-    #[must_use]
     pub fn request(&self) -> Request {
         self.request_under(&self.ground_motion)
     }
 
     /// Returns the request for a simulation with another ground motion.
-    #[must_use]
     pub fn request_under(&self, ground: &GroundMotion) -> Request {
         Request {
             initial: self.initial,
@@ -520,7 +508,6 @@ impl Scenario {
     }
 
     /// Returns the request for a history of a structure from rest on a ground motion; `[initial]` is ignored.
-    #[must_use]
     pub fn request_on(&self, ground: &GroundMotion, structure: &Structure) -> Request {
         let end_s = self.simulation.end_s(ground.end_s(), structure.size_m());
         Request {
@@ -537,19 +524,16 @@ impl Scenario {
     /// Returns the scenario as TOML text with all defaults. A default `duration_s` is omitted, because it depends on the ground motion.
     ///
     /// Reading the text of a valid scenario gives an equal scenario.
-    #[must_use]
     pub fn to_toml(&self) -> String {
         toml_text(&self.to_json())
     }
 
     /// Returns the scenario as TOML text as [`Scenario::to_toml`] does, with `duration_s` always written.
-    #[must_use]
     pub fn to_resolved_toml(&self) -> String {
         toml_text(&self.to_resolved_json())
     }
 
     /// Returns the scenario as JSON as [`Scenario::to_json`] does, with `duration_s` always written, to the nanosecond.
-    #[must_use]
     pub fn to_resolved_json(&self) -> Value {
         let mut json = self.to_json();
         if let Some(Value::Object(simulation)) = json.get_mut("simulation") {
@@ -561,7 +545,6 @@ impl Scenario {
 
     /// Returns the scenario as JSON with the keys of the file and all defaults. A default `duration_s` is omitted, because it depends on the
     /// ground motion.
-    #[must_use]
     pub fn to_json(&self) -> Value {
         let mut table = self.resolved();
         Circular::put_given(&mut table, &self.given_shape, &self.as_given);

@@ -27,7 +27,6 @@ type AnyModel = Result<Box<dyn Model>, ModelError>;
 
 impl Motion {
     /// Returns the name of the model.
-    #[must_use]
     pub const fn hinges(&self) -> Hinges {
         match self {
             Self::FourLinks(_) => Hinges::Four,
@@ -37,13 +36,11 @@ impl Motion {
     }
 
     /// Returns true if the model computes several motions faster together: see [`Model::is_elastic`].
-    #[must_use]
     pub const fn is_faster_together(&self) -> bool {
         matches!(self, Self::ElasticJoints(_))
     }
 
     /// Returns the name of the model in sentences.
-    #[must_use]
     pub const fn label(&self) -> &'static str {
         self.hinges().model().label
     }
@@ -108,7 +105,6 @@ impl Motion {
     }
 
     /// Returns the impact law of four links; the theoretical law for models without four links.
-    #[must_use]
     pub fn impact(&self) -> ImpactLaw {
         match self {
             Self::FourLinks(law) => *law,
@@ -117,7 +113,6 @@ impl Motion {
     }
 
     /// Returns Coulomb's coefficient of friction; `None` if joints cannot slip.
-    #[must_use]
     pub const fn friction_coefficient(&self) -> Option<f64> {
         match self {
             Self::FourLinks(_) => None,
@@ -164,7 +159,6 @@ impl Motion {
     }
 
     /// Returns the movements of the supports before time 0; `None` without movements.
-    #[must_use]
     pub fn supports(&self) -> Option<Movements> {
         let supports = match self {
             Self::FourLinks(_) => return None,
@@ -175,7 +169,6 @@ impl Motion {
     }
 
     /// Returns the compressive strength of joints that may crush, in MPa; otherwise `None`.
-    #[must_use]
     pub const fn compressive_strength_mpa(&self) -> Option<f64> {
         match self {
             Self::FourLinks(_) | Self::FreeHinges(_) => None,
@@ -184,7 +177,6 @@ impl Motion {
     }
 
     /// Returns the name of the scenario table of the model.
-    #[must_use]
     pub const fn table_name(&self) -> &'static str {
         self.hinges().model().table
     }

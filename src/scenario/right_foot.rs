@@ -80,7 +80,6 @@ impl RightFoot {
     }
 
     /// Returns the record of the right foot; `None` if it has the delayed motion of the left foot.
-    #[must_use]
     pub fn record(&self) -> Option<&Record> {
         match self {
             Self::Record(record) => Some(record),
@@ -89,7 +88,6 @@ impl RightFoot {
     }
 
     /// Returns the delay in s for feet at the distance `apart_m`; `None` if the right foot has a separate record.
-    #[must_use]
     pub fn delay_s(&self, apart_m: f64) -> Option<f64> {
         match self {
             Self::Late(delay_s) => Some(*delay_s),

@@ -57,7 +57,6 @@ const COUNT: Count = Count(2..=10_000, "the ends");
 
 impl Sequence {
     /// Returns the numbers.
-    #[must_use]
     pub fn values(&self) -> Vec<f64> {
         match self {
             Self::List(values) => values.clone(),
@@ -73,13 +72,11 @@ impl Sequence {
     }
 
     /// Returns true if the axis of these values, multiples of the numbers, is logarithmic.
-    #[must_use]
     pub fn is_logarithmic(&self, values: &[f64]) -> bool {
         self.spacing() == Spacing::Logarithmic && values.iter().all(|value| *value > 0.0)
     }
 
     /// Returns the spacing of the axis on which the numbers are drawn.
-    #[must_use]
     pub const fn spacing(&self) -> Spacing {
         match self {
             Self::Range { spacing, .. } => *spacing,

@@ -11,13 +11,11 @@
 /// assert_eq!(shown("a\u{202e}b\nc\u{7}"), r"a\u202eb\nc\u0007");
 /// assert_eq!(shown("mea\u{feff}n"), r"mea\ufeffn");
 /// ```
-#[must_use]
 pub fn shown(text: &str) -> String {
     escape(text, |_| false)
 }
 
 /// Escapes hidden characters in a text of several lines; line ends and tabs are kept.
-#[must_use]
 pub fn shown_lines(text: &str) -> String {
     escape(text, |c| matches!(c, '\n' | '\t'))
 }

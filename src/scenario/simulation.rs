@@ -47,7 +47,6 @@ impl Simulation {
     /// Returns the latest end of a history, in seconds: `duration_s`. The default is the end of the ground motion plus the larger of 10 s and 20
     /// times the square root of size over gravity, at most ten million output steps. In that time a surviving structure comes to rest, or nearly
     /// so. `size_m` is that of [`Structure::size_m`](super::Structure::size_m).
-    #[must_use]
     pub fn end_s(&self, ground_end_s: f64, size_m: f64) -> f64 {
         let after_s = AFTER_RATIO * (size_m / self.gravity_m_s2).sqrt();
         let default_s = ground_end_s + after_s.max(AFTER_S);

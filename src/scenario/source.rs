@@ -17,7 +17,6 @@ pub struct Source {
 impl Source {
     /// Makes a source of a text. `name` is the file name in errors. Records of ground motion are read from files relative to the folder of
     /// `name`.
-    #[must_use]
     pub fn of_text(text: &str, name: &str) -> Self {
         Self {
             name: name.to_owned(),
@@ -27,7 +26,6 @@ impl Source {
     }
 
     /// Returns the name in errors.
-    #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }

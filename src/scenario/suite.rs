@@ -43,7 +43,6 @@ impl Measure {
     }
 
     /// Returns the name of a single level in results.
-    #[must_use]
     pub const fn column(self) -> &'static str {
         match self {
             Self::Scale => "scale",

@@ -264,14 +264,12 @@ impl Uncertain {
 
     /// Returns the number of cases. With total indices, after all samples, each sample has one more case for each key, in which only that key
     /// has another value.
-    #[must_use]
     pub fn cases(&self) -> usize {
         let keys = usize::from(self.total_indices) * self.keys.len();
         self.samples.saturating_mul(1 + keys)
     }
 
     /// Returns the point of a sample, counted from 0: a number between 0 and 1, exclusive, for each key.
-    #[must_use]
     pub fn point(&self, sample: usize) -> Vec<f64> {
         let keys = self.keys.len();
         // A case after the samples has the values of sample `like`, except for the key `other`.
@@ -296,7 +294,6 @@ impl Uncertain {
     }
 
     /// Returns the values of a sample, counted from 0, in the order of the keys.
-    #[must_use]
     pub fn values(&self, sample: usize) -> Vec<f64> {
         let parts = self.point(sample).into_iter().zip(&self.keys);
         parts.map(|(part, key)| key.at(part)).collect()
@@ -380,7 +377,6 @@ impl UncertainKey {
     }
 
     /// Computes the quantile: the value below which the fraction `part` of all values lies, from 0 to 1.
-    #[must_use]
     pub fn at(&self, part: f64) -> f64 {
         self.distribution.at(part, self.own.unwrap_or(0.0))
     }

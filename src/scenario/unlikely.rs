@@ -32,13 +32,11 @@ const DURATION_S: f64 = 1e5;
 
 impl Scenario {
     /// Returns sentences about unlikely values, each with the probably intended value.
-    #[must_use]
     pub fn unlikely(&self) -> Vec<String> {
         self.unlikely_of(None)
     }
 
     /// Returns the sentences of [`Scenario::unlikely`] for a scenario whose model of motion may be known.
-    #[must_use]
     pub fn unlikely_of(&self, model: Option<&dyn Model>) -> Vec<String> {
         let gravity_m_s2 = self.simulation.gravity_m_s2;
         let of_series = |series: &Series| series.unlikely(gravity_m_s2);
@@ -154,7 +152,6 @@ fn long(what: &str, length_m: f64, usual_m: f64) -> Option<String> {
 
 impl Series {
     /// Returns sentences about unlikely values of a record, each with the probably intended value.
-    #[must_use]
     pub fn unlikely(&self, gravity_m_s2: f64) -> Vec<String> {
         let (name, peak_g) = (self.name(), self.peak_g(gravity_m_s2));
         let (unit, sampling) = (self.unit.name(), self.sampling());

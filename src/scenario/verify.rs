@@ -88,7 +88,6 @@ pub enum FreeStanding {
 impl FreeStanding {
     /// Returns the period in seconds, for masonry of this density in kg/m3: `kappa lambda L sqrt(W / (E g))`, with `lambda = L / t` and the
     /// weight per volume `W` [C8.7.1.7].
-    #[must_use]
     pub fn period_s(&self, density_kg_m3: f64) -> f64 {
         match *self {
             Self::Period { t0_s } => t0_s,
@@ -135,7 +134,6 @@ const LEAST_RECORDS: usize = 3;
 
 impl Records {
     /// Returns the records of a limit state.
-    #[must_use]
     pub fn of(&self, state: LimitState) -> &[Series] {
         self.0.get(&state).map_or(&[], Vec::as_slice)
     }
@@ -308,7 +306,6 @@ pub enum SiteTopography {
 
 impl SiteTopography {
     /// Returns the coefficient `S_T`.
-    #[must_use]
     pub const fn factor(&self) -> f64 {
         match self {
             Self::Topography(category) => category.factor(),
@@ -379,7 +376,6 @@ pub struct StateRule {
 
 impl StateRule {
     /// Returns the rule of the Circolare 7/2019 (C8.7.1.2.1.6 and .8) for a confidence factor; `None` for SLD.
-    #[must_use]
     pub const fn circolare(state: LimitState, confidence_factor: f64) -> Option<Self> {
         let (part_of_d0, period_factor, damping_percent) = match state {
             LimitState::Sld => return None,
@@ -513,7 +509,6 @@ impl Building {
     }
 
     /// Returns the modes at a limit state.
-    #[must_use]
     pub fn at(&self, state: LimitState) -> Vec<Mode> {
         let modes = self.modes.iter();
         let modes = modes.filter_map(|mode| {

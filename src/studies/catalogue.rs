@@ -194,13 +194,11 @@ impl StudyKind {
     ];
 
     /// The study with this name.
-    #[must_use]
     pub fn of_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|kind| kind.name == name)
     }
 
     /// The study whose results have these files, the seal last.
-    #[must_use]
     pub fn of_files(names: &[&str]) -> Option<Self> {
         let has_all = |kind: &Self| names.iter().all(|name| kind.files.contains(name));
         let mut kinds = Self::ALL.into_iter();

@@ -40,19 +40,16 @@ impl Shard {
     }
 
     /// Returns true if the case with this index belongs to the shard.
-    #[must_use]
     pub const fn has(self, case: usize) -> bool {
         case % self.count == self.index - 1
     }
 
     /// Returns true if the shard contains all cases.
-    #[must_use]
     pub const fn is_whole(self) -> bool {
         self.count == 1
     }
 
     /// Returns the name of the part file, such as `map-2-of-4.part`.
-    #[must_use]
     pub fn file_name(self, study: &str) -> String {
         if self.is_whole() {
             format!("{study}.part")
@@ -130,7 +127,6 @@ pub struct Header {
 
 impl Header {
     /// Returns the number of cases of the shard.
-    #[must_use]
     pub fn shard_cases(&self) -> usize {
         self.shard.cases(self.cases).count()
     }
@@ -161,7 +157,6 @@ impl Header {
     }
 
     /// Returns the first difference from another header apart from the shard, in words; `None` if both belong to the same study.
-    #[must_use]
     pub fn difference(&self, other: &Self) -> Option<String> {
         let differ = |what: &str, here: &str, there: &str| {
             (here != there).then(|| format!("{what} {there:?} instead of {here:?}"))
@@ -324,7 +319,6 @@ pub fn read_header(path: &Path) -> Result<Header, PartError> {
 }
 
 /// Returns the number of complete rows in a file; `None` if the file is not a part file.
-#[must_use]
 pub fn rows_in(path: &Path) -> Option<usize> {
     let lines = Lines::of(path).ok()?;
     lines.header().ok()?;
@@ -405,7 +399,6 @@ impl PartFile {
     }
 
     /// Returns the path of the file.
-    #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }

@@ -28,7 +28,6 @@ pub struct Distance {
 }
 
 /// Computes the distance between the distributions of two models; `None` if one of them has no case.
-#[must_use]
 pub fn distance(one: ModelPeaks<'_>, other: ModelPeaks<'_>) -> Option<Distance> {
     let both = [one, other];
     if both.iter().any(|(_, peaks)| peaks.is_empty()) {

@@ -181,7 +181,6 @@ fn shape(profile: &dyn Profile) -> String {
 
 /// Draws incipient rocking to one side: the thrust line at `A_L` through its hinges, and the mechanism. The mechanism is to scale, at a quarter
 /// of the rotations of its limit position.
-#[must_use]
 pub fn limit(figure: Figure, model: &FourLinks, first: Sway, scene: &Scene) -> String {
     let of = FourLinkStructure {
         model,
@@ -248,7 +247,6 @@ pub fn limit(figure: Figure, model: &FourLinks, first: Sway, scene: &Scene) -> S
 
 /// Draws an impact as in Fig. 10 of the paper: the mechanisms before and after, the bodies into which both mechanisms divide the ring (Eq. (3)),
 /// and the impulse line. `None` if this impact or one before it stops the arch.
-#[must_use]
 pub fn impact(figure: Figure, impact: &LinkImpact<'_>, scene: &Scene) -> Option<String> {
     let of = FourLinkStructure {
         model: impact.model,

@@ -20,7 +20,6 @@ pub struct ModelAnswer {
 impl ModelAnswer {
     /// Makes the answer of a model of motion. `excess_ratio` is the largest excess of the thrust line of four links over the thickness; `None` if it
     /// was not followed.
-    #[must_use]
     pub fn new(
         hinges: Hinges,
         is_arch: bool,
@@ -55,7 +54,6 @@ fn outside_four_links(excess_ratio: Option<f64>) -> Option<String> {
 }
 
 /// Returns the answer that may be quoted, in words; `None` without models.
-#[must_use]
 pub fn in_words(answers: &[ModelAnswer]) -> Option<String> {
     let best = answers.iter().max_by_key(|one| one.hinges as usize)?;
     let label = best.label;

@@ -115,7 +115,6 @@ impl Results {
     }
 
     /// Returns the names of the files, in their order.
-    #[must_use]
     pub fn names(&self) -> Vec<&'static str> {
         self.files.iter().map(|(name, _)| *name).collect()
     }
@@ -164,7 +163,6 @@ pub struct Style {
 
 impl Style {
     /// Returns the style of a map coloured by outcome, with units on its axes.
-    #[must_use]
     pub const fn of(figure: Figure) -> Self {
         Self {
             figure,

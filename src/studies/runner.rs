@@ -107,7 +107,6 @@ pub trait Study: Sync {
 
 impl Header {
     /// Returns the header for a shard of a study, with the version of this program.
-    #[must_use]
     pub fn new<S: Study>(study: &S, shard: Shard) -> Self {
         Self {
             program: env!("CARGO_PKG_NAME").to_owned(),

@@ -33,14 +33,12 @@ pub struct Share {
 
 impl Share {
     /// Computes the share of `count` samples among `of`, all certain. `None` without samples.
-    #[must_use]
     pub fn of(count: usize, of: usize) -> Option<Self> {
         Self::of_counts([count, count, of, 0], count as f64)
     }
 
     /// Computes the share of samples that have a property with these probabilities: 0 or 1, a fraction if it is uncertain, and `None` without a
     /// verdict. `None` if no sample has a verdict.
-    #[must_use]
     pub fn of_chances(chances: impl Iterator<Item = Option<f64>> + Clone) -> Option<Self> {
         let known = chances.clone().flatten();
         let count = |least: f64| known.clone().filter(|chance| *chance >= least).count();
@@ -117,7 +115,6 @@ pub(super) fn shares_up_to(values: impl IntoIterator<Item = [f64; 2]>) -> Vec<(f
 
 /// Computes a quantile of ascending values, for a `part` of 0 to 1. Value `i` of `n`, counted from 1, is the quantile of `(i - 1/2) / n`
 /// (Hazen). Quantiles between neighbours are interpolated linearly. Infinite if a neighbour is infinite; `None` without values.
-#[must_use]
 pub fn quantile(ascending: &[f64], part: f64) -> Option<f64> {
     between(&alike(ascending), part, |low, high, way| {
         low + way * (high - low)
@@ -126,13 +123,11 @@ pub fn quantile(ascending: &[f64], part: f64) -> Option<f64> {
 
 /// Computes a fractile of ascending values of at least 0 as [`quantile`] does, but interpolates logarithms: strengths and peaks scatter by
 /// ratios. 0 if the lower neighbour is 0.
-#[must_use]
 pub fn fractile(ascending: &[f64], part: f64) -> Option<f64> {
     weighted_fractile(&alike(ascending), part)
 }
 
 /// Computes a fractile of values with weights, [ascending](ascending_weighted). A value lies in the middle of its weight.
-#[must_use]
 pub fn weighted_fractile(ascending: &[[f64; 2]], part: f64) -> Option<f64> {
     between(ascending, part, |low, high, way| {
         if low > 0.0 {
@@ -182,7 +177,6 @@ fn between(
 pub const BAND: [f64; 3] = [0.05, 0.5, 0.95];
 
 /// Computes the 5 % quantile, the median and the 95 % quantile of values in any order, by [`quantile`] or [`fractile`]. `None` without values.
-#[must_use]
 pub fn band(values: Vec<f64>, quantile: fn(&[f64], f64) -> Option<f64>) -> Option<[f64; 3]> {
     let values = ascending(values);
     let [low, median, high] = BAND.map(|part| quantile(&values, part));
@@ -190,7 +184,6 @@ pub fn band(values: Vec<f64>, quantile: fn(&[f64], f64) -> Option<f64>) -> Optio
 }
 
 /// Computes ranks, from 1. Equal values share the mean of their ranks.
-#[must_use]
 pub fn ranks(values: &[f64]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..values.len()).collect();
     order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
@@ -207,7 +200,6 @@ pub fn ranks(values: &[f64]) -> Vec<f64> {
 }
 
 /// Computes mean and variance.
-#[must_use]
 pub fn moments(values: &[f64]) -> [f64; 2] {
     let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n;
@@ -216,7 +208,6 @@ pub fn moments(values: &[f64]) -> [f64; 2] {
 }
 
 /// Computes Pearson's correlation of two lists; `None` if one list does not vary.
-#[must_use]
 pub fn correlation(pairs: impl Iterator<Item = (f64, f64)> + Clone) -> Option<f64> {
     let n = pairs.clone().count() as f64;
     let sums = pairs
@@ -249,7 +240,6 @@ pub fn bootstrap(count: usize) -> impl Iterator<Item = Vec<usize>> {
 }
 
 /// Computes the ends of the 95 % interval of bootstrapped values; `None` without values.
-#[must_use]
 pub fn interval(values: Vec<f64>) -> Option<[f64; 2]> {
     let values = ascending(values);
     Some([quantile(&values, 0.025)?, quantile(&values, 0.975)?])

@@ -93,7 +93,6 @@ fn is_default<T: Default + PartialEq>(value: &T) -> bool {
 
 impl Layout {
     /// Makes the layout of a file of accelerations in this format; tables also need times and unit.
-    #[must_use]
     pub fn new(format: Format) -> Self {
         Self {
             format,
@@ -102,7 +101,6 @@ impl Layout {
     }
 
     /// Makes the layout of a table that begins on the first line, with decimal points and a single column of accelerations.
-    #[must_use]
     pub fn table(times: Times, unit: Unit) -> Self {
         Self {
             times: Some(times),
@@ -142,7 +140,6 @@ impl Format {
     }
 
     /// Returns the format of a file name from its extension; `None` if the extension is not that of a record.
-    #[must_use]
     pub fn of_file(file: &Path) -> Option<Self> {
         Self::of_ending(file.to_str()?).ok()
     }
@@ -235,7 +232,6 @@ impl Layout {
     }
 
     /// Returns true if a key of `[ground.record]` describes tables: the keys for tables only, and `unit`.
-    #[must_use]
     pub fn is_of_tables(key: &str) -> bool {
         TABLE_KEYS.contains(&key) || key == "unit"
     }

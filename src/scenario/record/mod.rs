@@ -252,13 +252,11 @@ impl Series {
     }
 
     /// Returns the name of the file, with hidden characters escaped.
-    #[must_use]
     pub fn name(&self) -> String {
         shown(&self.file)
     }
 
     /// Returns this record with another scaling.
-    #[must_use]
     pub(super) fn scaled(&self, scaling: Scaling) -> Self {
         Self {
             scaling,
@@ -267,7 +265,6 @@ impl Series {
     }
 
     /// Computes a checksum of the samples. Files with the same samples in different formats have the same checksum.
-    #[must_use]
     pub fn checksum(&self) -> u32 {
         let mut hasher = crc32fast::Hasher::new();
         for (time_s, acceleration) in self.samples.iter() {
@@ -278,7 +275,6 @@ impl Series {
     }
 
     /// Returns number and spacing of the samples.
-    #[must_use]
     pub fn sampling(&self) -> Sampling {
         /// Relative tolerance for a constant step, because times in files are rounded.
         const EVEN: f64 = 1e-3;
@@ -296,7 +292,6 @@ impl Series {
     }
 
     /// Returns the largest magnitude after scaling, in units of gravity.
-    #[must_use]
     pub fn peak_g(&self, gravity_m_s2: f64) -> f64 {
         (self.peak() * self.factor(gravity_m_s2) / gravity_m_s2).abs()
     }
@@ -328,7 +323,6 @@ impl Series {
 
     /// Returns times in s, on the clock of the file, and scaled accelerations in m/s2, joined by straight lines. A jump has two points at the
     /// same time.
-    #[must_use]
     pub fn accelerations_m_s2(&self, gravity_m_s2: f64) -> Vec<(f64, f64)> {
         let factor = self.factor(gravity_m_s2);
         let scaled = |&(time_s, acceleration): &(f64, f64)| (time_s, acceleration * factor);
@@ -365,7 +359,6 @@ impl Series {
     }
 
     /// Returns the mean of the scaled accelerations over the time of the record, in units of gravity.
-    #[must_use]
     pub fn mean_g(&self, gravity_m_s2: f64) -> f64 {
         mean(&self.accelerations()) * self.factor(gravity_m_s2) / gravity_m_s2
     }

@@ -34,7 +34,6 @@ named! {
 
 impl Unit {
     /// Returns the quantity that the unit measures.
-    #[must_use]
     pub const fn quantity(self) -> RecordedQuantity {
         match self {
             Self::Gravity | Self::MetrePerS2 | Self::CentimetrePerS2 => {

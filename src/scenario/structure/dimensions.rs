@@ -56,7 +56,6 @@ impl Dimension {
 }
 
 /// Returns a length for a drawing, rounded to a millimetre, or to three digits below 0.1.
-#[must_use]
 pub fn metres(length_m: f64) -> String {
     let rounded = if length_m.abs() < 0.1 {
         format!("{length_m:.2e}").parse().unwrap_or(length_m)
@@ -68,7 +67,6 @@ pub fn metres(length_m: f64) -> String {
 
 impl Structure {
     /// Returns the dimensions of the structure.
-    #[must_use]
     pub fn dimensions(&self) -> Vec<Dimension> {
         match self {
             Self::Arch(arch) => {

@@ -94,7 +94,6 @@ impl Structure {
     }
 
     /// Returns the ties of the structure.
-    #[must_use]
     pub fn ties(&self) -> &[Tie] {
         match self {
             Self::Arch(_) => &[],
@@ -135,7 +134,6 @@ impl Structure {
     }
 
     /// Returns the structure as parts with masses.
-    #[must_use]
     pub fn as_parts(&self) -> &dyn Parts {
         match self {
             Self::Arch(arch) => arch,
@@ -145,7 +143,6 @@ impl Structure {
     }
 
     /// Returns fill and loads for drawings; `None` if the structure cannot carry any.
-    #[must_use]
     pub fn carries(&self) -> Option<(&LoadOutlines, &[PlacedLoad])> {
         match self {
             Self::Arch(_) | Self::Column(_) => None,
@@ -154,25 +151,21 @@ impl Structure {
     }
 
     /// Returns true for an arch, which has thrust at its springings; false for a free-standing column.
-    #[must_use]
     pub const fn thrusts(&self) -> bool {
         !matches!(self, Self::Column(_))
     }
 
     /// Returns true if the structure stands on one support, as a column does.
-    #[must_use]
     pub fn stands_on_one_support(&self) -> bool {
         self.row().is_ok_and(|row| row.supports == Supports::Left)
     }
 
     /// Returns true for shapes that are symmetric for all dimensions.
-    #[must_use]
     pub const fn is_symmetric(&self) -> bool {
         !matches!(self, Self::Masonry(_))
     }
 
     /// Returns the circular arch; `None` for other structures, and for an arch with piers, fill, loads or ties.
-    #[must_use]
     pub const fn circular(&self) -> Option<&Arch> {
         match self {
             Self::Arch(arch) => Some(arch),
@@ -216,7 +209,6 @@ impl Structure {
     }
 
     /// Returns the length that scales the motion, in m: the mean radius of an arch, half the diagonal of a column.
-    #[must_use]
     pub fn size_m(&self) -> f64 {
         match self {
             Self::Arch(arch) => arch.mean_radius_m,

@@ -8,7 +8,6 @@ use crate::mechanics::tie::Tie;
 
 impl Structure {
     /// Returns the structure in words, with properties that its drawing does not show.
-    #[must_use]
     pub fn described(&self) -> String {
         let (depth_m, density_kg_m3) = self.depth_and_density();
         let mut parts = Vec::new();
@@ -33,7 +32,6 @@ impl Structure {
     }
 
     /// Returns the origin of the coordinates x and y, in words. Ties, loads, points and results use this frame.
-    #[must_use]
     pub fn origin(&self) -> String {
         let circular = match self {
             Self::Arch(arch) => Some(arch),
@@ -60,7 +58,6 @@ impl Structure {
     }
 
     /// Returns the frame of reference and the position of each tie, one line each; empty without ties.
-    #[must_use]
     pub fn tie_places(&self) -> Vec<String> {
         let mut places = self.ties_in_words();
         if !places.is_empty() {
@@ -70,7 +67,6 @@ impl Structure {
     }
 
     /// Returns the position of each tie in words: its ends, and its height above the springings of an arch.
-    #[must_use]
     pub fn ties_in_words(&self) -> Vec<String> {
         let springing_m = match self {
             Self::Masonry(masonry) => masonry.springings().map(|[left, _]| left.intrados_m.y),

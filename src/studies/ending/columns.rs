@@ -28,7 +28,6 @@ pub(crate) const GROUND_FALLS: &str = "ground_falls";
 
 impl NoHistory {
     /// Returns the name of the reason in tables, in place of an outcome.
-    #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
             Self::CannotStand => CANNOT_STAND,
@@ -48,7 +47,6 @@ pub(crate) fn are_over_critical<'a>(
 }
 
 /// Returns the outcome of a case by its name in tables, or the reason why the case has no history.
-#[must_use]
 pub fn outcome_name(result: &Result<Ending, NoHistory>) -> &'static str {
     let ending = result.as_ref();
     ending.map_or_else(NoHistory::name, Ending::outcome_name)
@@ -56,7 +54,6 @@ pub fn outcome_name(result: &Result<Ending, NoHistory>) -> &'static str {
 
 impl Ending {
     /// Returns the name of the outcome of a case.
-    #[must_use]
     pub fn outcome_name(&self) -> &'static str {
         match self.verdict() {
             Verdict::Uncertain => UNCERTAIN,

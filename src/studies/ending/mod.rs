@@ -67,44 +67,37 @@ impl Ending {
                                   give a longer `duration_s` in [simulation]";
 
     /// Returns the time of the outcome, in seconds; `None` if it is unknown.
-    #[must_use]
     pub fn known_time_s(&self) -> Option<f64> {
         self.safe_from_s.is_none().then_some(self.outcome_time_s)
     }
 
     /// Returns the number of all impacts; `None` if it is unknown.
-    #[must_use]
     pub fn known_impacts(&self) -> Option<usize> {
         self.impacts.filter(|_| self.safe_from_s.is_none())
     }
 
     /// Returns the number of impacts at which all hinges close together; `None` for a row of blocks, whose hinges close one by one.
-    #[must_use]
     pub fn impacts_of_all_hinges(&self) -> Option<usize> {
         self.impacts.filter(|_| self.steps.is_none())
     }
 
     /// Returns the largest rotation of a row of blocks, in radians; `None` for mechanisms.
-    #[must_use]
     pub fn peak_of_row_rad(&self) -> Option<f64> {
         self.steps.map(|_| self.peak_rotation_rad)
     }
 
     /// Returns true if the thrust line leaves the structure so far that four links do not describe the history; false for other models.
-    #[must_use]
     pub fn is_outside_model(&self) -> bool {
         self.thrust_excess_ratio
             .is_some_and(|ratio| ratio > MODEL_LIMIT)
     }
 
     /// Returns true if the history itself overturned, even if the verdict is uncertain.
-    #[must_use]
     pub const fn overturned_itself(&self) -> bool {
         matches!(self.outcome, Outcome::Overturned(_))
     }
 
     /// Returns the largest rotation of any body, in radians; infinite if the history overturned.
-    #[must_use]
     pub const fn peak_or_infinite_rad(&self) -> f64 {
         match self.overturned_itself() {
             true => f64::INFINITY,
@@ -113,20 +106,17 @@ impl Ending {
     }
 
     /// Returns the verdict on overturning.
-    #[must_use]
     pub fn verdict(&self) -> Verdict {
         Verdict::counted(self.outcome, self.count.as_ref())
     }
 
     /// Returns the count of the outcomes if the verdict is uncertain; `None` otherwise.
-    #[must_use]
     pub fn doubt(&self) -> Option<&OutcomeCount> {
         let count = self.count.as_ref();
         count.filter(|_| self.verdict() == Verdict::Uncertain)
     }
 
     /// Returns the share of the history and its repetitions that overturn: 0 or 1 if the verdict is certain. `None` for an incomplete history.
-    #[must_use]
     pub fn overturning_share(&self) -> Option<f64> {
         match (self.verdict(), &self.count) {
             (Verdict::Uncertain, Some(count)) => Some(count.overturns_in as f64 / count.of as f64),
@@ -163,13 +153,11 @@ impl Ending {
 
     /// Simulates several cases and returns their endings in order. A case without a history, or with a number that is not finite, has the reason
     /// instead.
-    #[must_use]
     pub fn of_all(model: &dyn Model, cases: &[Case]) -> Vec<Result<Self, NoHistory>> {
         Self::checked(model, cases, EndCondition::End)
     }
 
     /// Simulates several cases. A history stops once it can no longer overturn and has enough time to come to rest.
-    #[must_use]
     pub fn until_safe(model: &dyn Model, cases: &[Case]) -> Vec<Result<Self, NoHistory>> {
         Self::checked(model, cases, EndCondition::Settled)
     }
@@ -314,7 +302,6 @@ impl NoAnswer {
     }
 
     /// Returns the name of the reason in tables.
-    #[must_use]
     pub const fn name(&self) -> &'static str {
         match self {
             Self::Invalid(_) => "invalid",
@@ -324,7 +311,6 @@ impl NoAnswer {
     }
 
     /// Returns the reason in words.
-    #[must_use]
     pub fn reason(&self) -> &str {
         match self {
             Self::Invalid(reason) | Self::Failed(reason) => reason,

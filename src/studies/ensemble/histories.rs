@@ -209,7 +209,6 @@ impl Histories {
 
 impl HistoryAnswer {
     /// Returns the weight of the sample as overturned: 1 or 0, or the fraction of its repetitions that overturn.
-    #[must_use]
     pub fn overturned(&self) -> f64 {
         let share = self.ending.overturning_share();
         share.expect("a sample with an incomplete history has no answer")

@@ -41,7 +41,6 @@ pub struct Total {
 /// `answers` has the answer of each sample. `moved` has, for each sample in turn, one answer per number: that of the sample with another value
 /// of this number alone. `None` in either list means no answer. Returns `None` if the answers do not vary, or there are fewer than
 /// [`LEAST_SAMPLES`].
-#[must_use]
 pub fn total_indices(answers: &[Option<f64>], moved: &[Option<f64>]) -> Option<Vec<Total>> {
     let numbers = moved.len() / answers.len().max(1);
     let samples: Vec<usize> = (0..answers.len())
@@ -87,7 +86,6 @@ const SAMPLES_PER_HARMONIC: usize = 16;
 
 /// Computes the influence of each number on the answers of the samples, from `values[sample][number]` and `answers[sample]`. `None` if the
 /// answers do not vary, or there are fewer than [`LEAST_SAMPLES`].
-#[must_use]
 pub fn what_matters(values: &[Vec<f64>], answers: &[f64]) -> Option<Vec<Matters>> {
     let count = answers.len();
     if count < LEAST_SAMPLES || moments(answers)[1] <= 0.0 {

@@ -28,31 +28,26 @@ pub struct LinkImpact<'a> {
 
 impl<'a> LinkImpact<'a> {
     /// Returns the chain of mechanisms.
-    #[must_use]
     pub fn chain(&self) -> &'a Chain {
         self.model.chain_from(self.first)
     }
 
     /// Returns the mechanism before the impact; `None` if an earlier impact stops the structure.
-    #[must_use]
     pub fn before(&self) -> Option<&'a ArchLink> {
         self.chain().link(self.index.checked_sub(1)?)
     }
 
     /// Returns the mechanism after the impact; `None` if no mechanism can follow.
-    #[must_use]
     pub fn after(&self) -> Option<&'a ArchLink> {
         self.chain().link(self.index)
     }
 
     /// Returns the impulse line; `None` if no mechanism can follow, or the restitution coefficient is prescribed.
-    #[must_use]
     pub fn line(&self) -> Option<&'a ImpulseLine> {
         self.after()?.impulse_line.as_ref()
     }
 
     /// Returns words that follow the number of the impact; empty for a first sway to the right.
-    #[must_use]
     pub const fn after_first(&self) -> &'static str {
         match self.first {
             Sway::Right => "",
@@ -61,13 +56,11 @@ impl<'a> LinkImpact<'a> {
     }
 
     /// Returns the side to which the structure sways after the impact.
-    #[must_use]
     pub const fn sway(&self) -> Sway {
         self.first.before(self.index)
     }
 
     /// Returns the profile in the frame in which the sway after the impact is to the right.
-    #[must_use]
     pub fn profile(&self) -> &'a dyn Profile {
         self.chain().profile(self.index)
     }

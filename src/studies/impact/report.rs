@@ -217,7 +217,6 @@ impl SwayingMechanism {
 }
 
 /// Computes the first `count` impacts after a first sway to this side; fewer if an impact stops the structure.
-#[must_use]
 pub fn chain(model: &dyn MechanismModel, first: Sway, count: usize) -> Vec<ChainImpact> {
     let impacts = (1..=count).map_while(|index| {
         Some(ChainImpact {

@@ -229,7 +229,6 @@ impl<'a> OverturningMap<'a> {
     }
 
     /// Returns the values of x and y of a cell.
-    #[must_use]
     pub fn coordinates(&self, index: usize) -> [f64; 2] {
         let [x, y] = self.place(index);
         [self.values[0][x], self.values[1][y]]

@@ -14,7 +14,6 @@ use crate::studies::kind::Kind;
 use crate::studies::{Ending, Style};
 
 /// Makes the page of a map.
-#[must_use]
 pub fn page(title: &str, map: &OverturningMap<'_>, rows: &[CellRow], style: Style) -> String {
     let style = Style {
         figure: Figure::SCREEN,

@@ -188,7 +188,6 @@ fn runs<'c>(
 }
 
 /// Draws a map.
-#[must_use]
 pub fn draw(title: &str, map: &OverturningMap<'_>, rows: &[CellRow], style: Style) -> String {
     drawn(title, map, rows, style).picture
 }

@@ -21,7 +21,6 @@ pub(super) fn first_peak_rad(history: &History) -> Option<f64> {
 
 /// Returns warnings about a run: unlikely numbers of its scenario, and limits of its history. The texts name no options, because the Python
 /// package prints them too.
-#[must_use]
 pub fn warnings(scenario: &Scenario, model: &dyn Model, history: &History) -> Vec<String> {
     let mut warnings = scenario.unlikely_of(Some(model));
     let structure = &scenario.structure;

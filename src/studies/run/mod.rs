@@ -189,7 +189,6 @@ pub fn results(
 }
 
 /// Repeats a history of a scenario as a run does, which gives its verdict; `None` if the model has no repetitions.
-#[must_use]
 pub fn repeat(scenario: &Scenario, model: &dyn Model, history: &History) -> Option<Repeatability> {
     model.row()?;
     let (ground, request) = (scenario.ground_motion(), scenario.request());
@@ -197,7 +196,6 @@ pub fn repeat(scenario: &Scenario, model: &dyn Model, history: &History) -> Opti
 }
 
 /// Returns the verdict on a history in words, as a run prints it.
-#[must_use]
 pub fn verdict(computed: ComputedRun<'_>) -> String {
     render(&VerdictLine(computed))
 }
@@ -386,7 +384,6 @@ fn overlay(all: &[ModelResults<'_>]) -> String {
 }
 
 /// The drawable parts of a structure, as a model moves them.
-#[must_use]
 pub fn scene(scenario: &Scenario, model: &dyn Model) -> Scene {
     let Some(row) = model.row() else {
         return Scene::new(&scenario.structure);

@@ -32,7 +32,6 @@ impl Curves {
 
 /// Draws named histories: the ground, the largest rotation of a body, and the energy. Rotations are positive (anticlockwise) while the structure
 /// sways left, and negative while it sways right.
-#[must_use]
 pub fn draw(figure: Figure, subject: &Subject<'_>, histories: &[(&str, &Curves)]) -> String {
     let ends_s = histories.iter().map(|(_, curves)| curves.end_s);
     let start_s = subject.ground.start_s();

@@ -83,7 +83,6 @@ struct Page<'p> {
 
 impl Report {
     /// Makes an empty page for the structure of a scenario and its model of motion.
-    #[must_use]
     pub fn new(scenario: &Scenario, model: &dyn Model) -> Self {
         let (scene, bodies) = (super::scene(scenario, model), model.bodies());
         let pressed = model.row().filter(|_| model.is_elastic());
@@ -127,7 +126,6 @@ impl Report {
 
     /// Makes the page of a scenario. `uncertainty` is the text about the samples of `[uncertain]`, empty without samples; `verdict` and `words`
     /// are printed by `run`.
-    #[must_use]
     pub fn page(
         &self,
         scenario: &Scenario,

@@ -14,7 +14,6 @@ pub struct Scales {
 
 impl Scales {
     /// Computes the scales of a model under gravity; `None` if the model has no unstable equilibrium.
-    #[must_use]
     pub fn new(model: &dyn MechanismModel, gravity_m_s2: f64) -> Option<Self> {
         let incipient_g = |sway| model.incipient_acceleration_g(sway);
         let incipient_m_s2 = [Sway::Right, Sway::Left]
@@ -29,7 +28,6 @@ impl Scales {
     }
 
     /// Returns the larger ratio of a push, to the right or to the left, to the push that starts the structure to that side.
-    #[must_use]
     pub fn over_incipient(&self, pushes_m_s2: [f64; 2]) -> f64 {
         let [right, left] = [0, 1].map(|side: usize| pushes_m_s2[side] / self.incipient_m_s2[side]);
         right.max(left)

@@ -256,7 +256,6 @@ pub struct PointPeaks {
 
 impl OutcomeSummary {
     /// Returns the outcome of a history.
-    #[must_use]
     pub fn of(history: &History) -> Self {
         Self {
             outcome: history.outcome.name(),
@@ -268,7 +267,6 @@ impl OutcomeSummary {
 
 impl<'a> Summary<'a> {
     /// Makes the summary of a history, with the peaks of the observed points.
-    #[must_use]
     pub fn of(computed: &ComputedRun<'a>, points: Vec<PointPeaks>) -> Self {
         let (scenario, model, history) = (computed.scenario, computed.model, computed.history);
         let mechanisms = model.as_mechanisms();

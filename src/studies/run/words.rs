@@ -22,7 +22,6 @@ use crate::{Hinge, Sway};
 
 /// Returns the heading of the words for the runs of scenarios that differ in their models: title, one line per record, and a note about an
 /// ignored table.
-#[must_use]
 pub fn heading(scenarios: &[Scenario]) -> String {
     let scenario = &scenarios[0];
     let title = scenario.title.as_deref();

@@ -46,7 +46,6 @@ impl Direction {
     pub const DEFAULT_DEG: [f64; 3] = [0.0, 180.0, 90.0];
 
     /// Returns the name of the direction in words.
-    #[must_use]
     pub fn label(&self) -> String {
         match self.angle_deg {
             0.0 => "outwards".to_owned(),
@@ -58,7 +57,6 @@ impl Direction {
     }
 
     /// Returns the movements of both springings for a distance along this direction, in metres.
-    #[must_use]
     pub fn movements(&self, movement_m: f64) -> Movements {
         let (sin, cos) = self.angle_deg.to_radians().sin_cos();
         // Removes rounding errors of right angles.

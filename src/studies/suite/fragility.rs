@@ -139,14 +139,12 @@ pub enum NoFit {
 
 impl Fragility {
     /// Returns the probability that a ground motion of intensity `x` overturns the structure; zero at zero intensity.
-    #[must_use]
     pub fn probability(&self, x: f64) -> f64 {
         normal_probability(self.line.at(logarithm(x)))
     }
 
     /// Returns the pointwise 95 % confidence band of the curve at intensity `x`: `Phi(eta -+ 1.96 s)`. `s` is the larger standard error of
     /// `eta`, with or without dependence within records.
-    #[must_use]
     pub fn band(&self, x: f64) -> (f64, f64) {
         let log = logarithm(x);
         let gradient = Vector2::new(1.0, log - self.line.pivot);
@@ -178,7 +176,6 @@ pub(super) fn by_intensity<T: Copy>(
 }
 
 /// Returns the fraction of overturned cases at each intensity, the lowest first.
-#[must_use]
 pub fn fractions(observations: &[Observation]) -> Vec<Fraction> {
     by_intensity(observations.to_vec(), |case| case.intensity)
         .into_iter()

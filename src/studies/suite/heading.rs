@@ -21,7 +21,6 @@ pub struct Heading {
 impl Heading {
     /// Reads the text of a scenario with every default filled in. `warnings` are the warnings about the scenario. `None` if the scenario has no
     /// suite.
-    #[must_use]
     pub fn of_resolved(scenario: &str, warnings: Vec<String>) -> Option<Self> {
         let scenario: Value = toml::from_str(scenario).ok()?;
         let suite = scenario.get("suite")?;

@@ -15,7 +15,6 @@ const SURVIVED: f64 = 0.94;
 /// Draws the intensity against the peak rotation, relative to the critical rotation if that is known. Every record has a curve, and a second one
 /// for the mirrored record if mirrored cases count. Overturned cases are at the right end; the position of an uncertain case shows the outcome
 /// of its own history.
-#[must_use]
 pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility) -> String {
     let over_critical = are_over_critical(results.cases.iter().map(|case| &case.result));
     let endings = results.cases.iter().filter_map(CaseRow::complete);
@@ -129,7 +128,6 @@ fn peak(ending: &Ending) -> f64 {
 }
 
 /// Computes the fractiles of the peaks at each level (Vamvatsikos and Cornell, Earthquake Engineering and Structural Dynamics 31, 2002).
-#[must_use]
 pub fn fractiles(results: &SuiteFragility) -> Vec<Fractiles> {
     let levels = by_intensity(results.evidence(), |case| case.level(results.measure)).into_iter();
     levels
@@ -157,7 +155,6 @@ pub(super) fn rotations_rad(cases: &[CaseRow]) -> Vec<f64> {
 
 /// Returns the distribution of the peaks of all cases that count: ascending finite peaks, as in [`Fractiles`], each with the share of cases up
 /// to the peak. The last share is below 1 if cases overturned.
-#[must_use]
 pub fn peaks(results: &SuiteFragility) -> Vec<(f64, f64)> {
     let peaks = results.evidence().into_iter().filter_map(beyond);
     shares_up_to(peaks.map(|peak| [peak, 1.0]))
@@ -173,7 +170,6 @@ fn beyond(case: &CaseRow) -> Option<f64> {
 }
 
 /// Draws the distribution of the peaks.
-#[must_use]
 pub fn draw_peaks(figure: Figure, heading: &Heading, results: &SuiteFragility) -> String {
     let peaks = peaks(results);
     let largest = peaks.last().map_or(1.0, |(peak, _)| *peak).max(1e-3);

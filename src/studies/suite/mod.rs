@@ -52,7 +52,6 @@ pub struct CaseRow {
 
 impl CaseRow {
     /// Returns the level, in the measure of the suite.
-    #[must_use]
     pub const fn level(&self, measure: Measure) -> f64 {
         match measure {
             Measure::Scale => self.scale,
@@ -62,19 +61,16 @@ impl CaseRow {
 
     /// Returns the level from which the record overturns the structure, if this is its first overturning case: `edge`, or the level without an
     /// edge.
-    #[must_use]
     pub fn overturns_from(&self, measure: Measure) -> f64 {
         self.edge.unwrap_or_else(|| self.level(measure))
     }
 
     /// Returns the verdict; `None` if there is no history.
-    #[must_use]
     pub fn verdict(&self) -> Option<Verdict> {
         self.result.as_ref().ok().map(Ending::verdict)
     }
 
     /// Returns the probability of overturning; `None` if there is no history, or the history is incomplete.
-    #[must_use]
     pub fn overturning_share(&self) -> Option<f64> {
         self.result.as_ref().ok()?.overturning_share()
     }
@@ -85,7 +81,6 @@ impl CaseRow {
     }
 
     /// Returns the verdict; `None` if there is no history, or the history is incomplete.
-    #[must_use]
     pub fn known_verdict(&self) -> Option<Verdict> {
         self.complete().map(Ending::verdict)
     }
@@ -102,7 +97,6 @@ impl CaseRow {
     }
 
     /// Returns true if the structure certainly survived, but had not come to rest.
-    #[must_use]
     pub fn still_rocking(&self) -> bool {
         let rocking = |ending: &Ending| ending.outcome == Outcome::StillRocking;
         self.verdict() == Some(Verdict::Survives) && self.result.as_ref().is_ok_and(rocking)
@@ -345,7 +339,6 @@ impl Counts {
     }
 
     /// Returns the number of doubtful cases: uncertain, incomplete or failed.
-    #[must_use]
     pub const fn doubtful(&self) -> usize {
         self.uncertain + self.incomplete + self.failed
     }
@@ -353,14 +346,12 @@ impl Counts {
 
 impl FragilityRow {
     /// Returns the fraction of cases that overturned, with uncertain ones by their fractions; `None` without cases.
-    #[must_use]
     pub fn fraction(&self) -> Option<f64> {
         let cases = self.counts.cases;
         (cases > 0).then(|| self.counts.expected / cases as f64)
     }
 
     /// Returns the fraction of cases that overturned if doubtful ones survive, and if they overturn; `None` without cases.
-    #[must_use]
     pub fn fraction_ends(&self) -> Option<[f64; 2]> {
         let (cases, overturned) = (self.counts.cases, self.counts.overturned);
         let all = cases + self.counts.incomplete + self.counts.failed;
@@ -393,7 +384,6 @@ pub struct SuiteFragility {
 
 impl SuiteFragility {
     /// Computes the results of these cases.
-    #[must_use]
     pub fn new(measure: Measure, cases: Vec<CaseRow>) -> Self {
         let mirrored_count = !mirrored_are_images(&cases);
         let evidence = counting(&cases, mirrored_count);
@@ -441,7 +431,6 @@ impl SuiteFragility {
     }
 
     /// Returns true if a case that counts is uncertain.
-    #[must_use]
     pub fn has_uncertain(&self) -> bool {
         self.levels.iter().any(|level| level.counts.uncertain > 0)
     }
@@ -455,7 +444,6 @@ impl SuiteFragility {
 
     /// Returns the first case of each record, and the intensities that the structure survives under the record; mirrored records only if their
     /// results differ. The first overturning intensity is found by bisection, the others are levels of the suite.
-    #[must_use]
     pub fn survivals(&self) -> Vec<(&CaseRow, Survival)> {
         let mut survivals: Vec<(&CaseRow, Survival)> = Vec::new();
         for cases in self.cases.chunk_by(CaseRow::has_shake_of) {
@@ -507,13 +495,11 @@ impl SuiteFragility {
     }
 
     /// Returns the number of records.
-    #[must_use]
     pub fn record_count(&self) -> usize {
         names(&self.cases).len()
     }
 
     /// Returns the names of the records whose cases all have this verdict.
-    #[must_use]
     pub fn always(&self, verdict: Verdict) -> Vec<&str> {
         let mut alike: BTreeMap<&str, bool> = BTreeMap::new();
         for case in &self.cases {

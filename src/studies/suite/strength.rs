@@ -26,7 +26,6 @@ pub struct Strength {
 
 impl Strength {
     /// Computes the intensities of a record. The spectral acceleration is the pseudo-acceleration: `omega^2` times the largest displacement.
-    #[must_use]
     pub fn of(series: &Series, spectral: Spectral, gravity_m_s2: f64) -> Self {
         let samples = series.accelerations_m_s2(gravity_m_s2);
         let intensity = Intensity::of(&samples, gravity_m_s2);
@@ -90,7 +89,6 @@ pub struct Efficiency {
 
 impl SuiteFragility {
     /// Computes the capacity under each record; under mirrored records only if they count.
-    #[must_use]
     pub fn capacities(&self) -> Vec<Capacity<'_>> {
         let shakes = self.shakes().into_iter();
         shakes.map(|levels| self.capacity(&levels)).collect()
@@ -160,7 +158,6 @@ fn scatter<'a>(
 
 /// Computes the efficiency of each measure of intensity, the best first, with intervals by bootstrap over the records. Records that do not
 /// overturn the structure are ignored. Empty with fewer than three capacities that are no upper bounds: bounds have the order of the levels.
-#[must_use]
 pub fn efficiencies(capacities: &[Capacity<'_>]) -> Vec<Efficiency> {
     let known = |one: &&Capacity<'_>| one.scale.is_some() && !one.at_most;
     if capacities.iter().filter(known).count() < LEAST_CAPACITIES {

@@ -3,14 +3,12 @@
 use crate::output::range_ends;
 
 /// Returns a factor or an acceleration with four digits: the usual accuracy of an edge.
-#[must_use]
 pub fn rounded(value: f64) -> String {
     let decimals = decimals(value);
     format!("{value:.decimals$}")
 }
 
 /// Returns a strength that is safe with four digits, never rounded upwards.
-#[must_use]
 pub fn rounded_down(value: f64) -> String {
     let decimals = decimals(value);
     // A little less than half a digit keeps decimal numbers such as 0.45 unchanged.
@@ -19,7 +17,6 @@ pub fn rounded_down(value: f64) -> String {
 }
 
 /// Returns both ends of a range with four digits, or with as many as needed to distinguish them.
-#[must_use]
 pub fn rounded_range(ends: [f64; 2]) -> [String; 2] {
     match ends.map(rounded) {
         [from, to] if from != to => [from, to],

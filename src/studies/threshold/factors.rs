@@ -45,7 +45,6 @@ impl Factors {
     }
 
     /// Returns all factors, ascending.
-    #[must_use]
     pub fn values(&self) -> Vec<f64> {
         // Drops a last step that is due to rounding errors only.
         let end = self.to * (1.0 - 1e-9);

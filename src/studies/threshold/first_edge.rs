@@ -159,14 +159,12 @@ impl FirstEdge {
     }
 
     /// Returns the factor; infinite if no factor overturns the structure.
-    #[must_use]
     pub fn strength(&self) -> f64 {
         self.factor.unwrap_or(f64::INFINITY)
     }
 
     /// Returns the distribution of the strength that first overturns the structure: strengths and their probabilities. The last strength is
     /// infinite if no factor certainly overturns it.
-    #[must_use]
     pub fn strengths(&self, treatment: Treatment) -> Vec<[f64; 2]> {
         let mut reached = 0.0;
         let certain = [self.strength(), 1.0];

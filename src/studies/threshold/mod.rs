@@ -42,7 +42,6 @@ pub struct FactorSample {
 
 impl FactorSample {
     /// Returns the verdict; `None` if there is no history.
-    #[must_use]
     pub fn verdict(&self) -> Option<Verdict> {
         self.result.as_ref().ok().map(Ending::verdict)
     }
@@ -89,7 +88,6 @@ pub struct Threshold {
 
 impl Threshold {
     /// Returns the ranges with a verdict, ascending.
-    #[must_use]
     pub fn of(&self, wanted: Verdict) -> Vec<FactorRange> {
         let ranges = self.ranges.iter();
         ranges
@@ -98,13 +96,11 @@ impl Threshold {
     }
 
     /// Returns the ranges that overturn the structure, ascending.
-    #[must_use]
     pub fn bands(&self) -> Vec<FactorRange> {
         self.of(Verdict::Overturns)
     }
 
     /// Returns the safe ranges between bands, ascending.
-    #[must_use]
     pub fn gaps(&self) -> Vec<FactorRange> {
         let bands = self.bands();
         let between = |gap: &FactorRange| {
@@ -117,13 +113,11 @@ impl Threshold {
     }
 
     /// Returns the largest factor up to which the structure certainly survives all sampled factors; `None` if it does not survive the smallest.
-    #[must_use]
     pub fn survives_up_to(&self) -> Option<f64> {
         survival::Survival::of_threshold(self).survives_up_to
     }
 
     /// Returns the smallest factor that certainly overturns the structure; `None` if no factor does.
-    #[must_use]
     pub fn lowest_factor(&self) -> Option<f64> {
         self.bands().first().map(|band| band.from)
     }

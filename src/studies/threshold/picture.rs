@@ -29,7 +29,6 @@ const HATCH_PX: f64 = 6.0;
 
 /// Draws the outcome against the factor: a strip for each model with the edges of its bands, and the largest rotation below. `peak_g` is the
 /// peak ground acceleration at factor 1.
-#[must_use]
 pub fn draw(
     figure: Figure,
     title: &str,

@@ -381,7 +381,6 @@ fn words(scenarios: &[Scenario], thresholds: &[Threshold]) -> String {
 
 impl Factors {
     /// Returns the tried factors in words.
-    #[must_use]
     pub fn in_words(&self) -> String {
         format!(
             "sampled from {} to {} in strides of {} %: narrower bands and gaps may be missed",

@@ -23,7 +23,6 @@ pub struct Survival {
 impl Survival {
     /// Makes a survival of ascending strengths with their verdicts; `None` for a strength without a history. Ranges extend from their first to
     /// their last strength.
-    #[must_use]
     pub fn of_levels(levels: &[(f64, Option<Verdict>)]) -> Self {
         let runs = levels.chunk_by(|a, b| a.1 == b.1);
         let runs = runs.map(|run| (run[0].1, [run[0].0, run[run.len() - 1].0]));
@@ -31,7 +30,6 @@ impl Survival {
     }
 
     /// Makes the survival of a threshold, with ranges that end at its edges.
-    #[must_use]
     pub fn of_threshold(threshold: &Threshold) -> Self {
         let mut ranges = threshold.ranges.iter();
         let samples = threshold
@@ -98,7 +96,6 @@ fn listed(runs: &[Run], kinds: &[Option<Verdict>], beside: &str, unit: &str) -> 
 
 /// Returns the line of words: `survives up to 2.113; uncertain from there; certainly overturns from 2.401 (gaps above: 2.604 to 2.871)`. The unit
 /// of strengths may be empty. For factors, `peak_g` is the peak ground acceleration at factor 1.
-#[must_use]
 pub fn in_words(survival: &Survival, unit: &str, peak_g: Option<f64>) -> String {
     let at = |strength: f64, rounded: fn(f64) -> String| match peak_g {
         Some(peak_g) => format!("{} ({} g)", rounded(strength), rounded(strength * peak_g)),

@@ -25,7 +25,6 @@ pub struct VariedThreshold {
 
 impl VariedThreshold {
     /// Returns the number of histories without a verdict, in words; `None` if all have one.
-    #[must_use]
     pub fn no_verdict(&self) -> Option<String> {
         let count = self.incomplete;
         let below = match &self.factor {

@@ -152,7 +152,6 @@ fn both_pass(sides: &Sides<HistorySide>, passed: fn(&HistorySide) -> Option<bool
 
 impl HistorySide {
     /// Returns the verdict without and with FC, in words.
-    #[must_use]
     pub const fn verdict(&self) -> &'static str {
         match (self.passed, self.passed_over_fc) {
             (Some(true), Some(true)) => "passed",

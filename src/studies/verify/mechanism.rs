@@ -157,7 +157,6 @@ impl CapacityCurves {
     }
 
     /// Returns the largest friction coefficient needed up to a fraction of the ultimate displacement.
-    #[must_use]
     pub fn friction_up_to(&self, part: f64) -> f64 {
         let end_m = part * self.centre.end().oscillator_displacement_m;
         let points = self.centre.curve.iter();

@@ -236,7 +236,6 @@ impl SideCheck {
     }
 
     /// Returns the governing method and result; `None` if the side cannot be checked.
-    #[must_use]
     pub fn governing(&self) -> Option<(Method, Margin)> {
         let (method, margin, _) = self.results().next()?;
         Some((method, margin))

@@ -43,13 +43,11 @@ pub fn report(scenario: &Scenario, check: &Summary) -> Result<Results, OutputErr
 }
 
 /// Returns the verdict in a sentence, then the result for each limit state, with the governing side.
-#[must_use]
 pub fn words(check: &Summary) -> String {
     render(check)
 }
 
 /// Makes the page of a check. `date` is the date of the check.
-#[must_use]
 pub fn page(scenario: &Scenario, check: &Summary, date: &str) -> String {
     let is_one = check.printed_sides() == 1;
     let figure = if is_one { "78mm" } else { "90mm" };

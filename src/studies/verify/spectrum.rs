@@ -112,7 +112,6 @@ impl Spectrum {
     }
 
     /// Returns the spectrum of the ground; `None` for points.
-    #[must_use]
     pub const fn ground(&self) -> Option<&Ground> {
         match self {
             Self::Ground(ground) | Self::Floor { ground, .. } => Some(ground),
@@ -121,7 +120,6 @@ impl Spectrum {
     }
 
     /// Returns the acceleration `a_g` of the hazard, in g. For points it is their peak; `None` if they do not begin at period zero.
-    #[must_use]
     pub fn ag_g(&self) -> Option<f64> {
         match self {
             Self::Ground(ground) | Self::Floor { ground, .. } => Some(ground.spectrum.hazard.ag_g),

@@ -30,7 +30,6 @@ pub struct KeyRange {
 
 impl KeyRange {
     /// Returns the values.
-    #[must_use]
     pub fn values(&self) -> Vec<f64> {
         let range = Sequence::Range {
             from: self.from,
