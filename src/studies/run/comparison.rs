@@ -9,7 +9,7 @@ use crate::dynamics::history::{Outcome, Summary as History};
 use crate::dynamics::repeatability::Verdict;
 use crate::dynamics::variation::VariationResult;
 use crate::scenario::Hinges;
-use crate::studies::quotable::{self, ModelAnswer};
+use crate::studies::quotable::ModelAnswer;
 
 /// Returns a table of the runs of one structure with different models of motion, followed by the conclusion.
 pub(super) fn comparison_words(runs: &[ModelResults<'_>]) -> String {
@@ -55,7 +55,7 @@ fn outcome_words(results: &ModelResults<'_>) -> String {
     }
 }
 
-/// Returns the differences between the model with the fewest assumptions and the others, and the answer that may be quoted.
+/// Returns the differences between the model with the fewest assumptions and the others.
 fn conclusion(runs: &[ModelResults<'_>]) -> String {
     let rank = |results: &ModelResults<'_>| results.run.scenario.motion.hinges() as usize;
     let best = runs.iter().max_by_key(|results| rank(results));
@@ -67,9 +67,7 @@ fn conclusion(runs: &[ModelResults<'_>]) -> String {
             Some(format!("{name}, compared with {best_name}: {differs}"))
         })
     });
-    let answers: Vec<_> = runs.iter().map(|results| results.answer.clone()).collect();
-    let lines = others.chain(quotable::in_words(&answers));
-    lines.map(|line| format!("  {line}\n")).collect()
+    others.map(|line| format!("  {line}\n")).collect()
 }
 
 /// Returns the difference of a model from the one with the fewest assumptions, in words; `None` if one has no verdict, or none moves.

@@ -45,7 +45,8 @@ use self::summary::Summary;
 pub use self::summary::{ComputedRun, OutcomeSummary, summary};
 pub use self::words::heading;
 use self::words::{NotableImpacts, VerdictLine, Words};
-use super::{ModelAnswer, Progress, Results, RunnerError, StudyError, Watch};
+use super::quotable::{self, ModelAnswer};
+use super::{Progress, Results, RunnerError, StudyError, Watch};
 use crate::dynamics::fall::FallEnd;
 use crate::dynamics::history::{Event, OpenHinge, Sample, Summary as History};
 use crate::dynamics::repeatability::{Repeatability, Repetitions, Verdict};
@@ -173,7 +174,13 @@ pub fn results(
         results.summary = one.summary.take();
         return Ok(results);
     }
+    let answers: Vec<_> = all.iter().map(|one| one.answer.clone()).collect();
+    let to_quote = quotable::in_words(&answers);
     results.words = comparison_words(&all);
+    results
+        .words
+        .extend(to_quote.iter().map(|quote| format!("  {quote}\n")));
+    results.summary["to_quote"] = to_quote.into();
     for one in &mut all {
         let _ = write!(results.words, "{}\n{}", one.run.name(), one.words);
         let model = one.run.scenario.motion.hinges();
