@@ -1,6 +1,6 @@
 //! A line with the input of a picture: structure, ground motion and model of motion.
 
-use crate::mechanics::four_link::impact::ImpactModel;
+use crate::ImpactModel;
 use crate::scenario::{
     Axis, Ground, Quantity, Record, RightFoot, Scaling, Scenario, Series, Structure,
 };

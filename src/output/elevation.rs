@@ -7,9 +7,9 @@ use super::scene::{Piece, Scene};
 use super::sheet::{PartHeight, Sheet};
 use super::svg::{Anchor, Drawing, Frame, Stroke, color};
 use super::text::{TEXT_PX, Text, text_px};
-use crate::dynamics::history::OpenHinge;
-use crate::mechanics::geometry::pose::{BodyPoint, Pose};
+use crate::mechanics::BodyPoint;
 use crate::scenario::{Dimension, DimensionSide, metres};
+use crate::{OpenHinge, Pose};
 
 /// Colour of blocks.
 pub(crate) const STONE: &str = "#f3efe6";

@@ -1,7 +1,7 @@
 //! The ground acceleration as a curve, including its jumps.
 
 use super::envelope::{COLUMNS, Envelope};
-use crate::dynamics::ground::GroundMotion;
+use crate::GroundMotion;
 
 /// Number of parts into which a curved piece is divided.
 const POINTS: u32 = 24;

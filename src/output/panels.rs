@@ -6,9 +6,7 @@ use super::figure::Figure;
 use super::ground;
 use super::sheet::{Key, Sheet, Sign};
 use super::svg::{Frame, Stroke, color};
-use crate::dynamics::ground::GroundMotion;
-use crate::dynamics::history::State;
-use crate::mechanics::sway::Sway;
+use crate::{GroundMotion, State, Sway};
 
 /// Smallest width of a band, in pixels; narrower ones cannot be distinguished.
 const NARROWEST_PX: f64 = 1.0;

@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 use nalgebra::Vector2;
 
 use super::scene::{Scene, link, sections_rad};
-use crate::dynamics::history::OpenHinge;
-use crate::mechanics::geometry::pose::BodyPoint;
+use crate::OpenHinge;
+use crate::mechanics::BodyPoint;
 use crate::mechanics::parts::Outline;
 
 /// A point of a structure. The body that carries the point may depend on the open hinges.

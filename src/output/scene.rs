@@ -3,16 +3,11 @@
 
 use nalgebra::Vector2;
 
-use crate::dynamics::history::{OpenHinge, Sample};
-use crate::mechanics::blocks::Row;
-use crate::mechanics::chain::Hinge;
-use crate::mechanics::geometry::pose::{BodyPoint, Pose};
-use crate::mechanics::geometry::ring::Edge;
-use crate::mechanics::masonry::{FillColumn, PlacedLoad};
-use crate::mechanics::parts::{Outline, Parts, Section};
-use crate::mechanics::sway::Sway;
-use crate::mechanics::tie::{Anchor, Tie};
+use crate::mechanics::masonry::FillColumn;
+use crate::mechanics::parts::{Outline, Section};
+use crate::mechanics::{Anchor, BodyPoint, Edge, Parts, PlacedLoad, Tie};
 use crate::scenario::{Dimension, Structure, metres};
+use crate::{Hinge, OpenHinge, Pose, Row, Sample, Sway};
 
 /// A structure to be drawn, undeformed.
 #[derive(Clone, Debug)]

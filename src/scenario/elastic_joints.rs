@@ -7,12 +7,11 @@ use super::prelude::*;
 use super::structure::{ModelError, Structure};
 use crate::argument::ArgumentError;
 use crate::dynamics::elastic_joints::ElasticJoints;
-use crate::dynamics::model::Request;
-use crate::dynamics::row::error::RowModelError;
 use crate::mechanics::elastic_joint::{
-    Contact, ElasticProperties, ElasticStructure, JointStiffness, Materials, RestError, Stiffness,
+    Contact, ElasticProperties, JointStiffness, Materials, RestError, Stiffness,
 };
-use crate::mechanics::settling::Movements;
+use crate::mechanics::{ElasticStructure, Movements};
+use crate::{Request, RowModelError};
 
 /// Converts a stiffness in GPa/m to Pa/m, and a modulus in GPa to Pa.
 const GPA: f64 = 1e9;

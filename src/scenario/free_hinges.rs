@@ -3,10 +3,10 @@
 use super::prelude::*;
 use super::structure::Structure;
 use crate::argument::rounded_up;
-use crate::dynamics::free_hinges::{FreeHinges, RowOptions};
-use crate::dynamics::row::error::RowModelError;
-use crate::mechanics::friction::{self, FrictionError};
-use crate::mechanics::settling::Movements;
+use crate::dynamics::free_hinges::FreeHinges;
+use crate::mechanics::friction;
+use crate::mechanics::{FrictionError, Movements};
+use crate::{RowModelError, RowOptions};
 
 /// Free hinges on supports that may have moved.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

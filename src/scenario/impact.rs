@@ -1,7 +1,7 @@
 //! The impact law of four links: `[impact]`.
 
 use super::prelude::*;
-use crate::mechanics::four_link::impact::{ImpactLaw, ImpactModel};
+use crate::{ImpactLaw, ImpactModel};
 
 pub(super) const RESTITUTION: Number = within(&(0.0..=1.0));
 const MODELS: [ImpactModel; 4] = [

@@ -19,7 +19,7 @@ use super::record::{PEAK_G, SCALE};
 use super::sequence::Sequence;
 use super::simulation::Simulation;
 use super::structure::Structure;
-use crate::mechanics::four_link::impact::ImpactModel;
+use crate::ImpactModel;
 
 named! {
     /// A quantity that varies over a map, named by its key in `[map]`. The quantity that comes first in this list is on the x axis.

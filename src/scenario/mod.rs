@@ -64,12 +64,10 @@ mod verify;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::dynamics::ground::GroundMotion;
-use crate::dynamics::model::{Initial, MechanismModel, Model, Request};
-use crate::dynamics::row::error::RowModelError;
-use crate::dynamics::variation::Variation;
-use crate::mechanics::blocks::Row;
+use crate::dynamics::Variation;
+use crate::dynamics::model::Initial;
 use crate::mechanics::four_links::FourLinkError;
+use crate::{GroundMotion, MechanismModel, Model, Request, Row, RowModelError};
 pub use assignment::Assignment;
 use document::Entries;
 pub use elastic_joints::ElasticTable;

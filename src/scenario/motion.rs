@@ -6,11 +6,9 @@ use super::hinges::Hinges;
 use super::prelude::*;
 use super::structure::{DRUM_KEYS, ModelError, Structure};
 use super::{free_hinges, impact, supports};
-use crate::dynamics::free_hinges::RowOptions;
-use crate::dynamics::model::{Model, Request};
-use crate::dynamics::variation::Variation;
-use crate::mechanics::four_link::impact::{ImpactLaw, ImpactModel};
-use crate::mechanics::settling::Movements;
+use crate::dynamics::Variation;
+use crate::mechanics::Movements;
+use crate::{ImpactLaw, ImpactModel, Model, Request, RowOptions};
 
 /// A model of motion with its options.
 #[derive(Clone, Copy, Debug, PartialEq)]

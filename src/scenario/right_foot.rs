@@ -13,7 +13,7 @@ use super::hinges::Hinges;
 use super::prelude::*;
 use super::record::{KnownRecords, Record};
 use super::structure::Structure;
-use crate::dynamics::ground::GroundMotion;
+use crate::GroundMotion;
 use crate::dynamics::model::FEET_NEED_JOINTS;
 
 /// Smallest velocity of a wave, in m/s; smaller values are probably in another unit.

@@ -1,7 +1,7 @@
 //! Options of the computation of motion: `[simulation]`.
 
 use super::prelude::*;
-use crate::dynamics::model::Request;
+use crate::Request;
 
 /// Options of the computation of motion.
 ///

@@ -12,7 +12,7 @@ use std::mem;
 
 use super::document::Entries;
 use super::prelude::*;
-use crate::mechanics::arch::MeasuredAt;
+use crate::mechanics::MeasuredAt;
 
 /// Tables of shapes with `measured_at`.
 const TABLES: [&str; 4] = ["arch", "pointed_arch", "elliptic_arch", "basket_arch"];

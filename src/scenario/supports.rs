@@ -2,8 +2,8 @@
 
 use super::prelude::*;
 use super::structure::Structure;
-use crate::mechanics::blocks::Supports;
-use crate::mechanics::settling::{Follower, Movement, Movements};
+use crate::mechanics::settling::Movement;
+use crate::mechanics::{Follower, Movements, Supports};
 
 /// Range of movements; no structure stands on springings that have moved farther.
 const MOVEMENT_M: Number = within(&(-1e3..=1e3));

@@ -13,10 +13,11 @@
 use nalgebra::Vector2;
 
 use super::prelude::*;
-use crate::mechanics::blocks::{MAX_BLOCKS, Row};
-use crate::mechanics::column::Column;
+use crate::mechanics::blocks::MAX_BLOCKS;
 use crate::mechanics::stability::collapse_mechanism;
-use crate::mechanics::tie::{Anchor, Tie, TieError};
+use crate::mechanics::tie::TieError;
+use crate::mechanics::{Anchor, Tie};
+use crate::{Column, Row};
 
 const COORDINATE_M: Number = within(&(-1e6..=1e6));
 /// Largest stiffness of a tie, in N/m: a steel bar of 30,000 mm2 with a length of 0.6 m. Stiffer ties are practically rigid, and computations

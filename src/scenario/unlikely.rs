@@ -5,8 +5,7 @@ use std::ops::RangeInclusive;
 use super::prelude::*;
 use super::structure::bounds_m;
 use super::{Format, Ground, PulseGround, Scaling, Scenario, Series, Structure};
-use crate::dynamics::model::Model;
-use crate::mechanics::sway::Sway;
+use crate::{Model, Sway};
 
 /// Usual peaks of records, in g. The strongest recorded accelerations are a little above 2 g, and weaker ones than the lower limit move no
 /// masonry. Other values are probably in another unit.

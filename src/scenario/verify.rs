@@ -35,8 +35,9 @@ use super::listing::{RecordListing, written};
 use super::prelude::*;
 use super::record::{Decimal, Format, LineFault, Series, faulty, read_numbers};
 use crate::dynamics::demand::floor::Mode;
-use crate::dynamics::demand::ground::{GroundSpectrum, Hazard, Site, Soil, Topography};
+use crate::dynamics::demand::ground::{Hazard, Soil, Topography};
 use crate::dynamics::demand::points::PointSpectrum;
+use crate::dynamics::{GroundSpectrum, Site};
 
 named! {
     /// A limit state.

@@ -3,19 +3,17 @@
 use nalgebra::Vector2;
 
 use super::impact::LinkImpact;
-use crate::mechanics::chain::{Hinge, MechanismChain as _};
 use crate::mechanics::four_link::chain::ArchLink;
 use crate::mechanics::four_link::impact::closing_field;
 use crate::mechanics::four_link::resultant::ResultantLine;
-use crate::mechanics::geometry::profile::Profile;
-use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::{Edge, MechanismChain as _, Profile};
 use crate::output::elevation::{BODIES, SheetTransform, View, draw_dimensions, room_px};
 use crate::output::mechanisms::HINGES;
 use crate::output::scene::FARTHEST;
 use crate::output::text::Text;
 use crate::output::{Anchor, Drawing, Figure, Frame, PartHeight, Scene, Sheet, Stroke, color};
 use crate::scenario::DimensionSide;
-use crate::{FourLinks, OpenHinge, Pose, Sway};
+use crate::{FourLinks, Hinge, OpenHinge, Pose, Sway};
 
 /// Fraction of the limit rotation at which a mechanism is drawn, so that it is visibly open.
 const DRAWN_PART: f64 = 0.25;

@@ -7,7 +7,7 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::ending::{Ending, NoHistory, Verdict};
-use crate::dynamics::repeatability::OutcomeCount;
+use crate::dynamics::OutcomeCount;
 use crate::dynamics::thrust::{EXCESS_LEVELS, MODEL_LIMIT};
 use crate::{Outcome, Scenario};
 

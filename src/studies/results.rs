@@ -9,7 +9,7 @@ use thiserror::Error;
 
 use super::part::PartError;
 use super::{ModelAnswer, RunnerError, Study};
-use crate::dynamics::model::SimulationError;
+use crate::SimulationError;
 use crate::output::{Figure, Folder, OutputError, pretty, render, summary_of};
 use crate::scenario::ScenarioErrors;
 

@@ -7,11 +7,7 @@ use nalgebra::Vector2;
 use serde::{Serialize, Serializer};
 
 use super::thrust::ThrustRecord;
-use crate::mechanics::chain::{Demand, Hinge};
-use crate::mechanics::geometry::pose::Pose;
-use crate::mechanics::lanes::Lanes;
-use crate::mechanics::sway::Sway;
-use crate::mechanics::tie::{Tie, TieMemory};
+use crate::mechanics::{Demand, Hinge, Lanes, Pose, Sway, Tie, TieMemory};
 
 /// Outcome of a history.
 ///

@@ -16,3 +16,21 @@ pub mod row;
 pub mod thrust;
 pub mod until;
 pub mod variation;
+
+pub use self::demand::ground::{GroundSpectrum, Site};
+pub use self::fall::FallEnd;
+pub use self::free_hinges::RowOptions;
+pub use self::ground::{GroundMotion, GroundVelocity};
+pub use self::history::{
+    Cost, Details, Event, EventKind, HalfCycle, OpenHinge, Outcome, Sample, Sliding, State,
+    Summary, TieSample,
+};
+pub use self::model::{MechanismModel, Model, Repetition, Request, SimulationError};
+pub use self::repeatability::{OutcomeCount, Repeatability, Verdict};
+pub(crate) use self::row::clock::Settings;
+pub(crate) use self::row::course::Course;
+pub use self::row::error::{RowModelError, RowMotionError};
+pub(crate) use self::row::stepper::Stepper;
+pub(crate) use self::row::task::Task;
+pub use self::thrust::ThrustRecord;
+pub use self::variation::Variation;

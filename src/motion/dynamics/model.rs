@@ -13,12 +13,7 @@ pub use super::request::{Initial, Request};
 use super::row::error::RowMotionError;
 use super::until::{EndCondition, SafetyMonitor};
 use crate::argument::{ArgumentError, plain};
-use crate::mechanics::blocks::Row;
-use crate::mechanics::capacity::Displaced;
-use crate::mechanics::chain::{Demand, Hinge};
-use crate::mechanics::equivalent::Equivalent;
-use crate::mechanics::sway::Sway;
-use crate::mechanics::virtual_work::MovingBody;
+use crate::mechanics::{Demand, Displaced, Equivalent, Hinge, MovingBody, Row, Sway};
 
 /// Structure under ground motion, as a model of its motion.
 ///

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use super::fall::FallEnd;
 use super::history::{Event, OpenHinge, Sample};
-use crate::mechanics::geometry::pose::Pose;
+use crate::mechanics::Pose;
 
 /// Receives the samples and events of a history. Breaking ends the history there.
 ///

@@ -7,8 +7,7 @@ use thiserror::Error;
 
 use super::history::{Event, Impact, JointPressure, OpenHinge, Sample, State, Summary, TieSample};
 use super::recorder::Recorder;
-use crate::mechanics::chain::Demand;
-use crate::mechanics::geometry::pose::Pose;
+use crate::mechanics::{Demand, Pose};
 
 /// History with all its samples and events.
 #[derive(Clone, Debug, PartialEq)]

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::ground::GroundMotion;
 use crate::argument::{ArgumentError, allow, within};
-use crate::mechanics::sway::Sway;
+use crate::mechanics::Sway;
 
 /// Request for a history: duration and accuracy.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! Thrust line in a history: measures the validity of the four-link assumption.
 
 use super::peak::Peak;
-use crate::mechanics::chain::Demand;
+use crate::mechanics::Demand;
 
 /// Largest thrust excess and friction demand of a history, and the fraction of its rocking time in which the thrust line stays (almost) inside.
 ///

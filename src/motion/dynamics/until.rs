@@ -6,7 +6,7 @@ use super::ground::GroundMotion;
 use super::history::{Sample, State};
 use super::recorder::Recorder;
 use super::request::Request;
-use crate::mechanics::sway::Sway;
+use crate::mechanics::Sway;
 
 /// End of the computation of a motion. A motion that is ended early has the outcome [`StillRocking`](super::history::Outcome::StillRocking).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

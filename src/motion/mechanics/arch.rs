@@ -6,10 +6,9 @@ use std::sync::{Arc, OnceLock};
 use serde::Serialize;
 
 use crate::argument::{ArgumentError, allow, counted, within};
-use crate::mechanics::blocks::{Row, RowError};
-use crate::mechanics::four_link::limit::{Incipient, LimitError, incipient};
+use crate::mechanics::four_link::limit::{Incipient, incipient};
 use crate::mechanics::four_link::mechanism::HingeSites;
-use crate::mechanics::geometry::ring::Ring;
+use crate::mechanics::{LimitError, Ring, Row, RowError};
 
 /// Range of lengths in metres and of densities in kg/m3, wide enough for any arch; their products stay in the range of an `f64`.
 pub const MAGNITUDE: RangeInclusive<f64> = 1e-3..=1e6;

@@ -9,9 +9,7 @@ use nalgebra::Vector2;
 use serde::{Serialize, Serializer};
 
 use crate::bisection::{Width, bisect, middle};
-use crate::mechanics::geometry::pose::Pose;
-use crate::mechanics::geometry::ring::{Edge, MassMoments};
-use crate::mechanics::sway::Sway;
+use crate::mechanics::{Edge, MassMoments, Pose, Sway};
 
 /// Coefficients of the equation of motion of a system with one degree of freedom at a given `q`, `M q'' + M'/2 q'^2 + g S_y + a_g S_x = 0`.
 #[derive(Clone, Copy, Debug, PartialEq)]

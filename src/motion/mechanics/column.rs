@@ -25,13 +25,9 @@ use super::blocks::{GRAVITY_M_S2, MAX_BLOCKS, Row, RowError};
 use super::chain::{Coefficients, Demand, Hinge, Link, Mechanism, MechanismChain, Motion};
 use super::tie::{Tie, TieError};
 use crate::argument::{ArgumentError, allow, within};
-use crate::mechanics::four_link::impact::{ImpactLaw, ImpactModel};
 use crate::mechanics::four_link::resultant::SectionResultant;
 use crate::mechanics::four_link::thrust::Load;
-use crate::mechanics::geometry::field::Twist;
-use crate::mechanics::geometry::pose::Pose;
-use crate::mechanics::geometry::ring::MassMoments;
-use crate::mechanics::sway::Sway;
+use crate::mechanics::{ImpactLaw, ImpactModel, MassMoments, Pose, Sway, Twist};
 
 /// Column that rotates about its right toe; lengths in half diagonals, unit density and depth.
 #[derive(Clone, Copy, Debug)]

@@ -26,9 +26,8 @@ use thiserror::Error;
 use super::blocks::{Row, Supports};
 use super::joints::{Closure, Placement};
 use super::tie::{TieLine, pull_blocks};
-use crate::mechanics::geometry::field::Twist;
-use crate::mechanics::geometry::ring::MassMoments;
 
+use crate::mechanics::{MassMoments, Twist};
 use answer::PinSolution;
 use exchange::WrongCorner;
 use factor::Factor;

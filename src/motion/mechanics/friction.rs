@@ -12,9 +12,7 @@ use thiserror::Error;
 use super::blocks::Row;
 use super::cone_program;
 use crate::bisection::{Width, try_bisect};
-use crate::mechanics::geometry::ring::Edge;
-use crate::mechanics::stance::Stance;
-use crate::mechanics::sway::Sway;
+use crate::mechanics::{Edge, Stance, Sway};
 
 /// Rate, over the largest one, that counts as zero.
 const LEAST_RATE: f64 = 1e-4;

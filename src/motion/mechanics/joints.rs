@@ -13,8 +13,8 @@ use nalgebra::Vector2;
 
 use super::blocks::{Joint, Row, Supports};
 use crate::mechanics::geometry::field::turned;
-use crate::mechanics::geometry::pose::{Pose, product, unit};
-use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::geometry::pose::{product, unit};
+use crate::mechanics::{Edge, Pose};
 
 /// Gap, over the thickness, below which a corner of a joint counts as closed.
 pub const SHUT_RATIO: f64 = 1e-12;

@@ -13,9 +13,7 @@ use super::contact::{ContactError, Load, Program};
 use super::joints::Placement;
 use super::stance::Stance;
 use super::tie::TieLine;
-use crate::mechanics::geometry::field::Twist;
-use crate::mechanics::geometry::ring::Edge;
-use crate::mechanics::sway::Sway;
+use crate::mechanics::{Edge, Sway, Twist};
 
 /// Velocities below this fraction of those without contact count as zero.
 const STANDSTILL: f64 = 1e-9;

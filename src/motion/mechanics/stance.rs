@@ -4,7 +4,7 @@ use super::blocks::Row;
 use super::joints::Placement;
 use super::lanes::Lanes;
 use super::tie::{TieLine, TieMemory};
-use crate::mechanics::geometry::pose::Pose;
+use crate::mechanics::Pose;
 
 /// Positions of the blocks of a row, and states of its ties.
 #[derive(Clone, Debug)]

@@ -1,6 +1,6 @@
 //! Directions in which a structure sways. Everything is computed in a frame in which the sway goes right; a sway to the left is reflected.
 
-use crate::mechanics::geometry::profile::Profile;
+use crate::mechanics::Profile;
 
 named! {
     /// Direction in which a mechanism carries the structure.

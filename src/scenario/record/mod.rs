@@ -45,7 +45,7 @@ use super::error::ScenarioErrors;
 use super::prelude::*;
 use super::source::{not_plain, read_at_most};
 use super::table;
-use crate::dynamics::ground::GroundMotion;
+use crate::GroundMotion;
 
 /// Largest acceleration of the ground, in g; beyond it the unit is probably wrong.
 pub(crate) const MAX_ACCELERATION_G: f64 = 1e3;

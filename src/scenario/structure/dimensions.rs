@@ -3,9 +3,9 @@
 use nalgebra::Vector2;
 
 use super::Structure;
-use crate::mechanics::arch::{Arch, MeasuredAt};
-use crate::mechanics::blocks::Row;
-use crate::mechanics::masonry::{CircularArch, Masonry, Pier, Piers, Shape};
+use crate::mechanics::masonry::{CircularArch, Pier, Piers};
+use crate::mechanics::{MeasuredAt, Shape};
+use crate::{Arch, Masonry, Row};
 
 /// A dimension of a structure.
 #[derive(Clone, Debug, PartialEq)]

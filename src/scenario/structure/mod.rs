@@ -16,19 +16,18 @@ use super::prelude::*;
 use super::span::Circular;
 use super::tie::{self, TieTable};
 use crate::argument::rounded_up;
-use crate::dynamics::free_hinges::{FreeHinges, RowOptions};
-use crate::dynamics::model::MechanismModel;
-use crate::dynamics::row::error::RowModelError;
-use crate::mechanics::arch::{self, Arch};
-use crate::mechanics::blocks::{MAX_BLOCKS, Row, RowError, Supports};
-use crate::mechanics::column::{Column, RockingColumn};
-use crate::mechanics::four_link::impact::{ImpactLaw, ImpactModel};
-use crate::mechanics::four_link::limit::{LimitError, least_thickness_ratio};
-use crate::mechanics::four_links::{FourLinkError, FourLinks};
-use crate::mechanics::masonry::{CircularArch, LoadOutlines, Masonry, PlacedLoad, Shape};
-use crate::mechanics::parts::Parts;
-use crate::mechanics::sway::Sway;
-use crate::mechanics::tie::Tie;
+use crate::dynamics::free_hinges::FreeHinges;
+use crate::mechanics::arch;
+use crate::mechanics::blocks::MAX_BLOCKS;
+use crate::mechanics::column::RockingColumn;
+use crate::mechanics::four_link::limit::least_thickness_ratio;
+use crate::mechanics::four_links::FourLinkError;
+use crate::mechanics::masonry::{CircularArch, LoadOutlines};
+use crate::mechanics::{LimitError, Parts, PlacedLoad, RowError, Shape, Supports, Tie};
+use crate::{
+    Arch, Column, FourLinks, ImpactLaw, ImpactModel, Masonry, MechanismModel, Row, RowModelError,
+    RowOptions, Sway,
+};
 
 /// The structure that stands on the ground.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -2,9 +2,9 @@
 
 use super::Structure;
 use super::dimensions::{circular, metres};
-use crate::mechanics::arch::{Arch, MeasuredAt};
-use crate::mechanics::masonry::{FillLevel, Masonry, Shape};
-use crate::mechanics::tie::Tie;
+use crate::mechanics::masonry::FillLevel;
+use crate::mechanics::{MeasuredAt, Shape, Tie};
+use crate::{Arch, Masonry};
 
 impl Structure {
     /// Returns the structure in words, with properties that its drawing does not show.

@@ -7,13 +7,10 @@ use nalgebra::Vector2;
 use thiserror::Error;
 
 pub use self::report::{CapacitySide, FILES, Oscillator, Summary, report};
-use crate::mechanics::blocks::{Row, RowError};
-use crate::mechanics::capacity::{Capacity, CapacityError, Control};
-use crate::mechanics::geometry::pose::BodyPoint;
-use crate::mechanics::parts::Parts;
+use crate::mechanics::capacity::{CapacityError, Control};
 use crate::mechanics::settling::{Held, HeldError};
-use crate::mechanics::sides::Sides;
-use crate::{FourLinkError, Hinge, MechanismModel, Scenario, Structure, Sway};
+use crate::mechanics::{BodyPoint, Capacity, Parts, RowError, Sides};
+use crate::{FourLinkError, Hinge, MechanismModel, Row, Scenario, Structure, Sway};
 
 /// Reasons why a scenario has no capacity curves.
 #[derive(Clone, Debug, PartialEq, Error)]

@@ -1,7 +1,6 @@
 //! `capacity.svg`: acceleration against displacement of the control point, for both sides.
 
-use crate::mechanics::capacity::Capacity;
-use crate::mechanics::sides::Sides;
+use crate::mechanics::{Capacity, Sides};
 use crate::output::{CURVES, Chart, Figure, Mark};
 
 pub(super) fn draw(figure: Figure, title: &str, sides: &Sides<Capacity>) -> String {

@@ -7,9 +7,8 @@ use serde_json::Value;
 
 use super::held_row;
 use super::picture::draw;
-use crate::mechanics::capacity::{Capacity, CurvePoint, TieEventDisplacements};
-use crate::mechanics::parts::Parts as _;
-use crate::mechanics::sides::Sides;
+use crate::mechanics::capacity::{CurvePoint, TieEventDisplacements};
+use crate::mechanics::{Capacity, Parts as _, Sides};
 use crate::output::{Figure, Named, OutputError, column, csv, fields, filters, render};
 use crate::studies::results::Results;
 use crate::{Scenario, Sway};

@@ -1,7 +1,7 @@
 //! The endings of histories as columns of a table.
 
 use super::{Ending, NoHistory, Verdict};
-use crate::mechanics::sway::Sway;
+use crate::Sway;
 use crate::output::{Column, column, list};
 
 /// Outcome of a case whose history could not be computed.

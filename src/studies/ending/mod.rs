@@ -8,11 +8,11 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 pub use self::columns::outcome_name;
+use crate::dynamics::OutcomeCount;
 pub use crate::dynamics::repeatability::Verdict;
-use crate::dynamics::repeatability::{CheckedHistory, OutcomeCount, checked};
+use crate::dynamics::repeatability::{CheckedHistory, checked};
 use crate::dynamics::thrust::MODEL_LIMIT;
-use crate::mechanics::four_link::limit::LimitError;
-use crate::mechanics::stability::StabilityError;
+use crate::mechanics::{LimitError, StabilityError};
 use crate::scenario::ModelError;
 use crate::{
     Case, EndCondition, FourLinkError, GroundMotion, Model, Outcome, Request, RowModelError,

@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json};
 use super::influence::percent;
 use super::report::{Band, Findings, Line, doubts_in_words, of_answer, share_in_words};
 use super::{NoAnswer, Question, Samples};
-use crate::dynamics::model::{Model, WithoutDemand};
+use crate::dynamics::model::WithoutDemand;
 use crate::dynamics::repeatability::repeated;
 use crate::output::panels::{MAIN, scale_around};
 use crate::output::{
@@ -18,7 +18,7 @@ use crate::scenario::{Motion, Scenario, Structure};
 use crate::studies::ending::columns::{self, OUTCOMES};
 use crate::studies::remarks::ModelCheck;
 use crate::studies::statistics::{band, fractile, quantile};
-use crate::{Ending, Factors, NoHistory, Sample, Verdict};
+use crate::{Ending, Factors, Model, NoHistory, Sample, Verdict};
 
 /// Largest number of times at which samples are compared.
 const MOST_TIMES: usize = 300;

@@ -5,15 +5,15 @@ mod report;
 pub use self::report::chain;
 use self::report::{Certificate, ModelComparison, Summary, chain_of_four_links};
 use super::results::{PrintedResult, StudyError};
+use crate::mechanics::Profile;
 use crate::mechanics::four_link::certificate::{
     DEFAULT_JOINTS, Projection, ProjectionError, joints_rad, project,
 };
 use crate::mechanics::four_link::chain::{ArchLink, Chain};
-use crate::mechanics::four_link::impact::{ImpactModel, closing_field, impact as impact_by};
+use crate::mechanics::four_link::impact::{closing_field, impact as impact_by};
 use crate::mechanics::four_link::impulse_line::ImpulseLine;
 use crate::mechanics::four_link::mechanism::FourLink;
-use crate::mechanics::geometry::profile::Profile;
-use crate::{FourLinks, MechanismModel, Scenario, Sway};
+use crate::{FourLinks, ImpactModel, MechanismModel, Scenario, Sway};
 
 /// The impact that leads to a link of the chain of four links, after a first sway to a given side.
 #[derive(Clone, Copy, Debug)]

@@ -9,14 +9,13 @@ use serde::Serialize;
 use super::LinkImpact;
 use crate::argument::fixed;
 use crate::mechanics::four_link::certificate::Projection;
-use crate::mechanics::four_link::impact::{Impact, ImpactModel};
+use crate::mechanics::four_link::impact::Impact;
 use crate::mechanics::four_link::impulse_line::ImpulseLine;
 use crate::mechanics::four_link::mechanism::HingeSites;
-use crate::mechanics::geometry::profile::Profile;
-use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::{Edge, Profile};
 use crate::output::mechanisms::{HINGES, degrees};
 use crate::output::{Cell, OutputError, column, csv, filters};
-use crate::{Hinge, MechanismModel, Scenario, Sway};
+use crate::{Hinge, ImpactModel, MechanismModel, Scenario, Sway};
 
 /// Impacts of the structure of a scenario.
 #[derive(Clone, Debug, PartialEq, Serialize, Template)]

@@ -8,12 +8,9 @@ pub use self::report::{
     Ties, YieldingJoint, YieldingTies,
 };
 use super::results::{PrintedResult, StudyError};
-use crate::mechanics::friction::{self, FrictionError, FrictionOnset};
-use crate::mechanics::settling::{Follower, Movements};
-use crate::mechanics::sides::Sides;
-use crate::mechanics::stability::{
-    RowOnset, StabilityError, limit_with_yielding_ties, onset, onset_at,
-};
+use crate::mechanics::friction::{self, FrictionOnset};
+use crate::mechanics::stability::{limit_with_yielding_ties, onset, onset_at};
+use crate::mechanics::{Follower, FrictionError, Movements, RowOnset, Sides, StabilityError};
 use crate::{FourLinkError, Row, RowModelError, Scenario, Sway};
 
 /// Computes the onset of motion of the structure of a scenario, to both sides; with slipping joints, also for their coefficient of friction.

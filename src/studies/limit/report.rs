@@ -4,11 +4,8 @@ use askama::Template;
 use serde::Serialize;
 
 use crate::argument::fixed;
-use crate::mechanics::equivalent::Equivalent;
-use crate::mechanics::geometry::ring::Edge;
 use crate::mechanics::settling::Pin;
-use crate::mechanics::sides::Sides;
-use crate::mechanics::stability::RowOnset;
+use crate::mechanics::{Edge, Equivalent, RowOnset, Sides};
 use crate::output::mechanisms::{HINGES, by_body, columns, degrees};
 use crate::output::{Named, filters};
 use crate::{Hinge, MechanismModel, Row, Sway};

@@ -1,7 +1,7 @@
 //! The picture of an overturning map.
 
 use super::{CellRow, OverturningMap, described};
-use crate::dynamics::history::Outcome;
+use crate::Outcome;
 use crate::output::caption::caption;
 use crate::output::sheet::{self as output};
 use crate::output::{Axes, Chart, Figure, Key, LEFT_PX, Mark, Scale, Shape, Sign, Stroke, color};

@@ -1,8 +1,8 @@
 //! Files and words of an overturning map.
 
 use super::{CellRow, NoHistory, OverturningMap, page, picture};
+use crate::Outcome;
 use crate::argument::plain;
-use crate::dynamics::history::Outcome;
 use crate::output::{Column, OutputError, column, csv};
 use crate::scenario::{Quantity, Scenario};
 use crate::studies::ending::columns::{self, FAILED};

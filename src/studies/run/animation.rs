@@ -1,6 +1,6 @@
 //! The frames of an animation: a history thinned to a limited number of samples.
 
-use crate::dynamics::history::Sample;
+use crate::Sample;
 use crate::output::Thinned;
 
 /// The frames: every sample, or every second, fourth, eighth and so on, up to a given number; and the last sample.

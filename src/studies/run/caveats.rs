@@ -1,10 +1,9 @@
 //! Caveats of a history, in sentences for words, warnings and the verdict.
 
-use crate::dynamics::history::{Outcome, Summary as History};
-use crate::dynamics::model::Model;
 use crate::dynamics::peak::Peak;
 use crate::dynamics::thrust::{EXCESS_LEVELS, MODEL_LIMIT};
 use crate::scenario::{Hinges, Scenario, Structure};
+use crate::{Model, Outcome, Summary as History};
 
 /// Rotations up to this value are printed as zero: such a block slides without rocking.
 pub(super) const STRAIGHT_RAD: f64 = 5e-7;

@@ -3,13 +3,9 @@
 use std::fmt::Write as _;
 
 use super::ModelResults;
-use super::caveats::{self, vibrates_since_s};
-use super::summary::ComputedRun;
-use crate::dynamics::history::{Outcome, Summary as History};
-use crate::dynamics::repeatability::Verdict;
+use super::caveats::vibrates_since_s;
 use crate::dynamics::variation::VariationResult;
-use crate::scenario::Hinges;
-use crate::studies::quotable::ModelAnswer;
+use crate::{Outcome, Summary as History, Verdict};
 
 /// Returns a table of the runs of one structure with different models of motion, followed by the conclusion.
 pub(super) fn comparison_words(runs: &[ModelResults<'_>]) -> String {
@@ -92,35 +88,6 @@ fn difference(best: &ModelResults<'_>, other: &ModelResults<'_>) -> Option<Strin
     })
 }
 
-/// Returns the answer of a run that may be quoted: a certain outcome that does not depend on the stiffness and contact of its joints.
-pub(super) fn answer(run: &ComputedRun<'_>) -> ModelAnswer {
-    let (scenario, history, varied) = (run.scenario, run.history, run.varied);
-    let is_elastic = scenario.motion.hinges() == Hinges::Elastic;
-    let happens = match history.outcome {
-        Outcome::Overturned(_) => "overturns under",
-        _ => "survives",
-    };
-    let no_answer = match (run.verdict(), changed_outcome(history, varied)) {
-        (Verdict::Incomplete, _) => Some("the run has no verdict".to_owned()),
-        (Verdict::Uncertain, _) => Some("it is uncertain whether it overturns".to_owned()),
-        _ if run.model.row().is_some() && run.repeated.is_none() => {
-            Some("the run was not repeated".to_owned())
-        }
-        (_, Some(change)) => Some(format!(
-            "THE OUTCOME DEPENDS ON JOINT STIFFNESS AND CONTACT: it {happens} this motion as given, and {change}"
-        )),
-        _ if is_elastic && !all_agree(history, varied) => {
-            Some("the dependence of the outcome on joint stiffness is unknown".to_owned())
-        }
-        _ => None,
-    };
-    let condition = caveats::friction_condition(scenario, history);
-    let condition = condition.map_or_else(String::new, |condition| format!(" ({condition})"));
-    let answer = no_answer.map_or_else(|| Ok(format!("{happens} this motion{condition}")), Err);
-    let (hinges, is_arch) = (scenario.motion.hinges(), scenario.structure.thrusts());
-    ModelAnswer::new(hinges, is_arch, history.thrust_excess_ratio(), answer)
-}
-
 /// Returns the opposite outcome and the properties with which it occurs, in words; `None` if no property changes the outcome.
 pub(super) fn changed_outcome(own: &History, varied: &[VariationResult]) -> Option<String> {
     let (opposite, verb) = match Verdict::from(own.outcome) {
@@ -137,7 +104,7 @@ pub(super) fn changed_outcome(own: &History, varied: &[VariationResult]) -> Opti
 }
 
 /// Returns true if the motion was computed with other properties, and all outcomes agree.
-fn all_agree(own: &History, varied: &[VariationResult]) -> bool {
+pub(super) fn all_agree(own: &History, varied: &[VariationResult]) -> bool {
     let own = Verdict::from(own.outcome);
     let ends = varied.iter().map(|one| one.result.as_ref());
     let mut agree = ends.map(|end| end.is_ok_and(|other| Verdict::from(other.outcome) == own));

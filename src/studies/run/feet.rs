@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 use serde::Serialize;
 
-use crate::dynamics::history::Summary as History;
+use crate::Summary as History;
 use crate::dynamics::peak::CONSTANT;
 use crate::scenario::Scenario;
 

@@ -47,15 +47,14 @@ pub use self::words::heading;
 use self::words::{NotableImpacts, VerdictLine, Words};
 use super::quotable::{self, ModelAnswer};
 use super::{Progress, Results, RunnerError, StudyError, Watch};
-use crate::dynamics::fall::FallEnd;
-use crate::dynamics::history::{Event, OpenHinge, Sample, Summary as History};
-use crate::dynamics::repeatability::{Repeatability, Repetitions, Verdict};
+use crate::dynamics::repeatability::Repetitions;
 use crate::dynamics::variation::Variations;
+use crate::dynamics::{FallEnd, Repeatability};
 use crate::output::{
     Figure, Folder, OutputError, Scene, Subject, TableWriter, pretty, render, summary_of,
 };
 use crate::scenario::{Hinges, Scenario};
-use crate::{Model, Pose, Recorder, Sway};
+use crate::{Event, Model, OpenHinge, Pose, Recorder, Sample, Summary as History, Sway, Verdict};
 
 const ROTATIONS: &str = "rotations.csv";
 const REPORT: &str = "report.html";
@@ -308,7 +307,7 @@ impl<'a> Run<'a> {
             repeated: repeated.as_ref(),
             varied: &varied,
         };
-        let (computed_verdict, answer) = (computed.verdict(), comparison::answer(&computed));
+        let (computed_verdict, answer) = (computed.verdict(), computed.answer());
         let mut summary = Summary::of(&computed, drawings.points.peaks());
         if self.all_models.len() > 1 {
             summary.to_quote = None;

@@ -1,9 +1,8 @@
 //! The open joints of a row of blocks over time, as a panel of `history.svg`.
 
-use crate::mechanics::blocks::{Row, Supports};
-use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::{Edge, Supports};
 use crate::output::{Figure, Key, Mark, Panels, Scale, Shape, Sign, Stroke, Thinned, color};
-use crate::{Hinge, Sample};
+use crate::{Hinge, Row, Sample};
 
 /// Height of the strip of a joint below which the strip is not divided by edges.
 const NARROW_PX: f64 = 5.0;

@@ -4,8 +4,8 @@ use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use serde_json::{Value, json};
 
-use crate::dynamics::history::{OpenHinge, Sample};
 use crate::output::{Piece, Scene};
+use crate::{OpenHinge, Sample};
 
 /// Largest integer of an encoded rotation or displacement.
 pub(super) const LARGEST_I16: f64 = 32767.0;

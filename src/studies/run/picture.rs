@@ -2,7 +2,7 @@
 
 use super::open_joints::OpenJoints;
 use super::points::ObservedPoints;
-use crate::dynamics::history::{Event, HalfCycle, Outcome, Sample, State, Summary as History};
+use crate::dynamics::HalfCycle;
 use crate::output::envelope::COLUMNS;
 use crate::output::figure::Panel;
 use crate::output::panels::{MAIN, overturning, overturns, scale_around};
@@ -10,7 +10,7 @@ use crate::output::{
     CURVES, Envelope, Figure, Key, Mark, Panels, Scale, Shape, Sign, StateHistory, Stroke, Subject,
     color,
 };
-use crate::{Model, Sway};
+use crate::{Event, Model, Outcome, Sample, State, Summary as History, Sway};
 
 /// Upper limit of the drawn excess of the thrust line, in thicknesses. The values of a falling structure would hide all others.
 pub(super) const LARGEST_EXCESS: f64 = 1.0;

@@ -17,18 +17,17 @@ use super::packed::{
 use super::picture::LARGEST_EXCESS;
 use super::points::ObservedPoints;
 use super::title;
-use crate::dynamics::fall::FallEnd;
-use crate::dynamics::ground::{GroundMotion, GroundVelocity};
-use crate::dynamics::history::{OpenHinge, Sample, State, Summary as History};
-use crate::mechanics::geometry::pose::{BodyPoint, Pose};
-use crate::mechanics::geometry::ring::Edge;
+use crate::dynamics::{FallEnd, GroundVelocity};
+use crate::mechanics::{BodyPoint, Edge};
 use crate::output::caption::ground_in_words;
 use crate::output::ground::curve_g;
 use crate::output::page::{PROGRAM, script_safe};
 use crate::output::scene::FARTHEST;
 use crate::output::{Envelope, Piece, Scene, filters, render};
 use crate::scenario::metres;
-use crate::{Hinge, Model, Scenario, Sway};
+use crate::{
+    GroundMotion, Hinge, Model, OpenHinge, Pose, Sample, Scenario, State, Summary as History, Sway,
+};
 
 /// Largest size of the frames of a page, in bytes.
 const FRAME_BYTES: usize = 280_000;

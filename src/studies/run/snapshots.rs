@@ -4,10 +4,10 @@ use std::fmt::Write as _;
 
 use nalgebra::Vector2;
 
-use crate::dynamics::history::{Sample, State};
-use crate::mechanics::geometry::pose::BodyPoint;
+use crate::mechanics::BodyPoint;
 use crate::output::elevation::{BODIES, STONE, SheetTransform, TIE, View};
 use crate::output::{Anchor, Drawing, Figure, PartHeight, Scene, Sheet, Stroke, color};
+use crate::{Sample, State};
 
 /// Collects the samples nearest to chosen times, and draws them.
 #[derive(Clone, Debug)]

@@ -4,19 +4,19 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::Scales;
-use super::caveats::{first_peak_rad, warnings};
-use super::comparison;
+use super::caveats::{first_peak_rad, friction_condition, warnings};
+use super::comparison::{all_agree, changed_outcome};
 use super::feet::FeetApart;
-use crate::dynamics::history::{ElasticSummary, HalfCycle, RowSummary, Summary as History};
-use crate::dynamics::repeatability::{Repeatability, Verdict, key};
-use crate::dynamics::thrust::ThrustRecord;
+use crate::dynamics::history::{ElasticSummary, RowSummary};
+use crate::dynamics::repeatability::key;
 use crate::dynamics::variation::VariationResult;
-use crate::mechanics::sides::Sides;
+use crate::dynamics::{HalfCycle, Repeatability, ThrustRecord};
+use crate::mechanics::Sides;
 use crate::output::mechanisms::columns;
 use crate::output::{Named, OutputError, summary_of};
-use crate::scenario::{Ground, Scenario};
-use crate::studies::quotable;
-use crate::{MechanismModel, Model, Sway};
+use crate::scenario::{Ground, Hinges, Scenario};
+use crate::studies::quotable::{self, ModelAnswer};
+use crate::{MechanismModel, Model, Outcome, Summary as History, Sway, Verdict};
 
 /// A computed motion, with its repetitions and variations.
 #[derive(Clone, Copy)]
@@ -34,6 +34,35 @@ pub struct ComputedRun<'a> {
 }
 
 impl<'a> ComputedRun<'a> {
+    /// Returns the answer that may be quoted: a certain outcome that does not depend on the stiffness and contact of its joints.
+    pub(super) fn answer(&self) -> ModelAnswer {
+        let (scenario, history, varied) = (self.scenario, self.history, self.varied);
+        let is_elastic = scenario.motion.hinges() == Hinges::Elastic;
+        let happens = match history.outcome {
+            Outcome::Overturned(_) => "overturns under",
+            _ => "survives",
+        };
+        let no_answer = match (self.verdict(), changed_outcome(history, varied)) {
+            (Verdict::Incomplete, _) => Some("the run has no verdict".to_owned()),
+            (Verdict::Uncertain, _) => Some("it is uncertain whether it overturns".to_owned()),
+            _ if self.model.row().is_some() && self.repeated.is_none() => {
+                Some("the run was not repeated".to_owned())
+            }
+            (_, Some(change)) => Some(format!(
+                "THE OUTCOME DEPENDS ON JOINT STIFFNESS AND CONTACT: it {happens} this motion as given, and {change}"
+            )),
+            _ if is_elastic && !all_agree(history, varied) => {
+                Some("the dependence of the outcome on joint stiffness is unknown".to_owned())
+            }
+            _ => None,
+        };
+        let condition = friction_condition(scenario, history);
+        let condition = condition.map_or_else(String::new, |condition| format!(" ({condition})"));
+        let answer = no_answer.map_or_else(|| Ok(format!("{happens} this motion{condition}")), Err);
+        let (hinges, is_arch) = (scenario.motion.hinges(), scenario.structure.thrusts());
+        ModelAnswer::new(hinges, is_arch, history.thrust_excess_ratio(), answer)
+    }
+
     /// Returns the verdict; uncertain if the repetitions disagree.
     pub(super) fn verdict(&self) -> Verdict {
         let count = self.repeated.map(|repeated| &repeated.count);
@@ -305,7 +334,7 @@ impl<'a> Summary<'a> {
             repeatability: computed.repeated.map(RepeatabilitySummary::of),
             variations: computed.varied.iter().map(VariationSummary::of).collect(),
             points,
-            to_quote: quotable::in_words(&[comparison::answer(computed)]),
+            to_quote: quotable::in_words(&[computed.answer()]),
             longest_step_us: longest_step.map(|step| (step.as_secs_f64() * 1e6).round()),
         }
     }

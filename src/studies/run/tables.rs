@@ -1,12 +1,13 @@
 //! The tables of a run: `rotations.csv`, `poses.csv`, `joints.csv`, `events.csv` and `impacts.csv`.
 
-use crate::dynamics::history::{Event, Impact, Sample, TieSample};
-use crate::mechanics::geometry::ring::Edge;
+use crate::dynamics::history::Impact;
 use crate::output::mechanisms::columns;
 use crate::output::{Cell, Column, column, list, numbers, row_number, several};
-use crate::{GroundMotion, Hinge, MechanismModel, Model, Sway};
 
 use super::Scales;
+use crate::dynamics::TieSample;
+use crate::mechanics::Edge;
+use crate::{Event, GroundMotion, Hinge, MechanismModel, Model, Sample, Sway};
 
 /// Returns the columns of `rotations.csv`, one row per sample.
 ///

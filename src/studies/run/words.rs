@@ -9,16 +9,16 @@ use super::points::place;
 use super::summary::{ComputedRun, Summary};
 use super::tables::energy_loss_j;
 use crate::dynamics::free_hinges::DOUBTFUL_ENERGY_ERROR;
-use crate::dynamics::history::{Event, HalfCycle, Impact, Outcome, Sliding, Summary as History};
+use crate::dynamics::history::Impact;
 use crate::dynamics::repeatability::{
-    FIRST_REPETITIONS, LEAST_SLIP_M, Repeatability, RepeatedHalfCycle, RepeatedValue,
-    SAME_PEAK_RATIO, Verdict,
+    FIRST_REPETITIONS, LEAST_SLIP_M, RepeatedHalfCycle, RepeatedValue, SAME_PEAK_RATIO,
 };
-use crate::mechanics::sides::Sides;
+use crate::dynamics::{HalfCycle, Repeatability, Sliding};
+use crate::mechanics::Sides;
 use crate::output::mechanisms::by_body;
 use crate::output::{filters, range_ends};
 use crate::scenario::{Hinges, Scenario, Series};
-use crate::{Hinge, Sway};
+use crate::{Event, Hinge, Outcome, Summary as History, Sway, Verdict};
 
 /// Returns the heading of the words for the runs of scenarios that differ in their models: title, one line per record, and a note about an
 /// ignored table.

@@ -13,11 +13,8 @@ use serde_json::Value;
 
 pub use self::report::{FILES, report};
 use super::results::StudyError;
-use crate::mechanics::parts::Parts as _;
-use crate::mechanics::settling::{
-    Follower, HingeState, Movement, Movements, Pin, SettlingError, Snap,
-};
-use crate::mechanics::sides::Sides;
+use crate::mechanics::settling::{HingeState, Movement, Pin, Snap};
+use crate::mechanics::{Follower, Movements, Parts as _, SettlingError, Sides};
 use crate::output::filters;
 use crate::{Pose, Row, Scenario, Sway};
 

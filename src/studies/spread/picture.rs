@@ -3,8 +3,8 @@
 use nalgebra::Vector2;
 
 use super::{Push, SpreadPath, Stage, Summary};
-use crate::mechanics::blocks::Row;
-use crate::mechanics::geometry::pose::BodyPoint;
+use crate::Row;
+use crate::mechanics::BodyPoint;
 use crate::output::elevation::{HINGE, HINGE_PX, STONE, SheetTransform, View};
 use crate::output::scene::widened;
 use crate::output::{

@@ -2,7 +2,7 @@
 
 use super::picture::draw;
 use super::{SpreadPath, Stage, Summary};
-use crate::mechanics::sides::Sides;
+use crate::mechanics::Sides;
 use crate::output::{Cell, Figure, OutputError, Scene, column, csv, list, render, several};
 use crate::scenario::Scenario;
 use crate::studies::results::Results;

@@ -9,8 +9,8 @@ use super::{
     EDGE_WIDTH, FactorRange, FactorSample, Factors, RangeEnd, Threshold, VariedThreshold, peak_g,
     picture,
 };
-use crate::dynamics::history::Outcome;
-use crate::dynamics::repeatability::OutcomeCount;
+use crate::Outcome;
+use crate::dynamics::OutcomeCount;
 use crate::output::{Figure, OutputError, column, csv, fields};
 use crate::scenario::{Ground, Hinges, Scenario};
 use crate::studies::ending::{Ending, NoHistory, Verdict, outcome_name};

@@ -5,11 +5,10 @@ use std::ops::ControlFlow;
 
 use super::first_edge::lowest;
 use super::{EDGE_WIDTH, Factors};
-use crate::dynamics::repeatability::Verdict;
-use crate::dynamics::variation::Variation;
+use crate::dynamics::Variation;
 use crate::studies::ending::answered;
 use crate::studies::runner::{Progress, Runner, RunnerError};
-use crate::{Case, EndCondition, GroundMotion, Model, Request, SimulationError, Summary};
+use crate::{Case, EndCondition, GroundMotion, Model, Request, SimulationError, Summary, Verdict};
 
 /// The threshold of a variation.
 #[derive(Clone, Debug, PartialEq)]

@@ -13,7 +13,7 @@ use super::mechanism::Mechanism;
 use super::spectrum::Spectrum;
 use super::{CheckInput, SideCheck, VerifyError};
 use crate::dynamics::demand::oscillator::peak_displacement;
-use crate::mechanics::sides::Sides;
+use crate::mechanics::Sides;
 use crate::scenario::{LimitState, Series, StateRule};
 use crate::studies::remarks::ModelCheck;
 use crate::studies::statistics::{bootstrap, interval};

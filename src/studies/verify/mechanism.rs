@@ -6,15 +6,15 @@ use nalgebra::Vector2;
 use serde::Serialize;
 
 use super::{CheckInput, VerifyError};
-use crate::mechanics::capacity::{Capacity, Control, Displaced};
-use crate::mechanics::friction::{self, FrictionError};
-use crate::mechanics::geometry::pose::BodyPoint;
-use crate::mechanics::geometry::ring::Edge;
-use crate::mechanics::parts::Parts as _;
+use crate::mechanics::capacity::Control;
+use crate::mechanics::friction;
 use crate::mechanics::settling::Held;
-use crate::mechanics::stability::{RowOnset, onset};
+use crate::mechanics::stability::onset;
 use crate::mechanics::virtual_work::{
-    MovingBody, MovingTie, Participation, load_multiplier, per_displacement_of_centre,
+    MovingTie, Participation, load_multiplier, per_displacement_of_centre,
+};
+use crate::mechanics::{
+    BodyPoint, Capacity, Displaced, Edge, FrictionError, MovingBody, Parts as _, RowOnset,
 };
 use crate::scenario::{CheckedSides, Structure};
 use crate::studies::capacity::Bodies;

@@ -18,11 +18,12 @@ use serde::Serialize;
 use serde_json::Value;
 use thiserror::Error;
 
+use crate::Sway;
 use crate::bisection::{Width, bisect};
-use crate::dynamics::demand::ground::{GroundSpectrum, Hazard, Site};
+use crate::dynamics::demand::ground::Hazard;
 use crate::dynamics::demand::points::PeriodOutOfRange;
-use crate::mechanics::capacity::Capacity;
-use crate::mechanics::sway::Sway;
+use crate::dynamics::{GroundSpectrum, Site};
+use crate::mechanics::Capacity;
 use crate::output::filters;
 use crate::scenario::{
     CheckedSides, Demand, InputFile, LimitState, Scenario, StateRule, Verify, sha256,

@@ -16,7 +16,7 @@ use super::{
     Verdict, alike, picture,
 };
 use crate::dynamics::demand::damping_factor;
-use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::Edge;
 use crate::output::{Figure, OutputError, filters, render};
 use crate::scenario::{CONFIDENCE_FACTOR, CheckedSides, LimitState, Scenario, StateRule};
 use crate::studies::{Results, no_verdict};

@@ -3,8 +3,8 @@
 use serde::Serialize;
 
 use crate::dynamics::demand::floor::{FloorSpectrum, Mode};
-use crate::dynamics::demand::ground::{GroundSpectrum, Site};
 use crate::dynamics::demand::points::{PeriodOutOfRange, PointSpectrum};
+use crate::dynamics::{GroundSpectrum, Site};
 use crate::scenario::{Demand, LimitState, StateRule};
 
 /// The spectrum of a limit state at the place of the mechanism.

@@ -5,25 +5,18 @@ use std::sync::{Arc, OnceLock};
 
 use super::stepper::Group;
 use crate::argument::{ArgumentError, short, within};
-use crate::dynamics::ground::GroundMotion;
-use crate::dynamics::history::{Details, Summary};
-use crate::dynamics::model::{
-    Case, Job, Jobs, Model, Recorder, Repetition, Request, SimulationError, check, one_by_one,
-};
-use crate::dynamics::row::clock::Settings;
+use crate::dynamics::model::{Case, Job, Jobs, Recorder, check, one_by_one};
 use crate::dynamics::row::course::{LARGEST_ENERGY_ERROR, balanced};
-use crate::dynamics::row::error::{RowModelError, RowMotionError};
 use crate::dynamics::row::standing::RigidRow;
 use crate::dynamics::row::stepper;
-use crate::dynamics::row::task::Task;
 use crate::dynamics::until::EndCondition;
-use crate::dynamics::variation::Variation;
-use crate::mechanics::blocks::{GRAVITY_M_S2, Row};
-use crate::mechanics::elastic_joint::{
-    Contact, ElasticProperties, ElasticStructure, Equilibrium, JointStiffness, Stiffness,
+use crate::dynamics::{
+    Details, GroundMotion, Model, Repetition, Request, RowModelError, RowMotionError, Settings,
+    SimulationError, Summary, Task, Variation,
 };
-use crate::mechanics::settling::Movements;
-use crate::mechanics::sway::Sway;
+use crate::mechanics::blocks::GRAVITY_M_S2;
+use crate::mechanics::elastic_joint::{Contact, ElasticProperties, JointStiffness, Stiffness};
+use crate::mechanics::{ElasticStructure, Equilibrium, Movements, Row, Sway};
 
 /// Row of rigid blocks, as an arch or a stack, whose joints carry no tension, deform elastically, slip and crush.
 ///

@@ -2,12 +2,9 @@
 
 use pulp::{Arch, Simd, WithSimd};
 
-use crate::mechanics::blocks::Block;
-use crate::mechanics::elastic_joint::{
-    BodyPosition, ElasticJoint, ElasticStructure, Equilibrium, Fibre, Gap, Memory,
-};
-use crate::mechanics::lanes::{Lanes, Real, both, remembered};
-use crate::mechanics::tie::TieMemory;
+use crate::mechanics::elastic_joint::{BodyPosition, ElasticJoint, Fibre, Gap, Memory};
+use crate::mechanics::lanes::{both, remembered};
+use crate::mechanics::{Block, ElasticStructure, Equilibrium, Lanes, Real, TieMemory};
 
 /// Moving body.
 #[derive(Clone, Copy)]

@@ -6,24 +6,19 @@ use nalgebra::Vector2;
 
 use super::motion::{GroundActivity, Motion, Observation, SlidingSupport, Step, joint_bodies};
 use super::stillness::Stillness;
-use crate::dynamics::ground::{FeetApart, GroundVelocity};
-use crate::dynamics::history::{
-    EventKind, JointPressure, Sample, Sliding, Stress, Summary, TieSample,
-};
+use crate::dynamics::ground::FeetApart;
+use crate::dynamics::history::{JointPressure, Stress};
 use crate::dynamics::recorder::Recorder;
 use crate::dynamics::repeatability::LARGEST_LOSS_RATIO;
 use crate::dynamics::row::clock::Marks;
-use crate::dynamics::row::course::{Course, OVERTURNED_RAD, OVERTURNED_RATIO, REST_ENERGY_RATIO};
-use crate::dynamics::row::error::RowMotionError;
-use crate::dynamics::row::stepper::{Stepper, equal_step, open_hinge};
-use crate::dynamics::row::task::Task;
+use crate::dynamics::row::course::{OVERTURNED_RAD, OVERTURNED_RATIO, REST_ENERGY_RATIO};
+use crate::dynamics::row::stepper::{equal_step, open_hinge};
 use crate::dynamics::until::EndCondition;
-use crate::mechanics::blocks::{Row, Supports};
-use crate::mechanics::chain::Hinge;
-use crate::mechanics::elastic_joint::{ElasticStructure, Equilibrium};
-use crate::mechanics::geometry::pose::Pose;
-use crate::mechanics::geometry::ring::Edge;
-use crate::mechanics::lanes::Lanes;
+use crate::dynamics::{
+    Course, EventKind, GroundVelocity, RowMotionError, Sample, Sliding, Stepper, Summary, Task,
+    TieSample,
+};
+use crate::mechanics::{Edge, ElasticStructure, Equilibrium, Hinge, Lanes, Pose, Row, Supports};
 
 /// Number of steps between observations of a motion: one to four periods of the fastest vibration. The structure rocks much more slowly.
 const STRIDE: u64 = 16;

@@ -23,20 +23,12 @@ use self::observation::{kinetic, momentum};
 use super::rest::{InitialPosition, touching};
 use super::right_support::RightSupport;
 use super::ties::Ties;
-use crate::dynamics::ground::GroundVelocity;
 use crate::dynamics::recorder::Recorder;
-use crate::dynamics::row::course::Course;
-use crate::dynamics::row::error::RowMotionError;
-use crate::dynamics::row::stepper::Stepper as _;
-use crate::dynamics::row::task::Task;
-use crate::mechanics::blocks::{Row, Supports};
+use crate::dynamics::{Course, GroundVelocity, RowMotionError, Stepper as _, Task};
 use crate::mechanics::contact::closing::ClosureSolver;
-use crate::mechanics::contact::{Corners, Load, Program};
-use crate::mechanics::geometry::field::{Twist, turned};
-use crate::mechanics::geometry::pose::Pose;
-use crate::mechanics::geometry::ring::Edge;
-use crate::mechanics::joints::Placement;
-use crate::mechanics::stance::Stance;
+use crate::mechanics::contact::{Load, Program};
+use crate::mechanics::geometry::field::turned;
+use crate::mechanics::{Corners, Edge, Placement, Pose, Row, Stance, Supports, Twist};
 
 /// Largest closure error of an arch, over the thickness of the thinnest joint; a larger one is an error.
 const LARGEST_CLOSURE_RATIO: f64 = 1e-6;

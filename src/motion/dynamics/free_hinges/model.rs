@@ -7,18 +7,13 @@ use serde::Serialize;
 use super::motion::motion;
 use super::settings::MANY_CASES_STEP_RATIO;
 use crate::argument::{ArgumentError, allow, within};
-use crate::dynamics::ground::GroundMotion;
-use crate::dynamics::history::Summary;
-use crate::dynamics::model::{Model, Recorder, Repetition, Request, SimulationError, check};
-use crate::dynamics::row::clock::Settings;
+use crate::dynamics::model::{Recorder, check};
 use crate::dynamics::row::course::balanced;
-use crate::dynamics::row::error::RowModelError;
 use crate::dynamics::row::standing::RigidRow;
-use crate::mechanics::arch::Arch;
-use crate::mechanics::blocks::Row;
-use crate::mechanics::column::Column;
-use crate::mechanics::settling::Movements;
-use crate::mechanics::sway::Sway;
+use crate::dynamics::{
+    GroundMotion, Model, Repetition, Request, RowModelError, Settings, SimulationError, Summary,
+};
+use crate::mechanics::{Arch, Column, Movements, Row, Sway};
 
 /// Row of rigid blocks, as an arch or a stack, whose joints open about either edge and close again at any time.
 ///

@@ -2,15 +2,10 @@
 
 use super::landing::LandingStepper;
 use super::sliding::SlidingStepper;
-use crate::dynamics::ground::GroundMotion;
-use crate::dynamics::history::Summary;
 use crate::dynamics::recorder::Recorder;
-use crate::dynamics::row::clock::Settings;
-use crate::dynamics::row::error::RowMotionError;
 use crate::dynamics::row::stepper;
-use crate::dynamics::row::task::Task;
-use crate::mechanics::blocks::Row;
-use crate::mechanics::stance::Stance;
+use crate::dynamics::{GroundMotion, RowMotionError, Settings, Summary, Task};
+use crate::mechanics::{Row, Stance};
 
 /// Maximum number of steps of a motion, about a month of computing. Many more steps would be shorter than the rounding error of time.
 const MOST_STEPS: f64 = 1e12;

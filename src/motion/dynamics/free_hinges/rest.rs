@@ -4,10 +4,7 @@
 use nalgebra::Vector2;
 
 use crate::dynamics::row::course::{OVERTURNED_RAD, OVERTURNED_RATIO};
-use crate::mechanics::blocks::Row;
-use crate::mechanics::contact::Corners;
-use crate::mechanics::geometry::pose::Pose;
-use crate::mechanics::joints::Placement;
+use crate::mechanics::{Corners, Placement, Pose, Row};
 
 /// Initial position of a row.
 #[derive(Clone, Debug)]

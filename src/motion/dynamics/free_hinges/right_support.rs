@@ -6,9 +6,9 @@
 
 use nalgebra::Vector2;
 
-use crate::dynamics::ground::{FeetApart, GroundMotion};
-use crate::mechanics::blocks::Row;
-use crate::mechanics::geometry::pose::Pose;
+use crate::dynamics::GroundMotion;
+use crate::dynamics::ground::FeetApart;
+use crate::mechanics::{Pose, Row};
 
 /// Right support with prescribed motion.
 #[derive(Default)]

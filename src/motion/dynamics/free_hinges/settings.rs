@@ -1,7 +1,7 @@
 //! Step lengths of a motion with rigid joints.
 
-use crate::dynamics::row::clock::Settings;
-use crate::mechanics::blocks::Row;
+use crate::dynamics::Settings;
+use crate::mechanics::Row;
 use crate::mechanics::tie::square_frequency;
 
 /// Default ratio of the shortest step to the longest one.

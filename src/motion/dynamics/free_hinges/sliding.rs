@@ -18,21 +18,15 @@ use self::impact::{Dissipation, Landing};
 use super::rest::InitialPosition;
 use super::right_support::RightSupport;
 use super::ties::Ties;
-use crate::dynamics::ground::GroundVelocity;
-use crate::dynamics::history::{EventKind, Sample, Sliding};
 use crate::dynamics::recorder::Recorder;
-use crate::dynamics::row::course::{Course, REST_ENERGY_RATIO, SWAY_RATIO, Summit};
-use crate::dynamics::row::error::RowMotionError;
-use crate::dynamics::row::stepper::{Stepper, eccentricity_ratio, equal_step};
-use crate::dynamics::row::task::Task;
-use crate::mechanics::blocks::{Row, Supports};
-use crate::mechanics::chain::Hinge;
+use crate::dynamics::row::course::{REST_ENERGY_RATIO, SWAY_RATIO, Summit};
+use crate::dynamics::row::stepper::{eccentricity_ratio, equal_step};
+use crate::dynamics::{
+    Course, EventKind, GroundVelocity, RowMotionError, Sample, Sliding, Stepper, Task,
+};
 use crate::mechanics::coulomb::{Mode, Program, TangentialMode};
-use crate::mechanics::geometry::pose::Pose;
-use crate::mechanics::geometry::ring::Edge;
-use crate::mechanics::joints::Placement;
 use crate::mechanics::slip::{Contact, Faces, Position};
-use crate::mechanics::stance::Stance;
+use crate::mechanics::{Edge, Hinge, Placement, Pose, Row, Stance, Supports};
 
 /// Tolerance of rates, relative to the fastest motion plus the effect of gravity in a step.
 const RATE_TOLERANCE: f64 = 1e-9;

@@ -2,12 +2,9 @@
 
 use nalgebra::Vector2;
 
-use crate::dynamics::history::TieSample;
-use crate::mechanics::blocks::Row;
-use crate::mechanics::geometry::pose::Pose;
-use crate::mechanics::lanes::Lanes;
-use crate::mechanics::stance::{Stance, lines};
-use crate::mechanics::tie::{Tie, TieLine, TieMemory};
+use crate::dynamics::TieSample;
+use crate::mechanics::stance::lines;
+use crate::mechanics::{Lanes, Pose, Row, Stance, Tie, TieLine, TieMemory};
 
 /// Ties of a row, with their states.
 pub(super) struct Ties<'a> {

@@ -8,7 +8,7 @@ use super::error::{GroundError, TIME_S};
 use super::piece::{Formula, Piece};
 use crate::argument::{ArgumentError, within};
 use crate::bisection::{Width, bisect, middle};
-use crate::mechanics::blocks::{Row, Supports};
+use crate::mechanics::{Row, Supports};
 
 /// Ground acceleration from [`GroundMotion::start_s`] on, zero after the last corner.
 ///

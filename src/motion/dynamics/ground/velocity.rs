@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 
 use super::motion::GroundMotion;
-use crate::mechanics::blocks::Row;
+use crate::mechanics::Row;
 
 /// Velocity of the ground, which starts from rest at [`GroundMotion::start_s`].
 #[derive(Clone, Debug)]

@@ -8,7 +8,7 @@ use std::ops::ControlFlow;
 use thiserror::Error;
 
 use super::integrator::{IntegratorError, State, Step, Task, integrate};
-use crate::dynamics::history::Cost;
+use crate::dynamics::Cost;
 
 /// State of a system at one time.
 #[derive(Clone, Copy, Debug)]

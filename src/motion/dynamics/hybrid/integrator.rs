@@ -8,12 +8,11 @@
 use std::cell::Cell;
 use std::ops::ControlFlow;
 
+use crate::dynamics::Cost;
 use nalgebra::SVector;
 use ode_solvers::dop_shared::{IntegrationError, OutputType};
 use ode_solvers::{Dopri5, System};
 use thiserror::Error;
-
-use crate::dynamics::history::Cost;
 
 /// Continuous state of a system: a vector of `N` numbers.
 pub type State<const N: usize> = SVector<f64, N>;

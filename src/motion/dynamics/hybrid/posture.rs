@@ -1,9 +1,8 @@
 //! Positions of the bodies of a mechanism, in the frame of the ground.
 
 use super::rocking::{Mode, Phase, Rocking, RockingState, Swing, SystemState};
-use crate::dynamics::history::State;
-use crate::mechanics::chain::{Link, Mechanism, MechanismChain};
-use crate::mechanics::sway::Sway;
+use crate::dynamics::State;
+use crate::mechanics::{Link, Mechanism, MechanismChain, Sway};
 
 /// Rotations of the bodies of a mechanism, or their rates.
 pub(super) type Rotations<C> = <<C as MechanismChain>::Mechanism as Mechanism>::Rotations;

@@ -12,10 +12,10 @@ use nalgebra::Vector2;
 
 use super::engine::{self, HybridSystem};
 use super::integrator::{State, Step};
-use crate::dynamics::ground::{GroundMotion, Piece};
-use crate::mechanics::chain::{Coefficients, Demand, Link, Mechanism, MechanismChain, Motion};
-use crate::mechanics::sides::Sides;
-use crate::mechanics::sway::Sway;
+use crate::dynamics::GroundMotion;
+use crate::dynamics::ground::Piece;
+use crate::mechanics::chain::{Coefficients, Motion};
+use crate::mechanics::{Demand, Link, Mechanism, MechanismChain, Sides, Sway};
 
 /// Discrete state of a rocking structure.
 pub type Mode<'a, M> = Phase<Swing<'a, M>>;

@@ -9,12 +9,10 @@ use super::engine::{HybridSystem, task};
 use super::integrator::{Step, integrate};
 use super::posture::{StructureState, posture, state};
 use super::rocking::{Phase, Rocking, RockingState, SystemState};
-use crate::dynamics::fall::{self, FallEnd};
-use crate::dynamics::history::{Cost, OpenHinge, Sample, State};
+use crate::dynamics::fall;
 use crate::dynamics::recorder::Recorder;
-use crate::dynamics::thrust::ThrustRecord;
-use crate::mechanics::chain::{Mechanism, MechanismChain};
-use crate::mechanics::geometry::pose::Pose;
+use crate::dynamics::{Cost, FallEnd, OpenHinge, Sample, State, ThrustRecord};
+use crate::mechanics::{Mechanism, MechanismChain, Pose};
 
 /// Relative error tolerance of a step of a fall, which is only drawn.
 const FALL_TOLERANCE: f64 = 1e-6;

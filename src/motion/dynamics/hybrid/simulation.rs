@@ -9,22 +9,20 @@ use super::integrator::Step;
 use super::posture::{StructureState, posture, seen_from_ground, state};
 use super::rocking::{Guard, Mode, Phase, Rocking, RockingState, Swing};
 use super::sampler::Sampler;
-use crate::dynamics::ground::GroundMotion;
-use crate::dynamics::history::{
-    Details, Event, EventKind, Impact, MechanismSummary, Outcome, Summary,
-};
-use crate::dynamics::model::{
-    Initial, MechanismModel, Model, Recorder, Request, SimulationError, check,
-};
+use crate::dynamics::history::{Impact, MechanismSummary};
+use crate::dynamics::model::{Initial, Recorder, check};
 use crate::dynamics::request::later_end_s;
 use crate::dynamics::until::SAFE;
-use crate::mechanics::capacity::{Displaced, displaced, moving_bodies};
-use crate::mechanics::chain::{Hinge, Link, Mechanism, MechanismChain};
+use crate::dynamics::{
+    Details, Event, EventKind, GroundMotion, MechanismModel, Model, Outcome, Request,
+    SimulationError, Summary,
+};
+use crate::mechanics::capacity::{displaced, moving_bodies};
 use crate::mechanics::column::RockingColumn;
-use crate::mechanics::equivalent::{Equivalent, equivalent_towards};
-use crate::mechanics::four_links::FourLinks;
-use crate::mechanics::sway::Sway;
-use crate::mechanics::virtual_work::MovingBody;
+use crate::mechanics::equivalent::equivalent_towards;
+use crate::mechanics::{
+    Displaced, Equivalent, FourLinks, Hinge, Link, Mechanism, MechanismChain, MovingBody, Sway,
+};
 
 /// Maximum number of transitions of a history; more would be chatter.
 const MAX_TRANSITIONS: usize = 1_000_000;

@@ -4,18 +4,16 @@ use std::mem;
 
 use super::error::RowMotionError;
 use super::task::Task;
-use crate::dynamics::history::{
-    Cost, Details, ElasticSummary, Event, EventKind, HalfCycle, Outcome, RowSummary, Sample, State,
-    Stress, Summary, TieSummary,
-};
+use crate::dynamics::history::{ElasticSummary, RowSummary, Stress, TieSummary};
 use crate::dynamics::recorder::Recorder;
 use crate::dynamics::request::later_end_s;
-use crate::dynamics::thrust::{FrictionDemands, ThrustRecord};
+use crate::dynamics::thrust::FrictionDemands;
 use crate::dynamics::until::SAFE;
-use crate::mechanics::chain::{Hinge, LEAST_LOAD};
-use crate::mechanics::lanes::Lanes;
-use crate::mechanics::sway::Sway;
-use crate::mechanics::tie::{Tie, TieMemory};
+use crate::dynamics::{
+    Cost, Details, Event, EventKind, HalfCycle, Outcome, Sample, State, Summary, ThrustRecord,
+};
+use crate::mechanics::chain::LEAST_LOAD;
+use crate::mechanics::{Hinge, Lanes, Sway, Tie, TieMemory};
 
 /// Sway, over the size, below which the side of the motion does not change.
 pub const SWAY_RATIO: f64 = 1e-9;

@@ -3,11 +3,8 @@
 use thiserror::Error;
 
 use crate::argument::ArgumentError;
-use crate::mechanics::blocks::RowError;
 use crate::mechanics::elastic_joint::RestError;
-use crate::mechanics::friction::FrictionError;
-use crate::mechanics::settling::SettlingError;
-use crate::mechanics::stability::StabilityError;
+use crate::mechanics::{FrictionError, RowError, SettlingError, StabilityError};
 
 /// Reason why a row of blocks has no model of motion.
 #[derive(Clone, Debug, PartialEq, Error)]

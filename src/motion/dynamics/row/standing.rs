@@ -4,18 +4,14 @@ use super::clock::Settings;
 use super::error::RowModelError;
 use super::task::{Task, rise_to_overturn_m};
 use crate::argument::ArgumentError;
-use crate::dynamics::ground::GroundMotion;
+use crate::dynamics::GroundMotion;
 use crate::dynamics::request::Initial;
-use crate::mechanics::blocks::{Row, Supports};
-use crate::mechanics::chain::{Hinge, Mechanism, MechanismChain};
-use crate::mechanics::four_link::impact::ImpactModel;
-use crate::mechanics::four_links::FourLinks;
-use crate::mechanics::friction::{self, FrictionError};
-use crate::mechanics::settling::{Follower, Movements, SettlingError};
-use crate::mechanics::sides::Sides;
-use crate::mechanics::stability::{StabilityError, onset};
-use crate::mechanics::stance::Stance;
-use crate::mechanics::sway::Sway;
+use crate::mechanics::friction;
+use crate::mechanics::stability::onset;
+use crate::mechanics::{
+    Follower, FourLinks, FrictionError, Hinge, ImpactModel, Mechanism, MechanismChain, Movements,
+    Row, SettlingError, Sides, StabilityError, Stance, Supports, Sway,
+};
 
 /// Stable row of rigid blocks.
 #[derive(Clone, Debug)]

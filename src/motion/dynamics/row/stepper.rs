@@ -7,15 +7,11 @@ use nalgebra::Vector2;
 use super::clock::Marks;
 use super::course::{Course, side_of};
 use super::error::RowMotionError;
-use crate::dynamics::fall::{self, FallEnd};
-use crate::dynamics::history::{
-    Elapsed, Event, EventKind, Impact, OpenHinge, Outcome, Sample, State, Summary,
-};
+use crate::dynamics::fall;
+use crate::dynamics::history::{Elapsed, Impact};
 use crate::dynamics::recorder::Recorder;
-use crate::mechanics::chain::Hinge;
-use crate::mechanics::geometry::pose::Pose;
-use crate::mechanics::geometry::ring::Edge;
-use crate::mechanics::sway::Sway;
+use crate::dynamics::{Event, EventKind, FallEnd, OpenHinge, Outcome, Sample, State, Summary};
+use crate::mechanics::{Edge, Hinge, Pose, Sway};
 
 /// Stepper of a row: computes its motion step by step.
 pub trait Stepper<'a>: Sized {

@@ -3,9 +3,8 @@
 use nalgebra::Vector2;
 
 use super::clock::Settings;
-use crate::dynamics::ground::GroundMotion;
-use crate::mechanics::blocks::{Joint, Row, Supports};
-use crate::mechanics::geometry::ring::Edge;
+use crate::dynamics::GroundMotion;
+use crate::mechanics::{Edge, Joint, Row, Supports};
 
 /// Input of the motion of a row.
 #[derive(Clone, Copy)]

@@ -3,10 +3,9 @@
 use nalgebra::{Matrix2, Vector2};
 
 use super::factor::{Body, Factor, Pin};
-use crate::mechanics::blocks::Supports;
-use crate::mechanics::geometry::field::{Momentum, Twist, turned};
-use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::geometry::field::turned;
 use crate::mechanics::joints::Closure;
+use crate::mechanics::{Edge, Momentum, Supports, Twist};
 
 /// Velocities of a body at its centre.
 #[derive(Clone, Copy, Debug)]

@@ -1,8 +1,7 @@
 //! Removal of the closure error: the gap between the two parts of an arch due to rounding errors or a linear step.
 
 use super::{Load, Program};
-use crate::mechanics::blocks::Row;
-use crate::mechanics::joints::Placement;
+use crate::mechanics::{Placement, Row};
 
 /// Tolerance of the closure error, relative to the thickness of the thinnest joint.
 const CLOSURE_RATIO: f64 = 1e-13;

@@ -7,9 +7,7 @@ use nalgebra::{Matrix2, Vector2};
 
 use super::placed::Placed;
 use super::{Corners, lower};
-use crate::mechanics::blocks::{Row, Supports};
-use crate::mechanics::geometry::ring::{Edge, MassMoments};
-use crate::mechanics::joints::Placement;
+use crate::mechanics::{Edge, MassMoments, Placement, Row, Supports};
 
 /// Run of blocks that move as one body, with its inverse inertia; zero for a body fixed to a support.
 #[derive(Clone, Copy, Debug)]

@@ -2,10 +2,8 @@
 //! two.
 
 use super::{Load, higher};
-use crate::mechanics::blocks::{Block, Row, Supports};
-use crate::mechanics::geometry::field::{Momentum, Twist};
-use crate::mechanics::geometry::ring::MassMoments;
-use crate::mechanics::joints::{Frame, Placement};
+use crate::mechanics::joints::Frame;
+use crate::mechanics::{Block, MassMoments, Momentum, Placement, Row, Supports, Twist};
 
 #[derive(Clone, Debug)]
 pub(super) struct Placed {

@@ -6,7 +6,8 @@
 use std::f64::consts::PI;
 
 use super::kinematics::{Gap, JointGeometry};
-use crate::mechanics::lanes::{Lanes, Real, both, remembered};
+use crate::mechanics::lanes::{both, remembered};
+use crate::mechanics::{Lanes, Real};
 
 /// Method to integrate the stress over a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]

@@ -1,6 +1,7 @@
 //! Relative position of the two faces of a joint.
 
-use crate::mechanics::lanes::{Lanes, Real, both, remembered};
+use crate::mechanics::lanes::{both, remembered};
+use crate::mechanics::{Lanes, Real};
 
 /// Position of a body: displacement of its centre, and rotation.
 #[derive(Clone, Copy, Debug)]

@@ -6,8 +6,8 @@ use super::banded::Banded;
 use super::contact::{Fibre, Memory};
 use super::kinematics::{Action, BodyPosition};
 use super::structure::ElasticStructure;
-use crate::mechanics::lanes::{Dual, Lanes, Real};
-use crate::mechanics::tie::TieMemory;
+use crate::mechanics::lanes::Dual;
+use crate::mechanics::{Lanes, Real, TieMemory};
 
 /// Number type of a single motion.
 type SingleLane = Lanes<1>;

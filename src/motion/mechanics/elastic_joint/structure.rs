@@ -10,9 +10,8 @@ use super::contact::{
 use super::kinematics::{Action, BodyPosition, JointGeometry};
 use super::tie::BoundTie;
 use crate::argument::{ArgumentError, allow, within};
-use crate::mechanics::blocks::{Block, Joint, Row, Supports};
-use crate::mechanics::lanes::{Lanes, Real};
 use crate::mechanics::tie::square_frequency;
+use crate::mechanics::{Block, Joint, Lanes, Real, Row, Supports};
 
 /// Stiffness of an interface per area, in Pa/m.
 #[derive(Clone, Copy, Debug, PartialEq)]

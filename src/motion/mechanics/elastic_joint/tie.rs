@@ -3,9 +3,9 @@
 use nalgebra::Vector2;
 
 use super::kinematics::{Action, BodyPosition, cross};
-use crate::mechanics::blocks::Block;
-use crate::mechanics::lanes::{Real, both};
-use crate::mechanics::tie::{Tie, TieSpan};
+use crate::mechanics::lanes::both;
+use crate::mechanics::tie::TieSpan;
+use crate::mechanics::{Block, Real, Tie};
 
 /// Tie with the bodies at its ends.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -16,10 +16,7 @@ use thiserror::Error;
 
 use super::mechanism::{FourLink, HingeSites};
 use super::resultant::SectionResultant;
-use crate::mechanics::cone_program;
-use crate::mechanics::geometry::field::{Field, Twist};
-use crate::mechanics::geometry::profile::Profile;
-use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::{Edge, Field, Profile, Twist, cone_program};
 
 /// Default number of equal parts for the projection of a continuous ring. The error of `r` decreases with the square of this number; here it is about
 /// 1e-6, by test.

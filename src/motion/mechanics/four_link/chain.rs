@@ -12,8 +12,8 @@ use super::limit::Incipient;
 use super::linkage::Linkage;
 use super::mechanism::{FourLink, HingeSites};
 use super::thrust::Section;
-use crate::mechanics::chain::{Link, critical_rad};
-use crate::mechanics::geometry::profile::Profile;
+use crate::mechanics::chain::critical_rad;
+use crate::mechanics::{Link, Profile};
 
 /// Tolerance, in radians, within which a link has the hinges of the link two before it, so that the last two links repeat. The effect on `r`, which
 /// is stationary at a maximum, is far below the accuracy of the search.

@@ -7,8 +7,8 @@ use super::impulse_line::ImpulseLine;
 use super::mechanism::{EDGES, FourLink, HingeSites};
 use super::search::{Lattice, Objective, Quadruple, best_mechanism};
 use crate::argument::{ArgumentError, within};
-use crate::mechanics::geometry::field::{Field, Side, Twist};
-use crate::mechanics::geometry::profile::Profile;
+use crate::mechanics::geometry::field::Side;
+use crate::mechanics::{Field, Profile, Twist};
 
 /// Rule that selects the mechanism after an impact.
 ///

@@ -9,9 +9,7 @@ use nalgebra::Vector2;
 
 use super::mechanism::{FourLink, HingeSites};
 use super::resultant::{Extremes, ResultantLine, SectionResultant};
-use crate::mechanics::geometry::field::Field;
-use crate::mechanics::geometry::profile::Profile;
-use crate::mechanics::sway::Sway;
+use crate::mechanics::{Field, Profile, Sway};
 
 /// The impulses of an impact over the ring.
 ///

@@ -2,11 +2,8 @@
 
 use std::sync::Arc;
 
+use crate::mechanics::{Edge, Joint, MassMoments, Profile, Row, Supports};
 use nalgebra::Vector2;
-
-use crate::mechanics::blocks::{Joint, Row, Supports};
-use crate::mechanics::geometry::profile::Profile;
-use crate::mechanics::geometry::ring::{Edge, MassMoments};
 
 /// A row of blocks between two supports, whose sections are its joints. Its units are its size and its whole mass.
 #[derive(Clone, Debug, PartialEq)]

@@ -9,9 +9,8 @@ use super::search::{Lattice, Objective, Quadruple, best_mechanism};
 use super::self_weight::carries_its_weight;
 use crate::argument::ArgumentError;
 use crate::bisection::{Width, try_bisect};
-use crate::mechanics::geometry::field::{Field, Side, Twist, turned};
-use crate::mechanics::geometry::profile::Profile;
-use crate::mechanics::geometry::ring::{Edge, Ring};
+use crate::mechanics::geometry::field::{Side, turned};
+use crate::mechanics::{Edge, Field, Profile, Ring, Twist};
 
 /// Onset of rocking under a push to the right.
 #[derive(Clone, Debug)]

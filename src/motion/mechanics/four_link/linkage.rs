@@ -12,11 +12,10 @@ use nalgebra::Vector2;
 
 use super::mechanism::FourLink;
 use super::thrust::{Load, Part, Section, ThrustLine, largest_excess_ratio};
-use crate::mechanics::chain::{Coefficients, Mechanism, Motion};
-use crate::mechanics::geometry::field::{Momentum, turned};
-use crate::mechanics::geometry::pose::{Pose, product};
-use crate::mechanics::geometry::profile::Profile;
-use crate::mechanics::geometry::ring::MassMoments;
+use crate::mechanics::chain::{Coefficients, Motion};
+use crate::mechanics::geometry::field::turned;
+use crate::mechanics::geometry::pose::product;
+use crate::mechanics::{MassMoments, Mechanism, Momentum, Pose, Profile};
 
 /// A body of the linkage, about the pivot at which its bar begins.
 #[derive(Clone, Copy, Debug)]

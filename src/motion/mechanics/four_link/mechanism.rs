@@ -4,13 +4,8 @@
 //! intrados, extrados from the left springing. A sway to the left is reflected ([`Sway`]). A ring is symmetric, so left and right agree exactly. A
 //! row of blocks may not be symmetric, and then has a profile for each side.
 
+use crate::mechanics::{Edge, Field, Hinge, Profile, Sway, Twist};
 use nalgebra::Vector2;
-
-use crate::mechanics::chain::Hinge;
-use crate::mechanics::geometry::field::{Field, Twist};
-use crate::mechanics::geometry::profile::Profile;
-use crate::mechanics::geometry::ring::Edge;
-use crate::mechanics::sway::Sway;
 
 /// Edges of the hinges A, B, C, D of a mechanism that sways right.
 pub const EDGES: [Edge; 4] = [

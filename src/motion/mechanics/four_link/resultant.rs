@@ -9,9 +9,7 @@ use std::sync::Arc;
 use nalgebra::{Matrix3, Vector3};
 
 use super::mechanism::{EDGES, FourLink, HingeSites};
-use crate::mechanics::geometry::field::{Field, Momentum, Twist};
-use crate::mechanics::geometry::profile::Profile;
-use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::{Edge, Field, Momentum, Profile, Twist};
 
 /// Tolerance for lines outside the ring, over the thickness: hinges are accurate to about 1e-8 rad, and the line touches the edges there.
 pub const EDGE_TOLERANCE: f64 = 1e-6;

@@ -7,8 +7,7 @@
 use nalgebra::{DMatrix, DVector, Vector2};
 
 use super::mechanism::{EDGES, FourLink, HingeSites, openings};
-use crate::mechanics::geometry::profile::Profile;
-use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::{Edge, Profile};
 
 /// Number of lattice intervals if hinges may be anywhere. From 12 to 60 intervals give the same A_L and the same
 /// first six restitution coefficients, to 1e-9, for 138 arches from 70 to 180 degrees and t/R 0.03 to 0.29.

@@ -24,7 +24,7 @@
 
 use super::mechanism::HingeSites;
 use crate::bisection::{Width, bisect};
-use crate::mechanics::geometry::ring::{Edge, Ring};
+use crate::mechanics::{Edge, Ring};
 
 /// Returns whether the ring is stable under its own weight.
 pub fn carries_its_weight(ring: &Ring, sites: HingeSites) -> bool {

@@ -17,10 +17,9 @@ use super::limit::Incipient;
 use super::mechanism::HingeSites;
 use super::resultant::{Extremum, SectionResultant, find_maximum};
 use crate::bisection::{Width, bisect};
-use crate::mechanics::chain::{Demand, LEAST_LOAD};
-use crate::mechanics::geometry::field::{Momentum, Twist, turned};
-use crate::mechanics::geometry::profile::Profile;
-use crate::mechanics::geometry::ring::MassMoments;
+use crate::mechanics::chain::LEAST_LOAD;
+use crate::mechanics::geometry::field::turned;
+use crate::mechanics::{Demand, MassMoments, Momentum, Profile, Twist};
 
 /// Samples of a continuous ring per right angle; between two of them the line has at most one maximum.
 const SAMPLES: f64 = 90.0;

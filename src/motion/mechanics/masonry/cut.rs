@@ -3,8 +3,7 @@
 use nalgebra::Vector2;
 
 use super::Material;
-use crate::mechanics::blocks::{Block, Joint};
-use crate::mechanics::geometry::curve::Curve;
+use crate::mechanics::{Block, Curve, Joint};
 
 /// Number of points to draw the curved side of a voussoir.
 const DRAWN_POINTS: u32 = 4;

@@ -10,8 +10,7 @@ use super::Material;
 use super::cut::{CutArch, top};
 use crate::argument::{ArgumentError, within};
 use crate::mechanics::arch::MAGNITUDE;
-use crate::mechanics::blocks::Block;
-use crate::mechanics::geometry::curve::Curve;
+use crate::mechanics::{Block, Curve};
 
 /// Fill up to a level top.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

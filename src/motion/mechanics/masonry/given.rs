@@ -7,8 +7,8 @@ use thiserror::Error;
 use super::cut::{CutArch, EdgePosition};
 use crate::argument::{ArgumentError, allow, within};
 use crate::mechanics::arch::MAGNITUDE;
-use crate::mechanics::blocks::{Block, Joint, RowError, Supports};
-use crate::mechanics::geometry::curve::{Curve, distance, sides};
+use crate::mechanics::geometry::curve::{distance, sides};
+use crate::mechanics::{Block, Curve, Joint, RowError, Supports};
 
 /// Difference in height, over the size, below which corners are at one level.
 const LEVEL_RATIO: f64 = 1e-9;

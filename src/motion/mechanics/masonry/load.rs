@@ -6,8 +6,7 @@ use serde::Serialize;
 use super::cut::CutArch;
 use crate::argument::{ArgumentError, allow, within};
 use crate::mechanics::arch::MAGNITUDE;
-use crate::mechanics::blocks::Block;
-use crate::mechanics::geometry::ring::MassMoments;
+use crate::mechanics::{Block, MassMoments};
 
 /// Mass on the extrados, at a point or distributed uniformly over a width.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

@@ -8,8 +8,7 @@ use serde::Serialize;
 use super::cut::{CutArch, EdgePosition};
 use super::{Dimensions, Material};
 use crate::argument::{ArgumentError, above, allow};
-use crate::mechanics::arch::Arch;
-use crate::mechanics::geometry::curve::Curve;
+use crate::mechanics::{Arch, Curve};
 
 /// Cuts the area within half a thickness of a middle line, from left to right, at given lengths along this line.
 fn cut(middle: &[Curve], thickness_m: f64, at_m: &[f64]) -> CutArch {

@@ -6,8 +6,8 @@ use serde::Serialize;
 use super::{MasonryError, Material};
 use crate::argument::{ArgumentError, allow, counted, within};
 use crate::mechanics::arch::MAGNITUDE;
-use crate::mechanics::blocks::{Block, Joint, MAX_BLOCKS, RowError};
-use crate::mechanics::sway::Sway;
+use crate::mechanics::blocks::MAX_BLOCKS;
+use crate::mechanics::{Block, Joint, RowError, Sway};
 
 /// Piers under the springings; a springing without a pier is on rigid ground.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]

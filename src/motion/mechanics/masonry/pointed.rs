@@ -8,7 +8,7 @@ use super::Dimensions;
 use super::cut::{CutArch, EdgePosition};
 use super::middle_line::part;
 use crate::argument::{ArgumentError, allow};
-use crate::mechanics::geometry::curve::Curve;
+use crate::mechanics::Curve;
 
 /// Cuts a pointed arch. Its joints point at the centres and divide the intrados into equal lengths. An even number of voussoirs has a vertical joint
 /// at the crown, an odd number has a keystone.

@@ -13,13 +13,9 @@
 use nalgebra::{DMatrix, DVector, Vector2};
 
 use super::{Condition, Pins, ROUNDING, SettlingError};
-use crate::mechanics::blocks::Row;
 use crate::mechanics::contact::closing::{ClosureSolver, FirstShut};
-use crate::mechanics::contact::{ContactError, Corners, Load, Program};
-use crate::mechanics::geometry::field::Twist;
-use crate::mechanics::geometry::pose::Pose;
-use crate::mechanics::stance::Stance;
-use crate::mechanics::tie::TieLine;
+use crate::mechanics::contact::{ContactError, Load, Program};
+use crate::mechanics::{Corners, Pose, Row, Stance, TieLine, Twist};
 
 /// Velocities below this part of those without contact are zero.
 const STANDSTILL: f64 = 1e-9;

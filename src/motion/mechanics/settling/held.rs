@@ -12,13 +12,9 @@ use thiserror::Error;
 use super::pins::{Pins, TieLoads, side, two_bodies};
 use super::{Condition, Pin};
 use crate::bisection::{Width, bisect};
-use crate::mechanics::blocks::{Row, Supports};
-use crate::mechanics::capacity::{CapacityError, Displaced, TieEventFractions};
-use crate::mechanics::geometry::pose::Pose;
-use crate::mechanics::lanes::Lanes;
-use crate::mechanics::stability::{RowOnset, onset};
-use crate::mechanics::sway::Sway;
-use crate::mechanics::tie::TieMemory;
+use crate::mechanics::capacity::{CapacityError, TieEventFractions};
+use crate::mechanics::stability::onset;
+use crate::mechanics::{Displaced, Lanes, Pose, Row, RowOnset, Supports, Sway, TieMemory};
 
 /// Rotation of the first body in a step along the mechanism, in radians.
 const STEP_RAD: f64 = 1e-3;

@@ -7,15 +7,13 @@ use nalgebra::{DMatrix, DVector, Matrix2, Vector2, Vector3};
 use serde::Serialize;
 
 use super::Condition;
-use crate::mechanics::blocks::{Row, Supports};
 use crate::mechanics::chain::LEAST_LOAD;
-use crate::mechanics::geometry::field::{Momentum, turned};
-use crate::mechanics::geometry::pose::Pose;
-use crate::mechanics::geometry::ring::Edge;
-use crate::mechanics::joints::Placement;
-use crate::mechanics::lanes::Lanes;
-use crate::mechanics::stance::{Stance, lines};
-use crate::mechanics::tie::{Anchor, Tie, TieLine, TieMemory, sum_pulls};
+use crate::mechanics::geometry::field::turned;
+use crate::mechanics::stance::lines;
+use crate::mechanics::tie::sum_pulls;
+use crate::mechanics::{
+    Anchor, Edge, Lanes, Momentum, Placement, Pose, Row, Stance, Supports, Tie, TieLine, TieMemory,
+};
 
 /// Maximum number of Newton steps.
 const MOST_STEPS: usize = 16;

@@ -3,14 +3,11 @@
 use nalgebra::Vector2;
 
 use super::{LandingStepper, Piece};
-use crate::dynamics::history::Sample;
-use crate::dynamics::row::course::{Course, REST_ENERGY_RATIO};
-use crate::dynamics::row::error::RowMotionError;
-use crate::dynamics::row::stepper::{Stepper, eccentricity_ratio, equal_step, open_hinge};
-use crate::mechanics::chain::Hinge;
-use crate::mechanics::geometry::pose::Pose;
-use crate::mechanics::geometry::ring::Edge;
+use crate::dynamics::row::course::REST_ENERGY_RATIO;
+use crate::dynamics::row::stepper::{eccentricity_ratio, equal_step, open_hinge};
+use crate::dynamics::{Course, RowMotionError, Sample, Stepper};
 use crate::mechanics::joints::SHUT_RATIO;
+use crate::mechanics::{Edge, Hinge, Pose};
 
 /// Least opening rate, relative to the fastest one, of a joint that an impact opens.
 const LEAST_OPENING: f64 = 1e-9;

@@ -1,7 +1,7 @@
 //! Step length: up to the first landing, or a step with merged landings if impacts are too frequent.
 
 use super::{LandingStepper, Step};
-use crate::dynamics::row::error::RowMotionError;
+use crate::dynamics::RowMotionError;
 use crate::mechanics::joints::SHUT_RATIO;
 
 /// Maximum number of iterations to find the step that ends at a landing.

@@ -3,10 +3,9 @@
 use nalgebra::Vector2;
 
 use super::{APART_RATIO, SlidingStepper};
-use crate::dynamics::row::stepper::Stepper as _;
-use crate::mechanics::chain::Hinge;
+use crate::dynamics::Stepper as _;
 use crate::mechanics::coulomb::{Mode, TangentialMode};
-use crate::mechanics::geometry::ring::Edge;
+use crate::mechanics::{Edge, Hinge};
 
 /// Impact that began in the last step. Its energy is complete after the next step.
 pub(super) struct Landing {
