@@ -1,9 +1,8 @@
 //! Fall of an overturned structure. It is computed for pictures only and is no part of a history: results end where the structure cannot return.
 
+use crate::dynamics::Sample;
 use std::f64::consts::FRAC_PI_4;
 use std::fmt;
-
-use super::history::Sample;
 
 /// Rotation of a body, in radians, at which the computed fall ends.
 pub const TURNED_RAD: f64 = FRAC_PI_4;

@@ -6,7 +6,7 @@ use std::time::Duration;
 use nalgebra::Vector2;
 use serde::{Serialize, Serializer};
 
-use super::thrust::ThrustRecord;
+use crate::dynamics::ThrustRecord;
 use crate::mechanics::{Demand, Hinge, Lanes, Pose, Sway, Tie, TieMemory};
 
 /// Outcome of a history.

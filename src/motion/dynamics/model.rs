@@ -5,14 +5,15 @@ use std::fmt::Debug;
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::ground::GroundMotion;
-use super::history::{JointPressure, OpenHinge, Outcome, State, Summary, TieSample};
+use super::history::JointPressure;
 pub use super::recorder::{Recorder, WithoutDemand};
 use super::recording::{History, MEMORY_BYTES, MemoryError, Recording};
 pub use super::request::{Initial, Request};
-use super::row::error::RowMotionError;
 use super::until::{EndCondition, SafetyMonitor};
 use crate::argument::{ArgumentError, plain};
+use crate::dynamics::{
+    GroundMotion, OpenHinge, Outcome, RowMotionError, State, Summary, TieSample,
+};
 use crate::mechanics::{Demand, Displaced, Equivalent, Hinge, MovingBody, Row, Sway};
 
 /// Structure under ground motion, as a model of its motion.

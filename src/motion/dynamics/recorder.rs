@@ -2,8 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use super::fall::FallEnd;
-use super::history::{Event, OpenHinge, Sample};
+use crate::dynamics::{Event, FallEnd, OpenHinge, Sample};
 use crate::mechanics::Pose;
 
 /// Receives the samples and events of a history. Breaking ends the history there.

@@ -5,8 +5,9 @@ use std::ops::ControlFlow;
 use nalgebra::Vector2;
 use thiserror::Error;
 
-use super::history::{Event, Impact, JointPressure, OpenHinge, Sample, State, Summary, TieSample};
+use super::history::{Impact, JointPressure};
 use super::recorder::Recorder;
+use crate::dynamics::{Event, OpenHinge, Sample, State, Summary, TieSample};
 use crate::mechanics::{Demand, Pose};
 
 /// History with all its samples and events.

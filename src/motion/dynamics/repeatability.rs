@@ -13,11 +13,13 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize, Serializer};
 
-use super::ground::GroundMotion;
-use super::history::{Details, HalfCycle, Outcome, Sliding, Summary};
-use super::model::{Case, Job, Jobs, Model, Repetition, Request, SimulationError};
+use super::model::{Case, Job, Jobs};
 use super::until::EndCondition;
 use super::variation::MotionThread;
+use crate::dynamics::{
+    Details, GroundMotion, HalfCycle, Model, Outcome, Repetition, Request, SimulationError,
+    Sliding, Summary,
+};
 
 /// Relative tolerance within which a peak is certain, and within which the half cycles of a path that repeats agree.
 pub const SAME_PEAK_RATIO: f64 = 0.01;

@@ -5,8 +5,8 @@ use std::ops::RangeInclusive;
 
 use serde::Serialize;
 
-use super::ground::GroundMotion;
 use crate::argument::{ArgumentError, allow, within};
+use crate::dynamics::GroundMotion;
 use crate::mechanics::Sway;
 
 /// Request for a history: duration and accuracy.

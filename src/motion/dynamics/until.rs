@@ -2,10 +2,9 @@
 
 use std::ops::ControlFlow;
 
-use super::ground::GroundMotion;
-use super::history::{Sample, State};
 use super::recorder::Recorder;
 use super::request::Request;
+use crate::dynamics::{GroundMotion, Sample, State};
 use crate::mechanics::Sway;
 
 /// End of the computation of a motion. A motion that is ended early has the outcome [`StillRocking`](super::history::Outcome::StillRocking).

@@ -1,11 +1,8 @@
 //! Variations of a motion, with other values of uncertain properties.
 
+use crate::dynamics::{GroundMotion, Model, Request, SimulationError, Summary};
 use std::panic;
 use std::thread::{self, JoinHandle};
-
-use super::ground::GroundMotion;
-use super::history::Summary;
-use super::model::{Model, Request, SimulationError};
 
 /// Copy of a model with another plausible value of a property.
 #[derive(Debug)]

@@ -4,9 +4,9 @@ use std::ops::Add;
 
 use nalgebra::Vector2;
 
-use super::geometry::curve::{Curve, polygon};
+use super::geometry::curve::polygon;
 use super::geometry::rigid::{MassMoments, mirrored};
-use super::geometry::ring::Edge;
+use crate::mechanics::{Curve, Edge};
 
 /// Rigid block in the undeformed row.
 #[derive(Clone, Copy, Debug, PartialEq)]

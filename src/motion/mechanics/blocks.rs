@@ -11,8 +11,8 @@ use thiserror::Error;
 
 pub use super::block::{Block, Joint};
 use super::geometry::rigid::mirrored;
-use super::geometry::ring::{Edge, Ring};
-use super::tie::{Tie, TieError};
+use super::tie::TieError;
+use crate::mechanics::{Edge, Ring, Tie};
 
 /// Maximum number of blocks of a row. The effort of a step and the number of impacts increase with the number of blocks, while thresholds hardly
 /// change beyond a few dozen voussoirs.

@@ -19,11 +19,9 @@ use nalgebra::Vector2;
 use serde::Serialize;
 use thiserror::Error;
 
-use super::chain::{Mechanism as _, MechanismChain, Motion};
-use super::geometry::field::Twist;
-use super::geometry::pose::{BodyPoint, Pose};
-use super::sway::Sway;
-use super::virtual_work::{MovingBody, Participation};
+use super::chain::Motion;
+use super::virtual_work::Participation;
+use crate::mechanics::{BodyPoint, Mechanism as _, MechanismChain, MovingBody, Pose, Sway, Twist};
 
 /// Structure displaced along its first mechanism, in equilibrium with a horizontal acceleration.
 #[derive(Clone, Debug, PartialEq)]

@@ -21,13 +21,16 @@ use nalgebra::{Rotation2, Vector2};
 use serde::Serialize;
 
 use super::arch::{DENSITY_KG_M3, DEPTH_M};
-use super::blocks::{GRAVITY_M_S2, MAX_BLOCKS, Row, RowError};
-use super::chain::{Coefficients, Demand, Hinge, Link, Mechanism, MechanismChain, Motion};
-use super::tie::{Tie, TieError};
+use super::blocks::{GRAVITY_M_S2, MAX_BLOCKS};
+use super::chain::{Coefficients, Motion};
+use super::tie::TieError;
 use crate::argument::{ArgumentError, allow, within};
 use crate::mechanics::four_link::resultant::SectionResultant;
 use crate::mechanics::four_link::thrust::Load;
-use crate::mechanics::{ImpactLaw, ImpactModel, MassMoments, Pose, Sway, Twist};
+use crate::mechanics::{
+    Demand, Hinge, ImpactLaw, ImpactModel, Link, MassMoments, Mechanism, MechanismChain, Pose, Row,
+    RowError, Sway, Tie, Twist,
+};
 
 /// Column that rotates about its right toe; lengths in half diagonals, unit density and depth.
 #[derive(Clone, Copy, Debug)]

@@ -23,11 +23,10 @@ mod placed;
 use nalgebra::Vector2;
 use thiserror::Error;
 
-use super::blocks::{Row, Supports};
-use super::joints::{Closure, Placement};
-use super::tie::{TieLine, pull_blocks};
+use super::joints::Closure;
+use super::tie::pull_blocks;
 
-use crate::mechanics::{MassMoments, Twist};
+use crate::mechanics::{MassMoments, Placement, Row, Supports, TieLine, Twist};
 use answer::PinSolution;
 use exchange::WrongCorner;
 use factor::Factor;

@@ -21,8 +21,8 @@ mod pivoting;
 
 use nalgebra::{Matrix3, RowVector3, Vector2, Vector3};
 
-use super::blocks::Row;
 use super::slip::{Contact, Faces, Position};
+use crate::mechanics::Row;
 
 /// Weight of the proximal term, as a fraction of the diagonal.
 const PROXIMAL: f64 = 1e-6;

@@ -17,10 +17,8 @@
 //! stiffens or softens on its way. The first describes overturning and near-overturning, the second small
 //! rocking.
 
+use crate::mechanics::{Link, Mechanism, MechanismChain, Sway};
 use serde::Serialize;
-
-use super::chain::{Link, Mechanism, MechanismChain};
-use super::sway::Sway;
 
 /// Free-standing block.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

@@ -6,22 +6,21 @@ use std::sync::Arc;
 use nalgebra::Vector2;
 use thiserror::Error;
 
-use super::arch::{Arch, DEPTH_M, MAGNITUDE};
-use super::blocks::Row;
-use super::chain::{Demand, Hinge, Link, MechanismChain, Motion};
+use super::arch::{DEPTH_M, MAGNITUDE};
+use super::chain::Motion;
 use super::contact::ContactError;
 use super::four_link::chain::Chain;
-use super::four_link::impact::ImpactLaw;
 use super::four_link::jointed::JointedProfile;
-use super::four_link::limit::{LimitError, incipient_of};
+use super::four_link::limit::incipient_of;
 use super::four_link::linkage::Linkage;
 use super::four_link::mechanism::HingeSites;
 use super::four_link::thrust::ThrustLine;
-use super::geometry::profile::Profile as _;
-use super::sides::Sides;
 use super::stability::collapse_mechanism;
-use super::sway::Sway;
 use crate::argument::{ArgumentError, within};
+use crate::mechanics::{
+    Arch, Demand, Hinge, ImpactLaw, LimitError, Link, MechanismChain, Profile as _, Row, Sides,
+    Sway,
+};
 
 /// Structure with its sequences of four-link mechanisms under an impact law. The sequences depend on neither size nor material, and clones share
 /// them.

@@ -9,10 +9,9 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, SolverStatus};
 use thiserror::Error;
 
-use super::blocks::Row;
 use super::cone_program;
 use crate::bisection::{Width, try_bisect};
-use crate::mechanics::{Edge, Stance, Sway};
+use crate::mechanics::{Edge, Row, Stance, Sway};
 
 /// Rate, over the largest one, that counts as zero.
 const LEAST_RATE: f64 = 1e-4;

@@ -11,10 +11,9 @@
 
 use nalgebra::Vector2;
 
-use super::blocks::{Joint, Row, Supports};
 use crate::mechanics::geometry::field::turned;
 use crate::mechanics::geometry::pose::{product, unit};
-use crate::mechanics::{Edge, Pose};
+use crate::mechanics::{Edge, Joint, Pose, Row, Supports};
 
 /// Gap, over the thickness, below which a corner of a joint counts as closed.
 pub const SHUT_RATIO: f64 = 1e-12;

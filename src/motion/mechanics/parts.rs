@@ -2,11 +2,8 @@
 
 use nalgebra::Vector2;
 
-use super::arch::Arch;
-use super::blocks::{Block, Row, Supports};
-use super::column::Column;
 use super::geometry::curve::{distance, sides};
-use super::geometry::ring::{Edge, Ring};
+use crate::mechanics::{Arch, Block, Column, Edge, Ring, Row, Supports};
 
 /// Number of equal parts that represent a continuous ring. The relative error of the participating mass is of the order of the square of their size,
 /// 1e-6.

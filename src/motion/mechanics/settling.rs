@@ -23,16 +23,11 @@ use thiserror::Error;
 use self::descent::Descent;
 pub use self::held::{Held, HeldError};
 pub use self::pins::{HingeState, Pin, Pins};
-use super::blocks::{Row, Supports};
 use super::contact::ContactError;
-use super::geometry::pose::Pose;
 use super::geometry::rigid::linear;
-use super::lanes::Lanes;
-use super::stability::{StabilityError, collapse_mechanism_at, onset_at};
-use super::stance::Stance;
-use super::sway::Sway;
-use super::tie::TieMemory;
+use super::stability::{collapse_mechanism_at, onset_at};
 use crate::bisection::{Width, falls_below_zero, try_bisect};
+use crate::mechanics::{Lanes, Pose, Row, StabilityError, Stance, Supports, Sway, TieMemory};
 
 /// Length of a step along the path: a fraction of the row's size, radians, or multiples of gravity.
 const STEP: f64 = 1e-3;

@@ -1,8 +1,7 @@
 //! Results to the right and to the left.
 
+use crate::mechanics::Sway;
 use serde::{Deserialize, Serialize};
-
-use super::sway::Sway;
 
 /// Result for both directions of sway.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

@@ -11,10 +11,9 @@
 
 use nalgebra::{Matrix3, RowVector3, Vector2, Vector3};
 
-use super::blocks::{Joint, Row};
 use super::geometry::field::turned;
-use super::geometry::pose::{Pose, product, unit};
-use super::geometry::ring::Edge;
+use super::geometry::pose::{product, unit};
+use crate::mechanics::{Edge, Joint, Pose, Row};
 
 /// Position of a block, for sliding joints: centre of gravity and half the rotation. The motion integrates the velocity of the centre. Half rotations
 /// of two blocks add up to the mean angle of their faces. A [`Pose`] stores the full rotation, which is not bitwise equal to twice the half rotation.

@@ -8,12 +8,8 @@
 use nalgebra::{DMatrix, DVector, Vector2};
 use thiserror::Error;
 
-use super::blocks::Row;
 use super::contact::{ContactError, Load, Program};
-use super::joints::Placement;
-use super::stance::Stance;
-use super::tie::TieLine;
-use crate::mechanics::{Edge, Sway, Twist};
+use crate::mechanics::{Edge, Placement, Row, Stance, Sway, TieLine, Twist};
 
 /// Velocities below this fraction of those without contact count as zero.
 const STANDSTILL: f64 = 1e-9;

@@ -1,10 +1,6 @@
 //! State of a row: undeformed, or displaced between moved supports.
 
-use super::blocks::Row;
-use super::joints::Placement;
-use super::lanes::Lanes;
-use super::tie::{TieLine, TieMemory};
-use crate::mechanics::Pose;
+use crate::mechanics::{Lanes, Placement, Pose, Row, TieLine, TieMemory};
 
 /// Positions of the blocks of a row, and states of its ties.
 #[derive(Clone, Debug)]

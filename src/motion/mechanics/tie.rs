@@ -8,7 +8,8 @@ use thiserror::Error;
 
 use super::block::Block;
 use super::geometry::rigid::{Momentum, Twist, mirrored};
-use super::lanes::{Lanes, Real, both, remembered};
+use super::lanes::{both, remembered};
+use crate::mechanics::{Lanes, Real};
 
 /// End of a tie.
 #[derive(Clone, Copy, Debug, PartialEq)]

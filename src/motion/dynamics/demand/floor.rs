@@ -5,8 +5,8 @@
 
 use serde::Serialize;
 
-use super::ground::GroundSpectrum;
 use super::{damping_factor, displacement_m};
+use crate::dynamics::GroundSpectrum;
 
 /// Periods, over that of a mode, between which the ordinate of the mode is the largest.
 pub const PLATEAU: [f64; 2] = [0.8, 1.1];

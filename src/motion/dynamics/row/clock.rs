@@ -1,8 +1,7 @@
 //! Steps of a motion, and times of its samples.
 
-use super::error::RowMotionError;
 use crate::argument::plain;
-use crate::dynamics::fall;
+use crate::dynamics::{RowMotionError, fall};
 
 /// Relative tolerance, in output steps, within which a start before a multiple of the output step counts as that multiple.
 const ALIGNED: f64 = 1e-6;

@@ -2,15 +2,14 @@
 
 use std::mem;
 
-use super::error::RowMotionError;
-use super::task::Task;
 use crate::dynamics::history::{ElasticSummary, RowSummary, Stress, TieSummary};
 use crate::dynamics::recorder::Recorder;
 use crate::dynamics::request::later_end_s;
 use crate::dynamics::thrust::FrictionDemands;
 use crate::dynamics::until::SAFE;
 use crate::dynamics::{
-    Cost, Details, Event, EventKind, HalfCycle, Outcome, Sample, State, Summary, ThrustRecord,
+    Cost, Details, Event, EventKind, HalfCycle, Outcome, RowMotionError, Sample, State, Summary,
+    Task, ThrustRecord,
 };
 use crate::mechanics::chain::LEAST_LOAD;
 use crate::mechanics::{Hinge, Lanes, Sway, Tie, TieMemory};
@@ -215,34 +214,21 @@ impl<'a> Course<'a> {
         overturned_s: Option<f64>,
         rests_since: impl FnOnce() -> Option<f64>,
     ) -> Option<(Outcome, f64)> {
-        let time = self.time;
+        let closed = self.outcome_with_closed_joints();
+        let still = (closed.unwrap_or(Outcome::StillRocking), self.time);
         if self.stopped {
-            return Some((
-                self.outcome_with_closed_joints()
-                    .unwrap_or(Outcome::StillRocking),
-                time,
-            ));
+            return Some(still);
         }
         if let Some(time_s) = overturned_s {
             return Some((Outcome::Overturned(side_of(self.sway)), time_s));
         }
-        if time >= self.task.ground.end_s()
+        if self.time >= self.task.ground.end_s()
             && let Some(time_s) = rests_since()
         {
             let rest = (Outcome::Rest, time_s);
-            return Some(
-                self.outcome_with_closed_joints()
-                    .map_or(rest, |standing| (standing, time)),
-            );
+            return Some(closed.map_or(rest, |closed| (closed, self.time)));
         }
-        let over = time >= self.task.settings.end_s;
-        over.then(|| {
-            (
-                self.outcome_with_closed_joints()
-                    .unwrap_or(Outcome::StillRocking),
-                time,
-            )
-        })
+        (self.time >= self.task.settings.end_s).then_some(still)
     }
 
     /// Lengthens a motion that would end with this outcome, if it is incomplete. Returns its new end in seconds, `None` if it ends.

@@ -1,11 +1,9 @@
 //! A row of rigid blocks before it moves: push of the first motion, and first mechanism.
 
-use super::clock::Settings;
-use super::error::RowModelError;
-use super::task::{Task, rise_to_overturn_m};
+use super::task::rise_to_overturn_m;
 use crate::argument::ArgumentError;
-use crate::dynamics::GroundMotion;
 use crate::dynamics::request::Initial;
+use crate::dynamics::{GroundMotion, RowModelError, Settings, Task};
 use crate::mechanics::friction;
 use crate::mechanics::stability::onset;
 use crate::mechanics::{

@@ -5,12 +5,13 @@ use std::time::{Duration, Instant};
 use nalgebra::Vector2;
 
 use super::clock::Marks;
-use super::course::{Course, side_of};
-use super::error::RowMotionError;
-use crate::dynamics::fall;
+use super::course::side_of;
 use crate::dynamics::history::{Elapsed, Impact};
 use crate::dynamics::recorder::Recorder;
-use crate::dynamics::{Event, EventKind, FallEnd, OpenHinge, Outcome, Sample, State, Summary};
+use crate::dynamics::{
+    Course, Event, EventKind, FallEnd, OpenHinge, Outcome, RowMotionError, Sample, State, Summary,
+    fall,
+};
 use crate::mechanics::{Edge, Hinge, Pose, Sway};
 
 /// Stepper of a row: computes its motion step by step.

@@ -2,8 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::clock::Settings;
-use crate::dynamics::GroundMotion;
+use crate::dynamics::{GroundMotion, Settings};
 use crate::mechanics::{Edge, Joint, Row, Supports};
 
 /// Input of the motion of a row.

@@ -1,7 +1,8 @@
 //! Active-set search by the dual method of Goldfarb and Idnani, one corner at a time.
 
 use super::answer::CornerImpulse;
-use super::{ContactError, Corners, DEPENDENCE, Effort, Program, RATE_TOLERANCE, exceeds};
+use super::{ContactError, DEPENDENCE, Effort, Program, RATE_TOLERANCE, exceeds};
+use crate::mechanics::Corners;
 
 /// Loosest tolerance of closing rates; beyond it a program counts as unsolved.
 const LARGEST_RATE_TOLERANCE: f64 = 1e-7;

@@ -1,6 +1,7 @@
 //! Active-set search by exchanges of many corners at once.
 
-use super::{Corners, DEPENDENCE, Program, exceeds, higher};
+use super::{DEPENDENCE, Program, exceeds, higher};
+use crate::mechanics::Corners;
 
 /// Number of exchanges without progress before only the worst corners are exchanged; after as many again the dual method takes over.
 const EXCHANGE_PATIENCE: usize = 30;

@@ -5,9 +5,9 @@ use std::ops::Range;
 
 use nalgebra::{Matrix2, Vector2};
 
+use super::lower;
 use super::placed::Placed;
-use super::{Corners, lower};
-use crate::mechanics::{Edge, MassMoments, Placement, Row, Supports};
+use crate::mechanics::{Corners, Edge, MassMoments, Placement, Row, Supports};
 
 /// Run of blocks that move as one body, with its inverse inertia; zero for a body fixed to a support.
 #[derive(Clone, Copy, Debug)]

@@ -6,14 +6,14 @@
 
 use std::sync::{Arc, OnceLock};
 
-use super::impact::{Impact, ImpactLaw, impact, impact_onto};
+use super::impact::{Impact, impact, impact_onto};
 use super::impulse_line::ImpulseLine;
 use super::limit::Incipient;
 use super::linkage::Linkage;
 use super::mechanism::{FourLink, HingeSites};
 use super::thrust::Section;
 use crate::mechanics::chain::critical_rad;
-use crate::mechanics::{Link, Profile};
+use crate::mechanics::{ImpactLaw, Link, Profile};
 
 /// Tolerance, in radians, within which a link has the hinges of the link two before it, so that the last two links repeat. The effect on `r`, which
 /// is stationary at a maximum, is far below the accuracy of the search.

@@ -4,10 +4,10 @@
 //! acceleration field such as gravity, and the change of velocity in an impact. Two fields have a scalar product, the integral of `rho v . w`. It is
 //! twice a kinetic energy for `v = w`, and a virtual power if one of the fields is a load per unit mass.
 
+use crate::mechanics::Profile;
 use std::mem;
 use std::ops::Add;
 
-use super::profile::Profile;
 pub use super::rigid::{Momentum, Twist, turned};
 
 /// The side of a section from which a field is taken, if it jumps there.

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use nalgebra::Vector2;
 
 use super::rigid::{MassMoments, turned};
-use super::ring::{Edge, Ring};
+use crate::mechanics::{Edge, Ring};
 
 /// Sections with two edges each, and the mass before each of them.
 ///

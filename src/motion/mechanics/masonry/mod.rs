@@ -17,12 +17,12 @@ use serde::Serialize;
 use thiserror::Error;
 
 use super::arch::{DENSITY_KG_M3, DEPTH_M, MAGNITUDE, VOUSSOIRS};
-use super::blocks::{Joint, MAX_BLOCKS, Row, RowError, Supports};
+use super::blocks::MAX_BLOCKS;
 use super::stability::collapse_mechanism;
-use super::tie::{Tie, TieError};
+use super::tie::TieError;
 use crate::argument::{ArgumentError, allow, counted, within};
-use crate::mechanics::Sway;
 use crate::mechanics::contact::ContactError;
+use crate::mechanics::{Joint, Row, RowError, Supports, Sway, Tie};
 use cut::CutArch;
 pub use fill::{Fill, FillColumn, FillLevel};
 pub use given::{GivenBlocks, OutlineError};

@@ -1,7 +1,8 @@
 //! Changes that make an arch stable that falls under its own weight.
 
-use super::{BasketArch, CircularArch, Masonry, Pier, Piers, Shape};
+use super::{BasketArch, CircularArch, Pier, Piers};
 use crate::bisection::{Width, try_bisect};
+use crate::mechanics::{Masonry, Shape};
 
 /// Change that makes masonry stable, with the least factor, rounded up to four decimals; `None` if a factor of four is not enough.
 #[derive(Clone, Copy, Debug, PartialEq)]

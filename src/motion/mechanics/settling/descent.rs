@@ -12,10 +12,10 @@
 
 use nalgebra::{DMatrix, DVector, Vector2};
 
-use super::{Condition, Pins, ROUNDING, SettlingError};
+use super::{Condition, Pins, ROUNDING};
 use crate::mechanics::contact::closing::{ClosureSolver, FirstShut};
 use crate::mechanics::contact::{ContactError, Load, Program};
-use crate::mechanics::{Corners, Pose, Row, Stance, TieLine, Twist};
+use crate::mechanics::{Corners, Pose, Row, SettlingError, Stance, TieLine, Twist};
 
 /// Velocities below this part of those without contact are zero.
 const STANDSTILL: f64 = 1e-9;
