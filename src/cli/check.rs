@@ -2,14 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use archrock::dynamics::ground::GroundMotion;
 use archrock::dynamics::ground::intensity::Intensity;
-use archrock::dynamics::model::Request;
 use archrock::dynamics::peak::Peak;
 use archrock::output::scene::Scene;
 use archrock::output::{elevation, record as output};
 use archrock::scenario::{Format, Layout, RecordedQuantity, Scenario, Series};
 use archrock::studies::results::StudyError;
+use archrock::{GroundMotion, Request};
 use serde_json::{Value, json};
 
 use super::figure::FigureOption;

@@ -2,14 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use archrock::FourLinkError;
-use archrock::FourLinks;
 use archrock::output::print::{PictureFormat, PrintError};
 use archrock::output::scene::Scene;
 use archrock::output::write_named_file;
 use archrock::scenario::Scenario;
-use archrock::studies::limit;
-use archrock::studies::pictures;
+use archrock::studies::{limit, pictures};
+use archrock::{FourLinkError, FourLinks};
 
 use super::figure::FigureOption;
 use super::parsers::FirstOption;

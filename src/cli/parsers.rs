@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use archrock::mechanics::sway::Sway;
+use archrock::Sway;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use nalgebra::Vector2;
 

@@ -1,11 +1,10 @@
 //! The progress of long computations on the terminal, and Ctrl-C.
 
 use std::io::{self, IsTerminal as _, Write as _};
-use std::process;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
-use std::thread;
 use std::time::{Duration, Instant};
+use std::{process, thread};
 
 use archrock::scenario::shown_lines;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};

@@ -2,10 +2,9 @@
 
 use std::cell::OnceCell;
 use std::collections::BTreeMap;
-use std::env;
-use std::io;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
+use std::{env, io};
 
 use archrock::output::print::PictureFormat;
 use archrock::output::{Batch, Folder, Manifest, Origin, OutputError};

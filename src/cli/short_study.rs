@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use archrock::mechanics::sway::Sway;
+use archrock::Sway;
 use archrock::output::Origin;
 use archrock::studies::catalogue::{CAPACITY, Options, SPREAD, StudyKind, VERIFY};
 use archrock::studies::results::Style;

@@ -4,10 +4,9 @@ use std::io::{self, BufWriter};
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
-use std::process;
-use std::slice;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
+use std::{process, slice};
 
 use archrock::scenario::Scenario;
 use archrock::studies::catalogue::{Computation, Options, RUN, RowSource, StudyKind};

@@ -1,9 +1,8 @@
 //! The list of the results in a folder, `archrock.json`: which files each command wrote, and for which scenario.
 
 use std::collections::BTreeMap;
-use std::fs;
-use std::io;
 use std::path::{Component, Path, PathBuf};
+use std::{fs, io};
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;

@@ -6,12 +6,11 @@ use std::ops::RangeInclusive;
 use super::prelude::*;
 use super::structure::{ModelError, Structure};
 use crate::argument::ArgumentError;
-use crate::dynamics::elastic_joints::ElasticJoints;
 use crate::mechanics::elastic_joint::{
     Contact, ElasticProperties, JointStiffness, Materials, RestError, Stiffness,
 };
 use crate::mechanics::{ElasticStructure, Movements};
-use crate::{Request, RowModelError};
+use crate::{ElasticJoints, Request, RowModelError};
 
 /// Converts a stiffness in GPa/m to Pa/m, and a modulus in GPa to Pa.
 const GPA: f64 = 1e9;

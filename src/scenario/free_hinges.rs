@@ -3,10 +3,8 @@
 use super::prelude::*;
 use super::structure::Structure;
 use crate::argument::rounded_up;
-use crate::dynamics::free_hinges::FreeHinges;
-use crate::mechanics::friction;
-use crate::mechanics::{FrictionError, Movements};
-use crate::{RowModelError, RowOptions};
+use crate::mechanics::{FrictionError, Movements, friction};
+use crate::{FreeHinges, RowModelError, RowOptions};
 
 /// Free hinges on supports that may have moved.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -5,9 +5,8 @@ use std::f64::consts::PI;
 use super::hinges::Hinges;
 use super::prelude::*;
 use super::structure::Structure;
-use crate::Sway;
 use crate::argument::rounded_down;
-use crate::dynamics::model::Initial;
+use crate::{Initial, Sway};
 
 const ROTATION_RAD: Number = between(Included(Initial::MIN_ROTATION_RAD), Excluded(PI));
 

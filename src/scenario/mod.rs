@@ -65,9 +65,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::dynamics::Variation;
-use crate::dynamics::model::Initial;
-use crate::mechanics::four_links::FourLinkError;
-use crate::{GroundMotion, MechanismModel, Model, Request, Row, RowModelError};
+use crate::{
+    FourLinkError, GroundMotion, Initial, MechanismModel, Model, Request, Row, RowModelError,
+};
 pub use assignment::Assignment;
 use document::Entries;
 pub use elastic_joints::ElasticTable;

@@ -18,8 +18,7 @@ use super::spread::{self, Direction};
 use super::suite::{Heading, RecordSuite};
 use super::threshold::along::{Along, AlongOptions};
 use super::threshold::{self, Factors};
-use super::verify;
-use super::{ReportedStudy, Results, Runner, StudyError, Style, Task, Watch};
+use super::{ReportedStudy, Results, Runner, StudyError, Style, Task, Watch, verify};
 use crate::scenario::Scenario;
 
 /// Options of studies that are not part of the scenario.

@@ -30,10 +30,9 @@ mod samples;
 mod unit;
 
 use std::borrow::Cow;
-use std::fmt;
-use std::fs;
 use std::path::Path;
 use std::sync::Arc;
+use std::{fmt, fs};
 
 pub use layout::{Decimal, Format, Layout, TableColumn, Times};
 use samples::MAX_TIME_S;

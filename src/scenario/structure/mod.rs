@@ -16,17 +16,13 @@ use super::prelude::*;
 use super::span::Circular;
 use super::tie::{self, TieTable};
 use crate::argument::rounded_up;
-use crate::dynamics::free_hinges::FreeHinges;
-use crate::mechanics::arch;
 use crate::mechanics::blocks::MAX_BLOCKS;
-use crate::mechanics::column::RockingColumn;
 use crate::mechanics::four_link::limit::least_thickness_ratio;
-use crate::mechanics::four_links::FourLinkError;
 use crate::mechanics::masonry::{CircularArch, LoadOutlines};
-use crate::mechanics::{LimitError, Parts, PlacedLoad, RowError, Shape, Supports, Tie};
+use crate::mechanics::{LimitError, Parts, PlacedLoad, RowError, Shape, Supports, Tie, arch};
 use crate::{
-    Arch, Column, FourLinks, ImpactLaw, ImpactModel, Masonry, MechanismModel, Row, RowModelError,
-    RowOptions, Sway,
+    Arch, Column, FourLinkError, FourLinks, FreeHinges, ImpactLaw, ImpactModel, Masonry,
+    MechanismModel, RockingColumn, Row, RowModelError, RowOptions, Sway,
 };
 
 /// The structure that stands on the ground.

@@ -13,12 +13,11 @@ use serde::{Deserialize, Serialize};
 
 use super::ending::{Ending, NoHistory, answered};
 use super::runner::Study;
-use crate::dynamics::model::Case;
 use crate::dynamics::{OutcomeCount, Repetition};
 use crate::scenario::{Axis, Ground, ModelError, Motion, Quantity, Scaling, Scenario, Structure};
 use crate::{
-    Arch, ArgumentError, FourLinkError, FourLinks, GroundMotion, ImpactModel, Model, PulseShape,
-    SimulationError, Summary,
+    Arch, ArgumentError, Case, FourLinkError, FourLinks, GroundMotion, ImpactModel, Model,
+    PulseShape, SimulationError, Summary,
 };
 
 /// A cell of a map.

@@ -24,10 +24,9 @@ mod tables;
 mod words;
 
 use std::fmt::Write as _;
-use std::io;
-use std::mem;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
+use std::{io, mem};
 
 use nalgebra::Vector2;
 use serde_json::Value;

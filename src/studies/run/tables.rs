@@ -1,13 +1,12 @@
 //! The tables of a run: `rotations.csv`, `poses.csv`, `joints.csv`, `events.csv` and `impacts.csv`.
 
-use crate::dynamics::history::Impact;
 use crate::output::mechanisms::columns;
 use crate::output::{Cell, Column, column, list, numbers, row_number, several};
+use crate::{Event, GroundMotion, Hinge, Impact, MechanismModel, Model, Sample, Sway};
 
 use super::Scales;
 use crate::dynamics::TieSample;
 use crate::mechanics::Edge;
-use crate::{Event, GroundMotion, Hinge, MechanismModel, Model, Sample, Sway};
 
 /// Returns the columns of `rotations.csv`, one row per sample.
 ///

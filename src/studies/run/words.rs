@@ -9,7 +9,6 @@ use super::points::place;
 use super::summary::{ComputedRun, Summary};
 use super::tables::energy_loss_j;
 use crate::dynamics::free_hinges::DOUBTFUL_ENERGY_ERROR;
-use crate::dynamics::history::Impact;
 use crate::dynamics::repeatability::{
     FIRST_REPETITIONS, LEAST_SLIP_M, RepeatedHalfCycle, RepeatedValue, SAME_PEAK_RATIO,
 };
@@ -18,7 +17,7 @@ use crate::mechanics::Sides;
 use crate::output::mechanisms::by_body;
 use crate::output::{filters, range_ends};
 use crate::scenario::{Hinges, Scenario, Series};
-use crate::{Event, Hinge, Outcome, Summary as History, Sway, Verdict};
+use crate::{Event, Hinge, Impact, Outcome, Summary as History, Sway, Verdict};
 
 /// Returns the heading of the words for the runs of scenarios that differ in their models: title, one line per record, and a note about an
 /// ignored table.

@@ -7,14 +7,13 @@ use serde::Serialize;
 
 use super::{CheckInput, VerifyError};
 use crate::mechanics::capacity::Control;
-use crate::mechanics::friction;
 use crate::mechanics::settling::Held;
 use crate::mechanics::stability::onset;
 use crate::mechanics::virtual_work::{
     MovingTie, Participation, load_multiplier, per_displacement_of_centre,
 };
 use crate::mechanics::{
-    BodyPoint, Capacity, Displaced, Edge, FrictionError, MovingBody, Parts as _, RowOnset,
+    BodyPoint, Capacity, Displaced, Edge, FrictionError, MovingBody, Parts as _, RowOnset, friction,
 };
 use crate::scenario::{CheckedSides, Structure};
 use crate::studies::capacity::Bodies;

@@ -9,9 +9,8 @@ use super::engine::{HybridSystem, task};
 use super::integrator::{Step, integrate};
 use super::posture::{StructureState, posture, state};
 use super::rocking::{Phase, Rocking, RockingState, SystemState};
-use crate::dynamics::fall;
 use crate::dynamics::recorder::Recorder;
-use crate::dynamics::{Cost, FallEnd, OpenHinge, Sample, State, ThrustRecord};
+use crate::dynamics::{Cost, FallEnd, OpenHinge, Sample, State, ThrustRecord, fall};
 use crate::mechanics::{Mechanism, MechanismChain, Pose};
 
 /// Relative error tolerance of a step of a fall, which is only drawn.

@@ -4,11 +4,10 @@ use super::task::rise_to_overturn_m;
 use crate::argument::ArgumentError;
 use crate::dynamics::request::Initial;
 use crate::dynamics::{GroundMotion, RowModelError, Settings, Task};
-use crate::mechanics::friction;
 use crate::mechanics::stability::onset;
 use crate::mechanics::{
     Follower, FourLinks, FrictionError, Hinge, ImpactModel, Mechanism, MechanismChain, Movements,
-    Row, SettlingError, Sides, StabilityError, Stance, Supports, Sway,
+    Row, SettlingError, Sides, StabilityError, Stance, Supports, Sway, friction,
 };
 
 /// Stable row of rigid blocks.
