@@ -33,10 +33,7 @@ impl ModelAnswer {
                 Hinges::Four if !is_arch => "one rigid block",
                 _ => hinges.model().label,
             },
-            answer: match outside.flatten() {
-                Some(why) => Err(why),
-                None => answer,
-            },
+            answer: answer.and_then(|answer| outside.flatten().map_or(Ok(answer), Err)),
         }
     }
 }

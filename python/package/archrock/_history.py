@@ -302,6 +302,12 @@ class History(Summarised):
         verdict: str = self.summary["verdict"]
         return verdict
 
+    @property
+    def to_quote(self) -> str:
+        """The answer that may be quoted, in the words of the program: the outcome with its conditions, or why there is none."""
+        to_quote: str = self.summary["to_quote"]
+        return to_quote
+
     def _numbers(self) -> Summary:
         """The summary of the history alone, which has no verdict."""
 

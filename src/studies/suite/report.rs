@@ -180,8 +180,12 @@ impl Heading {
         let excess = |case: &CaseRow| case.result.as_ref().ok()?.thrust_excess_ratio;
         let lowest = survivals.min_by(|(_, a), (_, b)| safe(a).total_cmp(&safe(b)));
         let quoted = lowest.as_ref().map_or(0.0, |(_, survival)| safe(survival));
-        let cases = results.cases.iter();
-        let cases = cases.filter(|case| case.level(self.measure) <= quoted);
+        // The quoted intensity lies between levels; the level above it is outside the model no later.
+        let records = results.cases.chunk_by(CaseRow::has_shake_of);
+        let cases = records.flat_map(|cases| {
+            let above = cases.iter().position(|case| case.level(self.measure) >= quoted);
+            &cases[..above.map_or(cases.len(), |above| above + 1)]
+        });
         let excess_ratio = cases.filter_map(excess).reduce(f64::max);
         let answer = lowest.map_or(Err("there are no cases".to_owned()), |(case, survival)| {
             let (record, unit) = (case.record_in_words(), unit(self.measure));

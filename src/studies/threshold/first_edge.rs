@@ -185,9 +185,13 @@ impl FirstEdge {
             Some(_) => !self.at_most,
             None => factor <= self.tried_to,
         };
+        // Below the smallest factor nothing is known, unless that factor is survived.
+        let doubtful = |[first, _]: &[f64; 2]| *first <= factor;
+        let is_tried =
+            self.survives_up_to.is_some() || self.uncertain.first().is_some_and(doubtful);
         let uncertain = self.uncertain.iter();
         let reached = uncertain.filter(|[strength, _]| *strength <= factor);
-        is_known.then(|| reached.map(|[_, share]| *share).fold(0.0, f64::max))
+        (is_known && is_tried).then(|| reached.map(|[_, share]| *share).fold(0.0, f64::max))
     }
 }
 

@@ -84,6 +84,8 @@ pub struct Threshold {
     /// The lowest factors of structures with other stiffness and contact, and with rigid joints; empty unless joints are elastic and a factor
     /// overturns the structure.
     pub varied: Vec<VariedThreshold>,
+    /// Largest excess of the thrust line of four links over the thickness at factors up to the largest safe one; `None` for other models.
+    pub(crate) safe_excess_ratio: Option<f64>,
 }
 
 impl Threshold {
@@ -185,7 +187,22 @@ pub fn thresholds(
             }
         }
         samples.sort_by(|a, b| a.factor.total_cmp(&b.factor));
-        Threshold::new(models[model].0.to_owned(), samples, &edges)
+        let mut threshold = Threshold::new(models[model].0.to_owned(), samples, &edges);
+        if let (Some(_), Some(safe)) = (models[model].1.as_mechanisms(), threshold.survives_up_to())
+        {
+            // The largest safe factor is from a bisection, and is not among the samples.
+            let last = shaking.samples(model, &[safe]);
+            let below = threshold
+                .samples
+                .iter()
+                .filter(|sample| sample.factor <= safe);
+            let endings = below
+                .chain(&last)
+                .filter_map(|sample| sample.result.as_ref().ok());
+            let excesses = endings.filter_map(|ending| ending.thrust_excess_ratio);
+            threshold.safe_excess_ratio = excesses.reduce(f64::max);
+        }
+        threshold
     };
     let of_models = samples.chunks(factors.len()).enumerate();
     Ok(of_models.map(threshold).collect())
@@ -361,6 +378,7 @@ impl Threshold {
             samples,
             ranges,
             varied: Vec::new(),
+            safe_excess_ratio: None,
         }
     }
 }

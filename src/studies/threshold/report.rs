@@ -286,11 +286,7 @@ impl Threshold {
             _ => Err("the smallest factor tried is not certainly survived".to_owned()),
         };
         let (hinges, is_arch) = (scenario.motion.hinges(), scenario.structure.thrusts());
-        let safe = self.survives_up_to().unwrap_or(f64::INFINITY);
-        let samples = self.samples.iter().filter(|sample| sample.factor <= safe);
-        let excesses =
-            samples.filter_map(|sample| sample.result.as_ref().ok()?.thrust_excess_ratio);
-        ModelAnswer::new(hinges, is_arch, excesses.reduce(f64::max), answer)
+        ModelAnswer::new(hinges, is_arch, self.safe_excess_ratio, answer)
     }
 
     /// Returns the remarks on the histories.

@@ -136,6 +136,14 @@ fn history_of<C: MechanismChain + MechanismModel>(
         energy_without_work: mode.swing().map_or(0.0, energy),
         largest_defect: 0.0,
     };
+    let (time_s, piece) = (0.0, 0);
+    let released = StructureState::<'_, C> {
+        time_s,
+        piece,
+        mode,
+        state,
+    };
+    collector.note_excess(&released);
     collector.note_peak(mode, &state);
     let may_overturn = |now: &StructureState<'_, C>| match now.mode {
         Phase::Rocking(swing) => {
