@@ -103,6 +103,25 @@ impl FreeStanding {
             }
         }
     }
+
+    fn read(table: &mut Table<'_>) -> ReadResult<Self> {
+        let t0_s = table.optional("t0_s", &PERIOD_S);
+        let kappa = table.optional("kappa", &above(0.0, 100.0));
+        let length_m = table.optional("length_m", &MAGNITUDE);
+        let thickness_m = table.optional("thickness_m", &MAGNITUDE);
+        let modulus_gpa = table.optional("modulus_gpa", &above(0.0, 1e3));
+        let elastic = ["kappa", "length_m", "thickness_m", "modulus_gpa"];
+        table.agrees(&[OneOf(&["t0_s", "kappa"], None), Together(&elastic)])?;
+        if let Some(t0_s) = t0_s {
+            return Ok(Self::Period { t0_s });
+        }
+        Ok(Self::Elastic {
+            kappa: kappa.ok_or(FaultRecorded)?,
+            length_m: length_m.ok_or(FaultRecorded)?,
+            thickness_m: thickness_m.ok_or(FaultRecorded)?,
+            modulus_gpa: modulus_gpa.ok_or(FaultRecorded)?,
+        })
+    }
 }
 
 /// The options of a check.
@@ -231,27 +250,6 @@ impl Verify {
             return Err(table.wrong_in(&["verify"], key, wrong));
         }
         Ok(())
-    }
-}
-
-impl FreeStanding {
-    fn read(table: &mut Table<'_>) -> ReadResult<Self> {
-        let t0_s = table.optional("t0_s", &PERIOD_S);
-        let kappa = table.optional("kappa", &above(0.0, 100.0));
-        let length_m = table.optional("length_m", &MAGNITUDE);
-        let thickness_m = table.optional("thickness_m", &MAGNITUDE);
-        let modulus_gpa = table.optional("modulus_gpa", &above(0.0, 1e3));
-        let elastic = ["kappa", "length_m", "thickness_m", "modulus_gpa"];
-        table.agrees(&[OneOf(&["t0_s", "kappa"], None), Together(&elastic)])?;
-        if let Some(t0_s) = t0_s {
-            return Ok(Self::Period { t0_s });
-        }
-        Ok(Self::Elastic {
-            kappa: kappa.ok_or(FaultRecorded)?,
-            length_m: length_m.ok_or(FaultRecorded)?,
-            thickness_m: thickness_m.ok_or(FaultRecorded)?,
-            modulus_gpa: modulus_gpa.ok_or(FaultRecorded)?,
-        })
     }
 }
 
@@ -389,6 +387,18 @@ impl StateRule {
             damping_percent,
             divide_acceleration: confidence_factor,
             divide_displacement: 1.0,
+        })
+    }
+
+    fn read(table: &mut Table<'_>, default: Self) -> ReadResult<Self> {
+        let mut or = |key, rule: &Number, default| table.or(key, rule, default);
+        let part = between(Excluded(0.0), Excluded(1.0));
+        Ok(Self {
+            part_of_d0: or("part_of_d0", &part, default.part_of_d0),
+            period_factor: or("period_factor", &above(0.0, 10.0), default.period_factor),
+            damping_percent: or("damping_percent", &DAMPING_PERCENT, default.damping_percent),
+            divide_acceleration: or("divide_acceleration", &DIVIDE, default.divide_acceleration),
+            divide_displacement: or("divide_displacement", &DIVIDE, default.divide_displacement),
         })
     }
 }
@@ -560,20 +570,6 @@ impl PointDemand {
             damping_percent,
             state: rule.transpose()?,
             points,
-        })
-    }
-}
-
-impl StateRule {
-    fn read(table: &mut Table<'_>, default: Self) -> ReadResult<Self> {
-        let mut or = |key, rule: &Number, default| table.or(key, rule, default);
-        let part = between(Excluded(0.0), Excluded(1.0));
-        Ok(Self {
-            part_of_d0: or("part_of_d0", &part, default.part_of_d0),
-            period_factor: or("period_factor", &above(0.0, 10.0), default.period_factor),
-            damping_percent: or("damping_percent", &DAMPING_PERCENT, default.damping_percent),
-            divide_acceleration: or("divide_acceleration", &DIVIDE, default.divide_acceleration),
-            divide_displacement: or("divide_displacement", &DIVIDE, default.divide_displacement),
         })
     }
 }

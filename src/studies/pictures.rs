@@ -162,6 +162,67 @@ impl PlacedStructure<'_> {
         });
         drawing.curve(name, points, Stroke::new(color::BLUE, 1.8, ""));
     }
+
+    /// Draws the bodies into which the mechanisms before and after an impact divide the structure, the impulse line, and the hinges of both.
+    fn impact(
+        &self,
+        drawing: &mut Drawing,
+        before: &DrawnMechanism<'_>,
+        after: &DrawnMechanism<'_>,
+    ) {
+        let (sway, seen) = (after.sway, self.of.profile(Sway::Right));
+        // Both mechanisms are in the frame of the new one, which is mirrored if it sways left.
+        let profile = self.of.profile(sway);
+        let closing = closing_field(&before.link.mechanism, profile);
+        let field = after.link.mechanism.field();
+        let cuts = closing.minus(&field).cuts_rad.into_iter();
+        let mut cuts: Vec<f64> = cuts.map(|cut| sway.from_left(profile, cut)).collect();
+        cuts.sort_by(f64::total_cmp);
+        cuts.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
+        let hinges = cuts.iter().map(|section| {
+            let (angle_rad, edge) = (*section, Edge::Intrados);
+            let in_ring = Hinge::Section { angle_rad, edge };
+            let edge = Some(edge);
+            let at_joint = seen.joint(angle_rad);
+            let hinge = at_joint.map_or(in_ring, |joint| Hinge::Joint { joint, edge });
+            open_at(hinge, Vector2::zeros())
+        });
+        let hinges: Vec<OpenHinge> = hinges.collect();
+        let (view, greys) = (self.view(&[], &hinges), ["#eeeeee", "#e0e0e0"]);
+        view.draw_carried(drawing, true);
+        view.draw_blocks(drawing, |_, body| match body {
+            Some(body) => (format!("body {}", body + 1), greys[body % 2]),
+            None => ("still".to_owned(), "#ffffff"),
+        });
+        for (number, ends) in (1..).zip(cuts.windows(2)) {
+            let middle = 0.5 * (ends[0] + ends[1]);
+            let at = self.beside(seen, middle) + Vector2::new(0.0, 4.5);
+            drawing.label(at, Anchor::Middle, 0.0, format!("{number}"));
+        }
+        let change = closing.minus(&field.scaled(after.link.link.rate_ratio));
+        let line = ResultantLine::through_hinges(profile, &after.link.mechanism, change);
+        self.resultants(drawing, "impulse line", &line, sway);
+        self.hinges(drawing, after, "'");
+        for closed in self.of.scene.hinges(&before.hinges) {
+            let at = self.place.px(closed.at_m);
+            drawing.circle("hinge before", at, 2.5, Stroke::new(color::GREY, 1.2, ""));
+        }
+    }
+
+    /// Returns the position of the number of a body: outside the extrados of a ring. In a row it is inside the intrados, midway between two
+    /// joints, because buttresses stand behind the extrados.
+    fn beside(&self, profile: &dyn Profile, section: f64) -> Vector2<f64> {
+        let out = 30.0 / (self.place.scale * self.of.model.length_m());
+        let at = |section: f64, edge: Edge, out: f64| {
+            let at = profile.point(section, edge) + profile.outward(section) * out;
+            self.px(at, Sway::Right)
+        };
+        if profile.joint(section).is_none() {
+            return at(section, Edge::Extrados, out);
+        }
+        let at = |section: f64| at(section, Edge::Intrados, -out);
+        (at(section.floor()) + at(section.ceil())) * 0.5
+    }
 }
 
 fn shape(profile: &dyn Profile) -> String {
@@ -309,67 +370,4 @@ pub fn impact(figure: Figure, impact: &LinkImpact<'_>, scene: &Scene) -> Option<
     sheet.caption(room(DimensionSide::Below) + 34.0, &text);
     sheet.gap(12.0);
     Some(sheet.finish())
-}
-
-impl PlacedStructure<'_> {
-    /// Draws the bodies into which the mechanisms before and after an impact divide the structure, the impulse line, and the hinges of both.
-    fn impact(
-        &self,
-        drawing: &mut Drawing,
-        before: &DrawnMechanism<'_>,
-        after: &DrawnMechanism<'_>,
-    ) {
-        let (sway, seen) = (after.sway, self.of.profile(Sway::Right));
-        // Both mechanisms are in the frame of the new one, which is mirrored if it sways left.
-        let profile = self.of.profile(sway);
-        let closing = closing_field(&before.link.mechanism, profile);
-        let field = after.link.mechanism.field();
-        let cuts = closing.minus(&field).cuts_rad.into_iter();
-        let mut cuts: Vec<f64> = cuts.map(|cut| sway.from_left(profile, cut)).collect();
-        cuts.sort_by(f64::total_cmp);
-        cuts.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
-        let hinges = cuts.iter().map(|section| {
-            let (angle_rad, edge) = (*section, Edge::Intrados);
-            let in_ring = Hinge::Section { angle_rad, edge };
-            let edge = Some(edge);
-            let at_joint = seen.joint(angle_rad);
-            let hinge = at_joint.map_or(in_ring, |joint| Hinge::Joint { joint, edge });
-            open_at(hinge, Vector2::zeros())
-        });
-        let hinges: Vec<OpenHinge> = hinges.collect();
-        let (view, greys) = (self.view(&[], &hinges), ["#eeeeee", "#e0e0e0"]);
-        view.draw_carried(drawing, true);
-        view.draw_blocks(drawing, |_, body| match body {
-            Some(body) => (format!("body {}", body + 1), greys[body % 2]),
-            None => ("still".to_owned(), "#ffffff"),
-        });
-        for (number, ends) in (1..).zip(cuts.windows(2)) {
-            let middle = 0.5 * (ends[0] + ends[1]);
-            let at = self.beside(seen, middle) + Vector2::new(0.0, 4.5);
-            drawing.label(at, Anchor::Middle, 0.0, format!("{number}"));
-        }
-        let change = closing.minus(&field.scaled(after.link.link.rate_ratio));
-        let line = ResultantLine::through_hinges(profile, &after.link.mechanism, change);
-        self.resultants(drawing, "impulse line", &line, sway);
-        self.hinges(drawing, after, "'");
-        for closed in self.of.scene.hinges(&before.hinges) {
-            let at = self.place.px(closed.at_m);
-            drawing.circle("hinge before", at, 2.5, Stroke::new(color::GREY, 1.2, ""));
-        }
-    }
-
-    /// Returns the position of the number of a body: outside the extrados of a ring. In a row it is inside the intrados, midway between two
-    /// joints, because buttresses stand behind the extrados.
-    fn beside(&self, profile: &dyn Profile, section: f64) -> Vector2<f64> {
-        let out = 30.0 / (self.place.scale * self.of.model.length_m());
-        let at = |section: f64, edge: Edge, out: f64| {
-            let at = profile.point(section, edge) + profile.outward(section) * out;
-            self.px(at, Sway::Right)
-        };
-        if profile.joint(section).is_none() {
-            return at(section, Edge::Extrados, out);
-        }
-        let at = |section: f64| at(section, Edge::Intrados, -out);
-        (at(section.floor()) + at(section.ceil())) * 0.5
-    }
 }

@@ -107,6 +107,31 @@ impl Remarks {
             self.shortest_step_s = StepRange::with(self.shortest_step_s, steps.shortest_s);
         }
     }
+
+    /// Returns warnings about the model of four links, and about histories without a verdict; `cases` are the histories in words.
+    pub(crate) fn warnings(&self, cases: &str) -> impl Iterator<Item = String> + use<> {
+        let warnings = [self.model.in_words(cases), self.incomplete_in_words()];
+        warnings.into_iter().flatten()
+    }
+
+    /// Returns the number of histories that ended too early for a verdict, and the remedy, in words; `None` if the number is zero.
+    pub(crate) fn incomplete_in_words(&self) -> Option<String> {
+        no_verdict(self.incomplete, self.histories, "histories")
+    }
+
+    /// Returns the number of failed cases, the first reason, and the file that lists the others, in words; `None` if no case failed.
+    pub(crate) fn failed_in_words(&self, file: &str) -> Option<String> {
+        let failures = first_of(&self.failures, file)?;
+        Some(format!("failed: {}; {failures}", self.failures.len()))
+    }
+
+    /// Returns the first uncertain case and the file that lists the others, in words; `None` if no case is uncertain.
+    pub(crate) fn uncertain_in_words(&self, file: &str) -> Option<String> {
+        let cases = first_of(&self.uncertain, file)?;
+        Some(format!(
+            "uncertain cases overturn in some repetitions and survive in others; {cases}"
+        ))
+    }
 }
 
 impl fmt::Display for Remark {
@@ -221,33 +246,6 @@ impl<'a, D> CaseSummary<'a, D> {
 pub(crate) fn no_verdict(incomplete: usize, of: usize, cases: &str) -> Option<String> {
     let what_to_do = Ending::INCOMPLETE;
     (incomplete > 0).then(|| format!("no verdict from {incomplete} of {of} {cases}; {what_to_do}"))
-}
-
-impl Remarks {
-    /// Returns warnings about the model of four links, and about histories without a verdict; `cases` are the histories in words.
-    pub(crate) fn warnings(&self, cases: &str) -> impl Iterator<Item = String> + use<> {
-        let warnings = [self.model.in_words(cases), self.incomplete_in_words()];
-        warnings.into_iter().flatten()
-    }
-
-    /// Returns the number of histories that ended too early for a verdict, and the remedy, in words; `None` if the number is zero.
-    pub(crate) fn incomplete_in_words(&self) -> Option<String> {
-        no_verdict(self.incomplete, self.histories, "histories")
-    }
-
-    /// Returns the number of failed cases, the first reason, and the file that lists the others, in words; `None` if no case failed.
-    pub(crate) fn failed_in_words(&self, file: &str) -> Option<String> {
-        let failures = first_of(&self.failures, file)?;
-        Some(format!("failed: {}; {failures}", self.failures.len()))
-    }
-
-    /// Returns the first uncertain case and the file that lists the others, in words; `None` if no case is uncertain.
-    pub(crate) fn uncertain_in_words(&self, file: &str) -> Option<String> {
-        let cases = first_of(&self.uncertain, file)?;
-        Some(format!(
-            "uncertain cases overturn in some repetitions and survive in others; {cases}"
-        ))
-    }
 }
 
 /// Returns the first remark, and the file that lists the others, in words; `None` without remarks.

@@ -40,37 +40,31 @@ pub trait Real:
     fn of(value: f64) -> Self;
 
     /// Returns the square root.
-    #[must_use]
     fn sqrt(self) -> Self;
 
     /// Returns `yes` if this is above another number, else `no`. It compares and does not subtract, because the difference of two infinities is NaN.
-    #[must_use]
     fn above(self, other: Self, yes: Self, no: Self) -> Self;
 
     /// Returns `yes` if this is positive, else `no`.
     #[inline(always)]
-    #[must_use]
     fn positive(self, yes: Self, no: Self) -> Self {
         self.above(Self::of(0.0), yes, no)
     }
 
     /// Returns the larger one of two numbers.
     #[inline(always)]
-    #[must_use]
     fn max(self, other: Self) -> Self {
         self.above(other, self, other)
     }
 
     /// Returns the smaller one of two numbers.
     #[inline(always)]
-    #[must_use]
     fn min(self, other: Self) -> Self {
         other.above(self, self, other)
     }
 
     /// Returns the absolute value.
     #[inline(always)]
-    #[must_use]
     fn abs(self) -> Self {
         self.positive(self, -self)
     }
@@ -213,7 +207,6 @@ impl<const D: usize> Dual<D> {
     }
 
     /// Returns a function of this number, given by its value and derivative.
-    #[must_use]
     pub(crate) fn chained(self, value: f64, derivative: f64) -> Self {
         Self::with(value, |i| self.slope[i] * derivative)
     }

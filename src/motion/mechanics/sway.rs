@@ -16,7 +16,6 @@ named! {
 
 impl Sway {
     /// Returns the other direction.
-    #[must_use]
     pub const fn opposite(self) -> Self {
         match self {
             Self::Right => Self::Left,
@@ -25,7 +24,6 @@ impl Sway {
     }
 
     /// Returns the side of the sway `impacts` impacts earlier. Every impact changes the side.
-    #[must_use]
     pub const fn before(self, impacts: usize) -> Self {
         if impacts.is_multiple_of(2) {
             self

@@ -108,6 +108,67 @@ impl Layout {
             ..Self::new(Format::Csv)
         }
     }
+
+    /// Reads the keys that describe files of this format. `None` is an unknown format, whose fault is recorded elsewhere.
+    pub(in crate::scenario) fn read(table: &mut Table<'_>, format: Option<Format>) -> Self {
+        let step_s = within(&(MIN_STEP_S..=MAX_TIME_S));
+        let dt_s = table.optional("dt_s", &step_s);
+        let time_column = table.optional("time_column", &any_column());
+        let acceleration_column = table.optional("acceleration_column", &any_column());
+        let wrapped = table.or("wrapped", &switch(), false);
+        let quantities = one_of(RecordedQuantity::ALL);
+        let mut layout = Self {
+            acceleration_column,
+            wrapped,
+            skip_rows: table.or("skip_rows", &SKIPPED, 0),
+            decimal: Decimal::read(table),
+            unit: table.optional("unit", &any_unit()),
+            quantity: table.or("quantity", &quantities, RecordedQuantity::Acceleration),
+            remove_mean: table.or("remove_mean", &switch(), false),
+            ..Self::new(format.unwrap_or_default())
+        };
+        let (Some(format), quantity) = (format, layout.quantity) else {
+            return layout;
+        };
+        let is_table = format == Format::Csv;
+        if let Some(key) = TABLE_KEYS.into_iter().find(|key| table.gives(key)) {
+            let _ = table.refuse(!is_table, key, "applies to `format = \"csv\"` only");
+        }
+        if let Some(unit) = layout.unit.filter(|unit| unit.quantity() != quantity) {
+            table.wrong("unit", format!("is {}", unit.other_quantity()));
+        }
+        let is_velocity = quantity == RecordedQuantity::Velocity;
+        let wrong = "does not apply to a file of K-NET, which holds accelerations";
+        let _ = table.refuse(is_velocity && format == Format::Knet, "quantity", wrong);
+        let wrong = "applies to accelerations: a uniform velocity shakes nothing; leave it out";
+        let _ = table.refuse(is_velocity && layout.remove_mean, "remove_mean", wrong);
+        let header = match format {
+            Format::Asc => "does not apply to an ASC file, whose header has UNITS",
+            _ => "does not apply to a file of K-NET, whose header has a Scale Factor",
+        };
+        let has_header = matches!(format, Format::Asc | Format::Knet) && table.gives("unit");
+        let _ = table.refuse(has_header, "unit", header);
+        if is_table {
+            let wrong = "cannot be combined with `time_column`; give one of them";
+            let _ = table.refuse(dt_s.is_some() && time_column.is_some(), "dt_s", wrong);
+            if wrapped && layout.acceleration_column.is_some() {
+                let wrong = "cannot be combined with `acceleration_column`; give one of them";
+                table.wrong("wrapped", wrong);
+            } else if wrapped && !table.gives("dt_s") {
+                let wrong = "needs `dt_s`: rows of several samples have no column of times";
+                table.wrong("wrapped", wrong);
+            }
+            let column = time_column.unwrap_or(TableColumn::Number(1));
+            layout.times = Some(dt_s.map_or(Times::Column(column), Times::Step));
+            layout.unit = Some(table.needed("unit", &any_unit(), layout.unit));
+        }
+        layout
+    }
+
+    /// Returns true if a key of `[ground.record]` describes tables: the keys for tables only, and `unit`.
+    pub fn is_of_tables(key: &str) -> bool {
+        TABLE_KEYS.contains(&key) || key == "unit"
+    }
 }
 
 pub(super) const COLUMN_NUMBER: Count = Count(1..=10_000, "the first column");
@@ -171,69 +232,6 @@ impl Decimal {
     /// Reads the key `decimal`.
     pub(in crate::scenario) fn read(table: &mut Table<'_>) -> Self {
         table.or("decimal", &one_of(Self::ALL), Self::Point)
-    }
-}
-
-impl Layout {
-    /// Reads the keys that describe files of this format. `None` is an unknown format, whose fault is recorded elsewhere.
-    pub(in crate::scenario) fn read(table: &mut Table<'_>, format: Option<Format>) -> Self {
-        let step_s = within(&(MIN_STEP_S..=MAX_TIME_S));
-        let dt_s = table.optional("dt_s", &step_s);
-        let time_column = table.optional("time_column", &any_column());
-        let acceleration_column = table.optional("acceleration_column", &any_column());
-        let wrapped = table.or("wrapped", &switch(), false);
-        let quantities = one_of(RecordedQuantity::ALL);
-        let mut layout = Self {
-            acceleration_column,
-            wrapped,
-            skip_rows: table.or("skip_rows", &SKIPPED, 0),
-            decimal: Decimal::read(table),
-            unit: table.optional("unit", &any_unit()),
-            quantity: table.or("quantity", &quantities, RecordedQuantity::Acceleration),
-            remove_mean: table.or("remove_mean", &switch(), false),
-            ..Self::new(format.unwrap_or_default())
-        };
-        let (Some(format), quantity) = (format, layout.quantity) else {
-            return layout;
-        };
-        let is_table = format == Format::Csv;
-        if let Some(key) = TABLE_KEYS.into_iter().find(|key| table.gives(key)) {
-            let _ = table.refuse(!is_table, key, "applies to `format = \"csv\"` only");
-        }
-        if let Some(unit) = layout.unit.filter(|unit| unit.quantity() != quantity) {
-            table.wrong("unit", format!("is {}", unit.other_quantity()));
-        }
-        let is_velocity = quantity == RecordedQuantity::Velocity;
-        let wrong = "does not apply to a file of K-NET, which holds accelerations";
-        let _ = table.refuse(is_velocity && format == Format::Knet, "quantity", wrong);
-        let wrong = "applies to accelerations: a uniform velocity shakes nothing; leave it out";
-        let _ = table.refuse(is_velocity && layout.remove_mean, "remove_mean", wrong);
-        let header = match format {
-            Format::Asc => "does not apply to an ASC file, whose header has UNITS",
-            _ => "does not apply to a file of K-NET, whose header has a Scale Factor",
-        };
-        let has_header = matches!(format, Format::Asc | Format::Knet) && table.gives("unit");
-        let _ = table.refuse(has_header, "unit", header);
-        if is_table {
-            let wrong = "cannot be combined with `time_column`; give one of them";
-            let _ = table.refuse(dt_s.is_some() && time_column.is_some(), "dt_s", wrong);
-            if wrapped && layout.acceleration_column.is_some() {
-                let wrong = "cannot be combined with `acceleration_column`; give one of them";
-                table.wrong("wrapped", wrong);
-            } else if wrapped && !table.gives("dt_s") {
-                let wrong = "needs `dt_s`: rows of several samples have no column of times";
-                table.wrong("wrapped", wrong);
-            }
-            let column = time_column.unwrap_or(TableColumn::Number(1));
-            layout.times = Some(dt_s.map_or(Times::Column(column), Times::Step));
-            layout.unit = Some(table.needed("unit", &any_unit(), layout.unit));
-        }
-        layout
-    }
-
-    /// Returns true if a key of `[ground.record]` describes tables: the keys for tables only, and `unit`.
-    pub fn is_of_tables(key: &str) -> bool {
-        TABLE_KEYS.contains(&key) || key == "unit"
     }
 }
 

@@ -205,6 +205,77 @@ impl Histories {
             course_rad,
         })
     }
+
+    /// Computes the bands of the rotation over time.
+    fn bands(&self, samples: &Samples<'_, HistoryAnswer>) -> Vec<BandAt> {
+        let at = |time: usize| {
+            let answers = samples.answers();
+            let rotations: Vec<f64> = answers.map(|answer| answer.rotation_rad(time)).collect();
+            let own = samples.own.as_ref().ok().map(|own| own.rotation_rad(time));
+            Some(BandAt {
+                time_s: time as f64 * self.step_s,
+                own_rad: own.filter(|rotation| rotation.is_finite()),
+                overturned: rotations.iter().filter(|rad| rad.is_infinite()).count(),
+                band_rad: band(rotations, quantile)?,
+            })
+        };
+        (0..self.times).filter_map(at).collect()
+    }
+
+    /// Draws the rotation over time: the band of the samples, their median, and the history of the scenario itself.
+    fn draw(
+        &self,
+        figure: Figure,
+        samples: &Samples<'_, HistoryAnswer>,
+        bands: &[BandAt],
+    ) -> String {
+        let scenario = samples.scenario;
+        let title = samples.title("Histories with uncertain data");
+        let end_s = bands.last().map_or(1.0, |at| at.time_s);
+        let mut panels = Panels::new(figure, title, [0.0, end_s]);
+        let subject = Subject {
+            title,
+            ground: scenario.ground_motion(),
+            gravity_m_s2: scenario.gravity_m_s2(),
+            incipient_g: [None; 2],
+        };
+        panels.ground(90.0, &subject, None);
+        let values = bands.iter();
+        let values = values.flat_map(|at| at.band_rad.into_iter().chain(at.own_rad));
+        let y = scale_around(&[], values, 6);
+        let model = scenario.model().ok();
+        let body = model.and_then(|model| model.bodies().get(self.body).cloned());
+        let of_body = body.filter(|name| !name.is_empty());
+        let of_body = of_body.map_or(String::new(), |name| {
+            format!("of {} ", name.replace('_', " "))
+        });
+        let label = format!("Rotation {of_body}(rad)");
+        // Overturned samples are outside the picture.
+        let at = |which: usize| {
+            let points = bands.iter().map(move |at| (at.time_s, at.band_rad[which]));
+            points.map(move |(time_s, rad)| (time_s, rad.clamp(y.low, y.high)))
+        };
+        let own = bands.iter().filter_map(|at| Some((at.time_s, at.own_rad?)));
+        let marks = vec![
+            Mark::between("band", BAND, at(0), at(2)),
+            Mark::curve("median", MEDIAN, at(1)),
+            Mark::curve("own", MAIN, own),
+        ];
+        panels.panel(&label, 330.0, y, None, marks);
+        let all = samples.answers().count().max(1) as f64;
+        let shares = bands.iter();
+        let shares = shares.map(|at| (at.time_s, at.overturned as f64 / all));
+        let shares = vec![Mark::curve("overturned", MEDIAN, shares)];
+        let y = Scale::exactly(0.0, 1.0, 2);
+        panels.panel("Overturned", 70.0, y, None, shares);
+        let beyond = "5 to 95 %; overturned samples are beyond";
+        panels.keys = vec![
+            Key::line("the scenario itself", MAIN),
+            Key::line("median of the samples", MEDIAN),
+            Key::new(beyond, Sign::Band(BAND, 1.0)),
+        ];
+        panels.finish(false)
+    }
 }
 
 impl HistoryAnswer {
@@ -297,76 +368,3 @@ fn peaks_in_words(band_rad: [f64; 3]) -> String {
 
 const BAND: &str = "#cfe3f1";
 const MEDIAN: Stroke = Stroke::new(color::BLUE, 1.6, "");
-
-impl Histories {
-    /// Computes the bands of the rotation over time.
-    fn bands(&self, samples: &Samples<'_, HistoryAnswer>) -> Vec<BandAt> {
-        let at = |time: usize| {
-            let answers = samples.answers();
-            let rotations: Vec<f64> = answers.map(|answer| answer.rotation_rad(time)).collect();
-            let own = samples.own.as_ref().ok().map(|own| own.rotation_rad(time));
-            Some(BandAt {
-                time_s: time as f64 * self.step_s,
-                own_rad: own.filter(|rotation| rotation.is_finite()),
-                overturned: rotations.iter().filter(|rad| rad.is_infinite()).count(),
-                band_rad: band(rotations, quantile)?,
-            })
-        };
-        (0..self.times).filter_map(at).collect()
-    }
-
-    /// Draws the rotation over time: the band of the samples, their median, and the history of the scenario itself.
-    fn draw(
-        &self,
-        figure: Figure,
-        samples: &Samples<'_, HistoryAnswer>,
-        bands: &[BandAt],
-    ) -> String {
-        let scenario = samples.scenario;
-        let title = samples.title("Histories with uncertain data");
-        let end_s = bands.last().map_or(1.0, |at| at.time_s);
-        let mut panels = Panels::new(figure, title, [0.0, end_s]);
-        let subject = Subject {
-            title,
-            ground: scenario.ground_motion(),
-            gravity_m_s2: scenario.gravity_m_s2(),
-            incipient_g: [None; 2],
-        };
-        panels.ground(90.0, &subject, None);
-        let values = bands.iter();
-        let values = values.flat_map(|at| at.band_rad.into_iter().chain(at.own_rad));
-        let y = scale_around(&[], values, 6);
-        let model = scenario.model().ok();
-        let body = model.and_then(|model| model.bodies().get(self.body).cloned());
-        let of_body = body.filter(|name| !name.is_empty());
-        let of_body = of_body.map_or(String::new(), |name| {
-            format!("of {} ", name.replace('_', " "))
-        });
-        let label = format!("Rotation {of_body}(rad)");
-        // Overturned samples are outside the picture.
-        let at = |which: usize| {
-            let points = bands.iter().map(move |at| (at.time_s, at.band_rad[which]));
-            points.map(move |(time_s, rad)| (time_s, rad.clamp(y.low, y.high)))
-        };
-        let own = bands.iter().filter_map(|at| Some((at.time_s, at.own_rad?)));
-        let marks = vec![
-            Mark::between("band", BAND, at(0), at(2)),
-            Mark::curve("median", MEDIAN, at(1)),
-            Mark::curve("own", MAIN, own),
-        ];
-        panels.panel(&label, 330.0, y, None, marks);
-        let all = samples.answers().count().max(1) as f64;
-        let shares = bands.iter();
-        let shares = shares.map(|at| (at.time_s, at.overturned as f64 / all));
-        let shares = vec![Mark::curve("overturned", MEDIAN, shares)];
-        let y = Scale::exactly(0.0, 1.0, 2);
-        panels.panel("Overturned", 70.0, y, None, shares);
-        let beyond = "5 to 95 %; overturned samples are beyond";
-        panels.keys = vec![
-            Key::line("the scenario itself", MAIN),
-            Key::line("median of the samples", MEDIAN),
-            Key::new(beyond, Sign::Band(BAND, 1.0)),
-        ];
-        panels.finish(false)
-    }
-}

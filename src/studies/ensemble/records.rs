@@ -37,6 +37,59 @@ impl Capacities {
         let records = self.suite.records.iter();
         records.flat_map(move |series| signs.iter().map(|sign| (series.file.as_str(), *sign)))
     }
+
+    /// Makes the table of all edges.
+    fn table(&self, samples: &Samples<'_, Edges>) -> Result<Vec<u8>, OutputError> {
+        type Row<'a> = (usize, &'a str, &'static str, &'a FirstEdge);
+        let mut rows: Vec<Row<'_>> = Vec::new();
+        for line in lines(samples) {
+            let edges = line.answer.iter().flatten().zip(self.shakes());
+            rows.extend(edges.map(|(edge, (record, sign))| (line.number, record, sign, edge)));
+        }
+        let mut columns = vec![
+            column("sample", |row: &Row<'_>| row.0),
+            column("record", |row: &Row<'_>| shown(row.1)),
+            column("sign", |row: &Row<'_>| row.2),
+        ];
+        columns.extend(FirstEdge::columns("intensity", |row: &Row<'_>| Some(row.3)));
+        csv(columns, &rows)
+    }
+
+    /// Draws the share that overturns against the intensity: for the scenario itself under all records, for each sample, and for all samples
+    /// together.
+    fn draw(&self, figure: Figure, samples: &Samples<'_, Edges>) -> String {
+        const MOST_FAINT: usize = 20;
+        const FAINT: Stroke = Stroke::new("#b9d3e8", 0.9, "");
+        const ALL: Stroke = Stroke::new(color::BLUE, 1.6, "");
+        const OWN: Stroke = Stroke::new(color::BLACK, 1.4, "6 4");
+        let ends = [self.levels.first(), self.levels.last()];
+        let ends = ends.map(|level| level.copied().unwrap_or(1.0));
+        let x = Scale::logarithmic(0.95 * ends[0], 1.05 * ends[1]);
+        let steps = |name, stroke, edges: Vec<&FirstEdge>| {
+            let strengths = |edge: &FirstEdge| edge.strengths(TREATMENTS[0]);
+            let rises = shares_up_to(edges.into_iter().flat_map(strengths));
+            Mark::staircase(name, stroke, (x, 0.0), rises)
+        };
+        let single = samples.answers().take(MOST_FAINT);
+        let single = single.map(|edges| steps("sample", FAINT, edges.iter().collect()));
+        let mut marks: Vec<Mark> = single.collect();
+        marks.push(steps("both", ALL, samples.answers().flatten().collect()));
+        if let Ok(own) = samples.own {
+            marks.push(steps("own", OWN, own.iter().collect()));
+        }
+        let label = self.suite.measure.column().replace('_', " ");
+        let y_axis = ("share that overturns", Scale::exactly(0.0, 1.0, 5));
+        let chart = Chart {
+            keys: vec![
+                Key::line("all samples and records", ALL),
+                Key::line("single samples", FAINT),
+                Key::line("the scenario itself, from record to record", OWN),
+            ],
+            marks,
+            ..Chart::new(405.0, (&label, x), y_axis)
+        };
+        chart.draw(figure, samples.title("Fragility with uncertain data"))
+    }
 }
 
 impl Question for Capacities {
@@ -345,61 +398,6 @@ impl<'a> Counted<'a> {
             at(own.clone(), 0.05, ""),
             at(own, 0.5, "")
         )
-    }
-}
-
-impl Capacities {
-    /// Makes the table of all edges.
-    fn table(&self, samples: &Samples<'_, Edges>) -> Result<Vec<u8>, OutputError> {
-        type Row<'a> = (usize, &'a str, &'static str, &'a FirstEdge);
-        let mut rows: Vec<Row<'_>> = Vec::new();
-        for line in lines(samples) {
-            let edges = line.answer.iter().flatten().zip(self.shakes());
-            rows.extend(edges.map(|(edge, (record, sign))| (line.number, record, sign, edge)));
-        }
-        let mut columns = vec![
-            column("sample", |row: &Row<'_>| row.0),
-            column("record", |row: &Row<'_>| shown(row.1)),
-            column("sign", |row: &Row<'_>| row.2),
-        ];
-        columns.extend(FirstEdge::columns("intensity", |row: &Row<'_>| Some(row.3)));
-        csv(columns, &rows)
-    }
-
-    /// Draws the share that overturns against the intensity: for the scenario itself under all records, for each sample, and for all samples
-    /// together.
-    fn draw(&self, figure: Figure, samples: &Samples<'_, Edges>) -> String {
-        const MOST_FAINT: usize = 20;
-        const FAINT: Stroke = Stroke::new("#b9d3e8", 0.9, "");
-        const ALL: Stroke = Stroke::new(color::BLUE, 1.6, "");
-        const OWN: Stroke = Stroke::new(color::BLACK, 1.4, "6 4");
-        let ends = [self.levels.first(), self.levels.last()];
-        let ends = ends.map(|level| level.copied().unwrap_or(1.0));
-        let x = Scale::logarithmic(0.95 * ends[0], 1.05 * ends[1]);
-        let steps = |name, stroke, edges: Vec<&FirstEdge>| {
-            let strengths = |edge: &FirstEdge| edge.strengths(TREATMENTS[0]);
-            let rises = shares_up_to(edges.into_iter().flat_map(strengths));
-            Mark::staircase(name, stroke, (x, 0.0), rises)
-        };
-        let single = samples.answers().take(MOST_FAINT);
-        let single = single.map(|edges| steps("sample", FAINT, edges.iter().collect()));
-        let mut marks: Vec<Mark> = single.collect();
-        marks.push(steps("both", ALL, samples.answers().flatten().collect()));
-        if let Ok(own) = samples.own {
-            marks.push(steps("own", OWN, own.iter().collect()));
-        }
-        let label = self.suite.measure.column().replace('_', " ");
-        let y_axis = ("share that overturns", Scale::exactly(0.0, 1.0, 5));
-        let chart = Chart {
-            keys: vec![
-                Key::line("all samples and records", ALL),
-                Key::line("single samples", FAINT),
-                Key::line("the scenario itself, from record to record", OWN),
-            ],
-            marks,
-            ..Chart::new(405.0, (&label, x), y_axis)
-        };
-        chart.draw(figure, samples.title("Fragility with uncertain data"))
     }
 }
 

@@ -156,6 +156,41 @@ impl Fragility {
         let [low, high] = [eta - margin, eta + margin].map(normal_probability);
         (low, high)
     }
+
+    /// Makes the curve of a line, with first-order errors; `None` if a number is out of range.
+    fn new(best: &Likelihood, observations: &[Observation]) -> Option<Self> {
+        let line = best.line;
+        let covariance = Matrix2::from_diagonal(&best.information.map(f64::recip));
+        let clustered_covariance = clustered_covariance(&line, &covariance, observations);
+
+        // `theta = exp(pivot - level / slope)` and `beta = 1 / slope`.
+        let (level, dispersion) = (line.coefficients.x, line.coefficients.y.recip());
+        let median = (line.pivot - level * dispersion).exp();
+        let log_median_gradient = Vector2::new(-1.0, level * dispersion) * dispersion;
+        let dispersion_gradient = Vector2::new(0.0, -dispersion * dispersion);
+        let errors = |covariance: &Matrix2<f64>| Errors {
+            median: median * standard_error(covariance, &log_median_gradient),
+            dispersion: standard_error(covariance, &dispersion_gradient),
+        };
+        let independent = errors(&covariance);
+        let clustered = clustered_covariance.as_ref().map(errors);
+
+        let sound = |errors: &Errors| errors.median.is_finite() && errors.dispersion.is_finite();
+        let in_range = median.is_normal()
+            && dispersion.is_normal()
+            && sound(&independent)
+            && clustered.as_ref().is_none_or(sound);
+        in_range.then_some(Self {
+            median,
+            dispersion,
+            independent,
+            clustered,
+            log_likelihood: best.logarithm,
+            line,
+            covariance,
+            clustered_covariance,
+        })
+    }
 }
 
 /// Returns `ln x` with `x` clamped to positive finite numbers, so that the logarithm is finite.
@@ -364,43 +399,6 @@ impl Likelihood {
             best = nexts.find(|next| next.logarithm >= least)?;
         }
         None
-    }
-}
-
-impl Fragility {
-    /// Makes the curve of a line, with first-order errors; `None` if a number is out of range.
-    fn new(best: &Likelihood, observations: &[Observation]) -> Option<Self> {
-        let line = best.line;
-        let covariance = Matrix2::from_diagonal(&best.information.map(f64::recip));
-        let clustered_covariance = clustered_covariance(&line, &covariance, observations);
-
-        // `theta = exp(pivot - level / slope)` and `beta = 1 / slope`.
-        let (level, dispersion) = (line.coefficients.x, line.coefficients.y.recip());
-        let median = (line.pivot - level * dispersion).exp();
-        let log_median_gradient = Vector2::new(-1.0, level * dispersion) * dispersion;
-        let dispersion_gradient = Vector2::new(0.0, -dispersion * dispersion);
-        let errors = |covariance: &Matrix2<f64>| Errors {
-            median: median * standard_error(covariance, &log_median_gradient),
-            dispersion: standard_error(covariance, &dispersion_gradient),
-        };
-        let independent = errors(&covariance);
-        let clustered = clustered_covariance.as_ref().map(errors);
-
-        let sound = |errors: &Errors| errors.median.is_finite() && errors.dispersion.is_finite();
-        let in_range = median.is_normal()
-            && dispersion.is_normal()
-            && sound(&independent)
-            && clustered.as_ref().is_none_or(sound);
-        in_range.then_some(Self {
-            median,
-            dispersion,
-            independent,
-            clustered,
-            log_likelihood: best.logarithm,
-            line,
-            covariance,
-            clustered_covariance,
-        })
     }
 }
 

@@ -183,7 +183,9 @@ impl Heading {
         // The quoted intensity lies between levels; the level above it is outside the model no later.
         let records = results.cases.chunk_by(CaseRow::has_shake_of);
         let cases = records.flat_map(|cases| {
-            let above = cases.iter().position(|case| case.level(self.measure) >= quoted);
+            let above = cases
+                .iter()
+                .position(|case| case.level(self.measure) >= quoted);
             &cases[..above.map_or(cases.len(), |above| above + 1)]
         });
         let excess_ratio = cases.filter_map(excess).reduce(f64::max);

@@ -123,6 +123,59 @@ impl Threshold {
     pub fn lowest_factor(&self) -> Option<f64> {
         self.bands().first().map(|band| band.from)
     }
+
+    /// Returns an error if no history could be computed.
+    fn check_known(&self) -> Result<(), StudyError> {
+        let mut results = self.samples.iter().map(|sample| &sample.result);
+        match results.clone().find_map(|result| result.as_ref().err()) {
+            Some(reason) if results.all(Result::is_err) => Err(match reason {
+                NoHistory::GroundFalls(reason) => StudyError::Scenario(reason.clone()),
+                reason => StudyError::failed(reason),
+            }),
+            _ => Ok(()),
+        }
+    }
+
+    fn new(model: String, samples: Vec<FactorSample>, edges: &[(f64, f64)]) -> Self {
+        // The edge at an end of a range, if there is one, and the reason why the range ends.
+        let end = |below: Option<&FactorSample>, above: Option<&FactorSample>| {
+            let Some((below, above)) = below.zip(above) else {
+                return (None, RangeEnd::Sampled);
+            };
+            let mut edges = edges.iter();
+            let edge = edges.find(|(low, high)| below.factor <= *low && *high <= above.factor);
+            let why = edge.map_or(RangeEnd::Unknown, |_| RangeEnd::Edge);
+            (edge, why)
+        };
+        let mut ranges = Vec::new();
+        let mut start = 0_usize;
+        for run in samples.chunk_by(|a, b| a.verdict() == b.verdict()) {
+            let (first, last) = (&run[0], &run[run.len() - 1]);
+            let before = start.checked_sub(1).map(|index| &samples[index]);
+            start += run.len();
+            let Some(verdict) = first.verdict() else {
+                continue;
+            };
+            let (edge, from_end) = end(before, Some(first));
+            let from = edge.map_or(first.factor, |(_, high)| *high);
+            let (edge, to_end) = end(Some(last), samples.get(start));
+            let to = edge.map_or(last.factor, |(low, _)| *low);
+            let range = FactorRange {
+                from,
+                to,
+                from_end,
+                to_end,
+            };
+            ranges.push((verdict, range));
+        }
+        Self {
+            model,
+            samples,
+            ranges,
+            varied: Vec::new(),
+            safe_excess_ratio: None,
+        }
+    }
 }
 
 /// Computes the factors on the ground motion by which each of the named models overturns.
@@ -327,58 +380,3 @@ type Change<'a> = (usize, &'a FactorSample, &'a FactorSample);
 
 /// Two close factors with different verdicts, or a history between the factors.
 type Found = Result<(f64, f64), FactorSample>;
-
-impl Threshold {
-    /// Returns an error if no history could be computed.
-    fn check_known(&self) -> Result<(), StudyError> {
-        let mut results = self.samples.iter().map(|sample| &sample.result);
-        match results.clone().find_map(|result| result.as_ref().err()) {
-            Some(reason) if results.all(Result::is_err) => Err(match reason {
-                NoHistory::GroundFalls(reason) => StudyError::Scenario(reason.clone()),
-                reason => StudyError::failed(reason),
-            }),
-            _ => Ok(()),
-        }
-    }
-
-    fn new(model: String, samples: Vec<FactorSample>, edges: &[(f64, f64)]) -> Self {
-        // The edge at an end of a range, if there is one, and the reason why the range ends.
-        let end = |below: Option<&FactorSample>, above: Option<&FactorSample>| {
-            let Some((below, above)) = below.zip(above) else {
-                return (None, RangeEnd::Sampled);
-            };
-            let mut edges = edges.iter();
-            let edge = edges.find(|(low, high)| below.factor <= *low && *high <= above.factor);
-            let why = edge.map_or(RangeEnd::Unknown, |_| RangeEnd::Edge);
-            (edge, why)
-        };
-        let mut ranges = Vec::new();
-        let mut start = 0_usize;
-        for run in samples.chunk_by(|a, b| a.verdict() == b.verdict()) {
-            let (first, last) = (&run[0], &run[run.len() - 1]);
-            let before = start.checked_sub(1).map(|index| &samples[index]);
-            start += run.len();
-            let Some(verdict) = first.verdict() else {
-                continue;
-            };
-            let (edge, from_end) = end(before, Some(first));
-            let from = edge.map_or(first.factor, |(_, high)| *high);
-            let (edge, to_end) = end(Some(last), samples.get(start));
-            let to = edge.map_or(last.factor, |(low, _)| *low);
-            let range = FactorRange {
-                from,
-                to,
-                from_end,
-                to_end,
-            };
-            ranges.push((verdict, range));
-        }
-        Self {
-            model,
-            samples,
-            ranges,
-            varied: Vec::new(),
-            safe_excess_ratio: None,
-        }
-    }
-}

@@ -313,6 +313,66 @@ impl Threshold {
         let first = self.samples.first();
         first.is_some_and(|first| first.factor == factor)
     }
+
+    /// Returns lines with the lowest factors that overturn the structure with other properties.
+    fn varied_in_words(&self, peak_g: f64) -> impl Iterator<Item = String> {
+        self.varied.iter().map(move |varied| {
+            let no_verdict = varied.no_verdict();
+            let certainly = no_verdict.as_ref().map_or("", |_| "certainly ");
+            let answer = match &varied.factor {
+                Ok(Some(factor)) if self.is_first(*factor) => {
+                    let at = at(*factor, peak_g);
+                    format!("overturns at factor {at} already, the smallest tried")
+                }
+                Ok(Some(factor)) => format!("from factor {}", at(*factor, peak_g)),
+                Ok(None) => format!("does not {certainly}overturn at any factor tried"),
+                Err(reason) => reason.clone(),
+            };
+            let no_verdict = no_verdict.map_or(String::new(), |words| format!("; {words}"));
+            format!("  with {}: {answer}{no_verdict}", varied.name)
+        })
+    }
+
+    /// Returns lines about uncertain, failed and incomplete histories.
+    fn doubts_in_words(&self, scenario: &Scenario) -> Vec<String> {
+        let falls =
+            |sample: &&FactorSample| matches!(sample.result, Err(NoHistory::GroundFalls(_)));
+        let histories = self.samples.iter().filter(|sample| !falls(sample));
+        let all = histories.clone().count();
+        let listed = |what: &str, reasons: Vec<(f64, String)>| {
+            let (factor, reason) = reasons.first()?;
+            let (count, factor) = (reasons.len(), rounded(*factor));
+            Some(format!(
+                "  {what}: {count} of {all} histories; the first, at factor {factor}: {reason}"
+            ))
+        };
+        let reasons = |failed: bool| {
+            let samples = histories.clone().map(SampleSummary::of);
+            let of_kind = samples.filter(|sample| sample.history.is_none() == failed);
+            let reasons = of_kind.filter_map(|sample| Some((sample.factor, sample.reason?)));
+            reasons.collect()
+        };
+        let mut lines = Vec::from_iter(listed("uncertain", reasons(false)));
+        let falls = self.samples.iter().any(|sample| falls(&sample));
+        let factor = scenario
+            .ground_motion()
+            .free_fall_factor(scenario.gravity_m_s2());
+        lines.extend(factor.filter(|_| falls).map(|factor| {
+            let factor = rounded(factor);
+            format!("  from factor {factor} on, the ground falls as fast as a free body at some time, which this model does not cover")
+        }));
+        lines.extend(listed("failed", reasons(true)));
+        let incomplete = self.remarks().incomplete_in_words();
+        lines.extend(incomplete.map(|words| format!("  {words}")));
+        let outcomes = histories.flat_map(|sample| &sample.result);
+        let outcomes = outcomes.map(|ending| ending.outcome);
+        let rocking = outcomes.filter(|outcome| *outcome == Outcome::StillRocking);
+        let rocking = rocking.count();
+        lines.extend((rocking > 0).then(|| {
+            format!("  still rocking at the end of the run, which counts as survived: {rocking} of {all} histories")
+        }));
+        lines
+    }
 }
 
 impl SampleSummary {
@@ -384,67 +444,5 @@ impl Factors {
             self.to,
             (1e6 * self.stride).round() / 1e4,
         )
-    }
-}
-
-impl Threshold {
-    /// Returns lines with the lowest factors that overturn the structure with other properties.
-    fn varied_in_words(&self, peak_g: f64) -> impl Iterator<Item = String> {
-        self.varied.iter().map(move |varied| {
-            let no_verdict = varied.no_verdict();
-            let certainly = no_verdict.as_ref().map_or("", |_| "certainly ");
-            let answer = match &varied.factor {
-                Ok(Some(factor)) if self.is_first(*factor) => {
-                    let at = at(*factor, peak_g);
-                    format!("overturns at factor {at} already, the smallest tried")
-                }
-                Ok(Some(factor)) => format!("from factor {}", at(*factor, peak_g)),
-                Ok(None) => format!("does not {certainly}overturn at any factor tried"),
-                Err(reason) => reason.clone(),
-            };
-            let no_verdict = no_verdict.map_or(String::new(), |words| format!("; {words}"));
-            format!("  with {}: {answer}{no_verdict}", varied.name)
-        })
-    }
-
-    /// Returns lines about uncertain, failed and incomplete histories.
-    fn doubts_in_words(&self, scenario: &Scenario) -> Vec<String> {
-        let falls =
-            |sample: &&FactorSample| matches!(sample.result, Err(NoHistory::GroundFalls(_)));
-        let histories = self.samples.iter().filter(|sample| !falls(sample));
-        let all = histories.clone().count();
-        let listed = |what: &str, reasons: Vec<(f64, String)>| {
-            let (factor, reason) = reasons.first()?;
-            let (count, factor) = (reasons.len(), rounded(*factor));
-            Some(format!(
-                "  {what}: {count} of {all} histories; the first, at factor {factor}: {reason}"
-            ))
-        };
-        let reasons = |failed: bool| {
-            let samples = histories.clone().map(SampleSummary::of);
-            let of_kind = samples.filter(|sample| sample.history.is_none() == failed);
-            let reasons = of_kind.filter_map(|sample| Some((sample.factor, sample.reason?)));
-            reasons.collect()
-        };
-        let mut lines = Vec::from_iter(listed("uncertain", reasons(false)));
-        let falls = self.samples.iter().any(|sample| falls(&sample));
-        let factor = scenario
-            .ground_motion()
-            .free_fall_factor(scenario.gravity_m_s2());
-        lines.extend(factor.filter(|_| falls).map(|factor| {
-            let factor = rounded(factor);
-            format!("  from factor {factor} on, the ground falls as fast as a free body at some time, which this model does not cover")
-        }));
-        lines.extend(listed("failed", reasons(true)));
-        let incomplete = self.remarks().incomplete_in_words();
-        lines.extend(incomplete.map(|words| format!("  {words}")));
-        let outcomes = histories.flat_map(|sample| &sample.result);
-        let outcomes = outcomes.map(|ending| ending.outcome);
-        let rocking = outcomes.filter(|outcome| *outcome == Outcome::StillRocking);
-        let rocking = rocking.count();
-        lines.extend((rocking > 0).then(|| {
-            format!("  still rocking at the end of the run, which counts as survived: {rocking} of {all} histories")
-        }));
-        lines
     }
 }

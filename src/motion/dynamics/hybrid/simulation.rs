@@ -136,15 +136,7 @@ fn history_of<C: MechanismChain + MechanismModel>(
         energy_without_work: mode.swing().map_or(0.0, energy),
         largest_defect: 0.0,
     };
-    let (time_s, piece) = (0.0, 0);
-    let released = StructureState::<'_, C> {
-        time_s,
-        piece,
-        mode,
-        state,
-    };
-    collector.note_excess(&released);
-    collector.note_peak(mode, &state);
+    collector.note_start(mode, state);
     let may_overturn = |now: &StructureState<'_, C>| match now.mode {
         Phase::Rocking(swing) => {
             rocking.energy(swing.link, &now.state) > SAFE * rocking.barrier_of(swing.link)
@@ -374,6 +366,18 @@ struct SummaryCollector<'r, 'a, C: MechanismChain> {
 }
 
 impl<'a, C: MechanismChain> SummaryCollector<'_, 'a, C> {
+    /// Records the state at the start, which may be a release.
+    fn note_start(&mut self, mode: Mode<'a, C::Mechanism>, state: RockingState) {
+        let (time_s, piece) = (0.0, 0);
+        self.note_excess(&StructureState::<'a, C> {
+            time_s,
+            piece,
+            mode,
+            state,
+        });
+        self.note_peak(mode, &state);
+    }
+
     /// Updates the peaks. All rotations increase with `q`, so the largest occur at its turning points, at the start or at the end.
     fn note_peak(&mut self, mode: Mode<'_, C::Mechanism>, state: &RockingState) {
         if let Some(Swing { sway, link, .. }) = mode.swing() {

@@ -24,7 +24,6 @@ named! {
 
 impl Edge {
     /// Returns the opposite edge.
-    #[must_use]
     pub const fn opposite(self) -> Self {
         match self {
             Self::Intrados => Self::Extrados,
