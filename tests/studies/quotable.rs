@@ -120,3 +120,52 @@ fn thresholds_and_runs_end_with_their_answer() {
         "{said}"
     );
 }
+
+/// The thrust line is followed up to the quoted strength, which lies between the sampled factors, so a coarse search gives no answer either. A
+/// strength that is not certainly survived is the reason before the thrust line.
+#[test]
+fn the_quoted_strength_is_inside_the_model_with_any_stride() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n[ground.one_cosine]\namplitude_g = 1.0\n\
+                duration_s = 0.6\n";
+    fs::write(folder.path().join("s.toml"), text).unwrap();
+    for stride in ["1", "0.1"] {
+        let range = ["--from", "0.1", "--to", "1", "--stride", stride];
+        let words = printed(
+            folder.path(),
+            &[&["threshold", "s.toml"], &range[..]].concat(),
+        );
+        let quote = words
+            .lines()
+            .find(|line| line.contains("to quote"))
+            .unwrap();
+        assert!(
+            quote.contains("no answer with four links: their thrust line leaves"),
+            "{quote}"
+        );
+    }
+    let failed = Err("the smallest factor tried is not certainly survived".to_owned());
+    let none = ModelAnswer::new(Hinges::Four, true, None, failed);
+    assert!(
+        in_words(&[none])
+            .unwrap()
+            .ends_with("the smallest factor tried is not certainly survived")
+    );
+}
+
+/// The largest rotation of a released arch is its first one, so its thrust line counts at the release.
+#[test]
+fn a_release_has_the_excess_of_its_first_sample() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = scenarios().join("free-rocking.toml");
+    printed(
+        folder.path(),
+        &["run", file.to_str().unwrap(), "--out", "r"],
+    );
+    let excess = json(&folder.path().join("r/summary.json"))["thrust_excess_ratio"].clone();
+    let table = crate::common::results::Table::read(folder.path().join("r/rotations.csv"));
+    let first = table.numbers("thrust_excess_ratio")[0];
+    // Studies compute the excess at fewer sections than the table.
+    let excess = excess.as_f64().unwrap();
+    assert!(first > 0.0 && excess >= 0.9 * first, "{excess} {first}");
+}
