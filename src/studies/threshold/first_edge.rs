@@ -127,6 +127,10 @@ impl FirstEdge {
             }
         }
         let tried = tried.into_inner();
+        // The bisection of the first doubt may meet a strength that certainly overturns below one that is uncertain.
+        let certain = tried.iter().filter(|(own, _)| own[1] == 1.0);
+        let certain = certain.map(|(own, _)| own[0]);
+        edge.factor = edge.factor.into_iter().chain(certain).reduce(f64::min);
         let last = edge.factor.unwrap_or(edge.tried_to);
         let of_last = tried.iter().find(|([strength, _], _)| *strength == last);
         edge.thrust_excess_ratio = of_last.and_then(|(_, ratio)| *ratio);
@@ -189,8 +193,7 @@ impl FirstEdge {
         let doubtful = |[first, _]: &[f64; 2]| *first <= factor;
         let is_tried =
             self.survives_up_to.is_some() || self.uncertain.first().is_some_and(doubtful);
-        let uncertain = self.uncertain.iter();
-        let reached = uncertain.filter(|[strength, _]| *strength <= factor);
+        let reached = self.uncertain.iter().filter(|own| doubtful(own));
         (is_known && is_tried).then(|| reached.map(|[_, share]| *share).fold(0.0, f64::max))
     }
 }
