@@ -3,6 +3,7 @@
 //! Data goes to standard output, everything else to standard error. Exit codes: 0 done, 1 the run failed,
 //! 2 bad usage or bad input, 130 interrupted by Ctrl-C.
 
+mod capacity_spread_verify;
 mod check;
 mod commands;
 mod examples;
@@ -14,7 +15,6 @@ mod parsers;
 mod progress;
 mod run;
 mod scenario_file;
-mod short_study;
 mod studies;
 mod study;
 mod threshold;
@@ -56,13 +56,13 @@ enum Command {
     Impact(impact::Arguments),
     /// Find the quasi-static capacity curve of the first mechanism and its equivalent oscillator.
     #[command(after_help = examples::CAPACITY)]
-    Capacity(short_study::CapacityArguments),
+    Capacity(capacity_spread_verify::CapacityArguments),
     /// Find how far a springing may move until the arch falls, and what push it bears on the way.
     #[command(after_help = examples::SPREAD)]
-    Spread(short_study::SpreadArguments),
+    Spread(capacity_spread_verify::SpreadArguments),
     /// Check the first mechanism by the Circolare 7/2019 (C8.7.1.2.1) against [demand] of the scenario: one page, JSON.
     #[command(after_help = examples::VERIFY)]
-    Verify(short_study::CommonArguments),
+    Verify(capacity_spread_verify::CommonArguments),
     /// Map which pulses overturn the structure: one history per cell of [map] in the scenario.
     #[command(after_help = examples::MAP)]
     Map(studies::MapArguments),
@@ -167,9 +167,9 @@ pub fn main() -> ExitCode {
         Command::Run(run) => run::run(&run, arguments.quiet),
         Command::Limit(limit) => commands::limit(&limit),
         Command::Impact(arguments) => impact::impact(&arguments),
-        Command::Capacity(capacity) => short_study::capacity(&capacity),
-        Command::Spread(spread) => short_study::spread(&spread),
-        Command::Verify(verify) => short_study::verify(&verify),
+        Command::Capacity(capacity) => capacity_spread_verify::capacity(&capacity),
+        Command::Spread(spread) => capacity_spread_verify::spread(&spread),
+        Command::Verify(verify) => capacity_spread_verify::verify(&verify),
         Command::Map(map) => studies::map(&map),
         Command::Suite(suite) => studies::suite(&suite),
         Command::Threshold(threshold) => threshold::threshold(&threshold),

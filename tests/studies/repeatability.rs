@@ -11,7 +11,7 @@ use archrock::dynamics::repeatability::{OutcomeCount, Repeatability, Repetitions
 use archrock::dynamics::until::EndCondition;
 use archrock::scenario::Scenario;
 use archrock::studies::ending::Ending;
-use archrock::{Contact, ElasticJoints, ElasticProperties, Request, Sway};
+use archrock::{Contact, ElasticJoints, ElasticProperties, Request, SimulationError, Sway};
 
 /// Steps, relative to those of a run, with which results called certain must hold.
 const OTHER_STEPS: [f64; 4] = [0.37, 0.23, 1.7, 2.9];
@@ -663,4 +663,30 @@ fn a_slow_fall_is_not_reported_as_safe() {
         "{high_g} g: {least_j} of {barrier_j}"
     );
     assert!(high_g < 1.9 && low_g > 0.03, "{high_g}");
+}
+
+/// The path repeats if it does so in both first repetitions. A failed one does not show that; later ones do not count.
+#[test]
+fn the_path_of_a_failed_repetition_does_not_repeat() {
+    let (row, _, _) = case(&mut Random(3), 5);
+    let ground = Pulse::Rectangular.lasting_s(0.1).horizontal_m_s2(0.1);
+    let request = Request {
+        end_s: 1.0,
+        ..Request::default()
+    };
+    let same = row.simulate(&ground.unwrap(), &request, None);
+    let own = same.clone().unwrap();
+    let failed = Err(SimulationError::Feet);
+    let names = ["double steps", "landings merged", "half steps"];
+    for (results, repeats) in [
+        ([&same, &same, &failed], true),
+        ([&same, &failed, &same], false),
+        ([&failed, &same, &same], false),
+    ] {
+        let count = OutcomeCount::new(&own, names.into_iter().zip(results));
+        assert_eq!(
+            (count.path_repeats, count.of, count.failed.len()),
+            (repeats, 3, 1)
+        );
+    }
 }

@@ -593,9 +593,9 @@ impl Jobs for Checks<'_> {
 /// Energy dissipated by slip and crushing, over the barrier, above which the barrier of elastic joints is no longer valid.
 pub(super) const LARGEST_LOSS_RATIO: f64 = 0.01;
 
-/// Largest energy, over the energy barrier of the first mechanism, below which a survivor is certain without a repetition of its path. Under records,
-/// elastic joints between a third and half of the barrier overturned with other steps.
+/// Largest energy, over the energy barrier of the first mechanism, below which a survivor is certain without a repetition of its path.
 const FAR_FROM_OVERTURNING: f64 = 0.5;
+/// The same for elastic joints. Under records, survivors between a third and half of the barrier overturned with other steps.
 const ELASTIC_FAR_FROM_OVERTURNING: f64 = 0.25;
 
 /// Largest energy, over the same barrier, above which a survivor is certain only with all repetitions, although its path repeats.

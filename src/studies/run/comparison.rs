@@ -103,10 +103,11 @@ pub(super) fn changed_outcome(own: &History, varied: &[VariationResult]) -> Opti
     (!others.is_empty()).then(|| format!("{verb} with {}", others.join(" and with ")))
 }
 
-/// Returns true if the motion was computed with other properties, and all outcomes agree.
-pub(super) fn all_agree(own: &History, varied: &[VariationResult]) -> bool {
-    let own = Verdict::from(own.outcome);
-    let ends = varied.iter().map(|one| one.result.as_ref());
-    let mut agree = ends.map(|end| end.is_ok_and(|other| Verdict::from(other.outcome) == own));
-    !varied.is_empty() && agree.all(|agrees| agrees)
+/// Returns the properties with which the motion has no verdict, in words; `None` if it has one with all.
+pub(super) fn without_verdict(varied: &[VariationResult]) -> Option<String> {
+    let ends_early = |history: &History| history.outcome == Outcome::Incomplete;
+    let unknown = |one: &&VariationResult| one.result.as_ref().map_or(true, ends_early);
+    let names = varied.iter().filter(unknown).map(|one| one.name.as_str());
+    let names: Vec<&str> = names.collect();
+    (!names.is_empty()).then(|| format!("no verdict with {}", names.join(" and with ")))
 }

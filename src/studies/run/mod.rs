@@ -175,9 +175,8 @@ pub fn results(
     let answers: Vec<_> = all.iter().map(|one| one.answer.clone()).collect();
     let to_quote = quotable::in_words(&answers);
     results.words = comparison_words(&all);
-    results
-        .words
-        .extend(to_quote.iter().map(|quote| format!("  {quote}\n")));
+    let quote = to_quote.iter().map(|quote| format!("  {quote}\n"));
+    results.words.extend(quote);
     results.summary["to_quote"] = to_quote.into();
     for one in &mut all {
         let _ = write!(results.words, "{}\n{}", one.run.name(), one.words);

@@ -44,10 +44,10 @@ const COORDINATE_RATIO: f64 = 5e-5;
 /// Code of a section without compression.
 const NO_THRUST: i16 = i16::MIN;
 
-// uPlot, the library that draws the curves.
 const STYLE: &str = include_str!("report/page.css");
 const STAGE: &str = include_str!("report/stage.js");
 const SCRIPT: &str = include_str!("report/page.js");
+// uPlot, the library that draws the curves.
 const PLOT_STYLE: &str = include_str!("../../../vendor/uplot/uPlot.min.css");
 const PLOT_SCRIPT: &str = include_str!("../../../vendor/uplot/uPlot.iife.min.js");
 const PLOT_LICENCE: &str = include_str!("../../../vendor/uplot/LICENSE");

@@ -5,7 +5,7 @@ use serde_json::Value;
 
 use super::Scales;
 use super::caveats::{first_peak_rad, friction_condition, warnings};
-use super::comparison::{all_agree, changed_outcome};
+use super::comparison::{changed_outcome, without_verdict};
 use super::feet::FeetApart;
 use crate::dynamics::history::{ElasticSummary, RowSummary};
 use crate::dynamics::repeatability::key;
@@ -37,7 +37,6 @@ impl<'a> ComputedRun<'a> {
     /// Returns the answer that may be quoted: a certain outcome that does not depend on the stiffness and contact of its joints.
     pub(super) fn answer(&self) -> ModelAnswer {
         let (scenario, history, varied) = (self.scenario, self.history, self.varied);
-        let is_elastic = scenario.motion.hinges() == Hinges::Elastic;
         let happens = match history.outcome {
             Outcome::Overturned(_) => "overturns under",
             _ => "survives",
@@ -51,13 +50,21 @@ impl<'a> ComputedRun<'a> {
             (_, Some(change)) => Some(format!(
                 "THE OUTCOME DEPENDS ON JOINT STIFFNESS AND CONTACT: it {happens} this motion as given, and {change}"
             )),
-            _ if is_elastic && !all_agree(history, varied) => {
+            _ if scenario.motion.hinges() == Hinges::Elastic && varied.is_empty() => {
                 Some("the dependence of the outcome on joint stiffness is unknown".to_owned())
             }
-            _ => None,
+            _ => without_verdict(varied),
         };
-        let condition = friction_condition(scenario, history);
-        let condition = condition.map_or_else(String::new, |condition| format!(" ({condition})"));
+        let samples = "with the given numbers: quote the probability of [uncertain] as well";
+        let samples = scenario.uncertain.as_ref().map(|_| samples.to_owned());
+        let conditions: Vec<String> = [friction_condition(scenario, history), samples]
+            .into_iter()
+            .flatten()
+            .collect();
+        let condition = match &conditions[..] {
+            [] => String::new(),
+            conditions => format!(" ({})", conditions.join("; ")),
+        };
         let answer = no_answer.map_or_else(|| Ok(format!("{happens} this motion{condition}")), Err);
         let (hinges, is_arch) = (scenario.motion.hinges(), scenario.structure.thrusts());
         ModelAnswer::new(hinges, is_arch, history.thrust_excess_ratio(), answer)

@@ -4,7 +4,7 @@ use askama::Template;
 use nalgebra::Vector2;
 
 use super::caveats::{self, STONE_FRICTION, STRAIGHT_RAD};
-use super::comparison::changed_outcome;
+use super::comparison::{changed_outcome, without_verdict};
 use super::points::place;
 use super::summary::{ComputedRun, Summary};
 use super::tables::energy_loss_j;
@@ -66,10 +66,10 @@ impl VerdictLine<'_> {
     fn conditions(&self) -> Vec<String> {
         let (history, varied) = (self.0.history, self.0.varied);
         let needed = caveats::friction_condition(self.0.scenario, history).into_iter();
-        let conditions = needed.chain(changed_outcome(history, varied));
-        conditions
-            .filter(|_| history.outcome != Outcome::Incomplete)
-            .collect()
+        let others = [changed_outcome(history, varied), without_verdict(varied)];
+        let conditions = needed.chain(others.into_iter().flatten());
+        let decided = |_: &String| history.outcome != Outcome::Incomplete;
+        conditions.filter(decided).collect()
     }
 }
 

@@ -180,12 +180,11 @@ impl Heading {
         let excess = |case: &CaseRow| case.result.as_ref().ok()?.thrust_excess_ratio;
         let lowest = survivals.min_by(|(_, a), (_, b)| safe(a).total_cmp(&safe(b)));
         let quoted = lowest.as_ref().map_or(0.0, |(_, survival)| safe(survival));
-        // The quoted intensity lies between levels; the level above it is outside the model no later.
+        // The quoted intensity may lie between two levels. The thrust line is then followed up to the upper one, which is on the safe side.
         let records = results.cases.chunk_by(CaseRow::has_shake_of);
         let cases = records.flat_map(|cases| {
-            let above = cases
-                .iter()
-                .position(|case| case.level(self.measure) >= quoted);
+            let is_above = |case: &CaseRow| case.level(self.measure) >= quoted;
+            let above = cases.iter().position(is_above);
             &cases[..above.map_or(cases.len(), |above| above + 1)]
         });
         let excess_ratio = cases.filter_map(excess).reduce(f64::max);

@@ -314,4 +314,30 @@ mod tests {
         let found = edge(0.0).unwrap().factor.unwrap();
         assert!((found - 0.7).abs() < 0.7 * EDGE_WIDTH, "{found}");
     }
+
+    /// Histories certainly overturn from 0.7 to 0.8, and are uncertain below and above. The bisection of the first doubt meets 0.75.
+    #[test]
+    fn a_certain_strength_that_a_bisection_meets_is_the_first_edge() {
+        let share = |strength: f64| {
+            let shares = [(0.8, 0.6), (0.7, 1.0), (0.6, 0.5)];
+            let own = shares.into_iter().find(|(from, _)| strength >= *from);
+            Ok(Some(own.map_or(0.0, |(_, share)| share)))
+        };
+        let edge = edge_among(&[0.5, 1.0, 1.5], share).unwrap();
+        assert_eq!(edge.factor, Some(0.75));
+        assert!((edge.uncertain_from.unwrap() / 0.6 - 1.0).abs() < EDGE_WIDTH);
+        assert!(edge.uncertain.iter().all(|[strength, _]| *strength < 0.75));
+        assert_eq!(edge.overturns_up_to(0.8), Some(1.0));
+    }
+
+    #[test]
+    fn below_an_uncertain_smallest_strength_nothing_is_known() {
+        let share = |strength: f64| Ok(Some(if strength < 1.5 { 0.5 } else { 1.0 }));
+        let edge = edge_among(&[1.0, 2.0], share).unwrap();
+        assert_eq!(
+            (edge.survives_up_to, edge.overturns_up_to(0.9)),
+            (None, None)
+        );
+        assert_eq!(edge.overturns_up_to(1.2), Some(0.5));
+    }
 }

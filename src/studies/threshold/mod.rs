@@ -245,13 +245,9 @@ pub fn thresholds(
         {
             // The largest safe factor is from a bisection, and is not among the samples.
             let last = shaking.samples(model, &[safe]);
-            let below = threshold
-                .samples
-                .iter()
-                .filter(|sample| sample.factor <= safe);
-            let endings = below
-                .chain(&last)
-                .filter_map(|sample| sample.result.as_ref().ok());
+            let below = threshold.samples.iter();
+            let below = below.filter(|sample| sample.factor <= safe);
+            let endings = below.chain(&last).flat_map(|sample| &sample.result);
             let excesses = endings.filter_map(|ending| ending.thrust_excess_ratio);
             threshold.safe_excess_ratio = excesses.reduce(f64::max);
         }

@@ -24,6 +24,17 @@ pub struct SystemState<M, const N: usize> {
 }
 
 impl<M: Copy, const N: usize> SystemState<M, N> {
+    /// Returns the state at time zero, at the start of a motion.
+    pub const fn start(mode: M, state: State<N>) -> Self {
+        let (time_s, piece) = (0.0, 0);
+        Self {
+            time_s,
+            piece,
+            mode,
+            state,
+        }
+    }
+
     /// Returns another time and state in the same mode and on the same piece.
     pub const fn at(&self, time_s: f64, state: &State<N>) -> Self {
         Self {
@@ -157,13 +168,7 @@ pub fn simulate<S: HybridSystem<N>, const N: usize>(
     settings: &Settings,
     observer: &mut impl Observer<S, N>,
 ) -> Result<Finish<S::Mode, N>, EngineError> {
-    let now = SystemState {
-        time_s: 0.0,
-        piece: 0,
-        mode,
-        state,
-    };
-    resume(system, now, settings, observer)
+    resume(system, SystemState::start(mode, state), settings, observer)
 }
 
 /// Runs `system` from a state until it is over, until the end in the settings, or until `observer` breaks.

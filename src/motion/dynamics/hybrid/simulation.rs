@@ -368,13 +368,7 @@ struct SummaryCollector<'r, 'a, C: MechanismChain> {
 impl<'a, C: MechanismChain> SummaryCollector<'_, 'a, C> {
     /// Records the state at the start, which may be a release.
     fn note_start(&mut self, mode: Mode<'a, C::Mechanism>, state: RockingState) {
-        let (time_s, piece) = (0.0, 0);
-        self.note_excess(&StructureState::<'a, C> {
-            time_s,
-            piece,
-            mode,
-            state,
-        });
+        self.note_excess(&StructureState::<'a, C>::start(mode, state));
         self.note_peak(mode, &state);
     }
 
