@@ -5,7 +5,7 @@ use std::os::unix::fs::symlink;
 use std::path::Path;
 
 use crate::common::parsed;
-use crate::common::program::{assert_shown_output_is_printed, printed, scenarios};
+use crate::common::program::{assert_shown_output_is_printed, scenarios};
 use archrock::mechanics::blocks::Row;
 use archrock::mechanics::four_link::limit::least_thickness_ratio;
 use archrock::mechanics::four_link::mechanism::HingeSites;
