@@ -123,7 +123,7 @@ fn map_of_pulses(bencher: Bencher, voussoirs: usize) {
     bencher.counter(ItemsCount::new(36_usize)).bench(|| {
         let map = OverturningMap::of(&scenario).expect("a map");
         (0..map.count())
-            .map(|cell| map.row(cell))
+            .flat_map(|cell| map.rows(&[cell]))
             .collect::<Vec<_>>()
     });
 }

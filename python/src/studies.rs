@@ -9,6 +9,7 @@ use archrock::output::{Batch, Figure, Origin};
 use archrock::studies::catalogue::{self as studies, Computation, Options, RowSource, StudyKind};
 use archrock::studies::part::Shard;
 use archrock::studies::results::{Results, StudyError, Style};
+use archrock::studies::run::Sinks;
 use archrock::studies::runner::{Runner, Task};
 use archrock::studies::threshold::Factors;
 use archrock::studies::threshold::along::AlongOptions;
@@ -86,15 +87,14 @@ pub fn study<'py>(
         ..Options::default()
     };
     // Statics need no motion.
-    let scenario = if kind == studies::CAPACITY {
-        &scenario.inner
-    } else {
-        scenario.moving()?
+    let scenario = match kind.needs_motion {
+        true => scenario.moving()?,
+        false => &scenario.inner,
     };
     let scenario = Arc::clone(scenario);
     let done = watched(py, progress, move |watch| {
         let rows = RowSource::Compute(runner, None, watch);
-        kind.compute(slice::from_ref(&*scenario), &options, STYLE, rows)
+        kind.compute(slice::from_ref(&*scenario), &options, STYLE, rows, Sinks::default())
             .map_err(failed)
     })?;
     match done {
@@ -125,7 +125,7 @@ pub fn compute_part(
         };
         let rows = RowSource::Compute(runner, Some(task), watch);
         let options = Options::default();
-        kind.compute(slice::from_ref(&*scenario), &options, STYLE, rows)
+        kind.compute(slice::from_ref(&*scenario), &options, STYLE, rows, Sinks::default())
             .map_err(failed)
     })?;
     match done {

@@ -95,8 +95,7 @@ fn run(
     options: Options,
 ) -> Result<(), Failure> {
     let input = arguments.scenario.open()?;
-    // Only `verify` needs a model of motion.
-    let scenario = match kind == VERIFY {
+    let scenario = match kind.needs_motion {
         true => input.read(None)?,
         false => input.read_statics()?,
     };

@@ -9,10 +9,11 @@ use std::time::Duration;
 use std::{process, slice};
 
 use archrock::scenario::Scenario;
-use archrock::studies::catalogue::{Computation, Options, RUN, RowSource, StudyKind};
+use archrock::studies::catalogue::{Computation, Options, RowSource, StudyKind};
 use archrock::studies::part::{PartError, PartErrorKind, PartFile, Shard, rows_in};
 use archrock::studies::peaks;
 use archrock::studies::results::{Results, StudyError, Style};
+use archrock::studies::run::Sinks;
 use archrock::studies::runner::{Progress, Runner, RunnerError, Task};
 
 use super::figure::FigureOption;
@@ -149,7 +150,11 @@ impl<'s> Session<'s> {
 
     /// Returns an error if the results of a study cannot be written to the folder. Of a run, only the last name is known in advance.
     fn check_names(&self, kind: StudyKind, place: Option<&Destination>) -> Result<(), Failure> {
-        let first = if kind == RUN { kind.files.len() - 1 } else { 0 };
+        let first = if kind.is_history {
+            kind.files.len() - 1
+        } else {
+            0
+        };
         let place = place.filter(|_| !self.work.is_part());
         place.map_or(Ok(()), |place| place.check_names(&kind.files[first..]))
     }
@@ -168,7 +173,7 @@ impl<'s> Session<'s> {
             shard,
             resume: work.resume,
         });
-        self.check_names(kind, place.filter(|_| kind != RUN))?;
+        self.check_names(kind, place.filter(|_| !kind.is_history))?;
         let threads = work.threads.and_then(|n| NonZeroUsize::new(n.into()));
         let runner = Runner { threads };
         let (mut shown, mut last) = (None, 0);
@@ -182,7 +187,7 @@ impl<'s> Session<'s> {
             last = done;
             let (display, before) = shown.get_or_insert_with(|| {
                 // Ctrl-C ends a history at once, unless samples before it listen already.
-                let display = if kind == RUN {
+                let display = if kind.is_history {
                     Display::new(PATIENCE)
                 } else {
                     listen_to_interrupts();
@@ -198,7 +203,7 @@ impl<'s> Session<'s> {
             }
             let new = done.saturating_sub(*before);
             let part = done as f64 / all.max(1) as f64;
-            display.show(part, |elapsed| match kind == RUN {
+            display.show(part, |elapsed| match kind.is_history {
                 true => simulated(progress, elapsed),
                 false => {
                     let progress = progress_text(new, all.saturating_sub(done), elapsed);
@@ -211,13 +216,12 @@ impl<'s> Session<'s> {
             let place = place.map(|place| place.of_model(scenario, scenarios.len() > 1));
             place.map(|place| place.open(names)).transpose()
         };
-        let rows = if kind == RUN {
-            let rotations = self.options.run.no_rotations.then(stdout);
-            RowSource::Stream(&mut open, rotations, &mut watch)
-        } else {
-            RowSource::Compute(runner, task, &mut watch)
+        let sinks = Sinks {
+            open: Some(&mut open),
+            rotations: self.options.run.no_rotations.then(stdout),
         };
-        let done = kind.compute(scenarios, &self.options, self.style, rows);
+        let rows = RowSource::Compute(runner, task, &mut watch);
+        let done = kind.compute(scenarios, &self.options, self.style, rows, sinks);
         drop(shown);
         let done = done.map_err(|error| match (error, self.input) {
             (StudyError::Scenario(message), Some(input)) => input.input_error(message),
@@ -269,7 +273,7 @@ impl<'s> Session<'s> {
         if self.work.is_part() && place.is_none() {
             return Err("--shard writes a file: name a folder for it with --out".into());
         }
-        if self.work.is_part() && !has_samples && !own.has_parts {
+        if self.work.is_part() && !has_samples && !own.has_parts() {
             let message =
                 "--shard computes a part of the samples of [uncertain], which the scenario lacks";
             return Err(message.into());
@@ -279,7 +283,7 @@ impl<'s> Session<'s> {
         }
         // Samples may take long, so the names of other results are checked before them.
         for scenario in scenarios {
-            let place = place.map(|place| place.of_model(scenario, several && own == RUN));
+            let place = place.map(|place| place.of_model(scenario, several && own.is_history));
             self.check_names(own, place.as_ref())?;
         }
         let (mut words, mut of_models) = (String::new(), Vec::new());
@@ -317,7 +321,7 @@ impl<'s> Session<'s> {
             summary["uncertain"] = found.summary.clone();
         }
         let title = scenarios[0].title.as_deref();
-        if own == RUN
+        if own.is_history
             && let Some(compared) = self.compare(own, title, &of_models, place)?
         {
             words += &format!("{}\n", compared.words);
@@ -377,10 +381,10 @@ fn interrupted(
 ) -> String {
     let file = task.map(|task| task.folder.join(task.shard.file_name(kind.name)));
     match file {
-        _ if !kind.has_parts && samples_are_kept => {
+        _ if !kind.has_parts() && samples_are_kept => {
             "interrupted: the samples are kept; continue with --resume".to_owned()
         }
-        _ if !kind.has_parts => "interrupted".to_owned(),
+        _ if !kind.has_parts() => "interrupted".to_owned(),
         Some(file) if !file.exists() => {
             format!("interrupted; {} was removed meanwhile", file.display())
         }

@@ -13,7 +13,7 @@ use super::ensemble::records::Capacities;
 use super::ensemble::{Ensemble, Question};
 use super::map::OverturningMap;
 use super::part::{self, PartFile};
-use super::run::{self, OpenFolder, RotationsOutput, RunOptions};
+use super::run::{self, RunOptions, Sinks};
 use super::spread::{self, Direction};
 use super::suite::{Heading, RecordSuite};
 use super::threshold::along::{Along, AlongOptions};
@@ -45,8 +45,6 @@ pub enum RowSource<'w> {
     Compute(Runner, Option<Task<'w>>, Watch<'w>),
     /// They are read from all parts.
     Merge(&'w [PathBuf]),
-    /// There is one row, a history, whose files are written while it is computed.
-    Stream(OpenFolder<'w>, RotationsOutput<'w>, Watch<'w>),
 }
 
 /// Chooses the style of merged results, from the scenario of the parts if that is read, or refuses options that do not fit the study.
@@ -68,8 +66,21 @@ pub enum Computation {
     },
 }
 
-/// Computes a study of scenarios that differ only in their models of motion; most studies take one.
-type Compute = fn(&[Scenario], &Options, Style, RowSource<'_>) -> Result<Computation, StudyError>;
+/// How a study is computed from scenarios that differ only in their models of motion; most studies take one.
+#[derive(Clone, Copy, Debug)]
+enum Compute {
+    /// At once.
+    Whole(fn(&[Scenario], &Options, Style, Work<'_, '_>) -> Result<Results, StudyError>),
+    /// By rows, which are kept in a file, so the work can be divided and resumed.
+    ByRows(fn(&[Scenario], &Options, Style, RowSource<'_>) -> Result<Computation, StudyError>),
+}
+
+/// What a study that is computed at once works with.
+struct Work<'w, 's> {
+    runner: Runner,
+    watch: Watch<'w>,
+    sinks: Sinks<'s>,
+}
 
 /// A study that a scenario describes.
 #[derive(Clone, Copy, Debug)]
@@ -78,9 +89,12 @@ pub struct StudyKind {
     pub name: &'static str,
     /// The names of all files that its results may have, the seal last.
     pub files: &'static [&'static str],
-    /// True if its rows are kept in a file, so the work can be divided and resumed.
-    pub has_parts: bool,
-    run: Compute,
+    /// True if it computes one history for each model of motion, and writes the tables meanwhile. Its progress is in milliseconds of simulated
+    /// time, and options decide which of the files it writes.
+    pub is_history: bool,
+    /// True if the scenario needs a ground motion.
+    pub needs_motion: bool,
+    compute: Compute,
 }
 
 impl PartialEq for StudyKind {
@@ -92,14 +106,13 @@ impl PartialEq for StudyKind {
 impl Eq for StudyKind {}
 
 /// The history of a scenario, with one or several models of motion.
-pub const RUN: StudyKind =
-    StudyKind::without_parts("run", &run::FILES, |scenarios, options, style, rows| {
-        let RowSource::Stream(open, rotations, watch) = rows else {
-            return Err(StudyError::scenario("a run has no parts"));
-        };
+pub const RUN: StudyKind = StudyKind {
+    is_history: true,
+    ..StudyKind::whole("run", &run::FILES, |scenarios, options, style, work| {
         let (options, figure) = (&options.run, style.figure);
-        run::results(scenarios, options, figure, open, rotations, watch).map(complete)
-    });
+        run::results(scenarios, options, figure, work.sinks, work.watch)
+    })
+};
 /// The map of the pulses that overturn the structure, over two quantities.
 pub const MAP: StudyKind = StudyKind::of::<OverturningMap<'_>>(|scenarios, _, style, rows| {
     computed(OverturningMap::of(&scenarios[0]), style, rows)
@@ -109,14 +122,11 @@ pub const SUITE: StudyKind = StudyKind::of::<RecordSuite<'_>>(|scenarios, _, sty
     computed(RecordSuite::of(&scenarios[0]), style, rows)
 });
 /// The factors by which the ground motion overturns the structure, for one or several models of motion.
-pub const THRESHOLD: StudyKind = StudyKind::without_parts(
+pub const THRESHOLD: StudyKind = StudyKind::whole(
     "threshold",
     &threshold::FILES,
-    |scenarios, options, style, rows| {
-        let RowSource::Compute(runner, _, watch) = rows else {
-            return Err(StudyError::scenario("a threshold has no parts"));
-        };
-        threshold::results(scenarios, &options.factors, style.figure, &runner, watch).map(complete)
+    |scenarios, options, style, Work { runner, watch, .. }| {
+        threshold::results(scenarios, &options.factors, style.figure, &runner, watch)
     },
 );
 /// The threshold for each value of a key along a range.
@@ -129,36 +139,39 @@ pub const THRESHOLD_ALONG: StudyKind =
         computed(study, style, rows)
     });
 /// The capacity curves of the first mechanism.
-pub const CAPACITY: StudyKind = StudyKind::without_parts(
-    "capacity",
-    &capacity::FILES,
-    |scenarios, options, style, _| {
-        let scenario = &scenarios[0];
-        scenario.check_as_built().map_err(StudyError::Scenario)?;
-        let sides = capacity(scenario, options.point_m).map_err(StudyError::scenario)?;
-        Ok(complete(capacity::report(scenario, &sides, style.figure)?))
-    },
-);
+pub const CAPACITY: StudyKind = StudyKind {
+    needs_motion: false,
+    ..StudyKind::whole(
+        "capacity",
+        &capacity::FILES,
+        |scenarios, options, style, _| {
+            let scenario = &scenarios[0];
+            scenario.check_as_built().map_err(StudyError::Scenario)?;
+            let sides = capacity(scenario, options.point_m).map_err(StudyError::scenario)?;
+            Ok(capacity::report(scenario, &sides, style.figure)?)
+        },
+    )
+};
 /// The movement of a springing at which the arch falls.
-pub const SPREAD: StudyKind =
-    StudyKind::without_parts("spread", &spread::FILES, |scenarios, options, style, _| {
+pub const SPREAD: StudyKind = StudyKind {
+    needs_motion: false,
+    ..StudyKind::whole("spread", &spread::FILES, |scenarios, options, style, _| {
         let (scenario, directions) = (&scenarios[0], &options.directions);
         let found = spread::spread(scenario, directions)?;
-        Ok(complete(spread::report(scenario, &found, style.figure)?))
-    });
+        Ok(spread::report(scenario, &found, style.figure)?)
+    })
+};
 /// The check of the first mechanism by the Circolare 7/2019.
-pub const VERIFY: StudyKind =
-    StudyKind::without_parts("verify", &verify::FILES, |scenarios, _, _, _| {
-        let scenario = &scenarios[0];
-        scenario.check_as_built().map_err(StudyError::Scenario)?;
-        if scenario.right_foot.is_some() {
-            let message =
-                "the histories of a check shake both feet alike: leave [ground.right] out";
-            return Err(StudyError::scenario(message));
-        }
-        let check = verify::verify(scenario).map_err(StudyError::scenario)?;
-        Ok(complete(verify::report(scenario, &check)?))
-    });
+pub const VERIFY: StudyKind = StudyKind::whole("verify", &verify::FILES, |scenarios, _, _, _| {
+    let scenario = &scenarios[0];
+    scenario.check_as_built().map_err(StudyError::Scenario)?;
+    if scenario.right_foot.is_some() {
+        let message = "the histories of a check shake both feet alike: leave [ground.right] out";
+        return Err(StudyError::scenario(message));
+    }
+    let check = verify::verify(scenario).map_err(StudyError::scenario)?;
+    Ok(verify::report(scenario, &check)?)
+});
 /// Endings and courses of histories for samples of the uncertain numbers.
 pub const UNCERTAIN: StudyKind = StudyKind::of_samples::<Histories>();
 /// The factor from which samples of the uncertain numbers overturn.
@@ -170,10 +183,6 @@ pub const UNCERTAIN_MAP: StudyKind =
     StudyKind::of::<CellsOfSamples<'_>>(|scenarios, _, style, rows| {
         computed(CellsOfSamples::of(&scenarios[0]), style, rows)
     });
-
-const fn complete(results: Results) -> Computation {
-    Computation::Complete(results, None)
-}
 
 impl StudyKind {
     /// All studies.
@@ -204,26 +213,33 @@ impl StudyKind {
         kinds.find(|kind| has_all(kind) && kind.files.last() == names.last())
     }
 
-    const fn without_parts(
+    const fn whole(
         name: &'static str,
         files: &'static [&'static str],
-        run: Compute,
+        compute: fn(&[Scenario], &Options, Style, Work<'_, '_>) -> Result<Results, StudyError>,
     ) -> Self {
+        Self::with(name, files, Compute::Whole(compute))
+    }
+
+    const fn of<S: ReportedStudy>(
+        compute: fn(&[Scenario], &Options, Style, RowSource<'_>) -> Result<Computation, StudyError>,
+    ) -> Self {
+        Self::with(S::NAME, S::FILES, Compute::ByRows(compute))
+    }
+
+    const fn with(name: &'static str, files: &'static [&'static str], compute: Compute) -> Self {
         Self {
             name,
             files,
-            has_parts: false,
-            run,
+            is_history: false,
+            needs_motion: true,
+            compute,
         }
     }
 
-    const fn of<S: ReportedStudy>(run: Compute) -> Self {
-        Self {
-            name: S::NAME,
-            files: S::FILES,
-            has_parts: true,
-            run,
-        }
+    /// Returns true if its rows are kept in a file, so the work can be divided and resumed.
+    pub const fn has_parts(self) -> bool {
+        matches!(self.compute, Compute::ByRows(_))
     }
 
     const fn of_samples<Q: Question>() -> Self {
@@ -234,6 +250,7 @@ impl StudyKind {
     }
 
     /// Computes the study of scenarios that differ only in their models of motion. A run and a threshold take several; the others use the first.
+    /// A run writes its tables into the sinks.
     ///
     /// # Errors
     /// When the scenario does not describe the study, or its rows could not be completed.
@@ -243,8 +260,23 @@ impl StudyKind {
         options: &Options,
         style: Style,
         rows: RowSource<'_>,
+        sinks: Sinks<'_>,
     ) -> Result<Computation, StudyError> {
-        (self.run)(scenarios, options, style, rows)
+        match (self.compute, rows) {
+            (Compute::ByRows(compute), rows) => compute(scenarios, options, style, rows),
+            (Compute::Whole(compute), RowSource::Compute(runner, _, watch)) => {
+                let work = Work {
+                    runner,
+                    watch,
+                    sinks,
+                };
+                let results = compute(scenarios, options, style, work)?;
+                Ok(Computation::Complete(results, None))
+            }
+            (Compute::Whole(_), RowSource::Merge(_)) => {
+                Err(StudyError::Scenario(format!("{} has no parts", self.name)))
+            }
+        }
     }
 }
 
@@ -256,9 +288,6 @@ fn computed<S: ReportedStudy>(
 ) -> Result<Computation, StudyError> {
     let study = study.map_err(StudyError::Scenario)?;
     let (rows, part) = match rows {
-        RowSource::Stream(..) => {
-            return Err(StudyError::scenario("a study of many cases is no history"));
-        }
         RowSource::Merge(parts) => (part::merge(parts)?.1, None),
         RowSource::Compute(runner, None, watch) => (runner.rows(&study, watch)?, None),
         RowSource::Compute(runner, Some(task), watch) => {
@@ -313,7 +342,13 @@ pub fn merge(
         serde_json::from_value(header.options.clone()).map_err(StudyError::scenario)?;
     let style = style(kind, Some(&scenario)).map_err(StudyError::Scenario)?;
     let (scenarios, options) = (std::slice::from_ref(&scenario), options.unwrap_or_default());
-    match kind.compute(scenarios, &options, style, RowSource::Merge(parts))? {
+    match kind.compute(
+        scenarios,
+        &options,
+        style,
+        RowSource::Merge(parts),
+        Sinks::default(),
+    )? {
         Computation::Complete(results, _) => Ok((kind, results)),
         Computation::Partial { .. } => unreachable!("all parts are joined"),
     }

@@ -15,8 +15,8 @@
 //!         1000
 //!     }
 //!
-//!     fn row(&self, index: usize) -> usize {
-//!         index * index
+//!     fn rows(&self, indices: &[usize]) -> Vec<usize> {
+//!         indices.iter().map(|index| index * index).collect()
 //!     }
 //! }
 //!
@@ -88,20 +88,14 @@ pub trait Study: Sync {
     /// Returns the number of cases.
     fn count(&self) -> usize;
 
-    /// Computes the row of a case; `index` is below [`Study::count`]. A study implements this method or [`Study::rows`].
-    fn row(&self, index: usize) -> Self::Row {
-        self.rows(&[index]).remove(0)
-    }
-
     /// Returns the family of a case; `None` if the case is computed alone. Cases of one family are computed faster together.
     fn family(&self, _index: usize) -> Option<usize> {
         None
     }
 
-    /// Computes the rows of some cases of one family, in their order. No row depends on the other cases.
-    fn rows(&self, indices: &[usize]) -> Vec<Self::Row> {
-        indices.iter().map(|index| self.row(*index)).collect()
-    }
+    /// Computes the rows of some cases of one family, in their order; their indices are below [`Study::count`]. No row depends on the other
+    /// cases.
+    fn rows(&self, indices: &[usize]) -> Vec<Self::Row>;
 }
 
 impl Header {

@@ -10,7 +10,7 @@ use archrock::dynamics::history::State;
 use archrock::mechanics::chain::{Mechanism as _, MechanismChain as _};
 use archrock::mechanics::four_link::linkage::Linkage;
 use archrock::output::Figure;
-use archrock::studies::run::{self, RunOptions};
+use archrock::studies::run::{self, RunOptions, Sinks};
 use archrock::{GroundMotion, Initial, Outcome, Pulse, Scenario, Sway};
 use nalgebra::Vector2;
 use proptest::prelude::*;
@@ -228,8 +228,10 @@ fn the_vertical_acceleration_is_the_last_column_if_present() {
             &[scenario],
             &RunOptions::default(),
             Figure::SCREEN,
-            &mut |_, _| Ok(None),
-            Some(Box::new(&mut text)),
+            Sinks {
+                open: None,
+                rotations: Some(Box::new(&mut text)),
+            },
             &mut |_| ControlFlow::Continue(()),
         )
         .unwrap();

@@ -597,7 +597,9 @@ fn the_map_shows_every_cell() {
                 amplitude_g = { from = 0.1, to = 1.6, count = 5, spacing = 'logarithmic' }";
     let scenario = Scenario::parse(text, "s.toml").unwrap();
     let cells = OverturningMap::of(&scenario).unwrap();
-    let rows: Vec<_> = (0..cells.count()).map(|index| cells.row(index)).collect();
+    let rows: Vec<_> = (0..cells.count())
+        .map(|index| cells.rows(&[index]).remove(0))
+        .collect();
     let picture = picture::draw("a < b", &cells, &rows, Style::of(Figure::SCREEN));
     let document = Document::parse(&picture).unwrap();
     assert!(texts(&document).iter().any(|text| text == "a < b"));

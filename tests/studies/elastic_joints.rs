@@ -99,7 +99,7 @@ fn cells_of_a_map_are_runs() {
         let cells = rows(&map, 1);
         assert_eq!(cells, rows(&map, 2), "{axes}");
         for (index, cell) in cells.iter().enumerate() {
-            assert_eq!(*cell, map.row(index), "{axes}");
+            assert_eq!(*cell, map.rows(&[index])[0], "{axes}");
             let own = run(&scenario, &[(keys[0], cell.x), (keys[1], cell.y)]);
             let Ok(ending) = &cell.result else {
                 panic!("{cell:?}")
@@ -122,7 +122,7 @@ fn cells_of_a_map_are_runs() {
             .iter()
             .all(|cell| matches!(cell.outcomes, Some(Ok(1..))))
     );
-    assert_eq!(cells[7], map.row(7));
+    assert_eq!(cells[7], map.rows(&[7])[0]);
 }
 
 #[test]
@@ -141,7 +141,7 @@ fn cases_of_a_suite_are_runs() {
     let cases = rows(&suite, 1);
     assert_eq!(cases, rows(&suite, 2));
     for (index, case) in cases.iter().enumerate() {
-        assert_eq!(*case, suite.row(index));
+        assert_eq!(*case, suite.rows(&[index]).remove(0));
         let sign = if case.mirrored { -1.0 } else { 1.0 };
         let scale = sign * case.scale;
         let record = format!("[ground.record]\nfile = \"r.at2\"\nscale = {scale:?}\n");

@@ -55,7 +55,7 @@ fn single(row: &FreeHinges, map: &OverturningMap<'_>, amplitude_g: f64, duration
 }
 
 fn ended(map: &OverturningMap<'_>, index: usize) -> Ending {
-    match map.row(index).result {
+    match map.rows(&[index]).remove(0).result {
         Ok(ending) => ending,
         other => panic!("cell {index}: {other:?}"),
     }
@@ -100,11 +100,14 @@ fn axes_of_size_and_shape_change_the_row() {
         let [thickness_ratio, embrace_deg] = map.coordinates(index);
         match FreeHinges::of_arch(&arch(10.0, thickness_ratio, embrace_deg)) {
             Ok(row) => assert_eq!(ended(&map, index), single(&row, &map, -0.5, 0.2)),
-            Err(_) => assert_eq!(map.row(index).result, Err(NoHistory::CannotStand)),
+            Err(_) => assert_eq!(
+                map.rows(&[index]).remove(0).result,
+                Err(NoHistory::CannotStand)
+            ),
         }
     }
     // An arch of 179 degrees and 0.05 cannot stand; one of 120 degrees and 0.4, too thick for four links, can.
-    assert_eq!(map.row(1).result, Err(NoHistory::CannotStand));
+    assert_eq!(map.rows(&[1]).remove(0).result, Err(NoHistory::CannotStand));
     ended(&map, 4);
 }
 
@@ -175,7 +178,7 @@ fn a_cell_counts_the_outcomes_of_all_repetitions() {
         let certain = own == "incomplete" || of > 3 && (overturned == 0 || overturned == of);
         outcomes.sort_unstable();
         outcomes.dedup();
-        let cell = map.row(index);
+        let cell = map.rows(&[index]).remove(0);
         assert_eq!(cell.outcomes, Some(Ok(outcomes.len())), "cell {index}");
         let expected = if certain { own } else { "uncertain" };
         assert_eq!(outcome_name(&cell.result), expected, "cell {index}");
@@ -197,7 +200,7 @@ fn a_cell_counts_the_outcomes_of_all_repetitions() {
     let plain = parsed(&text(""));
     let map = OverturningMap::of(&plain).unwrap();
     for (index, with) in rows.iter().enumerate() {
-        let without = map.row(index);
+        let without = map.rows(&[index]).remove(0);
         let (Ok(less), Ok(more)) = (&without.result, &with.result) else {
             panic!("cell {index} has no history");
         };
@@ -349,7 +352,7 @@ fn a_cell_that_fails_keeps_its_reason_to_the_end() {
         );
         let scenario = parsed(&text);
         let map = OverturningMap::of(&scenario).unwrap();
-        let cells = (0..map.count()).map(|index| map.row(index).result);
+        let cells = (0..map.count()).map(|index| map.rows(&[index]).remove(0).result);
         let reasons: Vec<_> = cells
             .filter_map(|cell| match cell {
                 Err(NoHistory::Failed(reason)) => Some(reason),

@@ -19,7 +19,7 @@ use archrock::studies::runner::Study as _;
 use archrock::{Outcome, Pulse, Scenario};
 
 fn ending(map: &OverturningMap<'_>, index: usize) -> Ending {
-    match map.row(index).result {
+    match map.rows(&[index]).remove(0).result {
         Ok(ending) => ending,
         other => panic!("cell {index}: {other:?}"),
     }
@@ -110,7 +110,9 @@ fn shapes_without_four_link_mechanism_have_no_history() {
          [map]\nthickness_ratio = [0.1, 0.15, 0.4]\nembrace_deg = [90.0, 180.0]"
     ));
     let cells = OverturningMap::of(&scenario).unwrap();
-    let found: Vec<_> = (0..6).map(|index| cells.row(index).result).collect();
+    let found: Vec<_> = (0..6)
+        .map(|index| cells.rows(&[index]).remove(0).result)
+        .collect();
     assert!(
         matches!(found[1], Err(NoHistory::CannotStand)),
         "0.10 at 180 degrees is too thin"

@@ -36,10 +36,13 @@ impl Study for Slow {
         COUNT
     }
 
-    fn row(&self, index: usize) -> Self::Row {
-        self.begun.fetch_add(1, Ordering::Relaxed);
-        sleep(Duration::from_millis(10));
-        expected(index)
+    fn rows(&self, indices: &[usize]) -> Vec<Self::Row> {
+        let row = |index: &usize| {
+            self.begun.fetch_add(1, Ordering::Relaxed);
+            sleep(Duration::from_millis(10));
+            expected(*index)
+        };
+        indices.iter().map(row).collect()
     }
 }
 

@@ -22,7 +22,9 @@ fn rows(text: &str, along: &str, factors: Factors) -> Vec<AlongRow> {
         no_impact: true,
     };
     let study = Along::of(&scenario, options).unwrap();
-    (0..study.count()).map(|index| study.row(index)).collect()
+    (0..study.count())
+        .flat_map(|index| study.rows(&[index]))
+        .collect()
 }
 
 /// The least factors that overturn without impact, for some durations of a pulse.

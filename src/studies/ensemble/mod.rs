@@ -92,6 +92,22 @@ impl<'a, Q: Question> Ensemble<'a, Q> {
             scenario,
         })
     }
+
+    /// Computes the answer of the scenario itself, or of a sample, counted from 1.
+    fn row(&self, index: usize) -> SampleRow<Q::Answer> {
+        let Some(sample) = index.checked_sub(1) else {
+            return SampleRow {
+                values: Vec::new(),
+                answer: self.question.own_answer(self.scenario),
+            };
+        };
+        let values = self.uncertain.values(sample);
+        let scenario = self.uncertain.scenario(self.scenario, &values);
+        let answer = scenario
+            .map_err(NoAnswer::Invalid)
+            .and_then(|scenario| self.question.answer(&scenario));
+        SampleRow { values, answer }
+    }
 }
 
 /// Returns the uncertain numbers of a scenario, or the error that the scenario has none.
@@ -123,19 +139,8 @@ impl<Q: Question> Study for Ensemble<'_, Q> {
         1 + self.uncertain.cases()
     }
 
-    fn row(&self, index: usize) -> Self::Row {
-        let Some(sample) = index.checked_sub(1) else {
-            return SampleRow {
-                values: Vec::new(),
-                answer: self.question.own_answer(self.scenario),
-            };
-        };
-        let values = self.uncertain.values(sample);
-        let scenario = self.uncertain.scenario(self.scenario, &values);
-        let answer = scenario
-            .map_err(NoAnswer::Invalid)
-            .and_then(|scenario| self.question.answer(&scenario));
-        SampleRow { values, answer }
+    fn rows(&self, indices: &[usize]) -> Vec<Self::Row> {
+        indices.iter().map(|index| self.row(*index)).collect()
     }
 }
 

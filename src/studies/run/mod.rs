@@ -106,6 +106,15 @@ pub type OpenFolder<'w> = &'w mut dyn FnMut(&Scenario, &[&str]) -> Result<Option
 /// Receives the rotations in place of a file.
 pub type RotationsOutput<'w> = Option<Box<dyn io::Write + 'w>>;
 
+/// What receives the tables of a run while it is computed.
+#[derive(Default)]
+pub struct Sinks<'w> {
+    /// The folders; without it no files are written.
+    pub open: Option<OpenFolder<'w>>,
+    /// The output for the rotations in place of a file.
+    pub rotations: RotationsOutput<'w>,
+}
+
 /// The results of one model of motion.
 struct ModelResults<'r> {
     run: &'r Run<'r>,
@@ -150,8 +159,7 @@ pub fn results(
     scenarios: &[Scenario],
     options: &RunOptions,
     figure: Figure,
-    open: OpenFolder<'_>,
-    mut rotations: RotationsOutput<'_>,
+    mut sinks: Sinks<'_>,
     watch: Watch<'_>,
 ) -> Result<Results, StudyError> {
     let all_models = scenarios.iter().map(|one| one.motion.hinges());
@@ -162,9 +170,11 @@ pub fn results(
     let (runs, mut all) = (runs.map_err(StudyError::Scenario)?, Vec::new());
     for (number, run) in runs.iter().enumerate() {
         // Opened before the history starts, so a folder that cannot be written costs no simulation.
-        let folder = open(run.scenario, &run.files()).map_err(StudyError::Scenario)?;
+        let open = sinks.open.as_mut();
+        let folder = open.map_or(Ok(None), |open| open(run.scenario, &run.files()));
+        let folder = folder.map_err(StudyError::Scenario)?;
         let uncertainty = options.uncertainty.get(number).map_or("", String::as_str);
-        all.push(run.compute(folder, rotations.take(), uncertainty, &mut *watch)?);
+        all.push(run.compute(folder, sinks.rotations.take(), uncertainty, &mut *watch)?);
     }
     let mut results = Results::default();
     if let [one] = &mut all[..] {

@@ -186,6 +186,22 @@ impl Point {
     }
 }
 
+impl Along<'_> {
+    /// Computes the threshold of a value of the key.
+    fn row(&self, value: f64) -> AlongRow {
+        let (scenario, factors) = (self.variant(value), &self.options.factors);
+        let scenario = scenario.as_ref().map_err(String::clone);
+        let no_impact = || least_without_impact(scenario.clone()?, factors);
+        let edge = scenario.clone().map_err(NoAnswer::Invalid);
+        AlongRow {
+            value,
+            peak_g: scenario.as_ref().ok().map(|one| super::peak_g(one)),
+            no_impact: self.options.no_impact.then(no_impact),
+            edge: edge.and_then(|one| FirstEdge::of(one, factors)),
+        }
+    }
+}
+
 impl Study for Along<'_> {
     type Row = AlongRow;
 
@@ -203,17 +219,10 @@ impl Study for Along<'_> {
         self.values.len()
     }
 
-    fn row(&self, index: usize) -> AlongRow {
-        let value = self.values[index];
-        let (scenario, factors) = (self.variant(value), &self.options.factors);
-        let scenario = scenario.as_ref().map_err(String::clone);
-        let no_impact = || least_without_impact(scenario.clone()?, factors);
-        let edge = scenario.clone().map_err(NoAnswer::Invalid);
-        AlongRow {
-            value,
-            peak_g: scenario.as_ref().ok().map(|one| super::peak_g(one)),
-            no_impact: self.options.no_impact.then(no_impact),
-            edge: edge.and_then(|one| FirstEdge::of(one, factors)),
-        }
+    fn rows(&self, indices: &[usize]) -> Vec<AlongRow> {
+        indices
+            .iter()
+            .map(|index| self.row(self.values[*index]))
+            .collect()
     }
 }
