@@ -39,9 +39,7 @@ pub mod verify;
 
 use ending::{Ending, NoAnswer, NoHistory, Verdict};
 use quotable::ModelAnswer;
-use remarks::{
-    CaseSummary, ModelCheck, Remark, Remarks, no_verdict, outcome_counts, outcome_label,
-};
+use remarks::{CaseSummary, ModelCheck, OutcomeCounts, Remark, Remarks, no_verdict};
 use results::{ReportedStudy, Results, StudyError, Style};
 use runner::{Progress, Runner, RunnerError, Study, Task, Watch};
 use threshold::{rounded, rounded_down};

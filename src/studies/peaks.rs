@@ -103,7 +103,7 @@ pub fn results(
     let picture = draw(figure, title, &distributions);
     let words: Vec<String> = pairs.iter().map(in_words).collect();
     let others = [picture.into_bytes(), table];
-    Results::new(&FILES, &summary, words.join("\n  "), others)
+    Results::with_words(&FILES, &summary, words.join("\n  "), others)
 }
 
 fn in_words(found: &Distance) -> String {

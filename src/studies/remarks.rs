@@ -3,16 +3,17 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::ending::{Ending, NoHistory, Verdict};
+use super::ending::columns::{CANNOT_STAND, FAILED, GROUND_FALLS, NOT_FOUR_LINKS, UNCERTAIN};
+use super::ending::{Ending, NoHistory, Verdict, outcome_name};
 use crate::dynamics::OutcomeCount;
 use crate::dynamics::thrust::{EXCESS_LEVELS, MODEL_LIMIT};
 use crate::{Outcome, Scenario};
 
 /// A failed or uncertain case, as results list it.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Remark {
     /// The case, in words.
     pub case: String,
@@ -34,33 +35,35 @@ impl Remark {
 }
 
 /// Failed and uncertain cases of a study, and the steps of its histories.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Remarks {
     /// The cases that failed, with the reasons.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub failures: Vec<Remark>,
     /// The cases for which it is uncertain whether they overturn, with the reasons.
-    #[serde(rename = "uncertain_cases", skip_serializing_if = "Vec::is_empty")]
+    #[serde(
+        default,
+        rename = "uncertain_cases",
+        skip_serializing_if = "Vec::is_empty"
+    )]
     pub uncertain: Vec<Remark>,
     /// The histories of four links outside their model.
     #[serde(flatten)]
     pub(crate) model: ModelCheck,
     /// Number of histories that were computed.
-    #[serde(skip)]
     histories: usize,
     /// Number of histories among them that ended too early for a verdict.
-    #[serde(skip)]
-    incomplete: usize,
+    histories_without_verdict: usize,
     /// The longest steps of the cases, in seconds; absent if a tolerance sets the steps.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     longest_step_s: Option<StepRange>,
     /// The shortest steps of the cases, in seconds; absent if a tolerance sets the steps.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     shortest_step_s: Option<StepRange>,
 }
 
 /// The range of the steps of several histories, in seconds.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct StepRange {
     /// The smallest.
     min: f64,
@@ -100,7 +103,7 @@ impl Remarks {
     /// Counts a history with or without a verdict, and adds the lengths of its steps.
     pub(crate) fn note_history(&mut self, ending: &Ending) {
         self.histories += 1;
-        self.incomplete += usize::from(ending.verdict() == Verdict::Incomplete);
+        self.histories_without_verdict += usize::from(ending.verdict() == Verdict::Incomplete);
         self.model.note(ending.thrust_excess_ratio);
         if let Some(steps) = ending.steps {
             self.longest_step_s = StepRange::with(self.longest_step_s, steps.longest_s);
@@ -116,7 +119,7 @@ impl Remarks {
 
     /// Returns the number of histories that ended too early for a verdict, and the remedy, in words; `None` if the number is zero.
     pub(crate) fn incomplete_in_words(&self) -> Option<String> {
-        no_verdict(self.incomplete, self.histories, "histories")
+        no_verdict(self.histories_without_verdict, self.histories, "histories")
     }
 
     /// Returns the number of failed cases, the first reason, and the file that lists the others, in words; `None` if no case failed.
@@ -141,17 +144,33 @@ impl fmt::Display for Remark {
 }
 
 /// Histories of four links, and those among them whose thrust line leaves the arch too far for the model.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct ModelCheck {
     /// Number of histories of four links that are outside the model; absent for other models.
-    #[serde(rename = "outside_model", skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        rename = "outside_model",
+        skip_serializing_if = "Option::is_none"
+    )]
     pub(crate) outside: Option<usize>,
-    /// Number of histories of four links.
-    #[serde(skip)]
+    /// Number of histories of four links; absent for other models.
+    #[serde(
+        default,
+        rename = "four_link_histories",
+        skip_serializing_if = "is_zero"
+    )]
     of: usize,
-    /// Largest excess of the thrust line, over the thickness.
-    #[serde(skip)]
+    /// Largest excess of the thrust line, over the thickness; absent if it is zero, or for other models.
+    #[serde(
+        default,
+        rename = "largest_thrust_excess_ratio",
+        skip_serializing_if = "is_zero"
+    )]
     largest_ratio: f64,
+}
+
+fn is_zero<N: Default + PartialEq>(number: &N) -> bool {
+    *number == N::default()
 }
 
 impl ModelCheck {
@@ -205,39 +224,41 @@ impl ModelCheck {
     }
 }
 
-/// Summary of a study of many cases.
-#[derive(Serialize)]
-pub(crate) struct CaseSummary<'a, D> {
-    program: &'static str,
-    version: &'static str,
+/// What the reports on many cases begin with.
+#[derive(Serialize, Deserialize)]
+pub(crate) struct CaseSummary {
+    /// Name of the program.
+    program: String,
+    /// Version of the program.
+    version: String,
+    /// The scenario with all defaults.
     scenario: Value,
+    /// Warnings about unlikely numbers, limits of the model, and histories without a verdict.
     warnings: Vec<String>,
+    /// Name and checksum of each record file.
     record_checksums: Vec<String>,
-    cases: usize,
+    /// Number of cases.
+    pub(crate) cases: usize,
     #[serde(flatten)]
-    remarks: &'a Remarks,
-    #[serde(flatten)]
-    details: D,
+    pub(crate) remarks: Remarks,
 }
 
-impl<'a, D> CaseSummary<'a, D> {
-    /// Makes the summary, with warnings about the results and with details of the study.
+impl CaseSummary {
+    /// Makes the summary, with warnings about the results.
     pub(crate) fn new(
         scenario: &Scenario,
         cases: usize,
-        remarks: &'a Remarks,
+        remarks: Remarks,
         warnings: impl IntoIterator<Item = String>,
-        details: D,
     ) -> Self {
         Self {
-            program: env!("CARGO_PKG_NAME"),
-            version: env!("CARGO_PKG_VERSION"),
+            program: env!("CARGO_PKG_NAME").to_owned(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
             scenario: scenario.to_json(),
             warnings: scenario.unlikely().into_iter().chain(warnings).collect(),
             record_checksums: scenario.record_checksums(),
             cases,
             remarks,
-            details,
         }
     }
 }
@@ -258,29 +279,55 @@ fn first_of(remarks: &[Remark], file: &str) -> Option<String> {
     Some(format!("the first: {first}{listed}"))
 }
 
-/// Position of an outcome in the list of counts, and its name.
-pub(crate) type OutcomeLabel = (u8, &'static str);
+/// Number of cases with each outcome, by its name in tables.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub(crate) struct OutcomeCounts(BTreeMap<String, usize>);
 
-/// Returns the outcome of a case in words.
-pub(crate) fn outcome_label(ending: &Ending) -> OutcomeLabel {
-    match (ending.doubt(), ending.outcome) {
-        (Some(_), _) => (5, "uncertain"),
-        (None, Outcome::NeverMoved) => (0, "never moved"),
-        (None, Outcome::Vibrates) => (1, "vibrated without opening"),
-        (None, Outcome::Rest) => (2, "came to rest"),
-        (None, Outcome::Overturned(_)) => (3, "overturned"),
-        (None, Outcome::StillRocking) => (4, "still rocking"),
-        (None, Outcome::Incomplete) => (6, "incomplete"),
+/// The outcomes of cases: names in tables, and words, in the order of a sentence.
+const OUTCOME_WORDS: [(&str, &str); 10] = [
+    ("never_moved", "never moved"),
+    ("vibrates", "vibrated without opening"),
+    ("rest", "came to rest"),
+    ("overturned", "overturned"),
+    (STILL_ROCKING, "still rocking"),
+    (UNCERTAIN, "uncertain"),
+    ("incomplete", "incomplete"),
+    (CANNOT_STAND, "unable to stand"),
+    (NOT_FOUR_LINKS, "too thick for four links"),
+    (FAILED, "failed"),
+];
+const STILL_ROCKING: &str = Outcome::StillRocking.name();
+
+impl OutcomeCounts {
+    /// Counts the results of cases.
+    pub(crate) fn of<'r>(results: impl Iterator<Item = &'r Result<Ending, NoHistory>>) -> Self {
+        let mut counts = BTreeMap::new();
+        for result in results {
+            let name = match outcome_name(result) {
+                GROUND_FALLS => FAILED,
+                name => name,
+            };
+            *counts.entry(name.to_owned()).or_insert(0) += 1;
+        }
+        Self(counts)
+    }
+
+    /// Returns true if cases still rock at the end.
+    pub(crate) fn has_still_rocking(&self) -> bool {
+        self.0.contains_key(STILL_ROCKING)
     }
 }
 
-/// Returns the number of cases with each outcome, in words.
-pub(crate) fn outcome_counts(cases: impl Iterator<Item = OutcomeLabel>) -> String {
-    let mut counts = BTreeMap::new();
-    for words in cases {
-        *counts.entry(words).or_insert(0_usize) += 1;
+impl fmt::Display for OutcomeCounts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let known = OUTCOME_WORDS
+            .iter()
+            .filter_map(|(name, words)| Some((self.0.get(*name)?, words)));
+        for (index, (count, words)) in known.enumerate() {
+            let comma = if index == 0 { "" } else { ", " };
+            write!(f, "{comma}{count} {words}")?;
+        }
+        Ok(())
     }
-    let counts = counts.into_iter();
-    let parts = counts.map(|((_, words), count)| format!("{count} {words}"));
-    parts.collect::<Vec<_>>().join(", ")
 }

@@ -62,7 +62,7 @@ pub trait ReportedStudy: Study {
     /// The names of all files that its results may have, the seal last.
     const FILES: &'static [&'static str];
 
-    /// Makes files and words of all rows.
+    /// Makes the report and the other files of all rows.
     ///
     /// # Errors
     /// When a value is not finite.
@@ -86,17 +86,26 @@ pub struct Results {
 }
 
 impl Results {
-    /// Makes results of a summary, which becomes the JSON file, and of the contents of the other files, in the order of `names`.
+    /// Makes results of a report, whose JSON is a file and whose template gives the words, and of the contents of the other files, in the order of
+    /// `names`.
     ///
     /// # Errors
-    /// When a number of the summary is not finite.
+    /// When a number of the report is not finite.
     pub(super) fn new(
         names: &[&'static str],
-        summary: &impl Serialize,
+        report: &(impl Serialize + Template),
+        others: impl IntoIterator<Item = Vec<u8>>,
+    ) -> Result<Self, OutputError> {
+        Self::with_words(names, report, render(report), others)
+    }
+
+    pub(super) fn with_words(
+        names: &[&'static str],
+        report: &impl Serialize,
         words: String,
         others: impl IntoIterator<Item = Vec<u8>>,
     ) -> Result<Self, OutputError> {
-        let summary = summary_of(summary)?;
+        let summary = summary_of(report)?;
         let mut others = others.into_iter();
         let file = |name: &&'static str| {
             let contents = match name.ends_with(".json") {

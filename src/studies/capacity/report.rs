@@ -9,7 +9,7 @@ use super::held_row;
 use super::picture::draw;
 use crate::mechanics::capacity::{CurvePoint, TieEventDisplacements};
 use crate::mechanics::{Capacity, Parts as _, Sides};
-use crate::output::{Figure, Named, OutputError, column, csv, fields, filters, render};
+use crate::output::{Figure, Named, OutputError, column, csv, fields, filters};
 use crate::studies::results::Results;
 use crate::{Scenario, Sway};
 
@@ -104,7 +104,7 @@ pub fn report(
     let title = scenario.title.as_deref().unwrap_or("Capacity");
     let picture = draw(figure, title, sides);
     let others = [picture.into_bytes(), table(sides)?];
-    Results::new(&FILES, &summary, render(&summary), others)
+    Results::new(&FILES, &summary, others)
 }
 
 /// Makes the table of the points of the curves, to the right first. The secant period is empty at the unstable equilibrium.

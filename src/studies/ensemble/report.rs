@@ -215,7 +215,7 @@ impl<'a, A: 'a, D: Serialize> Findings<'a, A, D> {
         }
         Ok(Results {
             peaks: self.peaks,
-            ..Results::new(names, &summary, words.join("\n  "), contents)?
+            ..Results::with_words(names, &summary, words.join("\n  "), contents)?
         })
     }
 }

@@ -1,17 +1,30 @@
-//! Files and words of an overturning map.
+//! Report and files of an overturning map.
+
+use askama::Template;
+use serde::{Deserialize, Serialize};
 
 use super::{CellRow, NoHistory, OverturningMap, page, picture};
-use crate::Outcome;
 use crate::argument::plain;
 use crate::output::{Column, OutputError, column, csv};
 use crate::scenario::{Quantity, Scenario};
 use crate::studies::ending::columns::{self, FAILED};
 use crate::studies::run::Scales;
-use crate::studies::{
-    CaseSummary, Remark, Remarks, ReportedStudy, Results, Style, outcome_counts, outcome_label,
-};
+use crate::studies::{CaseSummary, OutcomeCounts, Remark, Remarks, ReportedStudy, Results, Style};
 
 const SUMMARY: &str = "map.json";
+
+/// Report on a map.
+#[derive(Serialize, Deserialize, Template)]
+#[template(path = "studies/map/words.txt")]
+pub struct Summary {
+    #[serde(flatten)]
+    all: CaseSummary,
+    /// Number of cells with each outcome.
+    outcomes: OutcomeCounts,
+    /// Number of cells with another outcome in a repetition, including rest instead of still rocking; absent unless cells are repeated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    other_outcomes_in_repetitions: Option<usize>,
+}
 
 impl ReportedStudy for OverturningMap<'_> {
     const FILES: &'static [&'static str] = &["map.svg", "map.html", SUMMARY, "map.csv"];
@@ -21,13 +34,18 @@ impl ReportedStudy for OverturningMap<'_> {
         let title = scenario.title.as_deref().unwrap_or("Overturning map");
         let remarks = remarks(self, &cells);
         let warnings = remarks.warnings("cells");
-        let summary = CaseSummary::new(scenario, cells.len(), &remarks, warnings, ());
+        let doubtful = cells.iter().filter(|cell| cell.is_doubtful());
+        let report = Summary {
+            outcomes: OutcomeCounts::of(cells.iter().map(|cell| &cell.result)),
+            other_outcomes_in_repetitions: self.repeat.then(|| doubtful.count()),
+            all: CaseSummary::new(scenario, cells.len(), remarks, warnings),
+        };
         let others = [
             picture::draw(title, self, &cells, style).into_bytes(),
             page::page(title, self, &cells, style).into_bytes(),
             csv(self.columns(), &cells)?,
         ];
-        Results::new(Self::FILES, &summary, words(self, &cells, &remarks), others)
+        Results::new(Self::FILES, &report, others)
     }
 }
 
@@ -68,31 +86,6 @@ fn remarks(map: &OverturningMap<'_>, cells: &[CellRow]) -> Remarks {
         }
     }
     remarks
-}
-
-/// Returns the number of cells with each outcome, and remarks on doubtful and failed cells, in words.
-fn words(map: &OverturningMap<'_>, cells: &[CellRow], remarks: &Remarks) -> String {
-    let words = |cell: &CellRow| match &cell.result {
-        Ok(ending) if ending.outcome_name() == Outcome::StillRocking.name() => {
-            (4, "still rocking at the end, which counts as survived")
-        }
-        Ok(ending) => outcome_label(ending),
-        Err(NoHistory::CannotStand) => (7, "unable to stand"),
-        Err(NoHistory::NotFourLinks) => (8, "too thick for four links"),
-        Err(NoHistory::GroundFalls(_) | NoHistory::Failed(_)) => (9, "failed"),
-    };
-    let counts = outcome_counts(cells.iter().map(words));
-    let mut lines = vec![format!("{} cells: {counts}", cells.len())];
-    if map.repeat {
-        lines.push(format!(
-            "another outcome in a repetition, including rest instead of still rocking: {} cells",
-            cells.iter().filter(|cell| cell.is_doubtful()).count()
-        ));
-    }
-    lines.extend(remarks.warnings("cells"));
-    lines.extend(remarks.uncertain_in_words(SUMMARY));
-    lines.extend(remarks.failed_in_words(SUMMARY));
-    lines.join("\n  ")
 }
 
 impl Style {

@@ -3,7 +3,7 @@
 use super::picture::draw;
 use super::{SpreadPath, Stage, Summary};
 use crate::mechanics::Sides;
-use crate::output::{Cell, Figure, OutputError, Scene, column, csv, list, render, several};
+use crate::output::{Cell, Figure, OutputError, Scene, column, csv, list, several};
 use crate::scenario::Scenario;
 use crate::studies::results::Results;
 
@@ -23,7 +23,7 @@ pub fn report(
     let title = scenario.title.as_deref().unwrap_or("Springings that move");
     let picture = draw(figure, title, spread, &scene);
     let others = [picture.into_bytes(), table(spread)?];
-    Results::new(&FILES, spread, render(spread), others)
+    Results::new(&FILES, spread, others)
 }
 
 /// Makes the table of all stages of all paths.

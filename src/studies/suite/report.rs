@@ -12,9 +12,7 @@ use crate::scenario::{Measure, shown};
 use crate::studies::ending::columns::{self, FAILED, yes};
 use crate::studies::quotable::{self, ModelAnswer};
 use crate::studies::threshold::survival::{self, Survival};
-use crate::studies::{
-    Remarks, Results, Verdict, outcome_counts, outcome_label, rounded, rounded_down,
-};
+use crate::studies::{OutcomeCounts, Remarks, Results, Verdict, rounded, rounded_down};
 
 const FRAGILITY: &str = "fragility.json";
 
@@ -169,7 +167,7 @@ impl Heading {
         Ok(Results {
             peaks: ida::rotations_rad(&results.cases),
             answer: Some(answer),
-            ..Results::new(&FILES, &summary, words, others)?
+            ..Results::with_words(&FILES, &summary, words, others)?
         })
     }
 
@@ -221,12 +219,11 @@ impl Heading {
         measures: &[Efficiency],
         remarks: &Remarks,
     ) -> String {
-        let outcome = |case: &CaseRow| case.result.as_ref().map_or((5, "failed"), outcome_label);
         let mut lines = vec![format!(
             "{} cases of {}: {}",
             results.cases.len(),
             results.records_in_words(),
-            outcome_counts(results.cases.iter().map(outcome))
+            OutcomeCounts::of(results.cases.iter().map(|case| &case.result))
         )];
         let column = self.measure.column();
         let curves = results.curves().into_iter();

@@ -167,7 +167,7 @@ pub fn report(
     };
     let picture = picture::draw(figure, title, peak_g, factors, thresholds);
     let others = [picture.into_bytes(), table(&summary.models)?];
-    Results::new(&FILES, &summary, words, others)
+    Results::with_words(&FILES, &summary, words, others)
 }
 
 /// Makes the table of the samples, ordered by model, then by factor.

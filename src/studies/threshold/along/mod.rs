@@ -131,7 +131,7 @@ impl<'a> Along<'a> {
 }
 
 /// The threshold for a value, for the table and the summary.
-#[derive(Serialize)]
+#[derive(Serialize, Deserialize)]
 struct Point {
     /// The value of the key.
     value: f64,
@@ -158,7 +158,7 @@ struct Point {
     /// Largest excess of the thrust line of four links at `overturns_from_factor`, or at the largest tried factor without it; null for other models.
     thrust_excess_ratio: Option<f64>,
     /// Reason why the threshold is unknown.
-    why_not: Option<&'static str>,
+    why_not: Option<String>,
 }
 
 impl Point {
@@ -181,7 +181,7 @@ impl Point {
             no_impact_factor,
             no_impact_g: in_g(no_impact_factor),
             thrust_excess_ratio: edge.and_then(|edge| edge.thrust_excess_ratio),
-            why_not: row.edge.as_ref().err().map(NoAnswer::name),
+            why_not: row.edge.as_ref().err().map(|why| why.name().to_owned()),
         }
     }
 }

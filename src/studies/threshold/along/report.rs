@@ -1,68 +1,82 @@
-//! Files and words of thresholds along a key.
+//! Report and files of thresholds along a key.
 
-use serde::Serialize;
+use askama::Template;
+use serde::{Deserialize, Serialize};
 
 use super::{Along, AlongOptions, AlongRow, KeyRange, Point, picture};
 use crate::argument::plain;
-use crate::output::{OutputError, column, csv, fields};
+use crate::output::{OutputError, column, csv, fields, filters};
 use crate::studies::threshold::{Factors, rounded, rounded_down};
 use crate::studies::{
     CaseSummary, ModelCheck, NoAnswer, Remark, Remarks, ReportedStudy, Results, Style, no_verdict,
 };
 
-/// The part of the summary that is specific to thresholds along a key.
-#[derive(Serialize)]
-struct Details<'a> {
+/// Report on the threshold for each value of a key.
+#[derive(Serialize, Deserialize, Template)]
+#[template(path = "studies/threshold/along/words.txt")]
+pub struct Summary {
+    #[serde(flatten)]
+    all: CaseSummary,
+    /// Number of values without a verdict, because their histories end too early.
+    values_without_verdict: usize,
     /// The key and its values.
-    along: &'a KeyRange,
+    along: KeyRange,
     /// The tried factors.
-    factors: &'a Factors,
+    factors: Factors,
+    /// True if the factor that overturns the structure before any impact was requested.
+    no_impact: bool,
     /// The threshold for each value.
-    values: &'a [Point],
+    values: Vec<Point>,
 }
 
+const SUMMARY: &str = "threshold_along.json";
+
 impl ReportedStudy for Along<'_> {
-    const FILES: &'static [&'static str] = &[
-        "threshold_along.svg",
-        "threshold_along.json",
-        "threshold_along.csv",
-    ];
+    const FILES: &'static [&'static str] = &["threshold_along.svg", SUMMARY, "threshold_along.csv"];
 
     fn results(&self, rows: Vec<AlongRow>, style: Style) -> Result<Results, OutputError> {
-        let (rows, figure) = (&rows[..], style.figure);
-        let points: Vec<Point> = rows.iter().map(Point::of).collect();
-        let remarks = self.remarks(rows);
-        let incomplete = rows
-            .iter()
-            .filter(|row| row.edge == Err(NoAnswer::Incomplete));
-        let no_verdict = no_verdict(incomplete.count(), rows.len(), "values");
-        let AlongOptions { along, factors, .. } = &self.options;
-        let details = Details {
+        let incomplete = |row: &&AlongRow| row.edge == Err(NoAnswer::Incomplete);
+        let remarks = self.remarks(&rows);
+        let values_without_verdict = rows.iter().filter(incomplete).count();
+        let limits = limits(&remarks, values_without_verdict, rows.len());
+        let AlongOptions {
             along,
             factors,
-            values: &points,
+            no_impact,
+        } = self.options.clone();
+        let report = Summary {
+            all: CaseSummary::new(self.scenario, rows.len(), remarks, limits),
+            values_without_verdict,
+            along,
+            factors,
+            no_impact,
+            values: rows.iter().map(Point::of).collect(),
         };
-        let limits = [remarks.model.in_words("thresholds"), no_verdict];
-        let limits = limits.into_iter().flatten();
-        let cases = rows.len();
-        let summary = CaseSummary::new(self.scenario, cases, &remarks, limits.clone(), details);
-        let key = along.key.as_str();
+        let key = report.along.key.as_str();
         let mut columns = vec![column(key, |point: &Point| point.value)];
         columns.extend(fields!(
             |point: &Point| point => survives_up_to_factor, survives_up_to_g, overturns_from_factor,
             overturns_from_g, at_most, uncertain_from_factor, tried_to_factor, failed_beyond, no_impact_factor, no_impact_g,
-            thrust_excess_ratio, why_not
+            thrust_excess_ratio
         ));
+        columns.push(column("why_not", |point: &Point| point.why_not.clone()));
         let title = self.scenario.title.as_deref();
         let title = title.unwrap_or("Threshold of overturning");
-        let picture = picture::draw(figure, title, key, &points);
-        let mut words = vec![self.first_words(&points)];
-        words.extend(limits);
-        words.extend(remarks.failed_in_words("threshold_along.json"));
-        words.push(factors.in_words());
-        let others = [picture.into_bytes(), csv(columns, &points)?];
-        Results::new(Self::FILES, &summary, words.join("\n  ") + "\n", others)
+        let picture = picture::draw(style.figure, title, key, &report.values);
+        let others = [picture.into_bytes(), csv(columns, &report.values)?];
+        Results::new(Self::FILES, &report, others)
     }
+}
+
+/// Returns limits of the model, and the number of values without a verdict, in words.
+fn limits(
+    remarks: &Remarks,
+    without_verdict: usize,
+    values: usize,
+) -> impl Iterator<Item = String> + use<> {
+    let no_verdict = no_verdict(without_verdict, values, "values");
+    let limits = [remarks.model.in_words("thresholds"), no_verdict];
+    limits.into_iter().flatten()
 }
 
 impl Along<'_> {
@@ -83,9 +97,12 @@ impl Along<'_> {
         }
         remarks
     }
+}
 
-    fn first_words(&self, points: &[Point]) -> String {
-        let along = &self.options.along;
+impl Summary {
+    /// Returns the ranges of the thresholds, and the numbers of values without one, in words.
+    fn ranges(&self) -> String {
+        let points = &self.values;
         // The lowest and the highest acceleration, with their values.
         let range = |what: &str, of: fn(&Point) -> Option<f64>, rounded: fn(f64) -> String| {
             let known = points.iter();
@@ -140,15 +157,8 @@ impl Along<'_> {
                 |point| point.failed_beyond,
             ),
             count("no verdict", |point| point.why_not.is_some()),
-            self.options.no_impact.then(no_impact),
+            self.no_impact.then(no_impact),
         ];
-        format!(
-            "{} values of {} from {} to {}: {}",
-            points.len(),
-            along.key,
-            plain(along.from),
-            plain(along.to),
-            parts.into_iter().flatten().collect::<Vec<_>>().join("; ")
-        )
+        parts.into_iter().flatten().collect::<Vec<_>>().join("; ")
     }
 }
