@@ -74,7 +74,7 @@ pub trait ReportedStudy: Study {
 pub struct Results {
     /// Names and contents of the files. A folder that contains the last file is complete.
     pub files: Vec<(&'static str, Vec<u8>)>,
-    /// The summary in words.
+    /// The report in words: the first line is not indented, the others are, and the last has no line break.
     pub words: String,
     /// The summary as JSON.
     pub summary: Value,
@@ -96,7 +96,8 @@ impl Results {
         report: &(impl Serialize + Template),
         others: impl IntoIterator<Item = Vec<u8>>,
     ) -> Result<Self, OutputError> {
-        Self::with_words(names, report, render(report), others)
+        let words = render(report).trim_end().to_owned();
+        Self::with_words(names, report, words, others)
     }
 
     pub(super) fn with_words(

@@ -15,7 +15,7 @@ use self::fragility::{Fragility, NoFit, Observation, by_intensity, fit};
 pub use self::heading::Heading;
 use self::strength::Strength;
 use super::ending::{Ending, NoHistory, Verdict, check_finite};
-use super::threshold::survival::Survival;
+use super::threshold::survival::{Survival, VerdictRange};
 use super::{ReportedStudy, Results, Study, Style};
 use crate::bisection::{Width, bisect};
 use crate::output::OutputError;
@@ -476,8 +476,12 @@ impl SuiteFragility {
             survival.survives_up_to = safe;
             // If the bisection met levels without a certain verdict, they are a range of their own.
             let doubtful = safe.filter(|safe| lowest > safe * (1.0 + 2.0 * EDGE_WIDTH));
-            let doubtful = doubtful.map(|safe| (Some(Verdict::Uncertain), [safe, lowest]));
-            survival.runs.splice(1..1, doubtful);
+            let doubtful = doubtful.map(|safe| VerdictRange {
+                verdict: Some(Verdict::Uncertain),
+                from: safe,
+                to: lowest,
+            });
+            survival.ranges.splice(1..1, doubtful);
         }
         survival
     }
