@@ -10,6 +10,7 @@ pub mod strength;
 use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 
 use self::fragility::{Fragility, NoFit, Observation, by_intensity, fit};
 pub use self::heading::Heading;
@@ -148,8 +149,8 @@ impl Study for RecordSuite<'_> {
         Some(self.scenario)
     }
 
-    fn warnings(&self) -> Vec<String> {
-        self.scenario.unlikely()
+    fn options(&self) -> Value {
+        json!(Heading::new(self.scenario, self.suite))
     }
 
     fn count(&self) -> usize {
@@ -207,9 +208,7 @@ impl ReportedStudy for RecordSuite<'_> {
     const FILES: &'static [&'static str] = &report::FILES;
 
     fn results(&self, rows: Vec<CaseRow>, style: Style) -> Result<Results, OutputError> {
-        let heading = Heading::of_resolved(&self.scenario.to_toml(), self.scenario.unlikely());
-        let heading = heading.expect("the scenario has a suite");
-        heading.report(rows, style.figure)
+        Heading::new(self.scenario, self.suite).report(rows, style.figure)
     }
 }
 
@@ -296,7 +295,7 @@ pub struct FragilityRow {
 }
 
 /// The number of cases with each outcome.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Counts {
     /// Number of cases with a verdict.
     pub cases: usize,
