@@ -391,7 +391,9 @@ impl<'s> Session<'s> {
         let Some(own) = self.compute(kind, scenarios, place)? else {
             return Ok(None);
         };
-        let models = of_samples.iter().map(|one| (one.model[1], &one.results));
+        // Of the studies of samples, only that of histories has rotations.
+        let compared = of_samples.iter().filter(|_| kind.is_history);
+        let models = compared.map(|one| (one.model[1], &one.results));
         let title = scenarios[0].title.as_deref();
         Ok(Some(Found {
             compared: self.compare(kind, title, models, place)?,
@@ -410,7 +412,7 @@ impl<'s> Session<'s> {
         place: Option<&Destination>,
     ) -> Result<Option<Results>, Failure> {
         let models = models.map(|(label, results)| (label, &results.peaks[..]));
-        let models: Vec<(&str, &[f64])> = models.filter(|(_, all)| !all.is_empty()).collect();
+        let models: Vec<(&str, &[f64])> = models.collect();
         let (2.., Some(place)) = (models.len(), place) else {
             return Ok(None);
         };
