@@ -285,7 +285,7 @@ impl<'s> Session<'s> {
         let (mut words, mut of_models) = (String::new(), Vec::new());
         let of_samples = scenarios.iter().filter(|one| one.uncertain.is_some());
         for (scenario, place) in of_samples.flat_map(|one| Some(one).zip(place)) {
-            let model = scenario.motion.label();
+            let model = scenario.motion.kind.label;
             let place = place.of_model(scenario, several).within(samples.name);
             let scenario = slice::from_ref(scenario);
             let Some(found) = self.compute(samples, scenario, Some(&place))? else {
@@ -308,7 +308,7 @@ impl<'s> Session<'s> {
         };
         let summary = &mut results.summary;
         for (scenario, (_, found)) in scenarios.iter().zip(&of_models) {
-            let name = scenario.motion.hinges().name();
+            let name = scenario.motion.kind.option;
             let summary = if several {
                 &mut summary[name]
             } else {

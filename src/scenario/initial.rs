@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::hinges::Hinges;
+use super::model_kind::ModelKind;
 use super::prelude::*;
 use super::structure::Structure;
 use crate::argument::rounded_down;
@@ -14,11 +14,11 @@ const ROTATION_RAD: Number = between(Included(Initial::MIN_ROTATION_RAD), Exclud
 pub(super) fn read(
     table: &mut Table<'_>,
     structure: Option<&Structure>,
-    hinges: Hinges,
+    kind: &ModelKind,
 ) -> ReadResult<Initial> {
     let wrong = "releases rigid blocks about a hinge, and elastic joints have none: they start from rest under the weight; leave \
                  [initial] out";
-    table.refuse_all(!hinges.model().is_rigid, wrong)?;
+    table.refuse_all(!kind.is_rigid, wrong)?;
     let initial = Initial {
         sway: table.required("sway", &one_of(Sway::ALL)),
         rotation_rad: table.required("rotation_rad", &ROTATION_RAD),

@@ -32,14 +32,14 @@ mod elastic_joints;
 mod error;
 mod free_hinges;
 mod ground;
-mod hinges;
 mod impact;
 mod initial;
 mod input_file;
 mod listing;
 mod map;
 mod masonry;
-mod motion;
+mod model_kind;
+mod models;
 mod prelude;
 mod record;
 mod relation;
@@ -70,16 +70,17 @@ use crate::{
 };
 pub use assignment::Assignment;
 use document::Entries;
-pub use elastic_joints::ElasticTable;
+pub use elastic_joints::ELASTIC_JOINTS;
 pub use error::{ScenarioError, ScenarioErrors, TextPosition};
-pub use free_hinges::FreeTable;
+pub use free_hinges::FREE_HINGES;
 pub use ground::{Ground, PulseGround};
-pub use hinges::{Hinges, MODELS, ModelEntry};
+pub use impact::FOUR_LINKS;
 pub use input_file::InputFile;
 use input_file::InputFiles;
 pub(crate) use input_file::sha256;
 pub use map::{Axis, Map, Quantity};
-pub use motion::Motion;
+pub use model_kind::{ModelKind, ModelOptions, Site};
+pub use models::{MODELS, MotionModel};
 use prelude::*;
 use record::KnownRecords;
 pub use record::{
@@ -105,11 +106,11 @@ pub use verify::{
 
 /// Changes that are made to a scenario while it is read.
 ///
-/// If `hinges` is set, tables of other models are ignored: free hinges ignore `[impact]`, and four links ignore `[free_hinges]`.
+/// If `model` is set, tables of other models are ignored: free hinges ignore `[impact]`, and four links ignore `[free_hinges]`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ReadOptions<'a> {
     /// The model of motion; `None` if the tables of the scenario choose it.
-    pub hinges: Option<Hinges>,
+    pub model: Option<&'static ModelKind>,
     /// Values that replace those in the text. If a key is set twice, the later value counts.
     pub set: &'a [Assignment],
     /// True for static analysis. If files of `[ground]` are missing or faulty, the ground does not move; drums and moved springings need no
@@ -130,7 +131,7 @@ pub struct Scenario {
     /// Ties of the structure, with the keys of the file.
     pub ties: Vec<TieTable>,
     /// The model of motion.
-    pub motion: Motion,
+    pub motion: MotionModel,
     /// True if the text has an `[impact]` that the model of motion ignores.
     ignores_impact: bool,
     /// The ground motion; `None` if the ground does not move.
@@ -216,7 +217,7 @@ impl Scenario {
 
     /// Returns the message about a table that the model of motion ignores; `None` if it ignores no table of the file.
     pub fn ignored(&self) -> Option<&'static str> {
-        let message = self.motion.hinges().model().ignored;
+        let message = self.motion.kind.ignored;
         message.filter(|_| self.ignores_impact)
     }
 }
@@ -245,7 +246,7 @@ impl Scenario {
     pub fn schema() -> Value {
         // With a set model, tables of several models are allowed together.
         let options = ReadOptions {
-            hinges: Some(Hinges::Four),
+            model: Some(&FOUR_LINKS),
             ..ReadOptions::default()
         };
         let mut schema = table::describe(|table| Self::read_table(table, &[], &options));
@@ -280,23 +281,20 @@ impl Scenario {
         options: &ReadOptions<'_>,
     ) -> ReadResult<Self> {
         let title = table.optional("title", &text());
-        let motion = motion::Tables::read(table, options.hinges, options.statics);
-        let hinges = motion.hinges;
+        let motion = models::Tables::read(table, options.model, options.statics);
+        let kind = motion.kind;
         let simulation = table.table_or_defaults("simulation", Simulation::read);
         let simulated = simulation.as_ref().ok();
         let gravity_m_s2 = simulated.map(|it| it.gravity_m_s2);
-        let built = Structure::read(table, hinges, gravity_m_s2);
+        let built = Structure::read(table, kind.has_joints, gravity_m_s2);
         let structure = built.as_ref().ok().map(|(structure, _)| structure);
         let known = (known, gravity_m_s2, options.statics);
         let ground = GroundInput::read(table, known, options.statics);
-        let mut motion = motion.complete(table);
-        if let (Ok((Motion::ElasticJoints(joints), _)), Some(it)) = (&mut motion, gravity_m_s2) {
-            joints.gravity_m_s2 = it;
-        }
+        let motion = motion.complete(table, gravity_m_s2);
         let right_foot = ground.as_ref().ok().and_then(|it| it.right_foot.as_ref());
-        let suits = right_foot.map_or(Ok(()), |it| it.suits(table, structure, hinges));
-        let initial = table.given_table("initial", |table| initial::read(table, structure, hinges));
-        let moved = (hinges, motion.as_ref().ok().map(|(motion, _)| motion));
+        let suits = right_foot.map_or(Ok(()), |it| it.suits(table, structure, kind));
+        let initial = table.given_table("initial", |table| initial::read(table, structure, kind));
+        let moved = (kind, motion.as_ref().ok().map(|(motion, _)| motion));
         let map = table.given_table("map", |table| Map::read(table, structure, moved));
         let suite = table.given_table("suite", |table| Suite::read(table, simulated));
         let verify = table.given_table("verify", |table| Verify::read(table, gravity_m_s2));
@@ -309,11 +307,8 @@ impl Scenario {
         }
         let ((motion, ignores_impact), (structure, ties)) = (motion?, built?);
         let shaken_s = ground.as_ref().map_or(0.0, |it| it.motion.end_s());
-        let until = simulated.map(|simulation| {
-            let end_s = simulation.end_s(shaken_s, structure.size_m());
-            (simulation.gravity_m_s2, end_s)
-        });
-        motion.check(table, &structure, until)?;
+        let end_s = simulated.map(|it| it.end_s(shaken_s, structure.size_m()));
+        motion.check(table, &structure, end_s)?;
         initial::suits(table, !ties.is_empty(), motion.supports().is_some())?;
         let (given_shape, ground) = (Circular::given(table), ground?);
         let mut certain = Self {
@@ -407,22 +402,27 @@ impl Scenario {
     /// Makes the model of motion of the structure.
     ///
     /// # Errors
-    /// As [`Motion::model`].
+    /// As [`MotionModel::model`].
     pub fn model(&self) -> Result<Box<dyn Model>, ModelError> {
-        self.motion.model(&self.structure)
+        let MotionModel { options, site, .. } = &self.motion;
+        options.model(&self.structure, site)
     }
 
     /// Makes models of this structure with other stiffness and contact, and with rigid joints; empty unless joints are elastic.
     ///
     /// # Errors
-    /// As [`Motion::model`].
+    /// As [`MotionModel::model`].
     pub fn variations(&self) -> Result<Vec<Variation>, ModelError> {
-        self.motion.variations(&self.structure)
+        let MotionModel { options, site, .. } = &self.motion;
+        options.variations(&self.structure, site)
     }
 
-    /// Returns the name of the model of motion in results.
-    pub const fn model_name(&self) -> &'static str {
-        self.motion.name(&self.structure)
+    /// Returns the name of the model of motion in results; four links of a column are a `column`.
+    pub fn model_name(&self) -> &'static str {
+        match self.motion.kind.has_joints || self.structure.thrusts() {
+            true => self.motion.kind.name,
+            false => "column",
+        }
     }
 
     /// Makes the model of mechanisms of one degree of freedom, even if the scenario uses another model.
@@ -570,9 +570,9 @@ impl Scenario {
             ("uncertain", json!(self.uncertain)),
         ];
         // The options of rows of blocks come after the structure, those of mechanisms after the ground.
-        let has_joints = self.motion.hinges().has_joints();
-        let place = if has_joints { 1 } else { 3 };
-        tables.insert(place, (self.motion.table_name(), self.motion.table()));
+        let kind = self.motion.kind;
+        let place = if kind.has_joints { 1 } else { 3 };
+        tables.insert(place, (kind.table, self.motion.options.to_json()));
         let structure = json!(self.structure);
         let mut all = Entries::from_iter([("title".to_owned(), json!(self.title))]);
         all.extend(structure.as_object().cloned().unwrap_or_default());

@@ -9,7 +9,7 @@
 //! file = "right.at2"
 //! ```
 
-use super::hinges::Hinges;
+use super::model_kind::ModelKind;
 use super::prelude::*;
 use super::record::{KnownRecords, Record};
 use super::structure::Structure;
@@ -57,9 +57,9 @@ impl RightFoot {
         &self,
         outer: &mut Table<'_>,
         structure: Option<&Structure>,
-        hinges: Hinges,
+        kind: &ModelKind,
     ) -> ReadResult<()> {
-        if !hinges.has_joints() {
+        if !kind.has_joints {
             let wrong = format!(
                 "cannot be followed: {FEET_NEED_JOINTS}; choose free hinges or elastic joints, or leave it out"
             );

@@ -19,10 +19,10 @@ use super::rule::{Rule, did_you_mean};
 
 /// Error of a value that could not be read; its reason is recorded as a [`Fault`].
 #[derive(Clone, Copy, Debug)]
-pub(super) struct FaultRecorded;
+pub struct FaultRecorded;
 
 /// A value, or [`FaultRecorded`] if a fault was recorded.
-pub(super) type ReadResult<T> = Result<T, FaultRecorded>;
+pub type ReadResult<T> = Result<T, FaultRecorded>;
 
 /// Function that reads the keys of a table.
 pub(super) trait Reader<T>: FnOnce(&mut Table<'_>) -> ReadResult<T> {}
@@ -74,7 +74,7 @@ fn an_object() -> Value {
 /// A table of the file, with its faults.
 ///
 /// The keys that have been read are the allowed keys.
-pub(super) struct Table<'a> {
+pub struct Table<'a> {
     /// Name of the table in messages.
     name: String,
     /// Number of the text with the header of the table, and offset of the header.

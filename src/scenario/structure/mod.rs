@@ -10,7 +10,6 @@ use std::f64::consts::FRAC_PI_2;
 
 use thiserror::Error;
 
-use super::hinges::Hinges;
 use super::masonry::{self, Additions};
 use super::prelude::*;
 use super::span::Circular;
@@ -53,13 +52,12 @@ pub enum ModelError {
 }
 
 impl Structure {
-    /// Reads the structure for a model of motion, with its ties.
+    /// Reads the structure with its ties, for a model of motion with joints (`free_hinges`) or without.
     pub(super) fn read(
         table: &mut Table<'_>,
-        hinges: Hinges,
+        free_hinges: bool,
         gravity_m_s2: Option<f64>,
     ) -> ReadResult<(Self, Vec<TieTable>)> {
-        let free_hinges = hinges.has_joints();
         let beside = Additions::read(table);
         let alone = beside.as_ref().is_ok_and(Additions::is_empty);
         let arch = table.table("arch", |table| read_arch(table, free_hinges, alone));

@@ -2,7 +2,7 @@
 
 use crate::dynamics::peak::Peak;
 use crate::dynamics::thrust::{EXCESS_LEVELS, MODEL_LIMIT};
-use crate::scenario::{Hinges, Scenario, Structure};
+use crate::scenario::{Scenario, Structure};
 use crate::{Model, Outcome, Summary as History};
 
 /// Rotations up to this value are printed as zero: such a block slides without rocking.
@@ -70,7 +70,7 @@ pub(super) fn coefficient(friction: f64, decimals: usize) -> String {
 pub(super) fn friction_condition(scenario: &Scenario, history: &History) -> Option<String> {
     let needed = history.thrust.as_ref()?.required_friction();
     let [low, high] = STONE_FRICTION;
-    if scenario.motion.friction_coefficient().is_some() || needed <= low {
+    if scenario.motion.options.friction_coefficient().is_some() || needed <= low {
         return None;
     }
     Some(if needed > high {
@@ -97,7 +97,7 @@ fn quality(excess_ratio: f64, up_to_peak: Option<f64>) -> [&'static str; 2] {
 /// Returns the quality of four links of an arch that rocked.
 pub(super) fn four_link_quality(scenario: &Scenario, history: &History) -> Option<String> {
     let is_arch = scenario.structure.thrusts();
-    let four = scenario.motion.hinges() == Hinges::Four && is_arch;
+    let four = !scenario.motion.kind.has_joints && is_arch;
     let thrust = history.thrust.as_ref().filter(|_| four)?;
     thrust.shares_within()?;
     let excess_ratio = thrust.largest_excess.value;

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use super::ModelResults;
 use super::caveats::vibrates_since_s;
 use crate::dynamics::variation::VariationResult;
+use crate::scenario::MODELS;
 use crate::{Outcome, Summary as History, Verdict};
 
 /// Returns a table of the runs of one structure with different models of motion, followed by the conclusion.
@@ -53,7 +54,10 @@ fn outcome_words(results: &ModelResults<'_>) -> String {
 
 /// Returns the differences between the model with the fewest assumptions and the others.
 fn conclusion(runs: &[ModelResults<'_>]) -> String {
-    let rank = |results: &ModelResults<'_>| results.run.scenario.motion.hinges() as usize;
+    let rank = |results: &ModelResults<'_>| {
+        let kind = results.run.scenario.motion.kind;
+        MODELS.iter().position(|model| *model == kind)
+    };
     let best = runs.iter().max_by_key(|results| rank(results));
     let others = best.into_iter().flat_map(|best| {
         let others = runs.iter().filter(|results| rank(results) != rank(best));

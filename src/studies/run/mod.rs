@@ -52,7 +52,7 @@ use crate::dynamics::{FallEnd, Repeatability};
 use crate::output::{
     Figure, Folder, OutputError, Scene, Subject, TableWriter, pretty, render, summary_of,
 };
-use crate::scenario::{Hinges, Scenario};
+use crate::scenario::{ModelKind, Scenario};
 use crate::{Event, Model, OpenHinge, Pose, Recorder, Sample, Summary as History, Sway, Verdict};
 
 const ROTATIONS: &str = "rotations.csv";
@@ -128,7 +128,7 @@ struct Run<'a> {
     options: &'a RunOptions,
     figure: Figure,
     /// The models of motion of all runs whose words are printed together.
-    all_models: &'a [Hinges],
+    all_models: &'a [&'static ModelKind],
     scales: Option<Scales>,
     points: ObservedPoints,
 }
@@ -154,8 +154,8 @@ pub fn results(
     mut rotations: RotationsOutput<'_>,
     watch: Watch<'_>,
 ) -> Result<Results, StudyError> {
-    let all_models = scenarios.iter().map(|one| one.motion.hinges());
-    let all_models: Vec<Hinges> = all_models.collect();
+    let all_models = scenarios.iter().map(|one| one.motion.kind);
+    let all_models: Vec<_> = all_models.collect();
     let runs = scenarios.iter();
     let runs = runs.map(|one| Run::new(one, options, figure, &all_models));
     let runs: Result<Vec<Run<'_>>, String> = runs.collect();
@@ -180,8 +180,8 @@ pub fn results(
     results.summary["to_quote"] = to_quote.into();
     for one in &mut all {
         let _ = write!(results.words, "{}\n{}", one.run.name(), one.words);
-        let model = one.run.scenario.motion.hinges();
-        results.summary[model.name()] = one.summary.take();
+        let model = one.run.scenario.motion.kind;
+        results.summary[model.option] = one.summary.take();
     }
     if let Some(folder) = &all[0].folder {
         results.files = vec![(OVERLAY, overlay(&all).into_bytes())];
@@ -209,9 +209,9 @@ impl<'a> Run<'a> {
         scenario: &'a Scenario,
         options: &'a RunOptions,
         figure: Figure,
-        all_models: &'a [Hinges],
+        all_models: &'a [&'static ModelKind],
     ) -> Result<Self, String> {
-        if options.dimensionless && scenario.motion.hinges().has_joints() {
+        if options.dimensionless && scenario.motion.kind.has_joints {
             let why_not = "--dimensionless goes with four links and columns: free hinges have no unstable equilibrium to measure by";
             return Err(why_not.to_owned());
         }
@@ -238,7 +238,7 @@ impl<'a> Run<'a> {
 
     /// The label of its model.
     fn name(&self) -> &'static str {
-        self.scenario.motion.label()
+        self.scenario.motion.kind.label
     }
 
     /// The files that it writes, the seal last.

@@ -5,7 +5,7 @@ use serde_json::Value;
 use super::{CaseRow, SuiteFragility};
 use crate::argument::plain;
 use crate::output::{Figure, Scale};
-use crate::scenario::{Hinges, Measure, Spacing, Spectral};
+use crate::scenario::{FOUR_LINKS, MODELS, Measure, ModelKind, Spacing, Spectral};
 
 /// The parts of a scenario that the report of its suite needs. They come from the text of the resolved scenario, so that `merge` needs no record
 /// files.
@@ -36,10 +36,10 @@ impl Heading {
         })
     }
 
-    pub(super) fn hinges(&self) -> Hinges {
-        let mut rows = [Hinges::Elastic, Hinges::Free].into_iter();
-        let own = rows.find(|hinges| self.scenario.get(hinges.model().table).is_some());
-        own.unwrap_or(Hinges::Four)
+    pub(super) fn model(&self) -> &'static ModelKind {
+        let mut models = MODELS.into_iter().rev();
+        let own = models.find(|model| self.scenario.get(model.table).is_some());
+        own.unwrap_or(&FOUR_LINKS)
     }
 
     pub(super) fn title(&self) -> &str {

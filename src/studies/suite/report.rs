@@ -200,7 +200,7 @@ impl Heading {
             }
         });
         let is_arch = self.scenario.get("column").is_none();
-        ModelAnswer::new(self.hinges(), is_arch, excess_ratio, answer)
+        ModelAnswer::new(self.model(), is_arch, excess_ratio, answer)
     }
 
     /// Returns the failed and uncertain cases among those that count, with the reasons.
@@ -308,7 +308,7 @@ impl Heading {
             column("peak_g", |case: &CaseRow| case.peak_g),
         ];
         all.extend(columns::columns(
-            self.hinges().has_joints(),
+            self.model().has_joints,
             |case: &CaseRow| case.result.as_ref().map_err(|_| FAILED),
         ));
         all
