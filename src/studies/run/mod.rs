@@ -26,6 +26,7 @@ mod words;
 use std::fmt::Write as _;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
+use std::time::Duration;
 use std::{io, mem};
 
 use nalgebra::Vector2;
@@ -46,6 +47,7 @@ pub use self::words::heading;
 use self::words::{NotableImpacts, VerdictLine, Words};
 use super::quotable::{self, ModelAnswer};
 use super::{Progress, Results, RunnerError, StudyError, Watch};
+use crate::clock;
 use crate::dynamics::repeatability::Repetitions;
 use crate::dynamics::variation::Variations;
 use crate::dynamics::{FallEnd, Repeatability};
@@ -619,6 +621,10 @@ impl Recorder for RunRecorder<'_, '_> {
         let drawings = &self.drawings;
         let shows_structure = drawings.film.is_some() || drawings.snapshots.is_some();
         drawings.report.is_some() || shows_structure
+    }
+
+    fn clock(&self) -> Option<Duration> {
+        clock::since_1970()
     }
 
     fn step(&mut self, time_s: f64, poses: &[Pose], hinges: &[OpenHinge]) {

@@ -1,6 +1,6 @@
 //! Driver that moves a row by a stepper, and reports its motion.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use nalgebra::Vector2;
 
@@ -203,7 +203,8 @@ where
     let mut marks = Marks::new(settings, stepper.course().time);
     let mut sampled_s = None;
     let samples_are_made = settings.output_step_s.is_some() && stepper.course().has_recorder();
-    let mut longest_step = samples_are_made.then_some(Duration::ZERO);
+    let now = |stepper: &S| stepper.course().recorder.as_ref()?.clock();
+    let mut longest_step = now(&stepper).map(|_| Duration::ZERO);
     let mut poses = Vec::new();
     let (outcome, outcome_time_s) = loop {
         let course = stepper.course();
@@ -222,9 +223,14 @@ where
             };
             marks.settings.end_s = end_s;
         }
-        let begun = longest_step.map(|_| Instant::now());
+        let begun = now(&stepper);
         stepper.step(marks.next_s())?;
-        longest_step = longest_step.max(begun.map(|begun| begun.elapsed()));
+        let ended = now(&stepper);
+        longest_step = longest_step.max(
+            ended
+                .zip(begun)
+                .map(|(end, begin)| end.saturating_sub(begin)),
+        );
         if samples_are_made {
             stepper.report_poses(&mut poses);
         }
