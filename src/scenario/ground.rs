@@ -39,7 +39,7 @@ impl Ground {
     /// # Errors
     /// All faults of the text and of its records.
     pub fn of(source: &Source, gravity_m_s2: f64) -> Result<Self, ScenarioErrors> {
-        table::read_text((&source.text, &source.folder), &[], |table| {
+        table::read_text((&source.text, &source.files), &[], |table| {
             let known = (&[][..], Some(gravity_m_s2), false);
             let ground = table.given_table("ground", |table| Self::read(table, known))?;
             let missing =

@@ -10,11 +10,10 @@
 //! density_kg_m3 = 2000.0         # or an array, one for each block
 //! ```
 
-use std::path::Path;
-
 use nalgebra::Vector2;
 
 use super::LineFault;
+use super::files::Files;
 use super::prelude::*;
 use super::record::{Decimal, faulty, read_numbers};
 use super::tie::{self, PULLS_OVER, TieTable};
@@ -95,8 +94,8 @@ fn read_blocks(table: &mut Table<'_>) -> ReadResult<GivenBlocks> {
     let densities = one_or_more(&MAGNITUDE);
     let density_kg_m3 = table.or("density_kg_m3", &densities, vec![DENSITY_KG_M3]);
     table.sound()?;
-    let path = table.path(&joints_file);
-    let rows = table.accept("joints", read_numbers::<4>(&path, decimal))?;
+    let path = table.files().path(&joints_file);
+    let rows = table.accept("joints", read_numbers::<4>(table.files(), &path, decimal))?;
     table.note_file(&joints_file);
     let (count, most) = (rows.len(), MAX_BLOCKS + 1);
     let wrong = format!(
@@ -123,7 +122,7 @@ fn read_blocks(table: &mut Table<'_>) -> ReadResult<GivenBlocks> {
     });
     table.accept("density_kg_m3", fits)?;
     if let Some(file) = &given.outlines_file {
-        let outlines = read_outlines(&table.path(file), decimal, &given);
+        let outlines = read_outlines(table.files(), file, &given, decimal);
         given.outlines = table.accept("outlines", outlines)?;
         table.note_file(file);
     }
@@ -165,8 +164,14 @@ fn why_no_row(error: &RowError) -> String {
     }
 }
 
-fn read_outlines(path: &Path, decimal: Decimal, given: &GivenBlocks) -> Result<Outlines, String> {
-    let rows = read_numbers::<3>(path, decimal)?;
+fn read_outlines(
+    files: &Files,
+    file: &str,
+    given: &GivenBlocks,
+    decimal: Decimal,
+) -> Result<Outlines, String> {
+    let path = &files.path(file);
+    let rows = read_numbers::<3>(files, path, decimal)?;
     let blocks = given.joints.len() - 1;
     let fault = |line: usize, message: String| faulty(path, &LineFault::on(line)(message));
     let mut outlines = Outlines::new();

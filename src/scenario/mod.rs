@@ -30,6 +30,7 @@ mod bounds;
 mod document;
 mod elastic_joints;
 mod error;
+mod files;
 mod free_hinges;
 mod ground;
 mod impact;
@@ -190,9 +191,7 @@ impl Scenario {
     pub(crate) fn input_paths(&self) -> impl Iterator<Item = PathBuf> {
         let records = self.all_series().map(|series| &series.file);
         let files = self.files.files.iter().map(|input| &input.file);
-        files
-            .chain(records)
-            .map(|file| self.files.folder.join(file))
+        files.chain(records).map(|file| self.files.place.path(file))
     }
 
     /// Returns this scenario without uncertain numbers.
@@ -262,13 +261,13 @@ impl Scenario {
     /// As [`Scenario::parse`], and when an option does not fit the scenario. An error in an assignment has the assignment instead of the file,
     /// and no line.
     pub fn of(source: &Source, options: &ReadOptions<'_>) -> Result<Self, ScenarioErrors> {
-        let Source { folder, text, .. } = source;
-        table::read_text((text, folder), options.set, |table| {
+        let text = &source.text;
+        table::read_text((text, &source.files), options.set, |table| {
             let mut scenario = Self::read_table(table, &[], options)?;
             let mut files = vec![InputFile::of_scenario(&source.name, text)];
-            files.append(&mut table.noted_files());
-            let folder = folder.clone();
-            scenario.files = InputFiles { files, folder };
+            files.append(&mut table.noted_files);
+            let place = source.files.clone();
+            scenario.files = InputFiles { files, place };
             Ok(scenario)
         })
         .map_err(|faults| ScenarioErrors::placed((text, &source.name), options.set, faults))

@@ -7,13 +7,13 @@
 //! Reading also describes: with an empty text, [`describe`] collects all tables, keys, rules and defaults of `read`.
 
 use std::fmt::Display;
-use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
 use super::assignment::Assignment;
 use super::document::{Document, Entries, Span, kind};
 use super::error::{Fault, ensure, excerpt};
+use super::files::Files;
 use super::input_file::InputFile;
 use super::rule::{Rule, did_you_mean};
 
@@ -31,11 +31,11 @@ impl<T, R: FnOnce(&mut Table<'_>) -> ReadResult<T>> Reader<T> for R {}
 
 /// Reads a TOML text with `read` after the assignments `set`. Returns all faults if there are any.
 pub(super) fn read_text<T>(
-    (text, folder): (&str, &Path),
+    (text, files): (&str, &Files),
     set: &[Assignment],
     read: impl Reader<T>,
 ) -> Result<T, Vec<Fault>> {
-    let mut document = Document::parse(text, folder)?;
+    let mut document = Document::parse(text, files)?;
     document.assign(set);
     read_document(document, read)
 }
@@ -86,7 +86,8 @@ pub struct Table<'a> {
     /// The keys that were read, and true for keys of tables.
     known: Vec<(String, bool)>,
     faults: Vec<Fault>,
-    files: Vec<InputFile>,
+    /// The files that were noted in this table and in the tables in it.
+    pub(super) noted_files: Vec<InputFile>,
     /// True if a value is unknown without a fault, because a line that is not TOML may contain it.
     is_partial: bool,
     /// JSON schema of the keys that were read; `None` unless they are collected.
@@ -103,7 +104,7 @@ impl<'a> Table<'a> {
             document,
             known: Vec::new(),
             faults: Vec::new(),
-            files: Vec::new(),
+            noted_files: Vec::new(),
             is_partial: false,
             description: None,
         }
@@ -111,24 +112,15 @@ impl<'a> Table<'a> {
 
     /// Records a file that the scenario names and that has been read.
     pub(super) fn note_file(&mut self, file: &str) {
-        if let Ok(bytes) = std::fs::read(self.path(file)) {
-            self.files.push(InputFile::new(file, &bytes));
+        let files = self.files();
+        if let Ok(bytes) = files.read(&files.path(file)) {
+            self.noted_files.push(InputFile::new(file, &bytes));
         }
     }
 
-    /// Returns the folder to which the names of files are relative.
-    pub(super) fn folder(&self) -> &'a Path {
-        &self.document.folder
-    }
-
-    /// Returns the path of a file that the scenario names.
-    pub(super) fn path(&self, file: &str) -> PathBuf {
-        self.folder().join(file)
-    }
-
-    /// Removes and returns the recorded files of this table and of the tables in it.
-    pub(super) fn noted_files(&mut self) -> Vec<InputFile> {
-        std::mem::take(&mut self.files)
+    /// Returns the files that the scenario may name.
+    pub(super) fn files(&self) -> &'a Files {
+        &self.document.files
     }
 
     /// Sets the name of the table in messages.
@@ -489,7 +481,7 @@ impl<'a> Table<'a> {
         table.reject_unknown_keys();
         let value = table.sound().and(value);
         self.faults.append(&mut table.faults);
-        self.files.append(&mut table.files);
+        self.noted_files.append(&mut table.noted_files);
         self.is_partial |= table.is_partial;
         self.describe_key(key, || table.description.unwrap_or_default());
         value

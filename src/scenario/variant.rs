@@ -2,7 +2,7 @@
 
 use super::document::{Document, Entries};
 use super::prelude::*;
-use super::{Assignment, ReadOptions, Scenario, Series, span, table};
+use super::{ReadOptions, Scenario, Series, span, table};
 
 /// Tables of studies and of the check.
 const STUDIES: [&str; 5] = ["map", "suite", "uncertain", "demand", "verify"];
@@ -22,10 +22,16 @@ impl Scenario {
         }
         let keys: Vec<Vec<&str>> = values.iter().map(|(key, _)| parts(key)).collect();
         make_room(&mut resolved, &keys);
-        let set = values.iter().map(|(key, value)| assignment(key, *value));
-        let set = set.collect::<Result<Vec<_>, String>>()?;
-        let mut document = Document::of_json(resolved, &self.files.folder);
-        document.assign(&set);
+        for key in values.iter().map(|(key, _)| key) {
+            check_key(key)?;
+        }
+        let mut document = Document::of_json(resolved, &self.files.place);
+        for (keys, (_, number)) in keys.iter().zip(values) {
+            let inner = keys.iter().rev();
+            let new = inner.fold(value_of(*number), |value, key| json!({ *key: value }));
+            let replaced = document.insert(new, keys.len());
+            replaced.map_err(|wrong| shown(&wrong))?;
+        }
         fit(&mut document.root, &keys);
         let known: Vec<Series> = self.series().cloned().collect();
         let options = ReadOptions::default();
@@ -34,8 +40,8 @@ impl Scenario {
     }
 }
 
-/// Makes the assignment of a number of the structure or of its motion.
-fn assignment(key: &str, value: f64) -> Result<Assignment, String> {
+/// Rejects a key that names no number of the structure or of its motion.
+fn check_key(key: &str) -> Result<(), String> {
     let parts = parts(key);
     if STUDIES.contains(&parts[0]) {
         return Err(format!(
@@ -46,17 +52,15 @@ fn assignment(key: &str, value: f64) -> Result<Assignment, String> {
     ensure(
         parts.len() > 1 && parts.iter().all(|part| is_name(part)),
         || format!("`{key}` names no number of another table, as \"arch.depth_m\" does"),
-    )?;
-    // Whole numbers may be counts.
-    let number = match value.fract() == 0.0 && value.abs() < 1e15 {
-        true => format!("{value:.0}"),
-        false => format!("{value:?}").to_lowercase(),
-    };
-    Ok(Assignment {
-        given: key.to_owned(),
-        text: format!("{} = {number}", parts.join(".")),
-        depth: parts.len(),
-    })
+    )
+}
+
+/// Returns a number as a value. Whole numbers may be counts.
+fn value_of(number: f64) -> Value {
+    match number.fract() == 0.0 && number.abs() < 1e15 {
+        true => Value::from(number as i64),
+        false => Value::from(number),
+    }
 }
 
 /// Returns true if a text is a TOML key without quotation marks.

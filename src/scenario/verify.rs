@@ -29,8 +29,8 @@
 //! ```
 
 use std::collections::BTreeMap;
-use std::path::Path;
 
+use super::files::Files;
 use super::listing::{RecordListing, written};
 use super::prelude::*;
 use super::record::{Decimal, Format, LineFault, Series, faulty, read_numbers};
@@ -561,7 +561,7 @@ impl PointDemand {
             table.table_or_defaults("state", |table| StateRule::read(table, default))
         });
         table.sound()?;
-        let points = read_points(&table.path(&spectrum), decimal, damping_percent);
+        let points = read_points(table.files(), &spectrum, decimal, damping_percent);
         let points = table.accept("spectrum", points)?;
         table.note_file(&spectrum);
         Ok(Self {
@@ -576,11 +576,13 @@ impl PointDemand {
 
 /// Reads the points of a spectrum from a file. The error is the fault in the file.
 fn read_points(
-    path: &Path,
+    files: &Files,
+    file: &str,
     decimal: Decimal,
     damping_percent: f64,
 ) -> Result<PointSpectrum, String> {
-    let rows = read_numbers::<2>(path, decimal)?;
+    let path = &files.path(file);
+    let rows = read_numbers::<2>(files, path, decimal)?;
     let points = rows.iter().map(|(_, [period_s, at_g])| (*period_s, *at_g));
     PointSpectrum::new(points.collect(), damping_percent).map_err(|error| {
         let (line, message) = (error.row.and_then(|row| rows.get(row)), error.to_string());
