@@ -18,7 +18,7 @@ pub(super) fn comparison_words(runs: &[ModelResults<'_>]) -> String {
                 Outcome::Overturned(_) => String::new(),
                 _ => format!("{:.6} rad", history.largest_rotation_rad()),
             };
-            [run.name().to_owned(), outcome_words(results), peak]
+            [run.label().to_owned(), outcome_words(results), peak]
         })
         .collect();
     let header = ["model", "what happened", "largest rotation"].map(str::to_owned);
@@ -62,7 +62,7 @@ fn conclusion(runs: &[ModelResults<'_>]) -> String {
     let others = best.into_iter().flat_map(|best| {
         let others = runs.iter().filter(|results| rank(results) != rank(best));
         others.filter_map(|other| {
-            let (name, best_name) = (other.run.name(), best.run.name());
+            let (name, best_name) = (other.run.label(), best.run.label());
             let differs = difference(best, other)?;
             Some(format!("{name}, compared with {best_name}: {differs}"))
         })

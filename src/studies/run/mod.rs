@@ -181,7 +181,7 @@ pub fn results(
     results.words.extend(quote);
     results.summary["to_quote"] = to_quote.into();
     for one in &mut all {
-        let _ = write!(results.words, "{}\n{}", one.run.name(), one.words);
+        let _ = write!(results.words, "{}\n{}", one.run.label(), one.words);
         let model = one.run.scenario.motion.kind;
         results.summary[model.option] = one.summary.take();
     }
@@ -239,7 +239,7 @@ impl<'a> Run<'a> {
     }
 
     /// The label of its model.
-    fn name(&self) -> &'static str {
+    fn label(&self) -> &'static str {
         self.scenario.motion.kind.label
     }
 
@@ -377,7 +377,7 @@ impl<'a> Run<'a> {
 
 /// One picture of several models of motion.
 fn overlay(all: &[ModelResults<'_>]) -> String {
-    let names: Vec<_> = all.iter().map(|one| one.run.name()).collect();
+    let names: Vec<_> = all.iter().map(|one| one.run.label()).collect();
     let first = all[0].run;
     let mut title = names.join(" and ");
     if let Some(initial) = title.get_mut(..1) {
