@@ -294,7 +294,7 @@ impl Ground {
         match &*latest {
             Some((of, motion)) if *of == gravity_m_s2 => Ok(Arc::clone(motion)),
             _ => {
-                let motion = Arc::new(self.inner.motion(gravity_m_s2).map_err(refused)?);
+                let motion = Arc::new(self.inner.ground_motion(gravity_m_s2).map_err(refused)?);
                 *latest = Some((gravity_m_s2, Arc::clone(&motion)));
                 Ok(motion)
             }

@@ -153,7 +153,7 @@ fn model(scenario: &Scenario, varies: Varies<'_>) -> String {
     if scenario.motion.kind.has_joints {
         return scenario.motion.kind.label.to_owned();
     }
-    let name = match scenario.structure.thrusts() {
+    let name = match scenario.structure.has_horizontal_thrust() {
         true => scenario.motion.kind.label,
         false => "Housner's block",
     };

@@ -100,7 +100,7 @@ impl ElasticTable {
             longest_step_s: table.optional("longest_step_s", &within(&ElasticJoints::STEP_S)),
         };
         table.optional("contact", &one_of(&["continuous"]));
-        table.relate(RELATIONS)?;
+        table.apply_relations(RELATIONS)?;
         Ok(read)
     }
 
@@ -266,16 +266,15 @@ impl ModelOptions for ElasticTable {
             }
             RestError::TieDuringMovement(tie, part) => {
                 let wrong = format!(
-                    "breaks when the springings have gone {:.2} % of the way of [supports], with these joints: give a larger \
-                     `breaks_at_strain`, or less movement",
+                    "breaks at {:.2} % of the movement of [supports], with these joints: give a larger `breaks_at_strain`, or less \
+                     movement",
                     1e2 * part
                 );
                 return Err(table.wrong_element("tie", tie, wrong));
             }
             RestError::Supports(part) => {
                 let wrong = format!(
-                    "lets the arch fall when its springings have gone {:.2} % of this way, with joints as soft as these: give less, or \
-                     stiffer joints",
+                    "makes the arch fall at {:.2} % of this movement, with joints as soft as these: reduce it, or give stiffer joints",
                     1e2 * part
                 );
                 return Err(table.wrong("supports", wrong));

@@ -56,7 +56,7 @@ impl ModelOptions for RowOptions {
         Some(model(*self, structure, site).ok()?.longest_step_s(request))
     }
 
-    /// Rejects a coefficient of friction with which the structure slides on its moved springings. [`carries`] checks the undeformed structure.
+    /// Rejects a coefficient of friction with which the structure slides on its moved springings. [`check_friction`] checks the undeformed structure.
     fn check(
         &self,
         table: &mut Table<'_>,
@@ -69,7 +69,7 @@ impl ModelOptions for RowOptions {
         }
         match model(*self, structure, site) {
             Err(RowModelError::Friction(FrictionError::CannotStand(_))) => {
-                let wrong = "does not hold the structure where its springings have gone: it would slide there; give a larger one";
+                let wrong = "does not hold the structure on its moved springings: it would slide; give a larger one";
                 Err(table.wrong_in(&["free_hinges"], "friction_coefficient", wrong))
             }
             // Other users of the row report its faults.
@@ -87,14 +87,14 @@ fn read(table: &mut Table<'_>) -> ReadResult<RowOptions> {
         shortest_step_s: table.optional("shortest_step_s", &step_s),
         friction_coefficient: table.optional("friction_coefficient", &coefficient),
     };
-    table.sound()?;
+    table.check_faultless()?;
     options
         .checked()
         .map_err(|error| table.wrong(error.argument, format!("does not fit: {error}")))
 }
 
 /// Rejects a coefficient of friction with which the structure slides under its weight.
-pub(super) fn carries(structure: &Structure, coefficient: f64) -> Result<(), String> {
+pub(super) fn check_friction(structure: &Structure, coefficient: f64) -> Result<(), String> {
     // Other users of the row report its faults.
     let Ok(model) = structure.free_hinges(RowOptions::default()) else {
         return Ok(());

@@ -70,7 +70,7 @@ impl RecordListing {
             series.ok()
         };
         let records: Vec<_> = self.files.into_iter().filter_map(read).collect();
-        table.sound().map(|()| records)
+        table.check_faultless().map(|()| records)
     }
 }
 
@@ -84,11 +84,11 @@ pub(super) fn written(keys: &[(&str, &[Series])]) -> Map<String, Value> {
     let mut layouts = keys.flat_map(|(_, records)| records.iter().map(|series| &series.layout));
     // All CSV tables share the same keys; without CSV tables, AT2 files may share a unit.
     let tables = layouts.clone().find(|layout| layout.format == Format::Csv);
-    let telling = tables.or_else(|| layouts.clone().next());
-    let mut layout = json!(telling);
+    let layout_source = tables.or_else(|| layouts.clone().next());
+    let mut layout = json!(layout_source);
     // If formats differ, the file extensions determine them.
     if let Some(layout) = layout.as_object_mut()
-        && layouts.any(|layout| Some(layout.format) != telling.map(|layout| layout.format))
+        && layouts.any(|layout| Some(layout.format) != layout_source.map(|layout| layout.format))
     {
         layout.shift_remove("format");
     }

@@ -135,14 +135,14 @@ impl Map {
                 });
             }
         }
-        table.sound()?;
+        table.check_faultless()?;
         // Numbers of other tables are on the x axis.
         axes.sort_by_key(|axis| axis.quantity != Quantity::Other);
         let mut axes = axes.into_iter();
         let (Some(x), Some(y), None) = (axes.next(), axes.next(), axes.next()) else {
             let keys = Quantity::ALL.iter().skip(1);
             let keys: Vec<_> = keys.map(|one| one.name()).collect();
-            return Err(table.wrong_itself(format!(
+            return Err(table.fault_of_table(format!(
                 "needs exactly two of the keys {}, or of other tables, such as \"arch.depth_m\"",
                 keys.join(", ")
             )));
@@ -196,7 +196,7 @@ impl Map {
                     duration_s: longest_s.unwrap_or(pulse.duration_s),
                     ..pulse.clone()
                 };
-                ("pulses that last", longest.motion(1.0).end_s())
+                ("pulses that last", longest.ground_motion(1.0).end_s())
             }
         };
         simulation.check_covers(end_s, |last| format!("[map] has {what} until {last} s"))

@@ -93,7 +93,7 @@ fn read_blocks(table: &mut Table<'_>) -> ReadResult<GivenBlocks> {
     let depth_m = table.or("depth_m", &MAGNITUDE, DEPTH_M);
     let densities = one_or_more(&MAGNITUDE);
     let density_kg_m3 = table.or("density_kg_m3", &densities, vec![DENSITY_KG_M3]);
-    table.sound()?;
+    table.check_faultless()?;
     let path = table.files().path(&joints_file);
     let rows = table.accept("joints", read_numbers::<4>(table.files(), &path, decimal))?;
     table.note_file(&joints_file);
@@ -335,7 +335,7 @@ fn read_piers(table: &mut Table<'_>) -> ReadResult<Piers> {
         })
     };
     let (left, right) = (table.table("left", one), table.table("right", one));
-    table.sound()?;
+    table.check_faultless()?;
     // If `[piers]` itself has values, both piers exist.
     let has_values = blocks.is_some() || both.iter().any(Option::is_some);
     if [&left, &right].iter().filter(|pier| pier.is_some()).count() > usize::from(has_values) {
@@ -343,7 +343,7 @@ fn read_piers(table: &mut Table<'_>) -> ReadResult<Piers> {
     }
     let mut value = |key: &str, value: Option<f64>| {
         value.ok_or_else(|| {
-            table.wrong_itself(format!(
+            table.fault_of_table(format!(
                 "lacks `{key}`: give it for both piers, or give [piers.left] and [piers.right]"
             ))
         })
@@ -365,7 +365,7 @@ fn read_fill(table: &mut Table<'_>) -> ReadResult<Fill> {
     let height_m = table.optional("height_m", &MAGNITUDE);
     let above_crown_m = table.optional("above_crown_m", &within(&(0.0..=1e6)));
     let density_kg_m3 = table.required("density_kg_m3", &MAGNITUDE);
-    table.relate(&[OneOf(&["height_m", "above_crown_m"], None)])?;
+    table.apply_relations(&[OneOf(&["height_m", "above_crown_m"], None)])?;
     let level = height_m.map(FillLevel::AboveSpringing);
     Ok(Fill {
         level: level

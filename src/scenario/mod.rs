@@ -291,7 +291,8 @@ impl Scenario {
         let ground = GroundInput::read(table, known, options.statics);
         let motion = motion.complete(table, gravity_m_s2);
         let right_foot = ground.as_ref().ok().and_then(|it| it.right_foot.as_ref());
-        let suits = right_foot.map_or(Ok(()), |it| it.suits(table, structure, kind));
+        let right_foot_fits =
+            right_foot.map_or(Ok(()), |it| it.check_model(table, structure, kind));
         let initial = table.given_table("initial", |table| initial::read(table, structure, kind));
         let moved = (kind, motion.as_ref().ok().map(|(motion, _)| motion));
         let map = table.given_table("map", |table| Map::read(table, structure, moved));
@@ -300,15 +301,15 @@ impl Scenario {
         let options = verify.as_ref().ok().cloned().flatten().unwrap_or_default();
         let demand = Demand::read_given(table, &options);
         let uncertain = table.given_table("uncertain", Uncertain::read);
-        let (verify, demand, ()) = (verify?, demand?, suits?);
+        let (verify, demand, ()) = (verify?, demand?, right_foot_fits?);
         if let Some(verify) = &verify {
-            verify.suits(table, demand.as_ref())?;
+            verify.check_demand(table, demand.as_ref())?;
         }
         let ((motion, ignores_impact), (structure, ties)) = (motion?, built?);
         let shaken_s = ground.as_ref().map_or(0.0, |it| it.motion.end_s());
         let end_s = simulated.map(|it| it.end_s(shaken_s, structure.size_m()));
         motion.check(table, &structure, end_s)?;
-        initial::suits(table, !ties.is_empty(), motion.supports().is_some())?;
+        initial::check_structure(table, !ties.is_empty(), motion.supports().is_some())?;
         let (given_shape, ground) = (Circular::given(table), ground?);
         let mut certain = Self {
             title: title.map(|title| shown(&title)),
@@ -351,7 +352,7 @@ impl Scenario {
     /// Returns the scenario with another ground motion, without tables of studies, because they were checked against the original ground.
     pub fn with_ground(&self, ground: Option<Ground>) -> Self {
         let left = ground.as_ref().map_or_else(GroundMotion::still, |ground| {
-            ground.motion_under(self.simulation.gravity_m_s2)
+            ground.ground_motion_under(self.simulation.gravity_m_s2)
         });
         // A record of the right foot belongs to the original ground.
         let follows = |right: &RightFoot| ground.is_some() && right.record().is_none();
@@ -377,7 +378,7 @@ impl Scenario {
             let [from_m, to_m] = row.feet_m();
             to_m.x - from_m.x
         });
-        right.beside(left, apart_m, self.simulation.gravity_m_s2)
+        right.with_left_foot(left, apart_m, self.simulation.gravity_m_s2)
     }
 
     /// Returns one scenario for each record of the suite, with the unscaled record as ground motion and without other studies. Empty without a
@@ -394,8 +395,9 @@ impl Scenario {
     }
 
     /// Returns the ground motion of a record multiplied by a factor, with both feet moving together, for the gravity of this scenario.
-    pub(crate) fn shaken_by(&self, series: &Series, factor: f64) -> GroundMotion {
-        suite::scaled_record(series, Scaling::Factor(factor)).motion(self.simulation.gravity_m_s2)
+    pub(crate) fn record_motion(&self, series: &Series, factor: f64) -> GroundMotion {
+        suite::scaled_record(series, Scaling::Factor(factor))
+            .ground_motion(self.simulation.gravity_m_s2)
     }
 
     /// Makes the model of motion of the structure.
@@ -418,7 +420,7 @@ impl Scenario {
 
     /// Returns the name of the model of motion in results; four links of a column are a `column`.
     pub fn model_name(&self) -> &'static str {
-        match self.motion.kind.has_joints || self.structure.thrusts() {
+        match self.motion.kind.has_joints || self.structure.has_horizontal_thrust() {
             true => self.motion.kind.name,
             false => "column",
         }
@@ -606,7 +608,7 @@ impl GroundInput {
         });
         let is_unread = ground.is_err() || right_foot.is_err();
         let mut unread = None;
-        if statics && is_unread && table.forgives_files(faults) {
+        if statics && is_unread && table.drop_file_faults(faults) {
             unread = table.as_given("ground");
             (ground, right_foot) = (Ok(None), Ok(None));
         }

@@ -74,7 +74,7 @@ impl MotionModel {
             supports::check(table, structure, movements)?;
         }
         if let Some(coefficient) = self.options.friction_coefficient() {
-            free_hinges::carries(structure, coefficient).map_err(|wrong| {
+            free_hinges::check_friction(structure, coefficient).map_err(|wrong| {
                 table.wrong_in(&[self.kind.table], "friction_coefficient", wrong)
             })?;
         }
@@ -153,7 +153,7 @@ impl Tables {
         let kind = self.kind;
         let links = table.table_or_defaults(FOUR_LINKS.table, FOUR_LINKS.read);
         if !self.is_set {
-            table.relate(ALONE)?;
+            table.apply_relations(ALONE)?;
         }
         let (links, joints, supports) = (links?, self.options?, self.supports?);
         let law = links.law();
@@ -162,7 +162,7 @@ impl Tables {
         let mut given = joints.into_iter().chain([(&FOUR_LINKS, links)]);
         let options = match (given.find(|(one, _)| *one == kind), kind.lacking) {
             (Some((_, options)), _) => options,
-            (None, Some(lacking)) => return Err(table.wrong_itself(lacking)),
+            (None, Some(lacking)) => return Err(table.fault_of_table(lacking)),
             (None, None) => table.table_or_defaults(kind.table, kind.read)?,
         };
         let model = MotionModel {

@@ -2,7 +2,7 @@
 //!
 //! This module knows no keys of scenarios; each table is read in the module of its subject. For a missing or wrong key the reader records a
 //! fault and continues with a default value. So a reader names each key once, where it fills its field. Before it compares values, it
-//! checks that all of them are from the file ([`Table::sound`]). A table with faults is never used.
+//! checks that all of them are from the file ([`Table::check_faultless`]). A table with faults is never used.
 //!
 //! Reading also describes: with an empty text, [`describe`] collects all tables, keys, rules and defaults of `read`.
 
@@ -129,9 +129,9 @@ impl<'a> Table<'a> {
     }
 
     /// Succeeds if all values that were read are from the file.
-    pub(super) fn sound(&self) -> ReadResult<()> {
-        let is_sound = self.faults.is_empty() && !self.is_partial;
-        ensure(is_sound && self.description.is_none(), || FaultRecorded)
+    pub(super) fn check_faultless(&self) -> ReadResult<()> {
+        let is_faultless = self.faults.is_empty() && !self.is_partial;
+        ensure(is_faultless && self.description.is_none(), || FaultRecorded)
     }
 
     /// Returns the value of a key that must be given.
@@ -149,7 +149,7 @@ impl<'a> Table<'a> {
         value: Option<R::Output>,
     ) -> R::Output {
         if !self.may_give(&[key]) {
-            self.wrong_itself(format!("lacks `{key}`: give {}", rule.allowed()));
+            self.fault_of_table(format!("lacks `{key}`: give {}", rule.allowed()));
         }
         value.unwrap_or_default()
     }
@@ -334,12 +334,12 @@ impl<'a> Table<'a> {
     }
 
     /// Removes the faults after the first `since` if all of them are faults of files that the text names. Returns true if it has removed them.
-    pub(super) fn forgives_files(&mut self, since: usize) -> bool {
-        let forgives = self.faults[since..].iter().all(|fault| fault.of_file);
-        if forgives {
+    pub(super) fn drop_file_faults(&mut self, since: usize) -> bool {
+        let drops = self.faults[since..].iter().all(|fault| fault.of_file);
+        if drops {
             self.faults.truncate(since);
         }
-        forgives
+        drops
     }
 
     /// Records that the file of `key` is missing or wrong. `message` follows the key and its value.
@@ -368,7 +368,7 @@ impl<'a> Table<'a> {
 
     /// Records that the whole table is wrong if `when` is true.
     pub(super) fn refuse_all(&mut self, when: bool, message: impl Display) -> ReadResult<()> {
-        ensure(!when, || self.wrong_itself(message))
+        ensure(!when, || self.fault_of_table(message))
     }
 
     /// Returns the value of a result. An error is recorded as a fault of `key`; it follows the key and its value.
@@ -439,7 +439,7 @@ impl<'a> Table<'a> {
     }
 
     /// Records that the whole table is wrong. `message` follows its name.
-    pub(super) fn wrong_itself(&mut self, message: impl Display) -> FaultRecorded {
+    pub(super) fn fault_of_table(&mut self, message: impl Display) -> FaultRecorded {
         self.fault(self.place, format!("{} {message}", self.name))
     }
 
@@ -479,7 +479,7 @@ impl<'a> Table<'a> {
         };
         let value = read(&mut table);
         table.reject_unknown_keys();
-        let value = table.sound().and(value);
+        let value = table.check_faultless().and(value);
         self.faults.append(&mut table.faults);
         self.noted_files.append(&mut table.noted_files);
         self.is_partial |= table.is_partial;

@@ -21,7 +21,7 @@ impl Scenario {
             }
         }
         let keys: Vec<Vec<&str>> = values.iter().map(|(key, _)| parts(key)).collect();
-        make_room(&mut resolved, &keys);
+        remove_alternatives(&mut resolved, &keys);
         for key in values.iter().map(|(key, _)| key) {
             check_key(key)?;
         }
@@ -32,7 +32,7 @@ impl Scenario {
             let replaced = document.insert(new, keys.len());
             replaced.map_err(|wrong| shown(&wrong))?;
         }
-        fit(&mut document.root, &keys);
+        update_dependent_values(&mut document.root, &keys);
         let known: Vec<Series> = self.series().cloned().collect();
         let options = ReadOptions::default();
         table::read_document(document, |table| Self::read_table(table, &known, &options))
@@ -108,7 +108,7 @@ const ALTERNATIVES: [[&str; 3]; 4] = [
 ];
 
 /// Removes the alternatives of new values: an arch keeps either its thickness or its ratio.
-fn make_room(tables: &mut Value, keys: &[Vec<&str>]) {
+fn remove_alternatives(tables: &mut Value, keys: &[Vec<&str>]) {
     let both_ways = ALTERNATIVES.map(|[name, one, other]| [[name, one, other], [name, other, one]]);
     for [name, given, goes] in both_ways.into_iter().flatten() {
         let is_given = |key: &Vec<&str>| format!("/{}", key.join("/")) == format!("{name}/{given}");
@@ -122,7 +122,7 @@ fn make_room(tables: &mut Value, keys: &[Vec<&str>]) {
 
 /// Changes values that depend on new ones. The last joint of an arch moves to the other springing. Drums keep their proportions under a new
 /// height of the column; new drums set the height of the column.
-fn fit(tables: &mut Entries, keys: &[Vec<&str>]) {
+fn update_dependent_values(tables: &mut Entries, keys: &[Vec<&str>]) {
     let is_new = |wanted: [&str; 2]| keys.iter().any(|key| key.starts_with(&wanted));
     if let Some(Value::Object(arch)) = tables.get_mut("arch") {
         let number = |key: &str| arch.get(key).and_then(Value::as_f64);

@@ -291,7 +291,7 @@ amplitude_g = [1.0, 2.0]
     let kind = Pulse::MavroeidisPapageorgiou.name();
     assert_eq!(scenario.to_json()["ground"], json!({ kind: pulse }));
     for gravity_m_s2 in [f64::NAN, 0.0, 1e300] {
-        let error = ground.motion(gravity_m_s2).unwrap_err();
+        let error = ground.ground_motion(gravity_m_s2).unwrap_err();
         assert_eq!(error.argument, "gravity_m_s2");
     }
     let simulation = Simulation {

@@ -158,7 +158,7 @@ impl Record {
             ..self.clone()
         };
         rescaled.main.check_strength(gravity_m_s2)?;
-        Ok(rescaled.motion(gravity_m_s2))
+        Ok(rescaled.ground_motion(gravity_m_s2))
     }
 
     /// Returns the time at which the last record ends, in s.
@@ -168,7 +168,7 @@ impl Record {
     }
 
     /// Returns the ground motion under a gravity in m/s2.
-    pub(crate) fn motion(&self, gravity_m_s2: f64) -> GroundMotion {
+    pub(crate) fn ground_motion(&self, gravity_m_s2: f64) -> GroundMotion {
         let [main, vertical] = [Some(&self.main), self.vertical.as_ref()]
             .map(|series| series.map_or_else(Vec::new, |it| it.accelerations_m_s2(gravity_m_s2)));
         match self.component {
@@ -190,7 +190,7 @@ impl Record {
         let wrong =
             "cannot be combined with `component = \"vertical\"`; give one record per direction";
         table.refuse(is_second, "vertical", wrong)?;
-        table.sound()?;
+        table.check_faultless()?;
         let gravity_m_s2 = known.1.ok_or(FaultRecorded)?;
         let record = Self {
             main: main?,
@@ -198,7 +198,7 @@ impl Record {
             start_s,
             vertical,
         };
-        let motion = record.motion(gravity_m_s2);
+        let motion = record.ground_motion(gravity_m_s2);
         if let Some(time_s) = motion.free_fall_s(gravity_m_s2).filter(|_| !known.2) {
             let inside: &[_] = record.vertical.as_ref().map_or(&[], |_| &["vertical"]);
             return Err(table.wrong_in(inside, "file", free_fall(time_s)));
@@ -371,9 +371,9 @@ impl Series {
         let scale = table.optional("scale", &SCALE);
         let peak_g = table.optional("peak_g", &PEAK_G);
         let at_most = "give at most one of them";
-        let related = table.relate(&[AtMostOne(&["scale", "peak_g"], at_most)]);
+        let related = table.apply_relations(&[AtMostOne(&["scale", "peak_g"], at_most)]);
         let layout = Layout::read(table, format);
-        related.and(table.sound())?;
+        related.and(table.check_faultless())?;
         let mut known = known.iter();
         let series = match known.find(|known| known.file == file && known.layout == layout) {
             Some(known) => known.clone(),

@@ -68,7 +68,7 @@ fn of_row(scenario: &Scenario, row: &Row) -> Result<Summary, StabilityError> {
         summary.ties = Some(ties(row)?);
         summary.tie_places = scenario.structure.tie_places();
     }
-    summary.is_stack = !scenario.structure.thrusts();
+    summary.is_stack = !scenario.structure.has_horizontal_thrust();
     if summary.is_stack {
         return Ok(summary);
     }

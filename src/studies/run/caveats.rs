@@ -24,7 +24,7 @@ pub fn warnings(scenario: &Scenario, model: &dyn Model, history: &History) -> Ve
     let mut warnings = scenario.unlikely_of(Some(model));
     let structure = &scenario.structure;
     // The ground cannot pull a column down. An arch moves as four links as long as its thrust line stays almost inside.
-    let thrusts = structure.thrusts();
+    let thrusts = structure.has_horizontal_thrust();
     let most = if thrusts { EXCESS_LEVELS[1] } else { 0.0 };
     let of_mechanisms = model.as_mechanisms().and(history.thrust.as_ref());
     let leaves = of_mechanisms.is_some_and(|thrust| thrust.largest_excess.value > most);
@@ -96,7 +96,7 @@ fn quality(excess_ratio: f64, up_to_peak: Option<f64>) -> [&'static str; 2] {
 
 /// Returns the quality of four links of an arch that rocked.
 pub(super) fn four_link_quality(scenario: &Scenario, history: &History) -> Option<String> {
-    let is_arch = scenario.structure.thrusts();
+    let is_arch = scenario.structure.has_horizontal_thrust();
     let four = !scenario.motion.kind.has_joints && is_arch;
     let thrust = history.thrust.as_ref().filter(|_| four)?;
     thrust.shares_within()?;
@@ -115,7 +115,7 @@ pub(super) fn four_link_limits(
     let [_, near] = thrust.shares_within()?;
     let Peak { value, time_s } = thrust.largest_excess;
     let [close, most] = EXCESS_LEVELS;
-    if !structure.thrusts() {
+    if !structure.has_horizontal_thrust() {
         let flies = format!(
             "the ground would have to hold the column down (at {time_s:.4} s): it flies off"
         );

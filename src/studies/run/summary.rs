@@ -66,7 +66,10 @@ impl<'a> ComputedRun<'a> {
             conditions => format!(" ({})", conditions.join("; ")),
         };
         let answer = no_answer.map_or_else(|| Ok(format!("{happens} this motion{condition}")), Err);
-        let (kind, is_arch) = (scenario.motion.kind, scenario.structure.thrusts());
+        let (kind, is_arch) = (
+            scenario.motion.kind,
+            scenario.structure.has_horizontal_thrust(),
+        );
         ModelAnswer::new(kind, is_arch, history.thrust_excess_ratio(), answer)
     }
 

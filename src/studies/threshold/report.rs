@@ -285,7 +285,10 @@ impl Threshold {
             }
             _ => Err("the smallest factor tried is not certainly survived".to_owned()),
         };
-        let (hinges, is_arch) = (scenario.motion.kind, scenario.structure.thrusts());
+        let (hinges, is_arch) = (
+            scenario.motion.kind,
+            scenario.structure.has_horizontal_thrust(),
+        );
         ModelAnswer::new(hinges, is_arch, self.safe_excess_ratio, answer)
     }
 

@@ -93,7 +93,7 @@ pub(super) fn report(
         )
     }));
     let (kind, structure) = (study.scenario.motion.kind, &study.scenario.structure);
-    let four = !kind.has_joints && structure.thrusts();
+    let four = !kind.has_joints && structure.has_horizontal_thrust();
     let outside = counts.iter().map(|cell| cell.outside);
     let answered = counts.iter().map(|cell| cell.samples);
     let title = samples.title("Probability of overturning");
