@@ -5,7 +5,7 @@
 use std::f64::consts::PI;
 
 use archrock::dynamics::ground::{GroundMotion, Pulse};
-use archrock::internals::contact::{Load, Program};
+use archrock::internals::contact::{ContactProgram, Load};
 use archrock::internals::free_hinges::{Settings, simulate};
 use archrock::internals::joints::Placement;
 use archrock::mechanics::blocks::Row;
@@ -146,7 +146,7 @@ fn full_closure(bencher: Bencher, voussoirs: usize) {
         free,
         ..Load::none(&row)
     };
-    let mut program = Program::new(&row);
+    let mut program = ContactProgram::new(&row);
     bencher.bench_local(|| {
         program.place(&placement);
         program.reset();

@@ -75,6 +75,7 @@ extern crate archrock_motion;
 
 use archrock_motion::{argument, bisection};
 
+mod clock;
 pub mod output;
 pub mod scenario;
 pub mod studies;

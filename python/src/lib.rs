@@ -16,7 +16,7 @@ use pyo3::prelude::*;
 /// The module `archrock._native`.
 #[pymodule]
 mod _native {
-    use archrock::scenario::Hinges;
+    use archrock::scenario::MODELS;
     use pyo3::prelude::*;
 
     #[pymodule_export]
@@ -29,7 +29,7 @@ mod _native {
     /// Names of the models of motion, in results and as options of the program, and the memory that a history may take by default, in units of 1e9 bytes.
     #[pymodule_init]
     fn constants(module: &Bound<'_, PyModule>) -> PyResult<()> {
-        let models = Hinges::ALL.iter().map(|one| (one.name(), one.model().name));
+        let models = MODELS.iter().map(|one| (one.option, one.name));
         module.add("MODELS", models.collect::<Vec<_>>())?;
         module.add("MEMORY_GB", archrock::MEMORY_BYTES as f64 / 1e9)
     }

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Component, Path};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use archrock::scenario::{Assignment, Hinges, MODELS, ReadOptions, ScenarioErrors, Source};
+use archrock::scenario::{Assignment, MODELS, ModelKind, ReadOptions, ScenarioErrors, Source};
 use archrock::studies::{impact, limit};
 use archrock::{GroundMotion, MechanismModel, Model, Sway};
 use numpy::{PyArray1, PyArrayMethods as _};
@@ -128,7 +128,7 @@ impl Scenario {
         py: Python<'_>,
         read: impl FnOnce(&dyn MechanismModel) -> T + Send,
     ) -> PyResult<T> {
-        let has_joints = self.inner.motion.hinges().has_joints();
+        let has_joints = self.inner.motion.kind.has_joints;
         let own = (!has_joints).then(|| self.model(py)).transpose()?;
         py.detach(|| match own.and_then(|model| model.as_mechanisms()) {
             Some(model) => Ok(read(model)),
@@ -140,13 +140,13 @@ impl Scenario {
     }
 }
 
-fn hinges(model: Option<&str>) -> PyResult<Option<Hinges>> {
+fn model_kind(model: Option<&str>) -> PyResult<Option<&'static ModelKind>> {
     let Some(name) = model else {
         return Ok(None);
     };
-    let mut known = Hinges::ALL.iter();
-    let found = known.find(|hinges| [hinges.model().name, hinges.name()].contains(&name));
-    found.copied().map(Some).ok_or_else(|| {
+    let mut known = MODELS.into_iter();
+    let found = known.find(|model| [model.name, model.option].contains(&name));
+    found.map(Some).ok_or_else(|| {
         let names = MODELS.map(|model| model.name).join(", ");
         PyValueError::new_err(format!("`model = {name:?}` is not one of {names}"))
     })
@@ -169,7 +169,7 @@ impl Scenario {
         changes: Vec<String>,
         unmovable: Option<String>,
     ) -> PyResult<Self> {
-        let hinges = hinges(model)?;
+        let model = model_kind(model)?;
         let set = changes
             .iter()
             .map(|change| change.parse::<Assignment>())
@@ -178,7 +178,7 @@ impl Scenario {
         let text = Text::new(text, name, &files)?;
         let read = |statics: bool| {
             let changes = ReadOptions {
-                hinges,
+                model,
                 set: &set,
                 statics,
             };
@@ -294,7 +294,7 @@ impl Ground {
         match &*latest {
             Some((of, motion)) if *of == gravity_m_s2 => Ok(Arc::clone(motion)),
             _ => {
-                let motion = Arc::new(self.inner.motion(gravity_m_s2).map_err(refused)?);
+                let motion = Arc::new(self.inner.ground_motion(gravity_m_s2).map_err(refused)?);
                 *latest = Some((gravity_m_s2, Arc::clone(&motion)));
                 Ok(motion)
             }

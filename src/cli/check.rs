@@ -86,7 +86,7 @@ fn read(input: &Input<'_>) -> Result<Scenario, Failure> {
     let wrong = match input.read(None) {
         Err(Failure::Input(wrong)) => wrong,
         // The reader has tried elastic joints, whose equilibrium takes long to find.
-        Ok(scenario) if scenario.motion.is_faster_together() => return Ok(scenario),
+        Ok(scenario) if !scenario.motion.kind.is_rigid => return Ok(scenario),
         Ok(scenario) => match scenario.model() {
             Err(error) => error.to_string(),
             Ok(_) => return Ok(scenario),
@@ -105,7 +105,7 @@ fn read(input: &Input<'_>) -> Result<Scenario, Failure> {
 /// Returns the blocks of the model of motion, or the structure itself if the model has no blocks. On moved supports blocks are in their
 /// positions at time 0.
 fn drawn(scenario: &Scenario) -> Result<Scene, Failure> {
-    let joints = scenario.motion.hinges().has_joints();
+    let joints = scenario.motion.kind.has_joints;
     let Some(row) = scenario.structure.row().ok().filter(|_| joints) else {
         return Ok(Scene::new(&scenario.structure));
     };

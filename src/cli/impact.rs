@@ -58,7 +58,7 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
     let scenario = input.as_built(input.read(None)?)?;
     warn(&scenario.unlikely());
     let (first, count) = (arguments.first.sway, usize::from(arguments.count));
-    if !scenario.structure.thrusts() && !arguments.of_arches_only() {
+    if !scenario.structure.has_horizontal_thrust() && !arguments.of_arches_only() {
         let model = scenario.mechanisms();
         let model = model.map_err(|error| input.input_error(error.to_string()))?;
         let answer = chain_result(&scenario, &*model, first, count)?;

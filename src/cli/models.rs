@@ -1,6 +1,6 @@
 //! The option `--hinges`, which chooses models of motion.
 
-use archrock::scenario::{Hinges, Scenario};
+use archrock::scenario::{MODELS, ModelKind, Scenario};
 use clap::builder::{PossibleValuesParser, TypedValueParser as _};
 
 use super::Failure;
@@ -10,14 +10,14 @@ use super::scenario_file::Input;
 /// Value of the option for both rigid models: four links and free hinges.
 const BOTH: &str = "both";
 
-fn parser() -> impl clap::builder::TypedValueParser<Value = Vec<Hinges>> {
-    let names = Hinges::ALL.iter().map(|hinges| hinges.name());
+fn parser() -> impl clap::builder::TypedValueParser<Value = Vec<&'static ModelKind>> {
+    let names = MODELS.iter().map(|model| model.option);
     PossibleValuesParser::new(names.chain([BOTH])).map(|name| {
-        let chosen = |hinges: &Hinges| match name.as_str() {
-            BOTH => hinges.model().is_rigid,
-            name => hinges.name() == name,
+        let chosen = |model: &&ModelKind| match name.as_str() {
+            BOTH => model.is_rigid,
+            name => model.option == name,
         };
-        Hinges::ALL.iter().copied().filter(chosen).collect()
+        MODELS.into_iter().filter(chosen).collect()
     })
 }
 
@@ -27,22 +27,22 @@ pub struct ModelsOption {
     /// Models of motion. Several models write to one folder each, named after the model, with a comparison beside them [default:
     /// elastic or free if the scenario has [elastic_joints] or [free_hinges], else four].
     #[arg(long, value_name = "MODELS", value_delimiter = ',', value_parser = parser())]
-    hinges: Vec<Vec<Hinges>>,
+    hinges: Vec<Vec<&'static ModelKind>>,
 }
 
 impl ModelsOption {
     /// Reads the scenario once for each chosen model; without a choice, once with the model of its tables.
     pub fn read(&self, input: &Input<'_>) -> Result<Vec<Scenario>, Failure> {
-        let mut models: Vec<Hinges> = Vec::new();
-        for hinges in self.hinges.iter().flatten() {
-            if !models.contains(hinges) {
-                models.push(*hinges);
+        let mut models: Vec<&ModelKind> = Vec::new();
+        for model in self.hinges.iter().flatten() {
+            if !models.contains(model) {
+                models.push(model);
             }
         }
         if models.is_empty() {
             return Ok(vec![input.read(None)?]);
         }
-        let scenarios = models.into_iter().map(|hinges| input.read(Some(hinges)));
+        let scenarios = models.into_iter().map(|model| input.read(Some(model)));
         scenarios.collect()
     }
 

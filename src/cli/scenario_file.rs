@@ -8,7 +8,7 @@ use std::{env, io};
 
 use archrock::output::print::PictureFormat;
 use archrock::output::{Batch, Folder, Manifest, Origin, OutputError};
-use archrock::scenario::{Assignment, Hinges, ReadOptions, Scenario, Source, shown};
+use archrock::scenario::{Assignment, ModelKind, ReadOptions, Scenario, Source, shown};
 use archrock::studies::catalogue::StudyKind;
 use archrock::studies::peaks;
 use archrock::studies::results::Results;
@@ -127,8 +127,8 @@ pub struct Input<'a> {
 
 impl Input<'_> {
     /// Reads the scenario with this model of motion; `None` if the tables of the scenario choose the model.
-    pub fn read(&self, hinges: Option<Hinges>) -> Result<Scenario, Failure> {
-        self.read_for(hinges, false)
+    pub fn read(&self, model: Option<&'static ModelKind>) -> Result<Scenario, Failure> {
+        self.read_for(model, false)
     }
 
     /// Reads the scenario for static analysis, which needs neither the records of the ground motion nor a model of motion.
@@ -136,9 +136,13 @@ impl Input<'_> {
         self.read_for(None, true)
     }
 
-    fn read_for(&self, hinges: Option<Hinges>, statics: bool) -> Result<Scenario, Failure> {
+    fn read_for(
+        &self,
+        model: Option<&'static ModelKind>,
+        statics: bool,
+    ) -> Result<Scenario, Failure> {
         let options = ReadOptions {
-            hinges,
+            model,
             set: self.set,
             statics,
         };
@@ -305,7 +309,7 @@ impl Destination {
     /// Returns the folder for a model of motion: a subfolder if there are several models.
     pub fn of_model(&self, scenario: &Scenario, several: bool) -> Self {
         match several {
-            true => self.within(scenario.motion.hinges().name()),
+            true => self.within(scenario.motion.kind.option),
             false => self.clone(),
         }
     }

@@ -70,7 +70,7 @@ impl MapOption {
     /// Returns the style of a map.
     fn style(self, scenario: &Scenario, figure: Figure) -> Result<Style, String> {
         let by_peak = self.color == Color::Peak;
-        let model = scenario.motion.hinges().model();
+        let model = scenario.motion.kind;
         if by_peak && model.has_joints {
             return Err(format!(
                 "--color peak goes with four links and columns: {} have no critical rotation",
@@ -149,7 +149,7 @@ fn compute(
     for one in scenarios.chunks(1) {
         let place = place.of_model(&one[0], several);
         let found = session.with_samples(kinds, one, Some(&place))?;
-        all.extend(found.map(|found| (one[0].motion.label(), found)));
+        all.extend(found.map(|found| (one[0].motion.kind.label, found)));
     }
     let models = all.iter().map(|(model, found)| (*model, &found.own));
     let title = scenarios[0].title.as_deref();
@@ -163,7 +163,7 @@ fn compute(
         print_status(model);
         let place = place.of_model(scenario, several);
         show(found, kinds[0], &place, Format::Text)?;
-        let name = scenario.motion.hinges().name();
+        let name = scenario.motion.kind.option;
         summaries.push((name.to_owned(), found.summary(kinds[0])?));
     }
     let answers = all.iter().filter_map(|(_, found)| found.own.answer.clone());

@@ -375,7 +375,7 @@ impl<'s> Session<'s> {
             let place = place.of_model(scenario, several).within(samples.name);
             let computed = self.compute(samples, slice::from_ref(scenario), Some(&place))?;
             of_samples.extend(computed.map(|results| OfSamples {
-                model: [scenario.motion.hinges().name(), scenario.motion.label()],
+                model: [scenario.motion.kind.option, scenario.motion.kind.label],
                 place: place.describe(&results),
                 results,
             }));

@@ -150,11 +150,11 @@ fn files(record: &Record) -> String {
 }
 
 fn model(scenario: &Scenario, varies: Varies<'_>) -> String {
-    if scenario.motion.hinges().has_joints() {
-        return scenario.motion.label().to_owned();
+    if scenario.motion.kind.has_joints {
+        return scenario.motion.kind.label.to_owned();
     }
-    let name = match scenario.structure.thrusts() {
-        true => scenario.motion.label(),
+    let name = match scenario.structure.has_horizontal_thrust() {
+        true => scenario.motion.kind.label,
         false => "Housner's block",
     };
     match scenario.motion.impact().model {

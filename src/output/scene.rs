@@ -77,7 +77,7 @@ impl Scene {
     /// Makes the scene of a structure that rocks as mechanisms; the blocks of an arch are linked.
     pub fn new(structure: &Structure) -> Self {
         let (parts, ties) = (structure.as_parts(), structure.ties());
-        Self::of(structure, parts, structure.thrusts(), ties)
+        Self::of(structure, parts, structure.has_horizontal_thrust(), ties)
     }
 
     /// Makes the scene of a structure that moves as the blocks of this row.
@@ -86,7 +86,7 @@ impl Scene {
     }
 
     fn of(structure: &Structure, parts: &dyn Parts, linked: bool, ties: &[Tie]) -> Self {
-        let carries = structure.carries();
+        let carries = structure.fill_and_loads();
         let loads = carries.into_iter().flat_map(|(carried, loads)| {
             let places_m = carried.loads_m.iter().copied();
             places_m.zip(loads.iter().copied())

@@ -3,7 +3,6 @@
 use std::collections::HashMap;
 use std::mem;
 use std::ops::Range;
-use std::path::{Path, PathBuf};
 
 use serde_json::{Map, Value};
 use toml::Spanned;
@@ -11,6 +10,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::assignment::Assignment;
 use super::error::{Fault, excerpt};
+use super::files::Files;
 use super::toml_text::inline;
 
 /// Position of a value: a range of bytes in the text with this number. Text 0 is the scenario; the others are the assignments, in order.
@@ -106,8 +106,8 @@ pub(super) struct Document<'a> {
     /// The lines of the text that are not TOML. A key in these lines may have been given, so it is not reported as missing.
     pub(super) unread: String,
     pub(super) faults: Vec<Fault>,
-    /// The folder to which the names of files are relative.
-    pub(super) folder: PathBuf,
+    /// The files that the text may name.
+    pub(super) files: Files,
 }
 
 impl<'a> Document<'a> {
@@ -118,7 +118,7 @@ impl<'a> Document<'a> {
     ///
     /// # Errors
     /// When no part of the text is TOML: an error covers several lines, such as an unclosed bracket, or there are too many errors.
-    pub(super) fn parse(text: &'a str, folder: &Path) -> Result<Self, Vec<Fault>> {
+    pub(super) fn parse(text: &'a str, files: &Files) -> Result<Self, Vec<Fault>> {
         // Each fault needs another pass over the text.
         const MAX_SYNTAX_FAULTS: usize = 20;
         let mut legible = text.to_owned();
@@ -138,7 +138,7 @@ impl<'a> Document<'a> {
                     texts: vec![text],
                     unread,
                     faults,
-                    folder: folder.to_owned(),
+                    files: files.clone(),
                 });
             };
             let offset = start(&first);
@@ -162,13 +162,13 @@ impl<'a> Document<'a> {
     }
 
     /// Makes a document of JSON values from a program.
-    pub(super) fn of_json(root: Value, folder: &Path) -> Self {
+    pub(super) fn of_json(root: Value, files: &Files) -> Self {
         let Value::Object(root) = root else {
             return Self::default();
         };
         Self {
             root,
-            folder: folder.to_owned(),
+            files: files.clone(),
             ..Self::default()
         }
     }
@@ -181,8 +181,7 @@ impl<'a> Document<'a> {
             let (value, _) = DeTable::parse_recoverable(&assignment.text);
             let mut parser = Parser { text, spans };
             let value = Value::Object(parser.table("", value.into_inner()));
-            let mut root = Value::Object(mem::take(&mut self.root));
-            match replace(&mut root, value, assignment.depth) {
+            match self.insert(value, assignment.depth) {
                 Ok([path, new_path]) => {
                     let spans = parser.spans.into_iter().filter_map(|(inner, span)| {
                         let inner = inner.strip_prefix(&new_path)?;
@@ -192,10 +191,20 @@ impl<'a> Document<'a> {
                 }
                 Err(message) => self.faults.push(Fault::new(text, 0, message)),
             }
-            if let Value::Object(root) = root {
-                self.root = root;
-            }
         }
+    }
+
+    /// Inserts the only value of `new` at the depth of `depth` tables, as [`replace`].
+    ///
+    /// # Errors
+    /// When a name is not an entry of a list.
+    pub(super) fn insert(&mut self, new: Value, depth: usize) -> Result<[String; 2], String> {
+        let mut root = Value::Object(mem::take(&mut self.root));
+        let replaced = replace(&mut root, new, depth);
+        if let Value::Object(root) = root {
+            self.root = root;
+        }
+        replaced
     }
 
     /// Returns the text of a value for messages.

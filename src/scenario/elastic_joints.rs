@@ -2,15 +2,19 @@
 
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
+use std::sync::Arc;
 
+use super::free_hinges;
+use super::model_kind::{AnyModel, ModelKind, ModelOptions, Site};
 use super::prelude::*;
 use super::structure::{ModelError, Structure};
 use crate::argument::ArgumentError;
+use crate::dynamics::Variation;
+use crate::mechanics::ElasticStructure;
 use crate::mechanics::elastic_joint::{
     Contact, ElasticProperties, JointStiffness, Materials, RestError, Stiffness,
 };
-use crate::mechanics::{ElasticStructure, Movements};
-use crate::{ElasticJoints, Request, RowModelError};
+use crate::{ElasticJoints, Request, RowModelError, RowOptions};
 
 /// Converts a stiffness in GPa/m to Pa/m, and a modulus in GPa to Pa.
 const GPA: f64 = 1e9;
@@ -34,40 +38,50 @@ const fn scaled(range: &RangeInclusive<f64>, unit: f64) -> Number {
     within(&(*range.start() / unit..=*range.end() / unit))
 }
 
+/// A row of blocks with elastic joints.
+pub static ELASTIC_JOINTS: ModelKind = ModelKind {
+    option: "elastic",
+    name: "elastic_joints",
+    table: "elastic_joints",
+    label: "elastic joints",
+    has_joints: true,
+    is_rigid: false,
+    ignored: Some("[impact] is ignored: elastic joints have no impacts"),
+    lacking: Some(
+        "lacks [elastic_joints] with a stiffness: give `normal_stiffness_gpa_m` there; \
+         docs/elastic-joints.md explains how to choose",
+    ),
+    read: |table| Ok(Arc::new(ElasticTable::read(table)?)),
+};
+
 /// The contents of `[elastic_joints]`, in the units of the keys.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct ElasticTable {
+struct ElasticTable {
     /// Normal stiffness of a joint per area, in GPa/m; `None` if it follows from moduli.
-    pub normal_stiffness_gpa_m: Option<f64>,
+    normal_stiffness_gpa_m: Option<f64>,
     /// Shear stiffness of a joint per area, in GPa/m; `None` for the default ratio to the normal stiffness.
-    pub shear_stiffness_gpa_m: Option<f64>,
+    shear_stiffness_gpa_m: Option<f64>,
     /// Young's modulus of the blocks, in GPa, from which the stiffness follows; `None` if the stiffness is given.
-    pub stone_modulus_gpa: Option<f64>,
+    stone_modulus_gpa: Option<f64>,
     /// Young's modulus of the mortar, in GPa; `None` without mortar.
-    pub mortar_modulus_gpa: Option<f64>,
+    mortar_modulus_gpa: Option<f64>,
     /// Thickness of the mortar, in m; `None` without mortar.
-    pub mortar_thickness_m: Option<f64>,
+    mortar_thickness_m: Option<f64>,
     /// Coulomb's coefficient of friction; `None` if joints never slip.
-    pub friction_coefficient: Option<f64>,
+    friction_coefficient: Option<f64>,
     /// Damping time, in s: damping forces are this time multiplied by the rates of the elastic forces.
-    pub damping_time_s: f64,
+    damping_time_s: f64,
     /// Compressive strength of joints, in MPa; `None` if joints do not crush.
-    pub compressive_strength_mpa: Option<f64>,
+    compressive_strength_mpa: Option<f64>,
     /// Number of contact points that carry the stress; `None` for continuous contact.
-    pub contact_points: Option<usize>,
+    contact_points: Option<usize>,
     /// The longest time step, in s; `None` for the default.
-    pub longest_step_s: Option<f64>,
-    /// Movements of the supports before time 0, from `[supports]`.
-    #[serde(skip)]
-    pub supports: Movements,
-    /// Gravity under which the joints settle, in m/s2, from `[simulation]`.
-    #[serde(skip)]
-    pub gravity_m_s2: f64,
+    longest_step_s: Option<f64>,
 }
 
 impl ElasticTable {
     /// Reads `[elastic_joints]`.
-    pub(super) fn read(table: &mut Table<'_>) -> ReadResult<Self> {
+    fn read(table: &mut Table<'_>) -> ReadResult<Self> {
         const STRENGTH_MPA: Number = scaled(&ElasticProperties::STRENGTH_PA, MPA);
         let softest_gpa_m = *ElasticProperties::NORMAL_STIFFNESS_PA_M.start() / GPA;
         let stiffness = within(&(softest_gpa_m..=STIFFEST_GPA_M)).because("stiffer joints are as good as rigid, and take very many steps: use [free_hinges], the limit of stiff joints");
@@ -84,11 +98,9 @@ impl ElasticTable {
             compressive_strength_mpa: table.optional("compressive_strength_mpa", &STRENGTH_MPA),
             contact_points: table.optional("contact_points", &POINTS),
             longest_step_s: table.optional("longest_step_s", &within(&ElasticJoints::STEP_S)),
-            supports: Movements::default(),
-            gravity_m_s2: Request::default().gravity_m_s2,
         };
         table.optional("contact", &one_of(&["continuous"]));
-        table.relate(RELATIONS)?;
+        table.apply_relations(RELATIONS)?;
         Ok(read)
     }
 
@@ -124,71 +136,11 @@ impl ElasticTable {
         }
     }
 
-    /// Rejects joints on which the structure cannot stand, and time steps that are too long or too many.
-    pub(super) fn check(
-        &self,
-        table: &mut Table<'_>,
-        structure: &Structure,
-        (gravity_m_s2, end_s): (f64, f64),
-    ) -> ReadResult<()> {
-        // Other users of the row report its faults.
-        let Some(joints) = self.joints(structure) else {
-            return Ok(());
-        };
-        let stiffness = match self.stone_modulus_gpa {
-            Some(_) => "stone_modulus_gpa",
-            None => "normal_stiffness_gpa_m",
-        };
-        let joints = joints.map_err(|error| {
-            let (name, value, allowed) = (error.argument, plain(error.value), error.allowed);
-            let wrong = format!("gives a joint `{name} = {value}`, which must be {allowed}");
-            table.wrong_in(TABLE, stiffness, wrong)
-        })?;
-        let joints = joints.on_supports(self.supports.displacements());
-        let Err(error) = joints.rest([0.0, -gravity_m_s2]) else {
-            return self.check_step(table, &joints, end_s);
-        };
-        let key = match error {
-            RestError::Friction => "friction_coefficient",
-            RestError::Strength => "compressive_strength_mpa",
-            RestError::Points => "contact_points",
-            RestError::Stiffness | RestError::NotFound => stiffness,
-            RestError::Tie(index) => {
-                return Err(table.wrong_element("tie", index, format!("does not fit: {error}")));
-            }
-            RestError::TieDuringMovement(tie, part) => {
-                let wrong = format!(
-                    "breaks when the springings have gone {:.2} % of the way of [supports], with these joints: give a larger \
-                     `breaks_at_strain`, or less movement",
-                    1e2 * part
-                );
-                return Err(table.wrong_element("tie", tie, wrong));
-            }
-            RestError::Supports(part) => {
-                let wrong = format!(
-                    "lets the arch fall when its springings have gone {:.2} % of this way, with joints as soft as these: give less, or \
-                     stiffer joints",
-                    1e2 * part
-                );
-                return Err(table.wrong("supports", wrong));
-            }
-        };
-        let wrong = format!("is not possible here: {error}");
-        Err(table.wrong_in(TABLE, key, wrong))
-    }
-
     /// Returns the joints of a structure, an error if their stiffness is out of range; `None` if the structure is not a row of blocks.
     fn joints(&self, structure: &Structure) -> Option<Result<ElasticStructure, ArgumentError>> {
         let (depth_m, _) = structure.depth_and_density();
         let row = structure.row().ok()?;
         Some(ElasticStructure::of_row(&row, &self.properties(depth_m)))
-    }
-
-    /// Returns the longest step of a motion of a structure, in seconds; `None` if it has no such joints.
-    pub(super) fn longest_step_s(&self, structure: &Structure) -> Option<f64> {
-        let joints = self.joints(structure)?.ok()?;
-        let default_s = ElasticJoints::default_step_s(&joints);
-        Some(self.longest_step_s.unwrap_or(default_s))
     }
 
     /// Rejects time steps that are too long, or too many until the end.
@@ -221,20 +173,115 @@ impl ElasticTable {
         }
     }
 
-    /// Makes the model of the motion of a structure.
-    ///
-    /// # Errors
-    /// When the structure has no joints, or cannot stand on these joints.
-    pub(super) fn model(&self, structure: &Structure) -> Result<ElasticJoints, ModelError> {
+    /// Makes the model of a structure. An error if the structure has no joints, or cannot stand on these joints.
+    fn elastic(&self, structure: &Structure, site: &Site) -> Result<ElasticJoints, ModelError> {
         let row = structure.row().map_err(RowModelError::from)?;
         let (depth_m, _) = structure.depth_and_density();
-        ElasticJoints::under(self.gravity_m_s2, row, self.properties(depth_m))
-            .and_then(|model| model.on_supports(self.supports))
+        ElasticJoints::under(site.gravity_m_s2, row, self.properties(depth_m))
+            .and_then(|model| model.on_supports(site.supports))
             .and_then(|model| match self.longest_step_s {
                 Some(step_s) => Ok(model.with_longest_step_s(step_s)?),
                 None => Ok(model),
             })
             .map_err(ModelError::ElasticJoints)
+    }
+}
+
+impl ModelOptions for ElasticTable {
+    fn to_json(&self) -> Value {
+        json!(self)
+    }
+
+    fn model(&self, structure: &Structure, site: &Site) -> AnyModel {
+        Ok(Box::new(self.elastic(structure, site)?))
+    }
+
+    fn model_for_many_cases(&self, structure: &Structure, site: &Site) -> AnyModel {
+        Ok(Box::new(self.elastic(structure, site)?.for_many_cases()))
+    }
+
+    /// Makes models with other stiffness and contact, and one with rigid joints.
+    fn variations(&self, structure: &Structure, site: &Site) -> Result<Vec<Variation>, ModelError> {
+        let mut variations = self.elastic(structure, site)?.variations();
+        let rigid = RowOptions {
+            friction_coefficient: self.friction_coefficient,
+            ..RowOptions::default()
+        };
+        variations.push(Variation {
+            name: "rigid joints (free hinges)".to_owned(),
+            model: match free_hinges::model(rigid, structure, site) {
+                Ok(rigid) => Ok(Box::new(rigid)),
+                Err(error) => Err(error.to_string()),
+            },
+        });
+        Ok(variations)
+    }
+
+    fn friction_coefficient(&self) -> Option<f64> {
+        self.friction_coefficient
+    }
+
+    fn compressive_strength_mpa(&self) -> Option<f64> {
+        self.compressive_strength_mpa
+    }
+
+    fn longest_step_s(&self, structure: &Structure, _: &Site, _: &Request) -> Option<f64> {
+        let joints = self.joints(structure)?.ok()?;
+        let default_s = ElasticJoints::default_step_s(&joints);
+        Some(self.longest_step_s.unwrap_or(default_s))
+    }
+
+    /// Rejects joints on which the structure cannot stand, and time steps that are too long or too many.
+    fn check(
+        &self,
+        table: &mut Table<'_>,
+        structure: &Structure,
+        site: &Site,
+        end_s: Option<f64>,
+    ) -> ReadResult<()> {
+        // Other users of the row report its faults.
+        let Some((joints, end_s)) = self.joints(structure).zip(end_s) else {
+            return Ok(());
+        };
+        let stiffness = match self.stone_modulus_gpa {
+            Some(_) => "stone_modulus_gpa",
+            None => "normal_stiffness_gpa_m",
+        };
+        let joints = joints.map_err(|error| {
+            let (name, value, allowed) = (error.argument, plain(error.value), error.allowed);
+            let wrong = format!("gives a joint `{name} = {value}`, which must be {allowed}");
+            table.wrong_in(TABLE, stiffness, wrong)
+        })?;
+        let joints = joints.on_supports(site.supports.displacements());
+        let Err(error) = joints.rest([0.0, -site.gravity_m_s2]) else {
+            return self.check_step(table, &joints, end_s);
+        };
+        let key = match error {
+            RestError::Friction => "friction_coefficient",
+            RestError::Strength => "compressive_strength_mpa",
+            RestError::Points => "contact_points",
+            RestError::Stiffness | RestError::NotFound => stiffness,
+            RestError::Tie(index) => {
+                return Err(table.wrong_element("tie", index, format!("does not fit: {error}")));
+            }
+            RestError::TieDuringMovement(tie, part) => {
+                let wrong = format!(
+                    "breaks at {:.2} % of the movement of [supports], with these joints: give a larger `breaks_at_strain`, or less \
+                     movement",
+                    1e2 * part
+                );
+                return Err(table.wrong_element("tie", tie, wrong));
+            }
+            RestError::Supports(part) => {
+                let wrong = format!(
+                    "makes the arch fall at {:.2} % of this movement, with joints as soft as these: reduce it, or give stiffer joints",
+                    1e2 * part
+                );
+                return Err(table.wrong("supports", wrong));
+            }
+        };
+        let wrong = format!("is not possible here: {error}");
+        Err(table.wrong_in(TABLE, key, wrong))
     }
 }
 

@@ -1,37 +1,85 @@
 //! Free hinges: joints that may open, close and slip anywhere, `[free_hinges]`.
 
+use std::sync::Arc;
+
+use super::model_kind::{AnyModel, ModelKind, ModelOptions, Site};
 use super::prelude::*;
 use super::structure::Structure;
 use crate::argument::rounded_up;
-use crate::mechanics::{FrictionError, Movements, friction};
-use crate::{FreeHinges, RowModelError, RowOptions};
+use crate::mechanics::{FrictionError, friction};
+use crate::{FreeHinges, Request, RowModelError, RowOptions};
 
-/// Free hinges on supports that may have moved.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct FreeTable {
-    /// Options in `[free_hinges]`.
-    pub options: RowOptions,
-    /// Movements of the supports before time 0, from `[supports]`.
-    pub supports: Movements,
+/// A row of rigid blocks whose joints open and close anywhere.
+pub static FREE_HINGES: ModelKind = ModelKind {
+    option: "free",
+    name: "free_hinges",
+    table: "free_hinges",
+    label: "free hinges",
+    has_joints: true,
+    is_rigid: true,
+    ignored: Some("[impact] is ignored: with free hinges impacts follow from the blocks"),
+    lacking: None,
+    read: |table| Ok(Arc::new(read(table)?)),
+};
+
+/// Makes the model of a structure. An error if the structure is an arch without voussoirs, cannot stand, or collapses or slides on its moved
+/// supports.
+pub(super) fn model(
+    options: RowOptions,
+    structure: &Structure,
+    site: &Site,
+) -> Result<FreeHinges, RowModelError> {
+    let mut undeformed = options;
+    undeformed.friction_coefficient = None;
+    let built = structure.free_hinges(undeformed)?;
+    built.on_supports(&site.supports)?.with_options(options)
 }
 
-impl FreeTable {
-    /// Makes the model of a structure.
-    ///
-    /// # Errors
-    /// When the structure is an arch without voussoirs, cannot stand, or collapses or slides on its moved supports.
-    pub fn model(&self, structure: &Structure) -> Result<FreeHinges, RowModelError> {
-        let mut options = self.options;
-        options.friction_coefficient = None;
-        let built = structure
-            .free_hinges(options)?
-            .on_supports(&self.supports)?;
-        built.with_options(self.options)
+impl ModelOptions for RowOptions {
+    fn to_json(&self) -> Value {
+        json!(self)
+    }
+
+    fn model(&self, structure: &Structure, site: &Site) -> AnyModel {
+        Ok(Box::new(model(*self, structure, site)?))
+    }
+
+    fn model_for_many_cases(&self, structure: &Structure, site: &Site) -> AnyModel {
+        Ok(Box::new(model(*self, structure, site)?.for_many_cases()))
+    }
+
+    fn friction_coefficient(&self) -> Option<f64> {
+        self.friction_coefficient
+    }
+
+    fn longest_step_s(&self, structure: &Structure, site: &Site, request: &Request) -> Option<f64> {
+        Some(model(*self, structure, site).ok()?.longest_step_s(request))
+    }
+
+    /// Rejects a coefficient of friction with which the structure slides on its moved springings. [`check_friction`] checks the undeformed structure.
+    fn check(
+        &self,
+        table: &mut Table<'_>,
+        structure: &Structure,
+        site: &Site,
+        _end_s: Option<f64>,
+    ) -> ReadResult<()> {
+        if site.supports.is_none() || self.friction_coefficient.is_none() {
+            return Ok(());
+        }
+        match model(*self, structure, site) {
+            Err(RowModelError::Friction(FrictionError::CannotStand(_))) => {
+                let wrong = "does not hold the structure on its moved springings: it would slide; give a larger one";
+                Err(table.wrong_in(&["free_hinges"], "friction_coefficient", wrong))
+            }
+            // Other users of the row report its faults.
+            _ => Ok(()),
+        }
     }
 }
 
 /// Reads `[free_hinges]`; the table may be empty.
-pub(super) fn read(table: &mut Table<'_>) -> ReadResult<RowOptions> {
+fn read(table: &mut Table<'_>) -> ReadResult<RowOptions> {
     let step_s = within(&RowOptions::STEP_S);
     let coefficient = within(&RowOptions::FRICTION_COEFFICIENT);
     let options = RowOptions {
@@ -39,30 +87,14 @@ pub(super) fn read(table: &mut Table<'_>) -> ReadResult<RowOptions> {
         shortest_step_s: table.optional("shortest_step_s", &step_s),
         friction_coefficient: table.optional("friction_coefficient", &coefficient),
     };
-    table.sound()?;
+    table.check_faultless()?;
     options
         .checked()
         .map_err(|error| table.wrong(error.argument, format!("does not fit: {error}")))
 }
 
-/// Rejects a coefficient of friction with which the structure slides on its moved springings. [`carries`] checks the undeformed structure.
-pub(super) fn holds(
-    table: &mut Table<'_>,
-    structure: &Structure,
-    free: &FreeTable,
-) -> ReadResult<()> {
-    match free.model(structure) {
-        Err(RowModelError::Friction(FrictionError::CannotStand(_))) => {
-            let wrong = "does not hold the structure where its springings have gone: it would slide there; give a larger one";
-            Err(table.wrong_in(&["free_hinges"], "friction_coefficient", wrong))
-        }
-        // Other users of the row report its faults.
-        _ => Ok(()),
-    }
-}
-
 /// Rejects a coefficient of friction with which the structure slides under its weight.
-pub(super) fn carries(structure: &Structure, coefficient: f64) -> Result<(), String> {
+pub(super) fn check_friction(structure: &Structure, coefficient: f64) -> Result<(), String> {
     // Other users of the row report its faults.
     let Ok(model) = structure.free_hinges(RowOptions::default()) else {
         return Ok(());

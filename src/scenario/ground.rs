@@ -39,7 +39,7 @@ impl Ground {
     /// # Errors
     /// All faults of the text and of its records.
     pub fn of(source: &Source, gravity_m_s2: f64) -> Result<Self, ScenarioErrors> {
-        table::read_text((&source.text, &source.folder), &[], |table| {
+        table::read_text((&source.text, &source.files), &[], |table| {
             let known = (&[][..], Some(gravity_m_s2), false);
             let ground = table.given_table("ground", |table| Self::read(table, known))?;
             let missing =
@@ -54,16 +54,16 @@ impl Ground {
     ///
     /// # Errors
     /// When gravity is outside that range.
-    pub fn motion(&self, gravity_m_s2: f64) -> Result<GroundMotion, ArgumentError> {
+    pub fn ground_motion(&self, gravity_m_s2: f64) -> Result<GroundMotion, ArgumentError> {
         argument::within("gravity_m_s2", gravity_m_s2, Request::GRAVITY_M_S2)?;
-        Ok(self.motion_under(gravity_m_s2))
+        Ok(self.ground_motion_under(gravity_m_s2))
     }
 
     /// Returns the motion under the gravity of a scenario, whose range was checked.
-    pub(super) fn motion_under(&self, gravity_m_s2: f64) -> GroundMotion {
+    pub(super) fn ground_motion_under(&self, gravity_m_s2: f64) -> GroundMotion {
         match self {
-            Self::Pulse(pulse) => pulse.motion(gravity_m_s2),
-            Self::Record(record) => record.motion(gravity_m_s2),
+            Self::Pulse(pulse) => pulse.ground_motion(gravity_m_s2),
+            Self::Record(record) => record.ground_motion(gravity_m_s2),
         }
     }
 
@@ -80,7 +80,7 @@ impl Ground {
         let record = table.table(RECORD, |table| Record::read(table, known));
         let kinds = Pulse::ALL.iter().map(|kind| kind.name());
         let kinds: Vec<_> = kinds.chain([RECORD]).collect();
-        table.relate(&[OneOf(&kinds, None)])?;
+        table.apply_relations(&[OneOf(&kinds, None)])?;
         let record = record.map(|(record, motion)| (Self::Record(Box::new(record)), motion));
         found.or(record).ok_or(FaultRecorded)
     }
@@ -134,7 +134,7 @@ impl PulseGround {
     }
 
     /// Returns the ground motion under a gravity in m/s2.
-    pub(crate) fn motion(&self, gravity_m_s2: f64) -> GroundMotion {
+    pub(crate) fn ground_motion(&self, gravity_m_s2: f64) -> GroundMotion {
         let amplitude_g = Vector2::new(self.amplitude_g, self.vertical_amplitude_g);
         self.shape()
             .inclined_m_s2(amplitude_g * gravity_m_s2)
@@ -158,10 +158,10 @@ impl PulseGround {
             cycles: has_cycles.then(|| table.or("cycles", &CYCLES, periods)),
             phase_deg: is_train.then(|| table.or("phase_deg", &within(&(-360.0..=360.0)), 0.0)),
         };
-        table.sound()?;
+        table.check_faultless()?;
         // Free fall of the ground does not depend on gravity, whose value may be faulty.
         let gravity_m_s2 = known.1.unwrap_or(1.0);
-        let motion = pulse.motion(gravity_m_s2);
+        let motion = pulse.ground_motion(gravity_m_s2);
         match motion.free_fall_s(gravity_m_s2).filter(|_| !known.2) {
             None => Ok((pulse, motion)),
             Some(time_s) => Err(table.wrong("vertical_amplitude_g", free_fall(time_s))),

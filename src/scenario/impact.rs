@@ -1,7 +1,24 @@
 //! The impact law of four links: `[impact]`.
 
+use std::sync::Arc;
+
+use super::model_kind::{AnyModel, ModelKind, ModelOptions, Site};
 use super::prelude::*;
+use super::structure::Structure;
 use crate::{ImpactLaw, ImpactModel};
+
+/// One mechanism of one degree of freedom at a time: four links, or Housner's column.
+pub static FOUR_LINKS: ModelKind = ModelKind {
+    option: "four",
+    name: "four_links",
+    table: "impact",
+    label: "four links",
+    has_joints: false,
+    is_rigid: true,
+    ignored: None,
+    lacking: None,
+    read: |table| Ok(Arc::new(read(table)?)),
+};
 
 pub(super) const RESTITUTION: Number = within(&(0.0..=1.0));
 const MODELS: [ImpactModel; 4] = [
@@ -11,7 +28,7 @@ const MODELS: [ImpactModel; 4] = [
     ImpactModel::Prescribed { restitution: 0.0 },
 ];
 /// Reads `[impact]`.
-pub(super) fn read(table: &mut Table<'_>) -> ReadResult<ImpactLaw> {
+fn read(table: &mut Table<'_>) -> ReadResult<ImpactLaw> {
     let names = MODELS.map(|model| model.name());
     let name = table.or("model", &one_of(&names), names[0]);
     let restitution = table.optional("restitution", &RESTITUTION);
@@ -32,14 +49,23 @@ pub(super) fn read(table: &mut Table<'_>) -> ReadResult<ImpactLaw> {
     })
 }
 
-/// Writes `[impact]`.
-pub(super) fn to_json(law: &ImpactLaw) -> Value {
-    let mut table = json!({ "model": law.model.name() });
-    if let ImpactModel::Prescribed { restitution } = law.model {
-        table["restitution"] = json!(restitution);
+impl ModelOptions for ImpactLaw {
+    fn to_json(&self) -> Value {
+        let mut table = json!({ "model": self.model.name() });
+        if let ImpactModel::Prescribed { restitution } = self.model {
+            table["restitution"] = json!(restitution);
+        }
+        if !self.is_theory() {
+            table["restitution_factor"] = json!(self.restitution_factor);
+        }
+        table
     }
-    if !law.is_theory() {
-        table["restitution_factor"] = json!(law.restitution_factor);
+
+    fn model(&self, structure: &Structure, _: &Site) -> AnyModel {
+        Ok(structure.model(*self)?)
     }
-    table
+
+    fn law(&self) -> Option<ImpactLaw> {
+        Some(*self)
+    }
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::hinges::Hinges;
+use super::model_kind::ModelKind;
 use super::prelude::*;
 use super::structure::Structure;
 use crate::argument::rounded_down;
@@ -14,16 +14,16 @@ const ROTATION_RAD: Number = between(Included(Initial::MIN_ROTATION_RAD), Exclud
 pub(super) fn read(
     table: &mut Table<'_>,
     structure: Option<&Structure>,
-    hinges: Hinges,
+    kind: &ModelKind,
 ) -> ReadResult<Initial> {
     let wrong = "releases rigid blocks about a hinge, and elastic joints have none: they start from rest under the weight; leave \
                  [initial] out";
-    table.refuse_all(!hinges.model().is_rigid, wrong)?;
+    table.refuse_all(!kind.is_rigid, wrong)?;
     let initial = Initial {
         sway: table.required("sway", &one_of(Sway::ALL)),
         rotation_rad: table.required("rotation_rad", &ROTATION_RAD),
     };
-    table.sound()?;
+    table.check_faultless()?;
     if let Some(structure) = structure {
         let limit_rad = structure.release_limit_rad();
         let wrong = "releases from the first mechanism of four links, and this arch does not start as one; leave \
@@ -40,7 +40,11 @@ pub(super) fn read(
 }
 
 /// Rejects `[initial]` for a structure that has ties or stands on moved springings.
-pub(super) fn suits(table: &mut Table<'_>, has_ties: bool, is_moved: bool) -> ReadResult<()> {
+pub(super) fn check_structure(
+    table: &mut Table<'_>,
+    has_ties: bool,
+    is_moved: bool,
+) -> ReadResult<()> {
     let ties = "[[tie]], which holds the structure where it stands";
     let moved = "[supports]: on moved springings the structure stands on other hinges";
     for (holds, by) in [(has_ties, ties), (is_moved, moved)] {

@@ -1,9 +1,11 @@
 //! The input files of a scenario.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde::Serialize;
 use sha2::{Digest as _, Sha256};
+
+use super::files::Files;
 
 /// An input file of a scenario, with its hash.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -41,8 +43,8 @@ pub(crate) fn sha256(bytes: &[u8]) -> String {
 pub(super) struct InputFiles {
     /// The files; the scenario itself is the first.
     pub(super) files: Vec<InputFile>,
-    /// The folder to which the names of files are relative.
-    pub(super) folder: PathBuf,
+    /// Where the files are.
+    pub(super) place: Files,
 }
 
 impl PartialEq for InputFiles {

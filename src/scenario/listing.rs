@@ -1,9 +1,6 @@
 //! Records that a table names by files or patterns of file names, with the keys that describe the files.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Component as PathPart, Path, PathBuf};
-
-use glob::MatchOptions;
 
 use super::prelude::*;
 use super::record::{Format, Layout, Series};
@@ -64,7 +61,7 @@ impl RecordListing {
                 own = Layout::new(listed.format);
                 (own.quantity, own.remove_mean) = (layout.quantity, layout.remove_mean);
             }
-            let series = Series::of_file(table.folder(), file.clone(), own)
+            let series = Series::of_file(table.files(), file.clone(), own)
                 .and_then(|series| accept(&series).map(|()| (key, series)));
             if let Err(wrong) = &series {
                 let wrong = format!("names {}, which {wrong}", shown(&file));
@@ -73,7 +70,7 @@ impl RecordListing {
             series.ok()
         };
         let records: Vec<_> = self.files.into_iter().filter_map(read).collect();
-        table.sound().map(|()| records)
+        table.check_faultless().map(|()| records)
     }
 }
 
@@ -87,11 +84,11 @@ pub(super) fn written(keys: &[(&str, &[Series])]) -> Map<String, Value> {
     let mut layouts = keys.flat_map(|(_, records)| records.iter().map(|series| &series.layout));
     // All CSV tables share the same keys; without CSV tables, AT2 files may share a unit.
     let tables = layouts.clone().find(|layout| layout.format == Format::Csv);
-    let telling = tables.or_else(|| layouts.clone().next());
-    let mut layout = json!(telling);
+    let layout_source = tables.or_else(|| layouts.clone().next());
+    let mut layout = json!(layout_source);
     // If formats differ, the file extensions determine them.
     if let Some(layout) = layout.as_object_mut()
-        && layouts.any(|layout| Some(layout.format) != telling.map(|layout| layout.format))
+        && layouts.any(|layout| Some(layout.format) != layout_source.map(|layout| layout.format))
     {
         layout.shift_remove("format");
     }
@@ -109,11 +106,11 @@ fn list(
     // A file with several names counts once.
     let mut seen = BTreeSet::new();
     for (element, pattern) in patterns.iter().enumerate() {
-        let files = find(table.folder(), pattern).map_err(|wrong| {
+        let files = table.files().find(pattern).map_err(|wrong| {
             table.wrong_element(key, element, wrong);
         });
         for file in files.into_iter().flatten() {
-            let path = table.path(&file);
+            let path = table.files().path(&file);
             if seen.insert(path.canonicalize().unwrap_or(path)) {
                 found.insert(file, element);
             }
@@ -133,65 +130,4 @@ fn list(
         })
     });
     listed.collect()
-}
-
-/// Returns the files that match a pattern, relative to the folder. The error is a phrase that follows the pattern.
-fn find(folder: &Path, pattern: &str) -> Result<Vec<String>, String> {
-    // A name that looks like a pattern is a file if such a file exists: so a resolved scenario reads back the same.
-    let path = folder.join(pattern);
-    let no_file = |is: &str| format!("{is}; must be a file or a pattern such as \"folder/*.at2\"");
-    ensure(!path.is_dir(), || no_file("is a folder"))?;
-    if path.is_file() {
-        return Ok(vec![file_name(Path::new(pattern))?]);
-    }
-    let is_pattern = pattern.contains(['*', '?', '[']);
-    ensure(is_pattern, || no_file("does not exist"))?;
-    let here = folder.as_os_str().is_empty();
-    let folder = if here { Path::new(".") } else { folder };
-    // `glob` has no base folder, so patterns are made absolute.
-    let folder =
-        std::path::absolute(folder).map_err(|error| format!("cannot be found: {error}"))?;
-    let escaped = folder
-        .to_str()
-        .map(glob::Pattern::escape)
-        .ok_or("is relative to a folder whose name is not UTF-8 text; name the files one by one")?;
-    let absolute = Path::new(&escaped).join(pattern);
-    let options = MatchOptions {
-        // As in a shell, `*` does not match hidden files.
-        require_literal_leading_dot: true,
-        require_literal_separator: true,
-        case_sensitive: true,
-    };
-    let matches = glob::glob_with(&absolute.to_string_lossy(), options)
-        .map_err(|error| format!("is not a valid file pattern: {}", error.msg))?;
-    let mut files = Vec::new();
-    for path in matches {
-        let path = path.map_err(|error| format!("cannot be searched: {}", error.error()))?;
-        if path.is_file() {
-            files.push(file_name(path.strip_prefix(&folder).unwrap_or(&path))?);
-        }
-    }
-    ensure(!files.is_empty(), || "matches no file")?;
-    Ok(files)
-}
-
-/// First characters of cells that spreadsheets interpret as formulas. A tab would be another, but it is a control character.
-const FORMULA: [char; 4] = ['=', '+', '-', '@'];
-
-/// Returns the name of a file for scenarios and results. The name must fit on one line and in one cell.
-fn file_name(path: &Path) -> Result<String, String> {
-    let parts = path.components();
-    let plain: PathBuf = parts.filter(|part| *part != PathPart::CurDir).collect();
-    match plain.to_str() {
-        Some(name) if name.starts_with(FORMULA) => Err(format!(
-            "names {}, which spreadsheets that open the table of results would take for a formula: give the file a name \
-             that does not begin with any of = + - @",
-            shown(name)
-        )),
-        Some(name) if !name.contains(char::is_control) => Ok(name.to_owned()),
-        _ => Err(format!(
-            "names \"{}\"; file names must be UTF-8 without control characters",
-            shown(&plain.display().to_string())
-        )),
-    }
 }

@@ -11,9 +11,9 @@
 //! its outcome depends on the steps.
 
 use super::ground::{AMPLITUDE_G, DURATION_S, FREQUENCY_HZ, Ground, PulseGround};
-use super::hinges::Hinges;
 use super::impact::RESTITUTION;
-use super::motion::Motion;
+use super::model_kind::ModelKind;
+use super::models::MotionModel;
 use super::prelude::*;
 use super::record::{PEAK_G, SCALE};
 use super::sequence::Sequence;
@@ -97,11 +97,11 @@ impl Map {
     pub(super) fn read(
         table: &mut Table<'_>,
         structure: Option<&Structure>,
-        (hinges, motion): (Hinges, Option<&Motion>),
+        (kind, motion): (&ModelKind, Option<&MotionModel>),
     ) -> ReadResult<Self> {
         let repeat = table.or(REPEAT, &switch(), false);
         let wrong = "goes with a table [free_hinges] or [elastic_joints]: four links are integrated to a tolerance, not in steps";
-        let _ = table.refuse(repeat && !hinges.has_joints(), REPEAT, wrong);
+        let _ = table.refuse(repeat && !kind.has_joints, REPEAT, wrong);
         let is_no_ring = structure.is_some_and(|structure| structure.circular().is_none());
         let is_found = motion.is_some_and(|motion| {
             let model = motion.impact().model;
@@ -112,7 +112,7 @@ impl Map {
             Quantity::MeanRadius | Quantity::ThicknessRatio | Quantity::Embrace if is_no_ring => {
                 Some("applies to a circular [arch] without piers and loads")
             }
-            Quantity::Restitution if hinges.has_joints() => Some(
+            Quantity::Restitution if kind.has_joints => Some(
                 "goes with four links: with free hinges impacts follow from the blocks, and elastic joints have none",
             ),
             Quantity::Restitution if is_found => Some("needs model = \"prescribed\" in [impact]"),
@@ -135,14 +135,14 @@ impl Map {
                 });
             }
         }
-        table.sound()?;
+        table.check_faultless()?;
         // Numbers of other tables are on the x axis.
         axes.sort_by_key(|axis| axis.quantity != Quantity::Other);
         let mut axes = axes.into_iter();
         let (Some(x), Some(y), None) = (axes.next(), axes.next(), axes.next()) else {
             let keys = Quantity::ALL.iter().skip(1);
             let keys: Vec<_> = keys.map(|one| one.name()).collect();
-            return Err(table.wrong_itself(format!(
+            return Err(table.fault_of_table(format!(
                 "needs exactly two of the keys {}, or of other tables, such as \"arch.depth_m\"",
                 keys.join(", ")
             )));
@@ -196,7 +196,7 @@ impl Map {
                     duration_s: longest_s.unwrap_or(pulse.duration_s),
                     ..pulse.clone()
                 };
-                ("pulses that last", longest.motion(1.0).end_s())
+                ("pulses that last", longest.ground_motion(1.0).end_s())
             }
         };
         simulation.check_covers(end_s, |last| format!("[map] has {what} until {last} s"))

@@ -10,11 +10,10 @@
 //! density_kg_m3 = 2000.0         # or an array, one for each block
 //! ```
 
-use std::path::Path;
-
 use nalgebra::Vector2;
 
 use super::LineFault;
+use super::files::Files;
 use super::prelude::*;
 use super::record::{Decimal, faulty, read_numbers};
 use super::tie::{self, PULLS_OVER, TieTable};
@@ -94,9 +93,9 @@ fn read_blocks(table: &mut Table<'_>) -> ReadResult<GivenBlocks> {
     let depth_m = table.or("depth_m", &MAGNITUDE, DEPTH_M);
     let densities = one_or_more(&MAGNITUDE);
     let density_kg_m3 = table.or("density_kg_m3", &densities, vec![DENSITY_KG_M3]);
-    table.sound()?;
-    let path = table.path(&joints_file);
-    let rows = table.accept("joints", read_numbers::<4>(&path, decimal))?;
+    table.check_faultless()?;
+    let path = table.files().path(&joints_file);
+    let rows = table.accept("joints", read_numbers::<4>(table.files(), &path, decimal))?;
     table.note_file(&joints_file);
     let (count, most) = (rows.len(), MAX_BLOCKS + 1);
     let wrong = format!(
@@ -123,7 +122,7 @@ fn read_blocks(table: &mut Table<'_>) -> ReadResult<GivenBlocks> {
     });
     table.accept("density_kg_m3", fits)?;
     if let Some(file) = &given.outlines_file {
-        let outlines = read_outlines(&table.path(file), decimal, &given);
+        let outlines = read_outlines(table.files(), file, &given, decimal);
         given.outlines = table.accept("outlines", outlines)?;
         table.note_file(file);
     }
@@ -165,8 +164,14 @@ fn why_no_row(error: &RowError) -> String {
     }
 }
 
-fn read_outlines(path: &Path, decimal: Decimal, given: &GivenBlocks) -> Result<Outlines, String> {
-    let rows = read_numbers::<3>(path, decimal)?;
+fn read_outlines(
+    files: &Files,
+    file: &str,
+    given: &GivenBlocks,
+    decimal: Decimal,
+) -> Result<Outlines, String> {
+    let path = &files.path(file);
+    let rows = read_numbers::<3>(files, path, decimal)?;
     let blocks = given.joints.len() - 1;
     let fault = |line: usize, message: String| faulty(path, &LineFault::on(line)(message));
     let mut outlines = Outlines::new();
@@ -330,7 +335,7 @@ fn read_piers(table: &mut Table<'_>) -> ReadResult<Piers> {
         })
     };
     let (left, right) = (table.table("left", one), table.table("right", one));
-    table.sound()?;
+    table.check_faultless()?;
     // If `[piers]` itself has values, both piers exist.
     let has_values = blocks.is_some() || both.iter().any(Option::is_some);
     if [&left, &right].iter().filter(|pier| pier.is_some()).count() > usize::from(has_values) {
@@ -338,7 +343,7 @@ fn read_piers(table: &mut Table<'_>) -> ReadResult<Piers> {
     }
     let mut value = |key: &str, value: Option<f64>| {
         value.ok_or_else(|| {
-            table.wrong_itself(format!(
+            table.fault_of_table(format!(
                 "lacks `{key}`: give it for both piers, or give [piers.left] and [piers.right]"
             ))
         })
@@ -360,7 +365,7 @@ fn read_fill(table: &mut Table<'_>) -> ReadResult<Fill> {
     let height_m = table.optional("height_m", &MAGNITUDE);
     let above_crown_m = table.optional("above_crown_m", &within(&(0.0..=1e6)));
     let density_kg_m3 = table.required("density_kg_m3", &MAGNITUDE);
-    table.relate(&[OneOf(&["height_m", "above_crown_m"], None)])?;
+    table.apply_relations(&[OneOf(&["height_m", "above_crown_m"], None)])?;
     let level = height_m.map(FillLevel::AboveSpringing);
     Ok(Fill {
         level: level

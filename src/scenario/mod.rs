@@ -30,16 +30,17 @@ mod bounds;
 mod document;
 mod elastic_joints;
 mod error;
+mod files;
 mod free_hinges;
 mod ground;
-mod hinges;
 mod impact;
 mod initial;
 mod input_file;
 mod listing;
 mod map;
 mod masonry;
-mod motion;
+mod model_kind;
+mod models;
 mod prelude;
 mod record;
 mod relation;
@@ -70,16 +71,17 @@ use crate::{
 };
 pub use assignment::Assignment;
 use document::Entries;
-pub use elastic_joints::ElasticTable;
+pub use elastic_joints::ELASTIC_JOINTS;
 pub use error::{ScenarioError, ScenarioErrors, TextPosition};
-pub use free_hinges::FreeTable;
+pub use free_hinges::FREE_HINGES;
 pub use ground::{Ground, PulseGround};
-pub use hinges::{Hinges, MODELS, ModelEntry};
+pub use impact::FOUR_LINKS;
 pub use input_file::InputFile;
 use input_file::InputFiles;
 pub(crate) use input_file::sha256;
 pub use map::{Axis, Map, Quantity};
-pub use motion::Motion;
+pub use model_kind::{ModelKind, ModelOptions, Site};
+pub use models::{MODELS, MotionModel};
 use prelude::*;
 use record::KnownRecords;
 pub use record::{
@@ -105,11 +107,11 @@ pub use verify::{
 
 /// Changes that are made to a scenario while it is read.
 ///
-/// If `hinges` is set, tables of other models are ignored: free hinges ignore `[impact]`, and four links ignore `[free_hinges]`.
+/// If `model` is set, tables of other models are ignored: free hinges ignore `[impact]`, and four links ignore `[free_hinges]`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ReadOptions<'a> {
     /// The model of motion; `None` if the tables of the scenario choose it.
-    pub hinges: Option<Hinges>,
+    pub model: Option<&'static ModelKind>,
     /// Values that replace those in the text. If a key is set twice, the later value counts.
     pub set: &'a [Assignment],
     /// True for static analysis. If files of `[ground]` are missing or faulty, the ground does not move; drums and moved springings need no
@@ -130,7 +132,7 @@ pub struct Scenario {
     /// Ties of the structure, with the keys of the file.
     pub ties: Vec<TieTable>,
     /// The model of motion.
-    pub motion: Motion,
+    pub motion: MotionModel,
     /// True if the text has an `[impact]` that the model of motion ignores.
     ignores_impact: bool,
     /// The ground motion; `None` if the ground does not move.
@@ -189,9 +191,7 @@ impl Scenario {
     pub(crate) fn input_paths(&self) -> impl Iterator<Item = PathBuf> {
         let records = self.all_series().map(|series| &series.file);
         let files = self.files.files.iter().map(|input| &input.file);
-        files
-            .chain(records)
-            .map(|file| self.files.folder.join(file))
+        files.chain(records).map(|file| self.files.place.path(file))
     }
 
     /// Returns this scenario without uncertain numbers.
@@ -216,7 +216,7 @@ impl Scenario {
 
     /// Returns the message about a table that the model of motion ignores; `None` if it ignores no table of the file.
     pub fn ignored(&self) -> Option<&'static str> {
-        let message = self.motion.hinges().model().ignored;
+        let message = self.motion.kind.ignored;
         message.filter(|_| self.ignores_impact)
     }
 }
@@ -245,7 +245,7 @@ impl Scenario {
     pub fn schema() -> Value {
         // With a set model, tables of several models are allowed together.
         let options = ReadOptions {
-            hinges: Some(Hinges::Four),
+            model: Some(&FOUR_LINKS),
             ..ReadOptions::default()
         };
         let mut schema = table::describe(|table| Self::read_table(table, &[], &options));
@@ -261,13 +261,13 @@ impl Scenario {
     /// As [`Scenario::parse`], and when an option does not fit the scenario. An error in an assignment has the assignment instead of the file,
     /// and no line.
     pub fn of(source: &Source, options: &ReadOptions<'_>) -> Result<Self, ScenarioErrors> {
-        let Source { folder, text, .. } = source;
-        table::read_text((text, folder), options.set, |table| {
+        let text = &source.text;
+        table::read_text((text, &source.files), options.set, |table| {
             let mut scenario = Self::read_table(table, &[], options)?;
             let mut files = vec![InputFile::of_scenario(&source.name, text)];
-            files.append(&mut table.noted_files());
-            let folder = folder.clone();
-            scenario.files = InputFiles { files, folder };
+            files.append(&mut table.noted_files);
+            let place = source.files.clone();
+            scenario.files = InputFiles { files, place };
             Ok(scenario)
         })
         .map_err(|faults| ScenarioErrors::placed((text, &source.name), options.set, faults))
@@ -280,41 +280,36 @@ impl Scenario {
         options: &ReadOptions<'_>,
     ) -> ReadResult<Self> {
         let title = table.optional("title", &text());
-        let motion = motion::Tables::read(table, options.hinges, options.statics);
-        let hinges = motion.hinges;
+        let motion = models::Tables::read(table, options.model, options.statics);
+        let kind = motion.kind;
         let simulation = table.table_or_defaults("simulation", Simulation::read);
         let simulated = simulation.as_ref().ok();
         let gravity_m_s2 = simulated.map(|it| it.gravity_m_s2);
-        let built = Structure::read(table, hinges, gravity_m_s2);
+        let built = Structure::read(table, kind.has_joints, gravity_m_s2);
         let structure = built.as_ref().ok().map(|(structure, _)| structure);
         let known = (known, gravity_m_s2, options.statics);
         let ground = GroundInput::read(table, known, options.statics);
-        let mut motion = motion.complete(table);
-        if let (Ok((Motion::ElasticJoints(joints), _)), Some(it)) = (&mut motion, gravity_m_s2) {
-            joints.gravity_m_s2 = it;
-        }
+        let motion = motion.complete(table, gravity_m_s2);
         let right_foot = ground.as_ref().ok().and_then(|it| it.right_foot.as_ref());
-        let suits = right_foot.map_or(Ok(()), |it| it.suits(table, structure, hinges));
-        let initial = table.given_table("initial", |table| initial::read(table, structure, hinges));
-        let moved = (hinges, motion.as_ref().ok().map(|(motion, _)| motion));
+        let right_foot_fits =
+            right_foot.map_or(Ok(()), |it| it.check_model(table, structure, kind));
+        let initial = table.given_table("initial", |table| initial::read(table, structure, kind));
+        let moved = (kind, motion.as_ref().ok().map(|(motion, _)| motion));
         let map = table.given_table("map", |table| Map::read(table, structure, moved));
         let suite = table.given_table("suite", |table| Suite::read(table, simulated));
         let verify = table.given_table("verify", |table| Verify::read(table, gravity_m_s2));
         let options = verify.as_ref().ok().cloned().flatten().unwrap_or_default();
         let demand = Demand::read_given(table, &options);
         let uncertain = table.given_table("uncertain", Uncertain::read);
-        let (verify, demand, ()) = (verify?, demand?, suits?);
+        let (verify, demand, ()) = (verify?, demand?, right_foot_fits?);
         if let Some(verify) = &verify {
-            verify.suits(table, demand.as_ref())?;
+            verify.check_demand(table, demand.as_ref())?;
         }
         let ((motion, ignores_impact), (structure, ties)) = (motion?, built?);
         let shaken_s = ground.as_ref().map_or(0.0, |it| it.motion.end_s());
-        let until = simulated.map(|simulation| {
-            let end_s = simulation.end_s(shaken_s, structure.size_m());
-            (simulation.gravity_m_s2, end_s)
-        });
-        motion.check(table, &structure, until)?;
-        initial::suits(table, !ties.is_empty(), motion.supports().is_some())?;
+        let end_s = simulated.map(|it| it.end_s(shaken_s, structure.size_m()));
+        motion.check(table, &structure, end_s)?;
+        initial::check_structure(table, !ties.is_empty(), motion.supports().is_some())?;
         let (given_shape, ground) = (Circular::given(table), ground?);
         let mut certain = Self {
             title: title.map(|title| shown(&title)),
@@ -357,7 +352,7 @@ impl Scenario {
     /// Returns the scenario with another ground motion, without tables of studies, because they were checked against the original ground.
     pub fn with_ground(&self, ground: Option<Ground>) -> Self {
         let left = ground.as_ref().map_or_else(GroundMotion::still, |ground| {
-            ground.motion_under(self.simulation.gravity_m_s2)
+            ground.ground_motion_under(self.simulation.gravity_m_s2)
         });
         // A record of the right foot belongs to the original ground.
         let follows = |right: &RightFoot| ground.is_some() && right.record().is_none();
@@ -383,7 +378,7 @@ impl Scenario {
             let [from_m, to_m] = row.feet_m();
             to_m.x - from_m.x
         });
-        right.beside(left, apart_m, self.simulation.gravity_m_s2)
+        right.with_left_foot(left, apart_m, self.simulation.gravity_m_s2)
     }
 
     /// Returns one scenario for each record of the suite, with the unscaled record as ground motion and without other studies. Empty without a
@@ -400,29 +395,35 @@ impl Scenario {
     }
 
     /// Returns the ground motion of a record multiplied by a factor, with both feet moving together, for the gravity of this scenario.
-    pub(crate) fn shaken_by(&self, series: &Series, factor: f64) -> GroundMotion {
-        suite::scaled_record(series, Scaling::Factor(factor)).motion(self.simulation.gravity_m_s2)
+    pub(crate) fn record_motion(&self, series: &Series, factor: f64) -> GroundMotion {
+        suite::scaled_record(series, Scaling::Factor(factor))
+            .ground_motion(self.simulation.gravity_m_s2)
     }
 
     /// Makes the model of motion of the structure.
     ///
     /// # Errors
-    /// As [`Motion::model`].
+    /// As [`MotionModel::model`].
     pub fn model(&self) -> Result<Box<dyn Model>, ModelError> {
-        self.motion.model(&self.structure)
+        let MotionModel { options, site, .. } = &self.motion;
+        options.model(&self.structure, site)
     }
 
     /// Makes models of this structure with other stiffness and contact, and with rigid joints; empty unless joints are elastic.
     ///
     /// # Errors
-    /// As [`Motion::model`].
+    /// As [`MotionModel::model`].
     pub fn variations(&self) -> Result<Vec<Variation>, ModelError> {
-        self.motion.variations(&self.structure)
+        let MotionModel { options, site, .. } = &self.motion;
+        options.variations(&self.structure, site)
     }
 
-    /// Returns the name of the model of motion in results.
-    pub const fn model_name(&self) -> &'static str {
-        self.motion.name(&self.structure)
+    /// Returns the name of the model of motion in results; four links of a column are a `column`.
+    pub fn model_name(&self) -> &'static str {
+        match self.motion.kind.has_joints || self.structure.has_horizontal_thrust() {
+            true => self.motion.kind.name,
+            false => "column",
+        }
     }
 
     /// Makes the model of mechanisms of one degree of freedom, even if the scenario uses another model.
@@ -570,9 +571,9 @@ impl Scenario {
             ("uncertain", json!(self.uncertain)),
         ];
         // The options of rows of blocks come after the structure, those of mechanisms after the ground.
-        let has_joints = self.motion.hinges().has_joints();
-        let place = if has_joints { 1 } else { 3 };
-        tables.insert(place, (self.motion.table_name(), self.motion.table()));
+        let kind = self.motion.kind;
+        let place = if kind.has_joints { 1 } else { 3 };
+        tables.insert(place, (kind.table, self.motion.options.to_json()));
         let structure = json!(self.structure);
         let mut all = Entries::from_iter([("title".to_owned(), json!(self.title))]);
         all.extend(structure.as_object().cloned().unwrap_or_default());
@@ -607,7 +608,7 @@ impl GroundInput {
         });
         let is_unread = ground.is_err() || right_foot.is_err();
         let mut unread = None;
-        if statics && is_unread && table.forgives_files(faults) {
+        if statics && is_unread && table.drop_file_faults(faults) {
             unread = table.as_given("ground");
             (ground, right_foot) = (Ok(None), Ok(None));
         }

@@ -52,7 +52,7 @@ impl Relation<'_> {
                 let rule = format!("exactly one of the {kind} {}", keys.join(", "));
                 if !exclude(table, keys, &format!("give {rule}")) && !table.may_give(keys) {
                     let needs = format!("needs {rule}");
-                    table.wrong_itself(message.unwrap_or(&needs));
+                    table.fault_of_table(message.unwrap_or(&needs));
                 }
             }
             AtMostOne(keys, remedy) => {
@@ -97,7 +97,7 @@ fn exclude(table: &mut Table<'_>, keys: &[&str], remedy: &str) -> bool {
 
 impl Table<'_> {
     /// Records faults of all relations that the table violates.
-    pub(super) fn relate(&mut self, relations: &[Relation<'_>]) -> ReadResult<()> {
+    pub(super) fn apply_relations(&mut self, relations: &[Relation<'_>]) -> ReadResult<()> {
         let before = self.faults();
         for relation in relations {
             self.describe("allOf", || relation.schema());
@@ -107,7 +107,7 @@ impl Table<'_> {
     }
 
     /// Records faults of all relations that the table violates. Succeeds if there are none and all values of the table are valid.
-    pub(super) fn agrees(&mut self, relations: &[Relation<'_>]) -> ReadResult<()> {
-        self.relate(relations).and(self.sound())
+    pub(super) fn check_relations(&mut self, relations: &[Relation<'_>]) -> ReadResult<()> {
+        self.apply_relations(relations).and(self.check_faultless())
     }
 }

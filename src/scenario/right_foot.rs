@@ -9,7 +9,7 @@
 //! file = "right.at2"
 //! ```
 
-use super::hinges::Hinges;
+use super::model_kind::ModelKind;
 use super::prelude::*;
 use super::record::{KnownRecords, Record};
 use super::structure::Structure;
@@ -41,7 +41,7 @@ impl RightFoot {
         let delay_s = table.optional("delay_s", &within(&(-1e3..=1e3)));
         let velocity_m_s = table.optional(WAVE, &within(&(-1e6..=1e6)));
         let record = table.table(RECORD, |table| Record::read(table, known));
-        table.relate(&[OneOf(&["delay_s", WAVE, RECORD], None)])?;
+        table.apply_relations(&[OneOf(&["delay_s", WAVE, RECORD], None)])?;
         let is_slow = |velocity_m_s: f64| velocity_m_s.abs() < SLOWEST_M_S;
         let wrong = "is slower than any wave: must be at least 1 m/s, or at most -1 m/s for a wave that travels to the left";
         table.refuse(velocity_m_s.is_some_and(is_slow), WAVE, wrong)?;
@@ -53,13 +53,13 @@ impl RightFoot {
 
     /// Rejects different motions of the feet if the structure, the model or a study does not support them. `outer` is the table of the whole
     /// scenario.
-    pub(super) fn suits(
+    pub(super) fn check_model(
         &self,
         outer: &mut Table<'_>,
         structure: Option<&Structure>,
-        hinges: Hinges,
+        kind: &ModelKind,
     ) -> ReadResult<()> {
-        if !hinges.has_joints() {
+        if !kind.has_joints {
             let wrong = format!(
                 "cannot be followed: {FEET_NEED_JOINTS}; choose free hinges or elastic joints, or leave it out"
             );
@@ -99,7 +99,7 @@ impl RightFoot {
     /// Returns the motion of both feet, from that of the left foot and the distance between the feet in m.
     ///
     /// With two records, the foot with the shorter record stops at the end of that record.
-    pub(super) fn beside(
+    pub(super) fn with_left_foot(
         &self,
         left: GroundMotion,
         apart_m: f64,
@@ -109,7 +109,9 @@ impl RightFoot {
         if let Some(delay_s) = self.delay_s(apart_m) {
             return left.with_delayed_right_foot(delay_s).expect(IN_RANGE);
         }
-        let right = self.record().map(|record| record.motion(gravity_m_s2));
+        let right = self
+            .record()
+            .map(|record| record.ground_motion(gravity_m_s2));
         let right = right.unwrap_or_else(GroundMotion::still);
         match (left.end_s(), right.end_s()) {
             (left_s, right_s) if left_s < right_s => left.stopping().with_right_foot(right),

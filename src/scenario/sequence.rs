@@ -100,7 +100,7 @@ impl Sequence {
         let to = table.required("to", rule);
         let count = table.required("count", &COUNT);
         let spacing = table.or("spacing", &one_of(Spacing::ALL), Spacing::Linear);
-        table.sound()?;
+        table.check_faultless()?;
         let wrong = format!("is not above `from`; must be above {}", short(from));
         table.refuse(to <= from, "to", wrong)?;
         let crosses_zero = spacing == Spacing::Logarithmic && from <= 0.0 && to >= 0.0;

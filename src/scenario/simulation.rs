@@ -26,7 +26,7 @@ impl Simulation {
         let time_s = within(&Request::TIME_S);
         let duration_s = table.optional("duration_s", &time_s);
         let output_step_s = table.or(OUTPUT_STEP_S, &time_s, default.output_step_s);
-        if let (Ok(()), Some(duration_s)) = (table.sound(), duration_s)
+        if let (Ok(()), Some(duration_s)) = (table.check_faultless(), duration_s)
             && let Some(wrong) = rows_fault(duration_s, output_step_s)
         {
             // A given step is easier to change than the duration.
@@ -89,7 +89,7 @@ impl Simulation {
         if table.gives_in("simulation", OUTPUT_STEP_S) {
             return Err(table.wrong_in(&["simulation"], OUTPUT_STEP_S, wrong));
         }
-        Err(table.wrong_itself(format!(
+        Err(table.fault_of_table(format!(
             "{wrong}; give `duration_s` or `output_step_s` in [simulation]"
         )))
     }

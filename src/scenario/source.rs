@@ -3,14 +3,16 @@
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use super::error::{Fault, ScenarioErrors, ensure};
+use super::files::Files;
 
 /// The text of a scenario, and its name in errors.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Source {
     pub(super) name: String,
-    pub(super) folder: PathBuf,
+    pub(super) files: Files,
     pub(super) text: String,
 }
 
@@ -20,9 +22,19 @@ impl Source {
     pub fn of_text(text: &str, name: &str) -> Self {
         Self {
             name: name.to_owned(),
-            folder: folder_of(Path::new(name)).to_owned(),
+            files: folder_of(Path::new(name)),
             text: text.to_owned(),
         }
+    }
+
+    /// Makes a source that reads no files from disk, but these contents by the names in the scenario.
+    #[must_use]
+    pub fn with_files(self, contents: impl IntoIterator<Item = (PathBuf, Vec<u8>)>) -> Self {
+        let files = Files {
+            folder: PathBuf::new(),
+            in_memory: Some(Arc::new(contents.into_iter().collect())),
+        };
+        Self { files, ..self }
     }
 
     /// Returns the name in errors.
@@ -43,7 +55,7 @@ impl Source {
         let file =
             File::open(path).map_err(|error| unreadable(format!("cannot be read: {error}")))?;
         Ok(Self {
-            folder: folder_of(path).to_owned(),
+            files: folder_of(path),
             ..Self::of_reader(file, &name)?
         })
     }
@@ -67,7 +79,7 @@ impl Source {
         })?;
         Ok(Self {
             name: name.to_owned(),
-            folder: PathBuf::new(),
+            files: Files::default(),
             text,
         })
     }
@@ -99,7 +111,10 @@ pub(super) fn not_plain(bytes: &[u8]) -> Option<&'static str> {
     )
 }
 
-/// Returns the folder that contains a file.
-fn folder_of(file: &Path) -> &Path {
-    file.parent().unwrap_or(Path::new(""))
+/// Returns the files in the folder of a file.
+fn folder_of(file: &Path) -> Files {
+    Files {
+        folder: file.parent().unwrap_or(Path::new("")).to_owned(),
+        in_memory: None,
+    }
 }

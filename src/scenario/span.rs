@@ -55,7 +55,7 @@ impl Circular {
             MAGNITUDE.allowed()
         );
         let needs_span = "; give that too, or `mean_radius_m` without it";
-        table.agrees(&[
+        table.check_relations(&[
             OneOf(&["mean_radius_m", "span_m"], Some(&radius)),
             OneOf(&["thickness_ratio", "thickness_m"], None),
             OneOf(&["rise_m", "embrace_deg"], None),

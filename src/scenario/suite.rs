@@ -118,9 +118,9 @@ impl Suite {
         let levels: Vec<_> = levels.collect();
         let both_signs = table.or("both_signs", &switch(), true);
         let spectral = Spectral::read(table);
-        let related = table.relate(&[OneOf(&["scales", "peaks_g"], None)]);
+        let related = table.apply_relations(&[OneOf(&["scales", "peaks_g"], None)]);
         let listing = RecordListing::read(table, &[(RECORDS, patterns)], format);
-        related.and(table.sound())?;
+        related.and(table.check_faultless())?;
         let (measure, levels) = levels.into_iter().next().ok_or(FaultRecorded)?;
         let (values, files) = (levels.values(), listing.len());
         let cases = files * (1 + usize::from(both_signs)) * values.len();
@@ -131,7 +131,9 @@ impl Suite {
         table.refuse_all(cases > MAX_CASES, wrong)?;
         let strongest = measure.scaling(values[values.len() - 1]);
         let accept = |series: &Series| {
-            simulation.map_or(Ok(()), |simulation| suits(series, strongest, simulation))
+            simulation.map_or(Ok(()), |simulation| {
+                check_record(series, strongest, simulation)
+            })
         };
         let records = listing.series(table, accept)?.into_iter();
         Ok(Self {
@@ -175,7 +177,11 @@ impl Serialize for Suite {
 const RECORDS: &str = "records";
 
 /// Checks that a record can be used at the strongest level; the error is the reason if not.
-fn suits(series: &Series, strongest: Scaling, simulation: &Simulation) -> Result<(), String> {
+fn check_record(
+    series: &Series,
+    strongest: Scaling,
+    simulation: &Simulation,
+) -> Result<(), String> {
     let own_g = series.peak_g(simulation.gravity_m_s2);
     series.check_not_zero(simulation.gravity_m_s2)?;
     if let Scaling::PeakG(peak_g) = strongest {

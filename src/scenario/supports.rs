@@ -52,16 +52,16 @@ pub(super) fn check(
     };
     let wrong = match follower.move_supports(|part| moved * part, 0.0, 1.0) {
         Ok(Some(part)) => format!(
-            "lets the arch fall when its springings have gone {:.2} % of this way, with joints that are rigid: give less; \
-             `archrock spread` finds how far they may move",
+            "makes the arch fall at {:.2} % of this movement, with rigid joints: reduce it; `archrock spread` finds how far the \
+             springings may move",
             1e2 * part
         ),
         Ok(None) => {
             let Some(tie) = follower.stance.broken_tie() else {
                 return Ok(());
             };
-            let wrong = "breaks before the springings have gone the way of [supports], with joints that are rigid: give a larger \
-                         `breaks_at_strain`, or less movement";
+            let wrong = "breaks before the end of the movement of [supports], with rigid joints: give a larger `breaks_at_strain`, \
+                         or less movement";
             return Err(table.wrong_element("tie", tie, wrong));
         }
         Err(error) => {

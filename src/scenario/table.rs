@@ -2,27 +2,27 @@
 //!
 //! This module knows no keys of scenarios; each table is read in the module of its subject. For a missing or wrong key the reader records a
 //! fault and continues with a default value. So a reader names each key once, where it fills its field. Before it compares values, it
-//! checks that all of them are from the file ([`Table::sound`]). A table with faults is never used.
+//! checks that all of them are from the file ([`Table::check_faultless`]). A table with faults is never used.
 //!
 //! Reading also describes: with an empty text, [`describe`] collects all tables, keys, rules and defaults of `read`.
 
 use std::fmt::Display;
-use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
 use super::assignment::Assignment;
 use super::document::{Document, Entries, Span, kind};
 use super::error::{Fault, ensure, excerpt};
+use super::files::Files;
 use super::input_file::InputFile;
 use super::rule::{Rule, did_you_mean};
 
 /// Error of a value that could not be read; its reason is recorded as a [`Fault`].
 #[derive(Clone, Copy, Debug)]
-pub(super) struct FaultRecorded;
+pub struct FaultRecorded;
 
 /// A value, or [`FaultRecorded`] if a fault was recorded.
-pub(super) type ReadResult<T> = Result<T, FaultRecorded>;
+pub type ReadResult<T> = Result<T, FaultRecorded>;
 
 /// Function that reads the keys of a table.
 pub(super) trait Reader<T>: FnOnce(&mut Table<'_>) -> ReadResult<T> {}
@@ -31,11 +31,11 @@ impl<T, R: FnOnce(&mut Table<'_>) -> ReadResult<T>> Reader<T> for R {}
 
 /// Reads a TOML text with `read` after the assignments `set`. Returns all faults if there are any.
 pub(super) fn read_text<T>(
-    (text, folder): (&str, &Path),
+    (text, files): (&str, &Files),
     set: &[Assignment],
     read: impl Reader<T>,
 ) -> Result<T, Vec<Fault>> {
-    let mut document = Document::parse(text, folder)?;
+    let mut document = Document::parse(text, files)?;
     document.assign(set);
     read_document(document, read)
 }
@@ -74,7 +74,7 @@ fn an_object() -> Value {
 /// A table of the file, with its faults.
 ///
 /// The keys that have been read are the allowed keys.
-pub(super) struct Table<'a> {
+pub struct Table<'a> {
     /// Name of the table in messages.
     name: String,
     /// Number of the text with the header of the table, and offset of the header.
@@ -86,7 +86,8 @@ pub(super) struct Table<'a> {
     /// The keys that were read, and true for keys of tables.
     known: Vec<(String, bool)>,
     faults: Vec<Fault>,
-    files: Vec<InputFile>,
+    /// The files that were noted in this table and in the tables in it.
+    pub(super) noted_files: Vec<InputFile>,
     /// True if a value is unknown without a fault, because a line that is not TOML may contain it.
     is_partial: bool,
     /// JSON schema of the keys that were read; `None` unless they are collected.
@@ -103,7 +104,7 @@ impl<'a> Table<'a> {
             document,
             known: Vec::new(),
             faults: Vec::new(),
-            files: Vec::new(),
+            noted_files: Vec::new(),
             is_partial: false,
             description: None,
         }
@@ -111,24 +112,15 @@ impl<'a> Table<'a> {
 
     /// Records a file that the scenario names and that has been read.
     pub(super) fn note_file(&mut self, file: &str) {
-        if let Ok(bytes) = std::fs::read(self.path(file)) {
-            self.files.push(InputFile::new(file, &bytes));
+        let files = self.files();
+        if let Ok(bytes) = files.read(&files.path(file)) {
+            self.noted_files.push(InputFile::new(file, &bytes));
         }
     }
 
-    /// Returns the folder to which the names of files are relative.
-    pub(super) fn folder(&self) -> &'a Path {
-        &self.document.folder
-    }
-
-    /// Returns the path of a file that the scenario names.
-    pub(super) fn path(&self, file: &str) -> PathBuf {
-        self.folder().join(file)
-    }
-
-    /// Removes and returns the recorded files of this table and of the tables in it.
-    pub(super) fn noted_files(&mut self) -> Vec<InputFile> {
-        std::mem::take(&mut self.files)
+    /// Returns the files that the scenario may name.
+    pub(super) fn files(&self) -> &'a Files {
+        &self.document.files
     }
 
     /// Sets the name of the table in messages.
@@ -137,9 +129,9 @@ impl<'a> Table<'a> {
     }
 
     /// Succeeds if all values that were read are from the file.
-    pub(super) fn sound(&self) -> ReadResult<()> {
-        let is_sound = self.faults.is_empty() && !self.is_partial;
-        ensure(is_sound && self.description.is_none(), || FaultRecorded)
+    pub(super) fn check_faultless(&self) -> ReadResult<()> {
+        let is_faultless = self.faults.is_empty() && !self.is_partial;
+        ensure(is_faultless && self.description.is_none(), || FaultRecorded)
     }
 
     /// Returns the value of a key that must be given.
@@ -157,7 +149,7 @@ impl<'a> Table<'a> {
         value: Option<R::Output>,
     ) -> R::Output {
         if !self.may_give(&[key]) {
-            self.wrong_itself(format!("lacks `{key}`: give {}", rule.allowed()));
+            self.fault_of_table(format!("lacks `{key}`: give {}", rule.allowed()));
         }
         value.unwrap_or_default()
     }
@@ -342,12 +334,12 @@ impl<'a> Table<'a> {
     }
 
     /// Removes the faults after the first `since` if all of them are faults of files that the text names. Returns true if it has removed them.
-    pub(super) fn forgives_files(&mut self, since: usize) -> bool {
-        let forgives = self.faults[since..].iter().all(|fault| fault.of_file);
-        if forgives {
+    pub(super) fn drop_file_faults(&mut self, since: usize) -> bool {
+        let drops = self.faults[since..].iter().all(|fault| fault.of_file);
+        if drops {
             self.faults.truncate(since);
         }
-        forgives
+        drops
     }
 
     /// Records that the file of `key` is missing or wrong. `message` follows the key and its value.
@@ -376,7 +368,7 @@ impl<'a> Table<'a> {
 
     /// Records that the whole table is wrong if `when` is true.
     pub(super) fn refuse_all(&mut self, when: bool, message: impl Display) -> ReadResult<()> {
-        ensure(!when, || self.wrong_itself(message))
+        ensure(!when, || self.fault_of_table(message))
     }
 
     /// Returns the value of a result. An error is recorded as a fault of `key`; it follows the key and its value.
@@ -447,7 +439,7 @@ impl<'a> Table<'a> {
     }
 
     /// Records that the whole table is wrong. `message` follows its name.
-    pub(super) fn wrong_itself(&mut self, message: impl Display) -> FaultRecorded {
+    pub(super) fn fault_of_table(&mut self, message: impl Display) -> FaultRecorded {
         self.fault(self.place, format!("{} {message}", self.name))
     }
 
@@ -487,9 +479,9 @@ impl<'a> Table<'a> {
         };
         let value = read(&mut table);
         table.reject_unknown_keys();
-        let value = table.sound().and(value);
+        let value = table.check_faultless().and(value);
         self.faults.append(&mut table.faults);
-        self.files.append(&mut table.files);
+        self.noted_files.append(&mut table.noted_files);
         self.is_partial |= table.is_partial;
         self.describe_key(key, || table.description.unwrap_or_default());
         value

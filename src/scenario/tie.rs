@@ -105,7 +105,7 @@ impl TieTable {
             yield_stress_mpa: table.optional("yield_stress_mpa", &stress),
             breaks_at_strain: table.optional("breaks_at_strain", &within(&(1e-6..=10.0))),
         };
-        table.relate(&[
+        table.apply_relations(&[
             OneOf(&["between", "height_m", "from_m"], None),
             Together(&["from_m", "to_m"]),
             Requires("from_block", "from_m", " beside it"),
@@ -164,7 +164,7 @@ impl TieTable {
             Err(TieError::NoLength) => {
                 "has both ends at one point: give two points that are apart".to_owned()
             }
-            Err(error) => format!("is none: {error}"),
+            Err(error) => format!("is not a valid tie: {error}"),
         })
     }
 
@@ -214,7 +214,7 @@ fn anchor(row: &Row, point_m: [f64; 2], block: Option<usize>, end: &str) -> Resu
             let away_m = row.distance_m(number - 1, at_m);
             ensure(away_m <= NEAR_RATIO * row.size_m, || {
                 format!(
-                    "holds on at {point}, which is {away_m:.4} m away from block {number}: give a point of that block; {}",
+                    "has an end at {point}, {away_m:.4} m away from block {number}: give a point of that block; {}",
                     ground()
                 )
             })?;
@@ -228,14 +228,14 @@ fn anchor(row: &Row, point_m: [f64; 2], block: Option<usize>, end: &str) -> Resu
                 format!("; the nearest, {number}, is {away_m:.4} m away")
             });
             return Err(format!(
-                "holds on at {point}, which is in no block{nearest}: give a point of a block; {}",
+                "has an end at {point}, in no block{nearest}: give a point of a block; {}",
                 ground()
             ));
         }
         (None, these) => {
             let numbers: Vec<String> = these.iter().map(|index| (index + 1).to_string()).collect();
             return Err(format!(
-                "holds on at {point}, which is on the edge of blocks {}: choose one of them by `{end}_block`",
+                "has an end at {point}, on the edge of blocks {}: choose one of them by `{end}_block`",
                 numbers.join(" and ")
             ));
         }

@@ -14,8 +14,11 @@ pub(crate) fn toml_text(table: &Value) -> String {
 
 fn write_table(text: &mut String, name: &str, table: &Map<String, Value>) {
     let (tables, keys): (Vec<_>, Vec<_>) = table.iter().partition(|(_, value)| {
-        let spread = |it: &Map<_, _>| it.contains_key("from") || it.contains_key("deviation");
-        value.as_object().is_some_and(|it| !spread(it))
+        let is_distribution =
+            |table: &Map<_, _>| table.contains_key("from") || table.contains_key("deviation");
+        value
+            .as_object()
+            .is_some_and(|table| !is_distribution(table))
     });
     // An empty table has a meaning too, so its header is written.
     if !name.is_empty() && (!keys.is_empty() || tables.is_empty()) {

@@ -101,7 +101,7 @@ impl Distribution {
             Requires("distribution", "deviation", " beside it"),
             AtMostOne(&["from", "distribution"], DISTRIBUTION),
         ];
-        table.agrees(&relations)?;
+        table.check_relations(&relations)?;
         let Some((from, to)) = from.zip(to) else {
             return Ok(Self::About {
                 deviation: deviation.ok_or(FaultRecorded)?,
@@ -179,7 +179,7 @@ impl Uncertain {
                 });
             }
         }
-        table.sound()?;
+        table.check_faultless()?;
         let wrong = format!(
             "needs 1 to {MAX_KEYS} keys of other tables between quotation marks, such as \
              \"arch.thickness_ratio\" = {{ deviation = 0.003 }}"

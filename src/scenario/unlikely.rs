@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use super::prelude::*;
 use super::structure::bounds_m;
-use super::{Format, Ground, PulseGround, Scaling, Scenario, Series, Structure};
+use super::{Format, Ground, MotionModel, PulseGround, Scaling, Scenario, Series, Structure};
 use crate::{Model, Sway};
 
 /// Usual peaks of records, in g. The strongest recorded accelerations are a little above 2 g, and weaker ones than the lower limit move no
@@ -98,12 +98,13 @@ impl Scenario {
     fn takes_long(&self) -> Option<String> {
         let request = self.request();
         let begin = format!("the simulation lasts {} s", plain(request.end_s));
-        if !self.motion.hinges().has_joints() {
+        if !self.motion.kind.has_joints {
             return (request.end_s > DURATION_S).then(|| {
                 format!("{begin}: unless it rests or overturns before, that takes minutes or more")
             });
         }
-        let longest_s = self.motion.longest_step_s(&self.structure, &request)?;
+        let MotionModel { options, site, .. } = &self.motion;
+        let longest_s = options.longest_step_s(&self.structure, site, &request)?;
         let steps = request.end_s / longest_s;
         (steps > STEPS).then(|| {
             format!(

@@ -2,7 +2,7 @@
 
 use super::document::{Document, Entries};
 use super::prelude::*;
-use super::{Assignment, ReadOptions, Scenario, Series, span, table};
+use super::{ReadOptions, Scenario, Series, span, table};
 
 /// Tables of studies and of the check.
 const STUDIES: [&str; 5] = ["map", "suite", "uncertain", "demand", "verify"];
@@ -21,12 +21,18 @@ impl Scenario {
             }
         }
         let keys: Vec<Vec<&str>> = values.iter().map(|(key, _)| parts(key)).collect();
-        make_room(&mut resolved, &keys);
-        let set = values.iter().map(|(key, value)| assignment(key, *value));
-        let set = set.collect::<Result<Vec<_>, String>>()?;
-        let mut document = Document::of_json(resolved, &self.files.folder);
-        document.assign(&set);
-        fit(&mut document.root, &keys);
+        remove_alternatives(&mut resolved, &keys);
+        for key in values.iter().map(|(key, _)| key) {
+            check_key(key)?;
+        }
+        let mut document = Document::of_json(resolved, &self.files.place);
+        for (keys, (_, number)) in keys.iter().zip(values) {
+            let inner = keys.iter().rev();
+            let new = inner.fold(value_of(*number), |value, key| json!({ *key: value }));
+            let replaced = document.insert(new, keys.len());
+            replaced.map_err(|wrong| shown(&wrong))?;
+        }
+        update_dependent_values(&mut document.root, &keys);
         let known: Vec<Series> = self.series().cloned().collect();
         let options = ReadOptions::default();
         table::read_document(document, |table| Self::read_table(table, &known, &options))
@@ -34,8 +40,8 @@ impl Scenario {
     }
 }
 
-/// Makes the assignment of a number of the structure or of its motion.
-fn assignment(key: &str, value: f64) -> Result<Assignment, String> {
+/// Rejects a key that names no number of the structure or of its motion.
+fn check_key(key: &str) -> Result<(), String> {
     let parts = parts(key);
     if STUDIES.contains(&parts[0]) {
         return Err(format!(
@@ -46,17 +52,15 @@ fn assignment(key: &str, value: f64) -> Result<Assignment, String> {
     ensure(
         parts.len() > 1 && parts.iter().all(|part| is_name(part)),
         || format!("`{key}` names no number of another table, as \"arch.depth_m\" does"),
-    )?;
-    // Whole numbers may be counts.
-    let number = match value.fract() == 0.0 && value.abs() < 1e15 {
-        true => format!("{value:.0}"),
-        false => format!("{value:?}").to_lowercase(),
-    };
-    Ok(Assignment {
-        given: key.to_owned(),
-        text: format!("{} = {number}", parts.join(".")),
-        depth: parts.len(),
-    })
+    )
+}
+
+/// Returns a number as a value. Whole numbers may be counts.
+fn value_of(number: f64) -> Value {
+    match number.fract() == 0.0 && number.abs() < 1e15 {
+        true => Value::from(number as i64),
+        false => Value::from(number),
+    }
 }
 
 /// Returns true if a text is a TOML key without quotation marks.
@@ -104,7 +108,7 @@ const ALTERNATIVES: [[&str; 3]; 4] = [
 ];
 
 /// Removes the alternatives of new values: an arch keeps either its thickness or its ratio.
-fn make_room(tables: &mut Value, keys: &[Vec<&str>]) {
+fn remove_alternatives(tables: &mut Value, keys: &[Vec<&str>]) {
     let both_ways = ALTERNATIVES.map(|[name, one, other]| [[name, one, other], [name, other, one]]);
     for [name, given, goes] in both_ways.into_iter().flatten() {
         let is_given = |key: &Vec<&str>| format!("/{}", key.join("/")) == format!("{name}/{given}");
@@ -118,7 +122,7 @@ fn make_room(tables: &mut Value, keys: &[Vec<&str>]) {
 
 /// Changes values that depend on new ones. The last joint of an arch moves to the other springing. Drums keep their proportions under a new
 /// height of the column; new drums set the height of the column.
-fn fit(tables: &mut Entries, keys: &[Vec<&str>]) {
+fn update_dependent_values(tables: &mut Entries, keys: &[Vec<&str>]) {
     let is_new = |wanted: [&str; 2]| keys.iter().any(|key| key.starts_with(&wanted));
     if let Some(Value::Object(arch)) = tables.get_mut("arch") {
         let number = |key: &str| arch.get(key).and_then(Value::as_f64);

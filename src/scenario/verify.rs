@@ -29,8 +29,8 @@
 //! ```
 
 use std::collections::BTreeMap;
-use std::path::Path;
 
+use super::files::Files;
 use super::listing::{RecordListing, written};
 use super::prelude::*;
 use super::record::{Decimal, Format, LineFault, Series, faulty, read_numbers};
@@ -111,7 +111,7 @@ impl FreeStanding {
         let thickness_m = table.optional("thickness_m", &MAGNITUDE);
         let modulus_gpa = table.optional("modulus_gpa", &above(0.0, 1e3));
         let elastic = ["kappa", "length_m", "thickness_m", "modulus_gpa"];
-        table.agrees(&[OneOf(&["t0_s", "kappa"], None), Together(&elastic)])?;
+        table.check_relations(&[OneOf(&["t0_s", "kappa"], None), Together(&elastic)])?;
         if let Some(t0_s) = t0_s {
             return Ok(Self::Period { t0_s });
         }
@@ -167,7 +167,7 @@ impl Records {
         }
         let format = Format::read(table);
         let listing = RecordListing::read(table, &given, format);
-        table.sound()?;
+        table.check_faultless()?;
         let gravity_m_s2 = gravity_m_s2.ok_or(FaultRecorded)?;
         let accept = |series: &Series| {
             series.check_not_zero(gravity_m_s2)?;
@@ -236,7 +236,11 @@ impl Verify {
     }
 
     /// Rejects records of limit states that are not checked, and records if only one side is checked.
-    pub(super) fn suits(&self, table: &mut Table<'_>, demand: Option<&Demand>) -> ReadResult<()> {
+    pub(super) fn check_demand(
+        &self,
+        table: &mut Table<'_>,
+        demand: Option<&Demand>,
+    ) -> ReadResult<()> {
         let has_records = |(state, _): &(LimitState, _)| !self.records.of(*state).is_empty();
         for (state, key) in RECORDS.into_iter().filter(has_records) {
             let is_checked = demand.is_some_and(|demand| demand.states().any(|one| one == state));
@@ -439,7 +443,7 @@ impl Demand {
         } else {
             Self::Code(CodeDemand::read(table)?)
         };
-        table.sound()?;
+        table.check_faultless()?;
         let is_damage = demand.states().all(|state| state == LimitState::Sld);
         let wrong = "has nothing to check beyond damage: give [demand.slv] or [demand.slc]";
         table.refuse_all(is_damage, wrong)?;
@@ -461,7 +465,7 @@ impl CodeDemand {
         let soil = table.required("soil", &one_of(Soil::ALL));
         let category = table.optional("topography", &one_of(Topography::ALL));
         let factor = table.optional("topographic_factor", &TOPOGRAPHIC_FACTOR);
-        let is_site = table.agrees(&[OneOf(&["topography", "topographic_factor"], None)]);
+        let is_site = table.check_relations(&[OneOf(&["topography", "topographic_factor"], None)]);
         let category = category.map(SiteTopography::Topography);
         let topography = category.or(factor.map(SiteTopography::TopographicFactor));
         let site = topography
@@ -487,7 +491,7 @@ fn read_hazard(table: &mut Table<'_>, site: Option<Site>) -> ReadResult<Hazard> 
         f0: table.required("f0", &HAZARD),
         tc_star_s: table.required("tc_star_s", &HAZARD),
     };
-    table.sound()?;
+    table.check_faultless()?;
     if let Some(site) = site {
         GroundSpectrum::new(hazard, site).map_err(|error| {
             let wrong = format!("is out of range: must be {}", error.allowed);
@@ -501,7 +505,7 @@ impl Building {
     /// Reads `[demand.height]`, for the limit states with these hazards.
     fn read(table: &mut Table<'_>, hazards: &ByState<Hazard>) -> ReadResult<Self> {
         let modes = table.tables("modes", BuildingMode::read);
-        table.sound()?;
+        table.check_faultless()?;
         let missing = "lacks `modes`: give the modes of the building, at least the first";
         table.refuse_all(modes.is_empty(), missing)?;
         for state in LimitState::ALL {
@@ -560,8 +564,8 @@ impl PointDemand {
         let rule = default.map(|default| {
             table.table_or_defaults("state", |table| StateRule::read(table, default))
         });
-        table.sound()?;
-        let points = read_points(&table.path(&spectrum), decimal, damping_percent);
+        table.check_faultless()?;
+        let points = read_points(table.files(), &spectrum, decimal, damping_percent);
         let points = table.accept("spectrum", points)?;
         table.note_file(&spectrum);
         Ok(Self {
@@ -576,11 +580,13 @@ impl PointDemand {
 
 /// Reads the points of a spectrum from a file. The error is the fault in the file.
 fn read_points(
-    path: &Path,
+    files: &Files,
+    file: &str,
     decimal: Decimal,
     damping_percent: f64,
 ) -> Result<PointSpectrum, String> {
-    let rows = read_numbers::<2>(path, decimal)?;
+    let path = &files.path(file);
+    let rows = read_numbers::<2>(files, path, decimal)?;
     let points = rows.iter().map(|(_, [period_s, at_g])| (*period_s, *at_g));
     PointSpectrum::new(points.collect(), damping_percent).map_err(|error| {
         let (line, message) = (error.row.and_then(|row| rows.get(row)), error.to_string());

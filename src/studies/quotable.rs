@@ -5,12 +5,12 @@
 //! the same for all of them. Four links of an arch are quoted only if their thrust line was followed, and inside their model.
 
 use crate::dynamics::thrust::MODEL_LIMIT;
-use crate::scenario::Hinges;
+use crate::scenario::{FOUR_LINKS, FREE_HINGES, MODELS, ModelKind};
 
 /// The answer of a model of motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModelAnswer {
-    hinges: Hinges,
+    model: &'static ModelKind,
     /// Name of the model in sentences.
     label: &'static str,
     /// The certain answer, in words; or the reason why there is none.
@@ -21,17 +21,17 @@ impl ModelAnswer {
     /// Makes the answer of a model of motion. `excess_ratio` is the largest excess of the thrust line of four links over the thickness; `None` if it
     /// was not followed.
     pub fn new(
-        hinges: Hinges,
+        model: &'static ModelKind,
         is_arch: bool,
         excess_ratio: Option<f64>,
         answer: Result<String, String>,
     ) -> Self {
-        let outside = (hinges == Hinges::Four && is_arch).then(|| outside_four_links(excess_ratio));
+        let outside = (model == &FOUR_LINKS && is_arch).then(|| outside_four_links(excess_ratio));
         Self {
-            hinges,
-            label: match hinges {
-                Hinges::Four if !is_arch => "one rigid block",
-                _ => hinges.model().label,
+            model,
+            label: match model == &FOUR_LINKS && !is_arch {
+                true => "one rigid block",
+                false => model.label,
             },
             answer: answer.and_then(|answer| outside.flatten().map_or(Ok(answer), Err)),
         }
@@ -52,12 +52,13 @@ fn outside_four_links(excess_ratio: Option<f64>) -> Option<String> {
 
 /// Returns the answer that may be quoted, in words; `None` without models.
 pub fn in_words(answers: &[ModelAnswer]) -> Option<String> {
-    let best = answers.iter().max_by_key(|one| one.hinges as usize)?;
+    let rank = |one: &&ModelAnswer| MODELS.iter().position(|model| *model == one.model);
+    let best = answers.iter().max_by_key(rank)?;
     let label = best.label;
-    let more = match best.hinges {
-        Hinges::Free => "; the stiffness of joints is not considered",
-        Hinges::Four if label == best.hinges.model().label => "; compare with free hinges",
-        Hinges::Four | Hinges::Elastic => "",
+    let more = match best.model {
+        model if model == &FREE_HINGES => "; the stiffness of joints is not considered",
+        model if model == &FOUR_LINKS && label == model.label => "; compare with free hinges",
+        _ => "",
     };
     Some(match &best.answer {
         Ok(answer) => format!("to quote: {answer}, with {label}{more}"),

@@ -37,7 +37,7 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, TryRecvError};
 use std::time::Duration;
-use std::{fs, thread};
+use std::{fs, mem, thread};
 
 use rayon::iter::{
     IndexedParallelIterator as _, IntoParallelRefIterator as _, ParallelIterator as _,
@@ -49,6 +49,7 @@ use serde_json::Value;
 use thiserror::Error;
 
 use super::part::{Header, PartError, PartErrorKind, PartFile, Rows, Shard};
+use crate::clock;
 use crate::scenario::Scenario;
 
 /// A study: many cases, each a function of its index alone. So the cases can be computed in any order, by any number of threads, on several
@@ -166,7 +167,7 @@ const TICK: Duration = Duration::from_millis(100);
 impl Runner {
     /// Computes the rows of all cases in memory. Returns them in the order of the cases.
     ///
-    /// `watch` receives the progress at the beginning, ten times a second, and at the end, on this thread. When `watch` returns `Break`, the
+    /// `watch` receives the progress at the beginning, ten times a second, and at the end, on this thread; with one thread between two cases. When `watch` returns `Break`, the
     /// cases under way are finished and no others are started.
     ///
     /// # Errors
@@ -263,64 +264,101 @@ impl Runner {
     ) -> Result<(), RunnerError> {
         let todo: Vec<usize> = cases.filter(|index| !rows.contains_key(index)).collect();
         let all = rows.len() + todo.len();
-        let pool = self.pool()?;
-        let todo = in_groups(todo, family, pool.current_num_threads());
-        let cancelled = AtomicBool::new(false);
-        let (sender, receiver) = mpsc::channel();
-        let compute = || {
-            // Cases cost from microseconds to seconds, so threads take groups one by one.
-            let todo = todo.par_iter().with_max_len(1);
-            todo.try_for_each_with(sender, |sender, indices| {
-                if cancelled.load(Ordering::Relaxed) {
-                    return None;
-                }
-                let mut rows = indices.iter().copied().zip(rows_of(indices));
-                // Sending fails only if the receiver has given up.
-                rows.try_for_each(|row| sender.send(row).ok())
-            })
+        let mut is_cancelled = false;
+        // Keeps new rows and reports the progress. Returns true once the work is cancelled.
+        let mut add = |new: Vec<(usize, R)>| -> Result<bool, RunnerError> {
+            keep(&new)?;
+            rows.extend(new);
+            let done = rows.len();
+            is_cancelled = is_cancelled || watch(Progress { done, all }).is_break();
+            Ok(is_cancelled)
         };
-        let keeper = thread::current();
-        let on_threads = || {
+        let processors = thread::available_parallelism().ok();
+        match self.threads.or(processors).map_or(1, NonZeroUsize::get) {
+            1 => one_by_one(&in_groups(todo, family, 1), rows_of, &mut add)?,
+            _ => {
+                let pool = self.pool()?;
+                let groups = in_groups(todo, family, pool.current_num_threads());
+                on_threads(&pool, &groups, rows_of, &mut add)?;
+            }
+        }
+        let done = rows.len();
+        match done < all {
+            true => Err(RunnerError::Cancelled(Progress { done, all })),
+            false => Ok(()),
+        }
+    }
+}
+
+/// Receiver of new rows. It returns true once the work is cancelled.
+type Add<'a, R> = &'a mut dyn FnMut(Vec<(usize, R)>) -> Result<bool, RunnerError>;
+
+/// Computes the rows of groups of cases on this thread.
+fn one_by_one<R>(
+    groups: &[Vec<usize>],
+    rows_of: impl Fn(&[usize]) -> Vec<R>,
+    add: Add<'_, R>,
+) -> Result<(), RunnerError> {
+    let (mut new, mut added) = (Vec::new(), None);
+    for indices in groups {
+        let now = clock::since_1970();
+        let since_added = now.zip(added).map(|(now, added)| now.saturating_sub(added));
+        if since_added.is_none_or(|since_added| since_added >= TICK) {
+            added = now;
+            if add(mem::take(&mut new))? {
+                return Ok(());
+            }
+        }
+        new.extend(indices.iter().copied().zip(rows_of(indices)));
+    }
+    add(new).map(|_| ())
+}
+
+/// Computes the rows of groups of cases on the threads of a pool.
+fn on_threads<R: Send>(
+    pool: &ThreadPool,
+    groups: &[Vec<usize>],
+    rows_of: impl Fn(&[usize]) -> Vec<R> + Sync,
+    add: Add<'_, R>,
+) -> Result<(), RunnerError> {
+    let cancelled = AtomicBool::new(false);
+    let (sender, receiver) = mpsc::channel();
+    let compute = || {
+        // Cases cost from microseconds to seconds, so threads take groups one by one.
+        let groups = groups.par_iter().with_max_len(1);
+        groups.try_for_each_with(sender, |sender, indices| {
+            if cancelled.load(Ordering::Relaxed) {
+                return None;
+            }
+            let mut rows = indices.iter().copied().zip(rows_of(indices));
+            // Sending fails only if the receiver has given up.
+            rows.try_for_each(|row| sender.send(row).ok())
+        })
+    };
+    let keeper = thread::current();
+    thread::scope(|scope| {
+        let receiver = receiver;
+        let working = scope.spawn(|| {
             pool.install(compute);
             keeper.unpark();
-        };
-        thread::scope(|scope| {
-            let receiver = receiver;
-            let working = scope.spawn(on_threads);
-            let mut over = false;
-            loop {
-                let progress = Progress {
-                    done: rows.len(),
-                    all,
-                };
-                if !cancelled.load(Ordering::Relaxed) && watch(progress).is_break() {
-                    cancelled.store(true, Ordering::Relaxed);
+        });
+        let (mut new, mut over) = (Vec::new(), false);
+        loop {
+            cancelled.store(add(mem::take(&mut new))?, Ordering::Relaxed);
+            if over {
+                break;
+            }
+            // Writes the rows of an interval together, so this thread does not wake up for each row.
+            thread::park_timeout(TICK);
+            over = loop {
+                match receiver.try_recv() {
+                    Ok(row) => new.push(row),
+                    Err(error) => break error == TryRecvError::Disconnected,
                 }
-                if over {
-                    break;
-                }
-                // Writes the rows of an interval together, so this thread does not wake up for each row.
-                thread::park_timeout(TICK);
-                let mut new = Vec::new();
-                over = loop {
-                    match receiver.try_recv() {
-                        Ok(row) => new.push(row),
-                        Err(error) => break error == TryRecvError::Disconnected,
-                    }
-                };
-                keep(&new)?;
-                rows.extend(new);
-            }
-            if let Err(panic) = working.join() {
-                resume_unwind(panic);
-            }
-            let done = rows.len();
-            if done < all {
-                return Err(RunnerError::Cancelled(Progress { done, all }));
-            }
-            Ok(())
-        })
-    }
+            };
+        }
+        working.join().map_err(|panic| resume_unwind(panic))
+    })
 }
 
 /// Divides the cases into groups that are computed together. A group holds cases of one family, or a single case.

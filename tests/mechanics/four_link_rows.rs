@@ -310,7 +310,7 @@ fn the_thrust_line_in_motion_passes_through_the_hinges() {
         let acceleration = (body_force_g.x * c.s_x + body_force_g.y * c.s_y
             - 0.5 * c.inertia_slope * rate * rate)
             / c.inertia;
-        let motion = archrock::mechanics::chain::Motion {
+        let motion = archrock::mechanics::chain::MechanismState {
             q_rad,
             rate,
             acceleration,

@@ -7,7 +7,9 @@ use crate::common::{GRAVITY, four_links, run, sampled, semicircle, seven_voussoi
 use archrock::dynamics::free_hinges::FreeHinges;
 use archrock::dynamics::history::Summary;
 use archrock::dynamics::model::{Recorder, WithoutDemand};
-use archrock::mechanics::chain::{Demand, Hinge, Mechanism as _, MechanismChain as _, Motion};
+use archrock::mechanics::chain::{
+    Demand, Hinge, Mechanism as _, MechanismChain as _, MechanismState,
+};
 use archrock::mechanics::four_link::linkage::Linkage;
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::mechanics::four_link::resultant::SectionResultant;
@@ -29,10 +31,10 @@ fn arches() -> [FourLinks; 4] {
 }
 
 /// A motion that obeys the equation of motion, in the units of [`Motion`].
-fn motion(linkage: &Linkage, q_rad: f64, rate: f64, push_g: f64) -> Motion {
+fn motion(linkage: &Linkage, q_rad: f64, rate: f64, push_g: f64) -> MechanismState {
     let coefficients = linkage.coefficients(q_rad);
     let force = push_g * coefficients.s_x - coefficients.s_y;
-    Motion {
+    MechanismState {
         q_rad,
         rate,
         acceleration: (force - 0.5 * coefficients.inertia_slope * rate * rate)
@@ -42,7 +44,7 @@ fn motion(linkage: &Linkage, q_rad: f64, rate: f64, push_g: f64) -> Motion {
 }
 
 /// A few motions: rising, falling, under a push, near the limit position, starting.
-fn motions(linkage: &Linkage) -> Vec<Motion> {
+fn motions(linkage: &Linkage) -> Vec<MechanismState> {
     let limit = linkage.limit_rad();
     [
         (0.0, 0.0, 0.5),

@@ -3,7 +3,7 @@
 use crate::common::pulse;
 use std::f64::consts::PI;
 
-use archrock::internals::hybrid::engine::{EngineError, Observer, Settings, simulate};
+use archrock::internals::hybrid::engine::{EngineError, EngineSettings, Observer, simulate};
 use archrock::internals::hybrid::rocking::{Rocking, RockingState};
 use archrock::mechanics::chain::MechanismChain as _;
 use archrock::{
@@ -373,7 +373,7 @@ impl Observer<Rocking<'_, RockingColumn>, 3> for Nobody {}
 fn too_many_events_are_an_error_with_a_remedy() {
     let (column, still) = (column(0.2), GroundMotion::still());
     let rocking = Rocking::new(&column, &still, GRAVITY_M_S2, 1e-8);
-    let settings = |max_transitions| Settings {
+    let settings = |max_transitions| EngineSettings {
         end_s: 60.0,
         relative_tolerance: 1e-9,
         max_transitions,

@@ -6,7 +6,7 @@ use crate::common::{GRAVITY, Random, between_faces, random_history, random_row, 
 use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::{Event, Impact, Outcome, Sample, Summary};
 use archrock::dynamics::model::Recorder;
-use archrock::internals::contact::{Load, Program};
+use archrock::internals::contact::{ContactProgram, Load};
 use archrock::internals::free_hinges::{Settings, simulate};
 use archrock::mechanics::blocks::{Block, Drum, Joint, Row, RowError, Supports};
 use archrock::mechanics::chain::Mechanism as _;
@@ -58,7 +58,7 @@ fn closure_error_m(run: &Summary) -> f64 {
 
 /// Velocities of the undeformed row after contact, from those before, and the fraction of the energy that is kept.
 fn projected(row: &Row, free: &[Twist]) -> (Vec<Twist>, f64) {
-    let mut program = Program::new(row);
+    let mut program = ContactProgram::new(row);
     let load = Load {
         free: free.to_vec(),
         ..Load::none(row)

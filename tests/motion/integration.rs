@@ -4,12 +4,19 @@ use std::ops::ControlFlow;
 
 use archrock::dynamics::history::Cost;
 use archrock::internals::hybrid::engine::{
-    EngineError, Finish, HybridSystem, Observer, Settings, SystemState, Transition, simulate,
+    EngineError, EngineSettings, Finish, HybridSystem, Observer, SystemState, Transition, simulate,
 };
-use archrock::internals::hybrid::integrator::{self, IntegratorError, State, Step, Task};
+use archrock::internals::hybrid::integrator::{
+    self, IntegrationTask, IntegratorError, State, Step,
+};
 
-fn task<const N: usize>(start_s: f64, end_s: f64, start: State<N>, tolerance: f64) -> Task<N> {
-    Task {
+fn task<const N: usize>(
+    start_s: f64,
+    end_s: f64,
+    start: State<N>,
+    tolerance: f64,
+) -> IntegrationTask<N> {
+    IntegrationTask {
         start_s,
         end_s,
         start,
@@ -23,14 +30,14 @@ fn task<const N: usize>(start_s: f64, end_s: f64, start: State<N>, tolerance: f6
 
 /// Integrates after filling in the slope at the start.
 fn integrate<const N: usize>(
-    task: &Task<N>,
+    task: &IntegrationTask<N>,
     slope: impl Fn(f64, &State<N>) -> State<N>,
     watch: impl FnMut(&Step<N>) -> ControlFlow<()>,
     cost: &mut Cost,
 ) -> Result<State<N>, IntegratorError> {
     let start_slope = slope(task.start_s, &task.start);
     integrator::integrate(
-        &Task {
+        &IntegrationTask {
             start_slope,
             ..*task
         },
@@ -290,7 +297,7 @@ fn throw_and_log(
     end_s: f64,
     log: &mut Log,
 ) -> Result<Finish<bool, 2>, EngineError> {
-    let settings = Settings {
+    let settings = EngineSettings {
         end_s,
         relative_tolerance: 1e-10,
         max_transitions: 200,

@@ -9,9 +9,9 @@ use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::{Outcome, Sample, Sliding, Summary};
 use archrock::dynamics::model::Recorder;
 use archrock::internals::complementarity;
-use archrock::internals::coulomb::{Program, TangentialMode};
+use archrock::internals::coulomb::{SlipProgram, TangentialMode};
 use archrock::internals::free_hinges::{Settings, simulate};
-use archrock::internals::slip::{Contact, Faces, Position};
+use archrock::internals::slip::{FaceContact, Faces, Position};
 use archrock::mechanics::blocks::{Joint, Row, Supports};
 use archrock::mechanics::chain::Hinge;
 use archrock::mechanics::column::Column;
@@ -972,7 +972,7 @@ fn long_arches_under_heavy_fill_near_their_least_friction_are_solved() {
 /// two unknowns for the ends of a joint, two for friction to either side, and a slip speed.
 fn reference_velocities(
     row: &Row,
-    contacts: &[Contact],
+    contacts: &[FaceContact],
     faces: &[Faces],
     positions: &[Position],
     [free, lags, before]: [&[Vector3<f64>]; 3],
@@ -1062,7 +1062,7 @@ fn every_step_solves_the_complementarity_problem() {
         .collect();
     let mut velocities = vec![Vector3::zeros(); positions.len()];
     let mut stuck = vec![0.0; faces.len()];
-    let mut program = Program::new(&row, coefficient);
+    let mut program = SlipProgram::new(&row, coefficient);
     let (mut slipping, mut open, mut fastest) = (0, 0, 0.0_f64);
     for count in 0..500 {
         let at = |block: Option<usize>| {
@@ -1070,7 +1070,7 @@ fn every_step_solves_the_complementarity_problem() {
                 .and_then(|block| positions.get(block))
                 .unwrap_or(&Position::HELD)
         };
-        let contacts: Vec<Contact> = (0..faces.len())
+        let contacts: Vec<FaceContact> = (0..faces.len())
             .map(|joint| faces[joint].contact(at(joint.checked_sub(1)), at(Some(joint))))
             .collect();
         let lags: Vec<Vector3<f64>> = contacts

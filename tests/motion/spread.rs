@@ -477,17 +477,17 @@ fn a_run_on_moved_springings_reports_both_pushes() {
         (
             "[free_hinges]\n",
             "supports.right.spread_m=0.7",
-            "lets the arch fall when its springings have gone 79.75 % of this way",
+            "makes the arch fall at 79.75 % of this movement",
         ),
         (
             "[free_hinges]\nfriction_coefficient = 0.36\n",
             "title=slides",
-            "does not hold the structure where its springings have gone",
+            "does not hold the structure on its moved springings",
         ),
         (
             "[free_hinges]\n[[tie]]\nheight_m = 2.0\nstiffness_n_m = 1e5\nbreaks_at_strain = 0.01\n",
             "title=tied",
-            "`[[tie]]` in `tie` breaks before the springings have gone the way of [supports]",
+            "`[[tie]]` in `tie` breaks before the end of the movement of [supports]",
         ),
         (
             "[impact]\nmodel = \"max_restitution\"\n",

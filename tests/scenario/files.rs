@@ -3,9 +3,8 @@
 use crate::common::schema::violations;
 use crate::common::{ARCH, COLUMN};
 use archrock::dynamics::free_hinges::RowOptions;
-use archrock::scenario::FreeTable;
 use archrock::scenario::{
-    Ground, Motion, Quantity, Scenario, ScenarioErrors, Simulation, Source, Structure,
+    FREE_HINGES, Ground, Quantity, Scenario, ScenarioErrors, Simulation, Source, Structure,
     TextPosition, shown, shown_lines,
 };
 use archrock::{Arch, Column, GroundMotion, ImpactModel, Pulse, Sway};
@@ -99,15 +98,15 @@ fn defaults() {
     );
     assert_eq!(scenario.motion.impact(), ImpactModel::MaxRestitution.into());
     assert!(scenario.title.is_none() && scenario.ground.is_none() && scenario.initial.is_none());
-    assert!(
-        !scenario.motion.hinges().has_joints()
-            && scenario.map.is_none()
-            && scenario.suite.is_none()
-    );
+    assert!(!scenario.motion.kind.has_joints && scenario.map.is_none() && scenario.suite.is_none());
     assert_eq!(scenario.ground_motion(), &GroundMotion::still());
 
     let scenario = parse(&format!("{COLUMN}[free_hinges]\n")).unwrap();
-    assert_eq!(&scenario.motion, &Motion::FreeHinges(FreeTable::default()));
+    assert_eq!(scenario.motion.kind, &FREE_HINGES);
+    assert_eq!(
+        scenario.motion.options.to_json(),
+        json!(RowOptions::default())
+    );
     let Structure::Column(column) = &scenario.structure else {
         panic!("a column")
     };
@@ -139,11 +138,7 @@ fn every_key_of_a_row() {
         shortest_step_s: Some(1e-5),
         friction_coefficient: None,
     };
-    let table = FreeTable {
-        options: steps,
-        ..FreeTable::default()
-    };
-    assert_eq!(&scenario.motion, &Motion::FreeHinges(table));
+    assert_eq!(scenario.motion.options.to_json(), json!(steps));
     let column = Column::new(2.0, 0.8)
         .and_then(|column| column.with_drum_heights_m(vec![0.8, 0.8, 0.4]))
         .and_then(|column| column.with_top_width_m(0.6))
@@ -296,7 +291,7 @@ amplitude_g = [1.0, 2.0]
     let kind = Pulse::MavroeidisPapageorgiou.name();
     assert_eq!(scenario.to_json()["ground"], json!({ kind: pulse }));
     for gravity_m_s2 in [f64::NAN, 0.0, 1e300] {
-        let error = ground.motion(gravity_m_s2).unwrap_err();
+        let error = ground.ground_motion(gravity_m_s2).unwrap_err();
         assert_eq!(error.argument, "gravity_m_s2");
     }
     let simulation = Simulation {

@@ -2,6 +2,7 @@
 
 mod check_record;
 mod files;
+mod files_in_memory;
 pub mod keys;
 mod records;
 mod set;

@@ -17,7 +17,7 @@ const TEXT: &str = "title = \"x\"\n\
 fn read(set: &[&str]) -> Result<Scenario, String> {
     let set: Vec<Assignment> = set.iter().map(|one| one.parse().unwrap()).collect();
     let changes = ReadOptions {
-        hinges: None,
+        model: None,
         set: &set,
         ..ReadOptions::default()
     };
@@ -117,7 +117,7 @@ fn a_wrong_assignment_is_refused_like_a_wrong_line() {
     let text = TEXT.replace("5.0", "-5.0");
     let set = ["arch.embrace_deg=200".parse().unwrap()];
     let changes = ReadOptions {
-        hinges: None,
+        model: None,
         set: &set,
         ..ReadOptions::default()
     };
@@ -150,7 +150,7 @@ fn entries_of_lists_are_counted_from_one() {
     let read = |set: &str| {
         let set = [set.parse().unwrap()];
         let changes = ReadOptions {
-            hinges: None,
+            model: None,
             set: &set,
             ..ReadOptions::default()
         };

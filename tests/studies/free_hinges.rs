@@ -12,7 +12,9 @@ use crate::common::results::Table;
 use archrock::dynamics::free_hinges::{FreeHinges, RowOptions};
 use archrock::dynamics::repeatability::Repeatability;
 use archrock::output::Figure;
-use archrock::scenario::{Hinges, ReadOptions, Scenario, ScenarioErrors, Source};
+use archrock::scenario::{
+    FOUR_LINKS, FREE_HINGES, ModelKind, ReadOptions, Scenario, ScenarioErrors, Source,
+};
 use archrock::studies::ending::{Ending, NoHistory, Verdict, outcome_name};
 use archrock::studies::map::OverturningMap;
 use archrock::studies::map::picture::draw;
@@ -459,9 +461,9 @@ fn keys_of_four_links_are_refused_for_free_hinges() {
     assert!(errors.to_string().contains(words), "{errors}");
 }
 
-fn read_with(file: &Path, hinges: Hinges) -> Result<Scenario, ScenarioErrors> {
+fn read_with(file: &Path, model: &'static ModelKind) -> Result<Scenario, ScenarioErrors> {
     let changes = ReadOptions {
-        hinges: Some(hinges),
+        model: Some(model),
         set: &[],
         ..ReadOptions::default()
     };
@@ -473,10 +475,10 @@ fn a_scenario_with_another_model_reads_back() {
     let work = folder(&map_text());
     let file = work.path().join("s.toml");
     let chosen = Scenario::read(&file).unwrap();
-    let free = read_with(&file, Hinges::Free).unwrap();
+    let free = read_with(&file, &FREE_HINGES).unwrap();
     assert_eq!(free, chosen);
-    let four = read_with(&file, Hinges::Four).unwrap();
-    assert_eq!(four.motion.hinges(), Hinges::Four);
+    let four = read_with(&file, &FOUR_LINKS).unwrap();
+    assert_eq!(four.motion.kind, &FOUR_LINKS);
     for scenario in [free, four] {
         assert_eq!(parsed(&scenario.to_toml()), scenario);
     }
@@ -486,7 +488,7 @@ fn a_scenario_with_another_model_reads_back() {
         map_text().replace("voussoirs = 7\n[free_hinges]\n", ""),
     )
     .unwrap();
-    let errors = read_with(&file, Hinges::Free).unwrap_err();
+    let errors = read_with(&file, &FREE_HINGES).unwrap_err();
     assert!(errors.to_string().contains("lacks `voussoirs`"), "{errors}");
 }
 

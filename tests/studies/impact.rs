@@ -8,7 +8,7 @@ use crate::common::program::{printed, refused};
 use crate::common::prose::golden;
 use crate::common::results::{self, Table};
 use crate::common::{ON_A_PIER, UNEVEN_ARCH};
-use archrock::internals::contact::{Load, Program};
+use archrock::internals::contact::{ContactProgram, Load};
 use archrock::mechanics::blocks::Row;
 use archrock::mechanics::four_link::impact::closing_field;
 use archrock::mechanics::geometry::field::{Field, Side, Twist};
@@ -306,7 +306,7 @@ fn the_certificate_is_the_full_closure_of_free_hinges() {
         let blocks = after_one_impact(&row, first);
         let free = velocities(&closing, &blocks);
         let joints = blocks.joints.len();
-        let mut program = Program::new(&blocks);
+        let mut program = ContactProgram::new(&blocks);
         let load = Load {
             free: free.clone(),
             ..Load::none(&blocks)

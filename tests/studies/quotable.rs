@@ -5,12 +5,17 @@ use std::fs;
 use crate::common::program::{done, printed, scenarios};
 use crate::common::results::json;
 use crate::common::{ARCH, COLUMN};
-use archrock::scenario::Hinges;
+use archrock::scenario::{ELASTIC_JOINTS, FOUR_LINKS, FREE_HINGES, ModelKind};
 use archrock::studies::quotable::{ModelAnswer, in_words};
 
-fn answer(hinges: Hinges, is_arch: bool, excess_ratio: Option<f64>, up_to: &str) -> ModelAnswer {
+fn answer(
+    model: &'static ModelKind,
+    is_arch: bool,
+    excess_ratio: Option<f64>,
+    up_to: &str,
+) -> ModelAnswer {
     ModelAnswer::new(
-        hinges,
+        model,
         is_arch,
         excess_ratio,
         Ok(format!("survives up to {up_to}")),
@@ -22,9 +27,9 @@ fn answer(hinges: Hinges, is_arch: bool, excess_ratio: Option<f64>, up_to: &str)
 #[test]
 fn the_model_with_the_fewest_assumptions_answers() {
     let quoted = |answers: &[ModelAnswer]| in_words(answers).unwrap();
-    let four = answer(Hinges::Four, true, Some(0.04), "3");
-    let free = answer(Hinges::Free, true, None, "2");
-    let elastic = answer(Hinges::Elastic, true, None, "1");
+    let four = answer(&FOUR_LINKS, true, Some(0.04), "3");
+    let free = answer(&FREE_HINGES, true, None, "2");
+    let elastic = answer(&ELASTIC_JOINTS, true, None, "1");
     let all = [elastic.clone(), four.clone(), free.clone()];
     assert_eq!(
         quoted(&all),
@@ -39,7 +44,7 @@ fn the_model_with_the_fewest_assumptions_answers() {
         "to quote: survives up to 3, with four links; compare with free hinges"
     );
     let unknown = Err("it is uncertain whether it overturns".to_owned());
-    let unknown = ModelAnswer::new(Hinges::Elastic, true, None, unknown);
+    let unknown = ModelAnswer::new(&ELASTIC_JOINTS, true, None, unknown);
     assert_eq!(
         quoted(&[four, unknown, free]),
         "to quote: no answer with elastic joints: it is uncertain whether it overturns"
@@ -49,13 +54,13 @@ fn the_model_with_the_fewest_assumptions_answers() {
         (Some(0.501), "leaves the arch by up to 0.501 t"),
         (Some(0.7), "leaves the arch by up to 0.700 t"),
     ] {
-        let outside = quoted(&[answer(Hinges::Four, true, excess, "3")]);
+        let outside = quoted(&[answer(&FOUR_LINKS, true, excess, "3")]);
         assert!(
             outside.starts_with("to quote: no answer with four links") && outside.contains(why),
             "{outside}"
         );
     }
-    let block = answer(Hinges::Four, false, None, "3");
+    let block = answer(&FOUR_LINKS, false, None, "3");
     assert_eq!(
         quoted(&[block]),
         "to quote: survives up to 3, with one rigid block"
@@ -157,7 +162,7 @@ fn the_quoted_strength_is_inside_the_model_with_any_stride() {
         "{words}"
     );
     let failed = Err("the smallest factor tried is not certainly survived".to_owned());
-    let none = ModelAnswer::new(Hinges::Four, true, None, failed);
+    let none = ModelAnswer::new(&FOUR_LINKS, true, None, failed);
     assert!(
         in_words(&[none])
             .unwrap()

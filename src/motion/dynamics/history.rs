@@ -589,7 +589,7 @@ pub struct RowSummary {
     /// Number of times the longest step was halved because of the energy balance.
     #[serde(rename = "step_halvings")]
     pub halvings: u32,
-    /// Computing time of the slowest step, if samples are recorded.
+    /// Computing time of the slowest step; `None` unless the recorder has a clock.
     #[serde(skip)]
     pub longest_step: Elapsed,
 }

@@ -28,9 +28,9 @@ pub use self::history::{
 pub use self::model::{MechanismModel, Model, Repetition, Request, SimulationError};
 pub use self::repeatability::{OutcomeCount, Repeatability, Verdict};
 pub(crate) use self::row::clock::Settings;
-pub(crate) use self::row::course::Course;
 pub use self::row::error::{RowModelError, RowMotionError};
+pub(crate) use self::row::input::MotionInput;
+pub(crate) use self::row::observer::MotionObserver;
 pub(crate) use self::row::stepper::Stepper;
-pub(crate) use self::row::task::Task;
 pub use self::thrust::ThrustRecord;
 pub use self::variation::Variation;

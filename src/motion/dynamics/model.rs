@@ -281,7 +281,8 @@ pub(super) fn check(ground: &GroundMotion, request: &Request) -> Result<(), Simu
 }
 
 /// Reason why four links cannot follow feet that move differently.
-pub const FEET_NEED_JOINTS: &str = "between feet that move differently joints are open at every instant, and the hinges of four links all shut at once";
+pub const FEET_NEED_JOINTS: &str =
+    "four links assume that all hinges close at once, and feet that move differently prevent this";
 
 /// Reason why a motion was not computed.
 #[derive(Clone, Debug, thiserror::Error)]

@@ -1,6 +1,7 @@
 //! Receivers of the samples and events of a history.
 
 use std::ops::ControlFlow;
+use std::time::Duration;
 
 use crate::dynamics::{Event, FallEnd, OpenHinge, Sample};
 use crate::mechanics::Pose;
@@ -28,6 +29,11 @@ pub trait Recorder {
     /// Returns whether samples need the thrust line, which takes time to compute.
     fn wants_thrust_line(&self) -> bool {
         false
+    }
+
+    /// Returns the time of a clock, to measure the slowest step; `None` without a clock.
+    fn clock(&self) -> Option<Duration> {
+        None
     }
 
     /// Receives the positions after a step of the computation: the time in seconds, the poses of the bodies, and the open hinges of a mechanism.

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize, Serializer};
 
 use super::model::{Case, Job, Jobs};
 use super::until::EndCondition;
-use super::variation::MotionThread;
+use super::variation::{PendingMotion, start_motion};
 use crate::dynamics::{
     Details, GroundMotion, HalfCycle, Model, Outcome, Repetition, Request, SimulationError,
     Sliding, Summary,
@@ -329,14 +329,12 @@ fn follows(own: &Summary, other: &Summary) -> bool {
 /// A repetition with its name.
 pub type NamedResult = (&'static str, Result<Summary, SimulationError>);
 
-/// Repetitions of a motion, computed on separate threads in parallel with the motion. If the motion itself fails, nobody waits for them, and they end
-/// with the program.
-#[derive(Debug)]
+/// Repetitions of a motion, computed in parallel with the motion. If the motion itself fails, nobody waits for them, and they end with the program.
 pub struct Repetitions<'a> {
     model: &'a dyn Model,
     ground: &'a GroundMotion,
     request: &'a Request,
-    first: Vec<(&'static str, MotionThread)>,
+    first: Vec<(&'static str, PendingMotion)>,
     others: Vec<Repetition>,
 }
 
@@ -356,7 +354,7 @@ impl<'a> Repetitions<'a> {
 
     /// Waits for the repetitions, computes all others if the first ones do not suffice, and compares the motion with them.
     pub fn compare(self, own: &Summary) -> Repeatability {
-        let ended = |(name, running): (_, MotionThread)| (name, running.wait());
+        let ended = |(name, running): (_, PendingMotion)| (name, running.wait());
         let mut repeated: Vec<_> = self.first.into_iter().map(ended).collect();
         let first = repeated.iter().map(|(_, result)| result);
         if !suffice(self.model, self.request, own, first) {
@@ -371,8 +369,8 @@ fn started(
     repetitions: Vec<Repetition>,
     ground: &GroundMotion,
     request: &Request,
-) -> Vec<(&'static str, MotionThread)> {
-    let start = |Repetition { name, model }| (name, MotionThread::start(model, ground, request));
+) -> Vec<(&'static str, PendingMotion)> {
+    let start = |Repetition { name, model }| (name, start_motion(model, ground, request));
     repetitions.into_iter().map(start).collect()
 }
 

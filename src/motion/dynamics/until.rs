@@ -33,7 +33,7 @@ const HALF_CYCLES_LEFT: f64 = 40.0;
 #[derive(Default)]
 pub(super) struct SafetyMonitor {
     /// Time from which on the ground is quiet, in seconds.
-    quiet_s: f64,
+    quiet_from_s: f64,
     /// Time of the latest rest, in seconds; infinite without this condition.
     rest_by_s: f64,
     /// Side of the current sway, and its start in seconds.
@@ -59,7 +59,7 @@ impl SafetyMonitor {
             EndCondition::Safe => f64::INFINITY,
         };
         Some(Self {
-            quiet_s: ground.end_s(),
+            quiet_from_s: ground.end_s(),
             rest_by_s,
             ..Self::default()
         })
@@ -94,7 +94,7 @@ impl Recorder for SafetyMonitor {
         let ratio = sample.energy_ratio.unwrap_or(f64::INFINITY);
         self.largest_ratio = self.largest_ratio.max(ratio);
         let safe = ratio < SAFE;
-        if sample.time_s < self.quiet_s || !safe || slips {
+        if sample.time_s < self.quiet_from_s || !safe || slips {
             return ControlFlow::Continue(());
         }
         let rests = sample.time_s + HALF_CYCLES_LEFT * half_cycle_s < self.rest_by_s;

@@ -19,7 +19,7 @@ use nalgebra::Vector2;
 use serde::Serialize;
 use thiserror::Error;
 
-use super::chain::Motion;
+use super::chain::MechanismState;
 use super::virtual_work::Participation;
 use crate::mechanics::{BodyPoint, Mechanism as _, MechanismChain, MovingBody, Pose, Sway, Twist};
 
@@ -44,7 +44,7 @@ pub fn displaced<C: MechanismChain>(structure: &C, sway: Sway, part: f64) -> Opt
     let q_rad = part * link.critical_rad;
     let coefficients = link.mechanism.coefficients(q_rad);
     let acceleration_g = coefficients.s_y / coefficients.s_x;
-    let held = Motion {
+    let held = MechanismState {
         q_rad,
         rate: 0.0,
         acceleration: 0.0,

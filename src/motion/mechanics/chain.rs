@@ -26,7 +26,7 @@ pub struct Coefficients {
 
 /// State of a mechanism, in its own frame, with the length of the structure and gravity as units.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Motion {
+pub struct MechanismState {
     /// The coordinate `q`.
     pub q_rad: f64,
     /// Rate of the coordinate, times `sqrt(L/g)`.
@@ -196,17 +196,23 @@ pub trait MechanismChain: std::fmt::Debug + Send + Sync {
     const THRUSTS: bool;
     /// Returns the largest excess of the thrust line of a mechanism in motion, over the thickness, after a number of impacts and a first sway to this
     /// side. Faster than [`Self::demand`], and lower by some per cent for a continuous ring, whose sections are further apart.
-    fn excess_ratio(&self, _first: Sway, _impacts: usize, _: &Self::Mechanism, _: &Motion) -> f64 {
+    fn excess_ratio(
+        &self,
+        _first: Sway,
+        _impacts: usize,
+        _: &Self::Mechanism,
+        _: &MechanismState,
+    ) -> f64 {
         0.0
     }
     /// Returns thrust excess and friction demand of a mechanism in motion.
-    fn demand(&self, mechanism: &Self::Mechanism, motion: &Motion) -> Demand;
+    fn demand(&self, mechanism: &Self::Mechanism, motion: &MechanismState) -> Demand;
     /// Returns thrust excess and friction demand at rest, for a force per unit mass (gravity minus ground acceleration) in multiples of gravity.
     fn demand_at_rest(&self, body_force_g: Vector2<f64>) -> Demand;
     /// Returns the thrust line of a mechanism in motion, section by section from left to right in the mechanism's frame: outward distance from the
     /// axis over the thickness. The sections of a column go from the base up, with distances to the right. `None` for a section without compression;
     /// empty if unknown.
-    fn eccentricity_ratios(&self, _: &Self::Mechanism, _: &Motion) -> Vec<Option<f64>> {
+    fn eccentricity_ratios(&self, _: &Self::Mechanism, _: &MechanismState) -> Vec<Option<f64>> {
         Vec::new()
     }
     /// Returns the mirror image of a thrust line, with sections in reverse order. For a column the distances change sign instead.

@@ -22,7 +22,7 @@ use serde::Serialize;
 
 use super::arch::{DENSITY_KG_M3, DEPTH_M};
 use super::blocks::{GRAVITY_M_S2, MAX_BLOCKS};
-use super::chain::{Coefficients, Motion};
+use super::chain::{Coefficients, MechanismState};
 use super::tie::TieError;
 use crate::argument::{ArgumentError, allow, within};
 use crate::mechanics::four_link::resultant::SectionResultant;
@@ -416,7 +416,7 @@ impl MechanismChain for RockingColumn {
     const THRUSTS: bool = false;
 
     /// The only section of the column is the base, where the ground's reaction acts at the toe. The excess is zero unless the reaction is tensile.
-    fn demand(&self, mechanism: &Tilting, motion: &Motion) -> Demand {
+    fn demand(&self, mechanism: &Tilting, motion: &MechanismState) -> Demand {
         // Acceleration of the centre of gravity, on its circle about the toe.
         let (sin, cos) = mechanism.sin_cos_from(motion.q_rad);
         let along = Vector2::new(cos, sin) * motion.acceleration;
@@ -431,7 +431,11 @@ impl MechanismChain for RockingColumn {
         base_demand(mechanism, -body_force_g, moment)
     }
 
-    fn eccentricity_ratios(&self, mechanism: &Tilting, motion: &Motion) -> Vec<Option<f64>> {
+    fn eccentricity_ratios(
+        &self,
+        mechanism: &Tilting,
+        motion: &MechanismState,
+    ) -> Vec<Option<f64>> {
         let toe = Vector2::new(mechanism.sin, 0.0);
         // In the frame of the block, which has turned clockwise.
         let body_force_g = Rotation2::new(motion.q_rad) * motion.body_force_g;
@@ -529,7 +533,7 @@ mod tests {
         let column = column(0.3, ImpactModel::MaxRestitution);
         for q_rad in [0.0, 0.1, 0.3, 0.5] {
             let (sin, cos) = (0.3_f64 - q_rad).sin_cos();
-            let motion = Motion {
+            let motion = MechanismState {
                 q_rad,
                 rate: 0.0,
                 acceleration: -0.75 * sin,
@@ -544,7 +548,7 @@ mod tests {
         let beyond = at_rest(-0.4).excess_ratio - (0.2 / 0.3_f64.tan() - 0.5);
         assert!(beyond.abs() < 1e-15);
         // A fast column would fly off: the ground cannot pull.
-        let fast = Motion {
+        let fast = MechanismState {
             q_rad: 0.3,
             rate: 1.1,
             acceleration: 0.0,
@@ -571,7 +575,7 @@ mod tests {
             let body_force_g = Vector2::new(push_g, -1.0 + lift_g);
             let Coefficients { inertia, s_x, s_y, .. } = mechanism.coefficients(q_rad);
             let acceleration = (body_force_g.x * s_x + body_force_g.y * s_y) / inertia;
-            let motion = Motion { q_rad, rate, acceleration, body_force_g };
+            let motion = MechanismState { q_rad, rate, acceleration, body_force_g };
             let ratios = column.eccentricity_ratios(&mechanism, &motion);
             prop_assert_eq!(ratios.len(), 21);
 

@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 use thiserror::Error;
 
 use super::arch::{DEPTH_M, MAGNITUDE};
-use super::chain::Motion;
+use super::chain::MechanismState;
 use super::contact::ContactError;
 use super::four_link::chain::Chain;
 use super::four_link::jointed::JointedProfile;
@@ -218,12 +218,12 @@ impl MechanismChain for FourLinks {
         first: Sway,
         impacts: usize,
         mechanism: &Linkage,
-        motion: &Motion,
+        motion: &MechanismState,
     ) -> f64 {
         mechanism.excess_ratio(motion, self.chain_from(first).sections(impacts))
     }
 
-    fn demand(&self, mechanism: &Linkage, motion: &Motion) -> Demand {
+    fn demand(&self, mechanism: &Linkage, motion: &MechanismState) -> Demand {
         mechanism.thrust_line(motion).demand(self.chain().sites)
     }
 
@@ -232,7 +232,11 @@ impl MechanismChain for FourLinks {
         line.demand(self.chain().sites)
     }
 
-    fn eccentricity_ratios(&self, mechanism: &Linkage, motion: &Motion) -> Vec<Option<f64>> {
+    fn eccentricity_ratios(
+        &self,
+        mechanism: &Linkage,
+        motion: &MechanismState,
+    ) -> Vec<Option<f64>> {
         let line = mechanism.thrust_line(motion);
         line.eccentricity_ratios(&self.sections)
     }

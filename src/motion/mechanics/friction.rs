@@ -11,7 +11,7 @@ use thiserror::Error;
 
 use super::cone_program;
 use crate::bisection::{Width, try_bisect};
-use crate::mechanics::{Edge, Row, Stance, Sway};
+use crate::mechanics::{Edge, Row, RowState, Sway};
 
 /// Rate, over the largest one, that counts as zero.
 const LEAST_RATE: f64 = 1e-4;
@@ -76,7 +76,7 @@ pub fn onset(
     coefficient: f64,
     sway: Sway,
 ) -> Result<Option<FrictionOnset>, FrictionError> {
-    onset_at(row, &Stance::undeformed(row), coefficient, sway)
+    onset_at(row, &RowState::undeformed(row), coefficient, sway)
 }
 
 /// Computes the largest horizontal push that a row in a given state carries, with the tie forces of this state.
@@ -85,7 +85,7 @@ pub fn onset(
 /// Those of [`onset`].
 pub fn onset_at(
     row: &Row,
-    stance: &Stance,
+    stance: &RowState,
     coefficient: f64,
     sway: Sway,
 ) -> Result<Option<FrictionOnset>, FrictionError> {
@@ -99,11 +99,11 @@ pub fn onset_at(
 /// closed corner.
 pub(crate) fn onset_of_standing(
     row: &Row,
-    stance: &Stance,
+    stance: &RowState,
     coefficient: f64,
     sway: Sway,
 ) -> Result<Option<FrictionOnset>, FrictionError> {
-    let program = Program::new(row, stance, coefficient, Objective::Push);
+    let program = FrictionProgram::new(row, stance, coefficient, Objective::Push);
     let found = program.solve(-sway.sign(), FrictionError::CannotStand(coefficient))?;
     Ok(found.map(|(objective, yields)| FrictionOnset {
         acceleration_g: sway.sign() * objective,
@@ -116,7 +116,7 @@ pub(crate) fn onset_of_standing(
 /// # Errors
 /// If the row falls with any coefficient, or the linear program is not solved.
 pub fn stands(row: &Row, coefficient: f64) -> Result<bool, FrictionError> {
-    stands_at(row, &Stance::undeformed(row), coefficient)
+    stands_at(row, &RowState::undeformed(row), coefficient)
 }
 
 /// Returns whether a row in a given state carries its own weight. Open joints are in contact only at their closed corner.
@@ -125,10 +125,10 @@ pub fn stands(row: &Row, coefficient: f64) -> Result<bool, FrictionError> {
 /// Those of [`stands`].
 pub(crate) fn stands_at(
     row: &Row,
-    stance: &Stance,
+    stance: &RowState,
     coefficient: f64,
 ) -> Result<bool, FrictionError> {
-    let program = Program::new(row, stance, coefficient, Objective::FrictionExcess);
+    let program = FrictionProgram::new(row, stance, coefficient, Objective::FrictionExcess);
     let found = program.solve(1.0, FrictionError::NeverStands)?;
     Ok(found.is_none_or(|(excess, _)| excess <= FRICTION_EXCESS_TOLERANCE))
 }
@@ -159,7 +159,7 @@ enum Objective {
 
 /// Linear program. Unknowns: the objective, then `N_I`, `N_E` and `T` of every joint in units of the weight. Rows: equilibrium of every block, zero
 /// forces at open corners, then four conditions per joint.
-struct Program {
+struct FrictionProgram {
     matrix: CscMatrix,
     right: Vec<f64>,
     /// Number of rows that are equations.
@@ -168,7 +168,7 @@ struct Program {
 }
 
 /// Returns the loads of the blocks, three numbers each: weights minus tie forces. The joint forces balance them.
-fn loads(row: &Row, stance: &Stance) -> Vec<f64> {
+fn loads(row: &Row, stance: &RowState) -> Vec<f64> {
     let (size_m, mass_kg, centres_m) = (row.size_m, row.mass_kg(), &stance.placement.centres_m);
     let weights = row.blocks.iter().map(|block| block.mass_kg / mass_kg);
     let mut loads: Vec<f64> = weights.flat_map(|weight| [0.0, weight, 0.0]).collect();
@@ -186,8 +186,8 @@ fn loads(row: &Row, stance: &Stance) -> Vec<f64> {
     loads
 }
 
-impl Program {
-    fn new(row: &Row, stance: &Stance, coefficient: f64, objective: Objective) -> Self {
+impl FrictionProgram {
+    fn new(row: &Row, stance: &RowState, coefficient: f64, objective: Objective) -> Self {
         let placement = &stance.placement;
         let (blocks, joints) = (row.blocks.len(), row.joints.len());
         let centres_m = &placement.centres_m;

@@ -111,7 +111,7 @@ impl Faces {
     }
 
     /// Returns the joint between two blocks at given positions.
-    pub fn contact(&self, left: &Position, right: &Position) -> Contact {
+    pub fn contact(&self, left: &Position, right: &Position) -> FaceContact {
         if let Some(side) = self.on_support {
             let bodies = [left, right];
             return self.contact_with_support(bodies[side], bodies[1 - side], side);
@@ -127,7 +127,7 @@ impl Faces {
         let inset_m = 0.5 * offset_m.abs();
         let ends_m = [inset_m, self.thickness_m * half.x - inset_m];
         let gap = |x: f64| apart.dot(&normal) + 2.0 * s * tangent * x;
-        Contact {
+        FaceContact {
             middle_m: (corners[0] + corners[1]) * 0.5,
             along,
             normal,
@@ -138,7 +138,12 @@ impl Faces {
     }
 
     /// Returns the joint between a block, on the given side, and a support that extends beyond the joint.
-    fn contact_with_support(&self, block: &Position, support: &Position, side: usize) -> Contact {
+    fn contact_with_support(
+        &self,
+        block: &Position,
+        support: &Position,
+        side: usize,
+    ) -> FaceContact {
         let along = support.turned(self.along);
         let normal = turned(along) * self.handedness;
         // Coordinates are those of the right face; for a block on the left, the sign is opposite.
@@ -154,7 +159,7 @@ impl Faces {
             let shift_m = reach_m - self.thickness_m;
             (intrados_m + face, [-reach_m, 0.0], shift_m)
         };
-        Contact {
+        FaceContact {
             middle_m,
             along,
             normal,
@@ -167,7 +172,7 @@ impl Faces {
 
 /// Joint in the current position of its blocks.
 #[derive(Clone, Copy, Debug)]
-pub struct Contact {
+pub struct FaceContact {
     /// Midpoint between the intrados corners of the faces, in metres; on a support that extends beyond the joint, the corner nearer to the support.
     pub middle_m: Vector2<f64>,
     /// Unit vector from intrados to extrados in the mean direction of the faces; along the support if that extends beyond the joint.
@@ -182,7 +187,7 @@ pub struct Contact {
     pub coordinates_m: Vector3<f64>,
 }
 
-impl Contact {
+impl FaceContact {
     /// Returns the end of the overlap at an edge.
     pub fn corner_m(&self, edge: Edge) -> Vector2<f64> {
         let intrados_m = self.middle_m + self.along * self.ends_m[0];

@@ -8,8 +8,8 @@
 use nalgebra::{DMatrix, DVector, Vector2};
 use thiserror::Error;
 
-use super::contact::{ContactError, Load, Program};
-use crate::mechanics::{Edge, Placement, Row, Stance, Sway, TieLine, Twist};
+use super::contact::{ContactError, ContactProgram, Load};
+use crate::mechanics::{Edge, Placement, Row, RowState, Sway, TieLine, Twist};
 
 /// Velocities below this fraction of those without contact count as zero.
 const STANDSTILL: f64 = 1e-9;
@@ -54,7 +54,7 @@ pub enum StabilityError {
 /// # Errors
 /// When the velocities under the weight are not found.
 pub fn collapse_mechanism(row: &Row) -> Result<Option<Vec<OpeningJoint>>, ContactError> {
-    collapse_mechanism_at(row, &Stance::undeformed(row))
+    collapse_mechanism_at(row, &RowState::undeformed(row))
 }
 
 /// Returns the mechanism in which a row falls under its own weight from a given state; `None` if it is in equilibrium.
@@ -63,7 +63,7 @@ pub fn collapse_mechanism(row: &Row) -> Result<Option<Vec<OpeningJoint>>, Contac
 /// When the velocities under the weight are not found.
 pub fn collapse_mechanism_at(
     row: &Row,
-    stance: &Stance,
+    stance: &RowState,
 ) -> Result<Option<Vec<OpeningJoint>>, ContactError> {
     let mut trial = Trial::new(row, stance);
     let moves = trial.moves(Vector2::new(0.0, -1.0), true)?;
@@ -76,7 +76,7 @@ pub fn collapse_mechanism_at(
 /// # Errors
 /// When the row does not stand, or the velocities of a trial are not found.
 pub fn onset(row: &Row, sway: Sway) -> Result<Option<RowOnset>, StabilityError> {
-    onset_at(row, &Stance::undeformed(row), sway)
+    onset_at(row, &RowState::undeformed(row), sway)
 }
 
 /// Returns the least horizontal ground acceleration at which a row in a given state starts to sway to a side, also on moved supports. Open joints are
@@ -86,7 +86,7 @@ pub fn onset(row: &Row, sway: Sway) -> Result<Option<RowOnset>, StabilityError> 
 /// Those of [`onset`].
 pub fn onset_at(
     row: &Row,
-    stance: &Stance,
+    stance: &RowState,
     sway: Sway,
 ) -> Result<Option<RowOnset>, StabilityError> {
     let mut trial = Trial::new(row, stance);
@@ -140,7 +140,7 @@ pub fn limit_with_yielding_ties(
     let weight_n = row.mass_kg() * row.gravity_m_s2;
     let ties = row.ties.iter();
     let largest_forces = ties.map(|tie| (tie.yield_force_n / weight_n).min(LARGEST_TIE_FORCE));
-    let undeformed = Stance::undeformed(row);
+    let undeformed = RowState::undeformed(row);
     let mut trial = Trial::new(row, &undeformed);
     let work_at_rest = work(row, &undeformed.placement, &at_rest.velocities);
     let mut push_program = LargestPushProgram::new(largest_forces.collect());
@@ -362,7 +362,7 @@ fn work(row: &Row, placement: &Placement, velocities: &[Twist]) -> Vector2<f64> 
 struct Trial<'a> {
     row: &'a Row,
     placement: &'a Placement,
-    program: Program,
+    program: ContactProgram,
     load: Load,
     lines: Vec<TieLine>,
     /// Tie forces divided by gravity, in kg.
@@ -370,9 +370,9 @@ struct Trial<'a> {
 }
 
 impl<'a> Trial<'a> {
-    fn new(row: &'a Row, stance: &'a Stance) -> Self {
+    fn new(row: &'a Row, stance: &'a RowState) -> Self {
         let placement = &stance.placement;
-        let mut program = Program::new(row);
+        let mut program = ContactProgram::new(row);
         program.place(placement);
         let ties_kg = stance.forces_n().map(|force_n| force_n / row.gravity_m_s2);
         Self {

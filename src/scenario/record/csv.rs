@@ -47,7 +47,7 @@ fn parse_table(
     let first = rows.peek().ok_or_else(|| nothing(text, line))?;
     let columns = Columns::find(layout, times.column(), names.as_ref(), first)?;
     let unit_s = columns.time_unit_s();
-    unit.agrees(columns.name(columns.acceleration))
+    unit.check_name(columns.name(columns.acceleration))
         .map_err(LineFault::on(line.max(1)))?;
     let (mut times_s, mut values) = (Vec::new(), Values::default());
     values.line = first.line;

@@ -218,7 +218,7 @@ impl Format {
         let ending = Self::of_ending(file);
         let report = |wrong| match is_key {
             true => table.wrong("file", wrong),
-            false => table.wrong_itself(wrong),
+            false => table.fault_of_table(wrong),
         };
         ending.map_err(report).ok()
     }

@@ -30,9 +30,9 @@ mod samples;
 mod unit;
 
 use std::borrow::Cow;
+use std::fmt;
 use std::path::Path;
 use std::sync::Arc;
-use std::{fmt, fs};
 
 pub use layout::{Decimal, Format, Layout, TableColumn, Times};
 use samples::MAX_TIME_S;
@@ -41,8 +41,9 @@ pub use unit::{RecordedQuantity, Unit};
 
 use super::assignment::Assignment;
 use super::error::ScenarioErrors;
+use super::files::Files;
 use super::prelude::*;
-use super::source::{not_plain, read_at_most};
+use super::source::not_plain;
 use super::table;
 use crate::GroundMotion;
 
@@ -157,7 +158,7 @@ impl Record {
             ..self.clone()
         };
         rescaled.main.check_strength(gravity_m_s2)?;
-        Ok(rescaled.motion(gravity_m_s2))
+        Ok(rescaled.ground_motion(gravity_m_s2))
     }
 
     /// Returns the time at which the last record ends, in s.
@@ -167,7 +168,7 @@ impl Record {
     }
 
     /// Returns the ground motion under a gravity in m/s2.
-    pub(crate) fn motion(&self, gravity_m_s2: f64) -> GroundMotion {
+    pub(crate) fn ground_motion(&self, gravity_m_s2: f64) -> GroundMotion {
         let [main, vertical] = [Some(&self.main), self.vertical.as_ref()]
             .map(|series| series.map_or_else(Vec::new, |it| it.accelerations_m_s2(gravity_m_s2)));
         match self.component {
@@ -189,7 +190,7 @@ impl Record {
         let wrong =
             "cannot be combined with `component = \"vertical\"`; give one record per direction";
         table.refuse(is_second, "vertical", wrong)?;
-        table.sound()?;
+        table.check_faultless()?;
         let gravity_m_s2 = known.1.ok_or(FaultRecorded)?;
         let record = Self {
             main: main?,
@@ -197,7 +198,7 @@ impl Record {
             start_s,
             vertical,
         };
-        let motion = record.motion(gravity_m_s2);
+        let motion = record.ground_motion(gravity_m_s2);
         if let Some(time_s) = motion.free_fall_s(gravity_m_s2).filter(|_| !known.2) {
             let inside: &[_] = record.vertical.as_ref().map_or(&[], |_| &["vertical"]);
             return Err(table.wrong_in(inside, "file", free_fall(time_s)));
@@ -212,9 +213,9 @@ pub(super) type KnownRecords<'a> = (&'a [Series], Option<f64>, bool);
 
 impl Series {
     /// Reads the unscaled samples of a file. The error is a phrase that follows the name of the file.
-    pub(super) fn of_file(folder: &Path, file: String, layout: Layout) -> Result<Self, String> {
-        let path = folder.join(&file);
-        let contents = layout.parse(&read_bytes(&path)?);
+    pub(super) fn of_file(files: &Files, file: String, layout: Layout) -> Result<Self, String> {
+        let path = files.path(&file);
+        let contents = layout.parse(&files.read(&path)?);
         contents
             .map(|contents| Self::new(file, layout, contents))
             .map_err(|fault| faulty(&path, &fault))
@@ -237,13 +238,14 @@ impl Series {
     /// All faults of the keys, or the fault of the file. Each has the assignment or the file, without a line.
     pub fn read_file(path: &Path, keys: &[Assignment]) -> Result<Self, ScenarioErrors> {
         let name = path.display().to_string();
-        let layout = table::read_text(("", Path::new("")), keys, |table| {
+        let layout = table::read_text(("", &Files::default()), keys, |table| {
             table.rename("the record");
             let format = Format::read_or_ending(table, &name);
             Ok(Layout::read(table, format))
         })
         .map_err(|faults| ScenarioErrors::placed(("", &name), keys, faults).without_places())?;
-        let bytes = read_bytes(path).map_err(|wrong| ScenarioErrors::unreadable(&name, wrong))?;
+        let bytes = Files::default().read(path);
+        let bytes = bytes.map_err(|wrong| ScenarioErrors::unreadable(&name, wrong))?;
         let contents = layout.parse(&bytes).map_err(|fault| {
             ScenarioErrors::unreadable(&format!("{name}:{}", fault.line), fault.message)
         })?;
@@ -369,13 +371,13 @@ impl Series {
         let scale = table.optional("scale", &SCALE);
         let peak_g = table.optional("peak_g", &PEAK_G);
         let at_most = "give at most one of them";
-        let related = table.relate(&[AtMostOne(&["scale", "peak_g"], at_most)]);
+        let related = table.apply_relations(&[AtMostOne(&["scale", "peak_g"], at_most)]);
         let layout = Layout::read(table, format);
-        related.and(table.sound())?;
+        related.and(table.check_faultless())?;
         let mut known = known.iter();
         let series = match known.find(|known| known.file == file && known.layout == layout) {
             Some(known) => known.clone(),
-            None => Self::of_file(table.folder(), file, layout)
+            None => Self::of_file(table.files(), file, layout)
                 .map_err(|wrong| table.wrong_file("file", wrong))?,
         };
         let scaling = peak_g.map_or(Scaling::Factor(scale.unwrap_or(1.0)), Scaling::PeakG);
@@ -448,10 +450,11 @@ fn mean(samples: &[(f64, f64)]) -> f64 {
 
 /// Reads rows of `N` numbers from a file, each with its line. The first row may contain names.
 pub(super) fn read_numbers<const N: usize>(
+    files: &Files,
     path: &Path,
     decimal: Decimal,
 ) -> Result<Vec<(usize, [f64; N])>, String> {
-    let bytes = read_bytes(path)?;
+    let bytes = files.read(path)?;
     let numbers = legible(&bytes).and_then(|text| csv::numbers(&text, decimal));
     numbers.map_err(|fault| faulty(path, &fault))
 }
@@ -460,14 +463,6 @@ pub(super) fn read_numbers<const N: usize>(
 pub(super) fn faulty(path: &Path, fault: &LineFault) -> String {
     let path = shown(&path.display().to_string());
     format!("is faulty: {path}:{fault}")
-}
-
-/// Reads the contents of a file of at most 64 MiB.
-fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
-    let unreadable = |error| format!("cannot be read: {error}");
-    let is_file = fs::metadata(path).map_err(unreadable)?.is_file();
-    ensure(is_file, || "is not a file")?;
-    read_at_most(fs::File::open(path).map_err(unreadable)?, 64, "record")
 }
 
 /// Returns the message that the ground falls freely at this time, which is impossible for a structure that rests on it.

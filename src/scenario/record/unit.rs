@@ -79,7 +79,7 @@ impl Unit {
     }
 
     /// Returns an error if the name of a column contains another unit, as in `acc (g)` or `acc_gal`.
-    pub(super) fn agrees(self, name: &str) -> Result<(), String> {
+    pub(super) fn check_name(self, name: &str) -> Result<(), String> {
         /// Units without a name in scenarios.
         const OTHERS: [&str; 6] = ["mg", "%g", "mm/s2", "mm/s^2", "in/s2", "ft/s2"];
         let bracket = name

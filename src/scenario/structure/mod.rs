@@ -10,7 +10,6 @@ use std::f64::consts::FRAC_PI_2;
 
 use thiserror::Error;
 
-use super::hinges::Hinges;
 use super::masonry::{self, Additions};
 use super::prelude::*;
 use super::span::Circular;
@@ -53,13 +52,12 @@ pub enum ModelError {
 }
 
 impl Structure {
-    /// Reads the structure for a model of motion, with its ties.
+    /// Reads the structure with its ties, for a model of motion with joints (`free_hinges`) or without.
     pub(super) fn read(
         table: &mut Table<'_>,
-        hinges: Hinges,
+        free_hinges: bool,
         gravity_m_s2: Option<f64>,
     ) -> ReadResult<(Self, Vec<TieTable>)> {
-        let free_hinges = hinges.has_joints();
         let beside = Additions::read(table);
         let alone = beside.as_ref().is_ok_and(Additions::is_empty);
         let arch = table.table("arch", |table| read_arch(table, free_hinges, alone));
@@ -67,7 +65,7 @@ impl Structure {
         let shape = masonry::read_shapes(table).map(StructureTable::Shape);
         let [pointed, elliptic, basket, blocks] = masonry::SHAPES;
         let tables = ["arch", "column", pointed, elliptic, basket, blocks];
-        table.relate(&[OneOf(&tables, None)])?;
+        table.apply_relations(&[OneOf(&tables, None)])?;
         let read = arch.or(column.map(StructureTable::Column)).or(shape);
         let read = read.ok_or(FaultRecorded)?;
         let (beside, gravity_m_s2) = (beside?, gravity_m_s2.ok_or(FaultRecorded)?);
@@ -138,7 +136,7 @@ impl Structure {
     }
 
     /// Returns fill and loads for drawings; `None` if the structure cannot carry any.
-    pub fn carries(&self) -> Option<(&LoadOutlines, &[PlacedLoad])> {
+    pub fn fill_and_loads(&self) -> Option<(&LoadOutlines, &[PlacedLoad])> {
         match self {
             Self::Arch(_) | Self::Column(_) => None,
             Self::Masonry(masonry) => Some((&masonry.load_outlines, &masonry.loads)),
@@ -146,7 +144,7 @@ impl Structure {
     }
 
     /// Returns true for an arch, which has thrust at its springings; false for a free-standing column.
-    pub const fn thrusts(&self) -> bool {
+    pub const fn has_horizontal_thrust(&self) -> bool {
         !matches!(self, Self::Column(_))
     }
 
@@ -246,7 +244,7 @@ fn read_arch(table: &mut Table<'_>, free_hinges: bool, alone: bool) -> ReadResul
     let voussoirs = table.optional("voussoirs", &VOUSSOIRS);
     let joints_deg = table.optional("joints_deg", &list(&JOINT_DEG));
     let equal = "`voussoirs` are equal: give one of them";
-    table.agrees(&[AtMostOne(&["voussoirs", "joints_deg"], equal)])?;
+    table.check_relations(&[AtMostOne(&["voussoirs", "joints_deg"], equal)])?;
     let circular = circular?;
     let (radius_m, ratio) = (circular.mean_radius_m, circular.thickness_ratio);
     let arch = Arch::new(radius_m, ratio, circular.embrace_deg)
@@ -259,7 +257,7 @@ fn read_arch(table: &mut Table<'_>, free_hinges: bool, alone: bool) -> ReadResul
         .expect("the ranges of the keys are those of an arch")
         .with_measured_at(circular.measured_at);
     if (free_hinges || !alone) && voussoirs.is_none() && joints_deg.is_none() {
-        return Err(table.wrong_itself(match free_hinges {
+        return Err(table.fault_of_table(match free_hinges {
             true => "lacks `voussoirs`: joints open between blocks; give the number of voussoirs",
             false => "lacks `voussoirs`: piers, fill, loads and ties go with blocks; give the number of voussoirs",
         }));
@@ -331,7 +329,7 @@ fn read_column(table: &mut Table<'_>, free_hinges: bool) -> ReadResult<Column> {
         let wrong = "needs a table [free_hinges] or [elastic_joints]: Housner's model is a single prismatic block";
         table.wrong(key, wrong);
     }
-    table.agrees(&[AtMostOne(&["drums", "drum_heights_m"], GIVE_ONE)])?;
+    table.check_relations(&[AtMostOne(&["drums", "drum_heights_m"], GIVE_ONE)])?;
     let column = Column::new(height_m, width_m)
         .and_then(|column| column.with_depth_m(depth_m))
         .and_then(|column| column.with_density_kg_m3(density_kg_m3))

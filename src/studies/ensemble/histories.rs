@@ -14,7 +14,7 @@ use crate::output::panels::{MAIN, scale_around};
 use crate::output::{
     Figure, Key, Mark, OutputError, Panels, Scale, Sign, Stroke, Subject, color, column, csv, list,
 };
-use crate::scenario::{Motion, Scenario, Structure};
+use crate::scenario::{MotionModel, Scenario, Structure};
 use crate::studies::ending::columns::{self, OUTCOMES};
 use crate::studies::remarks::ModelCheck;
 use crate::studies::statistics::{band, fractile, quantile};
@@ -34,7 +34,7 @@ pub struct Histories {
     pub times: usize,
     /// Structure, motion and model of the scenario itself. Samples with the same structure and motion use this model, because finding mechanisms
     /// after impacts takes much longer than a history.
-    own: (Structure, Motion, Box<dyn Model>),
+    own: (Structure, MotionModel, Box<dyn Model>),
 }
 
 /// Rotation over time and ending of the history of a sample.
@@ -87,7 +87,7 @@ impl Question for Histories {
             body: most.map_or(0, |(body, _)| body),
             step_s: stride * request.output_step_s,
             times,
-            own: (structure, scenario.motion, many_cases(scenario)?),
+            own: (structure, scenario.motion.clone(), many_cases(scenario)?),
         })
     }
 
@@ -124,7 +124,7 @@ impl Question for Histories {
             }
         }
         lines.push(peak_band.map_or("largest rotation: not known".to_owned(), peaks_in_words));
-        let has_joints = samples.scenario.motion.hinges().has_joints();
+        let has_joints = samples.scenario.motion.kind.has_joints;
         let mut all = columns::columns(has_joints, |line: &Line<'_, HistoryAnswer>| {
             let answer = line.answer.as_ref();
             answer.map(|answer| &answer.ending).map_err(NoAnswer::name)

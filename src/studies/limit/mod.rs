@@ -40,7 +40,7 @@ fn summary(scenario: &Scenario) -> Result<Summary, StudyError> {
         let row = scenario.structure.row().map_err(RowModelError::from);
         row.map_err(StudyError::scenario)
     };
-    let coefficient = scenario.motion.friction_coefficient();
+    let coefficient = scenario.motion.options.friction_coefficient();
     if let Some(movements) = scenario.motion.supports() {
         return of_moved_row(scenario, &row()?, &movements, coefficient);
     }
@@ -68,7 +68,7 @@ fn of_row(scenario: &Scenario, row: &Row) -> Result<Summary, StabilityError> {
         summary.ties = Some(ties(row)?);
         summary.tie_places = scenario.structure.tie_places();
     }
-    summary.is_stack = !scenario.structure.thrusts();
+    summary.is_stack = !scenario.structure.has_horizontal_thrust();
     if summary.is_stack {
         return Ok(summary);
     }

@@ -14,10 +14,12 @@ use serde::{Deserialize, Serialize};
 use super::ending::{Ending, NoHistory, answered};
 use super::runner::Study;
 use crate::dynamics::{OutcomeCount, Repetition};
-use crate::scenario::{Axis, Ground, ModelError, Motion, Quantity, Scaling, Scenario, Structure};
+use crate::scenario::{
+    Axis, Ground, ModelError, MotionModel, Quantity, Scaling, Scenario, Structure,
+};
 use crate::{
-    Arch, ArgumentError, Case, FourLinkError, FourLinks, GroundMotion, ImpactModel, Model,
-    PulseShape, SimulationError, Summary,
+    Arch, ArgumentError, Case, FourLinkError, FourLinks, GroundMotion, Model, PulseShape,
+    SimulationError, Summary,
 };
 
 /// A cell of a map.
@@ -188,7 +190,7 @@ impl<'a> OverturningMap<'a> {
             Quantity::Restitution,
             Quantity::Other,
         ];
-        if scenario.motion.hinges().has_joints() {
+        if scenario.motion.kind.has_joints {
             shapes.push(Quantity::MeanRadius);
         }
         let durations = [Quantity::Duration, Quantity::Frequency, Quantity::Other];
@@ -246,14 +248,13 @@ impl<'a> OverturningMap<'a> {
         let make = || {
             let structure = self.structure(index, scenario);
             let structure = structure.map_err(FourLinkError::from)?;
-            Ok(match (self.moves(index, scenario), structure) {
-                (Motion::FourLinks(law), Structure::Arch(arch)) => {
+            let motion = self.motion_model(index, scenario);
+            Ok(match (motion.options.law(), structure) {
+                (Some(law), Structure::Arch(arch)) => {
                     let links = FourLinks::of_arch(&arch, law)?;
                     Standing::Arch(arch, links)
                 }
-                (motion, structure) => {
-                    Standing::Model(motion.model_for_many_cases(&structure)?.into())
-                }
+                (_, structure) => Standing::Model(motion.model_for_many_cases(&structure)?.into()),
             })
         };
         let standing = self.structures.get(self.place(index), make)?;
@@ -286,16 +287,12 @@ impl<'a> OverturningMap<'a> {
         Ok(Structure::Arch(arch))
     }
 
-    /// Returns the parameters of motion of a cell.
-    fn moves(&self, index: usize, scenario: &Scenario) -> Motion {
-        let mut motion = scenario.motion;
-        if let (Motion::FourLinks(law), Some(varied)) =
-            (&mut motion, self.value(index, Quantity::Restitution))
-            && let ImpactModel::Prescribed { restitution } = &mut law.model
-        {
-            *restitution = varied;
+    /// Returns the model of motion of a cell, with its restitution coefficient if the map varies it.
+    fn motion_model(&self, index: usize, scenario: &Scenario) -> MotionModel {
+        match self.value(index, Quantity::Restitution) {
+            Some(restitution) => scenario.motion.with_restitution(restitution),
+            None => scenario.motion.clone(),
         }
-        motion
     }
 
     /// Returns the ground motion of a cell.
@@ -399,7 +396,7 @@ impl Study for OverturningMap<'_> {
 
     /// Returns the family of cells with the same structure; `None` unless their model computes several motions faster together.
     fn family(&self, index: usize) -> Option<usize> {
-        let together = self.scenario.motion.is_faster_together();
+        let together = !self.scenario.motion.kind.is_rigid;
         together.then(|| self.structures.place(self.place(index)))?
     }
 

@@ -57,7 +57,7 @@ impl OverturningMap<'_> {
             column(x, |row: &CellRow| row.x),
             column(y, |row: &CellRow| row.y),
         ];
-        let has_joints = self.scenario.motion.hinges().has_joints();
+        let has_joints = self.scenario.motion.kind.has_joints;
         all.extend(columns::columns(has_joints, |row: &CellRow| {
             row.result.as_ref().map_err(NoHistory::name)
         }));
@@ -98,7 +98,7 @@ impl Style {
         if (map.x.quantity, map.y.quantity) != (Quantity::Duration, Quantity::Amplitude) {
             return Err("needs the axes `duration_s` and `amplitude_g`");
         }
-        if scenario.motion.hinges().has_joints() {
+        if scenario.motion.kind.has_joints {
             return Err("is for four links and columns: free hinges have no p");
         }
         let (model, gravity_m_s2) = (scenario.mechanisms().ok(), scenario.gravity_m_s2());

@@ -2,7 +2,7 @@
 
 use crate::dynamics::peak::Peak;
 use crate::dynamics::thrust::{EXCESS_LEVELS, MODEL_LIMIT};
-use crate::scenario::{Hinges, Scenario, Structure};
+use crate::scenario::{Scenario, Structure};
 use crate::{Model, Outcome, Summary as History};
 
 /// Rotations up to this value are printed as zero: such a block slides without rocking.
@@ -24,7 +24,7 @@ pub fn warnings(scenario: &Scenario, model: &dyn Model, history: &History) -> Ve
     let mut warnings = scenario.unlikely_of(Some(model));
     let structure = &scenario.structure;
     // The ground cannot pull a column down. An arch moves as four links as long as its thrust line stays almost inside.
-    let thrusts = structure.thrusts();
+    let thrusts = structure.has_horizontal_thrust();
     let most = if thrusts { EXCESS_LEVELS[1] } else { 0.0 };
     let of_mechanisms = model.as_mechanisms().and(history.thrust.as_ref());
     let leaves = of_mechanisms.is_some_and(|thrust| thrust.largest_excess.value > most);
@@ -70,7 +70,7 @@ pub(super) fn coefficient(friction: f64, decimals: usize) -> String {
 pub(super) fn friction_condition(scenario: &Scenario, history: &History) -> Option<String> {
     let needed = history.thrust.as_ref()?.required_friction();
     let [low, high] = STONE_FRICTION;
-    if scenario.motion.friction_coefficient().is_some() || needed <= low {
+    if scenario.motion.options.friction_coefficient().is_some() || needed <= low {
         return None;
     }
     Some(if needed > high {
@@ -96,8 +96,8 @@ fn quality(excess_ratio: f64, up_to_peak: Option<f64>) -> [&'static str; 2] {
 
 /// Returns the quality of four links of an arch that rocked.
 pub(super) fn four_link_quality(scenario: &Scenario, history: &History) -> Option<String> {
-    let is_arch = scenario.structure.thrusts();
-    let four = scenario.motion.hinges() == Hinges::Four && is_arch;
+    let is_arch = scenario.structure.has_horizontal_thrust();
+    let four = !scenario.motion.kind.has_joints && is_arch;
     let thrust = history.thrust.as_ref().filter(|_| four)?;
     thrust.shares_within()?;
     let excess_ratio = thrust.largest_excess.value;
@@ -115,7 +115,7 @@ pub(super) fn four_link_limits(
     let [_, near] = thrust.shares_within()?;
     let Peak { value, time_s } = thrust.largest_excess;
     let [close, most] = EXCESS_LEVELS;
-    if !structure.thrusts() {
+    if !structure.has_horizontal_thrust() {
         let flies = format!(
             "the ground would have to hold the column down (at {time_s:.4} s): it flies off"
         );

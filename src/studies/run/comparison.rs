@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use super::ModelResults;
 use super::caveats::vibrates_since_s;
 use crate::dynamics::variation::VariationResult;
+use crate::scenario::MODELS;
 use crate::{Outcome, Summary as History, Verdict};
 
 /// Returns a table of the runs of one structure with different models of motion, followed by the conclusion.
@@ -17,7 +18,7 @@ pub(super) fn comparison_words(runs: &[ModelResults<'_>]) -> String {
                 Outcome::Overturned(_) => String::new(),
                 _ => format!("{:.6} rad", history.largest_rotation_rad()),
             };
-            [run.name().to_owned(), outcome_words(results), peak]
+            [run.label().to_owned(), outcome_words(results), peak]
         })
         .collect();
     let header = ["model", "what happened", "largest rotation"].map(str::to_owned);
@@ -53,12 +54,15 @@ fn outcome_words(results: &ModelResults<'_>) -> String {
 
 /// Returns the differences between the model with the fewest assumptions and the others.
 fn conclusion(runs: &[ModelResults<'_>]) -> String {
-    let rank = |results: &ModelResults<'_>| results.run.scenario.motion.hinges() as usize;
+    let rank = |results: &ModelResults<'_>| {
+        let kind = results.run.scenario.motion.kind;
+        MODELS.iter().position(|model| *model == kind)
+    };
     let best = runs.iter().max_by_key(|results| rank(results));
     let others = best.into_iter().flat_map(|best| {
         let others = runs.iter().filter(|results| rank(results) != rank(best));
         others.filter_map(|other| {
-            let (name, best_name) = (other.run.name(), best.run.name());
+            let (name, best_name) = (other.run.label(), best.run.label());
             let differs = difference(best, other)?;
             Some(format!("{name}, compared with {best_name}: {differs}"))
         })

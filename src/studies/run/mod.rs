@@ -27,6 +27,7 @@ use std::fmt::Write as _;
 use std::io;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
+use std::time::Duration;
 
 use nalgebra::Vector2;
 use serde_json::Value;
@@ -46,13 +47,14 @@ pub use self::words::heading;
 use self::words::{NotableImpacts, VerdictLine, Words};
 use super::quotable::{self, ModelAnswer};
 use super::{Progress, Results, RunnerError, StudyError, Watch};
+use crate::clock;
 use crate::dynamics::repeatability::Repetitions;
 use crate::dynamics::variation::Variations;
 use crate::dynamics::{FallEnd, Repeatability};
 use crate::output::{
     Figure, Folder, OutputError, Scene, Subject, TableWriter, pretty, render, summary_of,
 };
-use crate::scenario::{Hinges, Scenario};
+use crate::scenario::{ModelKind, Scenario};
 use crate::{Event, Model, OpenHinge, Pose, Recorder, Sample, Summary as History, Sway, Verdict};
 
 const ROTATIONS: &str = "rotations.csv";
@@ -146,7 +148,7 @@ struct Run<'a> {
     options: &'a RunOptions,
     figure: Figure,
     /// The models of motion of all runs whose words are printed together.
-    all_models: &'a [Hinges],
+    all_models: &'a [&'static ModelKind],
     scales: Option<Scales>,
     points: ObservedPoints,
 }
@@ -171,8 +173,8 @@ pub fn results(
     mut sinks: Sinks<'_>,
     watch: Watch<'_>,
 ) -> Result<Results, StudyError> {
-    let all_models = scenarios.iter().map(|one| one.motion.hinges());
-    let all_models: Vec<Hinges> = all_models.collect();
+    let all_models = scenarios.iter().map(|one| one.motion.kind);
+    let all_models: Vec<_> = all_models.collect();
     let runs = scenarios.iter();
     let runs = runs.map(|one| Run::new(one, options, figure, &all_models));
     let runs: Result<Vec<Run<'_>>, String> = runs.collect();
@@ -198,9 +200,9 @@ pub fn results(
     results.words.extend(quote);
     results.summary["to_quote"] = to_quote.into();
     for one in &mut all {
-        let _ = write!(results.words, "{}\n{}", one.run.name(), one.words);
-        let model = one.run.scenario.motion.hinges();
-        results.summary[model.name()] = one.summary.take();
+        let _ = write!(results.words, "{}\n{}", one.run.label(), one.words);
+        let model = one.run.scenario.motion.kind;
+        results.summary[model.option] = one.summary.take();
     }
     if let Some(folder) = &all[0].folder {
         results.files = vec![(OVERLAY, overlay(&all).into_bytes())];
@@ -229,9 +231,9 @@ impl<'a> Run<'a> {
         scenario: &'a Scenario,
         options: &'a RunOptions,
         figure: Figure,
-        all_models: &'a [Hinges],
+        all_models: &'a [&'static ModelKind],
     ) -> Result<Self, String> {
-        if options.dimensionless && scenario.motion.hinges().has_joints() {
+        if options.dimensionless && scenario.motion.kind.has_joints {
             let why_not = "--dimensionless goes with four links and columns: free hinges have no unstable equilibrium to measure by";
             return Err(why_not.to_owned());
         }
@@ -257,8 +259,8 @@ impl<'a> Run<'a> {
     }
 
     /// The label of its model.
-    fn name(&self) -> &'static str {
-        self.scenario.motion.label()
+    fn label(&self) -> &'static str {
+        self.scenario.motion.kind.label
     }
 
     /// The files that it writes, the seal last.
@@ -397,7 +399,7 @@ impl<'a> Run<'a> {
 
 /// One picture of several models of motion.
 fn overlay(all: &[ModelResults<'_>]) -> String {
-    let names: Vec<_> = all.iter().map(|one| one.run.name()).collect();
+    let names: Vec<_> = all.iter().map(|one| one.run.label()).collect();
     let first = all[0].run;
     let mut title = names.join(" and ");
     if let Some(initial) = title.get_mut(..1) {
@@ -641,6 +643,10 @@ impl Recorder for RunRecorder<'_, '_> {
         let drawings = &self.drawings;
         let shows_structure = drawings.film.is_some() || drawings.snapshots.is_some();
         drawings.report.is_some() || shows_structure
+    }
+
+    fn clock(&self) -> Option<Duration> {
+        clock::since_1970()
     }
 
     fn step(&mut self, time_s: f64, poses: &[Pose], hinges: &[OpenHinge]) {

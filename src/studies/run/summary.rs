@@ -14,7 +14,7 @@ use crate::dynamics::{HalfCycle, Repeatability, ThrustRecord};
 use crate::mechanics::Sides;
 use crate::output::mechanisms::columns;
 use crate::output::{Named, OutputError, summary_of};
-use crate::scenario::{Ground, Hinges, Scenario};
+use crate::scenario::{Ground, Scenario};
 use crate::studies::quotable::{self, ModelAnswer};
 use crate::{MechanismModel, Model, Outcome, Summary as History, Sway, Verdict};
 
@@ -50,7 +50,7 @@ impl<'a> ComputedRun<'a> {
             (_, Some(change)) => Some(format!(
                 "THE OUTCOME DEPENDS ON JOINT STIFFNESS AND CONTACT: it {happens} this motion as given, and {change}"
             )),
-            _ if scenario.motion.hinges() == Hinges::Elastic && varied.is_empty() => {
+            _ if !scenario.motion.kind.is_rigid && varied.is_empty() => {
                 Some("the dependence of the outcome on joint stiffness is unknown".to_owned())
             }
             _ => without_verdict(varied),
@@ -66,8 +66,11 @@ impl<'a> ComputedRun<'a> {
             conditions => format!(" ({})", conditions.join("; ")),
         };
         let answer = no_answer.map_or_else(|| Ok(format!("{happens} this motion{condition}")), Err);
-        let (hinges, is_arch) = (scenario.motion.hinges(), scenario.structure.thrusts());
-        ModelAnswer::new(hinges, is_arch, history.thrust_excess_ratio(), answer)
+        let (kind, is_arch) = (
+            scenario.motion.kind,
+            scenario.structure.has_horizontal_thrust(),
+        );
+        ModelAnswer::new(kind, is_arch, history.thrust_excess_ratio(), answer)
     }
 
     /// Returns the verdict; uncertain if the repetitions disagree.
@@ -338,7 +341,7 @@ impl<'a> Summary<'a> {
                 elastic: history.elastic(),
                 row,
                 feet: FeetApart::of(scenario, history),
-                friction_coefficient: scenario.motion.friction_coefficient(),
+                friction_coefficient: scenario.motion.options.friction_coefficient(),
                 iterations: history.cost.evaluations,
             }),
             repeatability: computed.repeated.map(RepeatabilitySummary::of),

@@ -16,7 +16,7 @@ use crate::dynamics::{HalfCycle, Repeatability, Sliding};
 use crate::mechanics::Sides;
 use crate::output::mechanisms::by_body;
 use crate::output::{filters, range_ends};
-use crate::scenario::{Hinges, Scenario, Series};
+use crate::scenario::{ELASTIC_JOINTS, FREE_HINGES, ModelKind, Scenario, Series};
 use crate::{Event, Hinge, Impact, Outcome, Summary as History, Sway, Verdict};
 
 /// Returns the heading of the words for the runs of scenarios that differ in their models: title, one line per record, and a note about an
@@ -81,7 +81,7 @@ pub(super) struct Words<'a> {
     pub summary: &'a Summary<'a>,
     pub impacts: &'a NotableImpacts,
     /// The models of motion of all runs whose words are printed together.
-    pub all_models: &'a [Hinges],
+    pub all_models: &'a [&'static ModelKind],
 }
 
 /// Largest number of half cycles that are described.
@@ -280,6 +280,12 @@ impl<'a> Words<'a> {
         feet.filter(|(_, at_s)| *at_s < ground.end_s()).collect()
     }
 
+    /// Returns true for free hinges without a comparison with elastic joints.
+    fn lacks_elastic_joints(&self) -> bool {
+        self.computed.scenario.motion.kind == &FREE_HINGES
+            && !self.all_models.contains(&&ELASTIC_JOINTS)
+    }
+
     /// Returns the limits of four links, or of a column on its toe, in parts of a sentence; `None` if no friction is reported.
     fn limits(&self) -> Option<Vec<String>> {
         let (scenario, history) = (self.computed.scenario, self.computed.history);
@@ -287,7 +293,7 @@ impl<'a> Words<'a> {
             return self.sliding().is_none().then(Vec::new);
         }
         // Advises to compare with free hinges only if the comparison was not requested.
-        let compared = self.all_models.contains(&Hinges::Free);
+        let compared = self.all_models.contains(&&FREE_HINGES);
         let advice = (!compared).then_some("compare with --hinges both");
         caveats::four_link_limits(history, &scenario.structure, advice)
     }

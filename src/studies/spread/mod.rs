@@ -202,7 +202,7 @@ pub fn spread(scenario: &Scenario, directions: &[Direction]) -> Result<Summary, 
         weight_n,
         warnings: scenario.unlikely(),
         scenario: scenario.to_json(),
-        friction_coefficient: scenario.motion.friction_coefficient(),
+        friction_coefficient: scenario.motion.options.friction_coefficient(),
         row: row.clone(),
     })
 }

@@ -221,7 +221,7 @@ pub(super) fn case(
     mirrored: bool,
 ) -> Case {
     let shake = suite.shake(record, level, mirrored);
-    let ground = scenario.under_both_feet(shake.motion(scenario.gravity_m_s2()));
+    let ground = scenario.under_both_feet(shake.ground_motion(scenario.gravity_m_s2()));
     let request = scenario.request_on(&ground, &scenario.structure);
     (ground, request)
 }

@@ -248,7 +248,7 @@ impl Heading {
                 )),
             }
         });
-        ModelAnswer::new(self.hinges, self.is_arch, excess_ratio, answer)
+        ModelAnswer::new(self.model(), self.is_arch, excess_ratio, answer)
     }
 
     /// Returns the failed and uncertain cases among those that count, with the reasons.
@@ -270,7 +270,7 @@ impl Heading {
             column("peak_g", |case: &CaseRow| case.peak_g),
         ];
         all.extend(columns::columns(
-            self.hinges.has_joints(),
+            self.model().has_joints,
             |case: &CaseRow| case.result.as_ref().map_err(|_| FAILED),
         ));
         all

@@ -13,7 +13,7 @@ use super::{
 use crate::dynamics::OutcomeCount;
 use crate::dynamics::thrust::MODEL_LIMIT;
 use crate::output::{Figure, OutputError, column, csv, fields};
-use crate::scenario::{Ground, Hinges, Scenario};
+use crate::scenario::{Ground, Scenario};
 use crate::studies::ending::columns::{GROUND_FALLS, OUTCOMES};
 use crate::studies::ending::{NoHistory, Verdict, outcome_name};
 use crate::studies::quotable::{self, ModelAnswer};
@@ -274,11 +274,11 @@ impl Threshold {
     /// Returns the answer that may be quoted: the largest safe factor, with its range over other stiffness and contact.
     fn answer(&self, scenario: &Scenario, peak_g: f64) -> ModelAnswer {
         let is_known = |one: &VariedThreshold| one.factor.is_ok() && one.incomplete == 0;
-        let over = match scenario.motion.hinges() {
-            Hinges::Elastic if self.varied.is_empty() => ", other stiffness and contact unknown",
-            Hinges::Elastic if self.varied.iter().all(is_known) => " over stiffness and contact",
-            Hinges::Elastic => " over stiffness and contact, as far as they have verdicts",
-            _ => "",
+        let over = match &self.varied[..] {
+            _ if scenario.motion.kind.is_rigid => "",
+            [] => ", other stiffness and contact unknown",
+            varied if varied.iter().all(is_known) => " over stiffness and contact",
+            _ => " over stiffness and contact, as far as they have verdicts",
         };
         let others = self
             .varied
@@ -309,7 +309,10 @@ impl Threshold {
             }
             _ => Err("the smallest factor tried is not certainly survived".to_owned()),
         };
-        let (hinges, is_arch) = (scenario.motion.hinges(), scenario.structure.thrusts());
+        let (hinges, is_arch) = (
+            scenario.motion.kind,
+            scenario.structure.has_horizontal_thrust(),
+        );
         ModelAnswer::new(hinges, is_arch, self.safe_excess_ratio, answer)
     }
 

@@ -247,7 +247,7 @@ fn record_peaks(
 ) -> Result<RecordPeaks, SimulationError> {
     let scenario = input.scenario;
     let both = [1.0, -1.0].into_par_iter().map(|sign| {
-        let ground = scenario.shaken_by(series, sign);
+        let ground = scenario.record_motion(series, sign);
         let request = scenario.request_on(&ground, &scenario.structure);
         let request = Request {
             end_s: request.end_s.max(ground.end_s() + AFTER_S),

@@ -378,7 +378,7 @@ pub fn verify(scenario: &Scenario) -> Result<Summary, VerifyError> {
     let demand = scenario.demand.clone().ok_or(VerifyError::NoDemand)?;
     let settings = scenario.verify.clone().unwrap_or_default();
     let structure = &scenario.structure;
-    let own_friction = scenario.motion.friction_coefficient();
+    let own_friction = scenario.motion.options.friction_coefficient();
     let (_, density_kg_m3) = structure.depth_and_density();
     let free = settings.free_standing.as_ref();
     let input = CheckInput {

@@ -3,7 +3,6 @@
 //! Every number of the page is a rounded number of the [`Summary`], in an element `data` that holds the full value.
 
 use std::collections::BTreeMap;
-use std::time::{SystemTime, UNIX_EPOCH};
 
 use askama::Template;
 use askama::filters::Safe;
@@ -15,6 +14,7 @@ use super::{
     Decision, FRICTION, Histories, Mechanism, Method, PlacedHinge, Spectrum, StateCheck, Summary,
     Verdict, alike, picture,
 };
+use crate::clock;
 use crate::dynamics::demand::damping_factor;
 use crate::mechanics::Edge;
 use crate::output::{Figure, OutputError, filters, render};
@@ -36,8 +36,8 @@ const MOST_POINTS: usize = 40;
 /// # Errors
 /// When a value is not finite.
 pub fn report(scenario: &Scenario, check: &Summary) -> Result<Results, OutputError> {
-    let since = SystemTime::now().duration_since(UNIX_EPOCH);
-    let today = date_of(since.map_or(0, |since| since.as_secs() / 86_400));
+    let today = clock::since_1970().map(|since| date_of(since.as_secs() / 86_400));
+    let today = today.unwrap_or_default();
     let page = page(scenario, check, &today);
     Results::new(&FILES, check, [page.into_bytes()])
 }
@@ -47,7 +47,7 @@ pub fn words(check: &Summary) -> String {
     render(check)
 }
 
-/// Makes the page of a check. `date` is the date of the check.
+/// Makes the page of a check. `date` is the date of the check, empty if it is unknown.
 pub fn page(scenario: &Scenario, check: &Summary, date: &str) -> String {
     let is_one = check.printed_sides() == 1;
     let figure = if is_one { "78mm" } else { "90mm" };

@@ -6,13 +6,13 @@ use std::sync::{Arc, OnceLock};
 use super::stepper::Group;
 use crate::argument::{ArgumentError, short, within};
 use crate::dynamics::model::{Case, Job, Jobs, Recorder, check, one_by_one};
-use crate::dynamics::row::course::{LARGEST_ENERGY_ERROR, balanced};
+use crate::dynamics::row::observer::{LARGEST_ENERGY_ERROR, balanced};
 use crate::dynamics::row::standing::RigidRow;
 use crate::dynamics::row::stepper;
 use crate::dynamics::until::EndCondition;
 use crate::dynamics::{
-    Details, GroundMotion, Model, Repetition, Request, RowModelError, RowMotionError, Settings,
-    SimulationError, Summary, Task, Variation,
+    Details, GroundMotion, Model, MotionInput, Repetition, Request, RowModelError, RowMotionError,
+    Settings, SimulationError, Summary, Variation,
 };
 use crate::mechanics::blocks::GRAVITY_M_S2;
 use crate::mechanics::elastic_joint::{Contact, ElasticProperties, JointStiffness, Stiffness};
@@ -242,11 +242,11 @@ impl ElasticJoints {
         Self::standing(self.rigid.clone(), properties, structure, self.rest.0)
     }
 
-    fn task<'a>(
+    fn input<'a>(
         &'a self,
         ground: &'a GroundMotion,
         request: &Request,
-    ) -> Result<Task<'a>, SimulationError> {
+    ) -> Result<MotionInput<'a>, SimulationError> {
         check(ground, request)?;
         if let Some(initial) = request.initial {
             let allowed =
@@ -271,7 +271,7 @@ impl ElasticJoints {
             ..Settings::default()
         };
         let settings = settings.within(Self::MOST_STEPS, TOO_LONG)?;
-        Ok(self.rigid.task(ground, request.gravity_m_s2, settings))
+        Ok(self.rigid.input(ground, request.gravity_m_s2, settings))
     }
 
     fn simulate_one(
@@ -282,14 +282,14 @@ impl ElasticJoints {
         until: EndCondition,
     ) -> Result<Summary, SimulationError> {
         let gravity_m_s2 = request.gravity_m_s2;
-        let task = self.task(ground, request)?;
+        let input = self.input(ground, request)?;
         let rest = self.rest(gravity_m_s2)?;
         let barrier_j = || self.elastic_barrier_j(gravity_m_s2);
-        // The cast shortens the lifetime of the recorder to that of the task.
+        // The cast shortens the lifetime of the recorder to that of the input.
         let recorder = recorder.map(|recorder| recorder as _);
         let start = (&self.structure, &rest);
-        let mut group = Group::<1>::new(task.row, start, gravity_m_s2, &barrier_j);
-        group.begin(0, task, until, recorder);
+        let mut group = Group::<1>::new(input.row, start, gravity_m_s2, &barrier_j);
+        group.begin(0, input, until, recorder);
         self.checked_summary(stepper::run(group)?, &rest, gravity_m_s2)
     }
 
@@ -324,9 +324,9 @@ impl ElasticJoints {
                     && let Some(job) = jobs.next()
                 {
                     let (ground, request) = &cases[job.case];
-                    match model_of(job).task(ground, request) {
-                        Ok(task) => {
-                            group.begin(lane, task, job.until, None);
+                    match model_of(job).input(ground, request) {
+                        Ok(input) => {
+                            group.begin(lane, input, job.until, None);
                             *running = Some(job);
                             group.continue_lane(lane);
                         }

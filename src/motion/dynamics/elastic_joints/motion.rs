@@ -39,7 +39,7 @@ pub fn joint_bodies(structure: &ElasticStructure, joint: &ElasticJoint) -> [usiz
 }
 
 /// Parallel motions, one per lane. Lanes do not affect each other.
-pub struct Motion<'a, const L: usize> {
+pub struct ElasticMotion<'a, const L: usize> {
     pub structure: &'a ElasticStructure,
     gravity_m_s2: f64,
     arch: Arch,
@@ -157,7 +157,7 @@ remembered!(Observation {
     kinetic_j, potential_j, elastic_j, sway_kg_m, largest_displacement_m2, largest_rotation_rad; largest_stress; energies: EnergyTerms
 });
 
-impl<'a, const L: usize> Motion<'a, L> {
+impl<'a, const L: usize> ElasticMotion<'a, L> {
     pub fn new(structure: &'a ElasticStructure, gravity_m_s2: f64) -> Self {
         let joints = structure.joints.len();
         let ties = structure.ties.iter();
@@ -180,7 +180,7 @@ impl<'a, const L: usize> Motion<'a, L> {
 
     /// Starts the motion of a lane from rest.
     pub fn start(&mut self, lane: usize, rest: &Equilibrium) {
-        let alone = Motion::at_rest(self.structure, self.gravity_m_s2, rest);
+        let alone = ElasticMotion::at_rest(self.structure, self.gravity_m_s2, rest);
         if self.structure.has_settled() {
             self.datum.clone_from(&rest.moved);
         }
@@ -465,7 +465,7 @@ impl<'a, const L: usize> Motion<'a, L> {
     }
 }
 
-impl<'a> Motion<'a, 1> {
+impl<'a> ElasticMotion<'a, 1> {
     fn at_rest(structure: &'a ElasticStructure, gravity_m_s2: f64, rest: &Equilibrium) -> Self {
         let mut motion = Self::new(structure, gravity_m_s2);
         for (body, moved) in motion.bodies.iter_mut().zip(&rest.moved) {
@@ -486,7 +486,7 @@ impl<'a> Motion<'a, 1> {
 
 /// Step to be compiled once for every vector width; with a closure it is a tenth slower.
 struct LeapfrogStep<'m, 'a, const L: usize> {
-    motion: &'m mut Motion<'a, L>,
+    motion: &'m mut ElasticMotion<'a, L>,
     step: &'m Step<Lanes<L>>,
     activity: GroundActivity,
 }

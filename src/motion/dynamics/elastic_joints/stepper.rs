@@ -4,19 +4,21 @@ use std::cell::OnceCell;
 
 use nalgebra::Vector2;
 
-use super::motion::{GroundActivity, Motion, Observation, SlidingSupport, Step, joint_bodies};
+use super::motion::{
+    ElasticMotion, GroundActivity, Observation, SlidingSupport, Step, joint_bodies,
+};
 use super::stillness::Stillness;
 use crate::dynamics::ground::FeetApart;
 use crate::dynamics::history::{JointPressure, Stress};
 use crate::dynamics::recorder::Recorder;
 use crate::dynamics::repeatability::LARGEST_LOSS_RATIO;
 use crate::dynamics::row::clock::Marks;
-use crate::dynamics::row::course::{OVERTURNED_RAD, OVERTURNED_RATIO, REST_ENERGY_RATIO};
+use crate::dynamics::row::observer::{OVERTURNED_RAD, OVERTURNED_RATIO, REST_ENERGY_RATIO};
 use crate::dynamics::row::stepper::{equal_step, open_hinge};
 use crate::dynamics::until::EndCondition;
 use crate::dynamics::{
-    Course, EventKind, GroundVelocity, RowMotionError, Sample, Sliding, Stepper, Summary, Task,
-    TieSample,
+    EventKind, GroundVelocity, MotionInput, MotionObserver, RowMotionError, Sample, Sliding,
+    Stepper, Summary, TieSample,
 };
 use crate::mechanics::{Edge, ElasticStructure, Equilibrium, Hinge, Lanes, Pose, Row, Supports};
 
@@ -39,13 +41,13 @@ const HINGE_RATIO: f64 = 0.5;
 
 /// One motion of a group.
 struct Lane<'a> {
-    course: Course<'a>,
+    observer: MotionObserver<'a>,
     until: EndCondition,
     velocity: GroundVelocity<'a>,
     /// Relative motion of the feet, and their current relative displacement; `None` if both feet move alike.
     feet: Option<FeetApart<'a>>,
     feet_apart_m: Vector2<f64>,
-    quiet_s: f64,
+    quiet_from_s: f64,
     /// Time up to which the lane steps without interruption, in seconds.
     until_s: f64,
     /// True if the current position has been observed.
@@ -92,7 +94,7 @@ pub struct Group<'a, const L: usize> {
     rest: &'a Equilibrium,
     /// Computes the least energy above that at rest at which the structure overturns without slip, if known. This takes time.
     find_barrier_j: &'a dyn Fn() -> Option<f64>,
-    motion: Motion<'a, L>,
+    motion: ElasticMotion<'a, L>,
     lanes: [Option<Lane<'a>>; L],
     /// Energy barrier, computed at the first request.
     barrier_j: OnceCell<Option<f64>>,
@@ -101,55 +103,63 @@ pub struct Group<'a, const L: usize> {
 }
 
 impl<'a> Lane<'a> {
-    fn new(task: Task<'a>, until: EndCondition, recorder: Option<&'a mut dyn Recorder>) -> Self {
-        let velocity = GroundVelocity::new(task.ground);
-        let start_s = task.ground.start_s();
+    fn new(
+        input: MotionInput<'a>,
+        until: EndCondition,
+        recorder: Option<&'a mut dyn Recorder>,
+    ) -> Self {
+        let velocity = GroundVelocity::new(input.ground);
+        let start_s = input.ground.start_s();
         Self {
             until,
             ground_m_s: velocity.at(start_s),
             velocity,
-            feet: FeetApart::of(task.row, task.ground),
+            feet: FeetApart::of(input.row, input.ground),
             feet_apart_m: Vector2::zeros(),
-            quiet_s: task.ground.end_s(),
+            quiet_from_s: input.ground.end_s(),
             until_s: start_s,
             is_observed: false,
             kicked_s: start_s,
             monitor: MotionMonitor::default(),
-            barrier_j: task.barrier_j,
+            barrier_j: input.barrier_j,
             quiet_since_s: start_s,
             stillness: Stillness::new(
-                task.undeformed_barrier_j,
-                REST_ENERGY_RATIO * task.row.mass_kg() * task.gravity_m_s2 * task.row.size_m,
+                input.undeformed_barrier_j,
+                REST_ENERGY_RATIO * input.row.mass_kg() * input.gravity_m_s2 * input.row.size_m,
             ),
-            marks: Marks::new(task.settings, start_s),
+            marks: Marks::new(input.settings, start_s),
             error: None,
             tie_events: Vec::new(),
-            course: Course::new(task, None, recorder),
+            observer: MotionObserver::new(input, None, recorder),
         }
     }
 
     /// Advances the clock by one step, and returns the step.
     fn next(&mut self, damping_time_s: f64) -> Step<Lanes<1>> {
-        let step_s = equal_step(self.course.time, self.until_s, self.course.longest_step_s);
-        let to_s = self.course.time + 0.5 * step_s;
+        let step_s = equal_step(
+            self.observer.time,
+            self.until_s,
+            self.observer.longest_step_s,
+        );
+        let to_s = self.observer.time + 0.5 * step_s;
         let (mut step, ground_m_s) = self.kick(to_s);
         step.drift_s = Lanes([step_s]);
         step.damping = Lanes([damping_time_s / step_s]);
         (self.kicked_s, self.ground_m_s) = (to_s, ground_m_s);
         // Set the end of the last of equal steps exactly, without rounding error.
-        let left_s = self.until_s - self.course.time;
-        self.course.time = if step_s > 0.75 * left_s {
+        let left_s = self.until_s - self.observer.time;
+        self.observer.time = if step_s > 0.75 * left_s {
             self.until_s
         } else {
-            self.course.time + step_s
+            self.observer.time + step_s
         };
         if let Some(feet) = &mut self.feet {
-            let feet_apart_m = feet.at(self.course.time);
+            let feet_apart_m = feet.at(self.observer.time);
             let by_m = feet_apart_m - self.feet_apart_m;
             step.feet_apart_change_m = [Lanes([by_m.x]), Lanes([by_m.y])];
             self.feet_apart_m = feet_apart_m;
         }
-        self.course.cost.steps += 1;
+        self.observer.cost.steps += 1;
         self.is_observed = false;
         step
     }
@@ -171,15 +181,15 @@ impl<'a> Lane<'a> {
     }
 
     fn is_shaken(&self) -> bool {
-        self.kicked_s < self.quiet_s
+        self.kicked_s < self.quiet_from_s
     }
 
     fn ends_stride(&self) -> bool {
-        self.course.cost.steps.is_multiple_of(STRIDE)
+        self.observer.cost.steps.is_multiple_of(STRIDE)
     }
 
     fn is_due(&self) -> bool {
-        self.ends_stride() || self.course.time >= self.until_s
+        self.ends_stride() || self.observer.time >= self.until_s
     }
 
     /// Returns whether a joint is open beyond its state at rest, by more than the largest penetration under self-weight.
@@ -187,7 +197,7 @@ impl<'a> Lane<'a> {
         if self.monitor.opening_m.is_empty() {
             let at_rest: Vec<[f64; 2]> = penetrations_m.collect();
             let most_m = at_rest.iter().flatten().copied().fold(0.0, f64::max);
-            self.course.elastic.opening_tolerance_m = most_m;
+            self.observer.elastic.opening_tolerance_m = most_m;
             let opens = |end: f64| (-end).max(0.0) + most_m;
             self.monitor.opening_m = at_rest.iter().map(|ends| ends.map(opens)).collect();
             return false;
@@ -200,22 +210,22 @@ impl<'a> Lane<'a> {
     fn note_joints<const L: usize>(
         &mut self,
         index: usize,
-        motion: &Motion<'_, L>,
+        motion: &ElasticMotion<'_, L>,
         supports: &[SlidingSupport],
     ) -> f64 {
-        if self.course.has_rocked != Some(true) {
+        if self.observer.has_rocked != Some(true) {
             let edges = motion.memories.iter().map(|edges| edges.penetrations_m);
             let is_open = self.is_open(edges.map(|ends| ends.map(|end| end.0[index])));
             let slips =
-                self.course.elastic.friction_j > REST_ENERGY_RATIO * self.course.energy_unit;
-            self.course.has_rocked = Some(is_open || slips);
+                self.observer.elastic.friction_j > REST_ENERGY_RATIO * self.observer.energy_unit;
+            self.observer.has_rocked = Some(is_open || slips);
         }
-        let course = &mut self.course;
+        let observer = &mut self.observer;
         let mut slid = 0.0;
         for (joint, with_joint) in motion.structure.joints.iter().enumerate() {
             let permanent_slip_m = motion.memories[joint].permanent_slip_m.0[index];
-            if let Some(sliding) = &mut course.row_summary.sliding {
-                sliding.friction_j = course.elastic.friction_j;
+            if let Some(sliding) = &mut observer.row_summary.sliding {
+                sliding.friction_j = observer.elastic.friction_j;
                 sliding.offsets_m[joint] = permanent_slip_m;
                 let largest = &mut sliding.largest_offsets_m[joint];
                 *largest = largest.max(permanent_slip_m.abs());
@@ -224,7 +234,9 @@ impl<'a> Lane<'a> {
             let on_support = |support: &&SlidingSupport| support.joint == joint && support.extends;
             match supports.iter().find(on_support) {
                 Some(support) => slid += permanent_slip_m * support.along_x,
-                None => course.overturned |= permanent_slip_m.abs() >= with_joint.geometry.length_m,
+                None => {
+                    observer.overturned |= permanent_slip_m.abs() >= with_joint.geometry.length_m
+                }
             }
         }
         slid
@@ -235,22 +247,22 @@ impl<'a> Lane<'a> {
         let most_j = self.monitor.vibration_j;
         let vibrates = kinetic_j < most_j && potential_j < most_j;
         // A row without motion that stands higher than before is held by friction.
-        if !vibrates && kinetic_j >= REST_ENERGY_RATIO * self.course.energy_unit {
-            self.quiet_since_s = self.course.time;
-            self.course.moved = true;
+        if !vibrates && kinetic_j >= REST_ENERGY_RATIO * self.observer.energy_unit {
+            self.quiet_since_s = self.observer.time;
+            self.observer.moved = true;
         }
         let since_s = self.quiet_since_s;
-        self.course.elastic.vibrates_since_s = self.lasts(since_s).then_some(since_s);
+        self.observer.elastic.vibrates_since_s = self.lasts(since_s).then_some(since_s);
     }
 
     /// Returns whether the row has been in a state since this time for long enough, on quiet ground.
     fn lasts(&self, since_s: f64) -> bool {
-        self.course.is_quiet(since_s.max(self.quiet_s))
+        self.observer.is_quiet(since_s.max(self.quiet_from_s))
     }
 
-    fn rests_since(&self) -> Option<f64> {
+    fn at_rest_since_s(&self) -> Option<f64> {
         let mut since_s = self.quiet_since_s;
-        if self.course.has_rocked == Some(true) {
+        if self.observer.has_rocked == Some(true) {
             since_s = since_s.max(self.stillness.since_s);
         }
         self.lasts(since_s).then_some(since_s)
@@ -264,26 +276,26 @@ impl<'a> Lane<'a> {
         }
         // A row beyond its barrier falls to that side, with any damping.
         if self.until == EndCondition::End
-            || self.course.time < self.quiet_s
+            || self.observer.time < self.quiet_from_s
             || !self.monitor.moves_back
         {
             return false;
         }
-        let (quiet_s, quiet_j) = *self
+        let (quiet_from_s, quiet_j) = *self
             .monitor
             .quiet
-            .get_or_insert((self.course.time, energy_j));
+            .get_or_insert((self.observer.time, energy_j));
         if self.until == EndCondition::Settled {
             // Assume that the energy decays `SLOWER` times more slowly from now on.
-            let rate = (quiet_j / energy_j).ln() / (self.course.time - quiet_s);
+            let rate = (quiet_j / energy_j).ln() / (self.observer.time - quiet_from_s);
             let rests_s = SLOWER * (energy_j / self.stillness.limit_j).ln().max(0.0) / rate;
-            let rested_s = self.course.time + rests_s + self.course.rest_time_s();
-            let rests = rate > 0.0 && rested_s < self.course.task.settings.end_s;
-            if !(self.course.moved && rests && energy_j < DECAYED * self.monitor.largest_j) {
+            let rested_s = self.observer.time + rests_s + self.observer.rest_time_s();
+            let rests = rate > 0.0 && rested_s < self.observer.input.settings.end_s;
+            if !(self.observer.moved && rests && energy_j < DECAYED * self.monitor.largest_j) {
                 return false;
             }
         }
-        let gone_j = self.course.elastic.friction_j + self.course.elastic.crushed_j;
+        let gone_j = self.observer.elastic.friction_j + self.observer.elastic.crushed_j;
         barrier_j().is_some_and(|barrier_j| {
             energy_j < SAFE * barrier_j && gone_j < LARGEST_LOSS_RATIO * barrier_j
         })
@@ -315,7 +327,7 @@ impl<'a, const L: usize> Group<'a, L> {
             structure,
             rest,
             find_barrier_j,
-            motion: Motion::new(structure, gravity_m_s2),
+            motion: ElasticMotion::new(structure, gravity_m_s2),
             lanes: [const { None }; L],
             barrier_j: OnceCell::new(),
             supports,
@@ -326,12 +338,12 @@ impl<'a, const L: usize> Group<'a, L> {
     pub fn begin(
         &mut self,
         lane: usize,
-        task: Task<'a>,
+        input: MotionInput<'a>,
         until: EndCondition,
         recorder: Option<&'a mut dyn Recorder>,
     ) {
         self.motion.start(lane, self.rest);
-        let mut begun = Lane::new(task, until, recorder);
+        let mut begun = Lane::new(input, until, recorder);
         let weighted = self
             .row
             .blocks
@@ -340,8 +352,9 @@ impl<'a, const L: usize> Group<'a, L> {
         let moved = weighted.map(|(block, moved)| block.mass_kg * moved[0].hypot(moved[1]));
         let moved_kg_m: f64 = moved.sum();
         let none = || Sliding::none(self.structure.joints.len());
-        begun.course.row_summary.sliding = self.structure.slips().then(none);
-        begun.course.least_sway_kg_m = begun.course.least_sway_kg_m.max(SIDE_RATIO * moved_kg_m);
+        begun.observer.row_summary.sliding = self.structure.slips().then(none);
+        begun.observer.least_sway_kg_m =
+            begun.observer.least_sway_kg_m.max(SIDE_RATIO * moved_kg_m);
         self.lanes[lane] = Some(begun);
         let observation = self.motion.observe(&Step::none(), &self.supports);
         self.note(lane, &observation);
@@ -364,7 +377,8 @@ impl<'a, const L: usize> Group<'a, L> {
                     continue;
                 };
                 activity.ground_moves |= lane.is_shaken();
-                activity.feet_move_apart |= lane.feet.is_some() && lane.course.time < lane.quiet_s;
+                activity.feet_move_apart |=
+                    lane.feet.is_some() && lane.observer.time < lane.quiet_from_s;
                 step.set(index, &lane.next(damping_time_s));
                 due |= lane.is_due();
             }
@@ -387,7 +401,7 @@ impl<'a, const L: usize> Group<'a, L> {
         let mut half = Step::none();
         for (index, lane) in self.lanes.iter().enumerate() {
             if let Some(lane) = lane {
-                half.set(index, &lane.kick(lane.course.time).0);
+                half.set(index, &lane.kick(lane.observer.time).0);
             }
         }
         half
@@ -400,9 +414,9 @@ impl<'a, const L: usize> Group<'a, L> {
             return;
         };
         let of = |lanes: Lanes<L>| lanes.0[index];
-        let course = &mut lane.course;
+        let observer = &mut lane.observer;
         lane.is_observed = true;
-        let time = course.time;
+        let time = observer.time;
         let (kinetic, elastic) = (of(observation.kinetic_j), of(observation.elastic_j));
         let stored = of(observation.potential_j) + elastic;
         if !(kinetic.is_finite() && stored.is_finite()) {
@@ -412,36 +426,36 @@ impl<'a, const L: usize> Group<'a, L> {
             return;
         }
         let rest_j = *lane.monitor.rest_j.get_or_insert_with(|| {
-            lane.monitor.vibration_j = (REST_ENERGY_RATIO * course.energy_unit)
+            lane.monitor.vibration_j = (REST_ENERGY_RATIO * observer.energy_unit)
                 .max(VIBRATION_STRAIN_RATIO * elastic)
                 .max(VIBRATION_BARRIER_RATIO * lane.barrier_j.unwrap_or(0.0));
             lane.monitor.rest_sway_kg_m = of(observation.sway_kg_m);
             stored
         });
         let energies = &observation.energies;
-        course.elastic.elastic_j = elastic;
-        course.elastic.damped_j = of(energies.damped_j);
-        course.elastic.friction_j = of(energies.friction_j);
-        course.elastic.crushed_j = of(energies.crushed_j);
-        course.elastic.ties_j = of(energies.ties_j);
+        observer.elastic.elastic_j = elastic;
+        observer.elastic.damped_j = of(energies.damped_j);
+        observer.elastic.friction_j = of(energies.friction_j);
+        observer.elastic.crushed_j = of(energies.crushed_j);
+        observer.elastic.ties_j = of(energies.ties_j);
         let dissipated_with = |friction_j: f64| {
-            let joints_j = course.elastic.damped_j + friction_j + course.elastic.crushed_j;
-            joints_j + course.elastic.ties_j
+            let joints_j = observer.elastic.damped_j + friction_j + observer.elastic.crushed_j;
+            joints_j + observer.elastic.ties_j
         };
         // The energy balance uses the slip of the discrete motion; the work of friction is an estimate of it.
         let dissipated_j = dissipated_with(of(energies.slip_balance_j));
-        course.row_summary.energy_taken_j = dissipated_with(course.elastic.friction_j);
+        observer.row_summary.energy_taken_j = dissipated_with(observer.elastic.friction_j);
         let bound = self.structure.ties.iter().map(|bound| &bound.tie);
         let memories = motion.ties.iter().map(|tie| tie.lane(index));
-        lane.tie_events = course.note_ties(bound.zip(memories));
-        let row_summary = &mut course.row_summary;
+        lane.tie_events = observer.note_ties(bound.zip(memories));
+        let row_summary = &mut observer.row_summary;
         (row_summary.ground_j, row_summary.right_foot_j) =
             (of(energies.ground_j), of(energies.feet_j));
         let potential = stored - rest_j;
         let due = row_summary.ground_j + row_summary.right_foot_j - dissipated_j;
-        course.note_defect((kinetic + potential - due).abs());
-        if of(observation.largest_stress[0]) > course.elastic.largest_stress.stress_pa {
-            course.elastic.largest_stress = Stress {
+        observer.note_defect((kinetic + potential - due).abs());
+        if of(observation.largest_stress[0]) > observer.elastic.largest_stress.stress_pa {
+            observer.elastic.largest_stress = Stress {
                 stress_pa: of(observation.largest_stress[0]),
                 joint: of(observation.largest_stress[1]) as usize,
                 time_s: time,
@@ -449,31 +463,31 @@ impl<'a, const L: usize> Group<'a, L> {
         }
         // The middle between the feet moves half as far as the right foot.
         let slid = lane.note_joints(index, motion, supports) + 0.5 * lane.feet_apart_m.x;
-        let course = &mut lane.course;
+        let observer = &mut lane.observer;
         let sway =
             of(observation.sway_kg_m) - lane.monitor.rest_sway_kg_m - self.row.mass_kg() * slid;
         let rotations = motion
             .rotations_and_rates(index)
             .map(|(rotation, _)| rotation);
-        lane.monitor.moves_back = sway.abs() < course.sway.abs();
-        course.observe(rotations.clone(), potential, kinetic, sway);
-        let peak_rad = course.largest_rotation_rad();
+        lane.monitor.moves_back = sway.abs() < observer.sway.abs();
+        observer.observe(rotations.clone(), potential, kinetic, sway);
+        let peak_rad = observer.largest_rotation_rad();
         lane.stillness
             .note(time, [kinetic, potential], rotations, peak_rad);
         let far = OVERTURNED_RATIO * self.row.size_m;
-        course.overturned |= of(observation.largest_rotation_rad) >= OVERTURNED_RAD
+        observer.overturned |= of(observation.largest_rotation_rad) >= OVERTURNED_RAD
             || of(observation.largest_displacement_m2) >= far * far;
         let height = lane.feet.is_none().then_some(potential + dissipated_j);
-        course.note_height(height);
+        observer.note_height(height);
         lane.note_vibration(kinetic, potential);
-        let course = &mut lane.course;
+        let observer = &mut lane.observer;
         let barrier_j = || *self.barrier_j.get_or_init(self.find_barrier_j);
         let (rigid_j, known_j) = (lane.barrier_j.unwrap_or(0.0), &mut lane.barrier_j);
         let scale_j = || *known_j.get_or_insert_with(|| barrier_j().unwrap_or(0.0));
-        course.halve_unbalanced_steps(rigid_j, scale_j);
+        observer.halve_unbalanced_steps(rigid_j, scale_j);
         lane.monitor.largest_j = lane.monitor.largest_j.max(kinetic + potential);
         if lane.is_decided(kinetic + potential, barrier_j) {
-            lane.course.decide();
+            lane.observer.decide();
         }
     }
 
@@ -488,16 +502,16 @@ impl<'a, const L: usize> Group<'a, L> {
             self.lanes[index] = None;
             return Some(Err(error));
         }
-        let course = &lane.course;
-        let ending = course.ending(course.overturned_s(), || lane.rests_since());
+        let observer = &lane.observer;
+        let ending = observer.ending(observer.overturned_s(), || lane.at_rest_since_s());
         if let Some((outcome, time_s)) = ending {
-            let Some(end_s) = lane.course.lengthened_s(outcome) else {
+            let Some(end_s) = lane.observer.lengthened_s(outcome) else {
                 let mut ended = self.lanes[index].take()?;
-                return Some(Ok(ended.course.end(outcome, time_s)));
+                return Some(Ok(ended.observer.end(outcome, time_s)));
             };
             lane.marks.settings.end_s = end_s;
         }
-        while lane.marks.is_due(lane.course.time) {
+        while lane.marks.is_due(lane.observer.time) {
             lane.marks.pass();
         }
         lane.until_s = lane.marks.next_s();
@@ -523,7 +537,7 @@ impl<'a> Group<'a, 1> {
 
     /// Returns the friction coefficient without which joints would slide at this instant.
     fn friction_demand(&self) -> f64 {
-        let least_n = self.course().least_load_n();
+        let least_n = self.observer().least_load_n();
         let pressures = (0..self.structure.joints.len()).map(|joint| self.pressure(joint));
         let loaded = pressures.filter(|pressure| pressure.normal_n >= least_n);
         let needed = loaded.map(|pressure| pressure.shear_n.abs() / pressure.normal_n);
@@ -562,31 +576,31 @@ impl<'a> Group<'a, 1> {
 }
 
 impl<'a> Stepper<'a> for Group<'a, 1> {
-    fn course(&self) -> &Course<'a> {
-        &self.lane().course
+    fn observer(&self) -> &MotionObserver<'a> {
+        &self.lane().observer
     }
 
-    fn course_mut(&mut self) -> &mut Course<'a> {
-        &mut self.lane_mut().course
+    fn observer_mut(&mut self) -> &mut MotionObserver<'a> {
+        &mut self.lane_mut().observer
     }
 
     /// Takes steps up to the next observation of the motion.
     fn step(&mut self, until: f64) -> Result<(), RowMotionError> {
-        let (stood, from_s) = (!self.course().moved, self.course().time);
+        let (stood, from_s) = (!self.observer().moved, self.observer().time);
         self.lane_mut().until_s = until;
         self.stride();
         if let Some(error) = self.lane_mut().error.take() {
             return Err(error);
         }
-        if self.course().has_recorder() {
+        if self.observer().has_recorder() {
             let demand = self.friction_demand();
-            let course = self.course_mut();
-            course.note_friction(demand, course.time - from_s);
+            let observer = self.observer_mut();
+            observer.note_friction(demand, observer.time - from_s);
         }
-        let course = self.course_mut();
-        if stood && course.moved {
-            let (time_s, energy_j) = (course.time, course.potential);
-            course.opened.clear();
+        let observer = self.observer_mut();
+        if stood && observer.moved {
+            let (time_s, energy_j) = (observer.time, observer.potential);
+            observer.opened.clear();
             let rotations_and_rates = self.rotations_and_rates().unzip();
             self.report_uplift(time_s, energy_j, rotations_and_rates);
         }
@@ -613,7 +627,7 @@ impl<'a> Stepper<'a> for Group<'a, 1> {
         let ties = self.structure.ties.iter().zip(&motion.ties);
         let ties = ties.map(|(bound, memory)| TieSample::of(&bound.tie, memory));
         sample.ties.extend(ties);
-        if let Some(sliding) = &self.course().row_summary.sliding {
+        if let Some(sliding) = &self.observer().row_summary.sliding {
             sample.offsets_m.extend(&sliding.offsets_m);
         }
         Ok(observation.kinetic_j.0[0])
@@ -652,10 +666,10 @@ impl<'a> Stepper<'a> for Group<'a, 1> {
     }
 
     fn stands(&self, _: &Sample) -> bool {
-        !self.course().moved || self.rests_since().is_some()
+        !self.observer().moved || self.at_rest_since_s().is_some()
     }
 
-    fn rests_since(&self) -> Option<f64> {
-        self.lane().rests_since()
+    fn at_rest_since_s(&self) -> Option<f64> {
+        self.lane().at_rest_since_s()
     }
 }

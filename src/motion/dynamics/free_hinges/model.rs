@@ -8,7 +8,7 @@ use super::motion::motion;
 use super::settings::MANY_CASES_STEP_RATIO;
 use crate::argument::{ArgumentError, allow, within};
 use crate::dynamics::model::{Recorder, check};
-use crate::dynamics::row::course::balanced;
+use crate::dynamics::row::observer::balanced;
 use crate::dynamics::row::standing::RigidRow;
 use crate::dynamics::{
     GroundMotion, Model, Repetition, Request, RowModelError, Settings, SimulationError, Summary,
@@ -269,10 +269,10 @@ impl Model for FreeHinges {
             settings.within(MOST_TIE_WORK / parts as f64, &remedy)?;
         }
         let initial = request.initial.map(|initial| self.rigid.released(initial));
-        let task = self.rigid.task(ground, request.gravity_m_s2, settings);
+        let input = self.rigid.input(ground, request.gravity_m_s2, settings);
         let initial_rad = initial.transpose()?;
         let standing = &self.rigid.standing;
-        let summary = motion(task, standing, initial_rad.as_deref(), recorder)?;
+        let summary = motion(input, standing, initial_rad.as_deref(), recorder)?;
         let halvings = summary.row().map_or(0, |row| row.halvings);
         let step_s = SHORTER * (settings.longest_step_s * 0.5_f64.powf(halvings.into()));
         Ok(balanced(summary, "free_hinges", step_s)?)

@@ -4,8 +4,8 @@ use super::landing::LandingStepper;
 use super::sliding::SlidingStepper;
 use crate::dynamics::recorder::Recorder;
 use crate::dynamics::row::stepper;
-use crate::dynamics::{GroundMotion, RowMotionError, Settings, Summary, Task};
-use crate::mechanics::{Row, Stance};
+use crate::dynamics::{GroundMotion, MotionInput, RowMotionError, Settings, Summary};
+use crate::mechanics::{Row, RowState};
 
 /// Maximum number of steps of a motion, about a month of computing. Many more steps would be shorter than the rounding error of time.
 const MOST_STEPS: f64 = 1e12;
@@ -22,26 +22,26 @@ pub fn simulate(
     initial_rad: Option<&[f64]>,
     recorder: Option<&mut dyn Recorder>,
 ) -> Result<Summary, RowMotionError> {
-    let task = Task::new(row, ground, gravity_m_s2, *settings);
-    motion(task, &Stance::undeformed(row), initial_rad, recorder)
+    let input = MotionInput::new(row, ground, gravity_m_s2, *settings);
+    motion(input, &RowState::undeformed(row), initial_rad, recorder)
 }
 
 /// Computes the motion of a row from any state in equilibrium.
 pub fn motion(
-    task: Task<'_>,
-    standing: &Stance,
+    input: MotionInput<'_>,
+    standing: &RowState,
     initial_rad: Option<&[f64]>,
     recorder: Option<&mut dyn Recorder>,
 ) -> Result<Summary, RowMotionError> {
     let remedy = "give a longer `longest_step_s` in [free_hinges]";
-    task.settings.within(MOST_STEPS, remedy)?;
-    // The cast shortens the lifetime of the recorder to that of the task.
+    input.settings.within(MOST_STEPS, remedy)?;
+    // The cast shortens the lifetime of the recorder to that of the input.
     let recorder = recorder.map(|recorder| recorder as _);
-    let released = |recorder| LandingStepper::new(task, standing, initial_rad, recorder);
-    let Some(coefficient) = task.settings.friction_coefficient else {
+    let released = |recorder| LandingStepper::new(input, standing, initial_rad, recorder);
+    let Some(coefficient) = input.settings.friction_coefficient else {
         return stepper::run(released(recorder)?);
     };
     let placement = released(None)?.placement;
-    let stepper = SlidingStepper::new(standing, &placement, task, coefficient, recorder);
+    let stepper = SlidingStepper::new(standing, &placement, input, coefficient, recorder);
     stepper::run(stepper)
 }

@@ -3,7 +3,7 @@
 
 use nalgebra::Vector2;
 
-use crate::dynamics::row::course::{OVERTURNED_RAD, OVERTURNED_RATIO};
+use crate::dynamics::row::observer::{OVERTURNED_RAD, OVERTURNED_RATIO};
 use crate::mechanics::{Corners, Placement, Pose, Row};
 
 /// Initial position of a row.

@@ -3,8 +3,8 @@
 use nalgebra::Vector2;
 
 use crate::dynamics::TieSample;
-use crate::mechanics::stance::lines;
-use crate::mechanics::{Lanes, Pose, Row, Stance, Tie, TieLine, TieMemory};
+use crate::mechanics::row_state::lines;
+use crate::mechanics::{Lanes, Pose, Row, RowState, Tie, TieLine, TieMemory};
 
 /// Ties of a row, with their states.
 pub(super) struct Ties<'a> {
@@ -20,7 +20,7 @@ pub(super) struct Ties<'a> {
 
 impl<'a> Ties<'a> {
     /// Returns the ties of a row whose motion starts from a given state.
-    pub fn new(row: &'a Row, standing: &Stance) -> Self {
+    pub fn new(row: &'a Row, standing: &RowState) -> Self {
         let mut ties = Self {
             row,
             memories: standing.ties.clone(),

@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 
 use thiserror::Error;
 
-use super::integrator::{IntegratorError, State, Step, Task, integrate};
+use super::integrator::{IntegrationTask, IntegratorError, State, Step, integrate};
 use crate::dynamics::Cost;
 
 /// State of a system at one time.
@@ -123,7 +123,7 @@ pub trait Observer<S: HybridSystem<N>, const N: usize> {
 
 /// Settings of a simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
+pub struct EngineSettings {
     /// End of the simulation, in seconds.
     pub end_s: f64,
     /// Error tolerance of a step, relative to the state's components or to their scales.
@@ -165,7 +165,7 @@ pub fn simulate<S: HybridSystem<N>, const N: usize>(
     system: &S,
     mode: S::Mode,
     state: State<N>,
-    settings: &Settings,
+    settings: &EngineSettings,
     observer: &mut impl Observer<S, N>,
 ) -> Result<Finish<S::Mode, N>, EngineError> {
     resume(system, SystemState::start(mode, state), settings, observer)
@@ -178,7 +178,7 @@ pub fn simulate<S: HybridSystem<N>, const N: usize>(
 pub fn resume<S: HybridSystem<N>, const N: usize>(
     system: &S,
     now: SystemState<S::Mode, N>,
-    settings: &Settings,
+    settings: &EngineSettings,
     observer: &mut impl Observer<S, N>,
 ) -> Result<Finish<S::Mode, N>, EngineError> {
     let mut finish = Finish {
@@ -227,7 +227,7 @@ pub fn resume<S: HybridSystem<N>, const N: usize>(
 fn advance<S: HybridSystem<N>, const N: usize>(
     system: &S,
     finish: &mut Finish<S::Mode, N>,
-    settings: &Settings,
+    settings: &EngineSettings,
     observer: &mut impl Observer<S, N>,
 ) -> Result<Option<S::Guard>, EngineError> {
     let from = finish.now;
@@ -284,9 +284,9 @@ pub(super) fn task<S: HybridSystem<N>, const N: usize>(
     from: &SystemState<S::Mode, N>,
     end_s: f64,
     relative_tolerance: f64,
-) -> Task<N> {
+) -> IntegrationTask<N> {
     let (first_step_s, longest_step_s) = system.step_sizes_s(from, relative_tolerance);
-    Task {
+    IntegrationTask {
         start_s: from.time_s,
         end_s,
         start: from.state,
@@ -306,7 +306,7 @@ pub(super) fn task<S: HybridSystem<N>, const N: usize>(
 fn land<S: HybridSystem<N>, const N: usize>(
     system: &S,
     from: &SystemState<S::Mode, N>,
-    task: &Task<N>,
+    task: &IntegrationTask<N>,
     guard: S::Guard,
     time_s: f64,
     step: &Step<N>,
@@ -326,7 +326,7 @@ fn land<S: HybridSystem<N>, const N: usize>(
         cost.evaluations += 1;
         return Ok(landed);
     }
-    let again = Task {
+    let again = IntegrationTask {
         start_s: step.start_s,
         end_s: time_s,
         start: step.start,

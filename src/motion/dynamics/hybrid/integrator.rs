@@ -36,7 +36,7 @@ pub struct Step<const N: usize> {
 
 /// The task of an integration.
 #[derive(Clone, Copy, Debug)]
-pub struct Task<const N: usize> {
+pub struct IntegrationTask<const N: usize> {
     /// Start, in seconds.
     pub start_s: f64,
     /// End, in seconds.
@@ -78,7 +78,7 @@ const MAX_STEPS: u32 = 1_000_000;
 /// # Errors
 /// When the right-hand side is not finite, or the tolerance cannot be met.
 pub fn integrate<const N: usize>(
-    task: &Task<N>,
+    task: &IntegrationTask<N>,
     slope: impl Fn(f64, &State<N>) -> State<N>,
     watch: impl FnMut(&Step<N>) -> ControlFlow<()>,
     cost: &mut Cost,
@@ -138,7 +138,7 @@ pub fn integrate<const N: usize>(
 
 /// A task in the form that `ode_solvers` needs.
 struct Problem<'a, F, W, const N: usize> {
-    task: &'a Task<N>,
+    task: &'a IntegrationTask<N>,
     /// Inverse of the scale, stored because it is used much more often than it changes.
     per_scale: State<N>,
     slope: F,
@@ -192,7 +192,7 @@ mod tests {
             let up = (time_s.to_bits() >> 3).is_multiple_of(2);
             State::<1>::new(if up { 1e9 } else { -1e9 })
         };
-        let task = Task {
+        let task = IntegrationTask {
             start_s: 0.0,
             end_s: 1.0,
             start: State::<1>::new(1.0),

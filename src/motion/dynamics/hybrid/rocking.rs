@@ -14,7 +14,7 @@ use super::engine::{self, HybridSystem};
 use super::integrator::{State, Step};
 use crate::dynamics::GroundMotion;
 use crate::dynamics::ground::Piece;
-use crate::mechanics::chain::{Coefficients, Motion};
+use crate::mechanics::chain::{Coefficients, MechanismState};
 use crate::mechanics::{Demand, Link, Mechanism, MechanismChain, Sides, Sway};
 
 /// Discrete state of a rocking structure.
@@ -237,13 +237,13 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
         &self,
         swing: Swing<'a, C::Mechanism>,
         now: &SystemState<'a, C::Mechanism>,
-    ) -> Motion {
+    ) -> MechanismState {
         let (q_rad, rate) = (now.state[0], now.state[1]);
         let coefficients = swing.link.mechanism.coefficients(q_rad);
         let ground_m_s2 = self.ground_m_s2(swing.sway, now);
         let acceleration = self.acceleration(&coefficients, rate, ground_m_s2);
         let square_s2 = self.chain.length_m() / self.gravity_m_s2;
-        Motion {
+        MechanismState {
             q_rad,
             rate: rate * square_s2.sqrt(),
             acceleration: acceleration * square_s2,

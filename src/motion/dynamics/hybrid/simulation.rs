@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use super::engine::{
-    Finish, HybridSystem, Observer, Settings, Transition, falling_root, resume, simulate,
+    EngineSettings, Finish, HybridSystem, Observer, Transition, falling_root, resume, simulate,
 };
 use super::integrator::Step;
 use super::posture::{StructureState, posture, seen_from_ground, state};
@@ -117,7 +117,7 @@ fn history_of<C: MechanismChain + MechanismModel>(
     let mode = request.initial.map_or(Phase::Rest, mode);
     let q_rad = request.initial.map_or(0.0, |initial| initial.rotation_rad);
     let state = RockingState::new(q_rad, 0.0, 0.0);
-    let mut settings = Settings {
+    let mut settings = EngineSettings {
         end_s: request.end_s,
         relative_tolerance: request.relative_tolerance,
         max_transitions: MAX_TRANSITIONS,
@@ -201,7 +201,7 @@ const fn outcome_of<M>(mode: Mode<'_, M>, is_incomplete: bool, has_rested: bool)
 fn simulate_lengthened<'a, C: MechanismChain>(
     mode: Mode<'a, C::Mechanism>,
     state: RockingState,
-    settings: &mut Settings,
+    settings: &mut EngineSettings,
     collector: &mut SummaryCollector<'_, 'a, C>,
     longer_s: impl Fn(&StructureState<'a, C>, f64) -> Option<f64>,
 ) -> Result<Finish<Mode<'a, C::Mechanism>, 3>, SimulationError> {
@@ -233,7 +233,7 @@ fn first_fall<C: MechanismChain + MechanismModel>(
     request: &Request,
 ) -> Result<Option<Sway>, SimulationError> {
     let rocking = checked(chain, ground, request)?;
-    let settings = Settings {
+    let settings = EngineSettings {
         end_s: ground.end_s() + AFTER_S,
         relative_tolerance: request.relative_tolerance,
         // Two transitions: uplift, and the end of the first fall.

@@ -1,13 +1,13 @@
 //! A row of rigid blocks before it moves: push of the first motion, and first mechanism.
 
-use super::task::rise_to_overturn_m;
+use super::input::rise_to_overturn_m;
 use crate::argument::ArgumentError;
 use crate::dynamics::request::Initial;
-use crate::dynamics::{GroundMotion, RowModelError, Settings, Task};
+use crate::dynamics::{GroundMotion, MotionInput, RowModelError, Settings};
 use crate::mechanics::stability::onset;
 use crate::mechanics::{
     Follower, FourLinks, FrictionError, Hinge, ImpactModel, Mechanism, MechanismChain, Movements,
-    Row, SettlingError, Sides, StabilityError, Stance, Supports, Sway, friction,
+    Row, RowState, SettlingError, Sides, StabilityError, Supports, Sway, friction,
 };
 
 /// Stable row of rigid blocks.
@@ -16,7 +16,7 @@ pub struct RigidRow {
     /// Blocks and joints.
     pub row: Row,
     /// State in equilibrium: undeformed, or on moved supports.
-    pub standing: Stance,
+    pub standing: RowState,
     /// Push of the first motion to the right and to the left without slip, in multiples of gravity; `None` if no push moves the row.
     incipient_g: Sides<Option<f64>>,
     /// Push of the first motion to either side with slip, in multiples of gravity; `None` without friction coefficient.
@@ -39,7 +39,7 @@ impl RigidRow {
             || FourLinks::of_row(&row.clone().without_ties(), ImpactModel::MaxRestitution).ok();
         Ok(Self {
             first: (row.supports == Supports::Both).then(four_links).flatten(),
-            standing: Stance::undeformed(&row),
+            standing: RowState::undeformed(&row),
             row,
             incipient_g,
             with_friction_g: None,
@@ -110,24 +110,24 @@ impl RigidRow {
         self.undeformed_barrier_j(gravity_m_s2)
     }
 
-    /// Returns the task to compute the motion on a ground motion. Its scale of energies is the barrier, in J, of the undeformed row without ties:
+    /// Returns the input to compute the motion on a ground motion. Its scale of energies is the barrier, in J, of the undeformed row without ties:
     /// with open hinges, even a small push causes a motion with almost no energy.
-    pub fn task<'a>(
+    pub fn input<'a>(
         &'a self,
         ground: &'a GroundMotion,
         gravity_m_s2: f64,
         settings: Settings,
-    ) -> Task<'a> {
+    ) -> MotionInput<'a> {
         let built_j = self.undeformed_barrier_j(gravity_m_s2);
         // If the feet move apart they do work, and the barrier is unknown.
         let parts = ground.right_foot_of(&self.row).is_some();
         let known = self.is_on_hinges() || self.row.ties.is_empty();
-        let task = Task::new(&self.row, ground, gravity_m_s2, settings);
-        Task {
+        let input = MotionInput::new(&self.row, ground, gravity_m_s2, settings);
+        MotionInput {
             barrier_j: self.barrier_j(gravity_m_s2).filter(|_| !parts),
-            undeformed_barrier_j: built_j.unwrap_or(task.undeformed_barrier_j),
+            undeformed_barrier_j: built_j.unwrap_or(input.undeformed_barrier_j),
             energy_scale_j: built_j.filter(|_| known).unwrap_or(0.0),
-            ..task
+            ..input
         }
     }
 

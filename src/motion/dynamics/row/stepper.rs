@@ -1,23 +1,23 @@
 //! Driver that moves a row by a stepper, and reports its motion.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use nalgebra::Vector2;
 
 use super::clock::Marks;
-use super::course::side_of;
+use super::observer::side_of;
 use crate::dynamics::history::{Elapsed, Impact};
 use crate::dynamics::recorder::Recorder;
 use crate::dynamics::{
-    Course, Event, EventKind, FallEnd, OpenHinge, Outcome, RowMotionError, Sample, State, Summary,
-    fall,
+    Event, EventKind, FallEnd, MotionObserver, OpenHinge, Outcome, RowMotionError, Sample, State,
+    Summary, fall,
 };
 use crate::mechanics::{Edge, Hinge, Pose, Sway};
 
 /// Stepper of a row: computes its motion step by step.
 pub trait Stepper<'a>: Sized {
-    fn course(&self) -> &Course<'a>;
-    fn course_mut(&mut self) -> &mut Course<'a>;
+    fn observer(&self) -> &MotionObserver<'a>;
+    fn observer_mut(&mut self) -> &mut MotionObserver<'a>;
     /// Takes one step, at most up to `until`, in seconds.
     fn step(&mut self, until: f64) -> Result<(), RowMotionError>;
     /// Writes the current state into a blank sample: rates at this time, offsets, friction demand and, on request, the thrust line. Returns
@@ -39,17 +39,17 @@ pub trait Stepper<'a>: Sized {
     /// Returns whether a row with the hinges and rotations of a sample rests.
     fn stands(&self, sample: &Sample) -> bool;
     /// Returns the time since which the row rests, once the ground is quiet; `None` if it moves.
-    fn rests_since(&self) -> Option<f64>;
+    fn at_rest_since_s(&self) -> Option<f64>;
     /// Returns the last time at which the row could still return, once it has overturned; `None` before.
     fn overturned_s(&self) -> Option<f64> {
-        self.course().overturned_s()
+        self.observer().overturned_s()
     }
-    /// Completes the summaries at the end of the course.
+    /// Completes the summaries at the end of the motion.
     fn complete(&mut self) {}
 
     /// Returns the side of the centre of gravity; in its undeformed position, the direction of its velocity.
     fn heading(&self) -> Sway {
-        let sway = self.course().sway;
+        let sway = self.observer().sway;
         side_of(if sway == 0.0 { self.momentum().x } else { sway })
     }
 
@@ -68,7 +68,7 @@ pub trait Stepper<'a>: Sized {
         energy_j: f64,
         rotations_and_rates: (Vec<f64>, Vec<f64>),
     ) {
-        if !self.course().has_recorder() {
+        if !self.observer().has_recorder() {
             return;
         }
         let (rotations_rad, rates_rad_s) = rotations_and_rates;
@@ -76,10 +76,10 @@ pub trait Stepper<'a>: Sized {
             rotations_rad,
             rates_rad_s,
             energy_j,
-            hinges: self.course().opened.clone(),
+            hinges: self.observer().opened.clone(),
             ..Event::new(time_s, EventKind::Uplift, State::Rocking(self.heading()))
         };
-        self.course_mut().report(&event);
+        self.observer_mut().report(&event);
     }
 
     /// Reports an impact. `moves` is true if the row moves afterwards, `stood` if it is in its initial position. Energies are the kinetic energy
@@ -90,17 +90,17 @@ pub trait Stepper<'a>: Sized {
         [energy_before_j, taken_j]: [f64; 2],
         friction_j: Option<f64>,
     ) {
-        let course = self.course();
-        if !course.has_recorder() {
+        let observer = self.observer();
+        if !observer.has_recorder() {
             return;
         }
         let opens_at_once = |joint: usize| {
-            let mut opened = course.opened.iter().copied();
+            let mut opened = observer.opened.iter().copied();
             opened
                 .find(|hinge| matches!(hinge, Hinge::Joint { joint: opens, .. } if *opens == joint))
         };
         let hinge = |joint: usize| opens_at_once(joint).or_else(|| self.hinge(joint));
-        let hinges = (0..course.task.row.joints.len()).filter_map(hinge);
+        let hinges = (0..observer.input.row.joints.len()).filter_map(hinge);
         // In a step that also starts the motion, part of the energy arises after its beginning.
         let energy_before_j = energy_before_j.max(taken_j);
         let energy_after_j = energy_before_j - taken_j;
@@ -119,42 +119,42 @@ pub trait Stepper<'a>: Sized {
             energy_after_j,
             friction_j,
             rates_after_rad_s: event.rates_rad_s.clone(),
-            closed: course.shut.clone(),
-            opened: course.opened.clone(),
+            closed: observer.shut.clone(),
+            opened: observer.opened.clone(),
             ..Impact::default()
         };
         let event = Event {
-            energy_j: energy_after_j + course.potential,
+            energy_j: energy_after_j + observer.potential,
             hinges: hinges.collect(),
             impact: Some(impact),
             ..event
         };
-        self.course_mut().report(&event);
+        self.observer_mut().report(&event);
     }
 
     /// Reports events of ties in the last step.
     fn report_ties(&mut self, happened: Vec<(usize, EventKind)>) {
         for (tie, kind) in happened {
-            if self.course().has_recorder() {
+            if self.observer().has_recorder() {
                 let tie = Some(tie);
-                let event = self.event(kind, self.course().moved);
-                self.course_mut().report(&Event { tie, ..event });
+                let event = self.event(kind, self.observer().moved);
+                self.observer_mut().report(&Event { tie, ..event });
             }
         }
     }
 
     /// Returns an event at the current time; `moves` is false if the row rests.
     fn event(&self, kind: EventKind, moves: bool) -> Event {
-        let course = self.course();
+        let observer = self.observer();
         let (rotations_rad, rates_rad_s) = self.rotations_and_rates().unzip();
-        let joints = 0..course.task.row.joints.len();
+        let joints = 0..observer.input.row.joints.len();
         let state = if moves { self.moving() } else { State::Rest };
         Event {
             rotations_rad,
             rates_rad_s,
-            energy_j: course.kinetic + course.potential,
+            energy_j: observer.kinetic + observer.potential,
             hinges: joints.filter_map(|joint| self.hinge(joint)).collect(),
-            ..Event::new(course.time, kind, state)
+            ..Event::new(observer.time, kind, state)
         }
     }
 
@@ -162,20 +162,20 @@ pub trait Stepper<'a>: Sized {
     fn report_poses(&mut self, poses: &mut Vec<Pose>) {
         poses.clear();
         poses.extend(self.poses());
-        let course = self.course_mut();
-        if let Some(recorder) = &mut course.recorder {
-            recorder.step(course.time, poses, &[]);
+        let observer = self.observer_mut();
+        if let Some(recorder) = &mut observer.recorder {
+            recorder.step(observer.time, poses, &[]);
         }
     }
 
     /// Records a sample.
     fn sample(&mut self) -> Result<(), RowMotionError> {
-        let (mut sample, thrust_line) = self.course_mut().blank_sample();
+        let (mut sample, thrust_line) = self.observer_mut().blank_sample();
         let kinetic = self.write(&mut sample, thrust_line)?;
         let rotations = self.rotations_and_rates().map(|(rotation, _)| rotation);
         sample.rotations_rad.extend(rotations);
         sample.poses.extend(self.poses());
-        for joint in 0..self.course().task.row.joints.len() {
+        for joint in 0..self.observer().input.row.joints.len() {
             let gaps = self.gaps(joint);
             sample.gaps_m.push(gaps);
             if let Some(hinge) = self.hinge(joint) {
@@ -186,7 +186,7 @@ pub trait Stepper<'a>: Sized {
         if !self.stands(&sample) {
             sample.state = self.moving();
         }
-        self.course_mut().record(sample, kinetic);
+        self.observer_mut().record(sample, kinetic);
         Ok(())
     }
 }
@@ -199,15 +199,16 @@ pub fn run<'a, S>(mut stepper: S) -> Result<Summary, RowMotionError>
 where
     S: Stepper<'a>,
 {
-    let settings = stepper.course().task.settings;
-    let mut marks = Marks::new(settings, stepper.course().time);
+    let settings = stepper.observer().input.settings;
+    let mut marks = Marks::new(settings, stepper.observer().time);
     let mut sampled_s = None;
-    let samples_are_made = settings.output_step_s.is_some() && stepper.course().has_recorder();
-    let mut longest_step = samples_are_made.then_some(Duration::ZERO);
+    let samples_are_made = settings.output_step_s.is_some() && stepper.observer().has_recorder();
+    let now = |stepper: &S| stepper.observer().recorder.as_ref()?.clock();
+    let mut longest_step = now(&stepper).map(|_| Duration::ZERO);
     let mut poses = Vec::new();
     let (outcome, outcome_time_s) = loop {
-        let course = stepper.course();
-        let time = course.time;
+        let observer = stepper.observer();
+        let time = observer.time;
         if marks.is_due(time) {
             marks.pass();
             if samples_are_made {
@@ -216,27 +217,33 @@ where
             }
             continue;
         }
-        if let Some(ending) = course.ending(stepper.overturned_s(), || stepper.rests_since()) {
-            let Some(end_s) = stepper.course_mut().lengthened_s(ending.0) else {
+        if let Some(ending) = observer.ending(stepper.overturned_s(), || stepper.at_rest_since_s())
+        {
+            let Some(end_s) = stepper.observer_mut().lengthened_s(ending.0) else {
                 break ending;
             };
             marks.settings.end_s = end_s;
         }
-        let begun = longest_step.map(|_| Instant::now());
+        let begun = now(&stepper);
         stepper.step(marks.next_s())?;
-        longest_step = longest_step.max(begun.map(|begun| begun.elapsed()));
+        let ended = now(&stepper);
+        longest_step = longest_step.max(
+            ended
+                .zip(begun)
+                .map(|(end, begin)| end.saturating_sub(begin)),
+        );
         if samples_are_made {
             stepper.report_poses(&mut poses);
         }
     };
-    let course = stepper.course();
-    if samples_are_made && sampled_s != Some(course.time) && !course.stopped {
+    let observer = stepper.observer();
+    if samples_are_made && sampled_s != Some(observer.time) && !observer.stopped {
         stepper.sample()?;
     }
     stepper.complete();
-    let course = stepper.course_mut();
-    course.row_summary.longest_step = Elapsed(longest_step);
-    let summary = course.end(outcome, outcome_time_s);
+    let observer = stepper.observer_mut();
+    observer.row_summary.longest_step = Elapsed(longest_step);
+    let summary = observer.end(outcome, outcome_time_s);
     if let Outcome::Overturned(_) = outcome {
         follow_fall(&mut stepper);
     }
@@ -245,15 +252,15 @@ where
 
 /// Continues the motion of an overturned row if the recorder wants its fall.
 fn follow_fall<'a, S: Stepper<'a>>(stepper: &mut S) {
-    let course = stepper.course_mut();
+    let observer = stepper.observer_mut();
     let wanted = |recorder: &&mut dyn Recorder| recorder.wants_fall();
-    if !course.recorder.as_ref().is_some_and(wanted) {
+    if !observer.recorder.as_ref().is_some_and(wanted) {
         return;
     }
-    course.is_falling = true;
-    let mut marks = Marks::of_fall(course.task.settings, course.time);
+    observer.is_falling = true;
+    let mut marks = Marks::of_fall(observer.input.settings, observer.time);
     let end = fall(stepper, &mut marks).unwrap_or_else(|error| FallEnd::Model(error.to_string()));
-    if let Some(recorder) = &mut stepper.course_mut().recorder {
+    if let Some(recorder) = &mut stepper.observer_mut().recorder {
         recorder.fell(end);
     }
 }
@@ -261,15 +268,15 @@ fn follow_fall<'a, S: Stepper<'a>>(stepper: &mut S) {
 /// Steps a falling row and returns the reason for the end.
 fn fall<'a, S: Stepper<'a>>(stepper: &mut S, marks: &mut Marks) -> Result<FallEnd, RowMotionError> {
     for _ in 0..fall::MOST_STEPS {
-        let course = stepper.course();
-        if let Some(end) = fall::end_at(&course.sample) {
+        let observer = stepper.observer();
+        if let Some(end) = fall::end_at(&observer.sample) {
             return Ok(end);
         }
-        if course.stopped || course.time >= marks.settings.end_s {
+        if observer.stopped || observer.time >= marks.settings.end_s {
             break;
         }
         stepper.step(marks.next_s())?;
-        if marks.is_due(stepper.course().time) {
+        if marks.is_due(stepper.observer().time) {
             marks.pass();
             stepper.sample()?;
         }

@@ -9,13 +9,13 @@ use crate::mechanics::{Edge, Momentum, Supports, Twist};
 
 /// Velocities of a body at its centre.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Motion {
+pub(super) struct BodyVelocity {
     centre: Vector2<f64>,
     velocity: Vector2<f64>,
     rate: f64,
 }
 
-impl Motion {
+impl BodyVelocity {
     /// Returns the velocities of a body with a given momentum.
     fn with(body: &Body, momentum: &Momentum) -> Self {
         Self {
@@ -54,7 +54,7 @@ impl Motion {
 
 impl Pin {
     /// Returns the velocity of the right body relative to the left one at the pin, along and normal to the joint.
-    fn rate(&self, left: &Motion, right: &Motion) -> Vector2<f64> {
+    fn rate(&self, left: &BodyVelocity, right: &BodyVelocity) -> Vector2<f64> {
         let apart = right.velocity - left.velocity;
         let [on_left, on_right] = self.turns;
         let rate = |axis: usize| {
@@ -80,7 +80,7 @@ pub(super) struct CornerImpulse {
 /// Solution of a pin system for a load, or for a unit impulse.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PinSolution {
-    pub motions: Vec<Motion>,
+    pub motions: Vec<BodyVelocity>,
     /// Impulses on the right body at the open joints, along and normal to the joint.
     pub pins: Vec<Vector2<f64>>,
     /// Impulses at the corners of all joints.
@@ -108,7 +108,7 @@ impl PinSolution {
     /// Solves for a unit impulse at one corner, without the load.
     pub(crate) fn take_unit(&mut self, factor: &Factor, pin: usize, edge: usize) {
         self.motions.clear();
-        let still = |body: &Body| Motion::with(body, &Momentum::ZERO);
+        let still = |body: &Body| BodyVelocity::with(body, &Momentum::ZERO);
         self.motions.extend(factor.bodies.iter().map(still));
         let impulse = 1.0;
         self.complete(
@@ -131,13 +131,13 @@ impl PinSolution {
         self.motions.clear();
         for (index, body) in factor.bodies.iter().enumerate() {
             self.motions.push(if body.is_held() {
-                Motion::held(match row.supports {
+                BodyVelocity::held(match row.supports {
                     Supports::Both if index > 0 => row.datum[row.own.len()] * -1.0,
                     _ => Twist::ZERO,
                 })
             } else {
                 let blocks = factor.blocks(index);
-                Motion::with(body, &(row.momenta[blocks.end] - row.momenta[blocks.start]))
+                BodyVelocity::with(body, &(row.momenta[blocks.end] - row.momenta[blocks.start]))
             });
         }
     }

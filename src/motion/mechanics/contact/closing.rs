@@ -1,6 +1,6 @@
 //! Removal of the closure error: the gap between the two parts of an arch due to rounding errors or a linear step.
 
-use super::{Load, Program};
+use super::{ContactProgram, Load};
 use crate::mechanics::{Placement, Row};
 
 /// Tolerance of the closure error, relative to the thickness of the thinnest joint.
@@ -9,7 +9,7 @@ const CLOSURE_RATIO: f64 = 1e-13;
 /// Solver that removes closure errors, with its work space.
 #[derive(Clone, Debug)]
 pub struct ClosureSolver {
-    program: Program,
+    program: ContactProgram,
     none: Load,
     change: Vec<[f64; 2]>,
     backup: Placement,
@@ -21,7 +21,7 @@ impl ClosureSolver {
     pub fn new(row: &Row) -> Self {
         let thicknesses = row.joints.iter().map(|joint| joint.thickness_m());
         Self {
-            program: Program::new(row),
+            program: ContactProgram::new(row),
             none: Load::none(row),
             change: vec![[0.0; 2]; row.joints.len()],
             backup: Placement::new(row),
@@ -57,7 +57,7 @@ impl ClosureSolver {
 /// Time until the first corner closes, and the joint and edge of that corner; `None` if no corner closes before the end of the step.
 pub(in crate::mechanics) type FirstShut = (f64, Option<(usize, usize)>);
 
-impl Program {
+impl ContactProgram {
     /// Returns the time until the first corner closes with the last velocities, at most `longest`, and that corner.
     pub(in crate::mechanics) fn first_shut(
         &self,

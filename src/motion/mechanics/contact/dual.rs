@@ -1,7 +1,7 @@
 //! Active-set search by the dual method of Goldfarb and Idnani, one corner at a time.
 
 use super::answer::CornerImpulse;
-use super::{ContactError, DEPENDENCE, Effort, Program, RATE_TOLERANCE, exceeds};
+use super::{ContactError, ContactProgram, DEPENDENCE, Effort, RATE_TOLERANCE, exceeds};
 use crate::mechanics::Corners;
 
 /// Loosest tolerance of closing rates; beyond it a program counts as unsolved.
@@ -9,7 +9,7 @@ const LARGEST_RATE_TOLERANCE: f64 = 1e-7;
 /// Smallest decrease of a corner impulse per unit impulse elsewhere that is no rounding error.
 const LEAST_SLOPE: f64 = 1e-12;
 
-impl Program {
+impl ContactProgram {
     /// Releases corners that pull, and activates closing corners one by one. Returns false after too many iterations, or if a closing corner depends
     /// on active ones and none of these can be released: its closing rate is then a rounding error.
     fn exchange_singly(

@@ -1,6 +1,6 @@
 //! Active-set search by exchanges of many corners at once.
 
-use super::{DEPENDENCE, Program, exceeds, higher};
+use super::{ContactProgram, DEPENDENCE, exceeds, higher};
 use crate::mechanics::Corners;
 
 /// Number of exchanges without progress before only the worst corners are exchanged; after as many again the dual method takes over.
@@ -31,7 +31,7 @@ impl WrongCorner {
     }
 }
 
-impl Program {
+impl ContactProgram {
     /// Exchanges many corners at once until none pulls or closes, and returns whether that succeeds.
     ///
     /// In each run of neighbouring corners that pull, only the worst one is released: the others often become compressive again. All closing corners

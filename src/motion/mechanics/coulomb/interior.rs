@@ -11,7 +11,7 @@
 
 use nalgebra::{Matrix3, RowVector3, Vector3};
 
-use super::{Balance, Mode, PASSES, Program, TangentialMode};
+use super::{Balance, Mode, PASSES, SlipProgram, TangentialMode};
 
 const STEPS: usize = 60;
 /// Mean products, relative to the first one, at which the modes are tested.
@@ -166,7 +166,7 @@ impl Pairs {
     }
 }
 
-impl Program {
+impl SlipProgram {
     /// Finds modes and impulses by Coulomb's law. Returns false if no start converges.
     pub(super) fn interior(&mut self, tolerance: f64, passes: &mut usize) -> bool {
         let mut starts = STARTS.iter();
@@ -307,10 +307,10 @@ mod tests {
     use super::*;
     use crate::mechanics::blocks::Row;
     use crate::mechanics::geometry::ring::Ring;
-    use crate::mechanics::slip::{Contact, Faces, Position};
+    use crate::mechanics::slip::{FaceContact, Faces, Position};
 
     /// Returns the largest violation of Coulomb's law, as a rate; impulses count as the rates that they cause.
-    fn largest_violation(program: &Program) -> f64 {
+    fn largest_violation(program: &SlipProgram) -> f64 {
         let joints = program
             .impulses
             .iter()
@@ -355,13 +355,13 @@ mod tests {
                 .map(|block| Position::new(block.centre_m, 0.0))
                 .collect();
             let at = |block: Option<usize>| block.and_then(|block| positions.get(block));
-            let contacts: Vec<Contact> = (0..faces.len())
+            let contacts: Vec<FaceContact> = (0..faces.len())
                 .map(|joint| {
                     let left = at(joint.checked_sub(1)).unwrap_or(&Position::HELD);
                     faces[joint].contact(left, at(Some(joint)).unwrap_or(&Position::HELD))
                 })
                 .collect();
-            let mut program = Program::new(&row, 0.5 + 0.2 * random());
+            let mut program = SlipProgram::new(&row, 0.5 + 0.2 * random());
             program.place(&faces, &contacts, &positions);
             let motions: Vec<Vector3<f64>> = positions
                 .iter()

@@ -2,13 +2,13 @@
 
 use nalgebra::{DMatrix, Vector3};
 
-use super::{Mode, PASSES, PROXIMAL, Program, TangentialMode};
+use super::{Mode, PASSES, PROXIMAL, SlipProgram, TangentialMode};
 use crate::mechanics::complementarity;
 
 /// Maximum number of joints for Lemke's method; its effort grows with their cube.
 const COMPLEMENTED: usize = 80;
 
-impl Program {
+impl SlipProgram {
     /// Finds modes and impulses by Lemke's method. Returns false if the row has too many joints, or if the method fails.
     pub(super) fn pivoted(&mut self, tolerance: f64, passes: &mut usize) -> bool {
         if self.modes.len() > COMPLEMENTED || !self.complement() {

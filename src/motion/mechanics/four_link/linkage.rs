@@ -12,7 +12,7 @@ use nalgebra::Vector2;
 
 use super::mechanism::FourLink;
 use super::thrust::{Load, Part, Section, ThrustLine, largest_excess_ratio};
-use crate::mechanics::chain::{Coefficients, Motion};
+use crate::mechanics::chain::{Coefficients, MechanismState};
 use crate::mechanics::geometry::field::turned;
 use crate::mechanics::geometry::pose::product;
 use crate::mechanics::{MassMoments, Mechanism, Momentum, Pose, Profile};
@@ -163,17 +163,17 @@ impl Linkage {
     /// The moments of the right body about D and of the middle body about B give the force at C, and the
     /// equilibrium of forces the others. `B-C` and `C-D` are never on one line before the limit position.
     /// The equation of motion makes the line pass through B on the left body's side as well.
-    pub fn thrust_line(&self, motion: &Motion) -> ThrustLine {
+    pub fn thrust_line(&self, motion: &MechanismState) -> ThrustLine {
         ThrustLine::new(&*self.profile, self.parts(motion).to_vec())
     }
 
     /// Returns the largest excess of the thrust line in motion at these sections of the profile, over the thickness; zero inside.
-    pub(crate) fn excess_ratio(&self, motion: &Motion, sections: &[Section]) -> f64 {
+    pub(crate) fn excess_ratio(&self, motion: &MechanismState, sections: &[Section]) -> f64 {
         largest_excess_ratio(&self.parts(motion), sections)
     }
 
     /// Returns the parts of the thrust line in motion.
-    fn parts(&self, motion: &Motion) -> [Part; 5] {
+    fn parts(&self, motion: &MechanismState) -> [Part; 5] {
         let bars = self.bars(motion.q_rad);
         let (middle_rate, right_rate) = Self::rates(&bars);
         let (middle_slope, right_slope) = Self::slopes(&bars, middle_rate, right_rate);

@@ -14,8 +14,8 @@ use nalgebra::{DMatrix, DVector, Vector2};
 
 use super::{Condition, Pins, ROUNDING};
 use crate::mechanics::contact::closing::{ClosureSolver, FirstShut};
-use crate::mechanics::contact::{ContactError, Load, Program};
-use crate::mechanics::{Corners, Pose, Row, SettlingError, Stance, TieLine, Twist};
+use crate::mechanics::contact::{ContactError, ContactProgram, Load};
+use crate::mechanics::{Corners, Pose, Row, RowState, SettlingError, TieLine, Twist};
 
 /// Velocities below this part of those without contact are zero.
 const STANDSTILL: f64 = 1e-9;
@@ -52,7 +52,7 @@ const LONGEST: f64 = 1e3;
 
 /// A step of a descent with ties.
 struct Step<'a> {
-    stance: &'a Stance,
+    stance: &'a RowState,
     /// Lines of the ties at the beginning of the step.
     lines: &'a [TieLine],
     /// Smallest and largest force of each tie, over gravity.
@@ -66,7 +66,7 @@ struct Step<'a> {
 }
 
 impl<'a> Step<'a> {
-    fn new(row: &Row, stance: &'a Stance, lines: &'a [TieLine], force_g: Vector2<f64>) -> Self {
+    fn new(row: &Row, stance: &'a RowState, lines: &'a [TieLine], force_g: Vector2<f64>) -> Self {
         let ties = row.ties.iter().zip(&stance.ties);
         let most_kg = ties.map(|(tie, memory)| {
             let (broken, most_n) = (memory.is_broken(), tie.yield_force_n);
@@ -88,7 +88,7 @@ impl<'a> Step<'a> {
 #[derive(Clone, Debug)]
 pub(super) struct Descent<'a> {
     row: &'a Row,
-    program: Program,
+    program: ContactProgram,
     load: Load,
     closure_solver: ClosureSolver,
     /// Force of each tie over gravity.
@@ -103,7 +103,7 @@ impl<'a> Descent<'a> {
         let m_kg = ties.map(|tie| row.gravity_m_s2 / tie.stiffness_n_m);
         Self {
             row,
-            program: Program::new(row),
+            program: ContactProgram::new(row),
             load: Load::none(row),
             closure_solver: ClosureSolver::new(row),
             ties_kg: vec![0.0; row.ties.len()],
@@ -115,7 +115,7 @@ impl<'a> Descent<'a> {
     /// makes a symmetric row choose a side.
     pub fn settle(
         &mut self,
-        stance: &mut Stance,
+        stance: &mut RowState,
         from: &Condition,
         to: &Condition,
         tilt_g: f64,
@@ -130,7 +130,7 @@ impl<'a> Descent<'a> {
         let mut lines = self.move_supports(stance, from, to, force_g)?;
         self.load.jumps.fill(Twist::ZERO);
         let start_m = stance.placement.centres_m.to_vec();
-        let turns = |stance: &Stance| {
+        let turns = |stance: &RowState| {
             let poses = stance.placement.poses.iter();
             poses.map(Pose::rotation_rad).collect::<Vec<f64>>()
         };
@@ -182,7 +182,7 @@ impl<'a> Descent<'a> {
     }
 
     /// Returns true if ties hold the row on these hinges in an equilibrium near by. Without ties the descent ends by itself.
-    fn is_near_equilibrium(&self, pins: &Pins, stance: &Stance, condition: &Condition) -> bool {
+    fn is_near_equilibrium(&self, pins: &Pins, stance: &RowState, condition: &Condition) -> bool {
         let state = pins.state(self.row, condition, stance);
         state.is_some_and(|state| {
             let pairs = state.rotations_rad.iter().zip(&stance.placement.poses);
@@ -195,7 +195,7 @@ impl<'a> Descent<'a> {
     /// movement ends when a joint closes. Returns the lines of the ties.
     fn move_supports(
         &mut self,
-        stance: &mut Stance,
+        stance: &mut RowState,
         from: &Condition,
         to: &Condition,
         force_g: Vector2<f64>,
@@ -227,7 +227,7 @@ impl<'a> Descent<'a> {
     /// Computes the velocities in the present position under a multiple of the load and of the tie forces. Returns the largest one.
     fn solve(
         &mut self,
-        stance: &Stance,
+        stance: &RowState,
         lines: &[TieLine],
         force_g: Vector2<f64>,
         times: f64,
@@ -242,7 +242,7 @@ impl<'a> Descent<'a> {
     /// `farthest_m`.
     fn solve_with_ties(
         &mut self,
-        stance: &Stance,
+        stance: &RowState,
         lines: &[TieLine],
         force_g: Vector2<f64>,
         farthest_m: f64,
@@ -488,7 +488,7 @@ impl<'a> Descent<'a> {
     }
 
     /// Moves the blocks with the last velocities for the given time, and closes the given corner. Returns the lines of the ties.
-    fn move_blocks(&mut self, stance: &mut Stance, first_shut: FirstShut) -> Vec<TieLine> {
+    fn move_blocks(&mut self, stance: &mut RowState, first_shut: FirstShut) -> Vec<TieLine> {
         let placement = &mut stance.placement;
         let mut change = vec![[0.0; 2]; placement.gaps_m.len()];
         (self.program).open_until(placement, first_shut, &mut change);
@@ -545,7 +545,7 @@ mod tests {
 
     fn step<'a>(
         row: &Row,
-        (stance, lines): &'a (Stance, Vec<TieLine>),
+        (stance, lines): &'a (RowState, Vec<TieLine>),
         force_g: Vector2<f64>,
         length: f64,
     ) -> Step<'a> {
@@ -555,8 +555,8 @@ mod tests {
         }
     }
 
-    fn undeformed(row: &Row) -> (Stance, Vec<TieLine>) {
-        let stance = Stance::undeformed(row);
+    fn undeformed(row: &Row) -> (RowState, Vec<TieLine>) {
+        let stance = RowState::undeformed(row);
         let lines = stance.lines(row).collect();
         (stance, lines)
     }

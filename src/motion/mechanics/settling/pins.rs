@@ -9,10 +9,11 @@ use serde::Serialize;
 use super::Condition;
 use crate::mechanics::chain::LEAST_LOAD;
 use crate::mechanics::geometry::field::turned;
-use crate::mechanics::stance::lines;
+use crate::mechanics::row_state::lines;
 use crate::mechanics::tie::sum_pulls;
 use crate::mechanics::{
-    Anchor, Edge, Lanes, Momentum, Placement, Pose, Row, Stance, Supports, Tie, TieLine, TieMemory,
+    Anchor, Edge, Lanes, Momentum, Placement, Pose, Row, RowState, Supports, Tie, TieLine,
+    TieMemory,
 };
 
 /// Maximum number of Newton steps.
@@ -153,7 +154,7 @@ impl Pins {
 
     /// Returns the poses of the bodies between the pins, for a row that comes from the state `before`; `None` if the pins cannot meet, or no stable
     /// equilibrium is found.
-    fn bodies(&self, row: &Row, condition: &Condition, before: &Stance) -> Option<Vec<Pose>> {
+    fn bodies(&self, row: &Row, condition: &Condition, before: &RowState) -> Option<Vec<Pose>> {
         match self.pins_m[..] {
             // A snap may have moved the middle pin to the other side of the line between the outer pins.
             [left, middle, right] => {
@@ -165,7 +166,7 @@ impl Pins {
     }
 
     /// Returns the positions of the pins in a given state of the row, in metres.
-    fn pins_in(&self, stance: &Stance) -> Vec<Vector2<f64>> {
+    fn pins_in(&self, stance: &RowState) -> Vec<Vector2<f64>> {
         let placement = &stance.placement;
         let last = &placement.support_poses[1];
         let pins = self.hinges.iter().zip(&self.pins_m);
@@ -175,7 +176,7 @@ impl Pins {
 
     /// Returns positions and forces of a row on these hinges that comes from the state `before`. `None` if the pins cannot meet, the equilibrium
     /// equations are singular, or no stable equilibrium is found.
-    pub fn state(&self, row: &Row, condition: &Condition, before: &Stance) -> Option<HingeState> {
+    pub fn state(&self, row: &Row, condition: &Condition, before: &RowState) -> Option<HingeState> {
         let mut poses = vec![condition.supports[0]];
         poses.extend(self.bodies(row, condition, before)?);
         poses.push(condition.supports[1]);
@@ -482,7 +483,7 @@ impl Residuals {
 }
 
 impl<'a> Chain<'a> {
-    fn new(pins: &'a Pins, row: &'a Row, condition: &'a Condition, before: &'a Stance) -> Self {
+    fn new(pins: &'a Pins, row: &'a Row, condition: &'a Condition, before: &'a RowState) -> Self {
         let count = pins.hinges.len() - 1;
         let pairs = pins.pins_m.windows(2);
         let arms_m: Vec<_> = pairs.map(|pair| pair[1] - pair[0]).collect();
@@ -695,7 +696,7 @@ mod tests {
             supports: [Pose::UNDEFORMED; 2],
             force_g: Vector2::new(0.3, -1.0),
         };
-        let before = Stance::undeformed(&row);
+        let before = RowState::undeformed(&row);
         let mut chain = Chain::new(&pins, &row, &condition, &before);
         chain.rotations_rad = vec![0.02, -0.03, 0.01, 0.04];
         let reaction = Vector2::new(-0.2, 0.5);

@@ -5,7 +5,6 @@ use serde_json::Value;
 
 use super::{CellCounts, CellRow, CellsOfSamples, Crossing, LEVELS, OUTSIDE, Samples};
 use crate::output::{Figure, Key, Mark, OutputError, Stroke, color, column, csv, each, list};
-use crate::scenario::Hinges;
 use crate::studies::ending::columns::{OUTCOMES, yes};
 use crate::studies::ensemble::influence::percent;
 use crate::studies::ensemble::report::{Band, Findings};
@@ -93,7 +92,8 @@ pub(super) fn report(
             first.reason()
         )
     }));
-    let four = study.scenario.motion.hinges() == Hinges::Four && study.scenario.structure.thrusts();
+    let (kind, structure) = (study.scenario.motion.kind, &study.scenario.structure);
+    let four = !kind.has_joints && structure.has_horizontal_thrust();
     let outside = counts.iter().map(|cell| cell.outside);
     let answered = counts.iter().map(|cell| cell.samples);
     let title = samples.title("Probability of overturning");

@@ -3,9 +3,9 @@
 use nalgebra::Vector2;
 
 use super::{LandingStepper, Piece};
-use crate::dynamics::row::course::REST_ENERGY_RATIO;
+use crate::dynamics::row::observer::REST_ENERGY_RATIO;
 use crate::dynamics::row::stepper::{eccentricity_ratio, equal_step, open_hinge};
-use crate::dynamics::{Course, RowMotionError, Sample, Stepper};
+use crate::dynamics::{MotionObserver, RowMotionError, Sample, Stepper};
 use crate::mechanics::joints::SHUT_RATIO;
 use crate::mechanics::{Edge, Hinge, Pose};
 
@@ -38,7 +38,7 @@ impl LandingStepper<'_> {
     /// Returns the potential energy of the blocks, in J.
     fn height(&self) -> f64 {
         if self.ties.are_none() {
-            self.course.potential
+            self.observer.potential
         } else {
             self.height_energy()
         }
@@ -51,13 +51,13 @@ impl LandingStepper<'_> {
 
     /// Compares the energy at an instant with the energy balance.
     pub fn check_energy(&mut self, kinetic: f64) {
-        let taken = self.course.row_summary.energy_taken_j + self.ties.taken_j();
+        let taken = self.observer.row_summary.energy_taken_j + self.ties.taken_j();
         let due = self.start_energy
-            + self.course.row_summary.ground_j
-            + self.course.row_summary.right_foot_j
+            + self.observer.row_summary.ground_j
+            + self.observer.row_summary.right_foot_j
             - taken;
-        let defect = kinetic + self.course.potential - due;
-        self.course.note_defect(defect.abs());
+        let defect = kinetic + self.observer.potential - due;
+        self.observer.note_defect(defect.abs());
     }
 
     /// Reports the state after a step to the course of the motion.
@@ -69,16 +69,16 @@ impl LandingStepper<'_> {
         let kinetic = kinetic(&self.pieces);
         // On hinges a row may move without a change of contacts.
         let swings =
-            self.rest.is_on_hinges() && kinetic > LEAST_SWING_RATIO * self.course.energy_unit;
-        self.course.moved |= !lies || swings;
+            self.rest.is_on_hinges() && kinetic > LEAST_SWING_RATIO * self.observer.energy_unit;
+        self.observer.moved |= !lies || swings;
         let rotations = self.placement.poses.iter().map(Pose::rotation_rad);
         let rotations = self.rest.relative_rotations_rad(rotations);
-        self.course.observe(rotations, potential, kinetic, sway);
-        let least = REST_ENERGY_RATIO * self.course.energy_unit;
+        self.observer.observe(rotations, potential, kinetic, sway);
+        let least = REST_ENERGY_RATIO * self.observer.energy_unit;
         // Ties that have yielded or broken have another elastic energy at rest.
         let rests = kinetic < least && self.height().abs() < least;
         let known_s = self.rest_since_s.filter(|_| lies);
-        self.rest_since_s = rests.then(|| known_s.unwrap_or(self.course.time));
+        self.rest_since_s = rests.then(|| known_s.unwrap_or(self.observer.time));
         if self.may_end_on_hinges() {
             self.observe_hinges();
         }
@@ -92,12 +92,12 @@ impl LandingStepper<'_> {
     /// Records heights and displacements of a row that may end on hinges. Its position at rest may be higher or lower, so energy shows neither rest
     /// nor overturning. A block has left if it is far from its initial positions relative to both feet.
     fn observe_hinges(&mut self) {
-        let height = (!self.right.moves()).then_some(self.course.potential);
-        self.course.note_height(height);
+        let height = (!self.right.moves()).then_some(self.observer.potential);
+        self.observer.note_height(height);
         let rotations = self.placement.poses.iter().map(Pose::rotation_rad);
         let blocks = self.placement.centres_m.iter().copied().zip(rotations);
         let feet_m = [Vector2::zeros(), self.right.displacement_m];
-        self.course.overturned |= self.rest.has_left(blocks, feet_m);
+        self.observer.overturned |= self.rest.has_left(blocks, feet_m);
     }
 
     /// Returns whether the row is in its initial position.
@@ -120,7 +120,7 @@ impl LandingStepper<'_> {
     }
 
     fn note_impact(&mut self, taken_before: f64) {
-        let (shut, opened) = (&mut self.course.shut, &mut self.course.opened);
+        let (shut, opened) = (&mut self.observer.shut, &mut self.observer.opened);
         shut.clear();
         opened.clear();
         for joint in 0..self.load.touching.len() {
@@ -139,8 +139,8 @@ impl LandingStepper<'_> {
                 opened.push(Hinge::Joint { joint, edge });
             }
         }
-        let taken_j = self.course.row_summary.energy_taken_j - taken_before;
-        self.stands = self.course.opened.is_empty() && self.lies_at_rest();
+        let taken_j = self.observer.row_summary.energy_taken_j - taken_before;
+        self.stands = self.observer.opened.is_empty() && self.lies_at_rest();
         let before_j = kinetic(&self.pieces) + taken_j;
         let lies = self.lies_at_rest();
         self.report_impact([!self.stands, lies], [before_j, taken_j], None);
@@ -148,7 +148,7 @@ impl LandingStepper<'_> {
 
     /// Reports the joints that open in a step from the initial position. The step begins at `from_s`.
     fn note_uplift(&mut self, from_s: f64) {
-        let opened = &mut self.course.opened;
+        let opened = &mut self.observer.opened;
         opened.clear();
         let gaps = self.placement.gaps_m.iter().enumerate();
         let stood = &self.rest.touching;
@@ -164,22 +164,22 @@ impl LandingStepper<'_> {
 }
 
 impl<'a> Stepper<'a> for LandingStepper<'a> {
-    fn course(&self) -> &Course<'a> {
-        &self.course
+    fn observer(&self) -> &MotionObserver<'a> {
+        &self.observer
     }
 
-    fn course_mut(&mut self) -> &mut Course<'a> {
-        &mut self.course
+    fn observer_mut(&mut self) -> &mut MotionObserver<'a> {
+        &mut self.observer
     }
 
     /// Takes a step, which ends at the first landing if there is one.
     fn step(&mut self, until: f64) -> Result<(), RowMotionError> {
         self.step_iterations = 0;
-        let longest = equal_step(self.course.time, until, self.course.longest_step_s);
+        let longest = equal_step(self.observer.time, until, self.observer.longest_step_s);
         self.constrain_closed_corners();
         self.closed.copy_from_slice(&self.load.touching);
-        let from_s = self.course.time;
-        let taken_before = self.course.row_summary.energy_taken_j;
+        let from_s = self.observer.time;
+        let taken_before = self.observer.row_summary.energy_taken_j;
         self.landing.fill([0.0; 2]);
         if self.has_just_landed() {
             // Most corners that were in contact before the impact are in contact again under gravity.
@@ -193,18 +193,18 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
         if landed {
             self.impact()?;
         }
-        let tie_events = self.course.note_ties(self.ties.memories());
+        let tie_events = self.observer.note_ties(self.ties.memories());
         self.observe();
         if landed {
             self.note_impact(taken_before);
         } else if self.stands {
             self.note_uplift(from_s);
         }
-        let scale_j = self.course.task.energy_scale_j;
-        self.course.halve_unbalanced_steps(scale_j, || scale_j);
+        let scale_j = self.observer.input.energy_scale_j;
+        self.observer.halve_unbalanced_steps(scale_j, || scale_j);
         self.report_ties(tie_events);
-        self.course.cost.steps += 1;
-        let row_summary = &mut self.course.row_summary;
+        self.observer.cost.steps += 1;
+        let row_summary = &mut self.observer.row_summary;
         row_summary.merged += u64::from(step.merged);
         row_summary.most_iterations = row_summary.most_iterations.max(self.step_iterations);
         Ok(())
@@ -225,15 +225,15 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
             let ratios = impulses.map(eccentricity_ratio);
             sample.eccentricity_ratios.extend(ratios);
         }
-        let right_j = self.work_of_right_support(self.course.time - self.kicked_s);
+        let right_j = self.work_of_right_support(self.observer.time - self.kicked_s);
         std::mem::swap(&mut self.program, &mut self.auxiliary);
         solved?;
         let work = ground.dot(&(before + momentum(&self.next_pieces))) * 0.5;
-        self.course.row_summary.ground_j -= work;
-        self.course.row_summary.right_foot_j += right_j;
+        self.observer.row_summary.ground_j -= work;
+        self.observer.row_summary.right_foot_j += right_j;
         self.check_energy(kinetic_j);
-        self.course.row_summary.ground_j += work;
-        self.course.row_summary.right_foot_j -= right_j;
+        self.observer.row_summary.ground_j += work;
+        self.observer.row_summary.right_foot_j -= right_j;
         sample.feet_apart_m = self.right.displacement_m;
         sample.ties.extend(self.ties.samples());
         sample.demand.friction = self.friction_demand;
@@ -263,16 +263,16 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
     }
 
     fn stands(&self, sample: &Sample) -> bool {
-        let quiet = || self.course.is_quiet(self.course.quiet_since_s);
+        let quiet = || self.observer.is_quiet(self.observer.quiet_since_s);
         let lies = self.lies_at_rest() || (self.may_end_on_hinges() && quiet());
         lies || sample.rotations_rad.iter().all(|angle| *angle == 0.0)
     }
 
-    fn rests_since(&self) -> Option<f64> {
+    fn at_rest_since_s(&self) -> Option<f64> {
         let on_hinges = self.rest.is_on_hinges() || self.right_support_is_displaced();
         if on_hinges && !self.lies_at_rest() {
-            let quiet = self.course.is_quiet(self.course.quiet_since_s);
-            return quiet.then_some(self.course.quiet_since_s);
+            let quiet = self.observer.is_quiet(self.observer.quiet_since_s);
+            return quiet.then_some(self.observer.quiet_since_s);
         }
         self.rest_since_s
     }
@@ -280,8 +280,8 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
     /// Decides by height only: the elastic energy of ties may be less than at rest.
     fn overturned_s(&self) -> Option<f64> {
         if self.may_end_on_hinges() {
-            return self.course.overturned_s();
+            return self.observer.overturned_s();
         }
-        self.course.fallen_s(self.height())
+        self.observer.fallen_s(self.height())
     }
 }

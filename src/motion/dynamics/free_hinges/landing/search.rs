@@ -34,7 +34,7 @@ impl LandingStepper<'_> {
     /// landing.
     pub(super) fn solve_to_landing(&mut self, longest: f64) -> Result<Step, RowMotionError> {
         let floor = if self.has_impact_cluster() {
-            self.course.task.settings.shortest_step_s.min(longest)
+            self.observer.input.settings.shortest_step_s.min(longest)
         } else {
             0.0
         };
@@ -44,7 +44,7 @@ impl LandingStepper<'_> {
         // No corner lands within `safe`; some corner lands within `late`.
         let (mut safe, mut late) = (0.0, f64::INFINITY);
         // The initial rates correspond to a step of negative length whose kick ends at the end of the last kick.
-        let mut earlier = 2.0 * (self.kicked_s - self.course.time);
+        let mut earlier = 2.0 * (self.kicked_s - self.observer.time);
         for pass in 1.. {
             self.note_rates();
             self.solve_step(step)?;
@@ -83,7 +83,7 @@ impl LandingStepper<'_> {
             }
             .clamp(floor, longest);
         }
-        let length_s = self.course.task.settings.shortest_step_s.min(longest);
+        let length_s = self.observer.input.settings.shortest_step_s.min(longest);
         self.merge(length_s)?;
         Ok(Step {
             expected_s: length_s,
@@ -131,10 +131,10 @@ impl LandingStepper<'_> {
 
     /// Solves a step of fixed length in which all landing corners come into contact.
     fn merge(&mut self, step: f64) -> Result<(), RowMotionError> {
-        if self.kicked_s < self.course.time {
+        if self.kicked_s < self.observer.time {
             self.complete_kick()?;
             self.adopt_pieces();
-            self.kicked_s = self.course.time;
+            self.kicked_s = self.observer.time;
         }
         self.cluster.impacts = 0;
         self.solve_step(step)?;
@@ -181,7 +181,7 @@ impl LandingStepper<'_> {
             self.solve_step(step)?;
         }
         let with = self.kinetic_of_solution() - self.work_of_right_support(0.0);
-        self.course.row_summary.energy_taken_j += without - with;
+        self.observer.row_summary.energy_taken_j += without - with;
         Ok(())
     }
 }

@@ -132,11 +132,11 @@ impl SlidingStepper<'_> {
         let Some(mut landing) = self.landing.take() else {
             return;
         };
-        self.course.subtract_late_dissipation(late.total_j);
+        self.observer.subtract_late_dissipation(late.total_j);
         landing.dissipation.add(late);
         let (total_j, friction_j) = (landing.dissipation.total_j, landing.dissipation.friction_j);
-        self.course.row_summary.energy_taken_j += total_j - friction_j;
-        if !self.course.has_recorder() {
+        self.observer.row_summary.energy_taken_j += total_j - friction_j;
+        if !self.observer.has_recorder() {
             return;
         }
         let after = if alone {
@@ -144,8 +144,8 @@ impl SlidingStepper<'_> {
         } else {
             &self.modes_before
         };
-        self.course.opened = Self::opened(&landing.shut, &landing.modes_before, after);
-        self.course.shut = landing.shut;
+        self.observer.opened = Self::opened(&landing.shut, &landing.modes_before, after);
+        self.observer.shut = landing.shut;
         let sticks = |mode: &Mode| mode.tangential == TangentialMode::Stick;
         let moves = !(self.has_initial_contacts() && self.program.modes.iter().all(sticks));
         let stood = self

@@ -21,7 +21,7 @@ mod pivoting;
 
 use nalgebra::{Matrix3, RowVector3, Vector2, Vector3};
 
-use super::slip::{Contact, Faces, Position};
+use super::slip::{FaceContact, Faces, Position};
 use crate::mechanics::Row;
 
 /// Weight of the proximal term, as a fraction of the diagonal.
@@ -113,7 +113,7 @@ struct Balance {
 
 /// Contact problem of a row, with work space, and the modes and impulses of the last solution.
 #[derive(Clone, Debug)]
-pub struct Program {
+pub struct SlipProgram {
     coefficient: f64,
     /// Square roots of mass and inertia of every block, the scale of velocities and gradients.
     roots: Vec<Vector3<f64>>,
@@ -141,7 +141,7 @@ pub struct Program {
     kept: Vec<Vector3<f64>>,
 }
 
-impl Program {
+impl SlipProgram {
     /// Returns a problem for a row with all joints closed and zero impulses.
     pub fn new(row: &Row, coefficient: f64) -> Self {
         let (blocks, joints) = (row.blocks.len(), row.joints.len());
@@ -198,7 +198,7 @@ impl Program {
     }
 
     /// Sets the positions of the joints, and computes gradients and compliances.
-    pub fn place(&mut self, faces: &[Faces], contacts: &[Contact], positions: &[Position]) {
+    pub fn place(&mut self, faces: &[Faces], contacts: &[FaceContact], positions: &[Position]) {
         let blocks = positions.len();
         let centre = |block: Option<usize>| {
             let position = block.and_then(|block| positions.get(block));

@@ -108,7 +108,7 @@ impl Load {
 
 /// Quadratic program of a row, with its work space and the active set of the last solution.
 #[derive(Clone, Debug)]
-pub struct Program {
+pub struct ContactProgram {
     /// Active corners of every joint in the last solution: those with a compressive impulse.
     pub active: Vec<Corners>,
     factor: Factor,
@@ -126,7 +126,7 @@ pub struct Program {
     jammed: Option<usize>,
 }
 
-impl Program {
+impl ContactProgram {
     /// Returns a program for the undeformed row. The initial active set has all joints of a stack closed, or three pins in an arch.
     pub fn new(row: &Row) -> Self {
         let (blocks, joints) = (row.blocks.len(), row.joints.len());
@@ -281,7 +281,7 @@ impl Program {
     }
 
     /// Computes the displacement of least kinetic norm that removes the closure error of an arch, without opening or closing joints.
-    /// [`Program::open_joints`] then returns the changes of the gaps. Returns false if the open joints allow no such displacement.
+    /// [`ContactProgram::open_joints`] then returns the changes of the gaps. Returns false if the open joints allow no such displacement.
     pub fn close(&mut self, placement: &Placement, closure: &Closure, load: &Load) -> bool {
         self.place(placement);
         self.set_up(load);
@@ -333,7 +333,7 @@ mod tests {
             let arch = Row::arch(&Ring::new(0.15, 2.5).unwrap(), blocks, 5.0, 1.0, 2000.0);
             let stack = Row::tapered_stack(&vec![0.5; blocks], 2.0, 1.0, 1.0, 2000.0);
             for row in [arch.unwrap(), stack.unwrap()] {
-                let mut program = Program::new(&row);
+                let mut program = ContactProgram::new(&row);
                 let joints = row.joints.len();
                 for _ in 0..20 {
                     let motion = |x: f64, y: f64, rate: f64| {
@@ -352,7 +352,7 @@ mod tests {
                         touching,
                     };
                     let touching = &load.touching;
-                    let begin = |program: &mut Program| {
+                    let begin = |program: &mut ContactProgram| {
                         program.reset();
                         let largest_rate = program.set_up(&load);
                         for (active, touching) in program.active.iter_mut().zip(touching) {

@@ -27,7 +27,7 @@ use super::contact::ContactError;
 use super::geometry::rigid::linear;
 use super::stability::{collapse_mechanism_at, onset_at};
 use crate::bisection::{Width, falls_below_zero, try_bisect};
-use crate::mechanics::{Lanes, Pose, Row, StabilityError, Stance, Supports, Sway, TieMemory};
+use crate::mechanics::{Lanes, Pose, Row, RowState, StabilityError, Supports, Sway, TieMemory};
 
 /// Length of a step along the path: a fraction of the row's size, radians, or multiples of gravity.
 const STEP: f64 = 1e-3;
@@ -198,7 +198,7 @@ pub struct Follower<'a> {
     /// Present loading.
     pub condition: Condition,
     /// Poses of the blocks, and state of the ties.
-    pub stance: Stance,
+    pub stance: RowState,
     /// Snaps of the path followed up to now.
     pub snaps: Vec<Snap>,
     /// Tolerance of the hinges: forces over the weight, and openings in radians, below this value are rounding errors.
@@ -225,7 +225,7 @@ impl<'a> Follower<'a> {
                 supports: [Pose::UNDEFORMED; 2],
                 force_g: Vector2::new(0.0, -1.0),
             },
-            stance: Stance::undeformed(row),
+            stance: RowState::undeformed(row),
             snaps: Vec::new(),
             slack: ROUNDING,
         })
@@ -284,7 +284,7 @@ impl<'a> Follower<'a> {
         let row = self.row;
         let there = |part: f64| {
             let [pose, _] = movements(part).poses(row);
-            let mut stance = Stance::undeformed(row);
+            let mut stance = RowState::undeformed(row);
             stance.placement.move_supports([pose; 2]);
             stance.placement.open(|_| [0.0; 2]);
             stance

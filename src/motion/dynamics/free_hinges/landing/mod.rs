@@ -24,11 +24,11 @@ use super::rest::{InitialPosition, touching};
 use super::right_support::RightSupport;
 use super::ties::Ties;
 use crate::dynamics::recorder::Recorder;
-use crate::dynamics::{Course, GroundVelocity, RowMotionError, Stepper as _, Task};
+use crate::dynamics::{GroundVelocity, MotionInput, MotionObserver, RowMotionError, Stepper as _};
 use crate::mechanics::contact::closing::ClosureSolver;
-use crate::mechanics::contact::{Load, Program};
+use crate::mechanics::contact::{ContactProgram, Load};
 use crate::mechanics::geometry::field::turned;
-use crate::mechanics::{Corners, Edge, Placement, Pose, Row, Stance, Supports, Twist};
+use crate::mechanics::{Corners, Edge, Placement, Pose, Row, RowState, Supports, Twist};
 
 /// Largest closure error of an arch, over the thickness of the thinnest joint; a larger one is an error.
 const LARGEST_CLOSURE_RATIO: f64 = 1e-6;
@@ -91,13 +91,13 @@ pub struct LandingStepper<'a> {
     thinnest: f64,
     rest: InitialPosition<'a>,
     right: RightSupport<'a>,
-    course: Course<'a>,
+    observer: MotionObserver<'a>,
     /// Time up to which gravity and ground have been applied to the velocities.
     kicked_s: f64,
     pub placement: Placement,
-    program: Program,
+    program: ContactProgram,
     /// Copy for solutions that must not change the active set.
-    auxiliary: Program,
+    auxiliary: ContactProgram,
     closure_solver: ClosureSolver,
     ties: Ties<'a>,
     pieces: Vec<Piece>,
@@ -133,15 +133,15 @@ impl<'a> LandingStepper<'a> {
     /// # Errors
     /// If the initial rotations leave a closure error.
     pub fn new(
-        task: Task<'a>,
-        standing: &Stance,
+        input: MotionInput<'a>,
+        standing: &RowState,
         initial_rad: Option<&[f64]>,
         recorder: Option<&'a mut dyn Recorder>,
     ) -> Result<Self, RowMotionError> {
-        let (row, ground, gravity) = (task.row, task.ground, task.gravity_m_s2);
+        let (row, ground, gravity) = (input.row, input.ground, input.gravity_m_s2);
         let (blocks, joints) = (row.blocks.len(), row.joints.len());
         let rest = InitialPosition::new(row, &standing.placement);
-        let mut program = Program::new(row);
+        let mut program = ContactProgram::new(row);
         program.place(&standing.placement);
         if rest.is_on_hinges() {
             program.start_from(&rest.touching);
@@ -156,7 +156,11 @@ impl<'a> LandingStepper<'a> {
             right,
             gravity,
             thinnest: thicknesses.fold(f64::INFINITY, f64::min),
-            course: Course::new(task, Some(fallen).filter(|_| !may_end_on_hinges), recorder),
+            observer: MotionObserver::new(
+                input,
+                Some(fallen).filter(|_| !may_end_on_hinges),
+                recorder,
+            ),
             kicked_s: ground.start_s(),
             placement: standing.placement.clone(),
             rest,
@@ -183,8 +187,8 @@ impl<'a> LandingStepper<'a> {
             rest_since_s: None,
         };
         stepper.update_piece_centres();
-        stepper.course.note_ties(stepper.ties.memories());
-        stepper.course.save_results_before_fall();
+        stepper.observer.note_ties(stepper.ties.memories());
+        stepper.observer.save_results_before_fall();
         if let Some(rotations_rad) = initial_rad {
             stepper.release(rotations_rad)?;
         }
@@ -220,18 +224,18 @@ impl<'a> LandingStepper<'a> {
         self.start_energy = energy;
         self.stands = open == 0;
         let rotations = self.placement.poses.iter().map(Pose::rotation_rad);
-        self.course.released(rotations, energy, sway, open > 0);
+        self.observer.released(rotations, energy, sway, open > 0);
         Ok(())
     }
 
     /// Returns whether the last step ended at an impact after too many impacts within the shortest step, so that the next landings are merged.
     fn has_impact_cluster(&self) -> bool {
-        self.has_just_landed() && self.cluster.impacts > self.course.task.settings.merged_after
+        self.has_just_landed() && self.cluster.impacts > self.observer.input.settings.merged_after
     }
 
     /// Returns whether the last step ended at an impact.
     fn has_just_landed(&self) -> bool {
-        self.kicked_s == self.course.time && self.course.impacts > 0
+        self.kicked_s == self.observer.time && self.observer.impacts > 0
     }
 
     /// Constrains the corners in contact.
@@ -272,7 +276,7 @@ impl<'a> LandingStepper<'a> {
     /// Applies the rest of the last kick, up to the time of the positions, with the contacts at that time. Returns the change of velocity by the
     /// ground.
     fn half_kick(&mut self) -> Vector2<f64> {
-        let time = self.course.time;
+        let time = self.observer.time;
         let (impulse, ground) = self.impulse(self.kicked_s, time);
         self.kick(impulse, time - self.kicked_s);
         self.right.prescribe_velocity_at(time);
@@ -285,27 +289,27 @@ impl<'a> LandingStepper<'a> {
 
     /// Returns the interval of the kick of a step.
     fn kicked(&self, step: f64) -> (f64, f64) {
-        (self.kicked_s, self.course.time + 0.5 * step)
+        (self.kicked_s, self.observer.time + 0.5 * step)
     }
 
     fn solve_step(&mut self, step: f64) -> Result<(), RowMotionError> {
         let (from_s, to_s) = self.kicked(step);
         self.kick(self.impulse(from_s, to_s).0, to_s - from_s);
-        self.right.prescribe_mean_velocity(self.course.time, step);
+        self.right.prescribe_mean_velocity(self.observer.time, step);
         self.set_relative_velocities(step);
         self.solve()
     }
 
     fn solve(&mut self) -> Result<(), RowMotionError> {
         let effort = self.program.solve(&self.load);
-        let time_s = self.course.time;
+        let time_s = self.observer.time;
         let remedy = "or give another `longest_step_s` in [free_hinges]";
         let why = |reason| RowMotionError::Failed(format!("at {time_s} s {reason}, {remedy}"));
         let effort = effort.map_err(why)?;
         let iterations = effort.iterations as u64;
-        self.course.cost.evaluations += iterations;
-        self.course.row_summary.programs += 1;
-        self.course.row_summary.relaxed += effort.relaxed as u64;
+        self.observer.cost.evaluations += iterations;
+        self.observer.row_summary.programs += 1;
+        self.observer.row_summary.relaxed += effort.relaxed as u64;
         self.step_iterations += iterations;
         Ok(())
     }
@@ -372,7 +376,7 @@ impl<'a> LandingStepper<'a> {
     /// Adds the work of the right support to the energy balance, and returns the work.
     fn note_right_support(&mut self, lasts_s: f64) -> f64 {
         let work = self.work_of_right_support(lasts_s);
-        self.course.row_summary.right_foot_j += work;
+        self.observer.row_summary.right_foot_j += work;
         work
     }
 
@@ -424,15 +428,15 @@ impl<'a> LandingStepper<'a> {
         let (from_s, to_s) = self.kicked(step.expected_s);
         self.form_pieces();
         let mean = (before + momentum(&self.next_pieces)) * 0.5;
-        self.course.row_summary.ground_j -= self.impulse(from_s, to_s).1.dot(&mean);
+        self.observer.row_summary.ground_j -= self.impulse(from_s, to_s).1.dot(&mean);
         self.note_right_support(to_s - from_s);
         // In a shorter time the rounding errors of the velocities exceed the effect of the forces.
-        if step.merged || to_s - from_s < self.course.task.settings.shortest_step_s {
+        if step.merged || to_s - from_s < self.observer.input.settings.shortest_step_s {
             return;
         }
         self.program.joint_impulses(&mut self.shares);
         let impulses = self.shares.iter().copied();
-        self.friction_demand = self.course.note_forces(impulses, to_s - from_s);
+        self.friction_demand = self.observer.note_forces(impulses, to_s - from_s);
     }
 
     /// Moves the row over a solved step.
@@ -449,22 +453,22 @@ impl<'a> LandingStepper<'a> {
                 *change += rate * step.length_s;
             }
         }
-        self.open_gaps(self.course.time + step.length_s);
+        self.open_gaps(self.observer.time + step.length_s);
         self.adopt_pieces();
-        self.course.time += step.length_s;
+        self.observer.time += step.length_s;
         self.closure_solver.close(&mut self.placement);
         let poses = &self.placement.poses;
         self.ties.stretch(|block| poses[block]);
         self.program.place(&self.placement);
         let error_m = self.placement.closure_error();
-        let row_summary = &mut self.course.row_summary;
+        let row_summary = &mut self.observer.row_summary;
         row_summary.closure_error_m = row_summary.closure_error_m.max(error_m);
         // NaN is also an error.
         if error_m <= LARGEST_CLOSURE_RATIO * self.thinnest {
             self.update_piece_centres();
             Ok(())
         } else {
-            let time_s = self.course.time;
+            let time_s = self.observer.time;
             Err(RowMotionError::Failed(format!(
                 "at {time_s} s the ends of the arch miss each other by {error_m:.3e} m: give a shorter `longest_step_s` in \
                  [free_hinges]"
@@ -527,7 +531,7 @@ impl<'a> LandingStepper<'a> {
         self.pressed.copy_from_slice(&self.program.active);
         self.complete_kick()?;
         let kinetic_before = kinetic(&self.next_pieces);
-        self.course.potential = self.energy();
+        self.observer.potential = self.energy();
         self.check_energy(kinetic_before);
         self.load.free.copy_from_slice(&self.program.velocities);
         self.constrain_closed_corners();
@@ -537,13 +541,13 @@ impl<'a> LandingStepper<'a> {
         self.solve()?;
         let kinetic_after = self.kinetic_of_solution();
         let work = self.note_right_support(0.0);
-        self.course.row_summary.energy_taken_j += kinetic_before + work - kinetic_after;
+        self.observer.row_summary.energy_taken_j += kinetic_before + work - kinetic_after;
         self.adopt_pieces();
-        self.kicked_s = self.course.time;
-        self.course.impacts += 1;
-        let since_s = self.course.time - self.cluster.first_s;
-        if self.cluster.impacts == 0 || since_s > self.course.task.settings.shortest_step_s {
-            self.cluster.first_s = self.course.time;
+        self.kicked_s = self.observer.time;
+        self.observer.impacts += 1;
+        let since_s = self.observer.time - self.cluster.first_s;
+        if self.cluster.impacts == 0 || since_s > self.observer.input.settings.shortest_step_s {
+            self.cluster.first_s = self.observer.time;
             self.cluster.impacts = 0;
         }
         self.cluster.impacts += 1;
@@ -582,9 +586,9 @@ impl<'a> LandingStepper<'a> {
         }
         self.solve()?;
         self.form_pieces();
-        self.course.row_summary.ground_j -=
+        self.observer.row_summary.ground_j -=
             ground.dot(&((before + momentum(&self.next_pieces)) * 0.5));
-        self.note_right_support(self.course.time - self.kicked_s);
+        self.note_right_support(self.observer.time - self.kicked_s);
         self.right.velocity_m_s = self.right.solution_m_s;
         Ok(())
     }
@@ -702,9 +706,9 @@ mod tests {
                 .horizontal_m_s2(amplitude_g * 9.81)
                 .unwrap();
             let settings = Settings::to_landings(&row, 9.81, 60.0).times(1.1 / 0.34);
-            let task = Task::new(&row, &ground, 9.81, settings);
+            let input = MotionInput::new(&row, &ground, 9.81, settings);
             let mut stepper =
-                LandingStepper::new(task, &Stance::undeformed(&row), None, None).unwrap();
+                LandingStepper::new(input, &RowState::undeformed(&row), None, None).unwrap();
             let mut fastest = 0.0_f64;
             let mut worst = 0.0_f64;
             let mut compared = 0;
@@ -727,7 +731,7 @@ mod tests {
                 }
                 stepper.step(60.0).unwrap();
             }
-            assert!(fastest > 0.05 && stepper.course.impacts > 3, "{fastest}");
+            assert!(fastest > 0.05 && stepper.observer.impacts > 3, "{fastest}");
             // The solver stops when its objective is accurate to 1e-14, so the errors are some 1e-7 for velocities of 1 m/s.
             assert!(worst < 2e-8 && compared > 250, "{worst} {compared}");
         }

@@ -19,14 +19,15 @@ use super::rest::InitialPosition;
 use super::right_support::RightSupport;
 use super::ties::Ties;
 use crate::dynamics::recorder::Recorder;
-use crate::dynamics::row::course::{REST_ENERGY_RATIO, SWAY_RATIO, Summit};
+use crate::dynamics::row::observer::{LastMaximum, REST_ENERGY_RATIO, SWAY_RATIO};
 use crate::dynamics::row::stepper::{eccentricity_ratio, equal_step};
 use crate::dynamics::{
-    Course, EventKind, GroundVelocity, RowMotionError, Sample, Sliding, Stepper, Task,
+    EventKind, GroundVelocity, MotionInput, MotionObserver, RowMotionError, Sample, Sliding,
+    Stepper,
 };
-use crate::mechanics::coulomb::{Mode, Program, TangentialMode};
-use crate::mechanics::slip::{Contact, Faces, Position};
-use crate::mechanics::{Edge, Hinge, Placement, Pose, Row, Stance, Supports};
+use crate::mechanics::coulomb::{Mode, SlipProgram, TangentialMode};
+use crate::mechanics::slip::{FaceContact, Faces, Position};
+use crate::mechanics::{Edge, Hinge, Placement, Pose, Row, RowState, Supports};
 
 /// Tolerance of rates, relative to the fastest motion plus the effect of gravity in a step.
 const RATE_TOLERANCE: f64 = 1e-9;
@@ -47,14 +48,14 @@ pub struct SlidingStepper<'a> {
     right: RightSupport<'a>,
     /// Gaps and offsets of the joints in the initial position.
     initial_coordinates_m: Vec<Vector3<f64>>,
-    course: Course<'a>,
+    observer: MotionObserver<'a>,
     faces: Vec<Faces>,
     thinnest_m: f64,
     /// Positions of the left and the right support.
     supports: [Position; 2],
     positions: Vec<Position>,
     velocities: Vec<Vector3<f64>>,
-    contacts: Vec<Contact>,
+    contacts: Vec<FaceContact>,
     ties: Ties<'a>,
     /// Changes of the velocities of the blocks by ties in a kick.
     tie_velocities: Vec<Vector3<f64>>,
@@ -67,9 +68,9 @@ pub struct SlidingStepper<'a> {
     /// Time up to which the kicks have been applied.
     kicked_s: f64,
     last_step: f64,
-    program: Program,
+    program: SlipProgram,
     /// Copy for solutions that must not change the modes.
-    auxiliary: Program,
+    auxiliary: SlipProgram,
     modes_before: Vec<Mode>,
     /// True while the contacts are those of the initial position.
     stands: bool,
@@ -86,20 +87,20 @@ pub struct SlidingStepper<'a> {
 impl<'a> SlidingStepper<'a> {
     /// Returns a stepper for a row that starts from a state in equilibrium, or is released at rest at a placement.
     pub fn new(
-        standing: &Stance,
+        standing: &RowState,
         placement: &Placement,
-        task: Task<'a>,
+        input: MotionInput<'a>,
         coefficient: f64,
         recorder: Option<&'a mut dyn Recorder>,
     ) -> Self {
-        let (row, ground, gravity) = (task.row, task.ground, task.gravity_m_s2);
+        let (row, ground, gravity) = (input.row, input.ground, input.gravity_m_s2);
         let (blocks, joints) = (row.blocks.len(), row.joints.len());
         let rest = InitialPosition::new(row, &standing.placement);
         let faces = Faces::of_row(row);
         let thicknesses_m = faces.iter().map(|faces| faces.thickness_m);
         let thinnest_m = thicknesses_m.fold(f64::INFINITY, f64::min);
         let supports = placement.support_poses.map(|pose| Position::of(&pose));
-        let contacts_at = |placement: &Placement| -> (Vec<Position>, Vec<Contact>) {
+        let contacts_at = |placement: &Placement| -> (Vec<Position>, Vec<FaceContact>) {
             let at = placement.centres_m.iter().zip(&placement.poses);
             let at = at.map(|(centre, pose)| Position::new(*centre, pose.rotation_rad()));
             let positions: Vec<Position> = at.collect();
@@ -109,34 +110,34 @@ impl<'a> SlidingStepper<'a> {
         };
         let (positions, contacts) = contacts_at(placement);
         let (_, stood) = contacts_at(&rest.placement);
-        let mut program = Program::new(row, coefficient);
+        let mut program = SlipProgram::new(row, coefficient);
         program.touch(&rest.touching);
         let ties = Ties::new(row, standing);
-        let mut course = Course::new(task, None, recorder);
-        course.row_summary.sliding = Some(Sliding::none(joints));
-        course.note_ties(ties.memories());
-        course.save_results_before_fall();
+        let mut observer = MotionObserver::new(input, None, recorder);
+        observer.row_summary.sliding = Some(Sliding::none(joints));
+        observer.note_ties(ties.memories());
+        observer.save_results_before_fall();
         let start_energy = gravity * rest.mass_displacement_kg_m(&placement.centres_m).y;
         // Heights include the energy dissipated by friction: friction may hold the row up to its highest position.
-        course.summit = Summit::new(start_energy, ground.start_s());
+        observer.last_maximum = LastMaximum::new(start_energy, ground.start_s());
         let stands = rest.has_contacts(&placement.gaps_m);
         if !stands {
             let rotations = positions.iter().map(|position| position.rotation_rad);
             let rotations = rest.relative_rotations_rad(rotations);
             let sway = rest.mass_displacement_kg_m(&placement.centres_m).x;
-            course.released(rotations, start_energy, sway, true);
+            observer.released(rotations, start_energy, sway, true);
         }
         Self {
             row,
             velocity: GroundVelocity::new(ground),
             gravity,
-            course,
+            observer,
             velocities: vec![Vector3::zeros(); blocks],
             stick_offsets_m: contacts.iter().map(|c| c.coordinates_m.z).collect(),
             position_errors: vec![Vector3::zeros(); joints],
             rates_before: vec![Vector3::zeros(); joints],
             kicked_s: ground.start_s(),
-            last_step: task.settings.longest_step_s,
+            last_step: input.settings.longest_step_s,
             auxiliary: program.clone(),
             program,
             modes_before: vec![Mode::STICKING; joints],
@@ -237,7 +238,7 @@ impl<'a> SlidingStepper<'a> {
         if error <= LARGEST_BOUND_ERROR {
             return Ok(());
         }
-        let time_s = self.course.time;
+        let time_s = self.observer.time;
         Err(RowMotionError::Failed(format!(
             "at {time_s} s the bound of friction at a joint is wrong by {error:.1e} of the largest one: give another \
              longest_step_s in [free_hinges], or a friction_coefficient farther from the least one with which the row stands"
@@ -252,7 +253,7 @@ impl<'a> SlidingStepper<'a> {
         for joint in 0..self.faces.len() {
             self.rates_before[joint] = self.program.joint_rate(joint);
         }
-        self.right.prescribe_mean_velocity(self.course.time, step);
+        self.right.prescribe_mean_velocity(self.observer.time, step);
         self.update_position_errors(step);
         self.load(kick, to_s);
         let speeds = self.velocities.iter().map(|v| v.x.abs() + v.y.abs());
@@ -274,7 +275,7 @@ impl<'a> SlidingStepper<'a> {
             passes += solution.passes;
         }
         let passes = passes as u64;
-        let (cost, row_summary) = (&mut self.course.cost, &mut self.course.row_summary);
+        let (cost, row_summary) = (&mut self.observer.cost, &mut self.observer.row_summary);
         cost.steps += 1;
         cost.evaluations += passes;
         row_summary.programs += 1;
@@ -285,7 +286,7 @@ impl<'a> SlidingStepper<'a> {
     fn note_forces(&mut self, time_s: f64) {
         let impulses = self.program.impulses.iter();
         let impulses = impulses.map(|impulse| [impulse.z, impulse.x + impulse.y]);
-        self.friction_demand = self.course.note_forces(impulses, time_s);
+        self.friction_demand = self.observer.note_forces(impulses, time_s);
     }
 
     /// Moves the blocks for a step, and returns the events of ties in it.
@@ -299,10 +300,10 @@ impl<'a> SlidingStepper<'a> {
             *centre = position.centre_m + velocity.xy() * step;
             *position = Position::new(*centre, position.rotation_rad + velocity.z * step);
         }
-        self.course.time += step;
+        self.observer.time += step;
         if self.right.moves() {
             self.right.velocity_m_s = self.right.solution_m_s;
-            self.right.move_to(self.course.time);
+            self.right.move_to(self.observer.time);
             self.right.joint_displacement_m = self.right.displacement_m;
             let poses = self.right.poses(&self.rest.placement.support_poses);
             self.supports = poses.map(|pose| Position::of(&pose));
@@ -321,16 +322,16 @@ impl<'a> SlidingStepper<'a> {
             let initial_coordinates_m = &self.initial_coordinates_m[joint];
             let slipped_m = (self.stick_offsets_m[joint] - initial_coordinates_m.z).abs();
             let [intrados, extrados, _] = (contact.coordinates_m - initial_coordinates_m).into();
-            self.course.moved |= slipped_m.max(intrados).max(extrados) > least;
-            self.course.overturned |= contact.ends_m[1] <= contact.ends_m[0];
+            self.observer.moved |= slipped_m.max(intrados).max(extrados) > least;
+            self.observer.overturned |= contact.ends_m[1] <= contact.ends_m[0];
             self.contacts[joint] = contact;
         }
         let kinetic = self.kinetic();
         let (blocks, positions) = (&self.row.blocks, &self.positions);
-        let before = self.course.potential + self.ties.taken_j();
+        let before = self.observer.potential + self.ties.taken_j();
         self.ties
             .stretch(|block| positions[block].pose(blocks[block].centre_m));
-        let tie_events = self.course.note_ties(self.ties.memories());
+        let tie_events = self.observer.note_ties(self.ties.memories());
         let height = self.gravity * self.rest.mass_displacement_kg_m(&self.centres).y;
         let potential = height + self.ties.energy_j();
         let taken = self.ties.taken_j();
@@ -338,17 +339,17 @@ impl<'a> SlidingStepper<'a> {
         let sway = self.sway_kg_m();
         let rotations = self.positions.iter().map(|position| position.rotation_rad);
         let rotations = self.rest.relative_rotations_rad(rotations);
-        self.course.observe(rotations, potential, kinetic, sway);
-        self.course.overturned |= self.has_fallen();
+        self.observer.observe(rotations, potential, kinetic, sway);
+        self.observer.overturned |= self.has_fallen();
         let height = potential + self.sliding_friction_j + taken;
         let height = (!self.right.moves()).then_some(height);
-        self.course.note_height(height);
+        self.observer.note_height(height);
         tie_events
     }
 
     /// Returns the record of slip.
     fn sliding(&mut self) -> &mut Sliding {
-        let sliding = self.course.row_summary.sliding.as_mut();
+        let sliding = self.observer.row_summary.sliding.as_mut();
         sliding.expect("joints may slip")
     }
 
@@ -378,16 +379,17 @@ impl<'a> SlidingStepper<'a> {
     /// Compares the energy in the middle of a step, without the work of the ground, with the least value up to now; an increase is a numerical error.
     /// In the middle of a step, velocities and heights are known, and their energy is constant in equal steps without impulses at the joints.
     fn check_energy(&mut self, energy: f64) {
-        let left = energy - self.course.row_summary.ground_j - self.course.row_summary.right_foot_j;
-        self.course.note_defect(left - self.least_energy);
+        let left =
+            energy - self.observer.row_summary.ground_j - self.observer.row_summary.right_foot_j;
+        self.observer.note_defect(left - self.least_energy);
         self.least_energy = self.least_energy.min(left);
     }
 
     /// Solves for the velocities at the time of the positions, in the auxiliary program, from the velocities half a step before. Returns the kinetic
     /// energy in J.
     fn synchronise(&mut self) -> f64 {
-        let (kick, _) = self.kick(self.course.time);
-        self.right.prescribe_velocity_at(self.course.time);
+        let (kick, _) = self.kick(self.observer.time);
+        self.right.prescribe_velocity_at(self.observer.time);
         let rates_at_gaps = |joint: usize| {
             let [intrados, extrados] = self.gaps(joint).map(|gap| gap / self.last_step);
             Vector3::new(intrados, extrados, 0.0)
@@ -399,7 +401,7 @@ impl<'a> SlidingStepper<'a> {
         self.program
             .place(&self.faces, &self.contacts, &self.positions);
         self.program.start_from(&self.auxiliary, 0.5);
-        self.load(kick, self.course.time);
+        self.load(kick, self.observer.time);
         let tolerance = RATE_TOLERANCE * self.gravity * self.last_step;
         self.program.solve(|joint| apart[joint], tolerance);
         mem::swap(&mut self.program, &mut self.auxiliary);
@@ -408,7 +410,7 @@ impl<'a> SlidingStepper<'a> {
 
     /// Reports the joints that open in a step from the closed row. The step begins at `from_s`, with this energy, and with these rotations and rates.
     fn note_uplift(&mut self, from_s: f64, energy_j: f64, rotations_and_rates: Vec<(f64, f64)>) {
-        let opened = &mut self.course.opened;
+        let opened = &mut self.observer.opened;
         opened.clear();
         for (joint, mode) in self.program.modes.iter().enumerate() {
             let stood = self.rest.touching[joint];
@@ -462,19 +464,19 @@ fn contact(
     supports: &[Position; 2],
     positions: &[Position],
     joint: usize,
-) -> Contact {
+) -> FaceContact {
     let block = |index: Option<usize>| index.and_then(|index| positions.get(index));
     let (left, right) = (block(joint.checked_sub(1)), block(Some(joint)));
     faces[joint].contact(left.unwrap_or(&supports[0]), right.unwrap_or(&supports[1]))
 }
 
 impl<'a> Stepper<'a> for SlidingStepper<'a> {
-    fn course(&self) -> &Course<'a> {
-        &self.course
+    fn observer(&self) -> &MotionObserver<'a> {
+        &self.observer
     }
 
-    fn course_mut(&mut self) -> &mut Course<'a> {
-        &mut self.course
+    fn observer_mut(&mut self) -> &mut MotionObserver<'a> {
+        &mut self.observer
     }
 
     fn complete(&mut self) {
@@ -484,14 +486,14 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
     }
 
     fn step(&mut self, until: f64) -> Result<(), RowMotionError> {
-        let step = equal_step(self.course.time, until, self.course.longest_step_s);
-        let to_s = self.course.time + 0.5 * step;
+        let step = equal_step(self.observer.time, until, self.observer.longest_step_s);
+        let to_s = self.observer.time + 0.5 * step;
         let (kick, ground) = self.kick(to_s);
         let momentum = self.momentum();
         let stood = self.stands.then(|| {
-            let energy_j = self.kinetic() + self.course.potential;
+            let energy_j = self.kinetic() + self.observer.potential;
             (
-                self.course.time,
+                self.observer.time,
                 energy_j,
                 self.rotations_and_rates().collect(),
             )
@@ -501,14 +503,14 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
         if self.right.moves() {
             let last = self.faces.len() - 1;
             let work_j = self.program.impulses[last].dot(&self.right_support_rates(last, mean_m_s));
-            self.course.row_summary.right_foot_j -= work_j;
+            self.observer.row_summary.right_foot_j -= work_j;
             let impulse = self.ties.right_support_force_n() * (to_s - self.kicked_s);
-            self.course.row_summary.right_foot_j -= impulse.dot(&mean_m_s);
+            self.observer.row_summary.right_foot_j -= impulse.dot(&mean_m_s);
         }
         for (block, velocity) in self.velocities.iter_mut().enumerate() {
             *velocity = self.program.velocity(block);
         }
-        self.course.row_summary.ground_j -= ground.dot(&((momentum + self.momentum()) * 0.5));
+        self.observer.row_summary.ground_j -= ground.dot(&((momentum + self.momentum()) * 0.5));
         self.note_forces(to_s - self.kicked_s);
         self.kicked_s = to_s;
         self.last_step = step;
@@ -527,8 +529,8 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
                 dissipation: taken,
                 ..landing
             });
-            self.course.impacts += 1;
-            self.course.await_impact();
+            self.observer.impacts += 1;
+            self.observer.await_impact();
         }
         let tie_events = self.drift(step);
         if let Some((from_s, energy_j, rotations_and_rates)) = stood {
@@ -536,8 +538,8 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
         } else {
             self.stands = self.has_initial_contacts();
         }
-        let scale_j = self.course.task.energy_scale_j;
-        self.course.halve_unbalanced_steps(scale_j, || scale_j);
+        let scale_j = self.observer.input.energy_scale_j;
+        self.observer.halve_unbalanced_steps(scale_j, || scale_j);
         self.report_ties(tie_events);
         Ok(())
     }
@@ -594,7 +596,7 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
         let stood = &self.rest.touching;
         let touches = |joint: usize| self.gaps(joint).map(|gap| gap == 0.0) == stood[joint];
         let lies = if self.right_support_is_displaced() {
-            self.course.is_quiet(self.course.quiet_since_s)
+            self.observer.is_quiet(self.observer.quiet_since_s)
         } else {
             (0..self.faces.len()).all(touches)
         };
@@ -603,14 +605,14 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
             || sample.rotations_rad.iter().all(|angle| *angle == 0.0)
     }
 
-    fn rests_since(&self) -> Option<f64> {
-        let low = self.course.potential.abs() < REST_ENERGY_RATIO * self.course.energy_unit;
+    fn at_rest_since_s(&self) -> Option<f64> {
+        let low = self.observer.potential.abs() < REST_ENERGY_RATIO * self.observer.energy_unit;
         let undeformed = low && !self.right_support_is_displaced();
         let rests = if undeformed {
-            self.course.time > self.course.quiet_since_s
+            self.observer.time > self.observer.quiet_since_s
         } else {
-            self.course.is_quiet(self.course.quiet_since_s)
+            self.observer.is_quiet(self.observer.quiet_since_s)
         };
-        rests.then_some(self.course.quiet_since_s)
+        rests.then_some(self.observer.quiet_since_s)
     }
 }

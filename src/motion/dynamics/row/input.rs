@@ -7,7 +7,7 @@ use crate::mechanics::{Edge, Joint, Row, Supports};
 
 /// Input of the motion of a row.
 #[derive(Clone, Copy)]
-pub struct Task<'a> {
+pub struct MotionInput<'a> {
     pub row: &'a Row,
     pub ground: &'a GroundMotion,
     pub gravity_m_s2: f64,
@@ -20,8 +20,8 @@ pub struct Task<'a> {
     pub energy_scale_j: f64,
 }
 
-impl<'a> Task<'a> {
-    /// Returns a task with energy scales from the blocks alone.
+impl<'a> MotionInput<'a> {
+    /// Returns the input with energy scales from the blocks alone.
     pub fn new(
         row: &'a Row,
         ground: &'a GroundMotion,

@@ -1,4 +1,4 @@
-//! Course of a motion, common to all steppers of a row: reports, peaks, half cycles, energy balance and outcome.
+//! Observation of a motion, common to all steppers of a row: reports, peaks, half cycles, energy balance and outcome.
 
 use std::mem;
 
@@ -8,8 +8,8 @@ use crate::dynamics::request::later_end_s;
 use crate::dynamics::thrust::FrictionDemands;
 use crate::dynamics::until::SAFE;
 use crate::dynamics::{
-    Cost, Details, Event, EventKind, HalfCycle, Outcome, RowMotionError, Sample, State, Summary,
-    Task, ThrustRecord,
+    Cost, Details, Event, EventKind, HalfCycle, MotionInput, Outcome, RowMotionError, Sample,
+    State, Summary, ThrustRecord,
 };
 use crate::mechanics::chain::LEAST_LOAD;
 use crate::mechanics::{Hinge, Lanes, Sway, Tie, TieMemory};
@@ -41,8 +41,8 @@ const SLIPPED_RATIO: f64 = 0.01;
 /// elastic joints.
 const HALVED_FROM: [f64; 4] = [0.6, 0.75, 0.85, 0.92];
 
-/// Record of a motion up to the current time.
-pub struct Course<'a> {
+/// Record of a motion up to the current time, and its evaluation.
+pub struct MotionObserver<'a> {
     pub time: f64,
     /// Potential energy above the undeformed row, in J.
     pub potential: f64,
@@ -71,9 +71,9 @@ pub struct Course<'a> {
     pub elastic: ElasticSummary,
     /// Longest step from now on, in seconds.
     pub longest_step_s: f64,
-    pub task: Task<'a>,
+    pub input: MotionInput<'a>,
     /// Last maximum of the height before the final descent, from the heights that the stepper reports.
-    pub summit: Summit,
+    pub last_maximum: LastMaximum,
     /// True once the stepper has found that the row has overturned.
     pub overturned: bool,
     /// Time since which the kinetic energy is small, in seconds.
@@ -123,14 +123,14 @@ struct PartialResults {
 }
 
 /// Last maximum of the height before the final descent.
-pub struct Summit {
+pub struct LastMaximum {
     pub time: f64,
     highest: f64,
     /// Lowest height since then.
     lowest: f64,
 }
 
-impl Summit {
+impl LastMaximum {
     pub const fn new(height: f64, time: f64) -> Self {
         Self {
             time,
@@ -145,17 +145,17 @@ pub(super) fn side_of(value: f64) -> Sway {
     if value > 0.0 { Sway::Right } else { Sway::Left }
 }
 
-impl<'a> Course<'a> {
+impl<'a> MotionObserver<'a> {
     /// Returns the record of a motion that begins. `overturned_below_j` is the potential energy in J below which the row has overturned; `None` if
     /// the stepper uses other criteria.
     pub fn new(
-        task: Task<'a>,
+        input: MotionInput<'a>,
         overturned_below_j: Option<f64>,
         recorder: Option<&'a mut dyn Recorder>,
     ) -> Self {
-        let Task { row, settings, .. } = task;
-        let energy_unit = row.mass_kg() * task.gravity_m_s2 * row.size_m;
-        let start_s = task.ground.start_s();
+        let MotionInput { row, settings, .. } = input;
+        let energy_unit = row.mass_kg() * input.gravity_m_s2 * row.size_m;
+        let start_s = input.ground.start_s();
         Self {
             time: start_s,
             potential: 0.0,
@@ -163,13 +163,13 @@ impl<'a> Course<'a> {
             sway: 0.0,
             moved: false,
             has_rocked: None,
-            least_sway_kg_m: SWAY_RATIO * energy_unit / task.gravity_m_s2,
+            least_sway_kg_m: SWAY_RATIO * energy_unit / input.gravity_m_s2,
             energy_unit,
             shut: Vec::new(),
             opened: Vec::new(),
             longest_step_s: settings.longest_step_s,
-            task,
-            summit: Summit::new(0.0, start_s),
+            input,
+            last_maximum: LastMaximum::new(0.0, start_s),
             overturned: false,
             quiet_since_s: start_s,
             overturned_below_j: overturned_below_j.unwrap_or(f64::NEG_INFINITY),
@@ -207,12 +207,12 @@ impl<'a> Course<'a> {
         }
     }
 
-    /// Returns the outcome of the motion and its time; `None` if the motion continues. `overturned_s` is the time of overturning, `rests_since` the
+    /// Returns the outcome of the motion and its time; `None` if the motion continues. `overturned_s` is the time of overturning, `at_rest_since_s` the
     /// time since which the row rests.
     pub fn ending(
         &self,
         overturned_s: Option<f64>,
-        rests_since: impl FnOnce() -> Option<f64>,
+        at_rest_since_s: impl FnOnce() -> Option<f64>,
     ) -> Option<(Outcome, f64)> {
         let closed = self.outcome_with_closed_joints();
         let still = (closed.unwrap_or(Outcome::StillRocking), self.time);
@@ -222,24 +222,24 @@ impl<'a> Course<'a> {
         if let Some(time_s) = overturned_s {
             return Some((Outcome::Overturned(side_of(self.sway)), time_s));
         }
-        if self.time >= self.task.ground.end_s()
-            && let Some(time_s) = rests_since()
+        if self.time >= self.input.ground.end_s()
+            && let Some(time_s) = at_rest_since_s()
         {
             let rest = (Outcome::Rest, time_s);
             return Some(closed.map_or(rest, |closed| (closed, self.time)));
         }
-        (self.time >= self.task.settings.end_s).then_some(still)
+        (self.time >= self.input.settings.end_s).then_some(still)
     }
 
     /// Lengthens a motion that would end with this outcome, if it is incomplete. Returns its new end in seconds, `None` if it ends.
     pub fn lengthened_s(&mut self, outcome: Outcome) -> Option<f64> {
-        let settings = &self.task.settings;
+        let settings = &self.input.settings;
         let is_known = self.stopped || matches!(outcome, Outcome::Overturned(_) | Outcome::Rest);
         if is_known || !self.is_incomplete() {
             return None;
         }
-        let end_s = later_end_s(settings.outcome_by_s, self.task.ground, settings.end_s)?;
-        self.task.settings.end_s = end_s;
+        let end_s = later_end_s(settings.outcome_by_s, self.input.ground, settings.end_s)?;
+        self.input.settings.end_s = end_s;
         Some(end_s)
     }
 
@@ -264,9 +264,9 @@ impl<'a> Course<'a> {
         let lies = |barrier_j: &f64| self.elastic.crushed_j <= SLIPPED_RATIO * barrier_j;
         let energy_ratio = match self.known_barrier_j().filter(lies) {
             Some(barrier_j) => (self.kinetic + self.potential) / barrier_j,
-            None => self.recent_j[0].max(self.recent_j[1]) / self.task.undeformed_barrier_j,
+            None => self.recent_j[0].max(self.recent_j[1]) / self.input.undeformed_barrier_j,
         };
-        self.time < self.task.ground.end_s() || energy_ratio > SAFE
+        self.time < self.input.ground.end_s() || energy_ratio > SAFE
     }
 
     /// Returns the energy barrier, in J; `None` if unknown, or if the row has slipped so much that its potential energy is not comparable.
@@ -274,17 +274,17 @@ impl<'a> Course<'a> {
         let sliding = self.row_summary.sliding.as_ref();
         let rubbed_j = sliding.map_or(0.0, |sliding| sliding.friction_j);
         let known = |barrier_j: &f64| rubbed_j <= SLIPPED_RATIO * barrier_j;
-        self.task.barrier_j.filter(known)
+        self.input.barrier_j.filter(known)
     }
 
     /// Returns the duration of small kinetic energy after which the row is at rest, in seconds.
     pub fn rest_time_s(&self) -> f64 {
-        REST_TIME_RATIO * (self.task.row.size_m / self.task.gravity_m_s2).sqrt()
+        REST_TIME_RATIO * (self.input.row.size_m / self.input.gravity_m_s2).sqrt()
     }
 
     /// Returns the least normal force of a joint that counts in the friction demand, in N.
     pub fn least_load_n(&self) -> f64 {
-        LEAST_LOAD * self.energy_unit / self.task.row.size_m
+        LEAST_LOAD * self.energy_unit / self.input.row.size_m
     }
 
     /// Records the least normal force at a joint, from tangential and normal impulses during `lasts_s`. Returns the friction demand.
@@ -319,7 +319,7 @@ impl<'a> Course<'a> {
 
     /// Returns the last time at which the row could still return, if the stepper has found that it has overturned.
     pub fn overturned_s(&self) -> Option<f64> {
-        self.overturned.then_some(self.summit.time)
+        self.overturned.then_some(self.last_maximum.time)
     }
 
     /// Returns the last time at which the row could still return, if its potential energy shows that it has overturned.
@@ -374,7 +374,7 @@ impl<'a> Course<'a> {
         let row_summary = &mut self.row_summary;
         row_summary.largest_potential_j = row_summary.largest_potential_j.max(potential);
         row_summary.largest_kinetic_j = row_summary.largest_kinetic_j.max(kinetic);
-        let recent_s = RECENT_RATIO * (self.task.row.size_m / self.task.gravity_m_s2).sqrt();
+        let recent_s = RECENT_RATIO * (self.input.row.size_m / self.input.gravity_m_s2).sqrt();
         if self.time - self.recent_from_s > recent_s {
             self.recent_from_s = self.time;
             self.recent_j = [self.recent_j[1], 0.0];
@@ -406,16 +406,16 @@ impl<'a> Course<'a> {
     /// counts as a return. `None` if the feet move apart: the feet do work, so heights do not decide whether the row returns. The row has then not
     /// begun to fall while its kinetic energy is small.
     pub fn note_height(&mut self, height: Option<f64>) {
-        let (least, summit) = (LEAST_RETURN * self.energy_unit, &mut self.summit);
+        let (least, last_maximum) = (LEAST_RETURN * self.energy_unit, &mut self.last_maximum);
         if let Some(height) = height {
-            summit.lowest = summit.lowest.min(height);
-            if height >= summit.highest || height >= summit.lowest + least {
-                *summit = Summit::new(height, self.time);
+            last_maximum.lowest = last_maximum.lowest.min(height);
+            if height >= last_maximum.highest || height >= last_maximum.lowest + least {
+                *last_maximum = LastMaximum::new(height, self.time);
             }
         } else if self.kinetic < least {
-            summit.time = self.time;
+            last_maximum.time = self.time;
         }
-        if summit.time == self.time {
+        if last_maximum.time == self.time {
             self.save_results_before_fall();
         }
     }
@@ -532,7 +532,7 @@ impl<'a> Course<'a> {
     pub fn halve_unbalanced_steps(&mut self, scale_j: f64, other_scale_j: impl FnOnce() -> f64) {
         let part = HALVED_FROM.get(self.row_summary.halvings as usize);
         let most = part.unwrap_or(&f64::INFINITY) * LARGEST_ENERGY_ERROR;
-        if self.task.settings.may_halve
+        if self.input.settings.may_halve
             && self.energy_error(scale_j) > most
             && self.energy_error(other_scale_j()) > most
         {
@@ -552,7 +552,7 @@ impl<'a> Course<'a> {
     /// Returns a sample without data of blocks and joints, and whether the recorder needs the thrust line.
     pub(super) fn blank_sample(&mut self) -> (Sample, bool) {
         let mut sample = mem::take(&mut self.sample);
-        let ground = self.task.ground;
+        let ground = self.input.ground;
         let (ground_m_s2, _) = ground.pieces[ground.piece_at(self.time)].at(self.time);
         sample.begin(self.time, ground_m_s2, self.phase);
         let recorder = self.recorder.as_ref();
@@ -566,7 +566,7 @@ impl<'a> Course<'a> {
         let sample = &mut self.sample;
         sample.energy_j = kinetic + self.potential;
         let ratio = |barrier_j| sample.energy_j / barrier_j;
-        sample.energy_ratio = self.task.barrier_j.map(ratio);
+        sample.energy_ratio = self.input.barrier_j.map(ratio);
         if self.is_falling {
             if let Some(recorder) = &mut self.recorder {
                 self.stopped = recorder.fall(sample).is_break();
@@ -643,7 +643,7 @@ impl<'a> Course<'a> {
         let potential_j = self.row_summary.largest_potential_j;
         let over = |barrier_j: f64| potential_j / barrier_j;
         self.row_summary.peak_potential_over_barrier = self.known_barrier_j().map(over);
-        self.row_summary.energy_error = self.energy_error(self.task.energy_scale_j);
+        self.row_summary.energy_error = self.energy_error(self.input.energy_scale_j);
         let row = Box::new(self.row_summary.clone());
         self.thrust.lasting_friction = Some(self.friction.lasting());
         let summary = Summary {

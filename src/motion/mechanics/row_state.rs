@@ -4,14 +4,14 @@ use crate::mechanics::{Lanes, Placement, Pose, Row, TieLine, TieMemory};
 
 /// Positions of the blocks of a row, and states of its ties.
 #[derive(Clone, Debug)]
-pub struct Stance {
+pub struct RowState {
     /// Positions of its blocks.
     pub placement: Placement,
     /// States of the ties.
     pub ties: Vec<TieMemory<Lanes<1>>>,
 }
 
-impl Stance {
+impl RowState {
     /// Returns the state of the undeformed row.
     pub fn undeformed(row: &Row) -> Self {
         Self {

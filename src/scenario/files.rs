@@ -1,0 +1,117 @@
+//! The files that a scenario names, in a folder or in memory.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Component, Path, PathBuf};
+use std::sync::Arc;
+
+use glob::{MatchOptions, Pattern, PatternError};
+
+use super::error::ensure;
+use super::shown;
+use super::source::read_at_most;
+
+/// Where the files of a scenario are.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(super) struct Files {
+    /// The folder to which names are relative; empty for files in memory.
+    pub(super) folder: PathBuf,
+    /// The contents of the files by name; `None` if they are on disk.
+    pub(super) in_memory: Option<Arc<BTreeMap<PathBuf, Vec<u8>>>>,
+}
+
+impl Files {
+    /// Returns the path of a file.
+    pub(super) fn path(&self, name: &str) -> PathBuf {
+        self.folder.join(name)
+    }
+
+    /// Reads the contents of a file of at most 64 MiB. The error is a phrase that follows the name.
+    pub(super) fn read(&self, path: &Path) -> Result<Vec<u8>, String> {
+        if let Some(in_memory) = &self.in_memory {
+            let contents = in_memory.get(path).cloned();
+            return contents.ok_or_else(|| "cannot be read: no such file was given".to_owned());
+        }
+        let unreadable = |error| format!("cannot be read: {error}");
+        let is_file = fs::metadata(path).map_err(unreadable)?.is_file();
+        ensure(is_file, || "is not a file")?;
+        read_at_most(fs::File::open(path).map_err(unreadable)?, 64, "record")
+    }
+
+    /// Returns true if there is a file with this path.
+    fn has(&self, path: &Path) -> bool {
+        match &self.in_memory {
+            Some(in_memory) => in_memory.contains_key(path),
+            None => path.is_file(),
+        }
+    }
+
+    /// Returns the files that match a pattern, relative to the folder. The error is a phrase that follows the pattern.
+    pub(super) fn find(&self, pattern: &str) -> Result<Vec<String>, String> {
+        // A name that looks like a pattern is a file if such a file exists: so a resolved scenario reads back the same.
+        let path = self.path(pattern);
+        let no_file =
+            |is: &str| format!("{is}; must be a file or a pattern such as \"folder/*.at2\"");
+        ensure(!path.is_dir(), || no_file("is a folder"))?;
+        if self.has(&path) {
+            return Ok(vec![file_name(Path::new(pattern))?]);
+        }
+        let is_pattern = pattern.contains(['*', '?', '[']);
+        ensure(is_pattern, || no_file("does not exist"))?;
+        let options = MatchOptions {
+            // As in a shell, `*` does not match hidden files.
+            require_literal_leading_dot: true,
+            require_literal_separator: true,
+            case_sensitive: true,
+        };
+        let invalid = |error: PatternError| format!("is not a valid file pattern: {}", error.msg);
+        let mut files = Vec::new();
+        if let Some(in_memory) = &self.in_memory {
+            let pattern = Pattern::new(pattern).map_err(invalid)?;
+            let names = in_memory.keys().map(Path::new);
+            let names = names.filter(|name| pattern.matches_path_with(name, options));
+            files = names.map(file_name).collect::<Result<_, _>>()?;
+            ensure(!files.is_empty(), || "matches no file")?;
+            return Ok(files);
+        }
+        let here = self.folder.as_os_str().is_empty();
+        let folder = if here { Path::new(".") } else { &*self.folder };
+        // `glob` has no base folder, so patterns are made absolute.
+        let folder =
+            std::path::absolute(folder).map_err(|error| format!("cannot be found: {error}"))?;
+        let escaped = folder.to_str().map(Pattern::escape).ok_or(
+            "is relative to a folder whose name is not UTF-8 text; name the files one by one",
+        )?;
+        let absolute = Path::new(&escaped).join(pattern);
+        let matches = glob::glob_with(&absolute.to_string_lossy(), options).map_err(invalid)?;
+        for path in matches {
+            let path = path.map_err(|error| format!("cannot be searched: {}", error.error()))?;
+            if path.is_file() {
+                files.push(file_name(path.strip_prefix(&folder).unwrap_or(&path))?);
+            }
+        }
+        ensure(!files.is_empty(), || "matches no file")?;
+        Ok(files)
+    }
+}
+
+/// First characters of cells that spreadsheets interpret as formulas. A tab would be another, but it is a control character.
+const FORMULA: [char; 4] = ['=', '+', '-', '@'];
+
+/// Returns the name of a file for scenarios and results. The name must fit on one line and in one cell.
+fn file_name(path: &Path) -> Result<String, String> {
+    let parts = path.components();
+    let plain: PathBuf = parts.filter(|part| *part != Component::CurDir).collect();
+    match plain.to_str() {
+        Some(name) if name.starts_with(FORMULA) => Err(format!(
+            "names {}, which spreadsheets that open the table of results would take for a formula: give the file a name \
+             that does not begin with any of = + - @",
+            shown(name)
+        )),
+        Some(name) if !name.contains(char::is_control) => Ok(name.to_owned()),
+        _ => Err(format!(
+            "names \"{}\"; file names must be UTF-8 without control characters",
+            shown(&plain.display().to_string())
+        )),
+    }
+}

@@ -1,0 +1,111 @@
+//! What every model of motion has: names, properties, and options in a table of the scenario.
+
+use std::fmt::Debug;
+use std::sync::Arc;
+
+use super::prelude::*;
+use super::structure::{ModelError, Structure};
+use crate::dynamics::Variation;
+use crate::mechanics::Movements;
+use crate::{ImpactLaw, Model, Request};
+
+/// A model of motion: its names, its properties, and the reader of its options.
+#[derive(Debug)]
+pub struct ModelKind {
+    /// Name of the model in the command-line option `--hinges`.
+    pub option: &'static str,
+    /// Name of the model in results; four links of a column are named `column`.
+    pub name: &'static str,
+    /// Scenario table with the options of the model.
+    pub table: &'static str,
+    /// Name of the model in sentences.
+    pub label: &'static str,
+    /// True: the structure is a row of blocks with joints. False: it is one mechanism at a time.
+    pub has_joints: bool,
+    /// True: blocks and joints are rigid. False: joints have a stiffness, and several motions are computed faster together.
+    pub is_rigid: bool,
+    /// Message about a table that the model ignores; `None` if it ignores no table.
+    pub ignored: Option<&'static str>,
+    /// Fault of a scenario without the table; `None` if all options have defaults.
+    pub(super) lacking: Option<&'static str>,
+    /// Reader of the table.
+    pub(super) read: fn(&mut Table<'_>) -> ReadResult<Arc<dyn ModelOptions>>,
+}
+
+/// Kinds are equal if their names are.
+impl PartialEq for ModelKind {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+/// A model of motion, or the reason why the structure has none.
+pub type AnyModel = Result<Box<dyn Model>, ModelError>;
+
+/// The conditions under which a structure stands at time 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Site {
+    /// Movements of the supports before time 0, from `[supports]`.
+    pub(super) supports: Movements,
+    /// Acceleration of gravity, in m/s2, from `[simulation]`.
+    pub(super) gravity_m_s2: f64,
+}
+
+/// The options of a model of motion, from its table.
+pub trait ModelOptions: Debug + Send + Sync {
+    /// Returns the contents of the scenario table of the model.
+    fn to_json(&self) -> Value;
+
+    /// Makes the model of a structure.
+    ///
+    /// # Errors
+    /// When the structure does not rock as four links, or is not a row of blocks that can stand.
+    fn model(&self, structure: &Structure, site: &Site) -> AnyModel;
+
+    /// Makes the model for a study of many cases.
+    ///
+    /// # Errors
+    /// As [`ModelOptions::model`].
+    fn model_for_many_cases(&self, structure: &Structure, site: &Site) -> AnyModel {
+        self.model(structure, site)
+    }
+
+    /// Makes models with other, equally likely properties.
+    ///
+    /// # Errors
+    /// As [`ModelOptions::model`].
+    fn variations(&self, _: &Structure, _: &Site) -> Result<Vec<Variation>, ModelError> {
+        Ok(Vec::new())
+    }
+
+    /// Returns the impact law; `None` if impacts follow from the blocks, or if there are none.
+    fn law(&self) -> Option<ImpactLaw> {
+        None
+    }
+
+    /// Returns Coulomb's coefficient of friction; `None` if joints cannot slip.
+    fn friction_coefficient(&self) -> Option<f64> {
+        None
+    }
+
+    /// Returns the compressive strength of joints that may crush, in MPa; otherwise `None`.
+    fn compressive_strength_mpa(&self) -> Option<f64> {
+        None
+    }
+
+    /// Returns the longest step of the motion, in seconds; `None` if a tolerance determines the steps, or if the structure cannot stand.
+    fn longest_step_s(&self, _: &Structure, _: &Site, _: &Request) -> Option<f64> {
+        None
+    }
+
+    /// Rejects options that do not fit the structure. `end_s` is the end of the history, if it is known.
+    fn check(
+        &self,
+        _: &mut Table<'_>,
+        _: &Structure,
+        _: &Site,
+        _end_s: Option<f64>,
+    ) -> ReadResult<()> {
+        Ok(())
+    }
+}
