@@ -180,7 +180,8 @@ fn factors_with_free_falling_ground_are_reported() {
     }
     let band = threshold.bands()[threshold.bands().len() - 1];
     assert_eq!(band.to_end, RangeEnd::Unknown);
-    assert!(band.to < 5.0 && band.to > 4.5);
+    // The next sample is a stride of 10 % above.
+    assert!(band.to < 5.0 && 1.1 * band.to > 5.0 - 1e-9);
 }
 
 /// Overturns or not as a function of the peak ground acceleration, in m/s2; or fails.
