@@ -5,9 +5,6 @@
 use std::f64::consts::PI;
 
 use archrock::dynamics::ground::{GroundMotion, Pulse};
-use archrock::internals::contact::{Load, Program};
-use archrock::internals::free_hinges::{Settings, simulate};
-use archrock::internals::joints::Placement;
 use archrock::mechanics::blocks::Row;
 use archrock::mechanics::four_link::limit::incipient;
 use archrock::mechanics::four_link::mechanism::HingeSites;
@@ -16,6 +13,9 @@ use archrock::mechanics::geometry::ring::Ring;
 use archrock::scenario::Scenario;
 use archrock::studies::map::OverturningMap;
 use archrock::studies::runner::Study as _;
+use archrock_motion::internals::contact::{Load, Program};
+use archrock_motion::internals::free_hinges::{Settings, simulate};
+use archrock_motion::internals::joints::Placement;
 use divan::Bencher;
 use divan::counter::ItemsCount;
 

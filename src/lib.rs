@@ -79,8 +79,6 @@ pub mod output;
 pub mod scenario;
 pub mod studies;
 
-#[doc(hidden)]
-pub use archrock_motion::internals;
 #[doc(inline)]
 pub use archrock_motion::{dynamics, mechanics};
 

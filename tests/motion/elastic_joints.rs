@@ -5,7 +5,6 @@ use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
 use archrock::dynamics::repeatability::Repetitions;
-use archrock::internals::lanes::Lanes;
 use archrock::mechanics::blocks::{Drum, Row, Supports};
 use archrock::mechanics::elastic_joint::{BodyPosition, ElasticStructure, RestError};
 use archrock::mechanics::geometry::ring::Ring;
@@ -15,6 +14,7 @@ use archrock::{
     JointStiffness, Materials, Model, Outcome, Pulse, Request, RowModelError, Sample,
     SimulationError, Stiffness, Summary, Sway,
 };
+use archrock_motion::internals::lanes::Lanes;
 use nalgebra::Vector2;
 
 use crate::common::program::{scenarios, validated};

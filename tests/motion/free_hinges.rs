@@ -6,8 +6,6 @@ use crate::common::{GRAVITY, Random, between_faces, random_history, random_row, 
 use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::{Event, Impact, Outcome, Sample, Summary};
 use archrock::dynamics::model::Recorder;
-use archrock::internals::contact::{Load, Program};
-use archrock::internals::free_hinges::{Settings, simulate};
 use archrock::mechanics::blocks::{Block, Drum, Joint, Row, RowError, Supports};
 use archrock::mechanics::chain::Mechanism as _;
 use archrock::mechanics::four_link::certificate;
@@ -20,6 +18,8 @@ use archrock::mechanics::geometry::ring::{Edge, Ring};
 use archrock::mechanics::stability::{StabilityError, collapse_mechanism, onset};
 use archrock::mechanics::sway::Sway;
 use archrock::{Column, Model, Request, RockingColumn, RowMotionError};
+use archrock_motion::internals::contact::{Load, Program};
+use archrock_motion::internals::free_hinges::{Settings, simulate};
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
     DefaultSettings, DefaultSolver, IPSolver as _, NonnegativeConeT, SolverStatus, ZeroConeT,

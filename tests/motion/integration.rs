@@ -3,10 +3,10 @@
 use std::ops::ControlFlow;
 
 use archrock::dynamics::history::Cost;
-use archrock::internals::hybrid::engine::{
+use archrock_motion::internals::hybrid::engine::{
     EngineError, Finish, HybridSystem, Observer, Settings, SystemState, Transition, simulate,
 };
-use archrock::internals::hybrid::integrator::{self, IntegratorError, State, Step, Task};
+use archrock_motion::internals::hybrid::integrator::{self, IntegratorError, State, Step, Task};
 
 fn task<const N: usize>(start_s: f64, end_s: f64, start: State<N>, tolerance: f64) -> Task<N> {
     Task {

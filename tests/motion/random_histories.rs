@@ -2,13 +2,13 @@
 
 use crate::common;
 use crate::common::three;
-use archrock::internals::hybrid::rocking::Rocking;
 use archrock::mechanics::chain::{Mechanism as _, MechanismChain as _};
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::{
     FourLinks, GroundMotion, ImpactModel, Initial, Model as _, Outcome, Pulse, Request, Sample,
     State, Sway,
 };
+use archrock_motion::internals::hybrid::rocking::Rocking;
 use proptest::prelude::*;
 
 fn model() -> impl Strategy<Value = ImpactModel> {

@@ -8,10 +8,6 @@ use archrock::dynamics::free_hinges::FreeHinges;
 use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::{Outcome, Sample, Sliding, Summary};
 use archrock::dynamics::model::Recorder;
-use archrock::internals::complementarity;
-use archrock::internals::coulomb::{Program, TangentialMode};
-use archrock::internals::free_hinges::{Settings, simulate};
-use archrock::internals::slip::{Contact, Faces, Position};
 use archrock::mechanics::blocks::{Joint, Row, Supports};
 use archrock::mechanics::chain::Hinge;
 use archrock::mechanics::column::Column;
@@ -22,6 +18,10 @@ use archrock::mechanics::masonry::{
 };
 use archrock::mechanics::stability;
 use archrock::mechanics::sway::Sway;
+use archrock_motion::internals::complementarity;
+use archrock_motion::internals::coulomb::{Program, TangentialMode};
+use archrock_motion::internals::free_hinges::{Settings, simulate};
+use archrock_motion::internals::slip::{Contact, Faces, Position};
 use nalgebra::{DMatrix, DVector, Vector2, Vector3};
 
 fn arch(embrace_deg: f64, thickness_ratio: f64, voussoirs: usize, radius_m: f64) -> Row {

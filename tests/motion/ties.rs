@@ -12,7 +12,6 @@ use crate::common::prose::{golden, shows};
 use crate::common::results::{Table, json, named};
 use crate::common::{parsed, pulse, run_sampled, sampled};
 use archrock::dynamics::history::EventKind;
-use archrock::internals::lanes::Lanes;
 use archrock::mechanics::blocks::{Drum, Row};
 use archrock::mechanics::capacity::TieEventDisplacements;
 use archrock::mechanics::tie::{Anchor, Tie, TieMemory};
@@ -21,6 +20,7 @@ use archrock::{
     Contact, ElasticJoints, ElasticProperties, FreeHinges, GroundMotion, JointStiffness, Model,
     Pulse, Request, RowOptions, Stiffness,
 };
+use archrock_motion::internals::lanes::Lanes;
 use nalgebra::{Matrix2, Vector2};
 use roxmltree::Document;
 

@@ -8,12 +8,12 @@ use crate::common::program::{printed, refused};
 use crate::common::prose::golden;
 use crate::common::results::{self, Table};
 use crate::common::{ON_A_PIER, UNEVEN_ARCH};
-use archrock::internals::contact::{Load, Program};
 use archrock::mechanics::blocks::Row;
 use archrock::mechanics::four_link::impact::closing_field;
 use archrock::mechanics::geometry::field::{Field, Side, Twist};
 use archrock::scenario::Structure;
 use archrock::{FourLinks, ImpactModel, Scenario, Sway};
+use archrock_motion::internals::contact::{Load, Program};
 use nalgebra::Vector2;
 use serde_json::Value;
 

@@ -15,7 +15,6 @@ use crate::common::results::{Row, Table, named};
 use crate::common::{GRAVITY, pairs, request, semicircle, seven_voussoirs};
 use archrock::dynamics::history::{Cost, Details, MechanismSummary};
 use archrock::dynamics::model::Repetition;
-use archrock::internals::hybrid::engine::EngineError;
 use archrock::output::Figure;
 use archrock::studies::ending::{Verdict, outcome_name};
 use archrock::studies::results::StudyError;
@@ -28,6 +27,7 @@ use archrock::{
     Column, GroundMotion, ImpactModel, Model, Outcome, Pulse, Recorder, Request, RockingColumn,
     Scenario, SimulationError, Summary, Sway,
 };
+use archrock_motion::internals::hybrid::engine::EngineError;
 use nalgebra::Vector2;
 use serde_json::Value;
 
