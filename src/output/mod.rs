@@ -51,6 +51,7 @@ use crate::scenario::shown_lines;
 
 /// Errors of writing results.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum OutputError {
     /// The system reported an error.
     #[error("{what}: {source}")]

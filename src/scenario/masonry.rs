@@ -285,7 +285,6 @@ impl Additions {
                 let wrong = format!("has `{} = {:?}`, which {}", error.argument, error.value, allowed(error));
                 table.wrong_element("load", *index, wrong)
             }
-            MasonryError::Outline(error) => table.wrong(shape, error),
             MasonryError::Blocks => self.refused(
                 table,
                 "goes with arches that are given by their dimensions: give piers and fill of [blocks] as blocks",
@@ -295,6 +294,7 @@ impl Additions {
                 shape,
                 format!("makes no row of blocks: {error}; give fewer voussoirs or a smaller thickness"),
             ),
+            _ => table.wrong(shape, error),
         }
     }
 }

@@ -270,7 +270,7 @@ pub(crate) fn outcome_label(ending: &Ending) -> OutcomeLabel {
         (None, Outcome::Rest) => (2, "came to rest"),
         (None, Outcome::Overturned(_)) => (3, "overturned"),
         (None, Outcome::StillRocking) => (4, "still rocking"),
-        (None, Outcome::Incomplete) => (6, "incomplete"),
+        (None, outcome) => (6, outcome.name()),
     }
 }
 

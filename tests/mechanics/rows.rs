@@ -208,6 +208,7 @@ proptest! {
             }
             Err(RowError::Size { size_m, extent_m }) => prop_assert!(*size_m < 1e-6 * extent_m),
             Err(RowError::Thickness(..) | RowError::Block(..) | RowError::Crossing(_) | RowError::Order { .. }) | Ok(_) => {}
+            Err(error) => prop_assert!(false, "{error}"),
         }
         // Steps follow the size: a joint far larger than the row would need steps without end.
         if let Ok(row) = &row {

@@ -494,6 +494,7 @@ proptest! {
                 // Thin rings always move; with few joints a shallow ring counts as thick earlier.
                 prop_assert!(t > 0.05);
             }
+            Err(error) => prop_assert!(false, "{error}"),
         }
     }
 

@@ -285,6 +285,7 @@ pub const FEET_NEED_JOINTS: &str = "between feet that move differently joints ar
 
 /// Reason why a motion was not computed.
 #[derive(Clone, Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum SimulationError {
     /// A number of the request is out of range.
     #[error(transparent)]

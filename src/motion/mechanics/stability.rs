@@ -40,6 +40,7 @@ pub struct RowOnset {
 
 /// Reason why a row has no push of first motion.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum StabilityError {
     /// The row does not carry its own weight.
     #[error("the row cannot carry its own weight")]

@@ -40,6 +40,7 @@ pub enum Structure {
 
 /// Reasons why a structure has no model of motion.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum ModelError {
     /// The structure does not rock as four links.
     #[error(transparent)]
@@ -298,7 +299,8 @@ fn why_not(arch: &Arch, error: LimitError) -> String {
                  the thickness must be at least {least} mean radii"
             )
         }
-        LimitError::OtherMechanism(_) | LimitError::NoPush => {
+        // Another mechanism, or no push.
+        _ => {
             let degrees = plain(embrace_deg.to_degrees());
             let unit = match embrace_deg < LIKELY_EMBRACE_DEG {
                 true => format!(": is it in radians, {degrees} degrees?"),

@@ -33,6 +33,7 @@ pub struct Equilibrium {
 
 /// Reason why a structure has no equilibrium.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum RestError {
     /// Equilibrium exists without slip only.
     #[error(
