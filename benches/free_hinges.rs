@@ -5,11 +5,11 @@
 use std::f64::consts::PI;
 
 use archrock::dynamics::ground::{GroundMotion, Pulse};
-use archrock::mechanics::blocks::Row;
+use archrock::mechanics::Ring;
+use archrock::mechanics::Row;
 use archrock::mechanics::four_link::limit::incipient;
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::mechanics::geometry::field::{Side, Twist};
-use archrock::mechanics::geometry::ring::Ring;
 use archrock::scenario::Scenario;
 use archrock::studies::map::OverturningMap;
 use archrock::studies::runner::Study as _;

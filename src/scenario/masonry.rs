@@ -20,8 +20,8 @@ use super::record::{Decimal, faulty, read_numbers};
 use super::tie::{self, PULLS_OVER, TieTable};
 use crate::Masonry;
 use crate::argument::ArgumentError;
+use crate::mechanics::MAX_BLOCKS;
 use crate::mechanics::arch::{DENSITY_KG_M3, DEPTH_M};
-use crate::mechanics::blocks::MAX_BLOCKS;
 use crate::mechanics::masonry::{
     BasketArch, Dimensions, Fill, FillLevel, GivenBlocks, MasonryError, Material, Pier, Piers,
     Remedy,

@@ -1,6 +1,6 @@
 //! A single elastic joint: forces from its energy, conservation of momenta, and stresses compared with sums over many points.
 
-use archrock::mechanics::blocks::Block;
+use archrock::mechanics::Block;
 use archrock::mechanics::elastic_joint::{
     BodyPosition, ElasticJoint, ElasticStructure, Fibre, JointGeometry, Memory,
 };

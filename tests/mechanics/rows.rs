@@ -1,11 +1,11 @@
 //! Rows of blocks from arbitrary numbers: either an error, or a row that can be shaken.
 
 use crate::common::{between_faces, number, straight_sided_arch};
+use archrock::dynamics::RowModelError;
 use archrock::dynamics::free_hinges::{FreeHinges, RowOptions};
-use archrock::dynamics::row::error::RowModelError;
-use archrock::mechanics::blocks::{Block, Drum, Joint, MAX_BLOCKS, Row, RowError, Supports};
-use archrock::mechanics::geometry::ring::Ring;
+use archrock::mechanics::Ring;
 use archrock::mechanics::stability::StabilityError;
+use archrock::mechanics::{Block, Drum, Joint, MAX_BLOCKS, Row, RowError, Supports};
 use archrock::{Column, Model as _, Pulse, Request, SimulationError};
 use nalgebra::Vector2;
 use proptest::prelude::*;

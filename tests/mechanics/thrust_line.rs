@@ -7,12 +7,12 @@ use crate::common::{GRAVITY, four_links, run, sampled, semicircle, seven_voussoi
 use archrock::dynamics::free_hinges::FreeHinges;
 use archrock::dynamics::history::Summary;
 use archrock::dynamics::model::{Recorder, WithoutDemand};
+use archrock::mechanics::Edge;
 use archrock::mechanics::chain::{Demand, Hinge, Mechanism as _, MechanismChain as _, Motion};
 use archrock::mechanics::four_link::linkage::Linkage;
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::mechanics::four_link::resultant::SectionResultant;
 use archrock::mechanics::four_link::thrust::ThrustLine;
-use archrock::mechanics::geometry::ring::Edge;
 use archrock::{
     Arch, Column, FourLinks, GroundMotion, History, ImpactModel, Model, Pulse, RockingColumn,
     Sample, State, Sway,

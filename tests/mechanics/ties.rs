@@ -5,13 +5,13 @@ use crate::common::program::{printed, refused, scenarios};
 use crate::common::prose::{golden, shows};
 use crate::common::{Random, parsed, pushes_g, ring};
 use archrock::Scenario;
-use archrock::mechanics::blocks::{Row, Supports};
+use archrock::mechanics::Edge;
+use archrock::mechanics::Sway;
 use archrock::mechanics::friction;
-use archrock::mechanics::geometry::ring::Edge;
 use archrock::mechanics::settling::Follower;
 use archrock::mechanics::stability::{StabilityError, limit_with_yielding_ties, onset};
-use archrock::mechanics::sway::Sway;
-use archrock::mechanics::tie::{Anchor, Tie, TieError};
+use archrock::mechanics::{Anchor, Tie, TieError};
+use archrock::mechanics::{Row, Supports};
 use archrock::studies::limit::limit;
 use archrock::studies::verify::{page, verify};
 use clarabel::algebra::CscMatrix;
@@ -591,7 +591,7 @@ fn scenarios_with_ties_read_back() {
         &["check", "s.toml", "--set", "tie.3.area_mm2=982"],
         &["tie"],
     );
-    let stack = archrock::mechanics::column::Column::new(2.0, 0.5)
+    let stack = archrock::mechanics::Column::new(2.0, 0.5)
         .unwrap()
         .row()
         .unwrap();

@@ -5,9 +5,9 @@ use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
 use archrock::dynamics::repeatability::Repetitions;
-use archrock::mechanics::blocks::{Drum, Row, Supports};
+use archrock::mechanics::Ring;
 use archrock::mechanics::elastic_joint::{BodyPosition, ElasticStructure, RestError};
-use archrock::mechanics::geometry::ring::Ring;
+use archrock::mechanics::{Drum, Row, Supports};
 use archrock::scenario::Scenario;
 use archrock::{
     Contact, ElasticJoints, ElasticProperties, EndCondition, GroundMotion, Job, Jobs,

@@ -8,16 +8,16 @@ use archrock::dynamics::free_hinges::FreeHinges;
 use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::{Outcome, Sample, Sliding, Summary};
 use archrock::dynamics::model::Recorder;
-use archrock::mechanics::blocks::{Joint, Row, Supports};
+use archrock::mechanics::Column;
+use archrock::mechanics::Sway;
 use archrock::mechanics::chain::Hinge;
-use archrock::mechanics::column::Column;
 use archrock::mechanics::friction::{FrictionError, least_coefficient, onset};
-use archrock::mechanics::geometry::ring::{Edge, Ring};
 use archrock::mechanics::masonry::{
     BasketArch, Dimensions, Fill, FillLevel, GivenBlocks, Masonry, Material, Pier, Piers, Shape,
 };
 use archrock::mechanics::stability;
-use archrock::mechanics::sway::Sway;
+use archrock::mechanics::{Edge, Ring};
+use archrock::mechanics::{Joint, Row, Supports};
 use archrock_motion::internals::complementarity;
 use archrock_motion::internals::coulomb::{Program, TangentialMode};
 use archrock_motion::internals::free_hinges::{Settings, simulate};

@@ -6,8 +6,8 @@ use crate::common::GRAVITY;
 use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::{Event, Impact, Sample, Summary};
 use archrock::dynamics::model::Recorder;
-use archrock::mechanics::blocks::Row;
-use archrock::mechanics::geometry::ring::Ring;
+use archrock::mechanics::Ring;
+use archrock::mechanics::Row;
 use archrock_motion::internals::free_hinges::{Settings, simulate};
 use nalgebra::Vector2;
 

@@ -2,13 +2,13 @@
 
 use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::{Outcome, State};
-use archrock::mechanics::blocks::Row;
+use archrock::mechanics::Ring;
+use archrock::mechanics::Row;
+use archrock::mechanics::Sway;
 use archrock::mechanics::elastic_joint::ElasticProperties;
 use archrock::mechanics::friction;
-use archrock::mechanics::geometry::ring::Ring;
 use archrock::mechanics::settling::{Follower, Movement, Movements};
-use archrock::mechanics::sway::Sway;
-use archrock::mechanics::tie::{Anchor, Tie};
+use archrock::mechanics::{Anchor, Tie};
 use roxmltree::Document;
 
 use archrock::{ElasticJoints, FreeHinges, Hinge, History, Model as _, Request, RowOptions};

@@ -13,8 +13,8 @@ use crate::common::prose::{golden, shows};
 use crate::common::results::{Table, named};
 use crate::common::{parsed, pulse, run_sampled, sampled};
 use archrock::dynamics::model::SimulationError;
-use archrock::mechanics::blocks::{Drum, Row};
 use archrock::mechanics::settling::{Movement, Movements};
+use archrock::mechanics::{Drum, Row};
 use archrock::{
     ElasticJoints, ElasticProperties, EndCondition, FreeHinges, GroundMotion, Model, Pulse,
     RowOptions,
@@ -359,7 +359,7 @@ fn a_slow_foot_ends_in_the_equilibrium_of_moved_supports() {
         &sampled(0.1, 0.05),
     );
     let (end, rest) = (way.last().unwrap(), &rest[0]);
-    let turned = |pose: &archrock::mechanics::geometry::pose::Pose| pose.rotation_rad();
+    let turned = |pose: &archrock::mechanics::Pose| pose.rotation_rad();
     let largest = rest
         .poses
         .iter()

@@ -8,7 +8,7 @@ use crate::common::program::{printed, refused};
 use crate::common::prose::golden;
 use crate::common::results::{self, Table};
 use crate::common::{ON_A_PIER, UNEVEN_ARCH};
-use archrock::mechanics::blocks::Row;
+use archrock::mechanics::Row;
 use archrock::mechanics::four_link::impact::closing_field;
 use archrock::mechanics::geometry::field::{Field, Side, Twist};
 use archrock::scenario::Structure;

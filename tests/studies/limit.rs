@@ -8,6 +8,8 @@ use std::fs;
 use crate::common;
 use crate::common::program::printed;
 use crate::common::{Random, assert_hinges, climb, ring};
+use archrock::mechanics::Edge;
+use archrock::mechanics::Ring;
 use archrock::mechanics::chain::{Mechanism, critical_rad};
 use archrock::mechanics::four_link::limit::{
     LimitError, acceleration_g, incipient, least_thickness_ratio,
@@ -15,8 +17,6 @@ use archrock::mechanics::four_link::limit::{
 use archrock::mechanics::four_link::linkage::Linkage;
 use archrock::mechanics::four_link::mechanism::{FourLink, HingeSites};
 use archrock::mechanics::four_link::self_weight::carries_its_weight;
-use archrock::mechanics::geometry::ring::Edge;
-use archrock::mechanics::geometry::ring::Ring;
 use archrock::scenario::Scenario;
 use archrock::studies::limit::limit;
 use clarabel::algebra::CscMatrix;

@@ -12,7 +12,7 @@ use crate::common::prose::{golden, shows};
 use crate::common::results::{Row, Table, json, named, texts};
 use archrock::dynamics::history::Outcome;
 use archrock::dynamics::repeatability::OutcomeCount;
-use archrock::mechanics::sway::Sway;
+use archrock::mechanics::Sway;
 use archrock::output::Figure;
 use archrock::scenario::{Format, Layout, Measure, Scenario};
 use archrock::studies::ending::{Ending, NoHistory, Steps, Verdict};

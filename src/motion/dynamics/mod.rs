@@ -1,7 +1,7 @@
 //! Motion in time: ground motion, models of motion and their histories.
 pub mod demand;
 pub mod elastic_joints;
-pub mod fall;
+pub(crate) mod fall;
 pub mod free_hinges;
 pub mod ground;
 pub mod history;
@@ -12,9 +12,9 @@ mod recorder;
 pub mod recording;
 pub mod repeatability;
 mod request;
-pub mod row;
+pub(crate) mod row;
 pub mod thrust;
-pub mod until;
+pub(crate) mod until;
 pub mod variation;
 
 pub use self::demand::ground::{GroundSpectrum, Site};
@@ -33,4 +33,5 @@ pub use self::row::error::{RowModelError, RowMotionError};
 pub(crate) use self::row::stepper::Stepper;
 pub(crate) use self::row::task::Task;
 pub use self::thrust::ThrustRecord;
+pub use self::until::EndCondition;
 pub use self::variation::Variation;

@@ -6,7 +6,7 @@
 
 pub(crate) mod clock;
 pub(super) mod course;
-pub mod error;
+pub(crate) mod error;
 pub(super) mod standing;
 pub(super) mod stepper;
 pub(super) mod task;

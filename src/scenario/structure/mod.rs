@@ -16,7 +16,7 @@ use super::prelude::*;
 use super::span::Circular;
 use super::tie::{self, TieTable};
 use crate::argument::rounded_up;
-use crate::mechanics::blocks::MAX_BLOCKS;
+use crate::mechanics::MAX_BLOCKS;
 use crate::mechanics::four_link::limit::least_thickness_ratio;
 use crate::mechanics::masonry::{CircularArch, LoadOutlines};
 use crate::mechanics::{LimitError, Parts, PlacedLoad, RowError, Shape, Supports, Tie, arch};
