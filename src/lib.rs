@@ -83,15 +83,15 @@ pub mod studies;
 pub use archrock_motion::{dynamics, mechanics};
 
 pub use argument::ArgumentError;
+pub use dynamics::ElasticJoints;
 pub use dynamics::EndCondition;
-pub use dynamics::elastic_joints::ElasticJoints;
 pub use dynamics::free_hinges::{FreeHinges, RowOptions};
 pub use dynamics::ground::{GroundError, GroundMotion, Pulse, PulseShape, WaveTrain};
 pub use dynamics::history::{Event, EventKind, Impact, OpenHinge, Outcome, Sample, State, Summary};
 pub use dynamics::model::{
     Case, Initial, Job, Jobs, MechanismModel, Model, Recorder, Request, SimulationError,
 };
-pub use dynamics::recording::{History, MEMORY_BYTES, MemoryError, Samples};
+pub use dynamics::{History, MEMORY_BYTES, MemoryError, Samples};
 pub use dynamics::{RowModelError, RowMotionError};
 pub use mechanics::Arch;
 pub use mechanics::Pose;

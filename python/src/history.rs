@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use archrock::dynamics::FallEnd;
 use archrock::dynamics::history::Summary;
-use archrock::dynamics::recording::{Recording, Samples};
+use archrock::dynamics::{Recording, Samples};
 use archrock::dynamics::repeatability::Repeatability;
 use archrock::mechanics::chain::Demand;
 use archrock::output::point::StructurePoint;

@@ -9,10 +9,10 @@ use archrock::dynamics::history::Summary;
 use archrock::dynamics::model::{Recorder, WithoutDemand};
 use archrock::mechanics::Edge;
 use archrock::mechanics::chain::{Demand, Hinge, Mechanism as _, MechanismChain as _, Motion};
-use archrock::mechanics::four_link::linkage::Linkage;
+use archrock::mechanics::four_link::Linkage;
+use archrock::mechanics::four_link::ThrustLine;
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::mechanics::four_link::resultant::SectionResultant;
-use archrock::mechanics::four_link::thrust::ThrustLine;
 use archrock::{
     Arch, Column, FourLinks, GroundMotion, History, ImpactModel, Model, Pulse, RockingColumn,
     Sample, State, Sway,

@@ -5,7 +5,7 @@ use crate::common::{
     run_sampled, semicircle, seven_voussoirs, three,
 };
 use archrock::mechanics::chain::{Link, Mechanism as _, MechanismChain as _};
-use archrock::mechanics::four_link::linkage::Linkage;
+use archrock::mechanics::four_link::Linkage;
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::{FourLinks, GroundMotion, Outcome, Pulse, Request, Sway};
 use archrock_motion::internals::hybrid::rocking::Rocking;

@@ -5,7 +5,7 @@ use crate::common::{
     GRAVITY, REST_ENERGY_RATIO, four_links, impact_times_s, released, request, run, run_sampled,
     sampled, semicircle, seven_voussoirs, three,
 };
-use archrock::dynamics::recording::Recording;
+use archrock::dynamics::Recording;
 use archrock::mechanics::chain::{Mechanism as _, MechanismChain as _};
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::{

@@ -11,12 +11,12 @@ use crate::common::{Random, assert_hinges, climb, ring};
 use archrock::mechanics::Edge;
 use archrock::mechanics::Ring;
 use archrock::mechanics::chain::{Mechanism, critical_rad};
+use archrock::mechanics::four_link::Linkage;
+use archrock::mechanics::four_link::carries_its_weight;
 use archrock::mechanics::four_link::limit::{
     LimitError, acceleration_g, incipient, least_thickness_ratio,
 };
-use archrock::mechanics::four_link::linkage::Linkage;
 use archrock::mechanics::four_link::mechanism::{FourLink, HingeSites};
-use archrock::mechanics::four_link::self_weight::carries_its_weight;
 use archrock::scenario::Scenario;
 use archrock::studies::limit::limit;
 use clarabel::algebra::CscMatrix;

@@ -1,6 +1,6 @@
 //! Motion in time: ground motion, models of motion and their histories.
 pub mod demand;
-pub mod elastic_joints;
+pub(crate) mod elastic_joints;
 pub(crate) mod fall;
 pub mod free_hinges;
 pub mod ground;
@@ -9,7 +9,7 @@ pub(crate) mod hybrid;
 pub mod model;
 pub mod peak;
 mod recorder;
-pub mod recording;
+pub(crate) mod recording;
 pub mod repeatability;
 mod request;
 pub(crate) mod row;
@@ -18,6 +18,7 @@ pub(crate) mod until;
 pub mod variation;
 
 pub use self::demand::ground::{GroundSpectrum, Site};
+pub use self::elastic_joints::ElasticJoints;
 pub use self::fall::FallEnd;
 pub use self::free_hinges::RowOptions;
 pub use self::ground::{GroundMotion, GroundVelocity};
@@ -26,6 +27,7 @@ pub use self::history::{
     Summary, TieSample,
 };
 pub use self::model::{MechanismModel, Model, Repetition, Request, SimulationError};
+pub use self::recording::{History, MEMORY_BYTES, MemoryError, Recording, Samples};
 pub use self::repeatability::{OutcomeCount, Repeatability, Verdict};
 pub(crate) use self::row::clock::Settings;
 pub(crate) use self::row::course::Course;
