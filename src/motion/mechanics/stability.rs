@@ -62,7 +62,7 @@ pub fn collapse_mechanism(row: &Row) -> Result<Option<Vec<OpeningJoint>>, Contac
 ///
 /// # Errors
 /// When the velocities under the weight are not found.
-pub fn collapse_mechanism_at(
+pub(crate) fn collapse_mechanism_at(
     row: &Row,
     stance: &Stance,
 ) -> Result<Option<Vec<OpeningJoint>>, ContactError> {

@@ -93,7 +93,7 @@ impl Equilibrium {
     }
 
     /// Returns the joint with the largest eccentricity of the thrust, and this eccentricity over the length of the joint.
-    pub fn largest_eccentricity(&self, structure: &ElasticStructure) -> (usize, f64) {
+    pub(crate) fn largest_eccentricity(&self, structure: &ElasticStructure) -> (usize, f64) {
         let each = structure.fibres();
         let moved = |body: usize| self.moved.get(body).unwrap_or(structure.support(body));
         let joints = structure.joints.iter().enumerate();
