@@ -4,8 +4,8 @@
 
 use std::f64::consts::PI;
 
-use archrock::mechanics::geometry::ring::Ring;
-use archrock::mechanics::tie::{Anchor, Tie};
+use archrock::mechanics::Ring;
+use archrock::mechanics::{Anchor, Tie};
 use archrock::{ElasticJoints, ElasticProperties, GroundMotion, Model, Pulse, Request, Row};
 use divan::Bencher;
 use divan::counter::ItemsCount;

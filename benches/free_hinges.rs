@@ -5,17 +5,16 @@
 use std::f64::consts::PI;
 
 use archrock::dynamics::ground::{GroundMotion, Pulse};
-use archrock::internals::contact::{ContactProgram, Load};
-use archrock::internals::free_hinges::{Settings, simulate};
-use archrock::internals::joints::Placement;
-use archrock::mechanics::blocks::Row;
 use archrock::mechanics::four_link::limit::incipient;
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::mechanics::geometry::field::{Side, Twist};
-use archrock::mechanics::geometry::ring::Ring;
+use archrock::mechanics::{Ring, Row};
 use archrock::scenario::Scenario;
 use archrock::studies::map::OverturningMap;
 use archrock::studies::runner::Study as _;
+use archrock_motion::internals::contact::{ContactProgram, Load};
+use archrock_motion::internals::free_hinges::{Settings, simulate};
+use archrock_motion::internals::joints::Placement;
 use divan::Bencher;
 use divan::counter::ItemsCount;
 

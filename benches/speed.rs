@@ -5,11 +5,11 @@
 
 use std::sync::LazyLock;
 
-use archrock::internals::hybrid::engine::HybridSystem;
-use archrock::internals::hybrid::rocking::{Rocking, RockingState, SystemState};
 use archrock::{
     Arch, FourLinks, GroundMotion, ImpactModel, Model as _, Outcome, Pulse, Request, Sway,
 };
+use archrock_motion::internals::hybrid::engine::HybridSystem;
+use archrock_motion::internals::hybrid::rocking::{Rocking, RockingState, SystemState};
 use divan::Bencher;
 use divan::counter::ItemsCount;
 

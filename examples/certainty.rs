@@ -163,7 +163,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let verdict = match ending.verdict() {
             Verdict::Survives => Outcome::Rest,
             Verdict::Overturns => ending.outcome,
-            Verdict::Incomplete | Verdict::Uncertain => {
+            _ => {
                 class.verdicts[2] += 1;
                 continue;
             }

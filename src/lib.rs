@@ -80,34 +80,32 @@ pub mod output;
 pub mod scenario;
 pub mod studies;
 
-#[doc(hidden)]
-pub use archrock_motion::internals;
 #[doc(inline)]
 pub use archrock_motion::{dynamics, mechanics};
 
 pub use argument::ArgumentError;
-pub use dynamics::elastic_joints::ElasticJoints;
+pub use dynamics::ElasticJoints;
+pub use dynamics::EndCondition;
 pub use dynamics::free_hinges::{FreeHinges, RowOptions};
 pub use dynamics::ground::{GroundError, GroundMotion, Pulse, PulseShape, WaveTrain};
 pub use dynamics::history::{Event, EventKind, Impact, OpenHinge, Outcome, Sample, State, Summary};
 pub use dynamics::model::{
     Case, Initial, Job, Jobs, MechanismModel, Model, Recorder, Request, SimulationError,
 };
-pub use dynamics::recording::{History, MEMORY_BYTES, MemoryError, Samples};
-pub use dynamics::row::error::{RowModelError, RowMotionError};
-pub use dynamics::until::EndCondition;
-pub use mechanics::arch::Arch;
-pub use mechanics::blocks::Row;
+pub use dynamics::{History, MEMORY_BYTES, MemoryError, Samples};
+pub use dynamics::{RowModelError, RowMotionError};
+pub use mechanics::Arch;
+pub use mechanics::Pose;
+pub use mechanics::Row;
+pub use mechanics::Sway;
 pub use mechanics::chain::Hinge;
-pub use mechanics::column::{Column, RockingColumn};
 pub use mechanics::elastic_joint::{
     Contact, ElasticProperties, JointStiffness, Materials, Stiffness,
 };
 pub use mechanics::four_link::impact::{ImpactLaw, ImpactModel};
-pub use mechanics::four_links::{FourLinkError, FourLinks};
-pub use mechanics::geometry::pose::Pose;
 pub use mechanics::masonry::Masonry;
-pub use mechanics::sway::Sway;
+pub use mechanics::{Column, RockingColumn};
+pub use mechanics::{FourLinkError, FourLinks};
 pub use scenario::{Scenario, Structure};
 pub use studies::ending::{Ending, NoHistory, Verdict};
 pub use studies::map::OverturningMap;

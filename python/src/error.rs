@@ -37,9 +37,7 @@ pub fn in_words(errors: &ScenarioErrors, placed: bool) -> String {
 pub fn not_run(error: RunnerError) -> PyErr {
     match error {
         RunnerError::Part(error) => unusable(error),
-        RunnerError::Cancelled(_) | RunnerError::Threads(_) => {
-            PyRuntimeError::new_err(error.to_string())
-        }
+        _ => PyRuntimeError::new_err(error.to_string()),
     }
 }
 

@@ -6,9 +6,9 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
-use archrock::dynamics::fall::FallEnd;
+use archrock::dynamics::FallEnd;
 use archrock::dynamics::history::Summary;
-use archrock::dynamics::recording::{Recording, Samples};
+use archrock::dynamics::{Recording, Samples};
 use archrock::dynamics::repeatability::Repeatability;
 use archrock::mechanics::chain::Demand;
 use archrock::output::point::StructurePoint;

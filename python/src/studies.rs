@@ -42,10 +42,10 @@ fn failed(error: StudyError) -> PyErr {
     match error {
         StudyError::Scenario(message) => refused(message),
         StudyError::Read(error) => refused(error),
-        StudyError::Failed(message) => PyRuntimeError::new_err(message),
         StudyError::Runner(error) => not_run(error),
         StudyError::Part(error) => unusable(error),
         StudyError::Output(error) => not_written(error),
+        _ => PyRuntimeError::new_err(error.to_string()),
     }
 }
 

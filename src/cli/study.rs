@@ -66,7 +66,6 @@ impl From<PartError> for Failure {
         Self::Input(match kind {
             PartErrorKind::System => return Self::Work(message),
             PartErrorKind::Folder => format!("{message}; choose another with --out"),
-            PartErrorKind::Unusable => message,
             PartErrorKind::Other => {
                 format!("{message}: remove it, or choose another folder with --out")
             }
@@ -76,6 +75,7 @@ impl From<PartError> for Failure {
             PartErrorKind::Incomplete(shard) => {
                 format!("{message}: finish it with --shard {shard} --resume")
             }
+            _ => message,
         })
     }
 }
@@ -87,7 +87,7 @@ impl From<StudyError> for Failure {
             StudyError::Read(error) => error.into(),
             StudyError::Part(error) | StudyError::Runner(RunnerError::Part(error)) => error.into(),
             StudyError::Output(error) => error.into(),
-            StudyError::Failed(_) | StudyError::Runner(_) => Self::Work(error.to_string()),
+            _ => Self::Work(error.to_string()),
         }
     }
 }

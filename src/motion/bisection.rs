@@ -77,7 +77,7 @@ pub fn try_bisect<E>(
 ///
 /// The next point is the zero of an inverse quadratic interpolation if this is safe, and the middle of the interval otherwise: Chandrupatla, "A new
 /// hybrid quadratic/bisection algorithm for finding the zero of a nonlinear function without using derivatives", Adv. Eng. Softw. 28 (1997).
-pub fn falls_below_zero(
+pub(crate) fn falls_below_zero(
     low: f64,
     high: (f64, f64),
     rounding: f64,

@@ -12,6 +12,7 @@ pub mod mechanics;
 mod work;
 
 /// Parts below the models of motion, for tests and benchmarks. They are not for users, and may change with any release.
+#[cfg(feature = "internals")]
 #[doc(hidden)]
 pub mod internals {
     pub mod complementarity {
@@ -24,8 +25,27 @@ pub mod internals {
         pub use crate::mechanics::coulomb::*;
     }
     pub mod free_hinges {
-        pub use crate::dynamics::free_hinges::motion::simulate;
+        use crate::dynamics::free_hinges::motion::motion;
+        use crate::dynamics::model::Recorder;
         pub use crate::dynamics::row::clock::Settings;
+        use crate::dynamics::{GroundMotion, MotionInput, RowMotionError, Summary};
+        use crate::mechanics::{Row, RowState};
+
+        /// Computes the motion of a row on moving ground, from rest or released at given rotations of its blocks (in radians; without slip only).
+        ///
+        /// # Errors
+        /// If the initial rotations do not close the arch, or a step fails.
+        pub fn simulate(
+            row: &Row,
+            ground: &GroundMotion,
+            gravity_m_s2: f64,
+            settings: &Settings,
+            initial_rad: Option<&[f64]>,
+            recorder: Option<&mut dyn Recorder>,
+        ) -> Result<Summary, RowMotionError> {
+            let input = MotionInput::new(row, ground, gravity_m_s2, *settings);
+            motion(input, &RowState::undeformed(row), initial_rad, recorder)
+        }
     }
     pub mod hybrid {
         pub use crate::dynamics::hybrid::*;

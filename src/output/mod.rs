@@ -3,7 +3,7 @@
 //! Numbers are written with the shortest digits that read back as the same `f64`.
 
 pub(crate) mod axes;
-pub mod caption;
+pub(crate) mod caption;
 pub(crate) mod chart;
 pub mod elevation;
 pub(crate) mod envelope;
@@ -11,7 +11,7 @@ pub mod figure;
 mod folder;
 pub(crate) mod ground;
 mod manifest;
-pub mod mechanisms;
+pub(crate) mod mechanisms;
 pub(crate) mod page;
 pub(crate) mod panels;
 pub mod point;
@@ -51,6 +51,7 @@ use crate::scenario::shown_lines;
 
 /// Errors of writing results.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum OutputError {
     /// The system reported an error.
     #[error("{what}: {source}")]

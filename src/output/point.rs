@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 use super::scene::{Scene, link, sections_rad};
 use crate::OpenHinge;
 use crate::mechanics::BodyPoint;
-use crate::mechanics::parts::Outline;
+use crate::mechanics::Outline;
 
 /// A point of a structure. The body that carries the point may depend on the open hinges.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -19,6 +19,7 @@ named! {
 
 /// Errors of converting a picture.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
 pub enum PrintError {
     /// The program was built without the feature `print`.
     #[error(

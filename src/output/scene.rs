@@ -4,8 +4,8 @@
 use nalgebra::Vector2;
 
 use crate::mechanics::masonry::FillColumn;
-use crate::mechanics::parts::{Outline, Section};
 use crate::mechanics::{Anchor, BodyPoint, Edge, Parts, PlacedLoad, Tie};
+use crate::mechanics::{Outline, Section};
 use crate::scenario::{Dimension, Structure, metres};
 use crate::{Hinge, OpenHinge, Pose, Row, Sample, Sway};
 

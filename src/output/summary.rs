@@ -1,9 +1,8 @@
 //! Summaries as JSON, from the types of results.
 
-use rmpv::Value as Number;
-use rmpv::ext::to_value as numbers_of;
 use serde::{Serialize, Serializer};
 use serde_json::Value;
+use serde_value::Value as Exact;
 
 use super::OutputError;
 
@@ -14,8 +13,8 @@ use super::OutputError;
 pub(crate) fn summary_of(result: &impl Serialize) -> Result<Value, OutputError> {
     let failed = OutputError::NotFinite;
     let json = serde_json::to_value(result).map_err(|error| failed(error.to_string()))?;
-    let numbers = numbers_of(result).map_err(|error| failed(error.to_string()))?;
-    not_finite(&numbers, &json).map_or(Ok(json), |path| Err(failed(path)))
+    let exact = serde_value::to_value(result).map_err(|error| failed(error.to_string()))?;
+    not_finite(&exact).map_or(Ok(json), |path| Err(failed(path)))
 }
 
 /// Values with names, which become the keys of an object.
@@ -28,31 +27,21 @@ impl<V: Serialize> Serialize for Named<V> {
     }
 }
 
-/// Returns the path to a number that is not finite, with the names of the JSON; `None` if all numbers are finite.
-fn not_finite(numbers: &Number, json: &Value) -> Option<String> {
-    let items: Vec<&Number> = match numbers {
-        Number::F64(number) => return (!number.is_finite()).then(String::new),
-        Number::Array(items) => items.iter().collect(),
-        Number::Map(entries) => entries.iter().map(|(_, item)| item).collect(),
-        _ => return None,
-    };
-    let names: Vec<(String, &Value)> = match json {
-        Value::Object(fields) => fields
-            .iter()
-            .map(|(key, item)| (format!(".{key}"), item))
-            .collect(),
-        Value::Array(list) => list
+/// Returns the path to a number that is not finite; `None` if all numbers are finite.
+fn not_finite(value: &Exact) -> Option<String> {
+    match value {
+        Exact::F64(number) => (!number.is_finite()).then(String::new),
+        Exact::Option(Some(inner)) | Exact::Newtype(inner) => not_finite(inner),
+        Exact::Seq(items) => items
             .iter()
             .enumerate()
-            .map(|(at, item)| (format!("[{at}]"), item))
-            .collect(),
-        _ => Vec::new(),
-    };
-    let unnamed = (String::new(), &Value::Null);
-    items.into_iter().enumerate().find_map(|(at, item)| {
-        let (name, json) = names.get(at).unwrap_or(&unnamed);
-        Some(format!("{name}{}", not_finite(item, json)?))
-    })
+            .find_map(|(at, item)| Some(format!("[{at}]{}", not_finite(item)?))),
+        Exact::Map(entries) => entries.iter().find_map(|(name, item)| match name {
+            Exact::String(name) => Some(format!(".{name}{}", not_finite(item)?)),
+            _ => not_finite(item),
+        }),
+        _ => None,
+    }
 }
 
 #[cfg(test)]

@@ -260,7 +260,6 @@ impl ModelOptions for ElasticTable {
             RestError::Friction => "friction_coefficient",
             RestError::Strength => "compressive_strength_mpa",
             RestError::Points => "contact_points",
-            RestError::Stiffness | RestError::NotFound => stiffness,
             RestError::Tie(index) => {
                 return Err(table.wrong_element("tie", index, format!("does not fit: {error}")));
             }
@@ -279,6 +278,8 @@ impl ModelOptions for ElasticTable {
                 );
                 return Err(table.wrong("supports", wrong));
             }
+            // Too soft, or not found.
+            _ => stiffness,
         };
         let wrong = format!("is not possible here: {error}");
         Err(table.wrong_in(TABLE, key, wrong))

@@ -19,8 +19,8 @@ use super::record::{Decimal, faulty, read_numbers};
 use super::tie::{self, PULLS_OVER, TieTable};
 use crate::Masonry;
 use crate::argument::ArgumentError;
+use crate::mechanics::MAX_BLOCKS;
 use crate::mechanics::arch::{DENSITY_KG_M3, DEPTH_M};
-use crate::mechanics::blocks::MAX_BLOCKS;
 use crate::mechanics::masonry::{
     BasketArch, Dimensions, Fill, FillLevel, GivenBlocks, MasonryError, Material, Pier, Piers,
     Remedy,
@@ -290,7 +290,6 @@ impl Additions {
                 let wrong = format!("has `{} = {:?}`, which {}", error.argument, error.value, allowed(error));
                 table.wrong_element("load", *index, wrong)
             }
-            MasonryError::Outline(error) => table.wrong(shape, error),
             MasonryError::Blocks => self.refused(
                 table,
                 "goes with arches that are given by their dimensions: give piers and fill of [blocks] as blocks",
@@ -300,6 +299,7 @@ impl Additions {
                 shape,
                 format!("makes no row of blocks: {error}; give fewer voussoirs or a smaller thickness"),
             ),
+            _ => table.wrong(shape, error),
         }
     }
 }

@@ -13,9 +13,9 @@
 use nalgebra::Vector2;
 
 use super::prelude::*;
-use crate::mechanics::blocks::MAX_BLOCKS;
+use crate::mechanics::MAX_BLOCKS;
+use crate::mechanics::TieError;
 use crate::mechanics::stability::collapse_mechanism;
-use crate::mechanics::tie::TieError;
 use crate::mechanics::{Anchor, Tie};
 use crate::{Column, Row};
 

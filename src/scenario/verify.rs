@@ -453,7 +453,7 @@ impl Demand {
     /// Returns the checked limit states.
     pub fn states(&self) -> impl Iterator<Item = LimitState> {
         let states = LimitState::ALL.iter().copied();
-        states.filter(|state| match self {
+        states.filter(move |state| match self {
             Self::Code(code) => code.hazards.contains_key(state),
             Self::Points(points) => points.contains_key(state),
         })

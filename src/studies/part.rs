@@ -208,6 +208,7 @@ pub struct PartError {
 
 /// The kind of a [`PartError`], which determines the remedy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum PartErrorKind {
     /// The system reported an error.
     System,

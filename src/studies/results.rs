@@ -15,6 +15,7 @@ use crate::scenario::ScenarioErrors;
 
 /// Errors of studies.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum StudyError {
     /// The scenario or an option does not fit the study.
     #[error("{0}")]

@@ -124,6 +124,7 @@ pub type Watch<'w> = &'w mut dyn FnMut(Progress) -> ControlFlow<()>;
 
 /// Reasons why the rows of a study are incomplete.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum RunnerError {
     /// The caller cancelled.
     #[error("cancelled: {} of {} cases are done", .0.done, .0.all)]

@@ -1,9 +1,10 @@
 //! Pages in a real browser, if there is one.
-#![allow(clippy::print_stderr)]
 
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
+
+use super::program::skip_without;
 
 const BROWSERS: [&str; 4] = [
     "chromium-headless-shell",
@@ -31,7 +32,7 @@ fn browse(arguments: &[&str], page: &Path) -> Option<Output> {
         version.is_ok_and(|output| output.status.success())
     });
     let Some(browser) = browser else {
-        eprintln!("no browser here ({BROWSERS:?}): the page is not checked in one");
+        skip_without(&BROWSERS.join(" or "));
         return None;
     };
     let profile = tempfile::tempdir().unwrap();

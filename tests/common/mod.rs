@@ -9,15 +9,15 @@ pub mod results;
 pub mod schema;
 
 use archrock::dynamics::ground::Pulse;
-use archrock::mechanics::blocks::{Block, Drum, Joint, Row, RowError, Supports};
 use archrock::mechanics::four_link::mechanism::HingeSites;
-use archrock::mechanics::geometry::ring::{Edge, Ring};
 use archrock::mechanics::masonry::{
     BasketArch, CircularArch, Dimensions, Fill, FillLevel, Masonry, Material, Pier, Piers,
     PlacedLoad, Shape,
 };
 use archrock::mechanics::settling::Follower;
 use archrock::mechanics::stability::collapse_mechanism;
+use archrock::mechanics::{Block, Drum, Joint, Row, RowError, Supports};
+use archrock::mechanics::{Edge, Ring};
 use archrock::{
     Arch, FourLinks, GroundMotion, History, ImpactModel, Initial, Model, Request, Sample, Scenario,
     Sway,

@@ -21,6 +21,15 @@ pub fn archrock(folder: &Path, arguments: &[&str]) -> Output {
     command(folder, arguments).output().unwrap()
 }
 
+/// Says that a test cannot run without a tool, or fails if ARCHROCK_REQUIRE_TOOLS is 1 (`.ci/run`): a skipped test looks like one that passes.
+#[track_caller]
+#[expect(clippy::print_stderr, reason = "the reader of the test")]
+pub fn skip_without(tool: &str) {
+    let required = std::env::var("ARCHROCK_REQUIRE_TOOLS").is_ok_and(|value| value == "1");
+    assert!(!required, "{tool} is not installed");
+    eprintln!("{tool} is not installed: nothing tested");
+}
+
 pub fn stderr(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
 }

@@ -8,7 +8,7 @@ use archrock::mechanics::four_link::impact::{Impact, ImpactModel, closing_field,
 use archrock::mechanics::four_link::limit::incipient;
 use archrock::mechanics::four_link::mechanism::{FourLink, HingeSites};
 use archrock::mechanics::geometry::field::{Field, Momentum, Twist};
-use archrock::mechanics::geometry::ring::{Edge, Ring};
+use archrock::mechanics::{Edge, Ring};
 
 const ANYWHERE: HingeSites = HingeSites::Anywhere;
 

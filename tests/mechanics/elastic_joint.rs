@@ -1,11 +1,11 @@
 //! A single elastic joint: forces from its energy, conservation of momenta, and stresses compared with sums over many points.
 
-use archrock::internals::lanes::Lanes;
-use archrock::mechanics::blocks::Block;
+use archrock::mechanics::Block;
 use archrock::mechanics::elastic_joint::{
     BodyPosition, ElasticJoint, ElasticStructure, Fibre, JointGeometry, Memory,
 };
 use archrock::{Contact, ElasticProperties};
+use archrock_motion::internals::lanes::Lanes;
 use nalgebra::Vector2;
 
 const ALONG: [f64; 2] = [0.6, 0.8];

@@ -2,13 +2,13 @@
 
 use crate::common::{Random, random_masonry};
 use archrock::dynamics::free_hinges::FreeHinges;
-use archrock::mechanics::blocks::{Block, Row, Supports};
+use archrock::mechanics::Ring;
 use archrock::mechanics::chain::{Hinge, Mechanism as _, MechanismChain as _};
 use archrock::mechanics::four_link::certificate::project;
 use archrock::mechanics::four_link::impact::closing_field;
-use archrock::mechanics::geometry::ring::Ring;
 use archrock::mechanics::masonry::{Dimensions, Masonry, Material, Piers, PlacedLoad, Shape};
 use archrock::mechanics::stability::{collapse_mechanism, onset};
+use archrock::mechanics::{Block, Row, Supports};
 use archrock::{
     Arch, FourLinkError, FourLinks, GroundMotion, ImpactLaw, ImpactModel, Initial, Model as _,
     Outcome, Pulse, Request, Sample, Sway,

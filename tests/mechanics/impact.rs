@@ -2,13 +2,13 @@
 
 use crate::common::momentum::MomentumTheorems;
 use crate::common::{Random, assert_hinges, climb, degrees, ring, semicircle};
+use archrock::mechanics::Profile;
 use archrock::mechanics::four_link::impact::{ImpactModel, closing_field, impact, projection};
 use archrock::mechanics::four_link::limit::incipient;
 use archrock::mechanics::four_link::mechanism::{FourLink, HingeSites};
 use archrock::mechanics::four_link::resultant::ResultantLine;
 use archrock::mechanics::geometry::field::{Field, Side};
-use archrock::mechanics::geometry::profile::Profile;
-use archrock::mechanics::geometry::ring::{Edge, Ring};
+use archrock::mechanics::{Edge, Ring};
 use proptest::prelude::*;
 
 const MAX: ImpactModel = ImpactModel::MaxRestitution;

@@ -6,11 +6,11 @@ use std::path::Path;
 use crate::common::momentum::MomentumTheorems;
 use crate::common::program::{printed, refused};
 use crate::common::results::{Row, Table};
+use archrock::mechanics::Sway;
 use archrock::mechanics::four_link::impact::{ImpactModel, closing_field, impact};
 use archrock::mechanics::four_link::mechanism::{EDGES, HingeSites};
 use archrock::mechanics::geometry::field::Side;
-use archrock::mechanics::geometry::ring::{Edge, Ring};
-use archrock::mechanics::sway::Sway;
+use archrock::mechanics::{Edge, Ring};
 use archrock::{Arch, FourLinks};
 use nalgebra::Vector2;
 

@@ -1,11 +1,11 @@
 //! Rows of blocks from arbitrary numbers: either an error, or a row that can be shaken.
 
 use crate::common::{between_faces, number, straight_sided_arch};
+use archrock::dynamics::RowModelError;
 use archrock::dynamics::free_hinges::{FreeHinges, RowOptions};
-use archrock::dynamics::row::error::RowModelError;
-use archrock::mechanics::blocks::{Block, Drum, Joint, MAX_BLOCKS, Row, RowError, Supports};
-use archrock::mechanics::geometry::ring::Ring;
+use archrock::mechanics::Ring;
 use archrock::mechanics::stability::StabilityError;
+use archrock::mechanics::{Block, Drum, Joint, MAX_BLOCKS, Row, RowError, Supports};
 use archrock::{Column, Model as _, Pulse, Request, SimulationError};
 use nalgebra::Vector2;
 use proptest::prelude::*;
@@ -208,6 +208,7 @@ proptest! {
             }
             Err(RowError::Size { size_m, extent_m }) => prop_assert!(*size_m < 1e-6 * extent_m),
             Err(RowError::Thickness(..) | RowError::Block(..) | RowError::Crossing(_) | RowError::Order { .. }) | Ok(_) => {}
+            Err(error) => prop_assert!(false, "{error}"),
         }
         // Steps follow the size: a joint far larger than the row would need steps without end.
         if let Ok(row) = &row {

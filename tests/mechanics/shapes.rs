@@ -4,12 +4,12 @@ use std::f64::consts::PI;
 use std::fs;
 use std::path::Path;
 
-use archrock::mechanics::blocks::{Joint, Row, Supports};
 use archrock::mechanics::masonry::{
     BasketArch, CircularArch, Dimensions, Fill, FillLevel, GivenBlocks, Masonry, MasonryError,
     Material, Pier, Piers, PlacedLoad, Shape,
 };
 use archrock::mechanics::stability::onset;
+use archrock::mechanics::{Joint, Row, Supports};
 use archrock::scenario::{Scenario, Structure};
 use archrock::{Arch, Outcome, Request, Sway};
 use nalgebra::Vector2;

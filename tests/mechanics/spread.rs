@@ -4,14 +4,14 @@
 use archrock::ElasticJoints;
 use archrock::dynamics::ground::Pulse;
 use archrock::dynamics::model::{Model as _, Request};
-use archrock::internals::contact::ContactError;
-use archrock::mechanics::blocks::Row;
+use archrock::mechanics::Row;
+use archrock::mechanics::Sway;
 use archrock::mechanics::elastic_joint::{ElasticProperties, ElasticStructure, RestError};
-use archrock::mechanics::geometry::ring::{Edge, Ring};
 use archrock::mechanics::settling::{Follower, Movement, Movements, SettlingError};
-use archrock::mechanics::sway::Sway;
-use archrock::mechanics::tie::{Anchor, Tie};
+use archrock::mechanics::{Anchor, Tie};
+use archrock::mechanics::{Edge, Ring};
 use archrock::studies::spread::{Direction, spread};
+use archrock_motion::internals::contact::ContactError;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
     DefaultSettings, DefaultSolver, IPSolver as _, NonnegativeConeT, SolverStatus, ZeroConeT,

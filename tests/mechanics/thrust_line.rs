@@ -3,23 +3,29 @@
 use crate::common;
 use std::ops::ControlFlow;
 
-use crate::common::{GRAVITY, four_links, run, sampled, semicircle, seven_voussoirs};
+use crate::common::GRAVITY;
+use crate::common::four_links;
+use crate::common::run;
+use crate::common::sampled;
+use crate::common::semicircle;
+use crate::common::seven_voussoirs;
 use archrock::dynamics::free_hinges::FreeHinges;
 use archrock::dynamics::history::Summary;
 use archrock::dynamics::model::{Recorder, WithoutDemand};
+use archrock::mechanics::Edge;
 use archrock::mechanics::chain::{
     Demand, Hinge, Mechanism as _, MechanismChain as _, MechanismState,
 };
-use archrock::mechanics::four_link::linkage::Linkage;
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::mechanics::four_link::resultant::SectionResultant;
-use archrock::mechanics::four_link::thrust::ThrustLine;
-use archrock::mechanics::geometry::ring::Edge;
+use archrock::mechanics::four_link::{Linkage, ThrustLine};
 use archrock::{
     Arch, Column, FourLinks, GroundMotion, History, ImpactModel, Model, Pulse, RockingColumn,
     Sample, State, Sway,
 };
-use nalgebra::{SMatrix, SVector, Vector2};
+use nalgebra::SMatrix;
+use nalgebra::SVector;
+use nalgebra::Vector2;
 
 fn arches() -> [FourLinks; 4] {
     [

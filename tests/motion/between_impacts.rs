@@ -4,11 +4,11 @@ use crate::common::{
     GRAVITY, REST_ENERGY_RATIO, four_links, impact_times_s, pairs, released, request, run,
     run_sampled, semicircle, seven_voussoirs, three,
 };
-use archrock::internals::hybrid::rocking::Rocking;
 use archrock::mechanics::chain::{Link, Mechanism as _, MechanismChain as _};
-use archrock::mechanics::four_link::linkage::Linkage;
+use archrock::mechanics::four_link::Linkage;
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::{FourLinks, GroundMotion, Outcome, Pulse, Request, Sway};
+use archrock_motion::internals::hybrid::rocking::Rocking;
 
 /// `q''` at the start, by the equation of motion written out, with a ground acceleration.
 fn acceleration_at_zero(arch: &FourLinks, link: &Link<Linkage>, ground_m_s2: f64) -> f64 {

@@ -3,13 +3,13 @@
 use crate::common::pulse;
 use std::f64::consts::PI;
 
-use archrock::internals::hybrid::engine::{EngineError, EngineSettings, Observer, simulate};
-use archrock::internals::hybrid::rocking::{Rocking, RockingState};
 use archrock::mechanics::chain::MechanismChain as _;
 use archrock::{
     Column, EventKind, GroundMotion, History, ImpactModel, Initial, Model as _, Outcome, Pulse,
     Request, RockingColumn, Sample, State, Sway,
 };
+use archrock_motion::internals::hybrid::engine::{EngineError, EngineSettings, Observer, simulate};
+use archrock_motion::internals::hybrid::rocking::{Rocking, RockingState};
 
 const GRAVITY_M_S2: f64 = 9.81;
 

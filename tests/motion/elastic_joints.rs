@@ -5,16 +5,16 @@ use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
 use archrock::dynamics::repeatability::Repetitions;
-use archrock::internals::lanes::Lanes;
-use archrock::mechanics::blocks::{Drum, Row, Supports};
+use archrock::mechanics::Ring;
 use archrock::mechanics::elastic_joint::{BodyPosition, ElasticStructure, RestError};
-use archrock::mechanics::geometry::ring::Ring;
+use archrock::mechanics::{Drum, Row, Supports};
 use archrock::scenario::Scenario;
 use archrock::{
     Contact, ElasticJoints, ElasticProperties, EndCondition, GroundMotion, Job, Jobs,
     JointStiffness, Materials, Model, Outcome, Pulse, Request, RowModelError, Sample,
     SimulationError, Stiffness, Summary, Sway,
 };
+use archrock_motion::internals::lanes::Lanes;
 use nalgebra::Vector2;
 
 use crate::common::program::{scenarios, validated};

@@ -1,12 +1,12 @@
 //! The energy balance of a row: a doubtful balance is reported, and a wrong one is an error.
 
 use crate::common::{GRAVITY, released, request};
+use archrock::dynamics::RowMotionError;
 use archrock::dynamics::free_hinges::{DOUBTFUL_ENERGY_ERROR, FreeHinges, RowOptions};
 use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::model::{Model as _, SimulationError};
-use archrock::dynamics::row::error::RowMotionError;
-use archrock::mechanics::column::Column;
-use archrock::mechanics::sway::Sway;
+use archrock::mechanics::Column;
+use archrock::mechanics::Sway;
 
 const COEFFICIENTS: [Option<f64>; 2] = [None, Some(0.8)];
 

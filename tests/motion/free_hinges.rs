@@ -2,28 +2,33 @@
 
 use std::ops::ControlFlow;
 
-use crate::common::{GRAVITY, Random, between_faces, random_history, random_row, ring};
+use crate::common::GRAVITY;
+use crate::common::Random;
+use crate::common::between_faces;
+use crate::common::random_history;
+use crate::common::random_row;
+use crate::common::ring;
 use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::{Event, Impact, Outcome, Sample, Summary};
 use archrock::dynamics::model::Recorder;
-use archrock::internals::contact::{ContactProgram, Load};
-use archrock::internals::free_hinges::{Settings, simulate};
-use archrock::mechanics::blocks::{Block, Drum, Joint, Row, RowError, Supports};
 use archrock::mechanics::chain::Mechanism as _;
-use archrock::mechanics::four_link::certificate;
 use archrock::mechanics::four_link::impact::ImpactModel;
 use archrock::mechanics::four_link::limit::incipient;
-use archrock::mechanics::four_link::linkage::Linkage;
 use archrock::mechanics::four_link::mechanism::{FourLink, HingeSites};
+use archrock::mechanics::four_link::{Linkage, certificate};
 use archrock::mechanics::geometry::field::{Side, Twist};
-use archrock::mechanics::geometry::ring::{Edge, Ring};
 use archrock::mechanics::stability::{StabilityError, collapse_mechanism, onset};
-use archrock::mechanics::sway::Sway;
+use archrock::mechanics::{Block, Drum, Edge, Joint, Ring, Row, RowError, Supports, Sway};
 use archrock::{Column, Model, Request, RockingColumn, RowMotionError};
+use archrock_motion::internals::contact::{ContactProgram, Load};
+use archrock_motion::internals::free_hinges::{Settings, simulate};
 use clarabel::algebra::CscMatrix;
-use clarabel::solver::{
-    DefaultSettings, DefaultSolver, IPSolver as _, NonnegativeConeT, SolverStatus, ZeroConeT,
-};
+use clarabel::solver::DefaultSettings;
+use clarabel::solver::DefaultSolver;
+use clarabel::solver::IPSolver as _;
+use clarabel::solver::NonnegativeConeT;
+use clarabel::solver::SolverStatus;
+use clarabel::solver::ZeroConeT;
 use nalgebra::Vector2;
 
 fn arch(embrace_deg: f64, thickness_ratio: f64, voussoirs: usize, radius_m: f64) -> Row {

@@ -5,14 +5,14 @@ use crate::common::{
     GRAVITY, REST_ENERGY_RATIO, four_links, impact_times_s, released, request, run, run_sampled,
     sampled, semicircle, seven_voussoirs, three,
 };
-use archrock::dynamics::recording::Recording;
-use archrock::internals::hybrid::rocking::Rocking;
+use archrock::dynamics::Recording;
 use archrock::mechanics::chain::{Mechanism as _, MechanismChain as _};
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::{
     Arch, FourLinks, GroundMotion, History, ImpactModel, Model as _, Outcome, Pulse, Request,
     Sample, State, Sway,
 };
+use archrock_motion::internals::hybrid::rocking::Rocking;
 
 /// All values of a history, for bit-by-bit comparisons.
 fn fingerprint(history: &History) -> Vec<u64> {

@@ -3,11 +3,12 @@
 use std::ops::ControlFlow;
 
 use archrock::dynamics::history::Cost;
-use archrock::internals::hybrid::engine::{
+use archrock_motion::internals::hybrid::engine::{
     EngineError, EngineSettings, Finish, HybridSystem, Observer, SystemState, Transition, simulate,
 };
-use archrock::internals::hybrid::integrator::{
-    self, IntegrationTask, IntegratorError, State, Step,
+use archrock_motion::internals::hybrid::integrator;
+use archrock_motion::internals::hybrid::integrator::{
+    IntegrationTask, IntegratorError, State, Step,
 };
 
 fn task<const N: usize>(

@@ -8,13 +8,13 @@ use archrock::Sway;
 use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::{Event, Summary};
 use archrock::dynamics::model::Recorder;
-use archrock::internals::free_hinges::{Settings, simulate};
-use archrock::mechanics::blocks::{Drum, Row};
 use archrock::mechanics::chain::Hinge;
 use archrock::mechanics::four_link::certificate;
 use archrock::mechanics::four_link::mechanism::{FourLink, HingeSites};
-use archrock::mechanics::geometry::ring::{Edge, Ring};
 use archrock::mechanics::stability::{collapse_mechanism, onset};
+use archrock::mechanics::{Drum, Row};
+use archrock::mechanics::{Edge, Ring};
+use archrock_motion::internals::free_hinges::{Settings, simulate};
 
 fn peaks_rad(run: &Summary) -> Vec<f64> {
     run.half_cycles()

@@ -8,15 +8,15 @@ use crate::common::{
     GRAVITY, four_links, number, run, run_sampled, sampled, semicircle, seven_voussoirs,
 };
 use archrock::dynamics::free_hinges::FreeHinges;
-use archrock::internals::hybrid::rocking::{Rocking, RockingState};
+use archrock::mechanics::Ring;
 use archrock::mechanics::chain::{Mechanism as _, MechanismChain};
 use archrock::mechanics::four_link::mechanism::HingeSites;
-use archrock::mechanics::geometry::ring::Ring;
 use archrock::{
     Arch, ArgumentError, Column, Event, FourLinkError, FourLinks, GroundMotion, Hinge, History,
     ImpactModel, Initial, MechanismModel, Model, OpenHinge, Pose, Pulse, Recorder, Request,
     RockingColumn, Sample, SimulationError, State, Sway,
 };
+use archrock_motion::internals::hybrid::rocking::{Rocking, RockingState};
 use nalgebra::Vector2;
 use proptest::prelude::*;
 

@@ -3,26 +3,28 @@
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
-use crate::common::{GRAVITY, Random, between_faces, random_history};
+use crate::common::GRAVITY;
+use crate::common::Random;
+use crate::common::between_faces;
+use crate::common::random_history;
 use archrock::dynamics::free_hinges::FreeHinges;
 use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::{Outcome, Sample, Sliding, Summary};
 use archrock::dynamics::model::Recorder;
-use archrock::internals::complementarity;
-use archrock::internals::coulomb::{SlipProgram, TangentialMode};
-use archrock::internals::free_hinges::{Settings, simulate};
-use archrock::internals::slip::{FaceContact, Faces, Position};
-use archrock::mechanics::blocks::{Joint, Row, Supports};
 use archrock::mechanics::chain::Hinge;
-use archrock::mechanics::column::Column;
 use archrock::mechanics::friction::{FrictionError, least_coefficient, onset};
-use archrock::mechanics::geometry::ring::{Edge, Ring};
 use archrock::mechanics::masonry::{
     BasketArch, Dimensions, Fill, FillLevel, GivenBlocks, Masonry, Material, Pier, Piers, Shape,
 };
-use archrock::mechanics::stability;
-use archrock::mechanics::sway::Sway;
-use nalgebra::{DMatrix, DVector, Vector2, Vector3};
+use archrock::mechanics::{Column, Edge, Joint, Ring, Row, Supports, Sway, stability};
+use archrock_motion::internals::complementarity;
+use archrock_motion::internals::coulomb::{SlipProgram, TangentialMode};
+use archrock_motion::internals::free_hinges::{Settings, simulate};
+use archrock_motion::internals::slip::{FaceContact, Faces, Position};
+use nalgebra::DMatrix;
+use nalgebra::DVector;
+use nalgebra::Vector2;
+use nalgebra::Vector3;
 
 fn arch(embrace_deg: f64, thickness_ratio: f64, voussoirs: usize, radius_m: f64) -> Row {
     let ring = Ring::new(thickness_ratio, embrace_deg / 180.0 * PI).unwrap();

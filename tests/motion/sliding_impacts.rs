@@ -6,9 +6,9 @@ use crate::common::GRAVITY;
 use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::{Event, Impact, Sample, Summary};
 use archrock::dynamics::model::Recorder;
-use archrock::internals::free_hinges::{Settings, simulate};
-use archrock::mechanics::blocks::Row;
-use archrock::mechanics::geometry::ring::Ring;
+use archrock::mechanics::Ring;
+use archrock::mechanics::Row;
+use archrock_motion::internals::free_hinges::{Settings, simulate};
 use nalgebra::Vector2;
 
 /// Impacts with their times, and the times of all events.

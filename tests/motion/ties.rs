@@ -12,15 +12,15 @@ use crate::common::prose::{golden, shows};
 use crate::common::results::{Table, json, named};
 use crate::common::{parsed, pulse, run_sampled, sampled};
 use archrock::dynamics::history::EventKind;
-use archrock::internals::lanes::Lanes;
-use archrock::mechanics::blocks::{Drum, Row};
 use archrock::mechanics::capacity::TieEventDisplacements;
-use archrock::mechanics::tie::{Anchor, Tie, TieMemory};
+use archrock::mechanics::{Anchor, Tie, TieMemory};
+use archrock::mechanics::{Drum, Row};
 use archrock::studies::capacity::capacity;
 use archrock::{
     Contact, ElasticJoints, ElasticProperties, FreeHinges, GroundMotion, JointStiffness, Model,
     Pulse, Request, RowOptions, Stiffness,
 };
+use archrock_motion::internals::lanes::Lanes;
 use nalgebra::{Matrix2, Vector2};
 use roxmltree::Document;
 

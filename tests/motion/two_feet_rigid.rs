@@ -3,10 +3,10 @@
 use std::f64::consts::TAU;
 
 use archrock::dynamics::history::{Outcome, State};
-use archrock::mechanics::blocks::{Block, Row};
-use archrock::mechanics::geometry::ring::Edge;
+use archrock::mechanics::Edge;
 use archrock::mechanics::settling::{Follower, Movement, Movements};
-use archrock::mechanics::tie::{Anchor, Tie};
+use archrock::mechanics::{Anchor, Tie};
+use archrock::mechanics::{Block, Row};
 use archrock::{
     ElasticJoints, ElasticProperties, FreeHinges, GroundMotion, Hinge, Model, Pulse, RowOptions,
     Sample,

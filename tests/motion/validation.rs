@@ -6,11 +6,11 @@ use std::path::Path;
 
 use crate::common::parsed;
 use crate::common::program::{assert_shown_output_is_printed, scenarios};
-use archrock::mechanics::blocks::Row;
+use archrock::mechanics::Ring;
+use archrock::mechanics::Row;
 use archrock::mechanics::four_link::limit::least_thickness_ratio;
 use archrock::mechanics::four_link::mechanism::HingeSites;
 use archrock::mechanics::friction::{least_coefficient, stands};
-use archrock::mechanics::geometry::ring::Ring;
 use archrock::mechanics::masonry::{Dimensions, Masonry, Material, Piers, Shape};
 use archrock::mechanics::stability::{collapse_mechanism, onset};
 use archrock::{Arch, EndCondition, Outcome, Sway};

@@ -8,7 +8,7 @@ use crate::common::results::Table;
 use crate::common::{impact_times_s, pairs, parsed};
 use archrock::dynamics::history::State;
 use archrock::mechanics::chain::{Mechanism as _, MechanismChain as _};
-use archrock::mechanics::four_link::linkage::Linkage;
+use archrock::mechanics::four_link::Linkage;
 use archrock::output::Figure;
 use archrock::studies::run::{self, RunOptions, Sinks};
 use archrock::{GroundMotion, Initial, Outcome, Pulse, Scenario, Sway};

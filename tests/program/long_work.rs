@@ -1,7 +1,6 @@
 //! The ways to distribute a study over several machines, as in docs/long-work.md.
 
-#![allow(clippy::print_stderr)]
-
+use crate::common::program::skip_without;
 use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -97,13 +96,13 @@ fn the_slurm_array_computes_the_whole_study() {
     assert_whole(folder.path());
 }
 
-/// Without GNU parallel this test prints a message and checks nothing; the checks of the repository install it.
+/// Without GNU parallel nothing is tested; the checks of the repository install it.
 #[test]
 fn gnu_parallel_computes_the_whole_study() {
     let version = Command::new("parallel").arg("--version").output();
     if !version.is_ok_and(|output| String::from_utf8_lossy(&output.stdout).contains("GNU parallel"))
     {
-        eprintln!("GNU parallel is not installed: nothing tested");
+        skip_without("GNU parallel");
         return;
     }
     let folder = folder();

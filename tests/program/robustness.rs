@@ -1,8 +1,6 @@
 //! The program in adverse conditions: killed, without a reader of its output, on a full disk, and with very long output.
 #![cfg(target_os = "linux")]
-#![expect(clippy::print_stderr, reason = "tests")]
-
-use crate::common::program::{names, result_names};
+use crate::common::program::{names, result_names, skip_without};
 use crate::common::results::{Row, Table, summary};
 use std::fs::{self, OpenOptions};
 use std::io::{BufRead, BufReader, Read};
@@ -443,7 +441,7 @@ fn a_long_run_shows_its_progress_on_a_terminal() {
         )
     };
     let Some(said) = on_a_terminal(root.path(), &run("long.toml")) else {
-        eprintln!("script is missing: progress is not tested");
+        skip_without("script");
         return;
     };
     assert!(said.contains(" of 8 s simulated, "), "{said}");
@@ -474,7 +472,7 @@ fn a_study_shows_its_pace_on_a_terminal() {
     fs::write(folder.path().join("map.toml"), map).unwrap();
     let command = format!("{PROGRAM} map map.toml --out out");
     let Some(said) = on_a_terminal(folder.path(), &command) else {
-        eprintln!("script is missing: progress is not tested");
+        skip_without("script");
         return;
     };
     assert!(said.contains(" cases, none finished yet"), "{said}");

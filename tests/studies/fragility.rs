@@ -504,16 +504,17 @@ fn the_curve_holds_from_zero_to_infinity() {
 fn a_record_that_behaves_oddly_far_out_has_a_likelihood() {
     // One case in a thousand survives a thousand times the intensity that overturns the others, and one overturns at a
     // thousandth of it.
-    let fragility = fit(&counts(&[
+    let sample = counts(&[
         (1e-3, 1000, 1),
         (0.9, 1000, 400),
         (1.1, 1000, 600),
         (1e3, 1000, 999),
-    ]))
-    .unwrap();
+    ]);
+    let fragility = fit(&sample).unwrap();
     assert!((fragility.median - 1.0).abs() < 1e-2);
     // From the probabilities 1e-3 and 0.4 alone the dispersion would be 2.4 and 0.4.
     assert!(0.4 < fragility.dispersion && fragility.dispersion < 2.4);
+    no_curve_nearby_is_likelier(&fragility, &sample);
 }
 
 /// From equal chances Newton's method overshoots here, on the way to the one case in 20 000.

@@ -4,16 +4,19 @@
 use std::fs;
 use std::path::Path;
 
-use crate::common::program::{printed, refused};
+use crate::common::ON_A_PIER;
+use crate::common::UNEVEN_ARCH;
+use crate::common::program::printed;
+use crate::common::program::refused;
 use crate::common::prose::golden;
-use crate::common::results::{self, Table};
-use crate::common::{ON_A_PIER, UNEVEN_ARCH};
-use archrock::internals::contact::{ContactProgram, Load};
-use archrock::mechanics::blocks::Row;
+use crate::common::results;
+use crate::common::results::Table;
+use archrock::mechanics::Row;
 use archrock::mechanics::four_link::impact::closing_field;
 use archrock::mechanics::geometry::field::{Field, Side, Twist};
 use archrock::scenario::Structure;
 use archrock::{FourLinks, ImpactModel, Scenario, Sway};
+use archrock_motion::internals::contact::{ContactProgram, Load};
 use nalgebra::Vector2;
 use serde_json::Value;
 

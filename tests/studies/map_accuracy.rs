@@ -43,10 +43,7 @@ fn a_map_of_rectangular_pulses_does_not_depend_on_the_tolerance() {
         match exact.outcome {
             Outcome::Overturned(_) => overturned += 1,
             Outcome::Rest => rested += 1,
-            Outcome::NeverMoved
-            | Outcome::Vibrates
-            | Outcome::StillRocking
-            | Outcome::Incomplete => {}
+            _ => {}
         }
         let [usual_peak, exact_peak] =
             [&usual, &exact].map(|end| end.peak_over_critical().unwrap());

@@ -6,9 +6,9 @@ use crate::common::program::stdout;
 use crate::common::program::{archrock, scenarios, stderr};
 use crate::common::results::{Row, Table, json, named, strokes};
 use archrock::dynamics::free_hinges::FreeHinges;
+use archrock::mechanics::FourLinks;
 use archrock::mechanics::chain::{Mechanism as _, MechanismChain as _};
 use archrock::mechanics::four_link::impact::ImpactModel;
-use archrock::mechanics::four_links::FourLinks;
 use archrock::{Arch, GroundMotion, Initial, Model as _, Request, Sway};
 use serde_json::Value;
 

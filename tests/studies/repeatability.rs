@@ -3,12 +3,12 @@
 use std::ops::ControlFlow;
 
 use crate::common::{GRAVITY, Random, noise, random_row};
+use archrock::dynamics::EndCondition;
 use archrock::dynamics::free_hinges::{FreeHinges, RowOptions};
 use archrock::dynamics::ground::{GroundMotion, Pulse};
 use archrock::dynamics::history::{Details, Outcome, State, Summary};
 use archrock::dynamics::model::Model;
 use archrock::dynamics::repeatability::{OutcomeCount, Repeatability, Repetitions, Verdict};
-use archrock::dynamics::until::EndCondition;
 use archrock::scenario::Scenario;
 use archrock::studies::ending::Ending;
 use archrock::{Contact, ElasticJoints, ElasticProperties, Request, SimulationError, Sway};

@@ -180,7 +180,6 @@ fn a_run_reports_joint_forces_and_stresses() {
     fs::write(folder.path().join("s.toml"), text).unwrap();
     let said = printed(folder.path(), &["run", "s.toml", "--out", "o"]);
     golden("run-elastic-joints", &said);
-    shows(&said, &[3.0, 20.0]);
     assert!(!said.contains("impact"), "{said}");
     let weight_n = 5.0 * 1.0 * 2700.0 * 9.81;
     let joints = Table::read(folder.path().join("o/joints.csv"));
@@ -371,7 +370,6 @@ fn a_run_reports_its_dependence_on_stiffness() {
         assert_eq!(found["first_peak_rad"], due["half_cycles"][0]["peak_rad"]);
     }
     assert_eq!(variations.len(), 4, "{variations:?}");
-    shows(&said, &[3.33]);
     golden("run-variations", &said);
     let (said, own) = run("own", &elastic("10", points), &alone);
     assert!(!said.contains("  with "), "{said}");

@@ -12,7 +12,7 @@ use crate::common::prose::{golden, shows};
 use crate::common::results::{Row, Table, json, named, texts};
 use archrock::dynamics::history::Outcome;
 use archrock::dynamics::repeatability::OutcomeCount;
-use archrock::mechanics::sway::Sway;
+use archrock::mechanics::Sway;
 use archrock::output::Figure;
 use archrock::scenario::{Format, Layout, Measure, Scenario};
 use archrock::studies::ending::{Ending, NoHistory, Steps, Verdict};
@@ -243,7 +243,7 @@ fn the_curve_is_the_fit_of_the_rows() {
         let value = fragility[key].as_f64().unwrap();
         assert!(plain > 0.0 && by_record > 0.0 && plain < value && by_record < value);
     }
-    shows(&said, &[320.0, 8.0, fragility["median"].as_f64().unwrap()]);
+    shows(&said, &[320.0, fragility["median"].as_f64().unwrap()]);
     golden("suite", &said);
     // The printed output has the edges of capacities.csv, and states where no edge was searched for.
     let capacities = Table::read(results.join("capacities.csv")).rows;
@@ -252,7 +252,6 @@ fn the_curve_is_the_fit_of_the_rows() {
         let line = said.lines().find(|line| line.starts_with(&record));
         shows(line.unwrap(), &[capacity.number("peak_g")]);
     }
-    shows(&said, &[20.0, 0.2, 4.0]);
     // The ranking of measures comes with its intervals: that of the factor on the peak is that of another bootstrap, to the noise of 300 draws.
     let measures = Table::read(results.join("intensity.csv")).rows;
     let shares: f64 = measures.iter().map(|row| row.number("best_share")).sum();
@@ -731,7 +730,11 @@ fn uncertain_cases_are_counted_by_fractions_as_surviving_and_as_overturning() {
     }
     assert_eq!(named(picture, "uncertain"), 3);
     let picture = Document::parse(picture).unwrap();
-    shows(&texts(&picture).join("\n"), &[3.0]);
+    let words = texts(&picture).join(" ");
+    assert!(
+        words.contains("3 uncertain cases by their fractions"),
+        "{words}"
+    );
     assert_eq!(named(&files["ida.svg"], "uncertain"), 3);
     let plain = result_files(&free_heading(), &survived);
     for name in ["fit-with-uncertain", "between", "uncertain"] {
@@ -898,7 +901,8 @@ fn a_level_with_only_failed_cases_has_no_fraction() {
         "{levels}"
     );
     let json: Value = files["fragility.json"].parse().unwrap();
-    shows(json["no_fit"].as_str().unwrap(), &[1.0]);
+    let reason = json["no_fit"].as_str().unwrap();
+    assert!(reason.contains("down to the intensity 2:"), "{reason}");
     assert_eq!(
         files["suite.svg"].matches("data-name=\"fraction\"").count(),
         1
@@ -915,7 +919,6 @@ fn cases_still_rocking_are_reported() {
     );
     write(folder, "s.toml", &text);
     let said = done(folder, &["suite", "s.toml", "--out", "o"]);
-    shows(&said, &[4.0, 2.0]);
     golden("suite-still-rocking", &said);
 }
 
@@ -1202,8 +1205,7 @@ fn capacities_are_reported_in_several_measures() {
     );
     write(folder, "s.toml", &text);
     let said = done(folder, &["suite", "s.toml", "--out", "o"]);
-    shows(&said, &[2.0]);
-    assert!(said.contains("0.5 s"), "{said}");
+    assert!(said.contains("at 0.5 s and 2 %"), "{said}");
     let cases = rows(&folder.join("o"));
     let capacities = Table::read(folder.join("o/capacities.csv")).rows;
     // Mirrored records are mirror images, and no further evidence.
@@ -1400,8 +1402,8 @@ fn distributions_of_models_are_compared() {
     let apart = finite().map(|peak| (share(&all[0], *peak) - share(&all[1], *peak)).abs());
     let distance = pair["kolmogorov_distance"].as_f64().unwrap();
     assert!((apart.fold(0.0, f64::max) - distance).abs() < 1e-12);
-    // Small differences of peaks from the steps of the row may exchange neighbours, one in fifteen at a time.
-    assert!(distance < 0.14, "{pair}");
+    // Small differences of peaks from the steps of the row may exchange two neighbours of the fifteen.
+    assert!(distance < 1.01 / 15.0, "{pair}");
     for name in ["models/peaks.svg", "four/suite.csv", "free/peaks.svg"] {
         assert!(at.join("r").join(name).exists(), "{name}");
     }

@@ -15,7 +15,6 @@ use crate::common::results::{Row, Table, named};
 use crate::common::{GRAVITY, pairs, request, semicircle, seven_voussoirs};
 use archrock::dynamics::history::{Cost, Details, MechanismSummary};
 use archrock::dynamics::model::Repetition;
-use archrock::internals::hybrid::engine::EngineError;
 use archrock::output::Figure;
 use archrock::studies::ending::{Verdict, outcome_name};
 use archrock::studies::results::StudyError;
@@ -28,6 +27,7 @@ use archrock::{
     Column, GroundMotion, ImpactModel, Model, Outcome, Pulse, Recorder, Request, RockingColumn,
     Scenario, SimulationError, Summary, Sway,
 };
+use archrock_motion::internals::hybrid::engine::EngineError;
 use nalgebra::Vector2;
 use serde_json::Value;
 
@@ -180,7 +180,8 @@ fn factors_with_free_falling_ground_are_reported() {
     }
     let band = threshold.bands()[threshold.bands().len() - 1];
     assert_eq!(band.to_end, RangeEnd::Unknown);
-    assert!(band.to < 5.0 && band.to > 4.5);
+    // The next sample is a stride of 10 % above.
+    assert!(band.to < 5.0 && 1.1 * band.to > 5.0 - 1e-9);
 }
 
 /// Overturns or not as a function of the peak ground acceleration, in m/s2; or fails.

@@ -147,7 +147,7 @@ fn first_order_indices_are_those_of_ishigami() {
         let matters = what_matters(&values, &answers).unwrap();
         for (known, matters) in known.iter().zip(&matters) {
             let error = matters.first_order - known;
-            assert!(error.abs() < 0.05, "seed {seed}: {matters:?} {known}");
+            assert!(error.abs() < 0.02, "seed {seed}: {matters:?} {known}");
             let [low, high] = matters.first_order_interval;
             inside += u32::from(low <= *known && *known <= high);
         }
@@ -322,10 +322,6 @@ fn a_run_with_uncertain_input_prints_and_writes_its_results() {
     let at = folder.path();
     fs::write(at.join("s.toml"), uncertain_arch(64, 1)).unwrap();
     let said = printed(at, &["run", "s.toml", "--out", "one", "--no-report"]);
-    // The output begins with the probability; one sentence over several lines precedes the report on the scenario itself.
-    let (first, rest) = said.split_once("\n  overturned: ").unwrap();
-    shows(first, &[64.0, 95.0]);
-    assert!(!rest.is_empty());
     golden("uncertain", &said);
     let results = at.join("one/uncertain");
     assert_eq!(
@@ -431,7 +427,6 @@ fn maps_report_the_probability_of_each_cell() {
     );
     fs::write(at.join("s.toml"), &text).unwrap();
     let said = done(at, &["map", "s.toml", "--out", "r", "--threads", "2"]);
-    shows(&said, &[12.0, 64.0]);
     golden("uncertain-map", &said);
     // Cells that the block of 0.8 m survives and narrower ones do not, counted from the tables.
     let of = |path: &str| Table::read(at.join(path));
@@ -442,7 +437,8 @@ fn maps_report_the_probability_of_each_cell() {
     });
     let doubtful = doubtful.count();
     assert!(doubtful > 0);
-    shows(&said, &[doubtful as f64]);
+    let in_others = format!("in {doubtful} of the others");
+    assert!(said.contains(&in_others), "{said}");
     // The command of a cell is of that cell alone.
     for page in ["r/map.html", "r/uncertain_map/map.html"] {
         let data = crate::common::results::data_of(&fs::read_to_string(at.join(page)).unwrap());
@@ -705,7 +701,6 @@ fn thresholds_have_a_distribution() {
     let strides = ["--from", "0.3", "--to", "4", "--stride", "0.2"];
     let arguments = [&["threshold", "s.toml", "--out", "all"][..], &strides].concat();
     let said = printed(at, &arguments);
-    shows(&said, &[16.0]);
     golden("uncertain-threshold", &said);
     let results = at.join("all/uncertain_threshold");
     let table = Table::read(results.join("samples.csv"));
@@ -751,21 +746,18 @@ fn thresholds_have_a_distribution() {
 fn samples_that_do_not_stand_are_reported() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
-    // A semicircle needs t/R of at least 0.1075; a thinner one is not an error of the range.
-    let text = uncertain_arch(32, 1).replace("{ deviation = 0.01 }", "{ from = 0.10, to = 0.16 }");
+    // A semicircle needs t/R of at least 0.1075. Thin short arches and thick long ones stand, so the reader allows these ranges.
+    let text = uncertain_arch(32, 1).replace(
+        "{ deviation = 0.01 }",
+        "{ from = 0.08, to = 0.16 }\n'arch.embrace_deg' = { from = 120, to = 180 }",
+    );
     fs::write(at.join("s.toml"), text).unwrap();
-    let output = archrock(at, &["run", "s.toml", "--out", "r", "--no-report"]);
-    let said =
-        String::from_utf8(output.stderr).unwrap() + &String::from_utf8(output.stdout).unwrap();
-    if output.status.code() == Some(2) {
-        // The reader already refuses it.
-        assert!(said.contains("0.1"), "{said}");
-        return;
-    }
+    let said = printed(at, &["run", "s.toml", "--out", "r", "--no-report"]);
     let summary = json(&at.join("r/uncertain/uncertain.json"));
     let count = |name: &str| summary[name].as_u64().unwrap();
     assert!(count("invalid") > 0);
-    shows(&said, &[count("invalid") as f64]);
+    let invalid = format!("{} of 32 samples make no valid structure", count("invalid"));
+    assert!(said.contains(&invalid), "{said}");
     assert_eq!(count("invalid") + count("answered"), 32);
 }
 
@@ -1253,7 +1245,6 @@ fn suites_split_fragility_into_records_and_uncertain_input() {
     // The program first asks about records of so few samples.
     let (asked, said) = said.split_once("of the suite are like that\n").unwrap();
     assert!(asked.contains("a.csv has a sample every 0.3 s"), "{asked}");
-    shows(said, &[5.0, 50.0, 24.0, 16.0, 84.0]);
     golden("uncertain-suite", said);
     let results = at.join("r/uncertain_suite");
     let capacities = Table::read(results.join("capacities.csv"));

@@ -10,8 +10,8 @@ use archrock::dynamics::demand::ground::{GroundSpectrum, Hazard, Site, Soil, Top
 use archrock::dynamics::demand::oscillator::peak_displacement;
 use archrock::dynamics::demand::points::PointSpectrum;
 use archrock::dynamics::demand::{damping_factor, displacement_m};
+use archrock::mechanics::BodyPoint;
 use archrock::mechanics::capacity::{Capacity, CapacityError, Control, Displaced};
-use archrock::mechanics::geometry::pose::BodyPoint;
 use archrock::mechanics::virtual_work::{MovingBody, Participation, load_multiplier};
 use archrock::scenario::Structure;
 use archrock::{MechanismModel, Pose, Scenario, Sway};

@@ -15,6 +15,7 @@ pub(super) const MOST_STEPS: usize = 20_000;
 
 /// Reason for the end of a computed fall.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum FallEnd {
     /// A body has turned by [`TURNED_RAD`].
     Turned,

@@ -18,6 +18,7 @@ use crate::mechanics::{Demand, Hinge, Lanes, Pose, Sway, Tie, TieMemory};
 /// ties. That is the barrier of the first mechanism if known, otherwise the least barrier to overturn the part above a joint as one block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Outcome {
     /// Nothing moved: no joint opened or slipped, and the kinetic energy of elastic joints stayed below 1e-9 of weight times size. They may have
     /// followed the ground slowly, without vibration, and turned a little. The history is complete.
@@ -298,6 +299,7 @@ impl Sample {
 
 named! {
     /// Kind of an event.
+    #[non_exhaustive]
     pub enum EventKind {
         /// The structure starts to move from rest.
         Uplift = "uplift",

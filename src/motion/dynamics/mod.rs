@@ -1,7 +1,7 @@
 //! Motion in time: ground motion, models of motion and their histories.
 pub mod demand;
-pub mod elastic_joints;
-pub mod fall;
+pub(crate) mod elastic_joints;
+pub(crate) mod fall;
 pub mod free_hinges;
 pub mod ground;
 pub mod history;
@@ -9,15 +9,16 @@ pub(crate) mod hybrid;
 pub mod model;
 pub mod peak;
 mod recorder;
-pub mod recording;
+pub(crate) mod recording;
 pub mod repeatability;
 mod request;
-pub mod row;
+pub(crate) mod row;
 pub mod thrust;
-pub mod until;
+pub(crate) mod until;
 pub mod variation;
 
 pub use self::demand::ground::{GroundSpectrum, Site};
+pub use self::elastic_joints::ElasticJoints;
 pub use self::fall::FallEnd;
 pub use self::free_hinges::RowOptions;
 pub use self::ground::{GroundMotion, GroundVelocity};
@@ -26,6 +27,7 @@ pub use self::history::{
     Summary, TieSample,
 };
 pub use self::model::{MechanismModel, Model, Repetition, Request, SimulationError};
+pub use self::recording::{History, MEMORY_BYTES, MemoryError, Recording, Samples};
 pub use self::repeatability::{OutcomeCount, Repeatability, Verdict};
 pub(crate) use self::row::clock::Settings;
 pub use self::row::error::{RowModelError, RowMotionError};
@@ -33,4 +35,5 @@ pub(crate) use self::row::input::MotionInput;
 pub(crate) use self::row::observer::MotionObserver;
 pub(crate) use self::row::stepper::Stepper;
 pub use self::thrust::ThrustRecord;
+pub use self::until::EndCondition;
 pub use self::variation::Variation;

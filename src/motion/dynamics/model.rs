@@ -286,6 +286,7 @@ pub const FEET_NEED_JOINTS: &str =
 
 /// Reason why a motion was not computed.
 #[derive(Clone, Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum SimulationError {
     /// A number of the request is out of range.
     #[error(transparent)]

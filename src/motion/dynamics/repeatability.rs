@@ -396,6 +396,7 @@ fn suffice<'a>(
 named! {
     /// Verdict on whether a structure overturns.
     #[derive(PartialOrd, Ord)]
+    #[non_exhaustive]
     pub enum Verdict {
         /// The structure survives.
         Survives = "survives",

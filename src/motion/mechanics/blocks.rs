@@ -26,6 +26,7 @@ const LEAST_SIZE_RATIO: f64 = 1e-6;
 
 /// Reason why blocks and joints do not form a row.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum RowError {
     /// The thickness of a joint is out of range: index of the joint, from 0, and thickness in metres.
     #[error(

@@ -191,6 +191,7 @@ pub struct TieEventDisplacements {
 
 /// Reason why there is no capacity curve.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum CapacityError {
     /// The control point at this position, in metres, does not move, or moves against the sway to this side.
     #[error(

@@ -48,7 +48,7 @@ pub struct Demand {
 
 /// Least normal force of a section, over the weight of the structure, that counts in the friction demand. An almost unloaded section can show any
 /// ratio, and its slip hardly matters.
-pub const LEAST_LOAD: f64 = 0.01;
+pub(crate) const LEAST_LOAD: f64 = 0.01;
 
 /// Mechanism with one degree of freedom `q >= 0` at finite rotations, swaying right.
 pub trait Mechanism {

@@ -54,6 +54,7 @@ impl Size {
 
 /// Reason why a structure does not rock as four links.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum FourLinkError {
     /// The structure does not start as four links.
     #[error("{}{}", .0, if *.0 == LimitError::CannotStand { "" } else { VOUSSOIRS })]

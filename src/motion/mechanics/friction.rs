@@ -51,6 +51,7 @@ impl FrictionOnset {
 
 /// Reason why there is no such push.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum FrictionError {
     /// No joint forces are in equilibrium with the weight for this coefficient.
     #[error(

@@ -29,6 +29,7 @@ pub struct Position {
 
 impl Position {
     /// Position of a support that has not moved; its faces are given in the undeformed row.
+    #[cfg(any(test, feature = "internals"))]
     pub const HELD: Self = Self {
         centre_m: Vector2::new(0.0, 0.0),
         rotation_rad: 0.0,

@@ -40,6 +40,7 @@ pub struct RowOnset {
 
 /// Reason why a row has no push of first motion.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum StabilityError {
     /// The row does not carry its own weight.
     #[error("the row cannot carry its own weight")]
@@ -61,7 +62,7 @@ pub fn collapse_mechanism(row: &Row) -> Result<Option<Vec<OpeningJoint>>, Contac
 ///
 /// # Errors
 /// When the velocities under the weight are not found.
-pub fn collapse_mechanism_at(
+pub(crate) fn collapse_mechanism_at(
     row: &Row,
     stance: &RowState,
 ) -> Result<Option<Vec<OpeningJoint>>, ContactError> {

@@ -45,6 +45,7 @@ pub struct Tie {
 
 /// Reason why a tie is not valid. Messages number blocks from 1.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum TieError {
     /// A number is out of range.
     #[error("{0}")]

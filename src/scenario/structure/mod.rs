@@ -15,7 +15,7 @@ use super::prelude::*;
 use super::span::Circular;
 use super::tie::{self, TieTable};
 use crate::argument::rounded_up;
-use crate::mechanics::blocks::MAX_BLOCKS;
+use crate::mechanics::MAX_BLOCKS;
 use crate::mechanics::four_link::limit::least_thickness_ratio;
 use crate::mechanics::masonry::{CircularArch, LoadOutlines};
 use crate::mechanics::{LimitError, Parts, PlacedLoad, RowError, Shape, Supports, Tie, arch};
@@ -39,6 +39,7 @@ pub enum Structure {
 
 /// Reasons why a structure has no model of motion.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum ModelError {
     /// The structure does not rock as four links.
     #[error(transparent)]
@@ -296,7 +297,8 @@ fn why_not(arch: &Arch, error: LimitError) -> String {
                  the thickness must be at least {least} mean radii"
             )
         }
-        LimitError::OtherMechanism(_) | LimitError::NoPush => {
+        // Another mechanism, or no push.
+        _ => {
             let degrees = plain(embrace_deg.to_degrees());
             let unit = match embrace_deg < LIKELY_EMBRACE_DEG {
                 true => format!(": is it in radians, {degrees} degrees?"),

@@ -14,6 +14,7 @@ use crate::{FourLinkError, Hinge, MechanismModel, Row, Scenario, Structure, Sway
 
 /// Reasons why a scenario has no capacity curves.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum CapacityCurveError {
     /// The structure does not move as a mechanism of one degree of freedom.
     #[error(transparent)]

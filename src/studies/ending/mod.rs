@@ -233,6 +233,7 @@ pub(super) fn check_finite(values: &[f64]) -> Result<(), NoHistory> {
 /// Reasons why a case has no history.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Error)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum NoHistory {
     /// The structure cannot carry its own weight.
     #[error("it cannot stand")]
@@ -276,6 +277,7 @@ impl From<ModelError> for NoHistory {
 /// Reasons why a sample has no answer.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum NoAnswer {
     /// The values of the sample give no structure that stands.
     Invalid(String),

@@ -6,11 +6,11 @@
 //! ([`cells`]) are a separate study, whose cases are cells of samples.
 
 pub mod cells;
-pub mod edges;
+pub(crate) mod edges;
 pub mod histories;
 mod influence;
 pub mod matters;
-pub mod records;
+pub(crate) mod records;
 mod report;
 mod samples;
 

@@ -97,7 +97,7 @@ pub(super) fn changed_outcome(own: &History, varied: &[VariationResult]) -> Opti
     let (opposite, verb) = match Verdict::from(own.outcome) {
         Verdict::Overturns => (Verdict::Survives, "survives"),
         Verdict::Survives => (Verdict::Overturns, "overturns"),
-        Verdict::Incomplete | Verdict::Uncertain => return None,
+        _ => return None,
     };
     let others = varied.iter().filter_map(|one| {
         let other = Verdict::from(one.result.as_ref().ok()?.outcome);

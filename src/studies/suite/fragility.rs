@@ -86,6 +86,7 @@ pub struct Fragility {
 
 /// Reasons why a fragility curve cannot be fitted.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum NoFit {
     /// An intensity has no finite logarithm.
     #[error("intensity {0}: must be positive and finite")]

@@ -7,7 +7,7 @@
 pub mod along;
 mod digits;
 mod factors;
-pub mod first_edge;
+pub(crate) mod first_edge;
 pub mod picture;
 mod report;
 pub mod survival;

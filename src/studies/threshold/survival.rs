@@ -88,7 +88,7 @@ const fn word(verdict: Option<Verdict>) -> &'static str {
         Some(Verdict::Incomplete) => "no verdict",
         Some(Verdict::Uncertain) => "uncertain",
         Some(Verdict::Overturns) => "overturns",
-        None => "not known",
+        _ => "not known",
     }
 }
 

@@ -38,6 +38,7 @@ pub const FRICTION: f64 = 0.577;
 
 /// Errors of scenarios that cannot be checked.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum VerifyError {
     /// There is no demand.
     #[error(
@@ -245,6 +246,7 @@ impl SideCheck {
 
 named! {
     /// The verdict on a limit state.
+    #[non_exhaustive]
     pub enum Verdict {
         /// The capacity reaches the demand.
         Passed = "passed",

@@ -9,7 +9,7 @@ use super::{damping_factor, displacement_m};
 use crate::dynamics::GroundSpectrum;
 
 /// Periods, over that of a mode, between which the ordinate of the mode is the largest.
-pub const PLATEAU: [f64; 2] = [0.8, 1.1];
+pub(crate) const PLATEAU: [f64; 2] = [0.8, 1.1];
 
 /// A mode of a building, in its present state.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

@@ -58,7 +58,7 @@ impl Soil {
 }
 
 /// Period `T_F` (Tab. 3.2.VII), in seconds, for all soils.
-pub const T_F_S: f64 = 10.0;
+pub(crate) const T_F_S: f64 = 10.0;
 
 named! {
     /// Topographic category (Tab. 3.2.III).

@@ -4,27 +4,11 @@ use super::landing::LandingStepper;
 use super::sliding::SlidingStepper;
 use crate::dynamics::recorder::Recorder;
 use crate::dynamics::row::stepper;
-use crate::dynamics::{GroundMotion, MotionInput, RowMotionError, Settings, Summary};
-use crate::mechanics::{Row, RowState};
+use crate::dynamics::{MotionInput, RowMotionError, Summary};
+use crate::mechanics::RowState;
 
 /// Maximum number of steps of a motion, about a month of computing. Many more steps would be shorter than the rounding error of time.
 const MOST_STEPS: f64 = 1e12;
-
-/// Computes the motion of a row on moving ground, from rest or released at given rotations of its blocks (in radians; without slip only).
-///
-/// # Errors
-/// If the initial rotations do not close the arch, or a step fails.
-pub fn simulate(
-    row: &Row,
-    ground: &GroundMotion,
-    gravity_m_s2: f64,
-    settings: &Settings,
-    initial_rad: Option<&[f64]>,
-    recorder: Option<&mut dyn Recorder>,
-) -> Result<Summary, RowMotionError> {
-    let input = MotionInput::new(row, ground, gravity_m_s2, *settings);
-    motion(input, &RowState::undeformed(row), initial_rad, recorder)
-}
 
 /// Computes the motion of a row from any state in equilibrium.
 pub fn motion(

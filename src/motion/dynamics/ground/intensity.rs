@@ -9,7 +9,7 @@ use crate::bisection::{Width, bisect};
 use crate::dynamics::peak::Peak;
 
 /// Fractions of the Arias intensity at the start and end of the significant duration (Trifunac and Brady, 1975).
-pub const SIGNIFICANT: [f64; 2] = [0.05, 0.95];
+pub(crate) const SIGNIFICANT: [f64; 2] = [0.05, 0.95];
 
 /// Strength of a record.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -62,7 +62,7 @@ pub struct Piece {
 
 impl Piece {
     /// Returns the change of the ground velocity from the start of the piece to a time in it, in m/s.
-    pub fn velocity_gained_m_s(&self, time_s: f64) -> Vector2<f64> {
+    pub(crate) fn velocity_gained_m_s(&self, time_s: f64) -> Vector2<f64> {
         let (from_s, to_s) = (self.start_s - self.origin_s, time_s - self.origin_s);
         self.formula.integral(from_s, to_s)
     }
@@ -84,7 +84,7 @@ impl Piece {
     }
 
     /// Returns whether the acceleration is zero in the whole piece.
-    pub fn is_quiet(&self) -> bool {
+    pub(crate) fn is_quiet(&self) -> bool {
         self.ends_m_s2() == [Vector2::zeros(); 2]
     }
 
@@ -97,7 +97,7 @@ impl Piece {
     }
 
     /// Returns the accelerations at both ends, which bound those in between.
-    pub fn ends_m_s2(&self) -> [Vector2<f64>; 2] {
+    pub(crate) fn ends_m_s2(&self) -> [Vector2<f64>; 2] {
         if self.stays_still() {
             [Vector2::zeros(); 2]
         } else {

@@ -145,6 +145,7 @@ pub struct Finish<M, const N: usize> {
 
 /// Reason why a simulation failed.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum EngineError {
     /// The integration failed.
     #[error(transparent)]

@@ -57,6 +57,7 @@ pub struct IntegrationTask<const N: usize> {
 
 /// Reason why an integration failed.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum IntegratorError {
     /// The right-hand side gave no finite number at this time, in seconds, however short the step.
     #[error("the motion has no finite acceleration at {0:?} s")]

@@ -8,6 +8,7 @@ use crate::mechanics::{FrictionError, RowError, SettlingError, StabilityError};
 
 /// Reason why a row of blocks has no model of motion.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum RowModelError {
     /// There are no blocks, or they do not make a row.
     #[error(transparent)]
@@ -37,6 +38,7 @@ pub enum RowModelError {
 
 /// Reason why a motion of a row of blocks was not computed.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum RowMotionError {
     /// The error of the energy balance is too large.
     #[error(

@@ -5,7 +5,7 @@
 //! - `standing` holds the properties of a row of rigid blocks before it moves.
 
 pub(crate) mod clock;
-pub mod error;
+pub(crate) mod error;
 pub(super) mod input;
 pub(super) mod observer;
 pub(super) mod standing;

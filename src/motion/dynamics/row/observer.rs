@@ -313,7 +313,7 @@ impl<'a> MotionObserver<'a> {
     }
 
     /// Returns whether a row with small kinetic energy since `since_s` is at rest.
-    pub fn is_quiet(&self, since_s: f64) -> bool {
+    pub(crate) fn is_quiet(&self, since_s: f64) -> bool {
         self.time - since_s > self.rest_time_s()
     }
 

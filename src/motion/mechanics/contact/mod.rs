@@ -40,6 +40,7 @@ const DEPENDENCE: f64 = 1e-10;
 
 /// Reason why a quadratic program has no solution, or why none was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
 pub enum ContactError {
     /// The active set was not found within this number of iterations, at the loosest tolerance.
     #[error(

@@ -33,6 +33,7 @@ pub struct Equilibrium {
 
 /// Reason why a structure has no equilibrium.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum RestError {
     /// Equilibrium exists without slip only.
     #[error(
@@ -92,7 +93,7 @@ impl Equilibrium {
     }
 
     /// Returns the joint with the largest eccentricity of the thrust, and this eccentricity over the length of the joint.
-    pub fn largest_eccentricity(&self, structure: &ElasticStructure) -> (usize, f64) {
+    pub(crate) fn largest_eccentricity(&self, structure: &ElasticStructure) -> (usize, f64) {
         let each = structure.fibres();
         let moved = |body: usize| self.moved.get(body).unwrap_or(structure.support(body));
         let joints = structure.joints.iter().enumerate();

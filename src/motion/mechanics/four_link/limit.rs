@@ -25,6 +25,7 @@ pub struct Incipient {
 
 /// Reason why a ring does not start to rock as a four-link mechanism.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum LimitError {
     /// The ring cannot carry its own weight.
     #[error("the arch cannot carry its own weight")]

@@ -5,9 +5,13 @@ pub mod impact;
 pub mod impulse_line;
 pub(crate) mod jointed;
 pub mod limit;
-pub mod linkage;
+pub(crate) mod linkage;
 pub mod mechanism;
 pub mod resultant;
 mod search;
-pub mod self_weight;
-pub mod thrust;
+pub(crate) mod self_weight;
+pub(crate) mod thrust;
+
+pub use self::linkage::Linkage;
+pub use self::self_weight::carries_its_weight;
+pub use self::thrust::ThrustLine;

@@ -166,7 +166,7 @@ impl Curve {
     }
 
     /// Returns the parameter at which the curve has reached a length.
-    pub fn part_at(&self, length: f64) -> f64 {
+    pub(crate) fn part_at(&self, length: f64) -> f64 {
         match self {
             Self::Line { .. } | Self::Arc { .. } => length / self.length(),
             Self::Ellipse { .. } => self.first(|part| self.between(0.0, part).length() >= length),
@@ -181,7 +181,7 @@ impl Curve {
 
     /// Returns the moments, about a pole, of the area swept by the line from the pole to the point on the curve; positive if the line rotates
     /// anticlockwise.
-    pub fn swept(&self, pole: Vector2<f64>) -> MassMoments {
+    pub(crate) fn swept(&self, pole: Vector2<f64>) -> MassMoments {
         if let Self::Line { from, to } = self {
             // A triangle.
             let (a, b) = (from - pole, to - pole);

@@ -1,7 +1,7 @@
 //! Shapes, and the rigid motions of their parts.
-pub mod curve;
+pub(crate) mod curve;
 pub mod field;
-pub mod pose;
-pub mod profile;
-pub mod rigid;
-pub mod ring;
+pub(crate) mod pose;
+pub(crate) mod profile;
+pub(crate) mod rigid;
+pub(crate) mod ring;

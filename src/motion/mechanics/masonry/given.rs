@@ -76,7 +76,7 @@ impl GivenBlocks {
     ///
     /// # Errors
     /// When one of these does not hold.
-    pub fn check_order(&self) -> Result<(), OutlineError> {
+    pub(crate) fn check_order(&self) -> Result<(), OutlineError> {
         let ([first, .., last], Supports::Both) = (&*self.joints, self.supports) else {
             return Ok(());
         };

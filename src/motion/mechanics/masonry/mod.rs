@@ -201,6 +201,7 @@ pub struct LoadOutlines {
 
 /// Reason why masonry is not valid.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum MasonryError {
     /// A number of the shape is out of range.
     #[error("{0}")]

@@ -18,11 +18,11 @@ pub(super) fn cut_pointed(dimensions: &Dimensions) -> Result<CutArch, ArgumentEr
     dimensions.check()?;
     let (span_m, rise_m) = (dimensions.span_m, dimensions.rise_m);
     let thickness_m = dimensions.thickness_m;
+    let least_m = 0.5 * span_m;
     let allowed = format_args!(
-        "at least half the span, {:?}; lower arches are segments of a circle, elliptic or of three centres",
-        0.5 * span_m
+        "at least half the span, {least_m:?}; lower arches are segments of a circle, elliptic or of three centres"
     );
-    allow(rise_m >= 0.5 * span_m, "rise_m", rise_m, allowed)?;
+    allow(rise_m >= least_m, "rise_m", rise_m, allowed)?;
     let radius_m = rise_m * rise_m / span_m + 0.25 * span_m;
     // The centre of the left arc is right of the middle.
     let centre = Vector2::new(radius_m - 0.5 * span_m, 0.0);

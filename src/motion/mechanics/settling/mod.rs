@@ -147,6 +147,7 @@ pub struct Snap {
 
 /// Reason why a row could not be followed.
 #[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
 pub enum SettlingError {
     /// The row is a stack, with one support only.
     #[error("the row stands on one support alone, and nothing moves against it")]

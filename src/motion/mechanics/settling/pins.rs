@@ -92,7 +92,7 @@ impl HingeState {
     }
 
     /// Returns the joints with less than this margin: those where the thrust line leaves the joint, with the edge there, and hinges that close.
-    pub fn pins_below_margin(&self, margin: f64) -> Vec<Pin> {
+    pub(crate) fn pins_below_margin(&self, margin: f64) -> Vec<Pin> {
         let pull = self
             .compressive_forces()
             .filter(|(_, force)| *force < margin);
