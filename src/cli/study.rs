@@ -346,7 +346,9 @@ impl<'s> Session<'s> {
         models: &[(&str, Results)],
         place: Option<&Destination>,
     ) -> Result<Option<Results>, Failure> {
-        let models = models.iter().map(|(name, found)| (*name, &found.peaks[..]));
+        let models = models
+            .iter()
+            .map(|(name, found)| (*name, &found.largest_rotations_rad[..]));
         let models: Vec<(&str, &[f64])> = models.collect();
         let (2.., Some(place)) = (models.len(), place) else {
             return Ok(None);

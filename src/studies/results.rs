@@ -74,13 +74,13 @@ pub trait ReportedStudy: Study {
 pub struct Results {
     /// Names and contents of the files. A folder that contains the last file is complete.
     pub files: Vec<(&'static str, Vec<u8>)>,
-    /// The summary in words.
+    /// The report in words: the first line is not indented, the others are, and the last has no line break.
     pub words: String,
     /// The summary as JSON.
     pub summary: Value,
     /// The largest rotation of each case of a suite or sample of a run, in radians, for the [comparison](super::peaks) of models of motion.
     /// Infinite if the case overturned.
-    pub peaks: Vec<f64>,
+    pub largest_rotations_rad: Vec<f64>,
     /// The answer of a suite that may be quoted, for the comparison of models of motion.
     pub answer: Option<ModelAnswer>,
 }
@@ -96,7 +96,8 @@ impl Results {
         report: &(impl Serialize + Template),
         others: impl IntoIterator<Item = Vec<u8>>,
     ) -> Result<Self, OutputError> {
-        Self::with_words(names, report, render(report), others)
+        let words = render(report).trim_end().to_owned();
+        Self::with_words(names, report, words, others)
     }
 
     pub(super) fn with_words(
@@ -118,7 +119,7 @@ impl Results {
             files: names.iter().map(file).collect(),
             words,
             summary,
-            peaks: Vec::new(),
+            largest_rotations_rad: Vec::new(),
             answer: None,
         })
     }
