@@ -4,6 +4,7 @@ use std::fmt;
 
 use askama::Template;
 use serde::Serialize;
+use serde::de::DeserializeOwned;
 use serde_json::Value;
 use thiserror::Error;
 
@@ -96,8 +97,7 @@ impl Results {
         report: &(impl Serialize + Template),
         others: impl IntoIterator<Item = Vec<u8>>,
     ) -> Result<Self, OutputError> {
-        let words = render(report).trim_end().to_owned();
-        Self::with_words(names, report, words, others)
+        Self::with_words(names, report, words_of(report), others)
     }
 
     pub(super) fn with_words(
@@ -139,6 +139,20 @@ impl Results {
         }
         folder.complete()
     }
+}
+
+/// Returns the words of a report, made from its JSON alone.
+///
+/// # Errors
+/// When the text is not the JSON of such a report.
+#[doc(hidden)]
+pub fn words_of_json<R: DeserializeOwned + Template>(json: &str) -> serde_json::Result<String> {
+    let report: R = serde_json::from_str(json)?;
+    Ok(words_of(&report))
+}
+
+fn words_of(report: &impl Template) -> String {
+    render(report).trim_end().to_owned()
 }
 
 /// A result without files, as JSON and in words.

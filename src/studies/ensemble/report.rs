@@ -158,11 +158,11 @@ impl SampleSummary {
 /// Numbers of samples or histories without an answer.
 #[derive(Clone, Copy, Default, Serialize, Deserialize)]
 pub(super) struct ReasonCounts {
-    /// Number of those whose values give no valid structure.
+    /// Number with values that give no valid structure.
     pub(super) invalid: usize,
-    /// Number of those that could not be computed.
+    /// Number that could not be computed.
     pub(super) failed: usize,
-    /// Number of those that ended too early for a verdict.
+    /// Number that ended too early for a verdict.
     pub(super) incomplete: usize,
 }
 
@@ -192,8 +192,11 @@ impl ReasonCounts {
 /// Quantiles of the answers; null if they are unknown or infinite.
 #[derive(Clone, Copy, Serialize, Deserialize)]
 pub(super) struct Band {
+    /// 5 % quantile.
     pub(super) quantile_05: Option<f64>,
+    /// Median.
     pub(super) median: Option<f64>,
+    /// 95 % quantile.
     pub(super) quantile_95: Option<f64>,
 }
 

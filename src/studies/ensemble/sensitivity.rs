@@ -29,9 +29,9 @@ pub struct Sensitivity {
 /// | all others)] / Var(Y)`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Total {
-    /// Total index, from 0 to 1.
+    /// Total index, from 0 to 1; absent without `total_indices` in the scenario.
     pub total: f64,
-    /// 95 % interval of the total index, by bootstrap.
+    /// 95 % interval of the total index, by bootstrap; absent with it.
     pub total_interval: [f64; 2],
 }
 
