@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use archrock::output::Origin;
 use archrock::scenario::{Scenario, shown_lines};
 use archrock::studies::catalogue::{Options, RUN, UNCERTAIN};
-use archrock::studies::results::{Results, Style};
+use archrock::studies::results::Style;
 use archrock::studies::run::{RunOptions, check, heading};
 use nalgebra::Vector2;
 
@@ -105,16 +105,16 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
         super::warn(&scenarios[0].unlikely());
         let mut session = Session::new(None, arguments.work, style, options.clone());
         let found = session.with_samples([RUN, UNCERTAIN], scenarios, place.as_ref());
-        let results = match found {
+        let found = match found {
             // The other scenarios are still run.
             Err(Failure::Work(message)) if tasks.len() > 1 => {
                 place.iter().for_each(Destination::abandon);
                 failures.push(format!("{name}: {message}"));
-                Results::default()
+                None
             }
             found => {
                 done.push((session, place));
-                found?.unwrap_or_default()
+                found?
             }
         };
         // All results in a folder replace the earlier ones together, once the last of them is complete.
@@ -132,15 +132,11 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
                 session.publish(place.as_ref())?;
             }
         }
-        let words = match results.words.is_empty() {
-            true => String::new(),
-            false => heading(scenarios) + &results.words,
-        };
+        let Some(found) = found else { continue };
+        let words = heading(scenarios) + &found.words("  ") + "\n";
         // A closed pipe ends the words, not the work.
         printed = printed.and_then(|()| arguments.print(&words, quiet));
-        if !results.summary.is_null() {
-            summaries.push(results.summary);
-        }
+        summaries.push(found.summary(RUN)?);
     }
     printed?;
     if matches!(arguments.format, Format::Json) && !summaries.is_empty() {

@@ -9,15 +9,15 @@ use archrock::studies::catalogue::{self, Options, StudyKind, merge as merged};
 use archrock::studies::ensemble::uncertain_map::CellsOfSamples;
 use archrock::studies::map::OverturningMap;
 use archrock::studies::quotable;
-use archrock::studies::results::{Results, Style};
+use archrock::studies::results::Style;
 use clap::ValueEnum;
-use serde_json::Map;
+use serde_json::Value;
 
 use super::figure::FigureOption;
 use super::models::warn_of;
 use super::progress::print_status;
 use super::scenario_file::{Destination, Input};
-use super::study::StudyArguments;
+use super::study::{Found, StudyArguments};
 use super::{Failure, Format, print};
 
 #[derive(clap::Args)]
@@ -151,30 +151,35 @@ fn compute(
         let found = session.with_samples(kinds, one, Some(&place))?;
         all.extend(found.map(|found| (one[0].motion.label(), found)));
     }
-    let compared = session.compare(kinds[0], scenarios[0].title.as_deref(), &all, Some(&place))?;
+    let models = all.iter().map(|(model, found)| (*model, &found.own));
+    let title = scenarios[0].title.as_deref();
+    let compared = session.compare(kinds[0], title, models, Some(&place))?;
     session.publish(Some(&place))?;
-    if let (false, [(_, results)]) = (several, &all[..]) {
-        return show(results, &place, study.format);
+    if let (false, [(_, found)]) = (several, &all[..]) {
+        return show(found, kinds[0], &place, study.format);
     }
-    let mut summaries = Map::new();
-    for (scenario, (model, results)) in scenarios.iter().zip(&all) {
+    let mut summaries = Vec::new();
+    for (scenario, (model, found)) in scenarios.iter().zip(&all) {
         print_status(model);
-        show(results, &place.of_model(scenario, several), Format::Text)?;
+        let place = place.of_model(scenario, several);
+        show(found, kinds[0], &place, Format::Text)?;
         let name = scenario.motion.hinges().name();
-        summaries.insert(name.to_owned(), results.summary.clone());
+        summaries.push((name.to_owned(), found.summary(kinds[0])?));
     }
-    let answers = all.iter().filter_map(|(_, found)| found.answer.clone());
+    let answers = all.iter().filter_map(|(_, found)| found.own.answer.clone());
     let to_quote = quotable::in_words(&answers.collect::<Vec<_>>());
     if let Some(compared) = compared {
         print_status(&compared.words);
-        summaries.insert("peaks".to_owned(), compared.summary);
+        summaries.push(("peaks".to_owned(), compared.summary));
     }
     if let Some(to_quote) = to_quote {
         print_status(&to_quote);
-        summaries.insert("to_quote".to_owned(), to_quote.into());
+        summaries.push(("to_quote".to_owned(), to_quote.into()));
     }
     match study.format {
-        Format::Json if !all.is_empty() => print(&pretty(&summaries.into())),
+        Format::Json if !all.is_empty() => {
+            print(&pretty(&summaries.into_iter().collect::<Value>()))
+        }
         _ => Ok(()),
     }
 }
@@ -200,15 +205,20 @@ pub fn merge(arguments: &MergeArguments) -> Result<(), Failure> {
     place.check_names(kind.files)?;
     place.prepare(&results)?;
     place.publish()?;
-    show(&results, &place, arguments.format)
+    show(&Found::alone(results), kind, &place, arguments.format)
 }
 
 /// Prints published results.
-fn show(results: &Results, place: &Destination, format: Format) -> Result<(), Failure> {
+fn show(
+    found: &Found,
+    kind: StudyKind,
+    place: &Destination,
+    format: Format,
+) -> Result<(), Failure> {
     if let Format::Json = format {
-        return print(&pretty(&results.summary));
+        return print(&pretty(&found.summary(kind)?));
     }
-    print_status(&results.words);
-    print_status(&format!("  results in {}", place.describe(results)));
+    print_status(&found.words(""));
+    print_status(&format!("  results in {}", place.describe(&found.own)));
     Ok(())
 }

@@ -13,8 +13,11 @@ use archrock::studies::catalogue::{Computation, Options, RowSource, StudyKind};
 use archrock::studies::part::{PartError, PartErrorKind, PartFile, Shard, rows_in};
 use archrock::studies::peaks;
 use archrock::studies::results::{Results, StudyError, Style};
-use archrock::studies::run::Sinks;
+use archrock::studies::run::{SampleReport, Sinks};
 use archrock::studies::runner::{Progress, Runner, RunnerError, Task};
+
+use serde::Serialize;
+use serde_json::{Map, Value, json};
 
 use super::figure::FigureOption;
 use super::models::ModelsOption;
@@ -121,8 +124,88 @@ pub struct Session<'s> {
     pending: Vec<PartFile>,
 }
 
-/// Heading before the report on the scenario itself. The report on its samples comes first, with the probability of overturning.
-const ITSELF: &str = "the scenario itself:\n";
+/// The results of a command on scenarios that differ only in their models of motion.
+pub struct Found {
+    /// The results on the samples of each model that has `[uncertain]`.
+    samples: Vec<OfSamples>,
+    /// The comparison of the models by the largest rotations of their samples.
+    compared: Option<Results>,
+    /// The results on the scenario itself.
+    pub own: Results,
+    /// True if there are several models.
+    several: bool,
+}
+
+/// The results on the samples of a model.
+struct OfSamples {
+    /// Name and label of the model.
+    model: [&'static str; 2],
+    results: Results,
+    /// Their folder, and the names of their files, in words.
+    place: String,
+}
+
+/// The JSON of results, after those on samples.
+#[derive(Serialize)]
+struct Summary<'f> {
+    #[serde(flatten)]
+    own: &'f Value,
+    #[serde(flatten)]
+    samples: Map<String, Value>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    peaks: Option<&'f Value>,
+}
+
+impl Found {
+    /// Makes the results of a study without samples.
+    pub const fn alone(own: Results) -> Self {
+        Self {
+            samples: Vec::new(),
+            compared: None,
+            own,
+            several: false,
+        }
+    }
+
+    /// Returns the report on the samples, which has the probability of overturning, and then that on the scenario itself. Without samples, `indent`
+    /// comes first.
+    pub fn words(&self, indent: &str) -> String {
+        let mut words = String::new();
+        for one in &self.samples {
+            if self.several {
+                words += &format!("{}\n", one.model[1]);
+            }
+            let place = &one.place;
+            words += &format!("  {}\n  results in {place}\n", one.results.words);
+        }
+        if let Some(compared) = &self.compared {
+            words += &format!("{}\n", compared.words);
+        }
+        let heading = match words.is_empty() {
+            true => indent,
+            false => "the scenario itself:\n  ",
+        };
+        words + heading + &self.own.words
+    }
+
+    /// Returns the JSON of all results. A run has that of its samples already.
+    pub fn summary(&self, kind: StudyKind) -> Result<Value, Failure> {
+        let samples = self.samples.iter().filter(|_| !kind.is_history);
+        let samples = samples.map(|one| {
+            let summary = one.results.summary.clone();
+            match self.several {
+                true => (one.model[0].to_owned(), json!({ "uncertain": summary })),
+                false => ("uncertain".to_owned(), summary),
+            }
+        });
+        let summary = Summary {
+            own: &self.own.summary,
+            samples: samples.collect(),
+            peaks: self.compared.as_ref().map(|compared| &compared.summary),
+        };
+        serde_json::to_value(summary).map_err(|error| Failure::Work(error.to_string()))
+    }
+}
 
 impl<'s> Session<'s> {
     /// The studies of a command, none of which is computed yet.
@@ -255,7 +338,7 @@ impl<'s> Session<'s> {
         self.publish(Some(place))?;
         found.map_or(Ok(()), |found| {
             print_status(&format!("results in {}", place.describe(&found)));
-            show(&found.summary, &found.words, format)
+            show(&found.summary, &(found.words + "\n"), format)
         })
     }
 
@@ -264,16 +347,16 @@ impl<'s> Session<'s> {
     /// samples are computed if there are any; without a folder there are none.
     pub fn with_samples(
         &mut self,
-        [own, samples]: [StudyKind; 2],
+        [kind, samples]: [StudyKind; 2],
         scenarios: &[Scenario],
         place: Option<&Destination>,
-    ) -> Result<Option<Results>, Failure> {
+    ) -> Result<Option<Found>, Failure> {
         let several = scenarios.len() > 1;
         let has_samples = scenarios.iter().any(|one| one.uncertain.is_some());
         if self.work.is_part() && place.is_none() {
             return Err("--shard writes a file: name a folder for it with --out".into());
         }
-        if self.work.is_part() && !has_samples && !own.has_parts() {
+        if self.work.is_part() && !has_samples && !kind.has_parts() {
             let message =
                 "--shard computes a part of the samples of [uncertain], which the scenario lacks";
             return Err(message.into());
@@ -283,72 +366,52 @@ impl<'s> Session<'s> {
         }
         // Samples may take long, so the names of other results are checked before them.
         for scenario in scenarios {
-            let place = place.map(|place| place.of_model(scenario, several && own.is_history));
-            self.check_names(own, place.as_ref())?;
+            let place = place.map(|place| place.of_model(scenario, several && kind.is_history));
+            self.check_names(kind, place.as_ref())?;
         }
-        let (mut words, mut of_models) = (String::new(), Vec::new());
-        let of_samples = scenarios.iter().filter(|one| one.uncertain.is_some());
-        for (scenario, place) in of_samples.flat_map(|one| Some(one).zip(place)) {
-            let model = scenario.motion.label();
+        let mut of_samples = Vec::new();
+        let with_samples = scenarios.iter().filter(|one| one.uncertain.is_some());
+        for (scenario, place) in with_samples.flat_map(|one| Some(one).zip(place)) {
             let place = place.of_model(scenario, several).within(samples.name);
-            let scenario = slice::from_ref(scenario);
-            let Some(found) = self.compute(samples, scenario, Some(&place))? else {
-                continue;
-            };
-            if several {
-                words += &format!("{model}\n");
-            }
-            let (found_words, place) = (&found.words, place.describe(&found));
-            words += &format!("  {found_words}\n  results in {place}\n");
-            of_models.push((model, found));
+            let computed = self.compute(samples, slice::from_ref(scenario), Some(&place))?;
+            of_samples.extend(computed.map(|results| OfSamples {
+                model: [scenario.motion.hinges().name(), scenario.motion.label()],
+                place: place.describe(&results),
+                results,
+            }));
         }
-        let reports = of_models.iter().map(|(_, found)| found.words.clone());
+        let reports = of_samples.iter().map(|one| SampleReport {
+            words: one.results.words.clone(),
+            summary: one.results.summary.clone(),
+        });
         self.options.run.uncertainty = reports.collect();
         if self.work.is_part() && has_samples {
             return Ok(None);
         }
-        let Some(mut results) = self.compute(own, scenarios, place)? else {
+        let Some(own) = self.compute(kind, scenarios, place)? else {
             return Ok(None);
         };
-        let summary = &mut results.summary;
-        for (scenario, (_, found)) in scenarios.iter().zip(&of_models) {
-            let name = scenario.motion.hinges().name();
-            let summary = if several {
-                &mut summary[name]
-            } else {
-                &mut *summary
-            };
-            summary["uncertain"] = found.summary.clone();
-        }
+        // Of the studies of samples, only that of histories has rotations.
+        let compared = of_samples.iter().filter(|_| kind.is_history);
+        let models = compared.map(|one| (one.model[1], &one.results));
         let title = scenarios[0].title.as_deref();
-        if own.is_history
-            && let Some(compared) = self.compare(own, title, &of_models, place)?
-        {
-            words += &format!("{}\n", compared.words);
-            summary["peaks"] = compared.summary;
-        }
-        if !words.is_empty() {
-            let indent = if results.words.starts_with(' ') {
-                ""
-            } else {
-                "  "
-            };
-            results.words.insert_str(0, &(words + ITSELF + indent));
-        }
-        Ok(Some(results))
+        Ok(Some(Found {
+            compared: self.compare(kind, title, models, place)?,
+            samples: of_samples,
+            own,
+            several,
+        }))
     }
 
     /// Compares how far models of motion rock in the same cases, in a folder beside theirs. `None` where there are not several.
-    pub fn compare(
+    pub fn compare<'r>(
         &self,
         kind: StudyKind,
         title: Option<&str>,
-        models: &[(&str, Results)],
+        models: impl Iterator<Item = (&'r str, &'r Results)>,
         place: Option<&Destination>,
     ) -> Result<Option<Results>, Failure> {
-        let models = models
-            .iter()
-            .map(|(name, found)| (*name, &found.largest_rotations_rad[..]));
+        let models = models.map(|(label, results)| (label, &results.largest_rotations_rad[..]));
         let models: Vec<(&str, &[f64])> = models.collect();
         let (2.., Some(place)) = (models.len(), place) else {
             return Ok(None);

@@ -76,19 +76,22 @@ pub fn threshold(arguments: &Arguments) -> Result<(), Failure> {
         super::warn(&scenarios[0].unlikely());
         let kinds = [THRESHOLD, UNCERTAIN_THRESHOLD];
         let found = session.with_samples(kinds, scenarios, place.as_ref())?;
-        all.push((found.unwrap_or_default(), place));
+        all.extend(found.map(|found| (found, place)));
     }
     session.publish(Some(&root))?;
     for (found, place) in &all {
-        if let Some(place) = place.as_ref().filter(|_| !found.files.is_empty()) {
-            print_status(&format!("results in {}", place.describe(found)));
+        if let Some(place) = place {
+            print_status(&format!("results in {}", place.describe(&found.own)));
         }
     }
-    let all = all.into_iter().map(|(results, _)| results);
     match study.format {
-        Format::Json => print_all(all.map(|results| results.summary)),
+        Format::Json => {
+            let summaries = all.iter().map(|(found, _)| found.summary(THRESHOLD));
+            print_all(summaries.collect::<Result<Vec<_>, _>>()?)
+        }
         Format::Text => {
-            let words: String = all.map(|results| results.words).collect();
+            let words = all.iter().map(|(found, _)| found.words("  ") + "\n");
+            let words: String = words.collect();
             print(&format!("{title}{words}  {}\n", factors.in_words()))
         }
     }

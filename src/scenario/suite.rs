@@ -74,7 +74,7 @@ pub struct Suite {
 }
 
 /// An oscillator with one degree of freedom.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, serde::Deserialize)]
 pub struct Spectral {
     /// Period of the oscillator, in s.
     pub period_s: f64,

@@ -325,9 +325,8 @@ pub fn merge(
     if kind == SUITE {
         let style = style(kind, None).map_err(StudyError::Scenario)?;
         let (header, rows) = part::merge(parts)?;
-        let heading = Heading::of_resolved(&header.scenario, header.warnings);
-        let damaged = "the scenario of the parts is damaged: compute them again";
-        let heading = heading.ok_or_else(|| StudyError::scenario(damaged))?;
+        let heading: Heading =
+            serde_json::from_value(header.options).map_err(StudyError::scenario)?;
         return Ok((kind, heading.report(rows, style.figure)?));
     }
     let scenario = match given {

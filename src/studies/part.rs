@@ -120,9 +120,6 @@ pub struct Header {
     pub options: Value,
     /// Other input of the cases: checksums of the files that the scenario names.
     pub inputs: Vec<String>,
-    /// Warnings about the scenario: [`warnings`](super::runner::Study::warnings).
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub warnings: Vec<String>,
 }
 
 impl Header {

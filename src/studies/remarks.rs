@@ -50,9 +50,11 @@ pub struct Remarks {
     /// The histories of four links outside their model.
     #[serde(flatten)]
     pub(crate) model: ModelCheck,
-    /// Number of histories that were computed.
+    /// Number of histories that were computed; absent if they are not counted.
+    #[serde(default, skip_serializing_if = "is_zero")]
     histories: usize,
-    /// Number of histories among them that ended too early for a verdict.
+    /// Number of histories among them that ended too early for a verdict; absent without any.
+    #[serde(default, skip_serializing_if = "is_zero")]
     histories_without_verdict: usize,
     /// The longest steps of the cases, in seconds; absent if a tolerance sets the steps.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -314,6 +316,11 @@ impl OutcomeCounts {
             *counts.entry(name.to_owned()).or_insert(0) += 1;
         }
         Self(counts)
+    }
+
+    /// Returns the number of all cases.
+    pub(crate) fn total(&self) -> usize {
+        self.0.values().sum()
     }
 
     /// Returns true if cases still rock at the end.

@@ -97,15 +97,6 @@ impl Results {
         report: &(impl Serialize + Template),
         others: impl IntoIterator<Item = Vec<u8>>,
     ) -> Result<Self, OutputError> {
-        Self::with_words(names, report, words_of(report), others)
-    }
-
-    pub(super) fn with_words(
-        names: &[&'static str],
-        report: &impl Serialize,
-        words: String,
-        others: impl IntoIterator<Item = Vec<u8>>,
-    ) -> Result<Self, OutputError> {
         let summary = summary_of(report)?;
         let mut others = others.into_iter();
         let file = |name: &&'static str| {
@@ -117,7 +108,7 @@ impl Results {
         };
         Ok(Self {
             files: names.iter().map(file).collect(),
-            words,
+            words: words_of(report),
             summary,
             largest_rotations_rad: Vec::new(),
             answer: None,

@@ -80,11 +80,6 @@ pub trait Study: Sync {
         self.base().map_or(Vec::new(), Scenario::record_checksums)
     }
 
-    /// Returns warnings about the scenario that `merge` cannot recompute, because the files of the scenario may have moved.
-    fn warnings(&self) -> Vec<String> {
-        Vec::new()
-    }
-
     /// Returns the number of cases.
     fn count(&self) -> usize;
 
@@ -110,7 +105,6 @@ impl Header {
             scenario: study.scenario(),
             options: study.options(),
             inputs: study.inputs(),
-            warnings: study.warnings(),
         }
     }
 }

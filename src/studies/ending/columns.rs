@@ -62,9 +62,9 @@ impl Ending {
     }
 
     /// Returns the side to which a case overturned; `None` unless overturning is certain.
-    pub(crate) fn overturning_sway(&self) -> Option<&'static str> {
+    pub(crate) fn certain_overturning_sway(&self) -> Option<Sway> {
         let sway = self.outcome.overturning_sway();
-        sway.filter(|_| self.doubt().is_none()).map(Sway::name)
+        sway.filter(|_| self.doubt().is_none())
     }
 }
 
@@ -79,13 +79,13 @@ pub(crate) fn columns<'a, R: 'a>(free_hinges: bool, ended: Ended<R>) -> Vec<Colu
             ended(row).map_or_else(|reason| reason, Ending::outcome_name)
         }),
         column("overturning_sway", move |row| {
-            ended(row).ok()?.overturning_sway()
+            ended(row).ok()?.certain_overturning_sway().map(Sway::name)
         }),
         column("impacts", move |row| ended(row).ok()?.known_impacts()),
         column("impacts_before_overturning", move |row| {
             let overturned = ended(row)
                 .ok()
-                .filter(|one| one.overturning_sway().is_some());
+                .filter(|one| one.certain_overturning_sway().is_some());
             overturned?.impacts
         }),
         column("outcome_time_s", move |row| ended(row).ok()?.known_time_s()),

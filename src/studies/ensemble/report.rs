@@ -115,6 +115,12 @@ impl SampleSummary {
     ) -> Self {
         let scenario = samples.scenario;
         let limits = limits.into_iter().flatten();
+        let own = samples.own.as_ref().err();
+        let without = samples.without().map(|(sample, why)| WithoutAnswer {
+            sample,
+            why: why.name().to_owned(),
+            reason: why.reason().to_owned(),
+        });
         Self {
             program: env!("CARGO_PKG_NAME").to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -124,19 +130,8 @@ impl SampleSummary {
             answered: samples.answers().count(),
             without: samples.reasons(),
             model,
-            own_without_answer: samples
-                .own
-                .as_ref()
-                .err()
-                .map(|why| why.reason().to_owned()),
-            without_answer: samples
-                .without()
-                .map(|(sample, why)| WithoutAnswer {
-                    sample,
-                    why: why.name().to_owned(),
-                    reason: why.reason().to_owned(),
-                })
-                .collect(),
+            own_without_answer: own.map(|why| why.reason().to_owned()),
+            without_answer: without.collect(),
             not_considered: NOT_CONSIDERED.to_owned(),
             what_matters: Influences(influences.into()),
         }

@@ -24,9 +24,9 @@ mod tables;
 mod words;
 
 use std::fmt::Write as _;
+use std::io;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
-use std::{io, mem};
 
 use nalgebra::Vector2;
 use serde_json::Value;
@@ -96,8 +96,17 @@ pub struct RunOptions {
     pub poses: bool,
     /// Points of the undeformed structure, in metres, whose displacements are reported: at most [`MAX_POINTS`].
     pub points_m: Vec<Vector2<f64>>,
-    /// The words about the samples of `[uncertain]` for each model, with which its page begins; empty without samples.
-    pub uncertainty: Vec<String>,
+    /// The report on the samples of `[uncertain]` for each model; empty without samples.
+    pub uncertainty: Vec<SampleReport>,
+}
+
+/// The report on the samples of a model: its page begins with the words, and its summary ends with the JSON.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SampleReport {
+    /// The report in words.
+    pub words: String,
+    /// The report as JSON.
+    pub summary: Value,
 }
 
 /// Opens the folder for the results of a scenario with its model of motion, for files of these names; `None`: no files are written.
@@ -173,12 +182,12 @@ pub fn results(
         let open = sinks.open.as_mut();
         let folder = open.map_or(Ok(None), |open| open(run.scenario, &run.files()));
         let folder = folder.map_err(StudyError::Scenario)?;
-        let uncertainty = options.uncertainty.get(number).map_or("", String::as_str);
+        let uncertainty = options.uncertainty.get(number);
         all.push(run.compute(folder, sinks.rotations.take(), uncertainty, &mut *watch)?);
     }
     let mut results = Results::default();
     if let [one] = &mut all[..] {
-        results.words = mem::take(&mut one.words);
+        results.words = one.words.trim().to_owned();
         results.summary = one.summary.take();
         return Ok(results);
     }
@@ -199,6 +208,7 @@ pub fn results(
         let path = folder.with_file_name(OVERLAY);
         let _ = writeln!(results.words, "{number} in {}", path.display());
     }
+    results.words = results.words.trim().to_owned();
     Ok(results)
 }
 
@@ -273,7 +283,7 @@ impl<'a> Run<'a> {
         &self,
         mut folder: Option<Folder>,
         rotations: RotationsOutput<'_>,
-        uncertainty: &str,
+        uncertainty: Option<&SampleReport>,
         watch: Watch<'_>,
     ) -> Result<ModelResults<'_>, StudyError> {
         let (scenario, model) = (self.scenario, &*self.model);
@@ -320,6 +330,7 @@ impl<'a> Run<'a> {
         if self.all_models.len() > 1 {
             summary.to_quote = None;
         }
+        summary.uncertain = uncertainty.map(|samples| samples.summary.clone());
         let words = Words {
             computed,
             summary: &summary,
@@ -331,7 +342,8 @@ impl<'a> Run<'a> {
         let summary = summary_of(&summary)?;
         let path = folder.as_ref().map(|folder| folder.path().to_owned());
         if let Some(folder) = folder {
-            let mut files = drawings.files(self, &history, [uncertainty, &verdict], &words);
+            let of_samples = uncertainty.map_or("", |samples| &samples.words);
+            let mut files = drawings.files(self, &history, [of_samples, &verdict], &words);
             files.push((SUMMARY, pretty(&summary).into_bytes()));
             words += &self.write(folder, files, &drawings, rows)?;
         }

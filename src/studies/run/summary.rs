@@ -131,6 +131,9 @@ pub struct Summary<'a> {
     /// The answer that may be quoted, in words; absent from the summary of one of several models, which have one answer together.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub to_quote: Option<String>,
+    /// Summary of the samples of `[uncertain]`, as their `uncertain.json`; absent without samples.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub uncertain: Option<Value>,
     /// Computing time of the longest step, in microseconds. It is the only number that differs between computations.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub longest_step_us: Option<f64>,
@@ -342,6 +345,7 @@ impl<'a> Summary<'a> {
             variations: computed.varied.iter().map(VariationSummary::of).collect(),
             points,
             to_quote: quotable::in_words(&[computed.answer()]),
+            uncertain: None,
             longest_step_us: longest_step.map(|step| (step.as_secs_f64() * 1e6).round()),
         }
     }

@@ -1,62 +1,47 @@
 //! The parts of a scenario that the report of its suite needs.
 
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::{CaseRow, SuiteFragility};
 use crate::argument::plain;
 use crate::output::{Figure, Scale};
-use crate::scenario::{Hinges, Measure, Spacing, Spectral};
+use crate::scenario::{Hinges, Measure, Scenario, Spacing, Spectral, Suite};
 
-/// The parts of a scenario that the report of its suite needs. They come from the text of the resolved scenario, so that `merge` needs no record
-/// files.
-#[derive(Clone, Debug, PartialEq)]
+/// The parts of a scenario that the report of its suite needs. Part files keep them, so that `merge` needs no record files.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Heading {
+    title: Option<String>,
+    /// The scenario with all defaults.
     pub(super) scenario: Value,
+    pub(super) hinges: Hinges,
+    pub(super) is_arch: bool,
     /// The measure of the intensities.
     pub measure: Measure,
     spacing: Spacing,
+    pub(super) spectral: Spectral,
+    /// Warnings about the scenario.
     pub(super) warnings: Vec<String>,
 }
 
 impl Heading {
-    /// Reads the text of a scenario with every default filled in. `warnings` are the warnings about the scenario. `None` if the scenario has no
-    /// suite.
-    pub fn of_resolved(scenario: &str, warnings: Vec<String>) -> Option<Self> {
-        let scenario: Value = toml::from_str(scenario).ok()?;
-        let suite = scenario.get("suite")?;
-        let (measure, levels) = Measure::ALL
-            .iter()
-            .find_map(|measure| Some((*measure, suite.get(measure.name())?)))?;
-        let spacing = serde_json::from_value(levels["spacing"].clone());
-        Some(Self {
-            spacing: spacing.unwrap_or(Spacing::Linear),
-            scenario,
-            measure,
-            warnings,
-        })
-    }
-
-    pub(super) fn hinges(&self) -> Hinges {
-        let mut rows = [Hinges::Elastic, Hinges::Free].into_iter();
-        let own = rows.find(|hinges| self.scenario.get(hinges.model().table).is_some());
-        own.unwrap_or(Hinges::Four)
+    /// Makes the heading of a scenario with this suite.
+    pub fn new(scenario: &Scenario, suite: &Suite) -> Self {
+        Self {
+            title: scenario.title.clone(),
+            scenario: scenario.to_json(),
+            hinges: scenario.motion.hinges(),
+            is_arch: scenario.structure.thrusts(),
+            measure: suite.measure,
+            spacing: suite.levels.spacing(),
+            spectral: suite.spectral,
+            warnings: scenario.unlikely(),
+        }
     }
 
     pub(super) fn title(&self) -> &str {
-        let title = self.scenario.get("title").and_then(Value::as_str);
-        title.unwrap_or("Fragility under a suite of records")
-    }
-
-    /// Returns the oscillator of the spectral acceleration in words: period and damping.
-    pub(super) fn spectral(&self) -> String {
-        let of = |key: &str, default: f64| {
-            let own = self.scenario["suite"].get(key).and_then(Value::as_f64);
-            plain(own.unwrap_or(default))
-        };
-        let default = Spectral::DEFAULT;
-        let period_s = of("spectral_period_s", default.period_s);
-        let damping_percent = of("spectral_damping_percent", default.damping_percent);
-        format!("{period_s} s and {damping_percent} %")
+        let otherwise = "Fragility under a suite of records";
+        self.title.as_deref().unwrap_or(otherwise)
     }
 
     /// Returns the axis of the intensities: its label, and the scale from a little below the lowest level to a little above the highest.

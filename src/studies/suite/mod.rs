@@ -10,12 +10,13 @@ pub mod strength;
 use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 
 use self::fragility::{Fragility, NoFit, Observation, by_intensity, fit};
 pub use self::heading::Heading;
 use self::strength::Strength;
 use super::ending::{Ending, NoHistory, Verdict, check_finite};
-use super::threshold::survival::Survival;
+use super::threshold::survival::{Survival, VerdictRange};
 use super::{ReportedStudy, Results, Study, Style};
 use crate::bisection::{Width, bisect};
 use crate::output::OutputError;
@@ -148,8 +149,8 @@ impl Study for RecordSuite<'_> {
         Some(self.scenario)
     }
 
-    fn warnings(&self) -> Vec<String> {
-        self.scenario.unlikely()
+    fn options(&self) -> Value {
+        json!(Heading::new(self.scenario, self.suite))
     }
 
     fn count(&self) -> usize {
@@ -207,9 +208,7 @@ impl ReportedStudy for RecordSuite<'_> {
     const FILES: &'static [&'static str] = &report::FILES;
 
     fn results(&self, rows: Vec<CaseRow>, style: Style) -> Result<Results, OutputError> {
-        let heading = Heading::of_resolved(&self.scenario.to_toml(), self.scenario.unlikely());
-        let heading = heading.expect("the scenario has a suite");
-        heading.report(rows, style.figure)
+        Heading::new(self.scenario, self.suite).report(rows, style.figure)
     }
 }
 
@@ -296,7 +295,7 @@ pub struct FragilityRow {
 }
 
 /// The number of cases with each outcome.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Counts {
     /// Number of cases with a verdict.
     pub cases: usize,
@@ -476,8 +475,12 @@ impl SuiteFragility {
             survival.survives_up_to = safe;
             // If the bisection met levels without a certain verdict, they are a range of their own.
             let doubtful = safe.filter(|safe| lowest > safe * (1.0 + 2.0 * EDGE_WIDTH));
-            let doubtful = doubtful.map(|safe| (Some(Verdict::Uncertain), [safe, lowest]));
-            survival.runs.splice(1..1, doubtful);
+            let doubtful = doubtful.map(|safe| VerdictRange {
+                verdict: Some(Verdict::Uncertain),
+                from: safe,
+                to: lowest,
+            });
+            survival.ranges.splice(1..1, doubtful);
         }
         survival
     }

@@ -1,6 +1,7 @@
 //! The picture of the fragility under a suite of records.
 
 use super::fragility::Fragility;
+use super::report::records_in_words;
 use super::{Counts, Heading, SuiteFragility};
 use crate::output::{
     BELOW_PX, Chart, Figure, Key, LEFT_PX, Mark, Scale, Shape, Sheet, Sign, Stroke, color,
@@ -78,7 +79,10 @@ fn curves(results: &SuiteFragility) -> Vec<(&Fragility, CurveStyle)> {
 /// Returns the legend.
 fn keys(results: &SuiteFragility, curves: &[(&Fragility, CurveStyle)]) -> Vec<Key> {
     let cases = Counts::of(&results.evidence()).cases;
-    let text = format!("fraction of {}, {cases} cases", results.records_in_words());
+    let text = format!(
+        "fraction of {}, {cases} cases",
+        records_in_words(results.record_count())
+    );
     let mut keys = vec![Key::new(text, Sign::Circle(4.5, POINT))];
     keys.extend(
         curves

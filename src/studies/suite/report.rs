@@ -1,14 +1,16 @@
-//! Files and words of a suite of records: tables, pictures, fragility.
+//! Report and files of a suite of records: tables, pictures, fragility.
 
-use serde::Serialize;
+use askama::Template;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::fragility::{Errors, Fragility, NoFit};
+use super::fragility::{Fragility, NoFit};
 use super::ida::Fractiles;
 use super::strength::{Capacity, Efficiency, MEASURES, efficiencies, few};
 use super::{CaseRow, Counts, FragilityRow, Heading, SuiteFragility, ida, picture};
+use crate::argument::plain;
 use crate::output::{Column, Figure, OutputError, column, csv, each, fields, list};
-use crate::scenario::{Measure, shown};
+use crate::scenario::{Measure, Spectral, shown};
 use crate::studies::ending::columns::{self, FAILED, yes};
 use crate::studies::quotable::{self, ModelAnswer};
 use crate::studies::threshold::survival::{self, Survival};
@@ -30,47 +32,80 @@ pub const FILES: [&str; 10] = [
     "suite.csv",
 ];
 
-/// Summary of a suite of records. Missing values are null.
-#[derive(Serialize)]
-pub struct Summary<'a> {
+/// Report on a suite of records. Missing values are null.
+#[derive(Serialize, Deserialize, Template)]
+#[template(path = "studies/suite/words.txt")]
+pub struct Summary {
     /// Name of the program.
-    program: &'static str,
+    program: String,
     /// Version of the program.
-    version: &'static str,
+    version: String,
     /// The scenario with all defaults.
-    scenario: &'a Value,
+    scenario: Value,
     /// Warnings about unlikely numbers, limits of the model, and histories without a verdict.
     warnings: Vec<String>,
     /// The answer that may be quoted, in words.
     to_quote: Option<String>,
+    /// Number of all computed cases with each outcome.
+    outcomes: OutcomeCounts,
     /// The measure of the intensities.
-    intensity: &'static str,
+    intensity: String,
     #[serde(flatten)]
     curve: Curve,
     /// Number of records.
     records: usize,
     #[serde(flatten)]
     counts: Counts,
+    /// The levels that were tried.
+    levels: Levels,
+    /// The intensities that the structure survives, for each record; for mirrored records only if they differ.
+    survivals: Vec<RecordSurvival>,
+    /// The oscillator of the spectral acceleration.
+    spectral: Spectral,
+    /// Number of capacities: the lowest overturning intensities of the records, with both signs if mirrored records count.
+    capacities: usize,
+    /// Number of capacities that are upper bounds.
+    capacities_at_most: usize,
     /// Measures of intensity, the most efficient first.
     intensity_measures: Vec<Efficiency>,
     /// True if mirrored records count because their results are not mirror images.
     mirrored_cases_count: bool,
     /// Records that never overturn the structure.
-    records_that_never_overturn: Vec<&'a str>,
+    records_that_never_overturn: Vec<String>,
     /// Records that overturn the structure at every level.
-    records_that_always_overturn: Vec<&'a str>,
+    records_that_always_overturn: Vec<String>,
     /// The curve with uncertain, incomplete and failed cases counted as survived, if there are any.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     with_uncertain_as_survived: Option<Curve>,
     /// The curve with uncertain, incomplete and failed cases counted as overturned, if there are any.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     with_uncertain_as_overturned: Option<Curve>,
     #[serde(flatten)]
     remarks: Remarks,
 }
 
+/// The levels of a suite.
+#[derive(Serialize, Deserialize)]
+struct Levels {
+    /// Their number.
+    count: usize,
+    /// The lowest.
+    from: f64,
+    /// The highest.
+    to: f64,
+}
+
+/// The intensities that the structure survives under a record.
+#[derive(Serialize, Deserialize)]
+struct RecordSurvival {
+    /// The record, in words.
+    record: String,
+    #[serde(flatten)]
+    survival: Survival,
+}
+
 /// A fragility curve with its standard errors, or the reason why there is none.
-#[derive(Serialize)]
+#[derive(Serialize, Deserialize)]
 struct Curve {
     /// The intensity at which half of the cases overturn.
     median: Option<f64>,
@@ -108,45 +143,61 @@ impl From<&Result<Fragility, NoFit>> for Curve {
 }
 
 impl Heading {
-    /// Makes files and words of all rows.
+    /// Makes report and files of all rows.
     ///
     /// # Errors
     /// When a value is not finite.
     pub fn report(&self, rows: Vec<CaseRow>, figure: Figure) -> Result<Results, OutputError> {
         let results = SuiteFragility::new(self.measure, rows);
         let capacities = results.capacities();
-        let measures = efficiencies(&capacities);
         let remarks = self.remarks(&results);
         let answer = self.answer(&results);
-        let to_quote = quotable::in_words(std::slice::from_ref(&answer));
-        let mut words = self.words(&results, &capacities, &measures, &remarks);
-        words.extend(to_quote.iter().map(|quote| format!("\n  {quote}")));
-        let efficiencies = csv(efficiency_columns(), &measures)?;
         let limits = remarks.warnings("cases");
         let end = |end: usize| results.fits().nth(1 + end).map(Into::into);
-        let summary = Summary {
-            program: env!("CARGO_PKG_NAME"),
-            version: env!("CARGO_PKG_VERSION"),
-            scenario: &self.scenario,
+        let ends = [results.levels.first(), results.levels.last()];
+        let [from, to] = ends.map(|level| level.map_or(0.0, |level| level.intensity));
+        let survivals = results.survivals().into_iter();
+        let owned = |names: Vec<&str>| names.into_iter().map(str::to_owned).collect();
+        let report = Summary {
+            program: env!("CARGO_PKG_NAME").to_owned(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            scenario: self.scenario.clone(),
             warnings: self.warnings.iter().cloned().chain(limits).collect(),
-            to_quote,
-            intensity: self.measure.column(),
+            to_quote: quotable::in_words(std::slice::from_ref(&answer)),
+            outcomes: OutcomeCounts::of(results.cases.iter().map(|case| &case.result)),
+            intensity: self.measure.column().to_owned(),
             curve: (&results.fit).into(),
             records: results.record_count(),
             counts: Counts::of(&results.evidence()),
-            intensity_measures: measures,
+            levels: Levels {
+                count: results.levels.len(),
+                from,
+                to,
+            },
+            survivals: survivals
+                .map(|(case, survival)| RecordSurvival {
+                    record: case.record_in_words(),
+                    survival,
+                })
+                .collect(),
+            spectral: self.spectral,
+            capacities: capacities.len(),
+            capacities_at_most: capacities.iter().filter(|one| one.at_most).count(),
+            intensity_measures: efficiencies(&capacities),
             mirrored_cases_count: results.mirrored_count,
-            records_that_never_overturn: results.always(Verdict::Survives),
-            records_that_always_overturn: results.always(Verdict::Overturns),
+            records_that_never_overturn: owned(results.always(Verdict::Survives)),
+            records_that_always_overturn: owned(results.always(Verdict::Overturns)),
             with_uncertain_as_survived: end(0),
             with_uncertain_as_overturned: end(1),
             remarks,
         };
-        let curves = results.curves().into_iter();
-        let captions = curves.map(|(taken, curve)| match curve {
-            Ok(curve) => format!("{curve}{taken}"),
-            Err(reason) => format!("no curve: {reason}{taken}"),
-        });
+        let captions = report
+            .curves()
+            .into_iter()
+            .map(|(taken, curve)| match curve {
+                Ok(curve) => format!("{curve}{taken}"),
+                Err(reason) => format!("no curve: {reason}{taken}"),
+            });
         let caption = captions.collect::<Vec<_>>().join("; ");
         let mut fractiles = vec![column(self.measure.column(), |at: &Fractiles| at.intensity)];
         fractiles.extend(fields!(|at: &Fractiles| at => cases, overturned));
@@ -160,14 +211,14 @@ impl Heading {
             csv(fractiles, &ida::fractiles(&results))?,
             csv(peaks, &ida::peaks(&results))?,
             csv(capacity_columns(), &capacities)?,
-            efficiencies,
+            csv(efficiency_columns(), &report.intensity_measures)?,
             csv(self.level_columns(), &results.levels)?,
             csv(self.case_columns(), &results.cases)?,
         ];
         Ok(Results {
             largest_rotations_rad: ida::rotations_rad(&results.cases),
             answer: Some(answer),
-            ..Results::with_words(&FILES, &summary, words, others)?
+            ..Results::new(&FILES, &report, others)?
         })
     }
 
@@ -187,7 +238,7 @@ impl Heading {
         });
         let excess_ratio = cases.filter_map(excess).reduce(f64::max);
         let answer = lowest.map_or(Err("there are no cases".to_owned()), |(case, survival)| {
-            let (record, unit) = (case.record_in_words(), unit(self.measure));
+            let (record, unit) = (case.record_in_words(), unit(self.measure.column()));
             match survival.survives_up_to.map(rounded_down) {
                 Some(safe) => Ok(format!(
                     "survives all records up to {safe}{unit} ({record})"
@@ -197,8 +248,7 @@ impl Heading {
                 )),
             }
         });
-        let is_arch = self.scenario.get("column").is_none();
-        ModelAnswer::new(self.hinges(), is_arch, excess_ratio, answer)
+        ModelAnswer::new(self.hinges, self.is_arch, excess_ratio, answer)
     }
 
     /// Returns the failed and uncertain cases among those that count, with the reasons.
@@ -211,91 +261,6 @@ impl Heading {
         remarks
     }
 
-    /// Returns the results in words.
-    fn words(
-        &self,
-        results: &SuiteFragility,
-        capacities: &[Capacity<'_>],
-        measures: &[Efficiency],
-        remarks: &Remarks,
-    ) -> String {
-        let mut lines = vec![format!(
-            "{} cases of {}: {}",
-            results.cases.len(),
-            results.records_in_words(),
-            OutcomeCounts::of(results.cases.iter().map(|case| &case.result))
-        )];
-        let column = self.measure.column();
-        let curves = results.curves().into_iter();
-        lines.extend(curves.map(|(taken, curve)| match curve {
-            Ok(curve) => format!("fragility over {column}{taken}: {curve}\n    ({FIT})"),
-            Err(reason) => format!("no fragility curve{taken}: {reason}"),
-        }));
-        lines.extend(self.measures_in_words(capacities, measures));
-        if results.fit.is_ok() || !measures.is_empty() {
-            lines.extend(few(results.record_count()));
-        }
-        for (case, survival) in results.survivals() {
-            let words = survival::in_words(&survival, unit(self.measure), None);
-            lines.push(format!("{}: {words}", case.record_in_words()));
-        }
-        lines.push(searched(results));
-        lines.extend(remarks.model.in_words("cases"));
-        if results.cases.iter().any(CaseRow::still_rocking) {
-            lines.push("those still rocking at the end count as not overturned".to_owned());
-        }
-        let incomplete = remarks.incomplete_in_words();
-        lines.extend(incomplete.map(|words| format!("{words}; {AT_ENDS}")));
-        lines.extend(remarks.uncertain_in_words(FRAGILITY));
-        let failed = remarks.failed_in_words(FRAGILITY);
-        lines.extend(failed.map(|words| format!("{words}; {AT_ENDS}")));
-        lines.join("\n  ")
-    }
-
-    /// Returns the measures of intensity in words, the most efficient first; `None` without capacities.
-    fn measures_in_words(
-        &self,
-        capacities: &[Capacity<'_>],
-        measures: &[Efficiency],
-    ) -> Option<String> {
-        let bounds = capacities.iter().filter(|one| one.at_most).count();
-        if measures.is_empty() && bounds > 0 {
-            return Some(format!(
-                "measures of intensity are not compared: {bounds} capacities are upper bounds; add lower levels"
-            ));
-        }
-        let (best, others) = measures.split_first()?;
-        let of = |one: &Efficiency| {
-            let at = match one.measure {
-                "spectral_acceleration_g" => format!(" at {}", self.spectral()),
-                _ => String::new(),
-            };
-            let interval = one.dispersion_of_factor_interval;
-            let interval = interval.map_or(String::new(), |[low, high]| {
-                format!(" ({low:.2} to {high:.2})")
-            });
-            let (words, dispersion) = (one.words, one.dispersion_of_factor);
-            format!("{words}{at} {dispersion:.2}{interval}")
-        };
-        let others: Vec<String> = others.iter().map(of).collect();
-        let all = capacities.len();
-        let left_out = match all - best.capacities {
-            0 => String::new(),
-            count => format!("; {count} of {all} that do not overturn are left out"),
-        };
-        let bounds = match bounds {
-            0 => String::new(),
-            count => format!("; {count} of {all} are upper bounds"),
-        };
-        Some(format!(
-            "most efficient measure of intensity: {}; {}\n    (dispersion of the factor on a record that overturns, 95 % by bootstrap over \
-             records; the first is the best in {:.0} % of the draws){left_out}{bounds}",
-            of(best),
-            others.join(", "),
-            100.0 * best.best_share
-        ))
-    }
-
     /// Returns the columns of `suite.csv`, one row per case.
     fn case_columns(&self) -> Vec<Column<'static, CaseRow>> {
         let mut all = vec![
@@ -305,7 +270,7 @@ impl Heading {
             column("peak_g", |case: &CaseRow| case.peak_g),
         ];
         all.extend(columns::columns(
-            self.hinges().has_joints(),
+            self.hinges.has_joints(),
             |case: &CaseRow| case.result.as_ref().map_err(|_| FAILED),
         ));
         all
@@ -357,8 +322,9 @@ fn capacity_columns<'r>() -> [Column<'r, Capacity<'r>>; 6] {
 /// Returns the columns of `intensity.csv`, one row per measure of intensity, the most efficient first.
 fn efficiency_columns() -> Vec<Column<'static, Efficiency>> {
     let mut all = Vec::from(fields!(
-        |of: &Efficiency| of => measure, capacities, median, dispersion, dispersion_of_factor
+        |of: &Efficiency| of => capacities, median, dispersion, dispersion_of_factor
     ));
+    all.insert(0, column("measure", |of: &Efficiency| of.measure.clone()));
     let ends = ["dispersion_of_factor_low", "dispersion_of_factor_high"];
     all.push(list(ends, |of: &Efficiency| {
         each(of.dispersion_of_factor_interval)
@@ -367,60 +333,111 @@ fn efficiency_columns() -> Vec<Column<'static, Efficiency>> {
     all
 }
 
-impl SuiteFragility {
-    /// Returns the number of records in words.
-    pub(super) fn records_in_words(&self) -> String {
-        match self.record_count() {
-            1 => "1 record".to_owned(),
-            count => format!("{count} records"),
-        }
-    }
-
+impl Summary {
     /// Returns the curves in words, or the reason why there is none. Before each is the treatment of doubtful cases: uncertain ones count by their
     /// fractions, and in two more curves all count as survived and as overturned.
     fn curves(&self) -> Vec<(String, Result<String, String>)> {
-        let counts = Counts::of(&self.evidence());
-        let (doubtful, uncertain) = (counts.doubtful(), counts.uncertain);
+        let (doubtful, uncertain) = (self.counts.doubtful(), self.counts.uncertain);
         let kind = if doubtful == uncertain {
             "uncertain"
         } else {
             "doubtful"
         };
-        let hows = [
-            (uncertain, "by their fractions"),
-            (doubtful, "taken as survived"),
-            (doubtful, "taken as overturned"),
+        let ends = [
+            &self.with_uncertain_as_survived,
+            &self.with_uncertain_as_overturned,
         ];
-        let curve = |(fit, (cases, how)): (&Result<Fragility, NoFit>, _)| {
+        let curves = [
+            (Some(&self.curve), uncertain, "by their fractions"),
+            (ends[0].as_ref(), doubtful, "taken as survived"),
+            (ends[1].as_ref(), doubtful, "taken as overturned"),
+        ];
+        let in_words = |(curve, cases, how): (Option<&Curve>, usize, &str)| {
             let taken = match cases {
                 0 => String::new(),
                 1 => format!(", 1 {kind} case {how}"),
                 _ => format!(", {cases} {kind} cases {how}"),
             };
-            let words = fit.as_ref().map(|fit| fit_in_words(fit, self.measure));
-            (taken, words.map_err(ToString::to_string))
+            let curve = curve?;
+            let words = curve.in_words(self.unit());
+            Some((taken, words.ok_or(curve.no_fit.clone().unwrap_or_default())))
         };
-        self.fits().zip(hows).map(curve).collect()
+        curves.into_iter().filter_map(in_words).collect()
+    }
+
+    /// Returns a measure of intensity with its dispersion, in words.
+    fn measure(&self, one: &Efficiency) -> String {
+        let known = MEASURES.iter().find(|(name, ..)| *name == one.measure);
+        let words = known.map_or("", |(_, words, _)| words);
+        let Spectral {
+            period_s,
+            damping_percent,
+        } = self.spectral;
+        let at = match words {
+            "spectral acceleration" => {
+                format!(" at {} s and {} %", plain(period_s), plain(damping_percent))
+            }
+            _ => String::new(),
+        };
+        let interval = one.dispersion_of_factor_interval;
+        let interval = interval.map_or(String::new(), |[low, high]| {
+            format!(" ({low:.2} to {high:.2})")
+        });
+        format!("{words}{at} {:.2}{interval}", one.dispersion_of_factor)
+    }
+
+    /// Returns all measures but the best, in words.
+    fn other_measures(&self) -> String {
+        let others = self.intensity_measures.iter().skip(1);
+        let others = others.map(|one| self.measure(one));
+        others.collect::<Vec<_>>().join(", ")
+    }
+
+    /// Returns the unit that follows an intensity.
+    fn unit(&self) -> &'static str {
+        unit(&self.intensity)
     }
 }
 
-/// Returns a curve in words, with its standard errors; those by record come last.
-fn fit_in_words(fit: &Fragility, measure: Measure) -> String {
-    let unit = unit(measure);
-    let quantity = |value: f64, error: fn(&Errors) -> f64, unit: &str| {
-        let independent = error(&fit.independent);
-        // The printed errors have two significant digits.
-        let digits = digits(independent);
-        let by_record = fit.clustered.as_ref().map_or(String::new(), |clustered| {
-            format!(" (by record ± {:.digits$}{unit})", error(clustered))
-        });
-        format!("{value:.digits$}{unit} ± {independent:.digits$}{unit}{by_record}")
-    };
-    format!(
-        "median {}, dispersion {}",
-        quantity(fit.median, |errors| errors.median, unit),
-        quantity(fit.dispersion, |errors| errors.dispersion, "")
-    )
+impl RecordSurvival {
+    fn in_words(&self, unit: &str) -> String {
+        survival::in_words(&self.survival, unit, None)
+    }
+}
+
+impl Curve {
+    /// Returns the curve in words, with its standard errors; those by record come last. `None` without a curve.
+    fn in_words(&self, unit: &str) -> Option<String> {
+        let quantity = |value: f64, error: f64, by_record: Option<f64>, unit: &str| {
+            // The printed errors have two significant digits.
+            let digits = digits(error);
+            let by_record = by_record.map_or(String::new(), |error| {
+                format!(" (by record ± {error:.digits$}{unit})")
+            });
+            format!("{value:.digits$}{unit} ± {error:.digits$}{unit}{by_record}")
+        };
+        let median = quantity(
+            self.median?,
+            self.median_standard_error?,
+            self.median_standard_error_by_record,
+            unit,
+        );
+        let dispersion = quantity(
+            self.dispersion?,
+            self.dispersion_standard_error?,
+            self.dispersion_standard_error_by_record,
+            "",
+        );
+        Some(format!("median {median}, dispersion {dispersion}"))
+    }
+}
+
+/// Returns a number of records in words.
+pub(super) fn records_in_words(records: usize) -> String {
+    match records {
+        1 => "1 record".to_owned(),
+        count => format!("{count} records"),
+    }
 }
 
 /// Returns the number of decimals that show two significant digits of an error.
@@ -428,28 +445,11 @@ fn digits(error: f64) -> usize {
     (1.0 - error.log10().floor()).clamp(0.0, 12.0) as usize
 }
 
-/// Treatment of cases without a verdict.
-const AT_ENDS: &str = "they count only in the curves that take them as survived and as overturned";
-
-/// Definition of the fitted curve: its median differs from that of the capacities.
-const FIT: &str = "the lognormal curve that fits all cases best; cases that survive above the first overturning count too";
-
-/// Returns the computed levels, and the limits of the search between them, in words.
-fn searched(results: &SuiteFragility) -> String {
-    let ends = [results.levels.first(), results.levels.last()];
-    let [from, to] = ends.map(|level| rounded(level.map_or(0.0, |level| level.intensity)));
-    let unit = unit(results.measure);
-    format!(
-        "levels tried: {}, from {from} to {to}{unit}; the first edge of a record is bisected between two of them; lower ranges that \
-         overturn, below the first level or between levels, were not searched for",
-        results.levels.len()
-    )
-}
-
-/// Returns the unit that follows an intensity.
-const fn unit(measure: Measure) -> &'static str {
-    match measure {
-        Measure::Scale => "",
-        Measure::PeakG => " g",
+/// Returns the unit that follows an intensity in this measure.
+fn unit(intensity: &str) -> &'static str {
+    if intensity == Measure::PeakG.column() {
+        " g"
+    } else {
+        ""
     }
 }

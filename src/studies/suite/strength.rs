@@ -66,13 +66,10 @@ pub const MEASURES: [(&str, &str, f64); 4] = [
 ];
 
 /// The efficiency of a measure: the scatter of the overturning intensities.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Efficiency {
     /// Name of the measure.
-    pub measure: &'static str,
-    /// The measure in words.
-    #[serde(skip)]
-    pub words: &'static str,
+    pub measure: String,
     /// Number of capacities.
     pub capacities: usize,
     /// Geometric mean of the capacities.
@@ -185,10 +182,8 @@ pub fn efficiencies(capacities: &[Capacity<'_>]) -> Vec<Efficiency> {
         let own: Option<Vec<f64>> = drawn.iter().map(|draw| draw[measure]).collect();
         let best = drawn.iter();
         let best = best.filter(|draw| draw[measure].is_some() && draw[measure] == least(draw));
-        let (name, words, _) = MEASURES[measure];
         Some(Efficiency {
-            measure: name,
-            words,
+            measure: MEASURES[measure].0.to_owned(),
             capacities: count,
             median,
             dispersion,

@@ -20,7 +20,7 @@ pub use varied::{VariedThreshold, vary};
 
 use std::ops::ControlFlow;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::ending::{Ending, NoHistory, Verdict, answered};
 use super::{Progress, Results, Runner, StudyError, Watch};
@@ -60,7 +60,7 @@ named! {
 }
 
 /// A range of factors with one verdict. The histories at both ends were computed and have that verdict.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FactorRange {
     /// Smallest factor of the range.
     pub from: f64,

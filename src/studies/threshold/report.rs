@@ -1,50 +1,60 @@
-//! Files and words of thresholds of overturning.
+//! Report and files of thresholds of overturning.
 
-use serde::Serialize;
+use askama::Template;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::digits::{rounded, rounded_down};
-use super::survival::{self, Survival};
+use super::survival::{self, Survival, VerdictRange};
 use super::{
     EDGE_WIDTH, FactorRange, FactorSample, Factors, RangeEnd, Threshold, VariedThreshold, peak_g,
     picture,
 };
-use crate::Outcome;
 use crate::dynamics::OutcomeCount;
+use crate::dynamics::thrust::MODEL_LIMIT;
 use crate::output::{Figure, OutputError, column, csv, fields};
 use crate::scenario::{Ground, Hinges, Scenario};
-use crate::studies::ending::{Ending, NoHistory, Verdict, outcome_name};
+use crate::studies::ending::columns::{GROUND_FALLS, OUTCOMES};
+use crate::studies::ending::{NoHistory, Verdict, outcome_name};
 use crate::studies::quotable::{self, ModelAnswer};
 use crate::studies::statistics::ascending;
 use crate::studies::{Remarks, Results};
+use crate::{Outcome, Sway};
 
 /// Names of the files, the seal last.
 pub const FILES: [&str; 3] = ["threshold.svg", "threshold.csv", "threshold.json"];
 
-/// Summary of the thresholds of scenarios that differ only in their models of motion.
-#[derive(Serialize)]
-pub struct Summary<'a> {
+/// Report on the thresholds of scenarios that differ only in their models of motion.
+#[derive(Serialize, Deserialize, Template)]
+#[template(path = "studies/threshold/words.txt")]
+pub struct Summary {
     /// Name of the program.
-    program: &'static str,
+    program: String,
     /// Version of the program.
-    version: &'static str,
+    version: String,
+    /// Name of the record file; absent under a pulse.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    record: Option<String>,
     /// Largest horizontal acceleration of the ground at factor 1, in units of gravity.
     peak_acceleration_g: f64,
     /// The factors that were sampled.
     factors: Factors,
+    /// The factor from which on the ground falls as fast as a free body at some time; absent without such a factor.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    free_fall_factor: Option<f64>,
     /// Warnings about unlikely numbers, limits of the models, and histories without a verdict.
     warnings: Vec<String>,
     /// The answer that may be quoted, in words.
     to_quote: Option<String>,
     /// The threshold of each model.
-    models: Vec<ModelSummary<'a>>,
+    models: Vec<ModelSummary>,
 }
 
 /// Summary of the threshold of a model.
-#[derive(Serialize)]
-struct ModelSummary<'a> {
+#[derive(Serialize, Deserialize)]
+struct ModelSummary {
     /// Name of the model.
-    model: &'a str,
+    model: String,
     /// The scenario with all defaults.
     scenario: Value,
     /// Name and checksum of each record file.
@@ -53,6 +63,8 @@ struct ModelSummary<'a> {
     survives_up_to_factor: Option<f64>,
     /// The smallest factor that certainly overturns the structure; null if no factor does.
     lowest_factor: Option<f64>,
+    /// All ranges of sampled factors with one verdict, ascending.
+    ranges: Vec<VerdictRange>,
     /// Ranges of factors that overturn the structure, ascending.
     bands: Vec<RangeSummary>,
     /// Safe ranges between bands.
@@ -64,14 +76,14 @@ struct ModelSummary<'a> {
     #[serde(flatten)]
     remarks: Remarks,
     /// The lowest factors of structures with other stiffness and contact, and with rigid joints; absent unless joints are elastic.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    variations: Vec<VariedSummary<'a>>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    variations: Vec<VariedSummary>,
     /// All histories, in order of ascending factors.
     samples: Vec<SampleSummary>,
 }
 
 /// A range of factors.
-#[derive(Serialize)]
+#[derive(Serialize, Deserialize)]
 struct RangeSummary {
     #[serde(flatten)]
     range: FactorRange,
@@ -82,10 +94,10 @@ struct RangeSummary {
 }
 
 /// The lowest overturning factor of a structure with other properties.
-#[derive(Serialize)]
-struct VariedSummary<'a> {
+#[derive(Serialize, Deserialize)]
+struct VariedSummary {
     /// The changed property.
-    with: &'a str,
+    with: String,
     /// The lowest factor that overturns the structure; null if no factor does, or it could not be computed.
     factor: Option<f64>,
     /// Reason why lower factors are not known to overturn the structure.
@@ -95,37 +107,37 @@ struct VariedSummary<'a> {
     /// Number of histories that ended too early for a verdict.
     incomplete: usize,
     /// Reason why the factor could not be computed.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    failed: Option<&'a str>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    failed: Option<String>,
 }
 
 /// The history at a factor.
-#[derive(Serialize)]
+#[derive(Serialize, Deserialize)]
 struct SampleSummary {
     /// The factor.
     factor: f64,
     /// Outcome of the history.
-    outcome: &'static str,
+    outcome: String,
     #[serde(flatten)]
     history: Option<HistorySummary>,
     /// Count of the outcomes of the history and its repetitions; absent if the history was not repeated.
     #[serde(flatten)]
     count: Option<OutcomeCount>,
     /// Reason why the outcome is uncertain, or why there is no history.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     reason: Option<String>,
 }
 
 /// The numbers of a history.
-#[derive(Clone, Copy, Serialize)]
+#[derive(Clone, Copy, Serialize, Deserialize)]
 struct HistorySummary {
     /// The side to which the structure overturned; null unless overturning is certain.
-    overturning_sway: Option<&'static str>,
-    /// Number of impacts.
+    overturning_sway: Option<Sway>,
+    /// Number of impacts; null for elastic joints, which have none.
     impacts: Option<usize>,
     /// The time of the outcome, in seconds.
     outcome_time_s: f64,
-    /// Largest rotation over the critical rotation; null if the critical rotation is unknown.
+    /// Largest rotation over the critical rotation; null for rows of blocks, which have no critical rotation.
     peak_rotation_over_critical: Option<f64>,
     /// Largest rotation of any body, in radians.
     peak_rotation_rad: Option<f64>,
@@ -133,7 +145,7 @@ struct HistorySummary {
     thrust_excess_ratio: Option<f64>,
 }
 
-/// Makes files and words of the thresholds of scenarios that differ only in their models of motion.
+/// Makes report and files of the thresholds of scenarios that differ only in their models of motion.
 ///
 /// # Errors
 /// When a value is not finite.
@@ -151,38 +163,49 @@ pub fn report(
     let answers = models
         .clone()
         .map(|(one, scenario)| one.answer(scenario, peak_g));
-    let to_quote = quotable::in_words(&answers.collect::<Vec<_>>());
-    let mut words = words(scenarios, thresholds);
-    words.extend(to_quote.iter().map(|quote| format!("  {quote}\n")));
-    let summary = Summary {
-        program: env!("CARGO_PKG_NAME"),
-        version: env!("CARGO_PKG_VERSION"),
+    let falls = |sample: &FactorSample| matches!(sample.result, Err(NoHistory::GroundFalls(_)));
+    let falls = thresholds.iter().flat_map(|one| &one.samples).any(falls);
+    let (ground, gravity_m_s2) = (scenario.ground_motion(), scenario.gravity_m_s2());
+    let report = Summary {
+        program: env!("CARGO_PKG_NAME").to_owned(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        record: match scenario.ground.as_ref() {
+            Some(Ground::Record(record)) => Some(record.main.name().to_owned()),
+            _ => None,
+        },
         peak_acceleration_g: peak_g,
         factors: *factors,
+        free_fall_factor: ground.free_fall_factor(gravity_m_s2).filter(|_| falls),
         warnings: warnings(scenarios, thresholds),
-        to_quote,
+        to_quote: quotable::in_words(&answers.collect::<Vec<_>>()),
         models: models
             .map(|(threshold, scenario)| threshold.summary(scenario, peak_g))
             .collect(),
     };
     let picture = picture::draw(figure, title, peak_g, factors, thresholds);
-    let others = [picture.into_bytes(), table(&summary.models)?];
-    Results::with_words(&FILES, &summary, words, others)
+    let others = [picture.into_bytes(), table(&report.models)?];
+    Results::new(&FILES, &report, others)
 }
 
 /// Makes the table of the samples, ordered by model, then by factor.
-fn table(models: &[ModelSummary<'_>]) -> Result<Vec<u8>, OutputError> {
+fn table(models: &[ModelSummary]) -> Result<Vec<u8>, OutputError> {
     type Row<'a> = (&'a str, &'a SampleSummary);
     let rows = models.iter().flat_map(|model| {
         let samples = model.samples.iter();
-        samples.map(|sample| (model.model, sample))
+        samples.map(|sample| (&*model.model, sample))
     });
     let mut columns = vec![column("model", |row: &Row<'_>| row.0.to_owned())];
-    columns.extend(fields!(|row: &Row<'_>| row.1 => factor, outcome));
-    columns.extend(fields!(|row: &Row<'_>| row.1.history? => overturning_sway, impacts));
-    columns.push(column("outcome_time_s", |row: &Row<'_>| {
-        Some(row.1.history?.outcome_time_s)
-    }));
+    columns.extend([
+        column("factor", |row: &Row<'_>| row.1.factor),
+        column("outcome", |row: &Row<'_>| row.1.outcome.clone()),
+        column("overturning_sway", |row: &Row<'_>| {
+            Some(row.1.history?.overturning_sway?.name())
+        }),
+        column("impacts", |row: &Row<'_>| row.1.history?.impacts),
+        column("outcome_time_s", |row: &Row<'_>| {
+            Some(row.1.history?.outcome_time_s)
+        }),
+    ]);
     columns.extend(fields!(
         |row: &Row<'_>| row.1.history? => peak_rotation_over_critical, peak_rotation_rad, thrust_excess_ratio
     ));
@@ -207,7 +230,7 @@ fn warnings(scenarios: &[Scenario], thresholds: &[Threshold]) -> Vec<String> {
 }
 
 impl Threshold {
-    fn summary(&self, scenario: &Scenario, peak_g: f64) -> ModelSummary<'_> {
+    fn summary(&self, scenario: &Scenario, peak_g: f64) -> ModelSummary {
         let ranges = |ranges: Vec<FactorRange>| {
             let ranges = ranges.into_iter().map(|range| RangeSummary {
                 from_peak_g: range.from * peak_g,
@@ -223,20 +246,21 @@ impl Threshold {
         let varied = self.varied.iter().map(|varied| {
             let factor = varied.factor.as_ref().ok().copied().flatten();
             VariedSummary {
-                with: &varied.name,
+                with: varied.name.clone(),
                 factor,
                 from_end: factor.map(from_end),
                 peak_g: factor.map(|factor| factor * peak_g),
                 incomplete: varied.incomplete,
-                failed: varied.factor.as_ref().err().map(String::as_str),
+                failed: varied.factor.as_ref().err().cloned(),
             }
         });
         ModelSummary {
-            model: &self.model,
+            model: self.model.clone(),
             scenario: scenario.to_json(),
             record_checksums: scenario.record_checksums(),
             survives_up_to_factor: self.survives_up_to(),
             lowest_factor: self.lowest_factor(),
+            ranges: Survival::of_threshold(self).ranges,
             bands: ranges(self.bands()),
             gaps: ranges(self.gaps()),
             uncertain: ranges(self.of(Verdict::Uncertain)),
@@ -298,80 +322,65 @@ impl Threshold {
         remarks
     }
 
-    /// Returns words about the first history that overturns the structure, if it is outside the model of four links.
-    fn edge_outside_model(&self) -> &'static str {
-        let mut endings = self.samples.iter().flat_map(|sample| &sample.result);
-        let first = endings.find(|ending| ending.verdict() == Verdict::Overturns);
-        match first.is_some_and(Ending::is_outside_model) {
-            true => "; the first that overturns is one of them",
-            false => "",
-        }
-    }
-
     /// Returns true if a factor is the smallest tried factor, so that smaller ones may overturn the structure as well.
     fn is_first(&self, factor: f64) -> bool {
         let first = self.samples.first();
         first.is_some_and(|first| first.factor == factor)
     }
+}
 
-    /// Returns lines with the lowest factors that overturn the structure with other properties.
-    fn varied_in_words(&self, peak_g: f64) -> impl Iterator<Item = String> {
-        self.varied.iter().map(move |varied| {
-            let no_verdict = varied.no_verdict();
-            let certainly = no_verdict.as_ref().map_or("", |_| "certainly ");
-            let answer = match &varied.factor {
-                Ok(Some(factor)) if self.is_first(*factor) => {
-                    let at = at(*factor, peak_g);
-                    format!("overturns at factor {at} already, the smallest tried")
-                }
-                Ok(Some(factor)) => format!("from factor {}", at(*factor, peak_g)),
-                Ok(None) => format!("does not {certainly}overturn at any factor tried"),
-                Err(reason) => reason.clone(),
-            };
-            let no_verdict = no_verdict.map_or(String::new(), |words| format!("; {words}"));
-            format!("  with {}: {answer}{no_verdict}", varied.name)
-        })
+impl ModelSummary {
+    /// Returns the factors that are survived, and those that are not, in words.
+    fn strengths(&self, peak_g: &f64) -> String {
+        let survival = Survival::of_ranges(self.ranges.clone());
+        survival::in_words(&survival, "", Some(*peak_g))
     }
 
-    /// Returns lines about uncertain, failed and incomplete histories.
-    fn doubts_in_words(&self, scenario: &Scenario) -> Vec<String> {
-        let falls =
-            |sample: &&FactorSample| matches!(sample.result, Err(NoHistory::GroundFalls(_)));
-        let histories = self.samples.iter().filter(|sample| !falls(sample));
-        let all = histories.clone().count();
-        let listed = |what: &str, reasons: Vec<(f64, String)>| {
-            let (factor, reason) = reasons.first()?;
-            let (count, factor) = (reasons.len(), rounded(*factor));
-            Some(format!(
-                "  {what}: {count} of {all} histories; the first, at factor {factor}: {reason}"
-            ))
-        };
-        let reasons = |failed: bool| {
-            let samples = histories.clone().map(SampleSummary::of);
-            let of_kind = samples.filter(|sample| sample.history.is_none() == failed);
-            let reasons = of_kind.filter_map(|sample| Some((sample.factor, sample.reason?)));
-            reasons.collect()
-        };
-        let mut lines = Vec::from_iter(listed("uncertain", reasons(false)));
-        let falls = self.samples.iter().any(|sample| falls(&sample));
-        let factor = scenario
-            .ground_motion()
-            .free_fall_factor(scenario.gravity_m_s2());
-        lines.extend(factor.filter(|_| falls).map(|factor| {
-            let factor = rounded(factor);
-            format!("  from factor {factor} on, the ground falls as fast as a free body at some time, which this model does not cover")
-        }));
-        lines.extend(listed("failed", reasons(true)));
-        let incomplete = self.remarks().incomplete_in_words();
-        lines.extend(incomplete.map(|words| format!("  {words}")));
-        let outcomes = histories.flat_map(|sample| &sample.result);
-        let outcomes = outcomes.map(|ending| ending.outcome);
-        let rocking = outcomes.filter(|outcome| *outcome == Outcome::StillRocking);
-        let rocking = rocking.count();
-        lines.extend((rocking > 0).then(|| {
-            format!("  still rocking at the end of the run, which counts as survived: {rocking} of {all} histories")
-        }));
-        lines
+    /// Returns the samples with a history on ground that does not fall.
+    fn histories(&self) -> impl Iterator<Item = &SampleSummary> {
+        self.samples
+            .iter()
+            .filter(|sample| sample.outcome != GROUND_FALLS)
+    }
+
+    /// Returns the number of uncertain or failed histories, and the first of them, in words; `None` if there are none.
+    fn doubts(&self, what: &str, failed: bool) -> Option<String> {
+        let mut reasons = self.histories().filter_map(|sample| {
+            let reason = sample.reason.as_ref();
+            Some((sample.factor, reason?)).filter(|_| sample.history.is_none() == failed)
+        });
+        let (factor, reason) = reasons.next()?;
+        let (count, all) = (1 + reasons.count(), self.histories().count());
+        let factor = rounded(factor);
+        Some(format!(
+            "{what}: {count} of {all} histories; the first, at factor {factor}: {reason}"
+        ))
+    }
+
+    /// Returns the number of histories that still rock at the end, and of all.
+    fn still_rocking(&self) -> [usize; 2] {
+        let rocking = |sample: &&SampleSummary| sample.outcome == Outcome::StillRocking.name();
+        [
+            self.histories().filter(rocking).count(),
+            self.histories().count(),
+        ]
+    }
+
+    /// Returns true if the first history that overturns the structure is outside the model of four links.
+    fn overturns_outside_model(&self) -> bool {
+        let mut samples = self.samples.iter();
+        let first = samples.find(|sample| sample.outcome == OUTCOMES[0]);
+        let excess = first.and_then(|first| first.history?.thrust_excess_ratio);
+        excess.is_some_and(|ratio| ratio > MODEL_LIMIT)
+    }
+}
+
+impl VariedSummary {
+    /// Returns the number of histories without a verdict, in words; `None` if all have one.
+    fn no_verdict(&self) -> Option<String> {
+        let below = self.factor.map_or("", |_| " of weaker motions");
+        let count = self.incomplete;
+        (count > 0).then(|| format!("no verdict from {count} histories{below}"))
     }
 }
 
@@ -380,9 +389,9 @@ impl SampleSummary {
         let ending = sample.result.as_ref();
         Self {
             factor: sample.factor,
-            outcome: outcome_name(&sample.result),
+            outcome: outcome_name(&sample.result).to_owned(),
             history: ending.ok().map(|ending| HistorySummary {
-                overturning_sway: ending.overturning_sway(),
+                overturning_sway: ending.certain_overturning_sway(),
                 impacts: ending.impacts,
                 outcome_time_s: ending.outcome_time_s,
                 peak_rotation_over_critical: ending.peak_over_critical,
@@ -399,40 +408,8 @@ impl SampleSummary {
 }
 
 /// Returns a factor with the peak ground acceleration, in words.
-fn at(factor: f64, peak_g: f64) -> String {
-    format!("{} ({} g)", rounded(factor), rounded(factor * peak_g))
-}
-
-/// Returns the results in words: for each model a line that begins with the safe factor, and lines about doubtful histories.
-fn words(scenarios: &[Scenario], thresholds: &[Threshold]) -> String {
-    let peak_g = peak_g(&scenarios[0]);
-    let mut lines = Vec::new();
-    for threshold in thresholds {
-        let record = match scenarios[0].ground.as_ref() {
-            Some(Ground::Record(record)) => Some(record.main.name().to_owned()),
-            _ => None,
-        };
-        let model = (thresholds.len() > 1).then(|| threshold.model.replace('_', " "));
-        let subject = record
-            .into_iter()
-            .chain(model)
-            .collect::<Vec<_>>()
-            .join(", ");
-        let colon = if subject.is_empty() { "" } else { ": " };
-        let survival = Survival::of_threshold(threshold);
-        let strengths = survival::in_words(&survival, "", Some(peak_g));
-        lines.push(format!("  {subject}{colon}{strengths}"));
-        let unsafe_from_first = survival.survives_up_to.is_none();
-        lines.extend(
-            unsafe_from_first
-                .then(|| "  a smaller --from finds the factors that it survives".to_owned()),
-        );
-        lines.extend(threshold.doubts_in_words(&scenarios[0]));
-        lines.extend(threshold.varied_in_words(peak_g));
-        let outside = threshold.remarks().model.in_words("histories");
-        lines.extend(outside.map(|words| format!("  {words}{}", threshold.edge_outside_model())));
-    }
-    lines.join("\n") + "\n"
+fn at(factor: &f64, peak_g: &f64) -> String {
+    format!("{} ({} g)", rounded(*factor), rounded(factor * peak_g))
 }
 
 impl Factors {

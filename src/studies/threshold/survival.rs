@@ -1,14 +1,24 @@
 //! The strengths of a ground motion that a structure survives, in one line of words that begins with the safe ones.
 
+use serde::{Deserialize, Serialize};
+
 use super::Threshold;
 use super::digits::{rounded, rounded_down, rounded_range};
 use crate::studies::ending::Verdict;
 
-/// A range of strengths with one verdict; `None` without histories.
-type Run = (Option<Verdict>, [f64; 2]);
+/// A range of tried strengths with one verdict.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct VerdictRange {
+    /// The verdict; null without histories.
+    pub verdict: Option<Verdict>,
+    /// The smallest strength of the range.
+    pub from: f64,
+    /// The largest strength of the range.
+    pub to: f64,
+}
 
 /// The strengths that a structure certainly survives, the smallest strength that certainly overturns it, and all ranges of one verdict.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Survival {
     /// The largest strength up to which all tried strengths are certainly survived; `None` if the smallest tried strength is not.
     pub survives_up_to: Option<f64>,
@@ -17,7 +27,7 @@ pub struct Survival {
     /// True if smaller strengths may overturn the structure as well, because neighbouring histories have no verdict.
     pub at_most: bool,
     /// All ranges of tried strengths, ascending.
-    pub runs: Vec<Run>,
+    pub ranges: Vec<VerdictRange>,
 }
 
 impl Survival {
@@ -25,31 +35,48 @@ impl Survival {
     /// their last strength.
     pub fn of_levels(levels: &[(f64, Option<Verdict>)]) -> Self {
         let runs = levels.chunk_by(|a, b| a.1 == b.1);
-        let runs = runs.map(|run| (run[0].1, [run[0].0, run[run.len() - 1].0]));
-        Self::of_runs(runs.collect())
+        Self::of_ranges(
+            runs.map(|run| VerdictRange {
+                verdict: run[0].1,
+                from: run[0].0,
+                to: run[run.len() - 1].0,
+            })
+            .collect(),
+        )
     }
 
     /// Makes the survival of a threshold, with ranges that end at its edges.
     pub fn of_threshold(threshold: &Threshold) -> Self {
         let mut ranges = threshold.ranges.iter();
-        let samples = threshold
-            .samples
-            .chunk_by(|a, b| a.verdict() == b.verdict());
-        let runs = samples.map(|run| match run[0].verdict().and_then(|_| ranges.next()) {
-            Some((verdict, range)) => (Some(*verdict), [range.from, range.to]),
-            None => (None, [run[0].factor, run[run.len() - 1].factor]),
-        });
-        Self::of_runs(runs.collect())
+        let samples = &threshold.samples;
+        let runs = samples.chunk_by(|a, b| a.verdict() == b.verdict());
+        Self::of_ranges(
+            runs.map(|run| match run[0].verdict().and_then(|_| ranges.next()) {
+                Some((verdict, range)) => VerdictRange {
+                    verdict: Some(*verdict),
+                    from: range.from,
+                    to: range.to,
+                },
+                None => VerdictRange {
+                    verdict: None,
+                    from: run[0].factor,
+                    to: run[run.len() - 1].factor,
+                },
+            })
+            .collect(),
+        )
     }
 
-    fn of_runs(runs: Vec<Run>) -> Self {
-        let safe = runs.first().filter(|run| run.0 == Some(Verdict::Survives));
-        let mut overturned = runs.iter().filter(|run| run.0 == Some(Verdict::Overturns));
+    /// Makes the survival of all ranges of tried strengths, ascending.
+    pub(super) fn of_ranges(ranges: Vec<VerdictRange>) -> Self {
+        let is = |verdict| move |range: &&VerdictRange| range.verdict == Some(verdict);
+        let safe = ranges.first().filter(is(Verdict::Survives));
+        let overturned = ranges.iter().find(is(Verdict::Overturns));
         Self {
-            survives_up_to: safe.map(|run| run.1[1]),
-            overturns_from: overturned.next().map(|run| run.1[0]),
+            survives_up_to: safe.map(|range| range.to),
+            overturns_from: overturned.map(|range| range.from),
             at_most: false,
-            runs,
+            ranges,
         }
     }
 }
@@ -77,12 +104,18 @@ const KINDS: [Option<Verdict>; 4] = [
 const LISTED: usize = 6;
 
 /// Returns the ranges of each kind in words, with `beside` between kind and ranges.
-fn listed(runs: &[Run], kinds: &[Option<Verdict>], beside: &str, unit: &str) -> Vec<String> {
+fn listed(
+    ranges: &[VerdictRange],
+    kinds: &[Option<Verdict>],
+    beside: &str,
+    unit: &str,
+) -> Vec<String> {
     let of_kind = kinds.iter().filter_map(|kind| {
-        let of_kind = runs.iter().filter(|run| run.0 == *kind);
-        let mut all: Vec<String> = of_kind
-            .map(|(_, ends)| match rounded_range(*ends) {
-                _ if ends[0] == ends[1] => rounded(ends[0]) + unit,
+        let mut all: Vec<String> = ranges
+            .iter()
+            .filter(|range| range.verdict == *kind)
+            .map(|range| match rounded_range([range.from, range.to]) {
+                _ if range.from == range.to => rounded(range.from) + unit,
                 [from, to] => format!("{from} to {to}{unit}"),
             })
             .collect();
@@ -101,30 +134,29 @@ pub fn in_words(survival: &Survival, unit: &str, peak_g: Option<f64>) -> String 
         Some(peak_g) => format!("{} ({} g)", rounded(strength), rounded(strength * peak_g)),
         None => rounded(strength) + unit,
     };
-    let runs = &survival.runs[..];
-    let Some((verdict, [from, _])) = runs.first() else {
+    let ranges = &survival.ranges[..];
+    let Some(first) = ranges.first() else {
         return "no history".to_owned();
     };
     let mut parts = vec![match survival.survives_up_to {
         Some(safe) => format!("survives up to {}", at(safe, rounded_down)),
         None => {
-            let (what, from) = (word(*verdict), at(*from, rounded));
+            let (what, from) = (word(first.verdict), at(first.from, rounded));
             format!("{what} at {from} already, the smallest tried")
         }
     }];
-    let overturns = runs
-        .iter()
-        .position(|run| run.0 == Some(Verdict::Overturns));
-    let (below, above) = runs.split_at(overturns.unwrap_or(runs.len()));
-    let is_certain = below.iter().all(|run| run.0 == Some(Verdict::Survives));
+    let is = |verdict| move |range: &VerdictRange| range.verdict == Some(verdict);
+    let overturns = ranges.iter().position(is(Verdict::Overturns));
+    let (below, above) = ranges.split_at(overturns.unwrap_or(ranges.len()));
+    let is_certain = below.iter().all(is(Verdict::Survives));
     match below.get(1..).unwrap_or_default() {
-        [(verdict, _)] if survival.survives_up_to.is_some() => {
-            parts.push(format!("{} from there", word(*verdict)));
+        [only] if survival.survives_up_to.is_some() => {
+            parts.push(format!("{} from there", word(only.verdict)));
         }
         between => parts.extend(listed(between, &KINDS[1..], " at", unit)),
     }
     let certainly = if is_certain { "" } else { "certainly " };
-    let known = below.iter().rfind(|run| run.0.is_some());
+    let known = below.iter().rfind(|range| range.verdict.is_some());
     match (survival.overturns_from, known) {
         (Some(strength), _) if !below.is_empty() => {
             let strength = at(strength, rounded);
@@ -136,11 +168,9 @@ pub fn in_words(survival: &Survival, unit: &str, peak_g: Option<f64>) -> String 
             parts.push(format!("{certainly}overturns {from} {strength}"));
         }
         (None, Some(_)) if is_certain => parts[0] += ", the largest tried",
-        (None, Some((_, [_, to]))) => {
-            parts.push(format!(
-                "does not certainly overturn up to {}",
-                at(*to, rounded)
-            ));
+        (None, Some(known)) => {
+            let to = at(known.to, rounded);
+            parts.push(format!("does not certainly overturn up to {to}"));
         }
         _ => {}
     }

@@ -39,7 +39,7 @@ pub fn report(scenario: &Scenario, check: &Summary) -> Result<Results, OutputErr
     let since = SystemTime::now().duration_since(UNIX_EPOCH);
     let today = date_of(since.map_or(0, |since| since.as_secs() / 86_400));
     let page = page(scenario, check, &today);
-    Results::with_words(&FILES, check, words(check), [page.into_bytes()])
+    Results::new(&FILES, check, [page.into_bytes()])
 }
 
 /// Returns the verdict in a sentence, then the result for each limit state, with the governing side.
