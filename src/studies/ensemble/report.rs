@@ -4,10 +4,11 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::influence::{InfluencedAnswer, Influences, NumberInfluence, percent};
+use super::samples::ReasonCounts;
 use super::{NoAnswer, Samples};
 use crate::output::{Cell, Column, Figure, OutputError, column, csv, list};
+use crate::studies::ModelCheck;
 use crate::studies::statistics::Share;
-use crate::studies::{ModelCheck, no_verdict};
 
 /// A row of the table of samples: the number of the sample, from 1, or 0 for the scenario itself; its values; and its answer.
 pub(super) struct Line<'a, A> {
@@ -147,40 +148,6 @@ impl SampleSummary {
     pub(super) fn first_reason(&self, why: &str) -> Option<&str> {
         let first = self.without_answer.iter().find(|one| one.why == why)?;
         Some(&first.reason)
-    }
-}
-
-/// Numbers of samples or histories without an answer.
-#[derive(Clone, Copy, Default, Serialize, Deserialize)]
-pub(super) struct ReasonCounts {
-    /// Number with values that give no valid structure.
-    pub(super) invalid: usize,
-    /// Number that could not be computed.
-    pub(super) failed: usize,
-    /// Number that ended too early for a verdict.
-    pub(super) incomplete: usize,
-}
-
-impl ReasonCounts {
-    pub(super) fn of<'r>(reasons: impl Iterator<Item = &'r NoAnswer>) -> Self {
-        let mut counts = Self::default();
-        for reason in reasons {
-            *match reason {
-                NoAnswer::Invalid(_) => &mut counts.invalid,
-                NoAnswer::Failed(_) => &mut counts.failed,
-                NoAnswer::Incomplete => &mut counts.incomplete,
-            } += 1;
-        }
-        counts
-    }
-
-    pub(super) const fn all(&self) -> usize {
-        self.invalid + self.failed + self.incomplete
-    }
-
-    /// Returns the number of `cases` that ended too early for a verdict, and the remedy, in words; `None` if the number is zero.
-    pub(super) fn no_verdict(&self, of: usize, cases: &str) -> Option<String> {
-        no_verdict(self.incomplete, of, cases)
     }
 }
 

@@ -4,9 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use super::NoAnswer;
 use super::influence::NumberInfluence;
-use super::report::ReasonCounts;
 use super::sensitivity::{Total, sensitivities, total_indices};
 use crate::scenario::{Scenario, Uncertain};
+use crate::studies::no_verdict;
 use crate::studies::statistics::{Share, ranks};
 
 /// A sample and its answer.
@@ -122,11 +122,42 @@ impl<'a, A> Samples<'a, A> {
         }
         let keys = self.uncertain.keys.iter().map(|key| key.key.clone());
         let of_keys = keys.zip(all);
-        Some(
-            of_keys
-                .map(|(key, sensitivity)| NumberInfluence { key, sensitivity })
-                .collect(),
-        )
+        let of_keys = of_keys.map(|(key, sensitivity)| NumberInfluence { key, sensitivity });
+        Some(of_keys.collect())
+    }
+}
+
+/// Numbers of samples or histories without an answer.
+#[derive(Clone, Copy, Default, Serialize, Deserialize)]
+pub(super) struct ReasonCounts {
+    /// Number with values that give no valid structure.
+    pub(super) invalid: usize,
+    /// Number that could not be computed.
+    pub(super) failed: usize,
+    /// Number that ended too early for a verdict.
+    pub(super) incomplete: usize,
+}
+
+impl ReasonCounts {
+    pub(super) fn of<'r>(reasons: impl Iterator<Item = &'r NoAnswer>) -> Self {
+        let mut counts = Self::default();
+        for reason in reasons {
+            *match reason {
+                NoAnswer::Invalid(_) => &mut counts.invalid,
+                NoAnswer::Failed(_) => &mut counts.failed,
+                NoAnswer::Incomplete => &mut counts.incomplete,
+            } += 1;
+        }
+        counts
+    }
+
+    pub(super) const fn all(&self) -> usize {
+        self.invalid + self.failed + self.incomplete
+    }
+
+    /// Returns the number of `cases` that ended too early for a verdict, and the remedy, in words; `None` if the number is zero.
+    pub(super) fn no_verdict(&self, of: usize, cases: &str) -> Option<String> {
+        no_verdict(self.incomplete, of, cases)
     }
 }
 

@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use serde::{Deserialize, Serialize};
 
 pub use self::report::Summary;
-use super::report::ReasonCounts;
+use super::samples::ReasonCounts;
 use super::{NoAnswer, SampleRow, Samples, uncertain};
 use crate::output::OutputError;
 use crate::scenario::{Axis, Scenario, Uncertain, UncertainKey};

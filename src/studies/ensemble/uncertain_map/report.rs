@@ -8,7 +8,8 @@ use crate::output::{Figure, Key, Mark, OutputError, Stroke, color, column, csv, 
 use crate::scenario::Hinges;
 use crate::studies::ending::columns::{OUTCOMES, yes};
 use crate::studies::ensemble::influence::{InfluencedAnswer, percent};
-use crate::studies::ensemble::report::{Band, ReasonCounts, SampleSummary};
+use crate::studies::ensemble::report::{Band, SampleSummary};
+use crate::studies::ensemble::samples::ReasonCounts;
 use crate::studies::map::page::Cells;
 use crate::studies::map::picture::{Drawn, Sheet};
 use crate::studies::outcome_colors::OutcomeColor;
