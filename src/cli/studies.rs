@@ -6,7 +6,7 @@ use std::slice;
 use archrock::output::{Figure, Manifest, Origin, pretty};
 use archrock::scenario::Scenario;
 use archrock::studies::catalogue::{self, Options, StudyKind, merge as merged};
-use archrock::studies::ensemble::cells::CellsOfSamples;
+use archrock::studies::ensemble::uncertain_map::CellsOfSamples;
 use archrock::studies::map::OverturningMap;
 use archrock::studies::quotable;
 use archrock::studies::results::Style;

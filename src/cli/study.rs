@@ -411,7 +411,7 @@ impl<'s> Session<'s> {
         models: impl Iterator<Item = (&'r str, &'r Results)>,
         place: Option<&Destination>,
     ) -> Result<Option<Results>, Failure> {
-        let models = models.map(|(label, results)| (label, &results.peaks[..]));
+        let models = models.map(|(label, results)| (label, &results.largest_rotations_rad[..]));
         let models: Vec<(&str, &[f64])> = models.collect();
         let (2.., Some(place)) = (models.len(), place) else {
             return Ok(None);

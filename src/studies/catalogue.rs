@@ -6,10 +6,10 @@ use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
 use super::capacity::{self, capacity};
-use super::ensemble::cells::CellsOfSamples;
-use super::ensemble::edges::FirstEdges;
-use super::ensemble::histories::Histories;
-use super::ensemble::records::Capacities;
+use super::ensemble::uncertain_map::CellsOfSamples;
+use super::ensemble::uncertain_run::Histories;
+use super::ensemble::uncertain_suite::Capacities;
+use super::ensemble::uncertain_threshold::FirstEdges;
 use super::ensemble::{Ensemble, Question};
 use super::map::OverturningMap;
 use super::part::{self, PartFile};

@@ -4,18 +4,18 @@
 //! statistically (Bachmann, Strand, Vassiliou, Broccardo and Stojadinovic, Earthquake Engineering and Structural Dynamics 47, 2018;
 //! Vassiliou, Broccardo, Cengiz, Dietz, Dihoru, Gunay, Mosalam, Mylonakis, Sextos and Stojadinovic, ibid. 50, 2021).
 
-use serde::Serialize;
-use serde_json::json;
+use askama::Template;
+use serde::{Deserialize, Serialize};
 
 use super::results::Results;
 use super::statistics::{ascending, fractile, shares_up_to};
-use crate::output::{CURVES, Chart, Figure, Mark, OutputError, Scale, column, csv};
+use crate::output::{CURVES, Chart, Figure, Mark, OutputError, Scale, column, csv, filters};
 
 /// The name of a model in words, and the largest rotation of a body in each case, in radians, infinite if the case overturned.
 pub type ModelPeaks<'a> = (&'a str, &'a [f64]);
 
 /// The distance between the distributions of two models.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Distance {
     /// The two models.
     pub models: [String; 2],
@@ -59,7 +59,49 @@ const FILES: [&str; 3] = ["peaks.svg", "peaks.csv", SUMMARY];
 /// The numbers of a comparison.
 pub const SUMMARY: &str = "peaks.json";
 
-/// Compares the distributions of several models of the same cases: table, picture, numbers and words.
+/// Comparison of models of motion by the distributions of their largest rotations in the same cases.
+#[derive(Serialize, Deserialize, Template)]
+#[template(path = "studies/peaks.txt")]
+pub struct Summary {
+    /// The distribution of each model.
+    models: Vec<ModelSummary>,
+    /// The distances between the distributions of any two models.
+    pairs: Vec<Distance>,
+}
+
+/// The distribution of a model.
+#[derive(Serialize, Deserialize)]
+struct ModelSummary {
+    /// The model.
+    model: String,
+    /// Number of cases.
+    cases: usize,
+    /// Number of cases that overturned.
+    overturned: usize,
+    /// 16 % fractile of the largest rotation, in radians; null if it is in the range of overturned cases.
+    peak_rotation_16_rad: Option<f64>,
+    /// Median of the largest rotation, in radians; null if it is in the range of overturned cases.
+    peak_rotation_50_rad: Option<f64>,
+    /// 84 % fractile of the largest rotation, in radians; null if it is in the range of overturned cases.
+    peak_rotation_84_rad: Option<f64>,
+}
+
+impl ModelSummary {
+    fn of((name, peaks): &ModelPeaks<'_>) -> Self {
+        let all = ascending(peaks.iter().copied());
+        let at = |part| fractile(&all, part).filter(|peak| peak.is_finite());
+        Self {
+            model: (*name).to_owned(),
+            cases: all.len(),
+            overturned: all.iter().filter(|peak| peak.is_infinite()).count(),
+            peak_rotation_16_rad: at(0.16),
+            peak_rotation_50_rad: at(0.5),
+            peak_rotation_84_rad: at(0.84),
+        }
+    }
+}
+
+/// Compares the distributions of several models of the same cases: report, table and picture.
 ///
 /// # Errors
 /// When a value is not finite.
@@ -68,53 +110,33 @@ pub fn results(
     models: &[ModelPeaks<'_>],
     figure: Figure,
 ) -> Result<Results, OutputError> {
-    let distributions = models.iter();
-    let distributions: Vec<Distribution<'_>> = distributions
+    let distributions: Vec<Distribution<'_>> = models
+        .iter()
         .map(|(name, peaks)| (*name, shares_up_to(peaks.iter().map(|peak| [*peak, 1.0]))))
         .collect();
     let pairs = models.iter().enumerate().flat_map(|(index, one)| {
         let others = models[index + 1..].iter();
         others.filter_map(|other| distance(*one, *other))
     });
-    let pairs: Vec<Distance> = pairs.collect();
-    let of_model = |(name, peaks): &ModelPeaks<'_>| {
-        let all = ascending(peaks.iter().copied());
-        let at = |part| fractile(&all, part).filter(|peak| peak.is_finite());
-        json!({
-            "model": name,
-            "cases": all.len(),
-            "overturned": all.iter().filter(|peak| peak.is_infinite()).count(),
-            "peak_rotation_16_rad": at(0.16),
-            "peak_rotation_50_rad": at(0.5),
-            "peak_rotation_84_rad": at(0.84),
-        })
+    let report = Summary {
+        models: models.iter().map(ModelSummary::of).collect(),
+        pairs: pairs.collect(),
     };
-    let of_models: Vec<_> = models.iter().map(of_model).collect();
-    let summary = json!({ "models": of_models, "pairs": pairs });
     type Row<'a> = (&'a str, (f64, f64));
     let columns = [
         column("model", |(model, _): &Row<'_>| (*model).to_owned()),
         column("peak_rotation_rad", |(_, at): &Row<'_>| at.0),
         column("share", |(_, at): &Row<'_>| at.1),
     ];
-    let rows = distributions.iter();
-    let rows = rows.flat_map(|(model, all)| all.iter().map(|at| (*model, *at)));
-    let table = csv(columns, &rows.collect::<Vec<Row<'_>>>())?;
+    let rows: Vec<Row<'_>> = distributions
+        .iter()
+        .flat_map(|(model, all)| all.iter().map(|at| (*model, *at)))
+        .collect();
     let picture = draw(figure, title, &distributions);
-    let words: Vec<String> = pairs.iter().map(in_words).collect();
-    let others = [picture.into_bytes(), table];
-    Results::with_words(&FILES, &summary, words.join("\n  "), others)
-}
-
-fn in_words(found: &Distance) -> String {
-    let [one, other] = &found.models;
-    let [one_there, other_there] = found
-        .shares_there
-        .map(|share| format!("{:.0} %", 100.0 * share));
-    format!(
-        "largest rotation, {one} against {other}: Kolmogorov distance {:.2}, at {:.4} rad, which {one_there} and {other_there} of the cases \
-         do not exceed",
-        found.kolmogorov_distance, found.at_rotation_rad
+    Results::new(
+        &FILES,
+        &report,
+        [picture.into_bytes(), csv(columns, &rows)?],
     )
 }
 

@@ -185,14 +185,17 @@ impl ModelCheck {
         check
     }
 
-    /// Makes the check of a number of histories outside the model and of a number of all; `None` for other models. The excess of the others is at most
-    /// the limit.
+    /// Makes the check of a number of histories outside the model and of a number of all; `None` for other models. If none is outside, the excess is
+    /// at most the limit.
     pub(crate) fn counted(counts: Option<[usize; 2]>) -> Self {
         let [outside, of] = counts.unwrap_or_default();
         Self {
             outside: counts.map(|_| outside),
             of,
-            largest_ratio: MODEL_LIMIT,
+            largest_ratio: match counts {
+                Some([0, _]) => MODEL_LIMIT,
+                _ => 0.0,
+            },
         }
     }
 

@@ -4,6 +4,7 @@ use std::fmt;
 
 use askama::Template;
 use serde::Serialize;
+use serde::de::DeserializeOwned;
 use serde_json::Value;
 use thiserror::Error;
 
@@ -81,7 +82,7 @@ pub struct Results {
     pub summary: Value,
     /// The largest rotation of each case of a suite or sample of a run, in radians, for the [comparison](super::peaks) of models of motion.
     /// Infinite if the case overturned.
-    pub peaks: Vec<f64>,
+    pub largest_rotations_rad: Vec<f64>,
     /// The answer of a suite that may be quoted, for the comparison of models of motion.
     pub answer: Option<ModelAnswer>,
 }
@@ -97,16 +98,6 @@ impl Results {
         report: &(impl Serialize + Template),
         others: impl IntoIterator<Item = Vec<u8>>,
     ) -> Result<Self, OutputError> {
-        let words = render(report).trim_end().to_owned();
-        Self::with_words(names, report, words, others)
-    }
-
-    pub(super) fn with_words(
-        names: &[&'static str],
-        report: &impl Serialize,
-        words: String,
-        others: impl IntoIterator<Item = Vec<u8>>,
-    ) -> Result<Self, OutputError> {
         let summary = summary_of(report)?;
         let mut others = others.into_iter();
         let file = |name: &&'static str| {
@@ -118,9 +109,9 @@ impl Results {
         };
         Ok(Self {
             files: names.iter().map(file).collect(),
-            words,
+            words: words_of(report),
             summary,
-            peaks: Vec::new(),
+            largest_rotations_rad: Vec::new(),
             answer: None,
         })
     }
@@ -140,6 +131,20 @@ impl Results {
         }
         folder.complete()
     }
+}
+
+/// Returns the words of a report, made from its JSON alone.
+///
+/// # Errors
+/// When the text is not the JSON of such a report.
+#[doc(hidden)]
+pub fn words_of_json<R: DeserializeOwned + Template>(json: &str) -> serde_json::Result<String> {
+    let report: R = serde_json::from_str(json)?;
+    Ok(words_of(&report))
+}
+
+fn words_of(report: &impl Template) -> String {
+    render(report).trim_end().to_owned()
 }
 
 /// A result without files, as JSON and in words.

@@ -1,6 +1,6 @@
 //! Statistics of samples: shares with confidence intervals, quantiles, and random numbers that are the same on every machine.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Number of standard deviations on each side of the mean that enclose 95 % of a normal distribution.
 pub(super) const TWO_SIDED_95: f64 = 1.959_963_984_540_054;
@@ -13,7 +13,7 @@ pub(super) const TWO_SIDED_95: f64 = 1.959_963_984_540_054;
 /// Wilson (Journal of the American Statistical Association 22, 1927) contains the true share with a probability of 95 % for each possible number
 /// of samples with the property. Both ends of his interval grow with this number. So the interval from his lower end, if none of these samples
 /// has the property, to his upper end, if all have it, contains every such interval, and the true share with at least 95 %.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Share {
     /// The number of samples that certainly have the property.
     pub count: usize,

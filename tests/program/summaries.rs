@@ -114,13 +114,20 @@ fn parts(kind: &Type) -> (String, Option<&Type>) {
     }
 }
 
-/// Whether the keys of a map are sides; otherwise they are limit states.
-fn maps_sides(kind: &Type) -> bool {
-    let Type::Path(path) = kind else { return false };
+/// The keys of a map, in words.
+fn keys_of(map: &Type) -> &'static str {
+    let Type::Path(path) = map else { return "" };
     let PathArguments::AngleBracketed(inner) = &path.path.segments.last().unwrap().arguments else {
-        return false;
+        return "";
     };
-    matches!(inner.args.first(), Some(GenericArgument::Type(key)) if parts(key).0 == "Sway")
+    let Some(GenericArgument::Type(key)) = inner.args.first() else {
+        return "";
+    };
+    match &*parts(key).0 {
+        "Sway" => "`right`, `left`: ",
+        "LimitState" => "`sld`, `slv`, `slc`: ",
+        _ => "by name: ",
+    }
 }
 
 /// The JSON that a function of a file for `serialize_with` writes, in words.
@@ -143,15 +150,7 @@ fn words(kind: &Type) -> (String, String) {
     match (&*name, inner) {
         ("Option", Some(inner)) => wrapped(inner, "", " or null"),
         ("Vec", Some(inner)) => wrapped(inner, "list: ", ""),
-        ("BTreeMap", Some(inner)) => wrapped(
-            inner,
-            if maps_sides(kind) {
-                "`right`, `left`: "
-            } else {
-                "`sld`, `slv`, `slc`: "
-            },
-            "",
-        ),
+        ("BTreeMap", Some(inner)) => wrapped(inner, keys_of(kind), ""),
         ("Sides", Some(inner)) => wrapped(inner, "`right`, `left`: ", ""),
         ("Vector2", _) => ("list: x, y".to_owned(), String::new()),
         ("f64", _) => ("number".to_owned(), name),
@@ -206,8 +205,9 @@ impl<'a> Reference<'a> {
         let mut inside = self.found(one, &name);
         if let Some(transparent) = inside.filter(|inside| inside.is_transparent) {
             let value = transparent.variants[0].1.iter().next().unwrap();
-            kind = kind.replace("text", &words(&value.ty).0);
-            inside = None;
+            let (value_in_words, name_in_value) = words(&value.ty);
+            kind = kind.replace("text", &value_in_words);
+            inside = self.found(transparent, &name_in_value);
         }
         let Some(ident) = field.ident.as_ref().filter(|_| !serde.contains("flatten")) else {
             // The fields of another type in place of this one.
@@ -281,6 +281,16 @@ impl<'a> Reference<'a> {
     }
 }
 
+/// The title of a study: its file, or its folder if several files share one.
+fn title_of(file: &Path) -> String {
+    let shared = ["mod", "report", "summary"].map(|name| file.with_file_name(format!("{name}.rs")));
+    let study = match shared.contains(&file.to_owned()) {
+        true => file.parent().unwrap(),
+        false => &file.with_extension(""),
+    };
+    study.display().to_string()
+}
+
 #[test]
 fn summaries_are_described_by_their_types() {
     let mut found = Vec::new();
@@ -292,8 +302,8 @@ fn summaries_are_described_by_their_types() {
     // Python has the events of a history too.
     let events = found.iter().filter(|one| one.name == "Event");
     for one in summaries.chain(events) {
-        let study = one.file.strip_prefix(&studies).ok().and_then(Path::parent);
-        let title = study.map_or("event".to_owned(), |study| study.display().to_string());
+        let study = one.file.strip_prefix(&studies).ok();
+        let title = study.map_or("event".to_owned(), title_of);
         let _ = write!(
             text,
             "\n### `{title}`\n\n{}\n\n| key | type | what it is |\n|---|---|---|\n",

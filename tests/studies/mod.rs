@@ -28,3 +28,4 @@ mod uncertain;
 mod verify;
 mod verify_formulas;
 mod verify_histories;
+mod words_of_json;

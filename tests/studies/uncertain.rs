@@ -8,8 +8,8 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use archrock::Scenario;
-use archrock::studies::ensemble::histories::{Histories, HistoryAnswer};
-use archrock::studies::ensemble::matters::{total_indices, what_matters};
+use archrock::studies::ensemble::sensitivity::{sensitivities, total_indices};
+use archrock::studies::ensemble::uncertain_run::{Histories, HistoryAnswer};
 use archrock::studies::ensemble::{Ensemble, SampleRow};
 use archrock::studies::runner::Runner;
 use archrock::studies::statistics::Share;
@@ -144,7 +144,7 @@ fn first_order_indices_are_those_of_ishigami() {
         };
         let answers: Vec<f64> = points.iter().map(ishigami).collect();
         let values: Vec<Vec<f64>> = (0..1024).map(|sample| uncertain.values(sample)).collect();
-        let matters = what_matters(&values, &answers).unwrap();
+        let matters = sensitivities(&values, &answers).unwrap();
         for (known, matters) in known.iter().zip(&matters) {
             let error = matters.first_order - known;
             assert!(error.abs() < 0.02, "seed {seed}: {matters:?} {known}");
@@ -232,13 +232,13 @@ fn shares_of_a_sum_are_those_of_its_squares() {
         .iter()
         .map(|values| 2.0 * values[0] - values[1])
         .collect();
-    let matters = what_matters(&values, &answers).unwrap();
+    let matters = sensitivities(&values, &answers).unwrap();
     assert!((matters[0].first_order - 0.8).abs() < 0.02, "{matters:?}");
     assert!((matters[1].first_order - 0.2).abs() < 0.02, "{matters:?}");
     assert!(matters[0].rank_correlation > 0.85 && matters[1].rank_correlation < -0.35);
     // An answer that does not vary, and too few samples, decide nothing.
-    assert_eq!(what_matters(&values, &vec![1.0; 512]), None);
-    assert_eq!(what_matters(&values[..10], &answers[..10]), None);
+    assert_eq!(sensitivities(&values, &vec![1.0; 512]), None);
+    assert_eq!(sensitivities(&values[..10], &answers[..10]), None);
 }
 
 fn uncertain_arch(samples: usize, seed: usize) -> String {

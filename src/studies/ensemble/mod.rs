@@ -1,23 +1,22 @@
 //! Ensembles: a question that is answered for every sample of a scenario with uncertain numbers.
 //!
 //! An ensemble is a study. Its first case is the scenario itself; each other case is a sample of [`Uncertain`]. A [`Question`] is answered for
-//! each case: the history of the sample ([`histories`]), the first factor that overturns it ([`edges`]), or the intensity of each record that
-//! overturns it ([`records`]). Shards, resuming, threads, shares, influences and files are common to all questions. The cells of a map
-//! ([`cells`]) are a separate study, whose cases are cells of samples.
+//! each case: the history of the sample ([`uncertain_run`]), the first factor that overturns it ([`uncertain_threshold`]), or the intensity of each
+//! record that overturns it ([`uncertain_suite`]). Shards, resuming, threads, shares and influences are common to all questions. The cells of a map
+//! ([`uncertain_map`]) are a separate study, whose cases are cells of samples.
 
-pub mod cells;
-pub(crate) mod edges;
-pub mod histories;
 mod influence;
-pub mod matters;
-pub(crate) mod records;
 mod report;
 mod samples;
+pub mod sensitivity;
+pub mod uncertain_map;
+pub mod uncertain_run;
+pub mod uncertain_suite;
+pub mod uncertain_threshold;
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-pub use self::report::Findings;
 pub use self::samples::{SampleRow, Samples};
 pub use super::ending::NoAnswer;
 use super::threshold::Factors;
@@ -33,7 +32,7 @@ pub trait Question: Sized + Sync {
     /// Name of the study, in part files and in their names.
     const NAME: &'static str;
 
-    /// Names of the files of the findings, the summary last.
+    /// Names of the files, the report last.
     const FILES: &'static [&'static str];
 
     /// Makes the question for a scenario. `factors` are those on the ground motion that a threshold tries.
@@ -42,15 +41,15 @@ pub trait Question: Sized + Sync {
     /// Returns the change that the scenario needs, in words.
     fn of(scenario: &Scenario, factors: Factors) -> Result<Self, String>;
 
-    /// Computes the findings from all answers.
+    /// Makes the report and the other files of all answers.
     ///
     /// # Errors
     /// When a value is not finite.
-    fn findings<'a>(
-        &'a self,
-        samples: &Samples<'a, Self::Answer>,
+    fn results(
+        &self,
+        samples: &Samples<'_, Self::Answer>,
         figure: Figure,
-    ) -> Result<Findings<'a, Self::Answer, impl Serialize>, OutputError>;
+    ) -> Result<Results, OutputError>;
 
     /// Computes the answer of a scenario that has the values of a sample.
     ///
@@ -149,7 +148,6 @@ impl<Q: Question> ReportedStudy for Ensemble<'_, Q> {
 
     fn results(&self, rows: Vec<Self::Row>, style: Style) -> Result<Results, OutputError> {
         let samples = Samples::new(self.scenario, self.uncertain, &rows);
-        let findings = self.question.findings(&samples, style.figure)?;
-        findings.results(&samples, Q::FILES, style.figure)
+        self.question.results(&samples, style.figure)
     }
 }

@@ -1,40 +1,14 @@
-//! Files, JSON and words of an ensemble, for any question.
+//! Report and tables of an ensemble, for any question.
 
-use serde::Serialize;
-use serde_json::{Map, Value, json};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
-use super::influence::{self, Influence, percent};
+use super::influence::{InfluencedAnswer, Influences, NumberInfluence, percent};
+use super::samples::ReasonCounts;
 use super::{NoAnswer, Samples};
-use crate::output::{Cell, Column, Figure, OutputError, column, csv, each, list};
-use crate::scenario::Uncertain;
+use crate::output::{Cell, Column, Figure, OutputError, column, csv, list};
+use crate::studies::ModelCheck;
 use crate::studies::statistics::Share;
-use crate::studies::{ModelCheck, Results};
-
-/// The findings about the answers to a question.
-pub struct Findings<'a, A, D> {
-    /// First sentence of the words, before the influence of the uncertain numbers; `None` if no sample has an answer.
-    pub(super) first: Option<String>,
-    /// Further lines of the words.
-    pub(super) lines: Vec<String>,
-    /// The influences of the uncertain numbers. The words show the first known influence.
-    pub(super) influences: Vec<Influence<'a>>,
-    /// Number of histories without a verdict, and the remedy, in words; `None` if the number is zero.
-    pub(super) no_verdict: Option<String>,
-    /// The histories of four links outside their model.
-    pub(super) model: ModelCheck,
-    /// The checked histories in words.
-    pub(super) checked: &'static str,
-    /// The part of the summary that is specific to the question.
-    pub(super) details: D,
-    /// Pictures and pages.
-    pub(super) pictures: Vec<String>,
-    /// Tables before the table of samples.
-    pub(super) tables: Vec<Vec<u8>>,
-    /// Columns of the table of samples; without columns there is no such table.
-    pub(super) columns: Vec<Column<'a, Line<'a, A>>>,
-    /// Largest rotations, as in [`Results`].
-    pub(super) peaks: Vec<f64>,
-}
 
 /// A row of the table of samples: the number of the sample, from 1, or 0 for the scenario itself; its values; and its answer.
 pub(super) struct Line<'a, A> {
@@ -58,13 +32,18 @@ pub(super) fn lines<'a, A>(samples: &Samples<'a, A>) -> Vec<Line<'a, A>> {
     [own].into_iter().chain(rows).collect()
 }
 
-/// Returns the columns with the numbers of the samples and their values.
-fn sample_columns<'a, A: 'a>(uncertain: &Uncertain) -> Vec<Column<'a, Line<'a, A>>> {
-    let names: Vec<String> = uncertain.keys.iter().map(|key| key.key.clone()).collect();
-    vec![
+/// Makes the table of samples: their numbers, their values, and these columns.
+pub(super) fn table<'a, A: 'a>(
+    samples: &Samples<'a, A>,
+    columns: impl IntoIterator<Item = Column<'a, Line<'a, A>>>,
+) -> Result<Vec<u8>, OutputError> {
+    let keys = samples.uncertain.keys.iter().map(|key| key.key.clone());
+    let mut all = vec![
         column("sample", |line: &Line<'_, A>| line.number),
-        list(names, |line: &Line<'_, A>| line.values.clone()),
-    ]
+        list(keys, |line: &Line<'_, A>| line.values.clone()),
+    ];
+    all.extend(columns);
+    csv(all, &lines(samples))
 }
 
 /// Returns a column of the answers; it is empty for samples without an answer.
@@ -87,51 +66,106 @@ pub(super) fn why_not<'a, A: 'a>() -> Column<'a, Line<'a, A>> {
 /// The uncertainty that samples do not cover.
 const NOT_CONSIDERED: &str = "not considered: numbers that [uncertain] does not name, other ground motions, and the model of motion itself";
 
-/// Summary of the samples of a scenario.
-#[derive(Serialize)]
-struct SampleSummary<'a, D> {
+/// What the reports on samples begin with.
+#[derive(Serialize, Deserialize)]
+pub(super) struct SampleSummary {
     /// Name of the program.
-    program: &'static str,
+    program: String,
     /// Version of the program.
-    version: &'static str,
+    version: String,
     /// The scenario with all defaults.
     scenario: Value,
     /// Warnings about unlikely numbers, limits of the model, and histories without a verdict.
     warnings: Vec<String>,
     /// Number of samples.
-    samples: usize,
+    pub(super) samples: usize,
     /// Number of samples with an answer.
-    answered: usize,
-    /// Number of samples whose values give no valid structure.
-    invalid: usize,
-    /// Number of samples that could not be computed.
-    failed: usize,
-    /// Number of samples whose histories ended too early for a verdict.
-    incomplete: usize,
+    pub(super) answered: usize,
     #[serde(flatten)]
-    model: ModelCheck,
-    /// The samples without an answer, with the reasons.
-    without_answer: Vec<Value>,
+    pub(super) without: ReasonCounts,
+    #[serde(flatten)]
+    pub(super) model: ModelCheck,
+    /// The reason why the scenario itself has no answer; null if it has one.
+    pub(super) own_without_answer: Option<String>,
+    /// The samples without an answer.
+    without_answer: Vec<WithoutAnswer>,
     /// The uncertainty that samples do not cover.
-    not_considered: &'static str,
-    #[serde(flatten)]
-    details: &'a D,
+    pub(super) not_considered: String,
     /// Influence of each uncertain number on each answer.
-    what_matters: Map<String, Value>,
+    pub(super) what_matters: Influences,
+}
+
+/// A sample without an answer.
+#[derive(Serialize, Deserialize)]
+struct WithoutAnswer {
+    /// Number of the sample, from 1.
+    sample: usize,
+    /// `invalid`, `failed` or `incomplete`.
+    why: String,
+    /// The reason in words.
+    reason: String,
+}
+
+impl SampleSummary {
+    /// Makes the summary of samples; `limits` are warnings about the results.
+    pub(super) fn new<A, const N: usize>(
+        samples: &Samples<'_, A>,
+        model: ModelCheck,
+        limits: [Option<String>; 2],
+        influences: [(InfluencedAnswer, Option<Vec<NumberInfluence>>); N],
+    ) -> Self {
+        let scenario = samples.scenario;
+        let limits = limits.into_iter().flatten();
+        let own = samples.own.as_ref().err();
+        let without = samples.without().map(|(sample, why)| WithoutAnswer {
+            sample,
+            why: why.name().to_owned(),
+            reason: why.reason().to_owned(),
+        });
+        Self {
+            program: env!("CARGO_PKG_NAME").to_owned(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            scenario: scenario.to_json(),
+            warnings: scenario.unlikely().into_iter().chain(limits).collect(),
+            samples: samples.rows.len(),
+            answered: samples.answers().count(),
+            without: samples.reasons(),
+            model,
+            own_without_answer: own.map(|why| why.reason().to_owned()),
+            without_answer: without.collect(),
+            not_considered: NOT_CONSIDERED.to_owned(),
+            what_matters: Influences(influences.into()),
+        }
+    }
+
+    /// Draws the influence of each number on each answer.
+    pub(super) fn draw_influences<A>(&self, samples: &Samples<'_, A>, figure: Figure) -> Vec<u8> {
+        let title = samples.title("Influence of uncertain data");
+        self.what_matters.draw(figure, title).into_bytes()
+    }
+
+    /// Returns the reason of the first sample that has no answer for this reason.
+    pub(super) fn first_reason(&self, why: &str) -> Option<&str> {
+        let first = self.without_answer.iter().find(|one| one.why == why)?;
+        Some(&first.reason)
+    }
 }
 
 /// Quantiles of the answers; null if they are unknown or infinite.
-#[derive(Serialize)]
+#[derive(Clone, Copy, Serialize, Deserialize)]
 pub(super) struct Band {
-    quantile_05: Option<f64>,
-    median: Option<f64>,
-    quantile_95: Option<f64>,
+    /// 5 % quantile.
+    pub(super) quantile_05: Option<f64>,
+    /// Median.
+    pub(super) median: Option<f64>,
+    /// 95 % quantile.
+    pub(super) quantile_95: Option<f64>,
 }
 
-impl From<Option<[f64; 3]>> for Band {
-    fn from(band: Option<[f64; 3]>) -> Self {
+impl From<[Option<f64>; 3]> for Band {
+    fn from(quantiles: [Option<f64>; 3]) -> Self {
         let finite = |value: Option<f64>| value.filter(|value| value.is_finite());
-        let [quantile_05, median, quantile_95] = each(band).map(finite);
+        let [quantile_05, median, quantile_95] = quantiles.map(finite);
         Self {
             quantile_05,
             median,
@@ -140,106 +174,28 @@ impl From<Option<[f64; 3]>> for Band {
     }
 }
 
-impl<'a, A: 'a, D: Serialize> Findings<'a, A, D> {
-    pub(super) fn results(
-        self,
-        samples: &Samples<'a, A>,
-        names: &[&'static str],
-        figure: Figure,
-    ) -> Result<Results, OutputError> {
-        let without = |name: &str| {
-            let reasons = samples.without().filter(|(_, why)| why.name() == name);
-            reasons.map(|(_, why)| why).collect::<Vec<_>>()
+impl Share {
+    /// Returns the share of samples with its interval in words.
+    pub(super) fn in_words(&self) -> String {
+        let [part, low, high] = self.numbers().map(percent);
+        let certain = match self.uncertain {
+            0 => self.count.to_string(),
+            uncertain => format!("{} certain and {uncertain} uncertain", self.count),
         };
-        let [invalid, failed] = ["invalid", "failed"].map(without);
-        let reason = |(sample, why): (usize, &NoAnswer)| json!({ "sample": sample, "why": why.name(), "reason": why.reason() });
-        let influences = self.influences.iter();
-        let outside = self.model.in_words(self.checked);
-        let limits = outside.clone().into_iter().chain(self.no_verdict);
-        let summary = SampleSummary {
-            program: env!("CARGO_PKG_NAME"),
-            version: env!("CARGO_PKG_VERSION"),
-            scenario: samples.scenario.to_json(),
-            warnings: samples
-                .scenario
-                .unlikely()
-                .into_iter()
-                .chain(limits)
-                .collect(),
-            samples: samples.rows.len(),
-            answered: samples.answers().count(),
-            invalid: invalid.len(),
-            failed: failed.len(),
-            incomplete: without("incomplete").len(),
-            model: self.model,
-            without_answer: samples.without().map(reason).collect(),
-            not_considered: NOT_CONSIDERED,
-            details: &self.details,
-            what_matters: influences
-                .map(|influence| (influence.name.to_owned(), json!(influence.numbers)))
-                .collect(),
-        };
-        let mut influences = self.influences.iter();
-        let mut known = influences.clone();
-        let known = known.find(|influence| influence.numbers.is_some());
-        let decides = known.or(influences.next_back());
-        let decides = decides.map_or(String::new(), Influence::in_words);
-        let first = self.first;
-        let first = first.map(|first| format!("{first};\n    {decides};\n    {NOT_CONSIDERED}"));
-        let mut words = vec![first.unwrap_or("no sample has an answer".to_owned())];
-        words.extend(self.lines);
-        words.extend(outside);
-        for (reasons, what) in [
-            (invalid, "make no valid structure, and do not count"),
-            (failed, "could not be computed"),
-        ] {
-            words.extend(reasons.first().map(|first| {
-                format!(
-                    "{} of {} samples {what}; the first: {}",
-                    reasons.len(),
-                    samples.rows.len(),
-                    first.reason()
-                )
-            }));
-        }
-        words.extend(samples.no_verdict());
-        let title = samples.title("Influence of uncertain data");
-        let mut contents: Vec<Vec<u8>> =
-            self.pictures.into_iter().map(String::into_bytes).collect();
-        contents.push(influence::draw(figure, title, &self.influences).into_bytes());
-        contents.extend(self.tables);
-        if !self.columns.is_empty() {
-            let mut columns = sample_columns(samples.uncertain);
-            columns.extend(self.columns);
-            contents.push(csv(columns, &lines(samples))?);
-        }
-        Ok(Results {
-            peaks: self.peaks,
-            ..Results::with_words(names, &summary, words.join("\n  "), contents)?
-        })
+        let of = self.of;
+        format!("{part} (95 %: {low} to {high}), {certain} of {of} samples")
     }
-}
 
-/// Returns a share with its interval in words.
-pub(super) fn share_in_words(share: &Share) -> String {
-    let [part, low, high] = share.numbers().map(percent);
-    let certain = match share.uncertain {
-        0 => share.count.to_string(),
-        uncertain => format!("{} certain and {uncertain} uncertain", share.count),
-    };
-    let of = share.of;
-    format!("{part} (95 %: {low} to {high}), {certain} of {of} samples")
-}
-
-/// Returns the treatment of uncertain samples, and of samples without a verdict, in a probability of overturning, in words; empty without such
-/// samples.
-pub(super) fn doubts_in_words(share: &Share) -> String {
-    let (uncertain, no_verdict) = (share.uncertain, share.no_verdict);
-    match uncertain + no_verdict {
-        0 => String::new(),
-        _ => format!(
-            ";\n    the interval holds whether {uncertain} uncertain samples, counted with the fraction of their repetitions that overturn, \
-             and {no_verdict} samples without a verdict survive or overturn"
-        ),
+    /// Returns the treatment of uncertain samples, and of samples without a verdict, in a probability of overturning, in words; empty without such
+    /// samples.
+    pub(super) fn doubts_in_words(&self) -> String {
+        let (uncertain, no_verdict) = (self.uncertain, self.no_verdict);
+        match uncertain + no_verdict {
+            0 => String::new(),
+            _ => format!(
+                ";\n    the interval holds whether {uncertain} uncertain samples, counted with the fraction of their repetitions that \
+                 overturn, and {no_verdict} samples without a verdict survive or overturn"
+            ),
+        }
     }
 }

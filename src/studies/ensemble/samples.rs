@@ -3,10 +3,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::NoAnswer;
-use super::influence::Influence;
-use super::matters::{Matters, total_indices, what_matters};
+use super::influence::NumberInfluence;
+use super::sensitivity::{Total, sensitivities, total_indices};
 use crate::scenario::{Scenario, Uncertain};
-use crate::studies::remarks::no_verdict;
+use crate::studies::no_verdict;
 use crate::studies::statistics::{Share, ranks};
 
 /// A sample and its answer.
@@ -76,30 +76,26 @@ impl<'a, A> Samples<'a, A> {
 
     /// Returns the number of valid structures without an answer.
     pub(super) fn unknown(&self) -> usize {
-        let valid = |(_, why): &(usize, &NoAnswer)| !matches!(why, NoAnswer::Invalid(_));
-        self.without().filter(valid).count()
+        self.reasons().failed + self.reasons().incomplete
     }
 
-    /// Returns the number of samples whose histories ended too early for a verdict, and the remedy, in words; `None` if the number is zero.
+    /// Returns the numbers of samples without an answer.
+    pub(super) fn reasons(&self) -> ReasonCounts {
+        ReasonCounts::of(self.without().map(|(_, why)| why))
+    }
+
+    /// Returns the number of samples without a verdict, and the remedy, in words; `None` if the number is zero.
     pub(super) fn no_verdict(&self) -> Option<String> {
-        let incomplete = self
-            .without()
-            .filter(|(_, why)| **why == NoAnswer::Incomplete);
-        no_verdict(incomplete.count(), self.rows.len(), "samples")
+        self.reasons().no_verdict(self.rows.len(), "samples")
     }
 
-    /// Computes the influence of the uncertain numbers on a number of each sample, or on the rank of that number.
+    /// Computes the influence of the uncertain numbers on a number of each sample, or on the rank of that number, in the order of the keys. `None` if
+    /// the samples do not differ or are too few.
     pub(super) fn influence(
         &self,
-        names: [&'static str; 2],
         by_rank: bool,
         number: impl Fn(&A) -> f64,
-    ) -> Influence<'a> {
-        let matters = self.matters(by_rank, number);
-        Influence::new(names, self.uncertain, matters)
-    }
-
-    fn matters(&self, by_rank: bool, number: impl Fn(&A) -> f64) -> Option<Vec<Matters>> {
+    ) -> Option<Vec<NumberInfluence>> {
         let known = |rows: &[SampleRow<A>]| -> Vec<Option<f64>> {
             let answers = rows.iter().map(|row| row.answer.as_ref().ok());
             answers.map(|answer| answer.map(&number)).collect()
@@ -108,15 +104,60 @@ impl<'a, A> Samples<'a, A> {
         let values: Vec<Vec<f64>> = answered.map(|row| row.values.clone()).collect();
         let own = numbers(known(self.rows), by_rank);
         let answers: Vec<f64> = own.into_iter().flatten().collect();
-        let mut matters = what_matters(&values, &answers)?;
+        let mut all = sensitivities(&values, &answers)?;
         if !self.moved.is_empty() {
-            let all = numbers([self.rows, self.moved].map(known).concat(), by_rank);
-            let (own, moved) = all.split_at(self.rows.len());
-            for (matters, total) in matters.iter_mut().zip(total_indices(own, moved)?) {
-                matters.total = Some(total);
+            let answers = numbers([self.rows, self.moved].map(known).concat(), by_rank);
+            let (own, moved) = answers.split_at(self.rows.len());
+            for (one, total) in all.iter_mut().zip(total_indices(own, moved)?) {
+                one.total = Some(total);
             }
         }
-        Some(matters)
+        // A number without others has all of the influence.
+        if let [only] = &mut all[..] {
+            (only.first_order, only.first_order_interval) = (1.0, [1.0; 2]);
+            only.total = only.total.map(|_| Total {
+                total: 1.0,
+                total_interval: [1.0; 2],
+            });
+        }
+        let keys = self.uncertain.keys.iter().map(|key| key.key.clone());
+        let of_keys = keys.zip(all);
+        let of_keys = of_keys.map(|(key, sensitivity)| NumberInfluence { key, sensitivity });
+        Some(of_keys.collect())
+    }
+}
+
+/// Numbers of samples or histories without an answer.
+#[derive(Clone, Copy, Default, Serialize, Deserialize)]
+pub(super) struct ReasonCounts {
+    /// Number with values that give no valid structure.
+    pub(super) invalid: usize,
+    /// Number that could not be computed.
+    pub(super) failed: usize,
+    /// Number that ended too early for a verdict.
+    pub(super) incomplete: usize,
+}
+
+impl ReasonCounts {
+    pub(super) fn of<'r>(reasons: impl Iterator<Item = &'r NoAnswer>) -> Self {
+        let mut counts = Self::default();
+        for reason in reasons {
+            *match reason {
+                NoAnswer::Invalid(_) => &mut counts.invalid,
+                NoAnswer::Failed(_) => &mut counts.failed,
+                NoAnswer::Incomplete => &mut counts.incomplete,
+            } += 1;
+        }
+        counts
+    }
+
+    pub(super) const fn all(&self) -> usize {
+        self.invalid + self.failed + self.incomplete
+    }
+
+    /// Returns the number of `cases` that ended too early for a verdict, and the remedy, in words; `None` if the number is zero.
+    pub(super) fn no_verdict(&self, of: usize, cases: &str) -> Option<String> {
+        no_verdict(self.incomplete, of, cases)
     }
 }
 

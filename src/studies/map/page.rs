@@ -10,7 +10,7 @@ use super::{CellRow, Described, OverturningMap, described};
 use crate::output::page::{PROGRAM, script_safe};
 use crate::output::{Figure, filters, render};
 use crate::scenario::{Ground, Quantity, toml_text};
-use crate::studies::kind::Kind;
+use crate::studies::outcome_colors::OutcomeColor;
 use crate::studies::{Ending, Style};
 
 /// Makes the page of a map.
@@ -20,13 +20,13 @@ pub fn page(title: &str, map: &OverturningMap<'_>, rows: &[CellRow], style: Styl
         ..style
     };
     let drawn = picture::drawn(title, map, rows, style);
-    let kinds = rows.iter().map(|row| picture::kind_of(row, style));
+    let kinds = rows.iter().map(|row| picture::color_of(row, style));
     let doubt = |(index, row): (usize, &CellRow)| {
         let doubt = row.result.as_ref().ok()?.doubt()?;
         Some((index, doubt.to_string()))
     };
     let cells = Cells {
-        palette: &Kind::ALL,
+        palette: &OutcomeColor::ALL,
         kinds: kinds.collect(),
         doubts: rows.iter().enumerate().filter_map(doubt).collect(),
         outside: rows.iter().map(CellRow::is_outside_model).collect(),
@@ -38,9 +38,9 @@ pub fn page(title: &str, map: &OverturningMap<'_>, rows: &[CellRow], style: Styl
 /// The cells of the page.
 pub(crate) struct Cells<'c> {
     /// All kinds of cells.
-    pub(crate) palette: &'c [Kind],
+    pub(crate) palette: &'c [OutcomeColor],
     /// The kind of each cell.
-    pub(crate) kinds: Vec<Kind>,
+    pub(crate) kinds: Vec<OutcomeColor>,
     /// Indices of the uncertain cells, with the reasons.
     pub(crate) doubts: Vec<(usize, String)>,
     /// True for cells outside the model of four links.
@@ -72,7 +72,7 @@ impl Cells<'_> {
     }
 
     fn data(&self, map: &OverturningMap<'_>, drawn: &Drawn) -> Value {
-        let index = |kind: &Kind| {
+        let index = |kind: &OutcomeColor| {
             let place = self.palette.iter().position(|known| known == kind);
             u8::try_from(place.unwrap_or(0)).unwrap_or(0)
         };
@@ -97,7 +97,7 @@ impl Cells<'_> {
             .map(|(index, doubt)| (index.to_string(), json!(doubt)))
             .collect();
         let outside = (0..self.outside.len()).filter(|index| self.outside[*index]);
-        let labels: Vec<&str> = self.palette.iter().map(|kind| kind.label).collect();
+        let labels: Vec<&str> = self.palette.iter().map(|color| color.label).collect();
         json!({
             "axes": [axis(0), axis(1)],
             "sheet_px": { "width": Figure::SCREEN.width_px, "height": drawn.height_px },

@@ -6,18 +6,18 @@ use crate::output::caption::caption;
 use crate::output::sheet::{self as output};
 use crate::output::{Axes, Chart, Figure, Key, LEFT_PX, Mark, Scale, Shape, Sign, Stroke, color};
 use crate::scenario::{Axis, Quantity};
-use crate::studies::kind::{self, Kind};
+use crate::studies::outcome_colors::{self, OutcomeColor};
 use crate::studies::results::Style;
 
-/// Returns the kind of a cell, which sets its colour.
-pub(super) fn kind_of(cell: &CellRow, style: Style) -> Kind {
+/// Returns the colour of a cell.
+pub(super) fn color_of(cell: &CellRow, style: Style) -> OutcomeColor {
     if let (true, Ok(ending)) = (style.by_peak, &cell.result)
         && let (Outcome::Vibrates | Outcome::Rest | Outcome::StillRocking, Some(peak)) =
             (ending.outcome, ending.peak_over_critical)
     {
-        return Kind::survived(peak);
+        return OutcomeColor::survived(peak);
     }
-    Kind::of_result(&cell.result)
+    OutcomeColor::of_result(&cell.result)
 }
 
 /// Returns the scale of an axis, and the edges of its cells halfway between the values. The values are multiplied by `factor`.
@@ -116,7 +116,7 @@ impl<'s> Sheet<'s> {
     /// legend has the kinds, then these keys.
     pub(crate) fn draw(
         self,
-        (palette, kinds, outside): (&[Kind], &[Kind], &[bool]),
+        (palette, kinds, outside): (&[OutcomeColor], &[OutcomeColor], &[bool]),
         mut keys: Vec<Key>,
         mut marks: Vec<Mark>,
     ) -> Drawn {
@@ -146,7 +146,7 @@ impl<'s> Sheet<'s> {
             Mark::new(kind.name, Stroke::new(kind.fill, 0.4, ""), boxes)
         });
         chart.below = fills.collect();
-        chart.keys = [kind::keys(palette, kinds), keys].concat();
+        chart.keys = [outcome_colors::keys(palette, kinds), keys].concat();
         chart.marks = marks;
         let mut sheet = output::Sheet::new(figure, title);
         if figure.has_title {
@@ -174,8 +174,8 @@ impl<'s> Sheet<'s> {
 /// Returns runs of equal cells in each column: their kind and two opposite corners.
 fn runs<'c>(
     [x_edges, y_edges]: &'c [Vec<f64>; 2],
-    kinds: &'c [Kind],
-) -> impl Iterator<Item = (Kind, [(f64, f64); 2])> + 'c {
+    kinds: &'c [OutcomeColor],
+) -> impl Iterator<Item = (OutcomeColor, [(f64, f64); 2])> + 'c {
     let columns = kinds.chunks(y_edges.len() - 1).zip(x_edges.windows(2));
     columns.flat_map(move |(kinds, x)| {
         let mut bottom = 0;
@@ -199,7 +199,7 @@ pub(super) fn drawn(
     rows: &[CellRow],
     style: Style,
 ) -> Drawn {
-    let kinds: Vec<_> = rows.iter().map(|row| kind_of(row, style)).collect();
+    let kinds: Vec<_> = rows.iter().map(|row| color_of(row, style)).collect();
     let sheet = Sheet::new(title, map, style);
     let sign = Sign::LineOn(CELL, "doubtful", DOUBTFUL);
     let key = Key::new("another outcome in a repetition", sign);
@@ -207,7 +207,7 @@ pub(super) fn drawn(
     let doubtful: Vec<bool> = rows.iter().map(CellRow::is_doubtful).collect();
     let hatch = sheet.hatch("doubtful", DOUBTFUL, [0, 1], &doubtful);
     let outside: Vec<bool> = rows.iter().map(CellRow::is_outside_model).collect();
-    sheet.draw((&Kind::ALL, &kinds, &outside), keys, vec![hatch])
+    sheet.draw((&OutcomeColor::ALL, &kinds, &outside), keys, vec![hatch])
 }
 
 /// Background of lines in the legend: light, as most cells.

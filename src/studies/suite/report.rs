@@ -216,7 +216,7 @@ impl Heading {
             csv(self.case_columns(), &results.cases)?,
         ];
         Ok(Results {
-            peaks: ida::rotations_rad(&results.cases),
+            largest_rotations_rad: ida::rotations_rad(&results.cases),
             answer: Some(answer),
             ..Results::new(&FILES, &report, others)?
         })

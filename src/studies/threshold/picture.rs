@@ -11,7 +11,7 @@ use crate::output::{
 };
 use crate::studies::ending::Verdict;
 use crate::studies::ending::columns::are_over_critical;
-use crate::studies::kind::{self, Kind};
+use crate::studies::outcome_colors::{self, OutcomeColor};
 
 /// Height of the labels of edges above a strip.
 const EDGE_LABELS: f64 = 58.0;
@@ -37,8 +37,8 @@ pub fn draw(
     thresholds: &[Threshold],
 ) -> String {
     let samples = thresholds.iter().flat_map(|threshold| &threshold.samples);
-    let kinds: Vec<Kind> = samples
-        .map(|sample| Kind::of_result(&sample.result))
+    let kinds: Vec<OutcomeColor> = samples
+        .map(|sample| OutcomeColor::of_result(&sample.result))
         .collect();
     let names = thresholds.iter().map(|one| one.model.replace('_', " "));
     let names: Vec<String> = names.collect();
@@ -51,7 +51,7 @@ pub fn draw(
         true => (1.0, "peak rotation / critical rotation"),
         false => (0.01, "peak rotation (rad)"),
     };
-    let mut keys = kind::keys(&Kind::ALL, &kinds);
+    let mut keys = outcome_colors::keys(&OutcomeColor::ALL, &kinds);
     if over_critical {
         keys.push(Key::line("unstable equilibrium", CRITICAL));
     }
@@ -168,7 +168,8 @@ fn strip(drawing: &mut Drawing, axes: &Axes, threshold: &Threshold) {
     let mut from = axes.x.low;
     let mut bands = Vec::new();
     let samples = &threshold.samples;
-    let runs = samples.chunk_by(|a, b| Kind::of_result(&a.result) == Kind::of_result(&b.result));
+    let runs = samples
+        .chunk_by(|a, b| OutcomeColor::of_result(&a.result) == OutcomeColor::of_result(&b.result));
     let runs: Vec<_> = runs.collect();
     for (index, run) in runs.iter().enumerate() {
         let last = &run[run.len() - 1];
@@ -182,7 +183,12 @@ fn strip(drawing: &mut Drawing, axes: &Axes, threshold: &Threshold) {
             width: wide.max(LEAST_PX),
             height,
         };
-        bands.push((wide, frame, Kind::of_result(&last.result), last.verdict()));
+        bands.push((
+            wide,
+            frame,
+            OutcomeColor::of_result(&last.result),
+            last.verdict(),
+        ));
         from = to;
     }
     // Narrow bands are drawn last, over their neighbours.

@@ -1,19 +1,20 @@
 //! Files and words of a map of samples: a map of probability, the crossings of its levels, and the influence of the uncertain numbers.
 
-use serde::Serialize;
-use serde_json::Value;
+use askama::Template;
+use serde::{Deserialize, Serialize};
 
 use super::{CellCounts, CellRow, CellsOfSamples, Crossing, LEVELS, OUTSIDE, Samples};
 use crate::output::{Figure, Key, Mark, OutputError, Stroke, color, column, csv, each, list};
 use crate::studies::ending::columns::{OUTCOMES, yes};
-use crate::studies::ensemble::influence::percent;
-use crate::studies::ensemble::report::{Band, Findings};
-use crate::studies::kind::{Kind, kind};
+use crate::studies::ensemble::influence::{InfluencedAnswer, percent};
+use crate::studies::ensemble::report::{Band, SampleSummary};
+use crate::studies::ensemble::samples::ReasonCounts;
 use crate::studies::map::page::Cells;
 use crate::studies::map::picture::{Drawn, Sheet};
+use crate::studies::outcome_colors::OutcomeColor;
 use crate::studies::runner::Study as _;
 use crate::studies::statistics::{Share, band, quantile};
-use crate::studies::{ModelCheck, Results, Style, no_verdict, rounded};
+use crate::studies::{ModelCheck, Results, Style, rounded};
 
 /// Names of the files, the seal last.
 pub const FILES: [&str; 6] = [
@@ -26,19 +27,19 @@ pub const FILES: [&str; 6] = [
 ];
 
 /// Colours of probabilities, dark for high ones. The last two are for cells that overturn in all samples, and for cells without an outcome.
-const PALETTE: [Kind; 9] = [
-    kind("probability-0", "no sample overturns", "#f4f4f4"),
-    kind("probability-5", "up to 5 %", "#fee5d5"),
-    kind("probability-25", "up to 25 %", "#fcc4a0"),
-    kind("probability-50", "up to 50 %", "#f9986a"),
-    kind("probability-75", "up to 75 %", "#e86a3c"),
-    kind("probability-95", "up to 95 %", "#c93a1c"),
-    kind("probability-99", "above 95 %", "#97150f"),
-    kind("probability-100", "every sample overturns", "#5a0008"),
-    kind("no-answer", "no sample has an outcome", "#ffffff"),
+const PALETTE: [OutcomeColor; 9] = [
+    OutcomeColor::new("probability-0", "no sample overturns", "#f4f4f4"),
+    OutcomeColor::new("probability-5", "up to 5 %", "#fee5d5"),
+    OutcomeColor::new("probability-25", "up to 25 %", "#fcc4a0"),
+    OutcomeColor::new("probability-50", "up to 50 %", "#f9986a"),
+    OutcomeColor::new("probability-75", "up to 75 %", "#e86a3c"),
+    OutcomeColor::new("probability-95", "up to 95 %", "#c93a1c"),
+    OutcomeColor::new("probability-99", "above 95 %", "#97150f"),
+    OutcomeColor::new("probability-100", "every sample overturns", "#5a0008"),
+    OutcomeColor::new("no-answer", "no sample has an outcome", "#ffffff"),
 ];
 
-fn kind_of(cell: &CellCounts) -> Kind {
+fn color_of(cell: &CellCounts) -> OutcomeColor {
     let bounds = [0.0, 0.05, 0.25, 0.5, 0.75, 0.95];
     PALETTE[match cell.overturned {
         None => 8,
@@ -58,15 +59,37 @@ const LINES: [(&str, Stroke); 3] = [
     ("probability of 95 %", Stroke::new(color::BLUE, 1.8, "8 4")),
 ];
 
-/// The part of the summary that is specific to maps.
-#[derive(Serialize)]
-struct Details {
+/// Report on the map of samples.
+#[derive(Serialize, Deserialize, Template)]
+#[template(path = "studies/ensemble/uncertain_map/words.txt")]
+pub struct Summary {
+    #[serde(flatten)]
+    all: SampleSummary,
+    /// Keys of the x and y axes.
+    axes: [String; 2],
     /// Number of cells.
     cells: usize,
+    /// Number of cells that overturn with a probability of at least 5, 50 and 95 %.
+    cells_at_levels: [usize; 3],
+    /// The map of the scenario itself; null if no cell has an outcome.
+    own: Option<OwnMap>,
+    /// The values of y at which the probability reaches 5, 50 and 95 %: in the first, the middle and the last column of the map.
+    crossings: Vec<Crossing>,
     /// Number of histories without an outcome, for each reason.
-    histories_without_outcome: Value,
+    histories_without_outcome: ReasonCounts,
+    /// The reason why the first of these histories has no outcome, in words; null without such histories.
+    first_without_outcome: Option<String>,
     /// Share of the cells that overturn.
     part_that_overturns: Band,
+}
+
+/// The map of the scenario itself.
+#[derive(Serialize, Deserialize)]
+struct OwnMap {
+    /// Number of cells that overturn.
+    overturned: usize,
+    /// Number of cells that survive, but overturn with a probability of at least 5 % with the uncertain numbers.
+    survived_in_doubt: usize,
 }
 
 pub(super) fn report(
@@ -81,51 +104,103 @@ pub(super) fn report(
     let counts = study.counts(rows);
     let crossings = study.crossings(&counts);
     let without = rows.iter().filter_map(|row| row.as_ref().err());
-    let count = |name| without.clone().filter(|why| why.name() == name).count();
-    let reasons = WITHOUT.map(|name| (name, count(name)));
-    let mut lines = at_columns(study, &crossings);
-    lines.extend(without.clone().next().map(|first| {
-        format!(
-            "{} of {} histories have no outcome, and do not count; the first: {}",
-            without.clone().count(),
-            rows.len(),
-            first.reason()
-        )
-    }));
+    let reasons = ReasonCounts::of(without.clone());
     let (kind, structure) = (study.scenario.motion.kind, &study.scenario.structure);
     let four = !kind.has_joints && structure.has_horizontal_thrust();
     let outside = counts.iter().map(|cell| cell.outside);
     let answered = counts.iter().map(|cell| cell.samples);
+    let model = ModelCheck::counted(four.then(|| [outside.sum(), answered.sum()]));
+    let limits = [
+        model.in_words(CHECKED),
+        reasons.no_verdict(rows.len(), CHECKED),
+    ];
+    let influence = samples.influence(false, |share: &Share| share.share);
+    let influences = [(InfluencedAnswer::PartThatOverturns, influence)];
+    let at_least = |level: f64| {
+        let cells = counts.iter();
+        cells.filter(move |cell| cell.probability() >= Some(level))
+    };
+    let parts = samples.answers().map(|part| part.share);
+    let report = Summary {
+        all: SampleSummary::new(samples, model, limits, influences),
+        axes: study.map.axes.map(|axis| axis.key.clone()),
+        cells,
+        cells_at_levels: LEVELS.map(|level| at_least(level).count()),
+        own: samples.own.as_ref().ok().map(|share| OwnMap {
+            overturned: share.count,
+            survived_in_doubt: survived_in_doubt(&counts, own),
+        }),
+        crossings: at_columns(&crossings),
+        histories_without_outcome: reasons,
+        first_without_outcome: without.clone().next().map(|why| why.reason().to_owned()),
+        part_that_overturns: each(band(parts.collect(), quantile)).into(),
+    };
     let title = samples.title("Probability of overturning");
     let screen = Style {
         figure: Figure::SCREEN,
         ..style
     };
     let drawn = draw(title, study, &counts, &crossings, screen);
-    let names = ["part_that_overturns", "how much of the map overturns"];
-    let findings = Findings {
-        first: Some(first_words(samples, &counts, own)),
-        lines,
-        influences: vec![samples.influence(names, false, |share: &Share| share.share)],
-        model: ModelCheck::counted(four.then(|| [outside.sum(), answered.sum()])),
-        checked: "histories",
-        no_verdict: no_verdict(count("incomplete"), rows.len(), "histories"),
-        details: Details {
-            cells,
-            histories_without_outcome: reasons.into_iter().collect(),
-            part_that_overturns: band(samples.answers().map(|part| part.share).collect(), quantile)
-                .into(),
-        },
-        pictures: vec![
-            draw(title, study, &counts, &crossings, style).picture,
-            page_cells(&counts).page(title, &study.map, &drawn),
-        ],
-        tables: vec![crossing_table(study, &crossings)?, table(study, &counts)?],
-        columns: Vec::new(),
-        peaks: Vec::new(),
-    };
-    findings.results(samples, &FILES, style.figure)
+    let others = [
+        draw(title, study, &counts, &crossings, style)
+            .picture
+            .into_bytes(),
+        page_cells(&counts)
+            .page(title, &study.map, &drawn)
+            .into_bytes(),
+        report.all.draw_influences(samples, style.figure),
+        crossing_table(study, &crossings)?,
+        table(study, &counts)?,
+    ];
+    Results::new(&FILES, &report, others)
 }
+
+/// Returns the number of cells that survive in the scenario itself, but overturn with a probability of at least 5 %.
+fn survived_in_doubt(counts: &[CellCounts], own: &[CellRow]) -> usize {
+    let survives = |row: &CellRow| {
+        row.as_ref()
+            .is_ok_and(|(outcome, _)| *outcome % OUTSIDE > 0)
+    };
+    let in_doubt = |(cell, own): &(&CellCounts, &CellRow)| {
+        survives(own) && cell.probability() >= Some(LEVELS[0])
+    };
+    counts.iter().zip(own).filter(in_doubt).count()
+}
+
+/// Returns the crossings at the ends and in the middle of the map.
+fn at_columns(crossings: &[Crossing]) -> Vec<Crossing> {
+    let last = crossings.len() - 1;
+    let mut chosen = vec![0, last / 2, last];
+    chosen.dedup();
+    chosen.into_iter().map(|column| crossings[column]).collect()
+}
+
+impl Summary {
+    /// Returns the number of cells at each of the [`LEVELS`], with the level in words.
+    fn at_levels(&self) -> impl Iterator<Item = (String, &usize)> {
+        LEVELS.map(percent).into_iter().zip(&self.cells_at_levels)
+    }
+}
+
+impl Crossing {
+    /// Returns the crossings of the [`LEVELS`] in words.
+    fn in_words(&self) -> String {
+        let level = |(level, (y, at_most)): (f64, (&Option<f64>, &bool))| {
+            let percent = percent(level);
+            match (y.map(rounded), at_most) {
+                (Some(y), true) => format!("{percent} at or below {y}"),
+                (Some(y), false) => format!("{percent} from {y}"),
+                (None, _) => format!("{percent} nowhere"),
+            }
+        };
+        let crossings = self.y.iter().zip(&self.at_most);
+        let levels = LEVELS.into_iter().zip(crossings).map(level);
+        levels.collect::<Vec<_>>().join(", ")
+    }
+}
+
+/// The histories that are checked, in words.
+const CHECKED: &str = "histories";
 
 /// Makes `map.csv`, with a row per cell as the map of the scenario: x varies slowly, y fast.
 fn table(study: &CellsOfSamples<'_>, counts: &[CellCounts]) -> Result<Vec<u8>, OutputError> {
@@ -141,14 +216,13 @@ fn table(study: &CellsOfSamples<'_>, counts: &[CellCounts]) -> Result<Vec<u8>, O
                 .map(|which| cell.part(which))
                 .collect::<Vec<_>>()
         }),
-        list(WITHOUT, |cell: &CellCounts| cell.without),
+        column("invalid", |cell: &CellCounts| cell.without.invalid),
+        column("failed", |cell: &CellCounts| cell.without.failed),
+        column("incomplete", |cell: &CellCounts| cell.without.incomplete),
         column("outside_model", |cell: &CellCounts| cell.outside),
     ];
     csv(columns, counts)
 }
-
-/// The reasons why histories have no outcome.
-const WITHOUT: [&str; 3] = ["invalid", "failed", "incomplete"];
 
 /// The share of overturned samples, with its interval, in the table and on the page.
 const SHARE: [&str; 3] = ["overturned", "overturned_low", "overturned_high"];
@@ -181,7 +255,7 @@ fn draw(
     crossings: &[Crossing],
     style: Style,
 ) -> Drawn {
-    let kinds: Vec<Kind> = counts.iter().map(kind_of).collect();
+    let kinds: Vec<OutcomeColor> = counts.iter().map(color_of).collect();
     let sheet = Sheet::new(title, &study.map, style);
     let (mut keys, mut lines) = (Vec::new(), Vec::new());
     for (level, (name, stroke)) in LINES.into_iter().enumerate() {
@@ -218,64 +292,9 @@ fn page_cells(counts: &[CellCounts]) -> Cells<'static> {
     });
     Cells {
         palette: &PALETTE,
-        kinds: counts.iter().map(kind_of).collect(),
+        kinds: counts.iter().map(color_of).collect(),
         doubts: Vec::new(),
         outside: counts.iter().map(CellCounts::is_outside_model).collect(),
         columns: numbers.chain(others).collect(),
     }
-}
-
-/// Returns the number of cells that overturn with each probability, and in the scenario itself, in words.
-fn first_words(samples: &Samples<'_, Share>, counts: &[CellCounts], own: &[CellRow]) -> String {
-    let at_least = |level: f64| {
-        let cells = counts
-            .iter()
-            .filter(|cell| cell.probability() >= Some(level));
-        format!("{} in {}", percent(level), cells.count())
-    };
-    let [few, half, most] = LEVELS.map(at_least);
-    let survives = |row: &CellRow| {
-        row.as_ref()
-            .is_ok_and(|(outcome, _)| *outcome % OUTSIDE > 0)
-    };
-    let in_doubt = counts
-        .iter()
-        .zip(own)
-        .filter(|(cell, own)| survives(own) && cell.probability() >= Some(LEVELS[0]));
-    let own = match samples.own {
-        Ok(share) => format!(
-            "the scenario itself overturns in {}, and in {} of the others the probability is at least 5 %",
-            share.count,
-            in_doubt.count()
-        ),
-        Err(_) => "the scenario itself has no outcome".to_owned(),
-    };
-    format!(
-        "overturns with a probability of at least {few} of {} cells, {half}, {most}, from {} samples of [uncertain];\n    {own}",
-        counts.len(),
-        samples.rows.len()
-    )
-}
-
-/// Returns the crossings in words, at the ends and in the middle of the map.
-fn at_columns(study: &CellsOfSamples<'_>, crossings: &[Crossing]) -> Vec<String> {
-    let [x, y] = study.map.axes.map(|axis| axis.key.as_str());
-    let last = crossings.len() - 1;
-    let mut chosen = vec![0, last / 2, last];
-    chosen.dedup();
-    let column = |index: usize| {
-        let crossing = &crossings[index];
-        let level = |level: usize| {
-            let percent = percent(LEVELS[level]);
-            match (crossing.y[level].map(rounded), crossing.at_most[level]) {
-                (Some(y), true) => format!("{percent} at or below {y}"),
-                (Some(y), false) => format!("{percent} from {y}"),
-                (None, _) => format!("{percent} nowhere"),
-            }
-        };
-        let [few, half, most] = [0, 1, 2].map(level);
-        let at = rounded(crossing.x);
-        format!("at {x} {at} by {y}: {few}, {half}, {most}")
-    };
-    chosen.into_iter().map(column).collect()
 }

@@ -1,32 +1,32 @@
-//! Kinds of outcomes and their colours, the same in all pictures.
+//! Colours of outcomes, the same in all pictures.
 
 use super::ending::columns::{CANNOT_STAND, FAILED, GROUND_FALLS, NOT_FOUR_LINKS, UNCERTAIN};
 use super::ending::{Ending, NoHistory, outcome_name};
 use crate::output::{Key, Sign, color};
 
-/// Kind of outcome, which sets the colour of a result.
+/// Colour of results with the same kind of outcome.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Kind {
+pub(crate) struct OutcomeColor {
     pub(crate) name: &'static str,
     pub(crate) label: &'static str,
     pub(crate) fill: &'static str,
 }
 
-pub(crate) const fn kind(name: &'static str, label: &'static str, fill: &'static str) -> Kind {
-    Kind { name, label, fill }
-}
-
 /// Surviving cases, by their largest rotation over the critical one: darker colours came closer to overturning.
-const SURVIVED: [Kind; 6] = [
-    kind("survived-0", "survives, peak below 20 %", "#e3eef9"),
-    kind("survived-20", "below 40 %", "#c1d9ed"),
-    kind("survived-40", "below 60 %", "#8fc1de"),
-    kind("survived-60", "below 80 %", "#539dcc"),
-    kind("survived-80", "below 100 %", "#2171b5"),
-    kind("survived-100", "beyond the critical rotation", "#08306b"),
+const SURVIVED: [OutcomeColor; 6] = [
+    OutcomeColor::new("survived-0", "survives, peak below 20 %", "#e3eef9"),
+    OutcomeColor::new("survived-20", "below 40 %", "#c1d9ed"),
+    OutcomeColor::new("survived-40", "below 60 %", "#8fc1de"),
+    OutcomeColor::new("survived-60", "below 80 %", "#539dcc"),
+    OutcomeColor::new("survived-80", "below 100 %", "#2171b5"),
+    OutcomeColor::new("survived-100", "beyond the critical rotation", "#08306b"),
 ];
 
-impl Kind {
+impl OutcomeColor {
+    pub(crate) const fn new(name: &'static str, label: &'static str, fill: &'static str) -> Self {
+        Self { name, label, fill }
+    }
+
     /// The colour of a case that survived with this largest rotation over the critical one.
     pub(crate) fn survived(peak_over_critical: f64) -> Self {
         let bounds = [0.2, 0.4, 0.6, 0.8, 1.0];
@@ -35,37 +35,37 @@ impl Kind {
 
     /// In the order of the legend.
     pub(crate) const ALL: [Self; 21] = [
-        kind("never_moved", "never moves", "#b0b0b0"),
-        kind("vibrates", "vibrates without opening", "#dfe8c8"),
-        kind("rest", "comes to rest", "#a9d3f5"),
+        Self::new("never_moved", "never moves", "#b0b0b0"),
+        Self::new("vibrates", "vibrates without opening", "#dfe8c8"),
+        Self::new("rest", "comes to rest", "#a9d3f5"),
         SURVIVED[0],
         SURVIVED[1],
         SURVIVED[2],
         SURVIVED[3],
         SURVIVED[4],
         SURVIVED[5],
-        kind("still_rocking", "still rocking", "#6f8ba0"),
-        kind("overturned-0", "overturns without impact", color::VERMILION),
-        kind("overturned-1", "overturns after 1 impact", color::ORANGE),
-        kind("overturned-2", "overturns after 2 impacts", "#f0e442"),
-        kind("overturned-more", "overturns after more", color::PURPLE),
-        kind("overturned", "overturns", "#a6361c"),
-        kind("incomplete", "ends too early for a verdict", "#8c7aa0"),
-        kind(UNCERTAIN, "uncertain whether it overturns", color::GREEN),
-        kind(CANNOT_STAND, "cannot stand", "#ffffff"),
-        kind(NOT_FOUR_LINKS, "not four links", "#c8bfae"),
-        kind(GROUND_FALLS, "the ground falls freely", "#d9cfe8"),
-        kind(FAILED, "failed", color::BLACK),
+        Self::new("still_rocking", "still rocking", "#6f8ba0"),
+        Self::new("overturned-0", "overturns without impact", color::VERMILION),
+        Self::new("overturned-1", "overturns after 1 impact", color::ORANGE),
+        Self::new("overturned-2", "overturns after 2 impacts", "#f0e442"),
+        Self::new("overturned-more", "overturns after more", color::PURPLE),
+        Self::new("overturned", "overturns", "#a6361c"),
+        Self::new("incomplete", "ends too early for a verdict", "#8c7aa0"),
+        Self::new(UNCERTAIN, "uncertain whether it overturns", color::GREEN),
+        Self::new(CANNOT_STAND, "cannot stand", "#ffffff"),
+        Self::new(NOT_FOUR_LINKS, "not four links", "#c8bfae"),
+        Self::new(GROUND_FALLS, "the ground falls freely", "#d9cfe8"),
+        Self::new(FAILED, "failed", color::BLACK),
     ];
 
-    /// Returns the kind of a case.
+    /// Returns the colour of a case.
     pub(crate) fn of_result(result: &Result<Ending, NoHistory>) -> Self {
         let ending = result.as_ref().ok();
         let impacts = ending.and_then(Ending::impacts_of_all_hinges);
         Self::of(outcome_name(result), impacts)
     }
 
-    /// Returns the kind of an outcome. It depends on the number of impacts before overturning if all hinges close at once;
+    /// Returns the colour of an outcome. It depends on the number of impacts before overturning if all hinges close at once;
     /// landings of free hinges come in cascades, and their number does not matter.
     pub(crate) fn of(outcome: &str, impacts: Option<usize>) -> Self {
         let name = match (outcome, impacts) {
@@ -75,16 +75,16 @@ impl Kind {
             ("overturned", Some(_)) => "overturned-more",
             (outcome, _) => outcome,
         };
-        let known = Self::ALL.into_iter().find(|kind| kind.name == name);
+        let known = Self::ALL.into_iter().find(|color| color.name == name);
         known.unwrap_or(Self::ALL[Self::ALL.len() - 1])
     }
 }
 
-/// The legend entries of the kinds of a palette that are present.
-pub(crate) fn keys(palette: &[Kind], kinds: &[Kind]) -> Vec<Key> {
-    let present = palette.iter().filter(|kind| kinds.contains(kind));
+/// The legend entries of the colours of a palette that are present.
+pub(crate) fn keys(palette: &[OutcomeColor], colors: &[OutcomeColor]) -> Vec<Key> {
+    let present = palette.iter().filter(|color| colors.contains(color));
     present
-        .map(|kind| Key::new(kind.label, Sign::Band(kind.fill, 1.0)))
+        .map(|color| Key::new(color.label, Sign::Band(color.fill, 1.0)))
         .collect()
 }
 
@@ -116,7 +116,7 @@ mod tests {
         [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
     }
 
-    /// Colours of neighbouring kinds in maps differ visibly.
+    /// Colours of neighbouring outcomes in maps differ visibly.
     #[test]
     fn outcomes_without_overturning_differ_in_colour() {
         let quiet = [
@@ -126,7 +126,7 @@ mod tests {
             "still_rocking",
             "incomplete",
         ];
-        let labs = quiet.map(|name| lab(Kind::of(name, None).fill));
+        let labs = quiet.map(|name| lab(OutcomeColor::of(name, None).fill));
         for (index, one) in labs.iter().enumerate() {
             for (other, name) in labs[..index].iter().zip(quiet) {
                 let squares = one.iter().zip(other).map(|(a, b)| (a - b) * (a - b));
@@ -138,7 +138,8 @@ mod tests {
 
     #[test]
     fn no_colour_means_two_outcomes() {
-        let fills: std::collections::BTreeSet<_> = Kind::ALL.iter().map(|kind| kind.fill).collect();
-        assert_eq!(fills.len(), Kind::ALL.len());
+        let fills: std::collections::BTreeSet<_> =
+            OutcomeColor::ALL.iter().map(|color| color.fill).collect();
+        assert_eq!(fills.len(), OutcomeColor::ALL.len());
     }
 }

@@ -1,17 +1,17 @@
-//! The influence of uncertain numbers: the share of the variance of an answer that is due to each number.
+//! The sensitivity of an answer to uncertain numbers: the share of the variance of an answer that is due to each number.
 //!
 //! Sobol's first-order index of a number is the part of the variance of the answer that would vanish, on average, if that number were known:
 //! `Var(E[Y | X]) / Var(Y)`. It is estimated from the existing samples: the answer is expanded in cosines of the rank of the number. The cosines
 //! are orthogonal for uniformly distributed ranks, and the squares of the coefficients add up to the numerator (Plischke, Rel. Eng. Syst. Safety
 //! 107, 2012). The mean contribution of the other numbers to these squares is noise and is subtracted.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::studies::statistics::{bootstrap, correlation, interval, moments, ranks};
 
-/// The influence of an uncertain number on an answer.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Matters {
+/// The sensitivity of an answer to an uncertain number.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Sensitivity {
     /// First-order index, from 0 to 1.
     pub first_order: f64,
     /// 95 % interval of the first-order index, by bootstrap.
@@ -27,11 +27,11 @@ pub struct Matters {
 
 /// The total index of a number: the part of the variance of the answer that would remain, on average, if all other numbers were known, `E[Var(Y
 /// | all others)] / Var(Y)`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Total {
-    /// Total index, from 0 to 1.
+    /// Total index, from 0 to 1; absent without `total_indices` in the scenario.
     pub total: f64,
-    /// 95 % interval of the total index, by bootstrap.
+    /// 95 % interval of the total index, by bootstrap; absent with it.
     pub total_interval: [f64; 2],
 }
 
@@ -76,7 +76,7 @@ pub fn total_indices(answers: &[Option<f64>], moved: &[Option<f64>]) -> Option<V
     (0..numbers).map(of).collect()
 }
 
-/// Smallest number of samples for which an influence is computed.
+/// Smallest number of samples for which a sensitivity is computed.
 pub const LEAST_SAMPLES: usize = 16;
 
 /// Largest number of cosines: enough for an answer with three extremes, and few enough to keep the noise small.
@@ -84,9 +84,9 @@ const MOST_HARMONICS: usize = 8;
 /// Number of samples needed for each cosine.
 const SAMPLES_PER_HARMONIC: usize = 16;
 
-/// Computes the influence of each number on the answers of the samples, from `values[sample][number]` and `answers[sample]`. `None` if the
+/// Computes the sensitivity of the answers of the samples to each number, from `values[sample][number]` and `answers[sample]`. `None` if the
 /// answers do not vary, or there are fewer than [`LEAST_SAMPLES`].
-pub fn what_matters(values: &[Vec<f64>], answers: &[f64]) -> Option<Vec<Matters>> {
+pub fn sensitivities(values: &[Vec<f64>], answers: &[f64]) -> Option<Vec<Sensitivity>> {
     let count = answers.len();
     if count < LEAST_SAMPLES || moments(answers)[1] <= 0.0 {
         return None;
@@ -113,7 +113,7 @@ pub fn what_matters(values: &[Vec<f64>], answers: &[f64]) -> Option<Vec<Matters>
         };
         let rank_correlation = pairs(&all)?;
         let drawn = resampled.iter().filter_map(|drawn| pairs(drawn));
-        Some(Matters {
+        Some(Sensitivity {
             first_order,
             first_order_interval: [low.min(first_order), high.max(first_order)],
             rank_correlation,

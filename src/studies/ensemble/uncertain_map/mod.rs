@@ -5,6 +5,10 @@ mod report;
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
+use serde::{Deserialize, Serialize};
+
+pub use self::report::Summary;
+use super::samples::ReasonCounts;
 use super::{NoAnswer, SampleRow, Samples, uncertain};
 use crate::output::OutputError;
 use crate::scenario::{Axis, Scenario, Uncertain, UncertainKey};
@@ -184,22 +188,18 @@ struct CellCounts {
     outcomes: [usize; OUTCOMES.len()],
     /// Number of samples with a history outside the model of four links.
     outside: usize,
-    /// Number of samples without an outcome: because of their values, because of a failure, and because their histories ended too early.
-    without: [usize; 3],
+    /// Numbers of samples without an outcome.
+    without: ReasonCounts,
 }
 
 impl CellCounts {
     fn of<'r>(at: [f64; 2], rows: impl Iterator<Item = &'r CellRow> + Clone) -> Self {
-        let (mut outcomes, mut outside, mut without) = ([0; OUTCOMES.len()], 0, [0; 3]);
-        for row in rows.clone() {
-            outside += usize::from(row.as_ref().is_ok_and(|(outcome, _)| *outcome >= OUTSIDE));
-            *match row {
-                Ok((outcome, _)) => &mut outcomes[usize::from(*outcome % OUTSIDE)],
-                Err(NoAnswer::Invalid(_)) => &mut without[0],
-                Err(NoAnswer::Failed(_)) => &mut without[1],
-                Err(NoAnswer::Incomplete) => &mut without[2],
-            } += 1;
+        let (mut outcomes, mut outside) = ([0; OUTCOMES.len()], 0);
+        for (outcome, _) in rows.clone().flatten() {
+            outside += usize::from(*outcome >= OUTSIDE);
+            outcomes[usize::from(*outcome % OUTSIDE)] += 1;
         }
+        let without = ReasonCounts::of(rows.clone().filter_map(|row| row.as_ref().err()));
         let samples = outcomes.iter().sum();
         let chances = rows.filter_map(|row| match row {
             Ok((_, parts)) => Some(Some(f64::from(*parts) / PARTS)),
@@ -236,6 +236,7 @@ impl CellCounts {
 const LEVELS: [f64; 3] = [0.05, 0.5, 0.95];
 
 /// The lowest values of y in a column of the map at which the probability reaches the [`LEVELS`].
+#[derive(Clone, Copy, Serialize, Deserialize)]
 struct Crossing {
     /// The value of x.
     x: f64,

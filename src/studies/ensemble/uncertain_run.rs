@@ -1,24 +1,29 @@
 //! The history of every sample: ending, largest rotation and rotation over time.
 
+use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
+use askama::Template;
 use serde::{Deserialize, Serialize};
-use serde_json::{Map, Value, json};
 
-use super::influence::percent;
-use super::report::{Band, Findings, Line, doubts_in_words, of_answer, share_in_words};
+use super::influence::{InfluencedAnswer, percent};
+use super::report::{self, Band, Line, SampleSummary, of_answer};
 use super::{NoAnswer, Question, Samples};
 use crate::dynamics::model::WithoutDemand;
 use crate::dynamics::repeatability::repeated;
 use crate::output::panels::{MAIN, scale_around};
 use crate::output::{
-    Figure, Key, Mark, OutputError, Panels, Scale, Sign, Stroke, Subject, color, column, csv, list,
+    Figure, Key, Mark, OutputError, Panels, Scale, Sign, Stroke, Subject, color, column, csv, each,
+    filters, list,
 };
 use crate::scenario::{MotionModel, Scenario, Structure};
 use crate::studies::ending::columns::{self, OUTCOMES};
-use crate::studies::remarks::ModelCheck;
-use crate::studies::statistics::{band, fractile, quantile};
+use crate::studies::statistics::{Share, band, fractile, quantile};
+use crate::studies::{ModelCheck, Results};
 use crate::{Ending, Factors, Model, NoHistory, Sample, Verdict};
+
+/// Name of the outcome of overturned samples.
+const OVERTURNED: &str = OUTCOMES[0];
 
 /// Largest number of times at which samples are compared.
 const MOST_TIMES: usize = 300;
@@ -91,69 +96,62 @@ impl Question for Histories {
         })
     }
 
-    fn findings<'a>(
-        &'a self,
-        samples: &Samples<'a, HistoryAnswer>,
+    fn results(
+        &self,
+        samples: &Samples<'_, HistoryAnswer>,
         figure: Figure,
-    ) -> Result<Findings<'a, HistoryAnswer, impl Serialize>, OutputError> {
+    ) -> Result<Results, OutputError> {
         // Overturned samples have no largest rotation, but rank above all others.
         let peak_rad = |answer: &HistoryAnswer| answer.ending.peak_or_infinite_rad();
-        let names = [
-            ["overturning", "whether it overturns"],
-            ["peak_rotation_rank", "how far it rocks"],
+        let influences = [
+            (
+                InfluencedAnswer::Overturning,
+                samples.influence(false, HistoryAnswer::overturned),
+            ),
+            (
+                InfluencedAnswer::PeakRotationRank,
+                samples.influence(true, peak_rad),
+            ),
         ];
-        let influences = vec![
-            samples.influence(names[0], false, HistoryAnswer::overturned),
-            samples.influence(names[1], true, peak_rad),
-        ];
-        let peaks: Vec<f64> = samples.answers().map(peak_rad).collect();
-        let peak_band = band(peaks.clone(), fractile);
-        let (mut outcomes, mut lines) = (Map::new(), Vec::new());
-        for (index, name) in OUTCOMES.into_iter().enumerate() {
-            let share = samples.share(|answer| match index {
-                0 => answer.overturned(),
+        let largest_rotations_rad: Vec<f64> = samples.answers().map(peak_rad).collect();
+        let outcomes = OUTCOMES.into_iter().filter_map(|name| {
+            let share = samples.share(|answer| match name {
+                OVERTURNED => answer.overturned(),
                 _ => f64::from(answer.ending.outcome_name() == name),
             });
-            let Some(share) = share else {
-                continue;
-            };
-            outcomes.insert(name.to_owned(), json!(share));
-            if share.share > 0.0 {
-                let name = name.replace('_', " ");
-                lines.push(format!("{name}: {}", share_in_words(&share)));
-            }
-        }
-        lines.push(peak_band.map_or("largest rotation: not known".to_owned(), peaks_in_words));
+            Some((name.to_owned(), share?))
+        });
+        let answers = samples.answers();
+        let model = ModelCheck::of(answers.map(|answer| answer.ending.thrust_excess_ratio));
+        let limits = [model.in_words(CHECKED), samples.no_verdict()];
+        let report = Summary {
+            all: SampleSummary::new(samples, model, limits, influences),
+            own: samples.own.as_ref().ok().map(OwnHistory::of),
+            outcomes: outcomes.collect(),
+            peak_rotation_rad: each(band(largest_rotations_rad.clone(), fractile)).into(),
+            followed_body: self.body,
+        };
         let has_joints = samples.scenario.motion.kind.has_joints;
-        let mut all = columns::columns(has_joints, |line: &Line<'_, HistoryAnswer>| {
+        let mut columns = columns::columns(has_joints, |line: &Line<'_, HistoryAnswer>| {
             let answer = line.answer.as_ref();
             answer.map(|answer| &answer.ending).map_err(NoAnswer::name)
         });
         let potential = |one: &HistoryAnswer| one.potential_over_barrier;
         let rotation = |one: &HistoryAnswer| one.ending.peak_rotation_rad;
-        all.push(match has_joints {
+        columns.push(match has_joints {
             true => of_answer("peak_potential_over_barrier", potential),
             false => of_answer("peak_rotation_rad", rotation),
         });
         let bands = self.bands(samples);
-        let answers = samples.answers();
-        let excess_ratios = answers.map(|answer| answer.ending.thrust_excess_ratio);
-        Ok(Findings {
-            first: first_words(samples),
-            lines,
-            influences,
-            no_verdict: samples.no_verdict(),
-            model: ModelCheck::of(excess_ratios),
-            checked: "samples",
-            details: Details {
-                outcomes,
-                peak_rotation_rad: peak_band.into(),
-                followed_body: self.body,
-            },
-            pictures: vec![self.draw(figure, samples, &bands)],
-            tables: vec![table(&bands)?],
-            columns: all,
-            peaks,
+        let others = [
+            self.draw(figure, samples, &bands).into_bytes(),
+            report.all.draw_influences(samples, figure),
+            table(&bands)?,
+            report::table(samples, columns)?,
+        ];
+        Ok(Results {
+            largest_rotations_rad,
+            ..Results::new(Self::FILES, &report, others)?
         })
     }
 
@@ -296,16 +294,66 @@ impl HistoryAnswer {
     }
 }
 
-/// The part of the summary that is specific to histories.
-#[derive(Serialize)]
-struct Details {
-    /// Share of the samples with each outcome. In that of `overturned`, uncertain samples count with the fraction of their repetitions that
-    /// overturn.
-    outcomes: Map<String, Value>,
+/// Report on the histories of samples.
+#[derive(Serialize, Deserialize, Template)]
+#[template(path = "studies/ensemble/uncertain_run.txt")]
+pub struct Summary {
+    #[serde(flatten)]
+    all: SampleSummary,
+    /// The history of the scenario itself; null if it has no verdict.
+    own: Option<OwnHistory>,
+    /// Share of the samples with each outcome; empty if no sample has an answer. In that of `overturned`, uncertain samples count with the fraction
+    /// of their repetitions that overturn.
+    outcomes: BTreeMap<String, Share>,
     /// Largest rotation, in radians; quantiles in the range of overturned samples are null.
     peak_rotation_rad: Band,
     /// Index of the body whose rotation is recorded, from 0.
     followed_body: usize,
+}
+
+/// The history of the scenario itself.
+#[derive(Serialize, Deserialize)]
+struct OwnHistory {
+    /// The verdict.
+    verdict: Verdict,
+    /// 1 if the structure overturns and 0 if it survives; if that is uncertain, the fraction of the repetitions that overturn.
+    overturning_share: f64,
+    /// Largest rotation over the critical one; null if the critical rotation is unknown.
+    peak_rotation_over_critical: Option<f64>,
+    /// Largest potential energy of a row of blocks over the barrier; null if the barrier is unknown.
+    peak_potential_over_barrier: Option<f64>,
+}
+
+impl OwnHistory {
+    fn of(answer: &HistoryAnswer) -> Self {
+        Self {
+            verdict: answer.ending.verdict(),
+            overturning_share: answer.overturned(),
+            peak_rotation_over_critical: answer.ending.peak_over_critical,
+            peak_potential_over_barrier: answer.potential_over_barrier,
+        }
+    }
+
+    /// Returns the largest part of the rotation or energy from which the structure would overturn, in percent, and the quantity. Rounded down as in
+    /// `run`: a value just below 100 % must not be printed as 100 %.
+    fn margin(&self) -> Option<(f64, &'static str)> {
+        let rotation = self
+            .peak_rotation_over_critical
+            .map(|part| (part, "rotation"));
+        let energy = || Some((self.peak_potential_over_barrier?, "energy"));
+        let (part, what) = rotation.or_else(energy)?;
+        Some(((1000.0 * part).floor() / 10.0, what))
+    }
+}
+
+impl Summary {
+    /// Returns the outcomes of samples, in words, with their shares.
+    fn outcomes(&self) -> impl Iterator<Item = (String, &Share)> {
+        let known = OUTCOMES
+            .iter()
+            .filter_map(|name| Some((name.replace('_', " "), self.outcomes.get(*name)?)));
+        known.filter(|(_, share)| share.share > 0.0)
+    }
 }
 
 /// The rotations of all samples at a time.
@@ -331,40 +379,13 @@ fn table(bands: &[BandAt]) -> Result<Vec<u8>, OutputError> {
     csv(columns, bands)
 }
 
-/// Returns the probability of overturning, and the ending of the scenario itself, in words; `None` if no sample has an answer.
-fn first_words(samples: &Samples<'_, HistoryAnswer>) -> Option<String> {
-    let share = samples.share(HistoryAnswer::overturned)?;
-    let own = match samples.own.as_ref().map(|own| (own, own.ending.verdict())) {
-        Err(_) => "has no answer".to_owned(),
-        Ok((_, Verdict::Overturns)) => "overturns".to_owned(),
-        Ok((own, Verdict::Uncertain)) => {
-            let part = percent(own.overturned());
-            format!("is uncertain: {part} of its repetitions overturn")
-        }
-        Ok((own, _)) => {
-            let rotation = own.ending.peak_over_critical;
-            let rotation = rotation.map(|part| (part, "rotation"));
-            let margin = rotation.or(own.potential_over_barrier.map(|part| (part, "energy")));
-            // Rounded down as in `run`: a value just below 100 % must not be printed as 100 %.
-            margin.map_or("survives".to_owned(), |(part, what)| {
-                let percent = (1000.0 * part).floor() / 10.0;
-                format!("survives, at {percent:.1} % of the {what} from which it would overturn")
-            })
-        }
-    };
-    let (doubts, share) = (doubts_in_words(&share), share_in_words(&share));
-    Some(format!(
-        "overturns with a probability of {share} of [uncertain]{doubts};\n    the scenario itself {own}"
-    ))
+/// Returns a quantile of the largest rotation in words.
+fn rotation(rad: &Option<f64>) -> String {
+    rad.map_or("overturning".to_owned(), |rad| format!("{rad:.4} rad"))
 }
 
-fn peaks_in_words(band_rad: [f64; 3]) -> String {
-    let [low, median, high] = band_rad.map(|rad| match rad.is_finite() {
-        true => format!("{rad:.4} rad"),
-        false => "overturning".to_owned(),
-    });
-    format!("largest rotation: median {median}; 5 to 95 %: {low} to {high}")
-}
+/// The histories that are checked, in words.
+const CHECKED: &str = "samples";
 
 const BAND: &str = "#cfe3f1";
 const MEDIAN: Stroke = Stroke::new(color::BLUE, 1.6, "");

@@ -1,10 +1,12 @@
 //! Fragility of an uncertain structure: the intensity from which each record of a suite overturns each sample. It separates scatter due to
 //! records from scatter due to uncertain numbers.
 
-use serde::Serialize;
+use askama::Template;
+use serde::{Deserialize, Serialize};
 
-use super::edges::FirstStrength;
-use super::report::{Findings, lines, of_answer, why_not};
+use super::influence::InfluencedAnswer;
+use super::report::{self, SampleSummary, lines, of_answer, why_not};
+use super::uncertain_threshold::{StrengthBand, first_strength};
 use super::{NoAnswer, Question, Samples};
 use crate::output::{Chart, Figure, Key, Mark, OutputError, Scale, Stroke, color, column, csv};
 use crate::scenario::{Scenario, Suite, shown};
@@ -15,7 +17,7 @@ use crate::studies::suite::case;
 use crate::studies::suite::strength::few;
 use crate::studies::threshold::first_edge::{FirstEdge, TREATMENTS, Treatment};
 use crate::studies::threshold::{Factors, rounded, rounded_range};
-use crate::studies::{Ending, ModelCheck};
+use crate::studies::{Ending, ModelCheck, Results};
 
 /// Relative width to which bisection encloses an intensity: much less than the scatter between records.
 const WIDTH: f64 = 2e-3;
@@ -116,56 +118,46 @@ impl Question for Capacities {
         })
     }
 
-    fn findings<'a>(
-        &'a self,
-        samples: &Samples<'a, Edges>,
+    fn results(
+        &self,
+        samples: &Samples<'_, Edges>,
         figure: Figure,
-    ) -> Result<Findings<'a, Edges, impl Serialize>, OutputError> {
+    ) -> Result<Results, OutputError> {
         let counted = Counted::new(self, samples);
-        let fragilities = counted.fragilities();
-        let at_lowest = counted.of_samples().filter(|edge| edge.at_most).count();
-        let mut lines = fragilities.in_words();
-        lines.push(
-            "median and dispersion are those of the fractiles (16, 50 and 84 %) of the intensities at which a record first overturns;\n    \
-             record to record: of the scenario itself; uncertain data: of the median over the records of each sample; both: of all samples;\n    \
-             in brackets: 95 % by bootstrap over records"
-                .to_owned(),
-        );
-        lines.push(QUOTE.to_owned());
-        lines.extend(few(self.suite.records.len()));
-        lines.extend((at_lowest > 0).then(|| {
-            format!(
-                "{at_lowest} of {} records and samples overturn at the lowest level already, which counts as their intensity: the \
-                 fractiles may be lower",
-                counted.of_samples().count()
-            )
-        }));
         // Influence on the median over the records of a sample; the largest level if fewer than half of the records overturn the sample.
         let most = self.levels.last().copied().unwrap_or(1.0);
         let median = |edges: &Edges| {
-            let median = FirstStrength::of(edges.iter(), 0.5);
-            median.map_or(most, |median| median.strength.min(most))
+            let median = first_strength(edges.iter(), 0.5);
+            median.map_or(most, |(strength, _)| strength.min(most))
         };
-        let names = ["median_intensity", "the median intensity that overturns"];
+        let influences = [(
+            InfluencedAnswer::MedianIntensity,
+            samples.influence(false, median),
+        )];
+        let edges = counted.of_samples();
+        let model = ModelCheck::of(edges.clone().map(|edge| edge.thrust_excess_ratio));
+        let limits = [model.in_words(CHECKED), samples.no_verdict()];
+        let report = Summary {
+            all: SampleSummary::new(samples, model, limits, influences),
+            intensity: self.suite.measure.column().to_owned(),
+            quote: "both".to_owned(),
+            first_intensity: StrengthBand::of(edges.clone()),
+            own_first_intensity: StrengthBand::of(counted.of_itself()),
+            fragility: counted.fragilities(),
+            records: self.suite.records.len(),
+            edges: edges.clone().count(),
+            at_lowest_level: edges.filter(|edge| edge.at_most).count(),
+        };
         let overturned = |edges: &Edges| edges.iter().filter(|edge| edge.factor.is_some()).count();
-        Ok(Findings {
-            first: Some(counted.first_words(samples.rows.len(), &fragilities)),
-            lines,
-            influences: vec![samples.influence(names, false, median)],
-            no_verdict: samples.no_verdict(),
-            model: ModelCheck::of(counted.of_samples().map(|edge| edge.thrust_excess_ratio)),
-            checked: "edges of samples",
-            details: Details {
-                intensity: self.suite.measure.column(),
-                quote: "both",
-                fragility: fragilities,
-                at_lowest_level: at_lowest,
-            },
-            pictures: vec![self.draw(figure, samples)],
-            tables: vec![counted.at_levels()?, self.table(samples)?],
-            columns: vec![of_answer("overturned", overturned), why_not()],
-            peaks: Vec::new(),
-        })
+        let columns = [of_answer("overturned", overturned), why_not()];
+        let others = [
+            self.draw(figure, samples).into_bytes(),
+            report.all.draw_influences(samples, figure),
+            counted.at_levels()?,
+            self.table(samples)?,
+            report::table(samples, columns)?,
+        ];
+        Results::new(Self::FILES, &report, others)
     }
 
     fn answer(&self, scenario: &Scenario) -> Result<Edges, NoAnswer> {
@@ -182,25 +174,38 @@ impl Question for Capacities {
     }
 }
 
-/// The median to quote, and the reason.
-const QUOTE: &str = "quote median and dispersion of \"both\", which have the scatter of the records and of the uncertain data; the other two omit \
-                     one of them, and the lognormal curve of the suite counts cases that survive above the first overturning";
-
-/// The part of the summary that is specific to suites.
-#[derive(Serialize)]
-struct Details {
+/// Report on the intensities that overturn samples.
+#[derive(Serialize, Deserialize, Template)]
+#[template(path = "studies/ensemble/uncertain_suite.txt")]
+pub struct Summary {
+    #[serde(flatten)]
+    all: SampleSummary,
     /// The measure of the intensities.
-    intensity: &'static str,
+    intensity: String,
     /// Name of the distribution in `fragility` to quote: it has the scatter of records and of uncertain numbers.
-    quote: &'static str,
+    quote: String,
+    /// The intensity at which a record first overturns a sample.
+    first_intensity: StrengthBand,
+    /// The intensity at which a record first overturns the scenario itself.
+    own_first_intensity: StrengthBand,
     /// Median and dispersion of the overturning intensities.
     fragility: Fragilities,
-    /// Number of records and samples that overturn at the lowest level already.
+    /// Number of records of the suite.
+    records: usize,
+    /// Number of edges: one for each sample and record; two if the mirrored record counts as well.
+    edges: usize,
+    /// Number of edges at the lowest level already.
     at_lowest_level: usize,
 }
 
+/// Words for an intensity at which too few records overturn.
+const NOWHERE: &str = "nowhere up to the highest level";
+
+/// The histories that are checked, in words.
+const CHECKED: &str = "edges of samples";
+
 /// The three distributions of overturning intensities.
-#[derive(Serialize)]
+#[derive(Serialize, Deserialize)]
 struct Fragilities {
     /// Scatter due to the records: the scenario itself under all records.
     record_to_record: Estimated,
@@ -211,7 +216,7 @@ struct Fragilities {
 }
 
 /// A distribution, with 95 % intervals by bootstrap over the records.
-#[derive(Serialize)]
+#[derive(Serialize, Deserialize)]
 struct Estimated {
     /// Median; `None` if fewer than half of the cases overturn. Uncertain intensities count with the fraction of the repetitions that overturn.
     median: Option<f64>,
@@ -225,27 +230,21 @@ struct Estimated {
 }
 
 impl Fragilities {
-    fn in_words(&self) -> Vec<String> {
-        let number = |number: Option<f64>, ends: Option<[f64; 2]>| {
-            let ends = ends.map(rounded_range);
-            let ends = ends.map_or(String::new(), |[low, high]| format!(" ({low} to {high})"));
-            format!("{}{ends}", rounded_or_unknown(number))
-        };
-        let words = |name: &str, of: &Estimated| {
-            let median = number(of.median, of.median_interval);
-            let dispersion = number(of.dispersion, of.dispersion_interval);
-            format!("{name}: median {median}, dispersion {dispersion}")
-        };
-        vec![
-            words("record to record", &self.record_to_record),
-            words("uncertain data", &self.uncertain_data),
-            words("both", &self.both),
+    /// Returns the distributions with their names in words.
+    fn named(&self) -> [(&'static str, &Estimated); 3] {
+        [
+            ("record to record", &self.record_to_record),
+            ("uncertain data", &self.uncertain_data),
+            ("both", &self.both),
         ]
     }
 }
 
-fn rounded_or_unknown(number: Option<f64>) -> String {
-    number.map_or("not known".to_owned(), rounded)
+/// Returns a number and its interval in words.
+fn estimated(number: &Option<f64>, ends: &Option<[f64; 2]>) -> String {
+    let ends = ends.map(rounded_range);
+    let ends = ends.map_or(String::new(), |[low, high]| format!(" ({low} to {high})"));
+    number.map_or("not known".to_owned(), rounded) + &ends
 }
 
 /// Computes median and dispersion of overturning intensities from their 16, 50 and 84 % fractiles. The dispersion is half the logarithm of the
@@ -377,27 +376,6 @@ impl<'a> Counted<'a> {
             column("both", all),
         ];
         csv(columns, &self.question.levels)
-    }
-
-    /// Returns the intensities that overturn 5 % and half of the cases, in words.
-    fn first_words(&self, samples: usize, fragilities: &Fragilities) -> String {
-        let column = format!("{} ", self.question.suite.measure.column());
-        let at = |of: Vec<&FirstEdge>, part: f64, column: &str| {
-            let found = FirstStrength::of(of.into_iter(), part);
-            let unknown = "nowhere up to the highest level";
-            found.map_or(unknown.to_owned(), |found| found.in_words(column, unknown))
-        };
-        let own: Vec<_> = self.of_itself().collect();
-        let all: Vec<_> = self.of_samples().collect();
-        format!(
-            "overturns with a probability of 5 % {}, of 50 % {} (dispersion {}), over records and {samples} samples of [uncertain];\n    \
-             the scenario itself with 5 % {}, with 50 % {}",
-            at(all.clone(), 0.05, &column),
-            at(all, 0.5, ""),
-            rounded_or_unknown(fragilities.both.dispersion),
-            at(own.clone(), 0.05, ""),
-            at(own, 0.5, "")
-        )
     }
 }
 

@@ -1,0 +1,294 @@
+//! The first edge of every sample: the factor on its ground motion from which the sample overturns. The search goes upwards and ends at the
+//! first edge.
+
+use askama::Template;
+use serde::{Deserialize, Serialize};
+
+use super::influence::InfluencedAnswer;
+use super::report::{self, Band, Line, SampleSummary, why_not};
+use super::{NoAnswer, Question, Samples};
+use crate::output::{
+    Chart, Figure, Key, Mark, OutputError, Scale, Sign, Stroke, color, column, csv, each, list,
+};
+use crate::scenario::Scenario;
+use crate::studies::statistics::{
+    BAND, Share, ascending_weighted, band, fractile, weighted_fractile,
+};
+use crate::studies::threshold::first_edge::{FirstEdge, TREATMENTS};
+use crate::studies::threshold::{Factors, check, rounded, rounded_down};
+use crate::studies::{ModelCheck, Results};
+
+/// The question for the first edge of each sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FirstEdges {
+    /// The factors that are tried.
+    pub factors: Factors,
+}
+
+/// Computes the fractile of the strengths at which cases first overturn, for a `part` of these cases: infinite if too few cases overturn. The truth
+/// value is true if the fractile may be lower, because cases overturn at the smallest strength already, or because it lies below that of the lowest
+/// case. `None` without cases.
+pub(super) fn first_strength<'e>(
+    edges: impl Iterator<Item = &'e FirstEdge> + Clone,
+    part: f64,
+) -> Option<(f64, bool)> {
+    let of = |lowest: bool| {
+        let strengths = |edge: &FirstEdge| match lowest && edge.at_most {
+            // An upper bound counts as 0, so that all fractiles that depend on it are 0.
+            true => vec![[0.0, 1.0]],
+            false => edge.strengths(TREATMENTS[0]),
+        };
+        ascending_weighted(edges.clone().flat_map(strengths))
+    };
+    let strengths = of(false);
+    // A part of less than half a case lies below the lowest one.
+    let is_below = part * (edges.clone().count() as f64) < 0.5 * strengths.first()?[1] - 1e-9;
+    let at_most = is_below || weighted_fractile(&of(true), part)? == 0.0;
+    Some((weighted_fractile(&strengths, part)?, at_most))
+}
+
+/// Quantiles of the strengths at which cases first overturn.
+#[derive(Serialize, Deserialize)]
+pub(super) struct StrengthBand {
+    /// Null if too few cases overturn.
+    #[serde(flatten)]
+    quantiles: Band,
+    /// True for each of the three quantiles that may be lower, because cases overturn at the smallest strength already, or because it lies below that
+    /// of the lowest case.
+    at_most: [bool; 3],
+}
+
+impl StrengthBand {
+    pub(super) fn of<'e>(edges: impl Iterator<Item = &'e FirstEdge> + Clone) -> Self {
+        let all = BAND.map(|part| first_strength(edges.clone(), part));
+        Self {
+            quantiles: all.map(|one| one.map(|(strength, _)| strength)).into(),
+            at_most: all.map(|one| one.is_some_and(|(_, at_most)| at_most)),
+        }
+    }
+
+    /// Returns a quantile, counted from 0, in words that follow `at`: `at 0.5028`, `at or below 0.2000`, or `beyond`.
+    pub(super) fn in_words(&self, which: usize, at: &str, beyond: &str) -> String {
+        let Band {
+            quantile_05,
+            median,
+            quantile_95,
+        } = self.quantiles;
+        let strength = [quantile_05, median, quantile_95][which];
+        strength.map_or(beyond.to_owned(), |strength| {
+            strength_in_words(strength, self.at_most[which], at)
+        })
+    }
+}
+
+fn strength_in_words(strength: f64, at_most: bool, at: &str) -> String {
+    let or_below = if at_most { "at or below" } else { "at" };
+    format!("{or_below} {at}{}", rounded(strength))
+}
+
+impl Question for FirstEdges {
+    type Answer = FirstEdge;
+
+    const NAME: &'static str = "uncertain_threshold";
+
+    const FILES: &'static [&'static str] = &[
+        "probability.svg",
+        "matters.svg",
+        "probability.csv",
+        "samples.csv",
+        "uncertain.json",
+    ];
+
+    fn of(scenario: &Scenario, factors: Factors) -> Result<Self, String> {
+        check(scenario)?;
+        Ok(Self { factors })
+    }
+
+    fn results(
+        &self,
+        samples: &Samples<'_, FirstEdge>,
+        figure: Figure,
+    ) -> Result<Results, OutputError> {
+        let edges = samples.answers();
+        // A sample that never overturns counts with the largest factor.
+        let strength = |edge: &FirstEdge| edge.factor.unwrap_or(edge.tried_to);
+        let influences = [(
+            InfluencedAnswer::FirstFactor,
+            samples.influence(false, strength),
+        )];
+        let model = ModelCheck::of(edges.clone().map(|edge| edge.thrust_excess_ratio));
+        let limits = [model.in_words(CHECKED), samples.no_verdict()];
+        let own = samples.own.as_ref().ok();
+        let count = |condition: fn(&&_) -> bool| edges.clone().filter(condition).count();
+        let report = Summary {
+            all: SampleSummary::new(samples, model, limits, influences),
+            survives_up_to_factor: each(band(
+                edges.clone().map(FirstEdge::safe_or_zero).collect(),
+                fractile,
+            ))
+            .into(),
+            own_survives_up_to_factor: own.and_then(|edge| edge.survives_up_to),
+            first_factor: StrengthBand::of(edges.clone()),
+            at_smallest_factor: count(|edge| edge.at_most),
+            beyond_largest_factor: count(|edge| edge.factor.is_none()),
+            tried_to_factor: edges.clone().map(|edge| edge.tried_to).reduce(f64::max),
+            own_first_factor: own.and_then(|edge| edge.factor),
+            own_first_factor_at_most: own.is_some_and(|edge| edge.at_most),
+            overturned_up_to_factor_1: share_up_to(samples, 1.0),
+        };
+        let probabilities = probabilities(samples);
+        let names = ["probability", "probability_low", "probability_high"];
+        let shares = [
+            column("factor", |at: &ProbabilityAt| at.0),
+            list(names, |at: &ProbabilityAt| at.1.numbers()),
+        ];
+        let columns = FirstEdge::columns("first_factor", |line: &Line<'_, FirstEdge>| {
+            line.answer.as_ref().ok()
+        });
+        let others = [
+            draw(figure, samples, &probabilities).into_bytes(),
+            report.all.draw_influences(samples, figure),
+            csv(shares, &probabilities)?,
+            report::table(samples, columns.into_iter().chain([why_not()]))?,
+        ];
+        Results::new(Self::FILES, &report, others)
+    }
+
+    fn answer(&self, scenario: &Scenario) -> Result<FirstEdge, NoAnswer> {
+        FirstEdge::of(scenario, &self.factors)
+    }
+
+    fn settings(&self) -> Vec<String> {
+        let factors = self.factors;
+        let (from, to, stride) = (factors.from, factors.to, factors.stride);
+        vec![format!("factors:{from:?}:{to:?}:{stride:?}")]
+    }
+}
+
+/// Report on the first edges of samples.
+#[derive(Serialize, Deserialize, Template)]
+#[template(path = "studies/ensemble/uncertain_threshold.txt")]
+pub struct Summary {
+    #[serde(flatten)]
+    all: SampleSummary,
+    /// The largest factor up to which a sample certainly survives; 0 if it does not survive the smallest.
+    survives_up_to_factor: Band,
+    /// The largest factor up to which the scenario itself certainly survives; null if it does not survive the smallest.
+    own_survives_up_to_factor: Option<f64>,
+    /// The first factor that overturns a sample; uncertain factors count with the fraction of the repetitions that overturn.
+    first_factor: StrengthBand,
+    /// Number of samples that overturn at the smallest factor already.
+    at_smallest_factor: usize,
+    /// Number of samples that do not overturn up to the largest factor.
+    beyond_largest_factor: usize,
+    /// The largest factor that was tried for any sample; null without answers.
+    tried_to_factor: Option<f64>,
+    /// The first factor of the scenario itself; null if no factor overturns it.
+    own_first_factor: Option<f64>,
+    /// True if the scenario itself overturns at the smallest factor already, so that its first factor may be lower.
+    own_first_factor_at_most: bool,
+    /// Share of the samples that overturn up to factor 1; null if the factors do not determine the share.
+    overturned_up_to_factor_1: Option<Share>,
+}
+
+/// A factor at which a sample first overturns, and the share of samples that overturn up to it.
+type ProbabilityAt = (f64, Share);
+
+/// Returns the distribution of the first factors of the samples, ascending.
+fn probabilities(samples: &Samples<'_, FirstEdge>) -> Vec<ProbabilityAt> {
+    let edges = samples.answers();
+    let strengths = |how| edges.clone().flat_map(move |edge| edge.strengths(how));
+    let [steps, possible, certain] = TREATMENTS.map(|how| ascending_weighted(strengths(how)));
+    let (all, mut expected) = (edges.clone().count(), 0.0);
+    let at = |alike: &[[f64; 2]]| {
+        let factor = alike[0][0];
+        expected += alike.iter().map(|[_, share]| share).sum::<f64>();
+        let [certain, possible] =
+            [&certain, &possible].map(|end| end.partition_point(|at| at[0] <= factor));
+        let share = Share::of_counts([certain, possible, all, samples.unknown()], expected);
+        factor.is_finite().then_some((factor, share?))
+    };
+    let alike = steps.chunk_by(|a, b| a[0] == b[0]);
+    alike.filter_map(at).collect()
+}
+
+/// Computes the share of samples that overturn up to this factor; `None` if the tried factors do not determine the share.
+fn share_up_to(samples: &Samples<'_, FirstEdge>, factor: f64) -> Option<Share> {
+    let mut answers = samples.answers();
+    let known = answers.all(|edge| edge.overturns_up_to(factor).is_some());
+    known.then(|| samples.share(|edge| edge.overturns_up_to(factor).unwrap_or(0.0)))?
+}
+
+impl Summary {
+    /// Returns the factor up to which the scenario itself certainly survives, in words.
+    fn own_safe(&self) -> String {
+        match self.all.own_without_answer {
+            Some(_) => "an unknown factor".to_owned(),
+            None => safe(&self.own_survives_up_to_factor),
+        }
+    }
+
+    /// Returns a quantile of the first factors, counted from 0, in words.
+    fn first(&self, which: usize) -> String {
+        let beyond = format!("beyond {}", rounded(self.tried_to_factor.unwrap_or(0.0)));
+        self.first_factor.in_words(which, "", &beyond)
+    }
+
+    /// Returns the first factor of the scenario itself in words.
+    fn own_first(&self) -> String {
+        match (self.own_first_factor, &self.all.own_without_answer) {
+            (Some(factor), _) => strength_in_words(factor, self.own_first_factor_at_most, ""),
+            (None, None) => "at no factor that was tried".to_owned(),
+            (None, Some(_)) => "has no answer".to_owned(),
+        }
+    }
+}
+
+/// Returns a factor up to which a structure certainly survives, in words.
+fn safe(factor: &Option<f64>) -> String {
+    let factor = factor.filter(|factor| *factor > 0.0);
+    factor.map_or("less than the smallest factor".to_owned(), rounded_down)
+}
+
+/// The histories that are checked, in words.
+const CHECKED: &str = "thresholds of samples";
+
+const BAND_FILL: &str = "#cfe3f1";
+const SHARE: Stroke = Stroke::new(color::BLUE, 1.6, "");
+const OWN: Stroke = Stroke::new(color::BLACK, 1.4, "6 4");
+
+/// Draws the probability of overturning against the factor, with its interval, and the first factor of the scenario itself.
+fn draw(
+    figure: Figure,
+    samples: &Samples<'_, FirstEdge>,
+    probabilities: &[ProbabilityAt],
+) -> String {
+    let own = samples.own.as_ref().ok().and_then(|edge| edge.factor);
+    let factors = probabilities.iter().map(|at| at.0);
+    let factors = factors.chain(own).chain([1.0]);
+    let ends = factors.flat_map(|factor| [0.97 * factor, 1.03 * factor]);
+    let x = Scale::around(ends, figure.ticks(8));
+    let y = Scale::exactly(0.0, 1.0, 5);
+    // The share rises at the first factor of each sample.
+    let steps = |name, of: fn(&Share) -> f64, first: f64| {
+        let rises = probabilities.iter().map(|at| (at.0, of(&at.1)));
+        Mark::staircase(name, SHARE, (x, first), rises)
+    };
+    let none = samples.share(|_| 0.0).map_or(1.0, |none| none.high);
+    let ends = [steps("", |at| at.low, 0.0), steps("", |at| at.high, none)];
+    let [low, high] = ends.each_ref().map(|curve| curve.points().iter().copied());
+    let mut marks = vec![steps("probability", |at| at.share, 0.0)];
+    marks.extend(own.map(|own| Mark::upright("own", OWN, own, y)));
+    let x_axis = ("factor on the ground motion", x);
+    let chart = Chart {
+        keys: vec![
+            Key::line("share of the samples", SHARE),
+            Key::new("95 % interval", Sign::Band(BAND_FILL, 1.0)),
+            Key::line("the scenario itself", OWN),
+        ],
+        below: vec![Mark::between("band", BAND_FILL, low, high)],
+        marks,
+        ..Chart::new(405.0, x_axis, ("probability of overturning", y))
+    };
+    chart.draw(figure, samples.title("Probability of overturning"))
+}

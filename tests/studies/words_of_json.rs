@@ -1,0 +1,84 @@
+//! The words of a report follow from its JSON alone: made again, they are those that the program printed.
+
+use std::fs;
+use std::path::Path;
+
+use archrock::studies::ensemble::{
+    uncertain_map, uncertain_run, uncertain_suite, uncertain_threshold,
+};
+use archrock::studies::peaks;
+use archrock::studies::results::words_of_json;
+
+use crate::common::COLUMN;
+use crate::common::program::{archrock, stderr, stdout};
+
+/// Function that makes the words of a report of one type.
+type WordsOf = fn(&str) -> serde_json::Result<String>;
+
+/// Runs a command and compares its output with the words made of files in its results.
+#[track_caller]
+fn same_words(at: &Path, arguments: &[&str], reports: &[(&str, WordsOf)]) {
+    let output = archrock(at, &[arguments, &["--out", "r"]].concat());
+    let said = stdout(&output) + &stderr(&output);
+    for (file, words_of) in reports {
+        let json = fs::read_to_string(at.join("r").join(file)).unwrap();
+        let words = words_of(&json).unwrap();
+        assert!(!words.is_empty(), "{arguments:?}: {file}");
+        let line = format!("{words}\n");
+        assert!(said.contains(&line), "{arguments:?}: {line}{said}");
+    }
+    fs::remove_dir_all(at.join("r")).unwrap();
+}
+
+#[test]
+fn samples_have_the_words_of_their_json() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    for (name, second) in [("a", 0.9), ("b", 0.4)] {
+        let table = format!("0.0,0.0\n0.3,1.0\n0.6,{second}\n0.9,0.0\n");
+        fs::write(at.join(format!("{name}.csv")), table).unwrap();
+    }
+    let text = |end_s: f64| {
+        format!(
+            "{COLUMN}[ground.half_sine]\namplitude_g = 0.33\nduration_s = 1.0\n[simulation]\nduration_s = {end_s}\n\
+             [map]\nduration_s = [0.9, 1.0]\namplitude_g = [0.33, 0.34]\n\
+             [suite]\nrecords = '?.csv'\nunit = 'g'\npeaks_g = [0.2, 0.4, 0.8]\n\
+             [uncertain]\nsamples = 20\n'column.width_m' = {{ from = 0.7, to = 1.0 }}\n'column.height_m' = {{ deviation = 0.1 }}\n"
+        )
+    };
+    // Many of the histories that end early have no verdict.
+    fs::write(at.join("early.toml"), text(1.02)).unwrap();
+    fs::write(at.join("late.toml"), text(60.0)).unwrap();
+    let questions: [(&str, &str, WordsOf); 4] = [
+        ("run", "uncertain", words_of_json::<uncertain_run::Summary>),
+        (
+            "threshold",
+            "uncertain_threshold",
+            words_of_json::<uncertain_threshold::Summary>,
+        ),
+        (
+            "suite",
+            "uncertain_suite",
+            words_of_json::<uncertain_suite::Summary>,
+        ),
+        (
+            "map",
+            "uncertain_map",
+            words_of_json::<uncertain_map::Summary>,
+        ),
+    ];
+    for (command, folder, words_of) in questions {
+        for file in ["early.toml", "late.toml"] {
+            let report = format!("{folder}/uncertain.json");
+            same_words(at, &[command, file], &[(&report, words_of)]);
+        }
+    }
+    let models = ["run", "late.toml", "--hinges", "four,free"];
+    let few = ["--set", "uncertain.samples=4"];
+    let compared: [(&str, WordsOf); 3] = [
+        ("four/uncertain/uncertain.json", questions[0].2),
+        ("free/uncertain/uncertain.json", questions[0].2),
+        ("models/peaks.json", words_of_json::<peaks::Summary>),
+    ];
+    same_words(at, &[&models[..], &few].concat(), &compared);
+}
