@@ -1,8 +1,8 @@
 //! Ensembles: a question that is answered for every sample of a scenario with uncertain numbers.
 //!
 //! An ensemble is a study. Its first case is the scenario itself; each other case is a sample of [`Uncertain`]. A [`Question`] is answered for
-//! each case: the history of the sample ([`histories`]), the first factor that overturns it ([`edges`]), or the intensity of each record that
-//! overturns it ([`records`]). Shards, resuming, threads, shares, influences and files are common to all questions. The cells of a map
+//! each case: the history of the sample ([`histories`]), the first factor that overturns it (`edges`), or the intensity of each record that
+//! overturns it (`records`). Shards, resuming, threads, shares, influences and files are common to all questions. The cells of a map
 //! ([`cells`]) are a separate study, whose cases are cells of samples.
 
 pub mod cells;
