@@ -8,8 +8,8 @@ use std::time::{Duration, Instant};
 
 use archrock::dynamics::FallEnd;
 use archrock::dynamics::history::Summary;
-use archrock::dynamics::{Recording, Samples};
 use archrock::dynamics::repeatability::Repeatability;
+use archrock::dynamics::{Recording, Samples};
 use archrock::mechanics::chain::Demand;
 use archrock::output::point::StructurePoint;
 use archrock::output::scene::Scene;
@@ -176,69 +176,6 @@ fn simulate<R: Recorder + Send>(
 }
 
 impl History {
-    /// The history of a scenario, on other ground than its own if that is given, within this memory.
-    pub fn of(
-        py: Python<'_>,
-        scenario: &Scenario,
-        ground: Option<&Ground>,
-        memory_bytes: u64,
-        point: Option<[f64; 2]>,
-    ) -> PyResult<Self> {
-        let inner = scenario.moving()?;
-        let motion = |ground: &Ground| ground.motion(inner.gravity_m_s2());
-        let other = ground.map(motion).transpose()?;
-        let motion = match &other {
-            Some(motion) => motion,
-            None => {
-                inner.check_for_run().map_err(refused)?;
-                inner.ground_motion()
-            }
-        };
-        let model = scenario.model(py)?;
-        let scene = run::scene(inner, &**model);
-        let point = point.map(|[x, y]| in_structure(&scene, [x, y]));
-        let point = point.transpose()?;
-        let needed_bytes = model.sample_bytes(motion, &inner.request_under(motion));
-        let recording = Recording::new(needed_bytes, memory_bytes).map_err(too_large)?;
-        let mut watched = Watched {
-            recording,
-            signals: Signals::new(),
-        };
-        let summary = simulate(py, &**model, inner, motion, &mut watched, |watched| {
-            watched.signals.raised.take()
-        })?;
-        let (samples, events) = watched.recording.finish().map_err(too_large)?;
-        let displaced = |point: &StructurePoint| {
-            let moved_m = samples.iter().map(|sample| {
-                let carried = scene.body_point(point, &sample.hinges);
-                carried.moved(&sample.poses, 1.0) - point.at_m
-            });
-            moved_m.flat_map(|moved_m| [moved_m.x, moved_m.y]).collect()
-        };
-        let point_m = point.as_ref().map(displaced);
-        let count = samples.len();
-        let each = |all: usize| all.checked_div(count).unwrap_or(0);
-        Ok(Self {
-            scenario: Arc::clone(inner),
-            ground: ground.map(|ground| ground.inner.clone()),
-            model: Arc::clone(model),
-            summary,
-            repeated: OnceLock::new(),
-            events,
-            counts: [
-                count,
-                each(samples.rotations_rad.len()),
-                each(samples.gaps_m.len()),
-                each(samples.offsets_m.len()),
-                each(samples.pressures.len()),
-                each(samples.ties.len()),
-            ],
-            point_m: Mutex::new(point_m),
-            samples: Mutex::new(samples),
-            arrays: [const { PyOnceLock::new() }; COLUMNS.len()],
-        })
-    }
-
     /// Takes a column out of the samples, as an array of its shape.
     fn take<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
         let [count, bodies, joints, slipping, pressing, ties] = self.counts;
@@ -435,6 +372,71 @@ fn event(event: &Event) -> PyResult<Value> {
 
 #[pymethods]
 impl History {
+    /// Simulates a scenario, on other ground than its own if that is given, within this memory, and observes one of its points.
+    #[staticmethod]
+    #[pyo3(signature = (scenario, ground, memory_bytes, point=None))]
+    fn of(
+        py: Python<'_>,
+        scenario: &Scenario,
+        ground: Option<&Ground>,
+        memory_bytes: u64,
+        point: Option<[f64; 2]>,
+    ) -> PyResult<Self> {
+        let inner = scenario.moving()?;
+        let motion = |ground: &Ground| ground.motion(inner.gravity_m_s2());
+        let other = ground.map(motion).transpose()?;
+        let motion = match &other {
+            Some(motion) => motion,
+            None => {
+                inner.check_for_run().map_err(refused)?;
+                inner.ground_motion()
+            }
+        };
+        let model = scenario.model(py)?;
+        let scene = run::scene(inner, &**model);
+        let point = point.map(|[x, y]| in_structure(&scene, [x, y]));
+        let point = point.transpose()?;
+        let needed_bytes = model.sample_bytes(motion, &inner.request_under(motion));
+        let recording = Recording::new(needed_bytes, memory_bytes).map_err(too_large)?;
+        let mut watched = Watched {
+            recording,
+            signals: Signals::new(),
+        };
+        let summary = simulate(py, &**model, inner, motion, &mut watched, |watched| {
+            watched.signals.raised.take()
+        })?;
+        let (samples, events) = watched.recording.finish().map_err(too_large)?;
+        let displaced = |point: &StructurePoint| {
+            let moved_m = samples.iter().map(|sample| {
+                let carried = scene.body_point(point, &sample.hinges);
+                carried.moved(&sample.poses, 1.0) - point.at_m
+            });
+            moved_m.flat_map(|moved_m| [moved_m.x, moved_m.y]).collect()
+        };
+        let point_m = point.as_ref().map(displaced);
+        let count = samples.len();
+        let each = |all: usize| all.checked_div(count).unwrap_or(0);
+        Ok(Self {
+            scenario: Arc::clone(inner),
+            ground: ground.map(|ground| ground.inner.clone()),
+            model: Arc::clone(model),
+            summary,
+            repeated: OnceLock::new(),
+            events,
+            counts: [
+                count,
+                each(samples.rotations_rad.len()),
+                each(samples.gaps_m.len()),
+                each(samples.offsets_m.len()),
+                each(samples.pressures.len()),
+                each(samples.ties.len()),
+            ],
+            point_m: Mutex::new(point_m),
+            samples: Mutex::new(samples),
+            arrays: [const { PyOnceLock::new() }; COLUMNS.len()],
+        })
+    }
+
     /// Names of the states; the index of each is its code in the column `state`.
     #[classattr]
     const STATES: [&'static str; 4] = STATES;

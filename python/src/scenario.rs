@@ -15,7 +15,6 @@ use serde_json::json;
 use tempfile::TempDir;
 
 use crate::error::{in_words, refused};
-use crate::history::History;
 
 /// Files of a scenario that are held in memory, by the names that the scenario uses.
 pub type Files = BTreeMap<String, Vec<u8>>;
@@ -229,18 +228,6 @@ impl Scenario {
 
     fn __eq__(&self, other: &Self) -> bool {
         self.inner == other.inner && self.unmovable == other.unmovable
-    }
-
-    /// Simulates it, on other ground than its own if that is given, within this memory, and observes one of its points.
-    #[pyo3(signature = (ground, memory_bytes, point=None))]
-    fn run(
-        &self,
-        py: Python<'_>,
-        ground: Option<&Ground>,
-        memory_bytes: u64,
-        point: Option<[f64; 2]>,
-    ) -> PyResult<History> {
-        History::of(py, self, ground, memory_bytes, point)
     }
 
     /// Largest memory that the samples of its history take, in bytes.

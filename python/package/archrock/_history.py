@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import html
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, NoReturn
 
@@ -79,13 +79,12 @@ class History(Summarised):
     x to the right, y upwards.
     """
 
-    __slots__ = ("_cache", "_native", "_origin", "_folder")
+    __slots__ = ("_cache", "_native", "_scenario")
 
-    def __init__(self, native: _native.History, origin: Any, folder: str | None) -> None:
+    def __init__(self, native: _native.History, scenario: Callable[[_native.Scenario], Scenario]) -> None:
         self._native: _native.History | None = native
-        # Source of the files of the scenario.
-        self._origin = origin
-        self._folder = folder
+        # Makes the scenario when it is needed.
+        self._scenario: Callable[[_native.Scenario], Scenario] | None = scenario
         self._cache: dict[str, Any] | None = None
         warn(native.warnings())
 
@@ -339,14 +338,10 @@ class History(Summarised):
     @property
     def scenario(self) -> Scenario:
         """The scenario: to be run again, or written as a file of the program."""
-        from ._scenario import Scenario
 
         def make(native: _native.History) -> Scenario:
-            scenario = Scenario.__new__(Scenario)
-            origin = self._origin
-            files = origin if isinstance(origin, dict) else {**origin[0]._files, **origin[1]._files}
-            scenario._take(native.scenario(), files, self._folder, None)
-            return scenario
+            assert self._scenario is not None
+            return self._scenario(native.scenario())
 
         scenario: Scenario = self._once("scenario", make)
         return scenario
@@ -504,7 +499,6 @@ def _restored(kept: dict[str, Any]) -> History:
         column.flags.writeable = False
     history = History.__new__(History)
     history._native = None
-    history._origin = None
-    history._folder = None
+    history._scenario = None
     history._cache = kept
     return history

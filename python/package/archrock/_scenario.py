@@ -12,6 +12,7 @@ from ._ground import Ground, Record
 from ._hinge import Limit
 from ._history import History
 from ._native import MEMORY_GB
+from ._native import History as NativeHistory
 from ._native import Scenario as NativeScenario
 from ._settings import Settings, long_name
 from ._structure import Model, Structure
@@ -185,7 +186,8 @@ class Scenario(Described):
             MemoryError: when the history takes more memory than allowed; raised before the computation if that is known.
             KeyboardInterrupt: on Ctrl-C, within a second.
         """
-        return History(self._native.run(None, _bytes(memory_gb)), self._files, self._folder)
+        native = NativeHistory.of(self._native, None, _bytes(memory_gb))
+        return _history(native, self._files, self._folder)
 
     def memory_gb(self) -> float:
         """Largest memory that the samples of its history take, in units of 1e9 bytes; events need some more.
@@ -287,6 +289,17 @@ def _not_a_structure(given: object) -> TypeError:
 
 def _not_a_ground(given: object) -> TypeError:
     return TypeError(f"`ground` must be a Pulse or a Record, not {type(given).__name__}")
+
+
+def _history(native: NativeHistory, files: dict[str, bytes], folder: str | None = None) -> History:
+    """A history that can make its scenario."""
+
+    def scenario(native: NativeScenario) -> Scenario:
+        made = Scenario.__new__(Scenario)
+        made._take(native, files, folder, None)
+        return made
+
+    return History(native, scenario)
 
 
 def simulate(
@@ -394,7 +407,7 @@ def simulate(
     if right is not None or supports is not None:
         settings = Settings(*key)._asdict()
         scenario = Scenario.of(structure, ground, right=right, supports=supports, **settings)
-        return History(scenario._native.run(None, _bytes(memory_gb), point), scenario._files, None)
+        return _history(NativeHistory.of(scenario._native, None, _bytes(memory_gb), point), scenario._files)
     try:
         base = structure._bases[key]
     except (KeyError, TypeError, AttributeError):
@@ -403,7 +416,8 @@ def simulate(
         base = structure._base(key)
     memory_bytes = _bytes(memory_gb)
     if ground is None:
-        return History(base.run(None, memory_bytes, point), structure._files, None)
+        return _history(NativeHistory.of(base, None, memory_bytes, point), structure._files)
     if not isinstance(ground, Ground):
         raise _not_a_ground(ground)
-    return History(base.run(ground._native, memory_bytes, point), (structure, ground), None)
+    native = NativeHistory.of(base, ground._native, memory_bytes, point)
+    return _history(native, {**structure._files, **ground._files})

@@ -17,9 +17,9 @@ pub(super) const MOST_STEPS: usize = 20_000;
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum FallEnd {
-    /// A body has turned by [`TURNED_RAD`].
+    /// A body has turned by 45 degrees.
     Turned,
-    /// The fall took longer than [`LONGEST_S`], or too many steps.
+    /// The fall took longer than 5 s, or too many steps.
     Slow,
     /// The model cannot continue; with the reason.
     Model(String),

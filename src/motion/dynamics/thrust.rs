@@ -26,7 +26,7 @@ pub const EXCESS_LEVELS: [f64; 2] = [0.01, 0.05];
 
 /// Fraction of the time in motion for which the lasting friction demand is exceeded. Larger values of rows last so shortly that they depend on the
 /// steps: forces just after impacts, or at almost unloaded joints.
-pub(crate) const LASTING: f64 = 0.01;
+pub const LASTING: f64 = 0.01;
 
 /// Friction demands of the steps of a row, each with the duration of its step in seconds.
 #[derive(Clone, Debug, Default)]

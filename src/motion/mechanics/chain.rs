@@ -37,7 +37,7 @@ pub struct MechanismState {
     pub body_force_g: Vector2<f64>,
 }
 
-/// Thrust excess and friction demand of a structure; see [`crate::mechanics::four_link::thrust`].
+/// Thrust excess and friction demand of a structure; see [`ThrustLine`](crate::mechanics::four_link::ThrustLine).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Demand {
     /// Largest distance of the thrust line beyond the structure, over the thickness; zero if it stays inside.
@@ -48,7 +48,7 @@ pub struct Demand {
 
 /// Least normal force of a section, over the weight of the structure, that counts in the friction demand. An almost unloaded section can show any
 /// ratio, and its slip hardly matters.
-pub(crate) const LEAST_LOAD: f64 = 0.01;
+pub const LEAST_LOAD: f64 = 0.01;
 
 /// Mechanism with one degree of freedom `q >= 0` at finite rotations, swaying right.
 pub trait Mechanism {
@@ -156,7 +156,7 @@ pub trait MechanismChain: std::fmt::Debug + Send + Sync {
     fn length_m(&self) -> f64;
     /// Returns the unit of mass of its mechanisms, in kg.
     fn mass_unit_kg(&self) -> f64;
-    /// Returns the unit of energy of the mechanisms (see [`barrier`](crate::dynamics::hybrid::rocking::Rocking::barrier)) in J.
+    /// Returns the unit of energy of the mechanisms in J.
     fn joules_per_unit(&self) -> f64 {
         self.mass_unit_kg() * self.length_m() * self.length_m()
     }

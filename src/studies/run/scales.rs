@@ -5,7 +5,7 @@ use crate::{MechanismModel, Sway};
 /// Scales that make a history dimensionless, as in papers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scales {
-    /// Frequency parameter `p` of the equivalent block at the unstable equilibrium (see [`crate::mechanics::equivalent`]); the `p` of a column
+    /// Frequency parameter `p` of the equivalent block at the unstable equilibrium (see [`Equivalent`](crate::mechanics::Equivalent)); the `p` of a column
     /// itself.
     pub frequency_rad_s: f64,
     /// `g A_L`: the acceleration that starts the structure to the right and to the left; infinite if no push starts it.

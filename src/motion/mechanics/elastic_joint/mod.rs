@@ -5,7 +5,7 @@
 //! - `structure` holds the bodies and the joints between them.
 //! - `statics` finds their equilibrium.
 //!
-//! The code is generic over [`Real`](super::lanes::Real): one motion, several motions in parallel, or derivatives.
+//! The code is generic over a number type, `Real`: one motion, several motions in parallel, or derivatives.
 
 mod banded;
 mod contact;

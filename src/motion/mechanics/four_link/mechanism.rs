@@ -39,7 +39,7 @@ pub(crate) fn openings(points: &[Vector2<f64>; 4]) -> Option<[f64; 4]> {
 /// Kinematically admissible four-link mechanism that sways right.
 ///
 /// The hinges A, B, C, D divide the ring into bodies at rest (before A, after D) and moving bodies: left (A-B), middle (B-C) and right (C-D). The
-/// rate `q'` is the clockwise rate of the left body, which rotates about the first hinge; see [`super::linkage`] for the reason.
+/// rate `q'` is the clockwise rate of the left body, which rotates about the first hinge; the head of `linkage.rs` has the reason.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FourLink {
     /// Sections of the hinges A, B, C, D, in radians from the left springing.

@@ -12,7 +12,7 @@ use super::mechanism::{EDGES, FourLink, HingeSites};
 use crate::mechanics::{Edge, Field, Momentum, Profile, Twist};
 
 /// Tolerance for lines outside the ring, over the thickness: hinges are accurate to about 1e-8 rad, and the line touches the edges there.
-pub(crate) const EDGE_TOLERANCE: f64 = 1e-6;
+pub const EDGE_TOLERANCE: f64 = 1e-6;
 
 /// The resultants over all sections of a ring under a load per unit mass.
 #[derive(Clone, Debug)]
