@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fs;
+use std::io::Read;
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
@@ -9,7 +10,6 @@ use glob::{MatchOptions, Pattern, PatternError};
 
 use super::error::ensure;
 use super::shown;
-use super::source::read_at_most;
 
 /// Where the files of a scenario are.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -93,6 +93,18 @@ impl Files {
         ensure(!files.is_empty(), || "matches no file")?;
         Ok(files)
     }
+}
+
+/// Reads the bytes of a file of at most `mib` MiB.
+pub(super) fn read_at_most(reader: impl Read, mib: u64, what: &str) -> Result<Vec<u8>, String> {
+    let (most, mut bytes) = (mib << 20, Vec::new());
+    // The limit applies while reading, because not every file has a known size.
+    let read = reader.take(most + 1).read_to_end(&mut bytes);
+    read.map_err(|error| format!("cannot be read: {error}"))?;
+    ensure(bytes.len() as u64 <= most, || {
+        format!("is larger than {mib} MiB, too large for a {what}")
+    })?;
+    Ok(bytes)
 }
 
 /// First characters of cells that spreadsheets interpret as formulas. A tab would be another, but it is a control character.

@@ -5,8 +5,8 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::error::{Fault, ScenarioErrors, ensure};
-use super::files::Files;
+use super::error::{Fault, ScenarioErrors};
+use super::files::{Files, read_at_most};
 
 /// The text of a scenario, and its name in errors.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -83,18 +83,6 @@ impl Source {
             text,
         })
     }
-}
-
-/// Reads the bytes of a file of at most `mib` MiB.
-pub(super) fn read_at_most(reader: impl Read, mib: u64, what: &str) -> Result<Vec<u8>, String> {
-    let (most, mut bytes) = (mib << 20, Vec::new());
-    // The limit applies while reading, because not every file has a known size.
-    let read = reader.take(most + 1).read_to_end(&mut bytes);
-    read.map_err(|error| format!("cannot be read: {error}"))?;
-    ensure(bytes.len() as u64 <= most, || {
-        format!("is larger than {mib} MiB, too large for a {what}")
-    })?;
-    Ok(bytes)
 }
 
 /// Returns the reason why a file is not plain text, from its first bytes and its line ends; `None` for plain text.

@@ -593,7 +593,7 @@ pub struct RowSummary {
     pub halvings: u32,
     /// Computing time of the slowest step; `None` unless the recorder has a clock.
     #[serde(skip)]
-    pub longest_step: Elapsed,
+    pub longest_step: Option<Duration>,
 }
 
 const fn is_infinite(number: &f64) -> bool {
@@ -711,14 +711,4 @@ pub struct Stress {
     /// Time of this stress, in seconds.
     #[serde(rename = "largest_compressive_stress_time_s")]
     pub time_s: f64,
-}
-
-/// Computing time; `None` if it was not measured. It is no part of a result: any two are equal.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Elapsed(pub Option<Duration>);
-
-impl PartialEq for Elapsed {
-    fn eq(&self, _: &Self) -> bool {
-        true
-    }
 }

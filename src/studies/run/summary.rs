@@ -315,7 +315,7 @@ impl<'a> Summary<'a> {
         let names = columns(&model.bodies(), "peak_rotation", "rad");
         let peaks_rad = history.peak_rotations_rad.iter().copied();
         // Only the summary contains the time of computation; results would otherwise differ between runs.
-        let longest_step = history.row().and_then(|row| row.longest_step.0);
+        let longest_step = history.row().and_then(|row| row.longest_step);
         Self {
             program: env!("CARGO_PKG_NAME"),
             version: env!("CARGO_PKG_VERSION"),

@@ -6,7 +6,7 @@ use nalgebra::Vector2;
 
 use super::clock::Marks;
 use super::observer::side_of;
-use crate::dynamics::history::{Elapsed, Impact};
+use crate::dynamics::history::Impact;
 use crate::dynamics::recorder::Recorder;
 use crate::dynamics::{
     Event, EventKind, FallEnd, MotionObserver, OpenHinge, Outcome, RowMotionError, Sample, State,
@@ -226,12 +226,9 @@ where
         }
         let begun = now(&stepper);
         stepper.step(marks.next_s())?;
-        let ended = now(&stepper);
-        longest_step = longest_step.max(
-            ended
-                .zip(begun)
-                .map(|(end, begin)| end.saturating_sub(begin)),
-        );
+        if let Some((begun, ended)) = begun.zip(now(&stepper)) {
+            longest_step = longest_step.max(Some(ended.saturating_sub(begun)));
+        }
         if samples_are_made {
             stepper.report_poses(&mut poses);
         }
@@ -242,7 +239,7 @@ where
     }
     stepper.complete();
     let observer = stepper.observer_mut();
-    observer.row_summary.longest_step = Elapsed(longest_step);
+    observer.row_summary.longest_step = longest_step;
     let summary = observer.end(outcome, outcome_time_s);
     if let Outcome::Overturned(_) = outcome {
         follow_fall(&mut stepper);
