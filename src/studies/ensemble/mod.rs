@@ -11,8 +11,8 @@ mod samples;
 pub mod sensitivity;
 pub mod uncertain_map;
 pub mod uncertain_run;
-pub(crate) mod uncertain_suite;
-pub(crate) mod uncertain_threshold;
+pub mod uncertain_suite;
+pub mod uncertain_threshold;
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
