@@ -1,10 +1,11 @@
-//! The words of a run are a function of its JSON alone: they are rendered again from the file.
+//! The words and the page of a run are functions of their JSON alone: they are rendered again from the files.
 
 use std::fs;
 use std::path::Path;
 
 use crate::common::program::{archrock, printed, scenarios, stdout};
 use crate::common::results::json;
+use archrock::studies::run::report::page_of;
 use archrock::studies::run::words_of;
 use serde_json::Value;
 
@@ -90,4 +91,23 @@ fn words_of_several_models_are_rendered_again_from_their_json() {
     let again = words_of(&json).unwrap();
     assert_eq!(words(&said, again.lines().next().unwrap()), again);
     assert!(again.contains("compared with elastic joints"), "{again}");
+}
+
+#[test]
+fn the_page_of_a_run_is_rendered_again_from_its_data() {
+    let folder = tempfile::tempdir().unwrap();
+    for (scenario, options) in [
+        ("column-pulse.toml", &[][..]),
+        ("overturning-at-once.toml", &["--point", "0,5"]),
+        ("tie.toml", &["--no-repeat"]),
+        ("two-feet.toml", &["--no-repeat"]),
+    ] {
+        let scenario = scenarios().join(scenario);
+        let arguments = [&["run", scenario.to_str().unwrap(), "--out", "o"], options].concat();
+        printed(folder.path(), &arguments);
+        let page = fs::read_to_string(folder.path().join("o/report.html")).unwrap();
+        let (_, data) = page.split_once("id=\"data\">").unwrap();
+        let (data, _) = data.split_once("</script>").unwrap();
+        assert!(page_of(data).unwrap() == page, "{scenario:?}");
+    }
 }
