@@ -1,13 +1,10 @@
 //! Summaries as JSON, from the types of results.
 
-use std::fmt;
-use std::marker::PhantomData;
-
 use rmpv::Value as Number;
 use rmpv::ext::to_value as numbers_of;
-use serde::de::{MapAccess, Visitor};
+use serde::de::{DeserializeOwned, Error as _};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 use super::OutputError;
 
@@ -32,24 +29,12 @@ impl<V: Serialize> Serialize for Named<V> {
     }
 }
 
-impl<'de, V: Deserialize<'de>> Deserialize<'de> for Named<V> {
+impl<'de, V: DeserializeOwned> Deserialize<'de> for Named<V> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Entries<V>(PhantomData<V>);
-
-        impl<'de, V: Deserialize<'de>> Visitor<'de> for Entries<V> {
-            type Value = Named<V>;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("an object")
-            }
-
-            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Named<V>, A::Error> {
-                let entries = std::iter::from_fn(|| map.next_entry().transpose());
-                entries.collect::<Result<_, _>>().map(Named)
-            }
-        }
-
-        deserializer.deserialize_map(Entries(PhantomData))
+        let entries = Map::deserialize(deserializer)?.into_iter();
+        let read = entries.map(|(name, value)| Ok((name, V::deserialize(value)?)));
+        let read = read.collect::<Result<_, serde_json::Error>>();
+        read.map(Self).map_err(D::Error::custom)
     }
 }
 

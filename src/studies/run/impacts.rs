@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::tables::energy_loss_j;
-use crate::{Event, Hinge, Impact, Summary as History};
+use crate::{Event, Hinge, Summary as History};
 
 /// An impact that is described.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -20,9 +20,9 @@ pub struct ImpactSummary {
     pub opened_joints: Vec<usize>,
 }
 
-/// Impacts that may be described, with their times: the first impact, and each impact that takes more energy than all before.
+/// Impacts that may be described: the first impact, and each impact that takes more energy than all before. Each with this energy, in J.
 #[derive(Clone, Debug, Default)]
-pub struct NotableImpacts(Vec<(f64, Impact)>);
+pub struct NotableImpacts(Vec<(f64, ImpactSummary)>);
 
 impl<'a> FromIterator<&'a Event> for NotableImpacts {
     fn from_iter<I: IntoIterator<Item = &'a Event>>(events: I) -> Self {
@@ -35,33 +35,32 @@ impl<'a> FromIterator<&'a Event> for NotableImpacts {
 impl NotableImpacts {
     /// Adds an event. Events come in the order of time.
     pub(super) fn note(&mut self, event: &Event) {
-        let (time_s, Some(impact)) = (event.time_s, &event.impact) else {
-            return;
-        };
-        let hardest = self.0.last();
-        if hardest.is_none_or(|(_, hardest)| energy_loss_j(impact) > energy_loss_j(hardest)) {
-            self.0.push((time_s, impact.clone()));
+        let Some(impact) = &event.impact else { return };
+        let loss_j = energy_loss_j(impact);
+        if self
+            .0
+            .last()
+            .is_none_or(|(hardest_j, _)| loss_j > *hardest_j)
+        {
+            let notable = ImpactSummary {
+                time_s: event.time_s,
+                restitution: impact.restitution,
+                closed_joints: joints(&impact.closed),
+                opened_joints: joints(&impact.opened),
+            };
+            self.0.push((loss_j, notable));
         }
     }
 
     /// Returns the first impact, and the impact of a row that takes the most energy, if this is another one. Impacts after overturning do not count.
     pub(super) fn before_the_end(&self, history: &History) -> [Option<ImpactSummary>; 2] {
         let until_s = history.overturned_s().unwrap_or(f64::INFINITY);
-        let before: Vec<_> = self
-            .0
-            .iter()
-            .filter(|(time_s, _)| *time_s <= until_s)
-            .collect();
-        let hardest = before.get(1..).and_then(<[_]>::last);
-        let hardest = hardest.filter(|_| history.row().is_some());
-        [before.first(), hardest].map(|one| {
-            one.map(|(time_s, impact)| ImpactSummary {
-                time_s: *time_s,
-                restitution: impact.restitution,
-                closed_joints: joints(&impact.closed),
-                opened_joints: joints(&impact.opened),
-            })
-        })
+        let impacts = self.0.iter().map(|(_, impact)| impact);
+        let mut before = impacts
+            .take_while(|impact| impact.time_s <= until_s)
+            .cloned();
+        let first = before.next();
+        [first, before.last().filter(|_| history.row().is_some())]
     }
 }
 

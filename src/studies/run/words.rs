@@ -144,10 +144,6 @@ impl Summary {
         self.row.as_ref()?.elastic
     }
 
-    fn compressive_strength_mpa(&self) -> Option<f64> {
-        self.row.as_ref()?.compressive_strength_mpa
-    }
-
     fn sliding(&self) -> Option<&Sliding> {
         self.row.as_ref()?.row.sliding.as_ref()
     }
