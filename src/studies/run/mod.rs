@@ -110,8 +110,6 @@ struct ModelResults {
     curves: Curves,
     /// The files in its folder, if there is one.
     files: Option<Files>,
-    /// Path of the picture of all models beside its folder.
-    overlay: Option<String>,
 }
 
 /// A scenario to run.
@@ -162,31 +160,24 @@ pub fn results(
     let mut results = Results::default();
     let comparison = (all.len() > 1).then(|| {
         let answers: Vec<_> = all.iter().map(|one| one.answer.clone()).collect();
-        let named = all_models.iter().zip(&all);
+        let summaries = all.iter().map(|one| one.summary.clone());
+        let named = all_models.iter().map(|model| model.name().to_owned());
         Comparison {
             to_quote: quotable::in_words(&answers),
-            models: Named(
-                named
-                    .map(|(model, one)| (model.name().to_owned(), one.summary.clone()))
-                    .collect(),
-            ),
+            models: Named(named.zip(summaries).collect()),
         }
     });
     results.summary = match &comparison {
         None => summary_of(&all[0].summary)?,
         Some(comparison) => summary_of(comparison)?,
     };
-    let overlay_path = comparison.as_ref().and_then(|_| all[0].overlay.clone());
-    if overlay_path.is_some() {
+    if comparison.is_some() && all[0].files.is_some() {
         results.files = vec![(OVERLAY, overlay(&runs, &all).into_bytes())];
     }
+    let printed = all.iter().map(|one| (&one.summary, one.files.as_ref()));
     results.words = render(&Printed {
         comparison: comparison.as_ref(),
-        runs: all
-            .iter()
-            .map(|one| (&one.summary, one.files.as_ref()))
-            .collect(),
-        overlay: overlay_path,
+        runs: printed.collect(),
     });
     Ok(results)
 }
@@ -303,10 +294,6 @@ impl<'a> Run<'a> {
             summary.to_quote = None;
             summary.compared_models = self.all_models.to_vec();
         }
-        let path_of = |folder: &Folder| folder.path().with_file_name(OVERLAY);
-        let overlay = folder
-            .as_ref()
-            .map(|folder| path_of(folder).display().to_string());
         let files = folder.map(|folder| {
             let mut files = drawings.files(self, &history, uncertainty, &summary);
             let json = pretty(&summary_of(&summary)?);
@@ -318,7 +305,6 @@ impl<'a> Run<'a> {
             summary,
             curves: drawings.curves.clone(),
             files: files.transpose()?,
-            overlay,
         })
     }
 
@@ -331,15 +317,11 @@ impl<'a> Run<'a> {
         rows: usize,
     ) -> Result<Files, OutputError> {
         let snapshots = drawings.snapshots.as_ref();
-        let rows_of = |name| (name == ROTATIONS).then_some(rows);
         let written = Files {
-            folder: folder.path().display().to_string(),
-            names: self
-                .files()
-                .into_iter()
-                .map(|name| (name, rows_of(name)))
-                .collect(),
-            film: drawings.add_film(self, &mut folder)?,
+            folder: folder.path().to_owned(),
+            names: self.files(),
+            rows,
+            film_pictures: drawings.add_film(self, &mut folder)?,
             outside_times_s: snapshots.map_or_else(Default::default, Snapshots::outside_times_s),
         };
         let results = Results {
@@ -476,12 +458,8 @@ impl Drawings {
         files.collect()
     }
 
-    /// Adds the film to the folder. Returns the number of its pictures, and their folder; `None` without film.
-    fn add_film(
-        &self,
-        run: &Run<'_>,
-        folder: &mut Folder,
-    ) -> Result<Option<(usize, String)>, OutputError> {
+    /// Adds the film to the folder. Returns the number of its pictures; `None` without film.
+    fn add_film(&self, run: &Run<'_>, folder: &mut Folder) -> Result<Option<usize>, OutputError> {
         let Some(film) = &self.film else {
             return Ok(None);
         };
@@ -490,8 +468,7 @@ impl Drawings {
             let name = format!("{FILM}/frame-{number:04}.svg");
             folder.add(&name, picture.as_bytes())?;
         }
-        let path = folder.path().join(FILM).display().to_string();
-        Ok(Some((pictures.len(), path)))
+        Ok(Some(pictures.len()))
     }
 }
 

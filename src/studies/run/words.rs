@@ -1,5 +1,7 @@
 //! The words of a run: templates that read its [`Summary`] alone.
 
+use std::path::PathBuf;
+
 use askama::Template;
 use nalgebra::Vector2;
 use serde_json::Value;
@@ -9,6 +11,7 @@ use super::comparison::Comparison;
 use super::impacts::ImpactSummary;
 use super::points::place;
 use super::summary::{FourLinkQuality, FrictionDemand, PointPeaks, Summary, VariationOutcome};
+use super::{FILM, OVERLAY, ROTATIONS};
 use crate::dynamics::free_hinges::DOUBTFUL_ENERGY_ERROR;
 use crate::dynamics::history::ElasticSummary;
 use crate::dynamics::repeatability::{
@@ -57,18 +60,16 @@ pub(super) struct Words<'a> {
 pub(super) struct Printed<'a> {
     pub comparison: Option<&'a Comparison>,
     pub runs: Vec<(&'a Summary, Option<&'a Files>)>,
-    /// Path of the picture of all models.
-    pub overlay: Option<String>,
 }
 
 /// The files of a run in a folder.
 #[derive(Debug)]
 pub(super) struct Files {
-    pub folder: String,
-    /// Names, each with the number of rows of the table, if it is reported.
-    pub names: Vec<(&'static str, Option<usize>)>,
-    /// Number of pictures of a film, and their folder.
-    pub film: Option<(usize, String)>,
+    pub folder: PathBuf,
+    pub names: Vec<&'static str>,
+    /// Number of rows of the rotations.
+    pub rows: usize,
+    pub film_pictures: Option<usize>,
     /// Times of snapshots before the start and after the end of the history, in seconds, which show its first and its last instant.
     pub outside_times_s: [Vec<f64>; 2],
 }
@@ -83,7 +84,6 @@ pub fn words_of(json: &Value) -> serde_json::Result<String> {
         return Ok(render(&Printed {
             comparison: None,
             runs: vec![(&summary, None)],
-            overlay: None,
         }));
     }
     let comparison: Comparison = serde::Deserialize::deserialize(json)?;
@@ -93,7 +93,6 @@ pub fn words_of(json: &Value) -> serde_json::Result<String> {
             .map(|summary| (summary, None))
             .collect(),
         comparison: Some(&comparison),
-        overlay: None,
     }))
 }
 
