@@ -3,23 +3,13 @@
 use askama::Template;
 
 use super::summary::{FourLinkQuality, Summary, Thrust};
+use crate::Verdict;
 use crate::dynamics::OutcomeKind;
 use crate::dynamics::thrust::EXCESS_LEVELS;
 use crate::output::filters;
-use crate::{Summary as History, Verdict};
-
-/// Rotations up to this value are printed as zero: such a block slides without rocking.
-pub(super) const STRAIGHT_RAD: f64 = 5e-7;
 
 /// Smallest and largest coefficient of friction of stone on stone.
 pub(super) const STONE_FRICTION: [f64; 2] = [0.5, 0.8];
-
-/// Returns the peak of the first half cycle that rocks, in radians.
-pub(super) fn first_peak_rad(history: &History) -> Option<f64> {
-    let mut cycles = history.half_cycles().into_iter();
-    let first = cycles.find(|cycle| cycle.peak_rad > STRAIGHT_RAD);
-    first.map(|cycle| cycle.peak_rad)
-}
 
 /// Returns a coefficient of friction as text. Values above 10, which no stone has, occur at almost unloaded joints.
 pub(super) fn coefficient(friction: &f64, decimals: usize) -> String {

@@ -217,12 +217,7 @@ impl Report {
         let [low_m, high_m] = self.scene.bounds_m();
         let unit_m = COORDINATE_RATIO * (high_m - low_m).amax();
         let (hinges, layout_of) = layouts(&self.scene, &frames);
-        let joint = |joint: usize| {
-            let [intrados, extrados] = self.scene.joint(joint)?;
-            let (body, x_m, y_m) = point(intrados);
-            Some((body, x_m, y_m, extrados.at_m.x, extrados.at_m.y))
-        };
-        let joints: Vec<_> = (0..).map_while(joint).collect();
+        let joints: Vec<_> = (0..).map_while(|joint| self.joint(joint)).collect();
         let across = (0..joints.len()).filter_map(|joint| self.scene.across(joint));
         let sections = self.scene.sections.iter();
         let faces = |exaggeration| {
@@ -237,16 +232,7 @@ impl Report {
         let ties = self.scene.ties(&[]).into_iter();
         let of_row = history.row().into_iter();
         let broken_s = of_row.flat_map(|row| row.ties.iter().map(|tie| tie.broken_s));
-        let mechanism = match history.row() {
-            None => "the mechanism that moves",
-            Some(_) => "the first mechanism",
-        };
-        let energy_label = match self.in_barriers {
-            true => format!("Kinetic and potential energy over the barrier of {mechanism}"),
-            false => "Energy (J)".to_owned(),
-        };
         let leaves = self.excess_ratio.points().any(|(_, ratio)| ratio > 0.0);
-        let excess = leaves.then(|| curve(self.excess_ratio.points()));
         let end_s = frames[..fall_from]
             .last()
             .map_or(ground.start_s(), |frame| frame.time_s);
@@ -285,13 +271,31 @@ impl Report {
                 .map(|open| self.layout(open, points, unit_m))
                 .collect(),
             points: points.map(ObservedPoints::on_page),
-            energy_label,
+            energy_label: self.energy_label(history),
             curves: Curves {
                 ground_g: curve(curve_g(ground, self.gravity_m_s2, end_s)),
                 energy: curve(self.energy.points()),
-                excess,
+                excess: leaves.then(|| curve(self.excess_ratio.points())),
             },
         })
+    }
+
+    /// Returns the intrados of a joint, with its body, and the extrados.
+    fn joint(&self, joint: usize) -> Option<(i64, f64, f64, f64, f64)> {
+        let [intrados, extrados] = self.scene.joint(joint)?;
+        let (body, x_m, y_m) = point(intrados);
+        Some((body, x_m, y_m, extrados.at_m.x, extrados.at_m.y))
+    }
+
+    fn energy_label(&self, history: &History) -> String {
+        let mechanism = match history.row() {
+            None => "the mechanism that moves",
+            Some(_) => "the first mechanism",
+        };
+        match self.in_barriers {
+            true => format!("Kinetic and potential energy over the barrier of {mechanism}"),
+            false => "Energy (J)".to_owned(),
+        }
     }
 
     /// Returns the outlines and hinges of a layout.

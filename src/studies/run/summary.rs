@@ -4,7 +4,6 @@ use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 
 use super::Scales;
-use super::caveats::first_peak_rad;
 use super::feet::FeetApart;
 use super::impacts::{ImpactSummary, NotableImpacts};
 use crate::dynamics::history::{ElasticSummary, RowSummary};
@@ -494,6 +493,9 @@ impl MechanismResults {
     }
 }
 
+/// Rotations up to this value are printed as zero: such a block slides without rocking.
+pub(super) const STRAIGHT_RAD: f64 = 5e-7;
+
 /// Slips below this fraction of the thickness of a joint are not reported.
 const LEAST_SLIP_RATIO: f64 = 1e-6;
 
@@ -573,6 +575,13 @@ impl RepeatabilitySummary {
         }
         others
     }
+}
+
+/// Returns the peak of the first half cycle that rocks, in radians.
+fn first_peak_rad(history: &History) -> Option<f64> {
+    let mut cycles = history.half_cycles().into_iter();
+    let first = cycles.find(|cycle| cycle.peak_rad > STRAIGHT_RAD);
+    first.map(|cycle| cycle.peak_rad)
 }
 
 impl VariationSummary {

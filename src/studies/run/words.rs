@@ -6,11 +6,13 @@ use askama::Template;
 use nalgebra::Vector2;
 use serde_json::Value;
 
-use super::caveats::{Caveat, STONE_FRICTION, STRAIGHT_RAD, coefficient};
+use super::caveats::{Caveat, STONE_FRICTION, coefficient};
 use super::comparison::Comparison;
 use super::impacts::ImpactSummary;
 use super::points::place;
-use super::summary::{FourLinkQuality, FrictionDemand, PointPeaks, Summary, VariationOutcome};
+use super::summary::{
+    FourLinkQuality, FrictionDemand, PointPeaks, STRAIGHT_RAD, Summary, VariationOutcome,
+};
 use super::{FILM, OVERLAY, ROTATIONS};
 use crate::dynamics::free_hinges::DOUBTFUL_ENERGY_ERROR;
 use crate::dynamics::history::ElasticSummary;
