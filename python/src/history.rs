@@ -316,6 +316,7 @@ impl History {
             scenario,
             model: &*self.model,
             history: &self.summary,
+            impacts: self.events.iter().collect(),
             repeated: repeated.and_then(Option::as_ref),
             varied: &[],
         }
@@ -495,13 +496,13 @@ impl History {
 
     /// `warnings` of `summary.json`.
     fn warnings(&self, py: Python<'_>) -> Vec<String> {
-        py.detach(|| run::warnings(&self.shaken(), &*self.model, &self.summary))
+        py.detach(|| run::Summary::of(&self.computed(&self.shaken(), None)).warnings)
     }
 
     /// `report.html` with the verdict on it. Simulates the history again, with the line of thrust.
     fn report(&self, py: Python<'_>) -> PyResult<String> {
         let scenario = self.shaken();
-        let verdict = run::verdict(self.computed(&scenario, Some(self.repeated(py)?)));
+        let verdict = run::Summary::of(&self.computed(&scenario, Some(self.repeated(py)?))).verdict_line();
         let mut filming = Filming {
             report: Report::new(&scenario, &*self.model),
             signals: Signals::new(),

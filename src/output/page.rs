@@ -1,15 +1,28 @@
 //! Building blocks of HTML pages.
 
-use serde_json::Value;
+use serde::Serialize;
 
 use crate::scenario::shown_lines;
 
 /// The name and version of the program, as pages show them.
 pub(crate) const PROGRAM: &str = concat!(env!("CARGO_PKG_NAME"), " ", env!("CARGO_PKG_VERSION"));
 
-/// Formats JSON for a script of a page: nothing in the text ends the script.
-pub(crate) fn script_safe(data: &Value) -> String {
-    shown_lines(&data.to_string()).replace('<', "\\u003c")
+/// Scripts and styles of pages with a moving structure and curves over time. The scripts share one scope, in this order: the base, the stage,
+/// the plots, the curves of the page, and the player.
+pub(crate) const BASE: &str = include_str!("page/base.js");
+pub(crate) const STAGE: &str = include_str!("page/stage.js");
+pub(crate) const PLOTS: &str = include_str!("page/plots.js");
+pub(crate) const PLAYER: &str = include_str!("page/player.js");
+pub(crate) const STYLE: &str = include_str!("page/page.css");
+// uPlot, the library that draws the curves.
+pub(crate) const PLOT_STYLE: &str = include_str!("../../vendor/uplot/uPlot.min.css");
+pub(crate) const PLOT_SCRIPT: &str = include_str!("../../vendor/uplot/uPlot.iife.min.js");
+pub(crate) const PLOT_LICENCE: &str = include_str!("../../vendor/uplot/LICENSE");
+
+/// Formats data as JSON for a script of a page: nothing in the text ends the script.
+pub(crate) fn script_safe(data: &impl Serialize) -> String {
+    let json = serde_json::to_string(data).expect("data of a page have names as keys");
+    shown_lines(&json).replace('<', "\\u003c")
 }
 
 #[cfg(test)]

@@ -2,12 +2,12 @@
 
 use askama::Template;
 
-/// Fills a template. The text ends with one line break.
+/// Fills a template. The text begins with its first line, and ends with one line break.
 pub(crate) fn render(template: &impl Template) -> String {
     let text = template.render();
     // Writing to a string cannot fail, and the filters do not fail.
     let text = text.expect("templates are written to memory");
-    format!("{}\n", text.trim())
+    format!("{}\n", text.trim_start_matches('\n').trim_end())
 }
 
 /// A number of a template; absent ones are printed as "-".

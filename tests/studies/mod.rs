@@ -12,6 +12,7 @@ mod map_axes;
 mod outside_model;
 mod peaks;
 mod quotable;
+mod rendered_again;
 mod repeatability;
 mod run_column;
 mod run_drawing_data;

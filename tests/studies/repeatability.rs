@@ -6,7 +6,7 @@ use crate::common::{GRAVITY, Random, noise, random_row};
 use archrock::dynamics::EndCondition;
 use archrock::dynamics::free_hinges::{FreeHinges, RowOptions};
 use archrock::dynamics::ground::{GroundMotion, Pulse};
-use archrock::dynamics::history::{Details, Outcome, State, Summary};
+use archrock::dynamics::history::{Details, HalfCycle, Outcome, State, Summary};
 use archrock::dynamics::model::Model;
 use archrock::dynamics::repeatability::{OutcomeCount, Repeatability, Repetitions, Verdict};
 use archrock::scenario::Scenario;
@@ -75,7 +75,7 @@ fn campaign(cases: usize) -> Counts {
         let repeated = Repetitions::start(&model, &ground, &request);
         let spread = repeated.compare(&own);
         let cycles = own.half_cycles();
-        let certain = spread.other_outcomes().is_empty();
+        let certain = spread.outcomes.iter().all(|one| *one == own.outcome);
         let same = spread.same_until_half_cycle;
         counts.outcomes += usize::from(certain);
         counts.moved += usize::from(!cycles.is_empty());
@@ -96,7 +96,8 @@ fn campaign(cases: usize) -> Counts {
             failed[0] |= certain && overturns(own.outcome) != overturns(other.outcome);
             let others = other.half_cycles();
             for (cycle, own) in spread.half_cycles.iter().take(same).enumerate() {
-                let own = own.own;
+                let same_peak = |cycle: &&HalfCycle| cycle.peak_time_s == own.peak_time_s;
+                let own = cycles.iter().find(same_peak).unwrap();
                 let off = own
                     .counterpart(&others)
                     .map_or(1.0, |other| (other.peak_rad / own.peak_rad - 1.0).abs());

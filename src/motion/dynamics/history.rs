@@ -4,7 +4,7 @@ use std::fmt;
 use std::time::Duration;
 
 use nalgebra::Vector2;
-use serde::{Serialize, Serializer};
+use serde::{Deserialize, Serialize, Serializer};
 
 use crate::dynamics::ThrustRecord;
 use crate::mechanics::{Demand, Hinge, Lanes, Pose, Sway, Tie, TieMemory};
@@ -46,16 +46,49 @@ impl Outcome {
         }
     }
 
+    /// Returns the outcome without the side of overturning.
+    pub const fn kind(self) -> OutcomeKind {
+        match self {
+            Self::NeverMoved => OutcomeKind::NeverMoved,
+            Self::Vibrates => OutcomeKind::Vibrates,
+            Self::Rest => OutcomeKind::Rest,
+            Self::Overturned(_) => OutcomeKind::Overturned,
+            Self::StillRocking => OutcomeKind::StillRocking,
+            Self::Incomplete => OutcomeKind::Incomplete,
+        }
+    }
+
     /// Returns the name in machine-readable results.
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::NeverMoved => "never_moved",
-            Self::Vibrates => "vibrates",
-            Self::Rest => "rest",
-            Self::Overturned(_) => "overturned",
-            Self::StillRocking => "still_rocking",
-            Self::Incomplete => "incomplete",
-        }
+        self.kind().name()
+    }
+}
+
+named! {
+    /// [`Outcome`] without the side of overturning.
+    pub enum OutcomeKind {
+        /// [`Outcome::NeverMoved`].
+        NeverMoved = "never_moved",
+        /// [`Outcome::Vibrates`].
+        Vibrates = "vibrates",
+        /// [`Outcome::Rest`].
+        Rest = "rest",
+        /// [`Outcome::Overturned`].
+        Overturned = "overturned",
+        /// [`Outcome::StillRocking`].
+        StillRocking = "still_rocking",
+        /// [`Outcome::Incomplete`].
+        Incomplete = "incomplete",
+    }
+}
+
+impl OutcomeKind {
+    /// Returns the outcome, with the side to which the structure overturned.
+    pub fn to(self, sway: Option<Sway>) -> Outcome {
+        use Outcome::{Incomplete, NeverMoved, Rest, StillRocking, Vibrates};
+        let others = [NeverMoved, Vibrates, Rest, StillRocking, Incomplete];
+        let other = others.into_iter().find(|other| other.kind() == self);
+        other.unwrap_or(Outcome::Overturned(sway.unwrap_or_default()))
     }
 }
 
@@ -192,7 +225,7 @@ impl TieSample {
 }
 
 /// Largest force of a tie in a history, and its state at the end.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct TieSummary {
     /// Largest tension, in N, including the tension at which the tie breaks.
     pub peak_force_n: f64,
@@ -541,7 +574,7 @@ pub struct Cost {
 }
 
 /// Additional summary of a row of blocks.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RowSummary {
     /// All half cycles of any size; [`Summary::half_cycles`] omits vibration.
     #[serde(skip)]
@@ -556,7 +589,7 @@ pub struct RowSummary {
     /// or if friction dissipated more than a hundredth of it.
     pub peak_potential_over_barrier: Option<f64>,
     /// Forces and energies of the ties; absent without ties.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub ties: Vec<TieSummary>,
     /// Largest kinetic energy at the end of a step, in J.
     pub largest_kinetic_j: f64,
@@ -572,7 +605,7 @@ pub struct RowSummary {
     #[serde(rename = "energy_defect_over_largest")]
     pub energy_error: f64,
     /// Least normal force at a joint outside impacts, in N; infinite without any step and for elastic joints, and then absent from results.
-    #[serde(skip_serializing_if = "is_infinite")]
+    #[serde(default = "infinity", skip_serializing_if = "is_infinite")]
     pub least_normal_n: f64,
     /// Largest closure error of an arch, in m.
     pub closure_error_m: f64,
@@ -596,12 +629,16 @@ pub struct RowSummary {
     pub longest_step: Option<Duration>,
 }
 
+const fn infinity() -> f64 {
+    f64::INFINITY
+}
+
 const fn is_infinite(number: &f64) -> bool {
     number.is_infinite()
 }
 
 /// Half cycle: motion between successive passages of the centre of gravity through its undeformed position.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct HalfCycle {
     /// Side of the sway.
     pub sway: Sway,
@@ -638,7 +675,7 @@ impl HalfCycle {
 }
 
 /// Slip in a motion.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Sliding {
     /// Energy dissipated by friction, in J.
     pub friction_j: f64,
@@ -673,7 +710,7 @@ impl Sliding {
 }
 
 /// Additional summary of a motion with elastic joints. Energies are totals of the whole motion.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ElasticSummary {
     /// Largest elastic compressive stress. Damping adds to it, and the strength limits the sum.
     #[serde(flatten)]
@@ -700,7 +737,7 @@ pub struct ElasticSummary {
 }
 
 /// Largest compressive stress, with its joint and time.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Stress {
     /// Largest elastic compressive stress, in Pa. Damping adds to it, and the strength limits the sum.
     #[serde(rename = "largest_compressive_stress_pa")]

@@ -23,8 +23,8 @@ pub use self::fall::FallEnd;
 pub use self::free_hinges::RowOptions;
 pub use self::ground::{GroundMotion, GroundVelocity};
 pub use self::history::{
-    Cost, Details, Event, EventKind, HalfCycle, OpenHinge, Outcome, Sample, Sliding, State,
-    Summary, TieSample,
+    Cost, Details, Event, EventKind, HalfCycle, OpenHinge, Outcome, OutcomeKind, Sample, Sliding,
+    State, Summary, TieSample,
 };
 pub use self::model::{MechanismModel, Model, Repetition, Request, SimulationError};
 pub use self::recording::{History, MEMORY_BYTES, MemoryError, Recording, Samples};

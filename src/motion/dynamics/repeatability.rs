@@ -11,7 +11,7 @@
 use std::collections::VecDeque;
 use std::fmt;
 
-use serde::{Deserialize, Serialize, Serializer};
+use serde::{Deserialize, Serialize};
 
 use super::model::{Case, Job, Jobs};
 use super::until::EndCondition;
@@ -117,7 +117,7 @@ impl fmt::Display for OutcomeCount {
 /// Motion compared with its repetitions: only results on which they agree are reliable.
 ///
 /// After the first change of side, the motion depends on the order of almost simultaneous impacts.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Repeatability {
     /// Count of the outcomes.
     #[serde(flatten)]
@@ -151,17 +151,12 @@ pub fn key(repetition: &str) -> String {
 }
 
 /// Half cycle of a motion with its counterparts in the repetitions.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RepeatedHalfCycle {
-    /// Half cycle of the motion itself; in results, the time of its peak, in seconds.
-    #[serde(rename = "peak_time_s", serialize_with = "peak_time")]
-    pub own: HalfCycle,
+    /// Time of the peak in the motion itself, in seconds.
+    pub peak_time_s: f64,
     /// Peaks in all motions, in radians; `None` if a repetition has no half cycle to the same side at that time.
     pub peak_rad: Option<RepeatedValue>,
-}
-
-fn peak_time<S: Serializer>(cycle: &HalfCycle, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.serialize_f64(cycle.peak_time_s)
 }
 
 impl RepeatedHalfCycle {
@@ -172,7 +167,7 @@ impl RepeatedHalfCycle {
 }
 
 /// Value of a quantity in a motion, and its range in the motion and all repetitions.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RepeatedValue {
     /// Value in the motion itself.
     pub own: f64,
@@ -214,9 +209,12 @@ impl Repeatability {
                 |other: &&Summary| Some(own.counterpart(&other.row()?.half_cycles)?.peak_rad);
             let peaks_rad: Option<Vec<f64>> = others.iter().map(peak_rad).collect();
             let peak_rad = peaks_rad.map(|peaks_rad| RepeatedValue::of(own.peak_rad, peaks_rad));
-            RepeatedHalfCycle { own, peak_rad }
+            RepeatedHalfCycle {
+                peak_time_s: own.peak_time_s,
+                peak_rad,
+            }
         };
-        let half_cycles: Vec<_> = cycles.into_iter().map(beside).collect();
+        let half_cycles: Vec<_> = cycles.iter().copied().map(beside).collect();
         let differs = |cycle: &RepeatedHalfCycle| !cycle.is_certain();
         let parts = half_cycles.iter().position(differs);
         let all_stand = runs.iter().all(|run| run.overturned_s().is_none());
@@ -230,7 +228,7 @@ impl Repeatability {
             repeated,
             outcomes: runs.iter().map(|run| run.outcome).collect(),
             same_until_half_cycle: parts.unwrap_or(half_cycles.len()),
-            parts_at_s: parts.map(|parts| half_cycles[parts].own.start_s),
+            parts_at_s: parts.map(|parts| cycles[parts].start_s),
             half_cycles,
             largest_rad: all_stand.then(largest_rad),
             slips_m: slips_m.unwrap_or_default(),
@@ -259,19 +257,6 @@ impl Repeatability {
         let worst = joints.max_by(|one, other| range_m(one).total_cmp(&range_m(other)));
         let same_m = AGREEMENT * SAME_PEAK_RATIO * self.most_slip_m();
         worst.filter(|joint| self.has_slipped() && range_m(joint) > same_m)
-    }
-
-    /// Returns the other outcomes, including those that differ in the side of overturning alone, each with the names of its repetitions.
-    pub fn other_outcomes(&self) -> Vec<(Outcome, String)> {
-        let mut others: Vec<(Outcome, String)> = Vec::new();
-        for (name, outcome) in self.repeated.iter().zip(&self.outcomes[1..]) {
-            match others.iter_mut().find(|(other, _)| other == outcome) {
-                Some((_, names)) => *names += &format!(" and {name}"),
-                None if *outcome == self.outcomes[0] => {}
-                None => others.push((*outcome, (*name).to_owned())),
-            }
-        }
-        others
     }
 }
 

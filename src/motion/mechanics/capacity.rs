@@ -16,7 +16,7 @@
 //! The sums include the blocks that the mechanism moves. A single block has `e* = 1`.
 
 use nalgebra::Vector2;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::chain::MechanismState;
@@ -181,7 +181,7 @@ pub struct TieEventFractions {
 }
 
 /// Displacements of the control point at which a tie yields or breaks, in metres.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TieEventDisplacements {
     /// Displacement at which the tie yields; `None` if it does not.
     pub yields_at_m: Option<f64>,

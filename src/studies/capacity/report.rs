@@ -2,7 +2,7 @@
 
 use askama::Template;
 use nalgebra::Vector2;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::held_row;
@@ -17,7 +17,7 @@ use crate::{Scenario, Sway};
 pub const FILES: [&str; 3] = ["capacity.svg", "capacity.csv", "capacity.json"];
 
 /// Summary of the capacity curves of a structure.
-#[derive(Clone, Debug, PartialEq, Serialize, Template)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Template)]
 #[template(path = "studies/capacity/words.txt")]
 pub struct Summary {
     /// The curves to the right and to the left, without their points.
@@ -31,7 +31,7 @@ pub struct Summary {
 }
 
 /// Summary of the capacity curve to one side.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CapacitySide {
     /// The control point in the undeformed structure, in metres.
     pub control_point_m: Vector2<f64>,
@@ -42,12 +42,12 @@ pub struct CapacitySide {
     /// The equivalent oscillator.
     pub oscillator: Oscillator,
     /// Displacements at which ties yield or break; absent without ties.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub ties: Vec<TieEventDisplacements>,
 }
 
 /// The equivalent oscillator of a capacity curve.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Oscillator {
     /// Participating mass `M*`, in kg.
     pub participating_mass_kg: f64,

@@ -1,7 +1,7 @@
 //! The displacement between the feet of a structure that move differently.
 
 use nalgebra::Vector2;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::Summary as History;
 use crate::dynamics::peak::CONSTANT;
@@ -11,7 +11,7 @@ use crate::scenario::Scenario;
 const STEPS: u32 = 200_000;
 
 /// Displacements of the right foot relative to the left one, to the right and upwards.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct FeetApart {
     /// Time at which the history starts, in seconds: zero or negative.
     pub start_s: f64,
@@ -21,6 +21,9 @@ pub struct FeetApart {
     pub feet_farthest_apart_time_s: f64,
     /// The displacement of the right foot relative to the left one at the end of the run, in metres.
     pub feet_apart_at_end_m: Vector2<f64>,
+    /// Ends of the motions of the left and the right foot, in seconds; absent if the right foot has no record.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub records_end_s: Option<[f64; 2]>,
 }
 
 impl FeetApart {
@@ -39,11 +42,14 @@ impl FeetApart {
         let (feet_farthest_apart_time_s, feet_farthest_apart_m) =
             (times_s[farthest], apart_m[farthest]);
         let feet_apart_at_end_m = *apart_m.last()?;
+        let right = scenario.right_foot.as_ref();
+        let right_record = right.and_then(|right| right.record());
         Some(Self {
             start_s: ground.start_s(),
             feet_farthest_apart_m,
             feet_farthest_apart_time_s,
             feet_apart_at_end_m,
+            records_end_s: right_record.map(|_| ground.ends_s()),
         })
     }
 }

@@ -11,6 +11,7 @@ mod animation;
 mod caveats;
 mod comparison;
 mod feet;
+mod impacts;
 mod open_joints;
 mod overlay;
 mod packed;
@@ -23,17 +24,15 @@ mod summary;
 mod tables;
 mod words;
 
-use std::fmt::Write as _;
 use std::io;
 use std::ops::ControlFlow;
-use std::path::PathBuf;
 use std::time::Duration;
 
 use nalgebra::Vector2;
 use serde_json::Value;
 
-pub use self::caveats::warnings;
-use self::comparison::comparison_words;
+use self::comparison::Comparison;
+pub use self::impacts::NotableImpacts;
 use self::overlay::Curves;
 use self::picture::Timeline;
 pub use self::points::MAX_POINTS;
@@ -41,10 +40,9 @@ use self::points::ObservedPoints;
 use self::report::Report;
 pub use self::scales::Scales;
 use self::snapshots::Snapshots;
-use self::summary::Summary;
-pub use self::summary::{ComputedRun, OutcomeSummary, summary};
-pub use self::words::heading;
-use self::words::{NotableImpacts, VerdictLine, Words};
+pub use self::summary::{ComputedRun, OutcomeSummary, Summary, summary};
+use self::words::{Files, Printed, Words};
+pub use self::words::{heading, words_of};
 use super::quotable::{self, ModelAnswer};
 use super::{Progress, Results, RunnerError, StudyError, Watch};
 use crate::clock;
@@ -52,10 +50,10 @@ use crate::dynamics::repeatability::Repetitions;
 use crate::dynamics::variation::Variations;
 use crate::dynamics::{FallEnd, Repeatability};
 use crate::output::{
-    Figure, Folder, OutputError, Scene, Subject, TableWriter, pretty, render, summary_of,
+    Figure, Folder, Named, OutputError, Scene, Subject, TableWriter, pretty, render, summary_of,
 };
 use crate::scenario::{ModelKind, Scenario};
-use crate::{Event, Model, OpenHinge, Pose, Recorder, Sample, Summary as History, Sway, Verdict};
+use crate::{Event, Model, OpenHinge, Pose, Recorder, Sample, Summary as History, Sway};
 
 const ROTATIONS: &str = "rotations.csv";
 const REPORT: &str = "report.html";
@@ -127,18 +125,12 @@ pub struct Sinks<'w> {
 }
 
 /// The results of one model of motion.
-struct ModelResults<'r> {
-    run: &'r Run<'r>,
-    /// The folder of its files, if there is one.
-    folder: Option<PathBuf>,
-    words: String,
-    /// As in `summary.json`.
-    summary: Value,
-    /// The summary of the motion.
-    history: History,
-    verdict: Verdict,
+struct ModelResults {
+    summary: Summary,
     answer: ModelAnswer,
     curves: Curves,
+    /// The files in its folder, if there is one.
+    files: Option<Files>,
 }
 
 /// A scenario to run.
@@ -173,11 +165,11 @@ pub fn results(
     mut sinks: Sinks<'_>,
     watch: Watch<'_>,
 ) -> Result<Results, StudyError> {
-    let all_models = scenarios.iter().map(|one| one.motion.kind);
-    let all_models: Vec<_> = all_models.collect();
-    let runs = scenarios.iter();
-    let runs = runs.map(|one| Run::new(one, options, figure, &all_models));
-    let runs: Result<Vec<Run<'_>>, String> = runs.collect();
+    let all_models: Vec<_> = scenarios.iter().map(|one| one.motion.kind).collect();
+    let runs: Result<Vec<Run<'_>>, String> = scenarios
+        .iter()
+        .map(|one| Run::new(one, options, figure, &all_models))
+        .collect();
     let (runs, mut all) = (runs.map_err(StudyError::Scenario)?, Vec::new());
     for (number, run) in runs.iter().enumerate() {
         // Opened before the history starts, so a folder that cannot be written costs no simulation.
@@ -188,29 +180,28 @@ pub fn results(
         all.push(run.compute(folder, sinks.rotations.take(), uncertainty, &mut *watch)?);
     }
     let mut results = Results::default();
-    if let [one] = &mut all[..] {
-        results.words = one.words.trim().to_owned();
-        results.summary = one.summary.take();
-        return Ok(results);
+    let comparison = (all.len() > 1).then(|| {
+        let answers: Vec<_> = all.iter().map(|one| one.answer.clone()).collect();
+        let summaries = all.iter().map(|one| one.summary.clone());
+        let named = all_models.iter().map(|model| model.option.to_owned());
+        Comparison {
+            to_quote: quotable::in_words(&answers),
+            models: Named(named.zip(summaries).collect()),
+        }
+    });
+    results.summary = match &comparison {
+        None => summary_of(&all[0].summary)?,
+        Some(comparison) => summary_of(comparison)?,
+    };
+    if comparison.is_some() && all[0].files.is_some() {
+        results.files = vec![(OVERLAY, overlay(&runs, &all).into_bytes())];
     }
-    let answers: Vec<_> = all.iter().map(|one| one.answer.clone()).collect();
-    let to_quote = quotable::in_words(&answers);
-    results.words = comparison_words(&all);
-    let quote = to_quote.iter().map(|quote| format!("  {quote}\n"));
-    results.words.extend(quote);
-    results.summary["to_quote"] = to_quote.into();
-    for one in &mut all {
-        let _ = write!(results.words, "{}\n{}", one.run.label(), one.words);
-        let model = one.run.scenario.motion.kind;
-        results.summary[model.option] = one.summary.take();
-    }
-    if let Some(folder) = &all[0].folder {
-        results.files = vec![(OVERLAY, overlay(&all).into_bytes())];
-        let number = if all.len() > 2 { "all" } else { "both" };
-        let path = folder.with_file_name(OVERLAY);
-        let _ = writeln!(results.words, "{number} in {}", path.display());
-    }
-    results.words = results.words.trim().to_owned();
+    let printed = all.iter().map(|one| (&one.summary, one.files.as_ref()));
+    let words = render(&Printed {
+        comparison: comparison.as_ref(),
+        runs: printed.collect(),
+    });
+    results.words = words.trim().to_owned();
     Ok(results)
 }
 
@@ -219,11 +210,6 @@ pub fn repeat(scenario: &Scenario, model: &dyn Model, history: &History) -> Opti
     model.row()?;
     let (ground, request) = (scenario.ground_motion(), scenario.request());
     Some(Repetitions::start(model, ground, &request).compare(history))
-}
-
-/// Returns the verdict on a history in words, as a run prints it.
-pub fn verdict(computed: ComputedRun<'_>) -> String {
-    render(&VerdictLine(computed))
 }
 
 impl<'a> Run<'a> {
@@ -258,11 +244,6 @@ impl<'a> Run<'a> {
         })
     }
 
-    /// The label of its model.
-    fn label(&self) -> &'static str {
-        self.scenario.motion.kind.label
-    }
-
     /// The files that it writes, the seal last.
     fn files(&self) -> Vec<&'static str> {
         let is_written = |file: &&str| match *file {
@@ -287,7 +268,7 @@ impl<'a> Run<'a> {
         rotations: RotationsOutput<'_>,
         uncertainty: Option<&SampleReport>,
         watch: Watch<'_>,
-    ) -> Result<ModelResults<'_>, StudyError> {
+    ) -> Result<ModelResults, StudyError> {
         let (scenario, model) = (self.scenario, &*self.model);
         let (ground, request) = (scenario.ground_motion(), scenario.request());
         let mut drawings = Drawings::new(self, folder.is_some());
@@ -320,69 +301,61 @@ impl<'a> Run<'a> {
             repetitions.compare(&history)
         });
         let varied = variations.wait();
-        let computed = ComputedRun {
+        let mut summary = Summary::of(&ComputedRun {
             scenario,
             model,
             history: &history,
+            impacts: std::mem::take(&mut drawings.notable),
             repeated: repeated.as_ref(),
             varied: &varied,
-        };
-        let (computed_verdict, answer) = (computed.verdict(), computed.answer());
-        let mut summary = Summary::of(&computed, drawings.points.peaks());
+        });
+        summary.points = drawings.points.peaks();
+        // Only the file and its words contain the time of computation, which would otherwise differ between equal histories.
+        let longest_step = history.row().and_then(|row| row.longest_step);
+        summary.longest_step_us = longest_step.map(|step| (step.as_secs_f64() * 1e6).round());
         if self.all_models.len() > 1 {
             summary.to_quote = None;
+            let names = self.all_models.iter().map(|model| model.option.to_owned());
+            summary.compared_models = names.collect();
         }
         summary.uncertain = uncertainty.map(|samples| samples.summary.clone());
-        let words = Words {
-            computed,
-            summary: &summary,
-            impacts: &drawings.notable,
-            all_models: self.all_models,
-        };
-        let (verdict, mut words) = (verdict(computed), render(&words));
-        words.insert_str(0, "  ");
-        let summary = summary_of(&summary)?;
-        let path = folder.as_ref().map(|folder| folder.path().to_owned());
-        if let Some(folder) = folder {
+        let files = folder.map(|folder| {
             let of_samples = uncertainty.map_or("", |samples| &samples.words);
-            let mut files = drawings.files(self, &history, [of_samples, &verdict], &words);
-            files.push((SUMMARY, pretty(&summary).into_bytes()));
-            words += &self.write(folder, files, &drawings, rows)?;
-        }
+            let mut files = drawings.files(self, &history, of_samples, &summary);
+            let json = pretty(&summary_of(&summary)?);
+            files.push((SUMMARY, json.into_bytes()));
+            self.write(folder, files, &drawings, rows)
+        });
         Ok(ModelResults {
-            run: self,
-            folder: path,
-            words: format!("  {verdict}{words}"),
+            answer: summary.answer(scenario),
             summary,
-            verdict: computed_verdict,
-            answer,
-            history,
-            curves: drawings.curves,
+            curves: drawings.curves.clone(),
+            files: files.transpose()?,
         })
     }
 
-    /// Writes the files and the film into the folder. Returns the lines about them; `rows` is the number of samples in the tables.
+    /// Writes the files and the film into the folder; `rows` is the number of samples in the tables.
     fn write(
         &self,
         mut folder: Folder,
         files: Vec<(&'static str, Vec<u8>)>,
         drawings: &Drawings,
         rows: usize,
-    ) -> Result<String, OutputError> {
-        let mut words = drawings.add_film(self, &mut folder)?;
-        if let Some(snapshots) = &drawings.snapshots {
-            words += &snapshots.outside_times_text();
-        }
-        let counted = format!("{ROTATIONS} ({rows} rows)");
-        let names = self.files().join(", ").replacen(ROTATIONS, &counted, 1);
-        let path = folder.path().display();
-        let _ = writeln!(words, "  results in {path}: {names}");
+    ) -> Result<Files, OutputError> {
+        let snapshots = drawings.snapshots.as_ref();
+        let written = Files {
+            folder: folder.path().to_owned(),
+            names: self.files(),
+            rows,
+            film_pictures: drawings.add_film(self, &mut folder)?,
+            outside_times_s: snapshots.map_or_else(Default::default, Snapshots::outside_times_s),
+        };
         let results = Results {
             files,
             ..Results::default()
         };
         results.write(folder)?;
-        Ok(words)
+        Ok(written)
     }
 
     /// The subject of the pictures.
@@ -398,9 +371,12 @@ impl<'a> Run<'a> {
 }
 
 /// One picture of several models of motion.
-fn overlay(all: &[ModelResults<'_>]) -> String {
-    let names: Vec<_> = all.iter().map(|one| one.run.label()).collect();
-    let first = all[0].run;
+fn overlay(runs: &[Run<'_>], all: &[ModelResults]) -> String {
+    let names: Vec<_> = runs
+        .iter()
+        .map(|run| run.scenario.motion.kind.label)
+        .collect();
+    let first = &runs[0];
     let mut title = names.join(" and ");
     if let Some(initial) = title.get_mut(..1) {
         initial.make_ascii_uppercase();
@@ -482,15 +458,22 @@ impl Drawings {
         &self,
         run: &Run<'_>,
         history: &History,
-        opening: [&str; 2],
-        words: &str,
+        uncertainty: &str,
+        summary: &Summary,
     ) -> Vec<(&'static str, Vec<u8>)> {
         let (figure, title) = (run.figure, title(run.scenario));
         let subject = run.subject(title);
         let picture = self.timeline.draw(figure, &subject, history, &self.points);
         let report = self.report.as_ref().map(|report| {
             let points = Some(&self.points);
-            report.page(run.scenario, history, points, opening, words)
+            let opening = [uncertainty, &summary.verdict_line()];
+            report.page(
+                run.scenario,
+                history,
+                points,
+                opening,
+                &render(&Words { summary }),
+            )
         });
         let snapshots = self.snapshots.as_ref();
         let snapshots = snapshots.map(|snapshots| snapshots.draw(figure, title));
@@ -504,19 +487,17 @@ impl Drawings {
         files.collect()
     }
 
-    /// Adds the film to the folder. Returns a line with the number of its pictures; empty without film.
-    fn add_film(&self, run: &Run<'_>, folder: &mut Folder) -> Result<String, OutputError> {
+    /// Adds the film to the folder. Returns the number of its pictures; `None` without film.
+    fn add_film(&self, run: &Run<'_>, folder: &mut Folder) -> Result<Option<usize>, OutputError> {
         let Some(film) = &self.film else {
-            return Ok(String::new());
+            return Ok(None);
         };
         let pictures = film.film_pictures(run.figure, title(run.scenario));
         for (number, picture) in (1..).zip(&pictures) {
             let name = format!("{FILM}/frame-{number:04}.svg");
             folder.add(&name, picture.as_bytes())?;
         }
-        let (count, path) = (pictures.len(), folder.path().join(FILM));
-        let path = path.display();
-        Ok(format!("  {count} pictures of a film in {path}\n"))
+        Ok(Some(pictures.len()))
     }
 }
 

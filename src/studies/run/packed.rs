@@ -2,7 +2,7 @@
 
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
-use serde_json::{Value, json};
+use serde::{Deserialize, Serialize};
 
 use crate::output::{Piece, Scene};
 use crate::{OpenHinge, Sample};
@@ -35,12 +35,21 @@ pub(super) fn layouts<'a>(
     (layouts, layout_of)
 }
 
-/// Returns the body and the outline of a piece, in units of the page.
-pub(super) fn piece(piece: &Piece, unit_m: f64) -> Value {
+/// The body and the outline of a piece, in units of the page.
+#[derive(Serialize, Deserialize)]
+pub(super) struct DrawnPiece {
+    body: i64,
+    outline: Vec<i64>,
+}
+
+/// Returns a piece in units of the page.
+pub(super) fn piece(piece: &Piece, unit_m: f64) -> DrawnPiece {
     let corners = piece.outline_m.iter();
     let coordinates = corners.flat_map(|corner| [corner.x, corner.y]);
-    let outline: Vec<i64> = coordinates.map(|x| (x / unit_m).round() as i64).collect();
-    json!({ "body": body_number(piece.body), "outline": outline })
+    DrawnPiece {
+        body: body_number(piece.body),
+        outline: coordinates.map(|x| (x / unit_m).round() as i64).collect(),
+    }
 }
 
 /// Returns the number of a body; -1 for parts that do not move.

@@ -1,7 +1,7 @@
 //! Observed points of blocks, such as the crown, and their displacements.
 
 use nalgebra::Vector2;
-use serde_json::{Value, json};
+use serde::{Deserialize, Serialize};
 
 use super::packed::curve;
 use super::summary::PointPeaks;
@@ -170,16 +170,30 @@ impl ObservedPoints {
     }
 
     /// Returns the positions and named curves of the points, in millimetres, for the page.
-    pub(super) fn on_page(&self) -> Value {
-        let point = |(observed, names): (&ObservedPoint, [String; 2])| {
-            let curves = observed.displacements.iter().zip(names);
-            let curves = curves.map(
-                |(along, name)| json!({ "name": name, "curve": curve(along.millimetres.points()) }),
-            );
-            json!({ "at_m": observed.point.at_m, "curves": curves.collect::<Vec<_>>() })
+    pub(super) fn on_page(&self) -> Vec<PointCurves> {
+        let observed = self.observed.iter().zip(self.names());
+        let point = |(observed, names): (&ObservedPoint, [String; 2])| PointCurves {
+            at_m: observed.point.at_m,
+            curves: std::array::from_fn(|axis| NamedCurve {
+                name: names[axis].clone(),
+                curve: curve(observed.displacements[axis].millimetres.points()),
+            }),
         };
-        self.observed.iter().zip(self.names()).map(point).collect()
+        observed.map(point).collect()
     }
+}
+
+/// The position of a point, and its encoded displacements.
+#[derive(Serialize, Deserialize)]
+pub(super) struct PointCurves {
+    at_m: Vector2<f64>,
+    curves: [NamedCurve; 2],
+}
+
+#[derive(Serialize, Deserialize)]
+struct NamedCurve {
+    name: String,
+    curve: String,
 }
 
 fn displacement_m(

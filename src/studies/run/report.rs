@@ -6,25 +6,26 @@
 
 use askama::Template;
 use nalgebra::Vector2;
-use serde::Serialize;
-use serde_json::{Value, json};
+use serde::{Deserialize, Serialize};
 
 use super::animation::Animation;
 use super::packed::{
-    LARGEST_I16, body_number, byte_rounded_up, curve, encoded, encoded_f32, layouts,
+    DrawnPiece, LARGEST_I16, body_number, byte_rounded_up, curve, encoded, encoded_f32, layouts,
     piece as drawn_piece, quantized,
 };
 use super::picture::LARGEST_EXCESS;
-use super::points::ObservedPoints;
+use super::points::{ObservedPoints, PointCurves};
 use super::title;
 use crate::dynamics::{FallEnd, GroundVelocity};
 use crate::mechanics::{BodyPoint, Edge};
 use crate::output::caption::ground_in_words;
 use crate::output::ground::curve_g;
-use crate::output::page::{PROGRAM, script_safe};
+use crate::output::page::{
+    BASE, PLAYER, PLOT_LICENCE, PLOT_SCRIPT, PLOT_STYLE, PLOTS, PROGRAM, STAGE, STYLE, script_safe,
+};
 use crate::output::scene::FARTHEST;
 use crate::output::{Envelope, Piece, Scene, filters, render};
-use crate::scenario::metres;
+use crate::scenario::{DimensionSide, metres};
 use crate::{
     GroundMotion, Hinge, Model, OpenHinge, Pose, Sample, Scenario, State, Summary as History, Sway,
 };
@@ -44,13 +45,7 @@ const COORDINATE_RATIO: f64 = 5e-5;
 /// Code of a section without compression.
 const NO_THRUST: i16 = i16::MIN;
 
-const STYLE: &str = include_str!("report/page.css");
-const STAGE: &str = include_str!("report/stage.js");
-const SCRIPT: &str = include_str!("report/page.js");
-// uPlot, the library that draws the curves.
-const PLOT_STYLE: &str = include_str!("../../../vendor/uplot/uPlot.min.css");
-const PLOT_SCRIPT: &str = include_str!("../../../vendor/uplot/uPlot.iife.min.js");
-const PLOT_LICENCE: &str = include_str!("../../../vendor/uplot/LICENSE");
+const CURVES: &str = include_str!("report/curves.js");
 
 /// Collects and thins the samples of a history for its page.
 #[derive(Clone, Debug)]
@@ -67,17 +62,99 @@ pub struct Report {
     excess_ratio: Envelope,
 }
 
-#[derive(Template)]
+/// The page: its words, and all data that it draws. Encoded numbers are in base 64.
+#[derive(Serialize, Deserialize, Template)]
 #[template(path = "studies/run/report/page.html")]
-struct Page<'p> {
-    title: &'p str,
-    uncertainty: &'p str,
-    verdict: &'p str,
+struct Page {
+    title: String,
+    uncertainty: String,
+    verdict: String,
     what: String,
-    words: &'p str,
+    words: String,
     scenario: String,
-    frames: usize,
-    data: String,
+    bodies: Vec<String>,
+    largest_body: usize,
+    unit_m: f64,
+    bounds_m: [Vector2<f64>; 2],
+    frame_m: [Vector2<f64>; 2],
+    dimensions: Vec<Size>,
+    opens_s: f64,
+    /// The end of the history; the frames of the fall follow.
+    end_s: f64,
+    fall_end: Option<String>,
+    /// Undeformed and moved faces of the supports.
+    supports: [Vec<[f64; 4]>; 2],
+    ties: Vec<[Point; 2]>,
+    ties_broken_s: Vec<Option<f64>>,
+    sections: Vec<[f64; 4]>,
+    /// Intrados with its body, and extrados.
+    joints: Vec<(i64, f64, f64, f64, f64)>,
+    across: Vec<Vector2<f64>>,
+    layouts: Vec<Layout>,
+    frames: Frames,
+    points: Option<Vec<PointCurves>>,
+    energy_label: String,
+    curves: Curves,
+}
+
+/// The number of a body, and a position.
+type Point = (i64, f64, f64);
+
+/// A dimension of the structure.
+#[derive(Serialize, Deserialize)]
+struct Size {
+    ends_m: [f64; 4],
+    side: DimensionSide,
+    text: String,
+}
+
+/// Outlines and hinges while the same hinges are open.
+#[derive(Serialize, Deserialize)]
+struct Layout {
+    pieces: Vec<DrawnPiece>,
+    fill: Vec<DrawnPiece>,
+    /// Point, width in metres, and label.
+    loads: Vec<(i64, f64, f64, f64, String)>,
+    hinges: Vec<(i64, f64, f64, u8)>,
+    section_bodies: Vec<i64>,
+    point_bodies: Vec<i64>,
+}
+
+/// Encoded numbers of all frames, as multiples of a unit where there is one.
+#[derive(Serialize, Deserialize)]
+struct Frames {
+    times_s: String,
+    rotations: String,
+    rotation_unit_rad: f64,
+    shifts: String,
+    shift_unit_m: f64,
+    layouts: String,
+    ground_m: String,
+    ground_g: String,
+    right_foot_m: Option<String>,
+    thrust_unit: Option<f64>,
+    thrust: String,
+    largest_stress_pa: Option<f64>,
+    pressed: String,
+    joints: String,
+    states: String,
+    count: usize,
+}
+
+/// Encoded curves over time.
+#[derive(Serialize, Deserialize)]
+struct Curves {
+    ground_g: String,
+    energy: String,
+    excess: Option<String>,
+}
+
+/// Renders a page of a run again from the JSON inside it.
+///
+/// # Errors
+/// When the JSON is not that of a page.
+pub fn page_of(data: &str) -> serde_json::Result<String> {
+    serde_json::from_str::<Page>(data).map(|page| render(&page))
 }
 
 impl Report {
@@ -135,63 +212,27 @@ impl Report {
     ) -> String {
         let ground = scenario.ground_motion();
         let mut frames = self.motion.frames();
-        let ends_at = frames.len();
+        let fall_from = frames.len();
         frames.extend(self.fall.frames());
-        let (structure, shaken) = (scenario.structure.described(), ground_in_words(scenario));
-        let data = self.data(ground, &frames, ends_at, (history, points));
-        render(&Page {
-            title: title(scenario),
-            uncertainty: uncertainty.trim_end(),
-            verdict: verdict.trim_end(),
-            what: format!("{structure}; {shaken}"),
-            words: words.trim_end(),
-            scenario: scenario.to_toml(),
-            frames: frames.len(),
-            data: script_safe(&data),
-        })
-    }
-
-    /// Returns all data that the page draws. The frames of the fall begin at index `fall_from`.
-    fn data(
-        &self,
-        ground: &GroundMotion,
-        frames: &[&Sample],
-        fall_from: usize,
-        (history, points): (&History, Option<&ObservedPoints>),
-    ) -> Value {
         let [low_m, high_m] = self.scene.bounds_m();
         let unit_m = COORDINATE_RATIO * (high_m - low_m).amax();
-        let (hinges, layout_of) = layouts(&self.scene, frames);
-        let joint = |joint: usize| {
-            let [intrados, extrados] = self.scene.joint(joint)?;
-            let (body, x_m, y_m) = point(intrados);
-            Some((body, x_m, y_m, extrados.at_m.x, extrados.at_m.y))
-        };
-        let joints: Vec<_> = (0..).map_while(joint).collect();
+        let (hinges, layout_of) = layouts(&self.scene, &frames);
+        let joints: Vec<_> = (0..).map_while(|joint| self.joint(joint)).collect();
         let across = (0..joints.len()).filter_map(|joint| self.scene.across(joint));
         let sections = self.scene.sections.iter();
-        // Undeformed and moved faces of the supports.
-        let supports = [0.0, 1.0].map(|exaggeration| {
+        let faces = |exaggeration| {
             let faces = self.scene.supports_m(exaggeration).into_iter();
-            list(faces.map(flat))
+            faces.map(flat).collect()
+        };
+        let dimensions = self.scene.dimensions.iter().map(|dimension| Size {
+            ends_m: flat(dimension.ends_m),
+            side: dimension.side,
+            text: dimension.text.clone(),
         });
-        let dimensions = self.scene.dimensions.iter().map(|dimension| {
-            json!({ "ends_m": flat(dimension.ends_m), "side": dimension.side, "text": dimension.text })
-        });
-        let opens_s = opening_time_s(&frames[..fall_from], history);
         let ties = self.scene.ties(&[]).into_iter();
         let of_row = history.row().into_iter();
         let broken_s = of_row.flat_map(|row| row.ties.iter().map(|tie| tie.broken_s));
-        let mechanism = match history.row() {
-            None => "the mechanism that moves",
-            Some(_) => "the first mechanism",
-        };
-        let energy_label = match self.in_barriers {
-            true => format!("Kinetic and potential energy over the barrier of {mechanism}"),
-            false => "Energy (J)".to_owned(),
-        };
         let leaves = self.excess_ratio.points().any(|(_, ratio)| ratio > 0.0);
-        let excess = leaves.then(|| curve(self.excess_ratio.points()));
         let end_s = frames[..fall_from]
             .last()
             .map_or(ground.start_s(), |frame| frame.time_s);
@@ -199,36 +240,66 @@ impl Report {
         let falls = frames.last().is_some_and(|frame| frame.time_s > end_s);
         let fall_end = self.fall_end.as_ref();
         let fall_end = fall_end.filter(|end| falls || **end != FallEnd::Turned);
-        json!({
-            "bodies": self.bodies,
-            "largest_body": history.largest_body(),
-            "unit_m": unit_m,
-            "bounds_m": [low_m, high_m],
-            "frame_m": self.scene.frame_m(),
-            "dimensions": list(dimensions),
-            "opens_s": opens_s,
-            "end_s": end_s,
-            "fall_end": fall_end.map(FallEnd::to_string),
-            "supports": supports,
-            "ties": list(ties.map(|ends| ends.map(point))),
-            "ties_broken_s": list(broken_s),
-            "sections": list(sections.map(|one| flat([one.middle_m, one.across_m]))),
-            "joints": joints,
-            "across": list(across),
-            "layouts": list(hinges.iter().map(|open| self.layout(open, points, unit_m))),
-            "frames": self.frames(ground, frames, layout_of, joints.len()),
-            "points": points.map(ObservedPoints::on_page),
-            "energy_label": energy_label,
-            "curves": {
-                "ground_g": curve(curve_g(ground, self.gravity_m_s2, end_s)),
-                "energy": curve(self.energy.points()),
-                "excess": excess,
+        let (structure, shaken) = (scenario.structure.described(), ground_in_words(scenario));
+        render(&Page {
+            title: title(scenario).to_owned(),
+            uncertainty: uncertainty.trim_end().to_owned(),
+            verdict: verdict.trim_end().to_owned(),
+            what: format!("{structure}; {shaken}"),
+            words: words.trim_end().to_owned(),
+            scenario: scenario.to_toml(),
+            bodies: self.bodies.clone(),
+            largest_body: history.largest_body(),
+            unit_m,
+            bounds_m: [low_m, high_m],
+            frame_m: self.scene.frame_m(),
+            dimensions: dimensions.collect(),
+            opens_s: opening_time_s(&frames[..fall_from], history),
+            end_s,
+            fall_end: fall_end.map(FallEnd::to_string),
+            supports: [0.0, 1.0].map(faces),
+            ties: ties.map(|ends| ends.map(point)).collect(),
+            ties_broken_s: broken_s.collect(),
+            sections: sections
+                .map(|one| flat([one.middle_m, one.across_m]))
+                .collect(),
+            frames: self.frames(ground, &frames, layout_of, joints.len()),
+            joints,
+            across: across.collect(),
+            layouts: hinges
+                .iter()
+                .map(|open| self.layout(open, points, unit_m))
+                .collect(),
+            points: points.map(ObservedPoints::on_page),
+            energy_label: self.energy_label(history),
+            curves: Curves {
+                ground_g: curve(curve_g(ground, self.gravity_m_s2, end_s)),
+                energy: curve(self.energy.points()),
+                excess: leaves.then(|| curve(self.excess_ratio.points())),
             },
         })
     }
 
+    /// Returns the intrados of a joint, with its body, and the extrados.
+    fn joint(&self, joint: usize) -> Option<(i64, f64, f64, f64, f64)> {
+        let [intrados, extrados] = self.scene.joint(joint)?;
+        let (body, x_m, y_m) = point(intrados);
+        Some((body, x_m, y_m, extrados.at_m.x, extrados.at_m.y))
+    }
+
+    fn energy_label(&self, history: &History) -> String {
+        let mechanism = match history.row() {
+            None => "the mechanism that moves",
+            Some(_) => "the first mechanism",
+        };
+        match self.in_barriers {
+            true => format!("Kinetic and potential energy over the barrier of {mechanism}"),
+            false => "Energy (J)".to_owned(),
+        }
+    }
+
     /// Returns the outlines and hinges of a layout.
-    fn layout(&self, hinges: &[OpenHinge], points: Option<&ObservedPoints>, unit_m: f64) -> Value {
+    fn layout(&self, hinges: &[OpenHinge], points: Option<&ObservedPoints>, unit_m: f64) -> Layout {
         let drawn = |piece: Piece| drawn_piece(&piece, unit_m);
         let loads = self.scene.loads(hinges).into_iter().map(|(at, load)| {
             let ((body, x_m, y_m), text) = (point(at), format!("{} kg", metres(load.mass_kg)));
@@ -247,14 +318,14 @@ impl Report {
         });
         let bodies = self.scene.bodies_of_sections(hinges).into_iter();
         let points = points.into_iter().flat_map(|points| points.bodies(hinges));
-        json!({
-            "pieces": list(self.scene.pieces(hinges).into_iter().map(drawn)),
-            "fill": list(self.scene.fill(hinges).into_iter().map(drawn)),
-            "loads": list(loads),
-            "hinges": list(marks),
-            "section_bodies": list(bodies.map(body_number)),
-            "point_bodies": list(points.map(body_number)),
-        })
+        Layout {
+            pieces: self.scene.pieces(hinges).into_iter().map(drawn).collect(),
+            fill: self.scene.fill(hinges).into_iter().map(drawn).collect(),
+            loads: loads.collect(),
+            hinges: marks.collect(),
+            section_bodies: bodies.map(body_number).collect(),
+            point_bodies: points.map(body_number).collect(),
+        }
     }
 
     /// Returns the data of the frames, encoded in base 64, as multiples of a unit where the key has a unit.
@@ -264,7 +335,7 @@ impl Report {
         frames: &[&Sample],
         layouts: Vec<u16>,
         joints: usize,
-    ) -> Value {
+    ) -> Frames {
         let times_s: Vec<f64> = frames.iter().map(|frame| frame.time_s).collect();
         let poses = || frames.iter().flat_map(|frame| &frame.poses);
         let shifts = poses().flat_map(|pose| [pose.translation.x, pose.translation.y]);
@@ -308,32 +379,29 @@ impl Report {
             State::Rocking(Sway::Left) => 2,
             State::Overturned(_) => 3,
         });
-        json!({
-            "times_s": encoded(times_s.iter().map(|time_s| time_s.to_le_bytes())),
-            "rotations": rotations,
-            "rotation_unit_rad": rotation_unit_rad,
-            "shifts": shifts,
-            "shift_unit_m": shift_unit_m,
-            "layouts": encoded(layouts.into_iter().map(u16::to_le_bytes)),
-            "ground_m": encoded_f32(ground_m.iter().flat_map(|at_m| [at_m.x, at_m.y])),
-            "ground_g": encoded_f32(ground_g),
-            "right_foot_m": ground.right_foot().map(|_| encoded_f32(apart_m)),
-            "thrust_unit": has_thrust.then_some(thrust_unit),
-            "thrust": encoded(thrust.map(i16::to_le_bytes)),
-            "largest_stress_pa": (largest_pa > 0.0).then_some(largest_pa),
-            "pressed": encoded(pressed.map(u8::to_le_bytes)),
-            "joints": encoded(codes.map(u8::to_le_bytes)),
-            "states": encoded(states.map(u8::to_le_bytes)),
-        })
+        Frames {
+            times_s: encoded(times_s.iter().map(|time_s| time_s.to_le_bytes())),
+            rotations,
+            rotation_unit_rad,
+            shifts,
+            shift_unit_m,
+            layouts: encoded(layouts.into_iter().map(u16::to_le_bytes)),
+            ground_m: encoded_f32(ground_m.iter().flat_map(|at_m| [at_m.x, at_m.y])),
+            ground_g: encoded_f32(ground_g),
+            right_foot_m: ground.right_foot().map(|_| encoded_f32(apart_m)),
+            thrust_unit: has_thrust.then_some(thrust_unit),
+            thrust: encoded(thrust.map(i16::to_le_bytes)),
+            largest_stress_pa: (largest_pa > 0.0).then_some(largest_pa),
+            pressed: encoded(pressed.map(u8::to_le_bytes)),
+            joints: encoded(codes.map(u8::to_le_bytes)),
+            states: encoded(states.map(u8::to_le_bytes)),
+            count: frames.len(),
+        }
     }
 }
 
-fn list(items: impl Iterator<Item = impl Serialize>) -> Value {
-    items.map(|item| json!(item)).collect()
-}
-
 /// Returns the number of the body of a point, and its position.
-fn point(point: BodyPoint) -> (i64, f64, f64) {
+fn point(point: BodyPoint) -> Point {
     (body_number(point.body), point.at_m.x, point.at_m.y)
 }
 

@@ -74,21 +74,14 @@ impl Snapshots {
         }
     }
 
-    /// Returns lines about requested times before the start or after the end of the history. Their pictures show the first or the last instant.
-    pub(super) fn outside_times_text(&self) -> String {
+    /// Returns the requested times before the start and after the end of the history, in seconds. Their pictures show the first or the last instant.
+    pub(super) fn outside_times_s(&self) -> [Vec<f64>; 2] {
         let [start_s, end_s] = self.span_s;
-        let line = |is_outside: &dyn Fn(f64) -> bool, place: &str| {
-            let times_s = self.taken.iter().map(|(time_s, _)| *time_s);
-            let times_s = times_s.filter(|time_s| is_outside(*time_s));
-            let times_s: Vec<_> = times_s.map(|time_s| time_s.to_string()).collect();
-            match times_s.join(", ") {
-                none if none.is_empty() => none,
-                times_s => format!("  snapshots at {times_s} s are {place} instant\n"),
-            }
-        };
-        let early = "before the start: they show its first";
-        let late = "after the end: they show its last";
-        line(&|time_s| time_s < start_s, early) + &line(&|time_s| time_s > end_s, late)
+        let times_s = || self.taken.iter().map(|(time_s, _)| *time_s);
+        [
+            times_s().filter(|time_s| *time_s < start_s).collect(),
+            times_s().filter(|time_s| *time_s > end_s).collect(),
+        ]
     }
 
     /// Returns the largest joint stress in all pictures, in Pa.

@@ -1,25 +1,25 @@
 //! The summary of a run: `summary.json`.
 
-use serde::Serialize;
+use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 
 use super::Scales;
-use super::caveats::{first_peak_rad, friction_condition, warnings};
-use super::comparison::{changed_outcome, without_verdict};
 use super::feet::FeetApart;
+use super::impacts::{ImpactSummary, NotableImpacts};
 use crate::dynamics::history::{ElasticSummary, RowSummary};
 use crate::dynamics::repeatability::key;
+use crate::dynamics::thrust::{EXCESS_LEVELS, MODEL_LIMIT};
 use crate::dynamics::variation::VariationResult;
-use crate::dynamics::{HalfCycle, Repeatability, ThrustRecord};
+use crate::dynamics::{HalfCycle, OutcomeKind, Repeatability, ThrustRecord};
 use crate::mechanics::Sides;
 use crate::output::mechanisms::columns;
 use crate::output::{Named, OutputError, summary_of};
-use crate::scenario::{Ground, Scenario};
+use crate::scenario::{ELASTIC_JOINTS, FOUR_LINKS, FREE_HINGES, Ground, ModelKind, Scenario};
 use crate::studies::quotable::{self, ModelAnswer};
 use crate::{MechanismModel, Model, Outcome, Summary as History, Sway, Verdict};
 
 /// A computed motion, with its repetitions and variations.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub struct ComputedRun<'a> {
     /// The scenario.
     pub scenario: &'a Scenario,
@@ -27,67 +27,22 @@ pub struct ComputedRun<'a> {
     pub model: &'a dyn Model,
     /// The history.
     pub history: &'a History,
+    /// The impacts that may be described.
+    pub impacts: NotableImpacts,
     /// The comparison with its repetitions; `None` if the history was not repeated.
     pub repeated: Option<&'a Repeatability>,
     /// The histories with other stiffness and contact, and with rigid joints.
     pub varied: &'a [VariationResult],
 }
 
-impl<'a> ComputedRun<'a> {
-    /// Returns the answer that may be quoted: a certain outcome that does not depend on the stiffness and contact of its joints.
-    pub(super) fn answer(&self) -> ModelAnswer {
-        let (scenario, history, varied) = (self.scenario, self.history, self.varied);
-        let happens = match history.outcome {
-            Outcome::Overturned(_) => "overturns under",
-            _ => "survives",
-        };
-        let no_answer = match (self.verdict(), changed_outcome(history, varied)) {
-            (Verdict::Incomplete, _) => Some("the run has no verdict".to_owned()),
-            (Verdict::Uncertain, _) => Some("it is uncertain whether it overturns".to_owned()),
-            _ if self.model.row().is_some() && self.repeated.is_none() => {
-                Some("the run was not repeated".to_owned())
-            }
-            (_, Some(change)) => Some(format!(
-                "THE OUTCOME DEPENDS ON JOINT STIFFNESS AND CONTACT: it {happens} this motion as given, and {change}"
-            )),
-            _ if !scenario.motion.kind.is_rigid && varied.is_empty() => {
-                Some("the dependence of the outcome on joint stiffness is unknown".to_owned())
-            }
-            _ => without_verdict(varied),
-        };
-        let samples = "with the given numbers: quote the probability of [uncertain] as well";
-        let samples = scenario.uncertain.as_ref().map(|_| samples.to_owned());
-        let conditions: Vec<String> = [friction_condition(scenario, history), samples]
-            .into_iter()
-            .flatten()
-            .collect();
-        let condition = match &conditions[..] {
-            [] => String::new(),
-            conditions => format!(" ({})", conditions.join("; ")),
-        };
-        let answer = no_answer.map_or_else(|| Ok(format!("{happens} this motion{condition}")), Err);
-        let (kind, is_arch) = (
-            scenario.motion.kind,
-            scenario.structure.has_horizontal_thrust(),
-        );
-        ModelAnswer::new(kind, is_arch, history.thrust_excess_ratio(), answer)
-    }
-
-    /// Returns the verdict; uncertain if the repetitions disagree.
-    pub(super) fn verdict(&self) -> Verdict {
-        let count = self.repeated.map(|repeated| &repeated.count);
-        Verdict::counted(self.history.outcome, count)
-    }
-}
-
 /// The summary of a run: `summary.json`. Largest rotations of the bodies have keys such as `peak_rotation_left_rad`, `peak_rotation_1_rad` for
 /// the first block of a row, or `peak_rotation_rad` for a column.
-#[derive(Clone, Debug, Serialize)]
-pub struct Summary<'a> {
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Summary {
     /// The name of the program.
-    pub program: &'static str,
+    pub program: String,
     /// Version of the program.
-    pub version: &'static str,
+    pub version: String,
     /// The scenario with all defaults.
     pub scenario: Value,
     /// Checksums of the records.
@@ -99,15 +54,25 @@ pub struct Summary<'a> {
     /// Outcome of the motion.
     #[serde(flatten)]
     pub outcome: OutcomeSummary,
+    /// Time at which the simulation ended, in seconds.
+    pub end_s: f64,
     /// Number of impacts; null with elastic joints, whose contact is continuous.
     pub impacts: Option<usize>,
+    /// First impact before overturning; absent without impact.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub first_impact: Option<ImpactSummary>,
+    /// Impact of a row that took the most energy before overturning; absent if this is the first one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hardest_impact: Option<ImpactSummary>,
     /// Largest rotations of the bodies, in radians.
-    #[serde(flatten)]
+    #[serde(flatten, deserialize_with = "peak_rotations")]
     pub peak_rotations_rad: Named<f64>,
     /// Largest rotation of any body, in radians.
     pub largest_peak_rotation_rad: f64,
     /// The push that starts the structure to each side, in units of gravity; null if no push starts it.
     pub incipient_acceleration_g: Sides<Option<f64>>,
+    /// The ground, in units of gravity.
+    pub ground: GroundSummary,
     /// Largest error of the energy balance. Reference of four links and columns: the barrier of the first mechanism. Reference of a row of
     /// blocks: weight times size (the mean radius of an arch, or half the diagonal of a column). With friction, the largest energy created.
     pub energy_defect_ratio: f64,
@@ -121,21 +86,24 @@ pub struct Summary<'a> {
     pub mechanisms: Option<MechanismResults>,
     /// Results of rows of blocks.
     #[serde(flatten)]
-    pub row: Option<RowResults<'a>>,
+    pub row: Option<RowResults>,
     /// The comparison with its repetitions; absent if the history was not repeated.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub repeatability: Option<RepeatabilitySummary<'a>>,
+    pub repeatability: Option<RepeatabilitySummary>,
     /// The ends of the histories with other stiffness and contact, and with rigid joints.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub variations: Vec<VariationSummary<'a>>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub variations: Vec<VariationSummary>,
     /// Largest displacements of the points that were chosen with `--point`, relative to the ground.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub points: Vec<PointPeaks>,
     /// The answer that may be quoted, in words; absent from the summary of one of several models, which have one answer together.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub to_quote: Option<String>,
+    /// Models of motion of all runs whose words are printed together; absent for one model.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub compared_models: Vec<String>,
     /// Summary of the samples of `[uncertain]`, as their `uncertain.json`; absent without samples.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub uncertain: Option<Value>,
     /// Computing time of the longest step, in microseconds. It is the only number that differs between computations.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -143,18 +111,33 @@ pub struct Summary<'a> {
 }
 
 /// Outcome of a motion.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct OutcomeSummary {
     /// `never_moved`, `vibrates`, `rest`, `overturned`, `still_rocking` or `incomplete`.
-    pub outcome: &'static str,
+    pub outcome: OutcomeKind,
     /// Time of the outcome, in seconds. For an overturned structure it is the last time at which the structure could still return.
     pub outcome_time_s: f64,
     /// The side to which the structure overturned; null if it did not.
     pub overturning_sway: Option<Sway>,
 }
 
+/// The ground during a history, in units of gravity.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub struct GroundSummary {
+    /// End of the motion of the ground, in seconds.
+    pub end_s: f64,
+    /// Largest horizontal acceleration until the end of the history.
+    pub peak_g: f64,
+    /// Largest horizontal acceleration, also after the end of the history.
+    pub whole_peak_g: f64,
+    /// Largest vertical acceleration until the end of the history.
+    pub vertical_peak_g: f64,
+    /// Largest push to each side until the end of the history.
+    pub pushes_g: Sides<f64>,
+}
+
 /// The friction that prevents sliding.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct FrictionDemand {
     /// Largest coefficient of friction that a motion without sliding needs, over all steps outside impacts. Joints that carry less than a
     /// hundredth of the weight do not count.
@@ -175,7 +158,7 @@ impl FrictionDemand {
 }
 
 /// Results of four links or of a column.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct MechanismResults {
     /// Largest rotation over that at the unstable equilibrium of the mechanism that moved. From 1 on, gravity alone overturns the structure.
     pub peak_rotation_over_critical: Option<f64>,
@@ -192,7 +175,7 @@ pub struct MechanismResults {
 }
 
 /// Dimensionless numbers of a history.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Dimensionless {
     /// Frequency parameter of the structure, in rad/s.
     pub p_rad_s: f64,
@@ -203,7 +186,7 @@ pub struct Dimensionless {
 }
 
 /// The thrust line of four links, or of a column, at the output samples.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Thrust {
     /// Largest excess of the thrust line, over the thickness.
     pub largest_thrust_excess_ratio: f64,
@@ -213,55 +196,92 @@ pub struct Thrust {
     pub rocking_share_thrust_excess_below_0_01: Option<f64>,
     /// Share of the time in motion in which the excess is at most 0.05; null if the structure never moved.
     pub rocking_share_thrust_excess_below_0_05: Option<f64>,
+    /// How well four links describe the motion; null for a column, and if the structure never moved.
+    pub four_links: Option<FourLinkQuality>,
+    /// True for a continuous ring, which needs `voussoirs` to compare it with free hinges.
+    pub is_continuous: bool,
+}
+
+named! {
+    /// How well four links describe a motion.
+    #[derive(PartialOrd)]
+    pub enum FourLinkQuality {
+        /// The thrust line leaves the arch by at most a hundredth of its thickness.
+        Sufficient = "sufficient",
+        /// The thrust line leaves the arch by at most a twentieth of its thickness.
+        Close = "close",
+        /// The thrust line leaves the arch by more.
+        Rough = "rough",
+        /// Up to the largest rotation the thrust line leaves the arch so far that the mechanism cannot transmit its own forces.
+        Outside = "outside",
+    }
+}
+
+impl FourLinkQuality {
+    fn of(history: &History, thrust: &ThrustRecord) -> Self {
+        let up_to_peak = history.thrust_excess_ratio();
+        match thrust.largest_excess.value {
+            _ if up_to_peak.is_some_and(|ratio| ratio > MODEL_LIMIT) => Self::Outside,
+            excess_ratio if excess_ratio <= EXCESS_LEVELS[0] => Self::Sufficient,
+            excess_ratio if excess_ratio <= EXCESS_LEVELS[1] => Self::Close,
+            _ => Self::Rough,
+        }
+    }
 }
 
 /// Results of a row of blocks.
-#[derive(Clone, Debug, Serialize)]
-pub struct RowResults<'a> {
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct RowResults {
     /// Half cycles whose peak is at least a thousandth of the largest rotation.
     pub half_cycles: Vec<HalfCycle>,
     /// Results of elastic joints.
     #[serde(flatten)]
-    pub elastic: Option<&'a ElasticSummary>,
+    pub elastic: Option<ElasticSummary>,
     /// Results of all rows.
     #[serde(flatten)]
-    pub row: &'a RowSummary,
+    pub row: RowSummary,
     /// Displacement between the feet; absent if both feet move together.
     #[serde(flatten)]
     pub feet: Option<FeetApart>,
     /// Coefficient of friction; absent if joints cannot slip.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub friction_coefficient: Option<f64>,
+    /// Strength that limits the stress of elastic joints, in MPa; absent without a limit.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub compressive_strength_mpa: Option<f64>,
+    /// Joints that slipped by more than a millionth of their thickness, the largest slip first; absent if none slipped.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub slipped_joints: Vec<usize>,
     /// Number of systems of equations that were solved.
     pub iterations: u64,
 }
 
 /// The comparison of a motion with its repetitions.
-#[derive(Clone, Debug, Serialize)]
-pub struct RepeatabilitySummary<'a> {
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct RepeatabilitySummary {
     /// Outcomes of the run itself (`own`) and of its repetitions, by name.
-    pub outcomes: Named<&'static str>,
+    pub outcomes: Named<OutcomeKind>,
     /// The sides to which the structure overturned, by name.
     pub overturning_sways: Named<Option<Sway>>,
     /// The results.
     #[serde(flatten)]
-    pub repeatability: &'a Repeatability,
+    pub repeatability: Repeatability,
 }
 
 /// The end of a history with other properties.
-#[derive(Clone, Debug, Serialize)]
-pub struct VariationSummary<'a> {
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct VariationSummary {
     /// The changed property.
-    pub with: &'a str,
+    pub with: String,
     /// The end of the history.
     #[serde(flatten)]
-    pub end: VariationOutcome<'a>,
+    pub end: VariationOutcome,
 }
 
 /// The end of a history with other properties, or the reason why there is none.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(untagged)]
-pub enum VariationOutcome<'a> {
+pub enum VariationOutcome {
     /// The history was computed.
     Computed {
         /// The outcome.
@@ -275,12 +295,12 @@ pub enum VariationOutcome<'a> {
     /// The history failed.
     Failed {
         /// The reason.
-        failed: &'a str,
+        failed: String,
     },
 }
 
 /// Largest displacements of a point.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct PointPeaks {
     /// Horizontal position in the undeformed structure, from its middle to the right, in metres.
     pub x_m: f64,
@@ -300,34 +320,56 @@ impl OutcomeSummary {
     /// Returns the outcome of a history.
     pub fn of(history: &History) -> Self {
         Self {
-            outcome: history.outcome.name(),
+            outcome: history.outcome.kind(),
             outcome_time_s: history.outcome_time_s,
             overturning_sway: history.outcome.overturning_sway(),
         }
     }
+
+    /// Returns the outcome with its side.
+    pub(super) fn get(&self) -> Outcome {
+        self.outcome.to(self.overturning_sway)
+    }
+
+    /// Returns the time of overturning, in seconds; `None` if the structure did not overturn.
+    pub(super) fn overturned_s(&self) -> Option<f64> {
+        self.overturning_sway.map(|_| self.outcome_time_s)
+    }
 }
 
-impl<'a> Summary<'a> {
-    /// Makes the summary of a history, with the peaks of the observed points.
-    pub fn of(computed: &ComputedRun<'a>, points: Vec<PointPeaks>) -> Self {
+/// Reads the largest rotations of the bodies among the other keys of a summary.
+fn peak_rotations<'de, D: Deserializer<'de>>(keys: D) -> Result<Named<f64>, D::Error> {
+    let Named(keys) = Named::<Value>::deserialize(keys)?;
+    let is_peak = |key: &str| key.starts_with("peak_rotation") && key.ends_with("_rad");
+    let peaks = keys.into_iter().filter(|(key, _)| is_peak(key));
+    let peaks = peaks.filter_map(|(key, peak)| Some((key, peak.as_f64()?)));
+    Ok(Named(peaks.collect()))
+}
+
+impl Summary {
+    /// Makes the summary of a history.
+    pub fn of(computed: &ComputedRun<'_>) -> Self {
         let (scenario, model, history) = (computed.scenario, computed.model, computed.history);
-        let mechanisms = model.as_mechanisms();
         let names = columns(&model.bodies(), "peak_rotation", "rad");
         let peaks_rad = history.peak_rotations_rad.iter().copied();
-        // Only the summary contains the time of computation; results would otherwise differ between runs.
-        let longest_step = history.row().and_then(|row| row.longest_step);
-        Self {
-            program: env!("CARGO_PKG_NAME"),
-            version: env!("CARGO_PKG_VERSION"),
+        let [first_impact, hardest_impact] = computed.impacts.before_the_end(history);
+        let count = computed.repeated.map(|repeated| &repeated.count);
+        let mut summary = Self {
+            program: env!("CARGO_PKG_NAME").to_owned(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
             scenario: scenario.to_json(),
             record_checksums: scenario.record_checksums(),
-            verdict: computed.verdict(),
-            warnings: warnings(scenario, model, history),
+            verdict: Verdict::counted(history.outcome, count),
+            warnings: scenario.unlikely_of(Some(model)),
             outcome: OutcomeSummary::of(history),
+            end_s: history.end_s,
             impacts: history.known_impacts(),
+            first_impact,
+            hardest_impact,
             peak_rotations_rad: Named(names.into_iter().zip(peaks_rad).collect()),
             largest_peak_rotation_rad: history.largest_rotation_rad(),
             incipient_acceleration_g: Sides::of(|sway| model.incipient_acceleration_g(sway)),
+            ground: GroundSummary::of(scenario, history),
             energy_defect_ratio: history.energy_defect_ratio,
             friction: history.thrust.as_ref().map(|thrust| FrictionDemand {
                 largest_friction_demand: thrust.largest_friction.value,
@@ -335,21 +377,85 @@ impl<'a> Summary<'a> {
                 lasting_friction_demand: thrust.lasting_friction,
             }),
             steps: history.cost.steps,
-            mechanisms: mechanisms.map(|model| MechanismResults::of(scenario, model, history)),
-            row: history.row().map(|row| RowResults {
-                half_cycles: history.half_cycles(),
-                elastic: history.elastic(),
-                row,
-                feet: FeetApart::of(scenario, history),
-                friction_coefficient: scenario.motion.options.friction_coefficient(),
-                iterations: history.cost.evaluations,
-            }),
+            mechanisms: model
+                .as_mechanisms()
+                .map(|model| MechanismResults::of(scenario, model, history)),
+            row: RowResults::of(scenario, model, history),
             repeatability: computed.repeated.map(RepeatabilitySummary::of),
             variations: computed.varied.iter().map(VariationSummary::of).collect(),
-            points,
-            to_quote: quotable::in_words(&[computed.answer()]),
+            points: Vec::new(),
+            to_quote: None,
+            compared_models: Vec::new(),
             uncertain: None,
-            longest_step_us: longest_step.map(|step| (step.as_secs_f64() * 1e6).round()),
+            longest_step_us: None,
+        };
+        summary.warnings.extend(summary.caveats());
+        summary.to_quote = quotable::in_words(&[summary.answer(scenario)]);
+        summary
+    }
+
+    /// Returns the model of motion.
+    pub(super) fn model(&self) -> &'static ModelKind {
+        match &self.row {
+            None => &FOUR_LINKS,
+            Some(row) if row.elastic.is_none() => &FREE_HINGES,
+            Some(_) => &ELASTIC_JOINTS,
+        }
+    }
+
+    /// Returns the answer that may be quoted: a certain outcome that does not depend on the stiffness and contact of its joints.
+    pub(super) fn answer(&self, scenario: &Scenario) -> ModelAnswer {
+        let happens = match self.outcome.outcome {
+            OutcomeKind::Overturned => "overturns under",
+            _ => "survives",
+        };
+        let no_answer = match (self.verdict, self.changed_outcome()) {
+            (Verdict::Incomplete, _) => Some("the run has no verdict".to_owned()),
+            (Verdict::Uncertain, _) => Some("it is uncertain whether it overturns".to_owned()),
+            _ if self.row.is_some() && self.repeatability.is_none() => {
+                Some("the run was not repeated".to_owned())
+            }
+            (_, Some(change)) => Some(format!(
+                "THE OUTCOME DEPENDS ON JOINT STIFFNESS AND CONTACT: it {happens} this motion as given, and {change}"
+            )),
+            _ if *self.model() == ELASTIC_JOINTS && self.variations.is_empty() => {
+                Some("the dependence of the outcome on joint stiffness is unknown".to_owned())
+            }
+            _ => self.without_verdict().map(|caveat| caveat.to_string()),
+        };
+        let samples = "with the given numbers: quote the probability of [uncertain] as well";
+        let samples = scenario.uncertain.as_ref().map(|_| samples.to_owned());
+        let friction = self.friction_condition().map(|caveat| caveat.to_string());
+        let conditions: Vec<String> = friction.into_iter().chain(samples).collect();
+        let condition = match &conditions[..] {
+            [] => String::new(),
+            conditions => format!(" ({})", conditions.join("; ")),
+        };
+        let answer = no_answer.map_or_else(|| Ok(format!("{happens} this motion{condition}")), Err);
+        let excess_ratio = self
+            .mechanisms
+            .as_ref()
+            .and_then(|own| own.thrust_excess_ratio);
+        ModelAnswer::new(
+            self.model(),
+            scenario.structure.has_horizontal_thrust(),
+            excess_ratio,
+            answer,
+        )
+    }
+}
+
+impl GroundSummary {
+    fn of(scenario: &Scenario, history: &History) -> Self {
+        let (ground, gravity_m_s2) = (scenario.ground_motion(), scenario.gravity_m_s2());
+        let peaks_m_s2 = ground.peaks_m_s2(history.end_s);
+        let [right, left] = ground.pushes_m_s2(history.end_s);
+        Self {
+            end_s: ground.end_s(),
+            peak_g: peaks_m_s2.x / gravity_m_s2,
+            whole_peak_g: ground.peaks_m_s2(f64::INFINITY).x / gravity_m_s2,
+            vertical_peak_g: peaks_m_s2.y / gravity_m_s2,
+            pushes_g: Sides { right, left }.map(|push_m_s2| push_m_s2 / gravity_m_s2),
         }
     }
 }
@@ -365,13 +471,20 @@ impl MechanismResults {
             },
             peak_acceleration_over_incipient: scales.over_incipient(pushes_m_s2),
         };
+        let structure = &scenario.structure;
         let thrust = |thrust: &ThrustRecord| {
-            let [close, near] = thrust.shares_within().map_or([None; 2], |s| s.map(Some));
+            let shares = thrust.shares_within();
+            let [close, near] = shares.map_or([None; 2], |s| s.map(Some));
+            let rocks = shares.is_some() && structure.has_horizontal_thrust();
             Thrust {
                 largest_thrust_excess_ratio: thrust.largest_excess.value,
                 largest_thrust_excess_time_s: thrust.largest_excess.time_s,
                 rocking_share_thrust_excess_below_0_01: close,
                 rocking_share_thrust_excess_below_0_05: near,
+                four_links: rocks.then(|| FourLinkQuality::of(history, thrust)),
+                is_continuous: structure
+                    .circular()
+                    .is_some_and(|arch| arch.voussoirs.is_none()),
             }
         };
         Self {
@@ -384,33 +497,119 @@ impl MechanismResults {
     }
 }
 
-impl<'a> RepeatabilitySummary<'a> {
-    fn of(repeatability: &'a Repeatability) -> Self {
+/// Rotations up to this value are printed as zero: such a block slides without rocking.
+pub(super) const STRAIGHT_RAD: f64 = 5e-7;
+
+/// Slips below this fraction of the thickness of a joint are not reported.
+const LEAST_SLIP_RATIO: f64 = 1e-6;
+
+impl RowResults {
+    fn of(scenario: &Scenario, model: &dyn Model, history: &History) -> Option<Self> {
+        let (blocks, row) = (model.row()?, history.row()?);
+        let largest_m = row
+            .sliding
+            .as_ref()
+            .map_or(&[][..], |one| &one.largest_offsets_m);
+        let slips = |joint: &usize| {
+            largest_m[*joint] > LEAST_SLIP_RATIO * blocks.joints[*joint].thickness_m()
+        };
+        let mut slipped_joints: Vec<usize> = (0..largest_m.len()).filter(slips).collect();
+        slipped_joints.sort_by(|a, b| largest_m[*b].total_cmp(&largest_m[*a]));
+        Some(Self {
+            half_cycles: history.half_cycles(),
+            elastic: history.elastic().copied(),
+            row: row.clone(),
+            feet: FeetApart::of(scenario, history),
+            friction_coefficient: scenario.motion.options.friction_coefficient(),
+            compressive_strength_mpa: scenario.motion.options.compressive_strength_mpa(),
+            slipped_joints,
+            iterations: history.cost.evaluations,
+        })
+    }
+}
+
+impl RepeatabilitySummary {
+    fn of(repeatability: &Repeatability) -> Self {
         let names = ["own"].into_iter();
         let names = names.chain(repeatability.repeated.iter().copied());
         let named = names.map(key).zip(&repeatability.outcomes);
-        let outcomes = named.clone().map(|(key, one)| (key, one.name()));
+        let outcomes = named.clone().map(|(key, one)| (key, one.kind()));
         let sways = named.map(|(key, one)| (key, one.overturning_sway()));
         Self {
             outcomes: Named(outcomes.collect()),
             overturning_sways: Named(sways.collect()),
-            repeatability,
+            repeatability: repeatability.clone(),
         }
+    }
+
+    /// Returns the names of the repetitions that did not fail.
+    pub(super) fn repeated(&self) -> Vec<String> {
+        let Self { outcomes, .. } = self;
+        outcomes.0[1..]
+            .iter()
+            .map(|(key, _)| key.replace('_', " "))
+            .collect()
+    }
+
+    /// Returns the opposite side of overturning, with the names of the repetitions that overturn to it; `None` if all overturn to one side.
+    pub(super) fn other_side(&self) -> Option<(Sway, String)> {
+        let mut others = self.other_outcomes().into_iter();
+        others.find_map(|(other, names)| Some((other.overturning_sway()?, names)))
+    }
+
+    /// Returns the other outcomes, including those that differ in the side of overturning alone, each with the names of its repetitions.
+    pub(super) fn other_outcomes(&self) -> Vec<(Outcome, String)> {
+        let Self {
+            outcomes: Named(kinds),
+            overturning_sways: Named(sways),
+            ..
+        } = self;
+        let mut outcomes = kinds
+            .iter()
+            .zip(sways)
+            .map(|((_, kind), (_, sway))| kind.to(*sway));
+        let own = outcomes.next();
+        let mut others: Vec<(Outcome, String)> = Vec::new();
+        for (name, outcome) in self.repeated().into_iter().zip(outcomes) {
+            match others.iter_mut().find(|(other, _)| *other == outcome) {
+                Some((_, names)) => *names += &format!(" and {name}"),
+                None if Some(outcome) == own => {}
+                None => others.push((outcome, name)),
+            }
+        }
+        others
     }
 }
 
-impl<'a> VariationSummary<'a> {
-    fn of(VariationResult { name, result }: &'a VariationResult) -> Self {
+/// Returns the peak of the first half cycle that rocks, in radians.
+fn first_peak_rad(history: &History) -> Option<f64> {
+    let mut cycles = history.half_cycles().into_iter();
+    let first = cycles.find(|cycle| cycle.peak_rad > STRAIGHT_RAD);
+    first.map(|cycle| cycle.peak_rad)
+}
+
+impl VariationSummary {
+    fn of(VariationResult { name, result }: &VariationResult) -> Self {
         Self {
-            with: name,
+            with: name.clone(),
             end: match result {
                 Ok(history) => VariationOutcome::Computed {
                     outcome: OutcomeSummary::of(history),
                     first_peak_rad: first_peak_rad(history),
                     largest_peak_rotation_rad: history.largest_rotation_rad(),
                 },
-                Err(failed) => VariationOutcome::Failed { failed },
+                Err(failed) => VariationOutcome::Failed {
+                    failed: failed.clone(),
+                },
             },
+        }
+    }
+
+    /// Returns the verdict; incomplete if the history failed.
+    pub(super) fn verdict(&self) -> Verdict {
+        match &self.end {
+            VariationOutcome::Computed { outcome, .. } => outcome.get().into(),
+            VariationOutcome::Failed { .. } => Verdict::Incomplete,
         }
     }
 }
@@ -420,9 +619,5 @@ impl<'a> VariationSummary<'a> {
 /// # Errors
 /// When a value is not finite.
 pub fn summary(computed: &ComputedRun<'_>) -> Result<Value, OutputError> {
-    // Computing time would differ between equal histories.
-    summary_of(&Summary {
-        longest_step_us: None,
-        ..Summary::of(computed, Vec::new())
-    })
+    summary_of(&Summary::of(computed))
 }

@@ -1,23 +1,30 @@
-//! The words of a run, from its summary and its history: outcome, times, comparisons and repeatability.
+//! The words of a run: templates that read its [`Summary`] alone.
+
+use std::path::PathBuf;
 
 use askama::Template;
 use nalgebra::Vector2;
+use serde_json::Value;
 
-use super::caveats::{self, STONE_FRICTION, STRAIGHT_RAD};
-use super::comparison::{changed_outcome, without_verdict};
+use super::caveats::{Caveat, STONE_FRICTION, coefficient};
+use super::comparison::Comparison;
+use super::impacts::ImpactSummary;
 use super::points::place;
-use super::summary::{ComputedRun, Summary};
-use super::tables::energy_loss_j;
+use super::summary::{
+    FourLinkQuality, FrictionDemand, PointPeaks, STRAIGHT_RAD, Summary, VariationOutcome,
+};
+use super::{FILM, OVERLAY, ROTATIONS};
 use crate::dynamics::free_hinges::DOUBTFUL_ENERGY_ERROR;
+use crate::dynamics::history::ElasticSummary;
 use crate::dynamics::repeatability::{
     FIRST_REPETITIONS, LEAST_SLIP_M, RepeatedHalfCycle, RepeatedValue, SAME_PEAK_RATIO,
 };
-use crate::dynamics::{HalfCycle, Repeatability, Sliding};
+use crate::dynamics::{HalfCycle, OutcomeKind, Sliding};
 use crate::mechanics::Sides;
 use crate::output::mechanisms::by_body;
-use crate::output::{filters, range_ends};
+use crate::output::{filters, range_ends, render};
 use crate::scenario::{ELASTIC_JOINTS, FREE_HINGES, ModelKind, Scenario, Series};
-use crate::{Event, Hinge, Impact, Outcome, Summary as History, Sway, Verdict};
+use crate::{Outcome, Verdict};
 
 /// Returns the heading of the words for the runs of scenarios that differ in their models: title, one line per record, and a note about an
 /// ignored table.
@@ -38,56 +45,61 @@ pub fn heading(scenarios: &[Scenario]) -> String {
 /// The verdict: the outcome, its certainty, and the properties that may change it.
 #[derive(Template)]
 #[template(path = "studies/run/words/verdict.txt")]
-pub(super) struct VerdictLine<'a>(pub ComputedRun<'a>);
-
-impl VerdictLine<'_> {
-    /// Returns the certainty of a verdict, in words that follow it.
-    fn certainty(&self, all: &Repeatability) -> String {
-        let (count, others) = (&all.count, all.other_outcomes());
-        let other_side = others.iter().find_map(|(other, names)| {
-            let side = other.overturning_sway()?.name();
-            Some(format!(", and to the {side} with {names}"))
-        });
-        let agreement = if all.repeated.len() > FIRST_REPETITIONS {
-            let path = ["; the path does not repeat", ""][usize::from(count.path_repeats)];
-            let (of, without) = (count.of, count.without_verdict());
-            format!(", agrees in {of} of {of} repetitions{without}{path}")
-        } else if others.is_empty() {
-            ", the same with other steps".to_owned()
-        } else if other_side.is_none() {
-            ", and survives with other steps".to_owned()
-        } else {
-            String::new()
-        };
-        other_side.unwrap_or_default() + &agreement
-    }
-
-    /// Returns the conditions of the outcome: friction that stone may not have, and properties that change the outcome.
-    fn conditions(&self) -> Vec<String> {
-        let (history, varied) = (self.0.history, self.0.varied);
-        let needed = caveats::friction_condition(self.0.scenario, history).into_iter();
-        let others = [changed_outcome(history, varied), without_verdict(varied)];
-        let conditions = needed.chain(others.into_iter().flatten());
-        let decided = |_: &String| history.outcome != Outcome::Incomplete;
-        conditions.filter(decided).collect()
-    }
+pub(super) struct VerdictLine<'a> {
+    pub summary: &'a Summary,
 }
 
 /// The lines after the verdict.
 #[derive(Template)]
 #[template(path = "studies/run/words/words.txt")]
 pub(super) struct Words<'a> {
-    pub computed: ComputedRun<'a>,
-    pub summary: &'a Summary<'a>,
-    pub impacts: &'a NotableImpacts,
-    /// The models of motion of all runs whose words are printed together.
-    pub all_models: &'a [&'static ModelKind],
+    pub summary: &'a Summary,
+}
+
+/// The printed words of runs of one structure, each with its files, and of their comparison.
+#[derive(Template)]
+#[template(path = "studies/run/words/printed.txt")]
+pub(super) struct Printed<'a> {
+    pub comparison: Option<&'a Comparison>,
+    pub runs: Vec<(&'a Summary, Option<&'a Files>)>,
+}
+
+/// The files of a run in a folder.
+#[derive(Debug)]
+pub(super) struct Files {
+    pub folder: PathBuf,
+    pub names: Vec<&'static str>,
+    /// Number of rows of the rotations.
+    pub rows: usize,
+    pub film_pictures: Option<usize>,
+    /// Times of snapshots before the start and after the end of the history, in seconds, which show its first and its last instant.
+    pub outside_times_s: [Vec<f64>; 2],
+}
+
+/// Returns the words of a run, or of a comparison of several models, from its JSON. The lines about files are missing.
+///
+/// # Errors
+/// When the JSON is not a summary of a run.
+pub fn words_of(json: &Value) -> serde_json::Result<String> {
+    if json.get("program").is_some() {
+        let summary: Summary = serde::Deserialize::deserialize(json)?;
+        return Ok(render(&Printed {
+            comparison: None,
+            runs: vec![(&summary, None)],
+        }));
+    }
+    let comparison: Comparison = serde::Deserialize::deserialize(json)?;
+    Ok(render(&Printed {
+        runs: comparison
+            .summaries()
+            .map(|summary| (summary, None))
+            .collect(),
+        comparison: Some(&comparison),
+    }))
 }
 
 /// Largest number of half cycles that are described.
 const MAX_HALF_CYCLES: usize = 3;
-/// Slips below this fraction of the thickness of a joint are not reported.
-const LEAST_SLIP_RATIO: f64 = 1e-6;
 /// Largest number of joints whose slips are reported.
 const MAX_SLIPS: usize = 4;
 /// Distance of the thrust from the middle, in thicknesses of a joint, from which the thrust of a row at rest is reported as close to the edge.
@@ -100,29 +112,42 @@ struct Slip {
     end_mm: f64,
 }
 
-impl<'a> Words<'a> {
+/// Half cycles of a motion, each with its counterparts in the repetitions.
+type RepeatedHalfCycles<'s> = Vec<(&'s HalfCycle, &'s RepeatedHalfCycle)>;
+
+impl Summary {
+    /// Returns the verdict in words, as a run prints it.
+    pub fn verdict_line(&self) -> String {
+        render(&VerdictLine { summary: self })
+    }
+
     /// Returns true if no block moved until the end of the run.
     fn is_unmoved(&self) -> bool {
-        let history = self.computed.history;
-        match history.outcome {
-            Outcome::NeverMoved => true,
-            Outcome::Incomplete => history.largest_rotation_rad() == 0.0 && !self.has_slipped(),
+        match self.outcome.outcome {
+            OutcomeKind::NeverMoved => true,
+            OutcomeKind::Incomplete => self.largest_peak_rotation_rad == 0.0 && !self.has_slipped(),
             _ => false,
         }
     }
 
     /// Returns the time since which elastic joints that still move at the end only vibrate, in s; `None` for other outcomes.
-    fn vibrates_since_s(&self) -> Option<f64> {
-        caveats::vibrates_since_s(self.computed.history)
+    pub(super) fn vibrates_since_s(&self) -> Option<f64> {
+        let moves = self.outcome.outcome == OutcomeKind::StillRocking;
+        self.elastic()?.vibrates_since_s.filter(|_| moves)
     }
 
-    /// Returns true if the model moves a row of blocks, false for mechanisms.
-    fn is_row(&self) -> bool {
-        self.computed.model.row().is_some()
+    /// Returns true if the runs of several models are printed together, and this one is among them.
+    pub(super) fn is_compared_with(&self, model: &ModelKind) -> bool {
+        let mut compared = self.compared_models.iter();
+        compared.any(|name| name == model.option)
     }
 
-    fn sliding(&self) -> Option<&'a Sliding> {
-        self.computed.history.row()?.sliding.as_ref()
+    fn elastic(&self) -> Option<ElasticSummary> {
+        self.row.as_ref()?.elastic
+    }
+
+    fn sliding(&self) -> Option<&Sliding> {
+        self.row.as_ref()?.row.sliding.as_ref()
     }
 
     fn has_slipped(&self) -> bool {
@@ -130,206 +155,172 @@ impl<'a> Words<'a> {
             .is_some_and(|sliding| sliding.largest_offsets_m.iter().any(|slip_m| *slip_m > 0.0))
     }
 
-    /// Returns true if a history has another verdict.
-    fn differs(&self, other: &History) -> bool {
-        Verdict::from(other.outcome) != Verdict::from(self.computed.history.outcome)
+    /// Returns Coulomb's coefficient of friction; `None` if joints cannot slip.
+    pub(super) fn friction_coefficient(&self) -> Option<f64> {
+        self.row.as_ref()?.friction_coefficient
+    }
+
+    fn peak_potential_over_barrier(&self) -> Option<f64> {
+        self.row.as_ref()?.row.peak_potential_over_barrier
+    }
+
+    fn peak_over_critical(&self) -> Option<f64> {
+        self.mechanisms.as_ref()?.peak_rotation_over_critical
+    }
+
+    fn four_links(&self) -> Option<FourLinkQuality> {
+        self.mechanisms.as_ref()?.thrust?.four_links
     }
 
     /// Returns the half cycles with the largest peaks that are printed as nonzero, in order of time.
-    fn half_cycles(&self) -> Vec<&'a HalfCycle> {
-        let row = self.summary.row.as_ref();
-        row.map_or_else(Vec::new, |row| {
-            largest(&row.half_cycles, |one| one.peak_rad)
-        })
+    fn half_cycles(&self) -> Vec<&HalfCycle> {
+        let cycles = self.row.iter().flat_map(|row| &row.half_cycles);
+        largest(cycles.collect(), |one| one.peak_rad)
     }
 
     /// Returns the comparisons of these half cycles with the repetitions: first the certain ones, then the others.
-    fn repeated<'r>(&self, all: &'r Repeatability) -> [Vec<&'r RepeatedHalfCycle>; 2] {
-        let described = largest(&all.half_cycles, |cycle| cycle.own.peak_rad).into_iter();
-        let (same, differ) = described.partition(|cycle| cycle.is_certain());
+    fn repeated_half_cycles(&self) -> [RepeatedHalfCycles<'_>; 2] {
+        let repeated = self.repeatability.iter();
+        let repeated = repeated.flat_map(|all| &all.repeatability.half_cycles);
+        let cycles = || self.row.iter().flat_map(|row| &row.half_cycles);
+        let pairs = repeated.filter_map(|repeated| {
+            let own = cycles().find(|own| own.peak_time_s == repeated.peak_time_s)?;
+            Some((own, repeated))
+        });
+        let described = largest(pairs.collect(), |(own, _)| own.peak_rad).into_iter();
+        let (same, differ) = described.partition(|(_, repeated)| repeated.is_certain());
         [same, differ]
     }
 
-    /// Returns the smallest and the largest value in all repetitions.
-    fn range(&self, value: &RepeatedValue) -> String {
-        range_ends([value.min, value.max], 6).join(" to ")
-    }
-
-    /// Returns the first impact, and the impact of a row that takes the most energy. Impacts after overturning do not count.
-    fn notable(&self) -> [Option<&'a (f64, Impact)>; 2] {
-        let until_s = self.computed.history.overturned_s();
-        let until_s = until_s.unwrap_or(f64::INFINITY);
-        let NotableImpacts(impacts) = self.impacts;
-        let before = || impacts.iter().filter(|(time_s, _)| *time_s <= until_s);
-        let hardest = before().next_back().filter(|_| before().count() > 1);
-        let hardest = hardest.filter(|_| self.is_row());
-        [before().next(), hardest]
-    }
-
-    /// Returns the fraction of the energy that an impact keeps. "1.0000" appears only if the impact takes no energy.
-    fn restitution_text(&self, impact: &Impact) -> String {
-        match format!("{:.4}", impact.restitution) {
-            all if impact.restitution < 1.0 && all == "1.0000" => "above 0.9999".to_owned(),
-            kept => kept,
-        }
-    }
-
-    /// Returns the numbers of the joints of these hinges, as the subject of a verb; consecutive joints as `3-7`.
-    fn joints(&self, hinges: &[Hinge], verb: &str) -> String {
-        let mut runs: Vec<[usize; 2]> = Vec::new();
-        for hinge in hinges {
-            if let Hinge::Joint { joint, .. } = *hinge {
-                match runs.last_mut() {
-                    Some([_, last]) if *last + 1 == joint => *last = joint,
-                    _ => runs.push([joint, joint]),
-                }
-            }
-        }
-        let names = runs.into_iter().map(|[first, last]| match last - first {
-            0 => first.to_string(),
-            1 => format!("{first}, {last}"),
-            _ => format!("{first}-{last}"),
-        });
-        let names = names.collect::<Vec<_>>().join(", ");
-        match hinges.len() {
-            0 => String::new(),
-            1 => format!("joint {names} {verb}s, "),
-            _ => format!("joints {names} {verb}, "),
-        }
+    /// Returns the number of the body with the largest rotation, the last one of several.
+    fn largest_body(&self) -> usize {
+        let mut peaks_rad = self.peak_rotations_rad.0.iter();
+        let last = peaks_rad.rposition(|(_, peak)| *peak == self.largest_peak_rotation_rad);
+        last.unwrap_or(0) + 1
     }
 
     fn peaks_by_body(&self) -> String {
-        let ComputedRun { model, history, .. } = self.computed;
-        by_body(&model.bodies(), &history.peak_rotations_rad)
+        let named = self.peak_rotations_rad.0.iter().map(|(key, peak_rad)| {
+            let body = key
+                .trim_start_matches("peak_rotation")
+                .trim_end_matches("rad");
+            (body.trim_matches('_').to_owned(), *peak_rad)
+        });
+        let (bodies, peaks_rad): (Vec<String>, Vec<f64>) = named.unzip();
+        by_body(&bodies, &peaks_rad)
     }
 
-    /// Returns the joints that slipped, the largest slip first.
+    /// Returns the slips of the joints that slipped, the largest slip first.
     fn slips(&self) -> Vec<Slip> {
-        let row = self.computed.model.row();
-        let joints = row.zip(self.sliding()).into_iter();
-        let joints = joints.flat_map(|(row, sliding)| {
-            let slips = sliding.largest_offsets_m.iter().zip(&sliding.offsets_m);
-            row.joints.iter().zip(slips).enumerate()
-        });
-        let slipped = joints.filter(|(_, (joint, (largest_m, _)))| {
-            **largest_m > LEAST_SLIP_RATIO * joint.thickness_m()
-        });
-        let mut slips: Vec<Slip> = slipped
-            .map(|(joint, (_, (largest_m, end_m)))| Slip {
-                joint,
-                largest_mm: 1e3 * largest_m,
-                end_mm: 1e3 * end_m.abs(),
+        let joints = self.row.iter().flat_map(|row| &row.slipped_joints);
+        let slip = |joint: &usize| {
+            let sliding = self.sliding()?;
+            Some(Slip {
+                joint: *joint,
+                largest_mm: 1e3 * sliding.largest_offsets_m.get(*joint)?,
+                end_mm: 1e3 * sliding.offsets_m.get(*joint)?.abs(),
             })
-            .collect();
-        slips.sort_by(|a, b| b.largest_mm.total_cmp(&a.largest_mm));
-        slips
-    }
-
-    /// Returns the largest final slip of these joints, in mm.
-    fn largest_final_slip_mm(&self, slips: &[Slip]) -> f64 {
-        slips.iter().map(|slip| slip.end_mm).fold(0.0, f64::max)
-    }
-
-    /// Returns the acceleration that starts the structure; `None` if it differs between the sides.
-    fn common_start_g(&self) -> Option<f64> {
-        let Sides { right, left } = self.summary.incipient_acceleration_g;
-        right.filter(|right| left.is_some_and(|left| (right - left).abs() <= 1e-9 * right))
-    }
-
-    fn in_g(&self, acceleration_m_s2: f64) -> f64 {
-        acceleration_m_s2 / self.computed.scenario.gravity_m_s2()
-    }
-
-    /// Returns the largest horizontal and vertical acceleration of the ground until a time, in units of gravity.
-    fn peaks_g(&self, until_s: &f64) -> Vector2<f64> {
-        let ground = self.computed.scenario.ground_motion();
-        ground.peaks_m_s2(*until_s).map(|peak| self.in_g(peak))
-    }
-
-    /// Returns each side to which the ground pushes, the largest push, and the push that starts the structure to that side, in units of gravity.
-    fn pushes_g(&self) -> Vec<(Sway, f64, Option<f64>)> {
-        let ground = self.computed.scenario.ground_motion();
-        let [right, left] = ground.pushes_m_s2(self.computed.history.end_s);
-        let starts_g = self.summary.incipient_acceleration_g;
-        let sides = [
-            (Sway::Right, self.in_g(right), starts_g.right),
-            (Sway::Left, self.in_g(left), starts_g.left),
-        ];
-        let pushed = sides.into_iter().filter(|(_, push_g, _)| *push_g > 0.0);
-        pushed.collect()
-    }
-
-    /// Returns the ratio of a push to the push that starts the structure, in words; empty if the structure starts at zero push.
-    fn times(&self, push_g: &f64, starts_g: &f64) -> String {
-        match push_g / starts_g {
-            times if times.is_finite() => format!(", {times:.2} times as much"),
-            _ => String::new(),
-        }
-    }
-
-    /// Returns true if the right foot has a record.
-    fn is_recorded(&self) -> bool {
-        let right = self.computed.scenario.right_foot.as_ref();
-        right.is_some_and(|right| right.record().is_some())
+        };
+        joints.filter_map(slip).collect()
     }
 
     /// Returns the feet whose records end before the ground stops, with the times.
     fn ended_records(&self) -> Vec<(&'static str, f64)> {
-        let ground = self.computed.scenario.ground_motion();
-        let feet = ["left", "right"].into_iter().zip(ground.ends_s());
-        feet.filter(|(_, at_s)| *at_s < ground.end_s()).collect()
+        let feet = self.row.as_ref().and_then(|row| row.feet);
+        let ends_s = feet
+            .and_then(|feet| feet.records_end_s)
+            .into_iter()
+            .flatten();
+        let feet = ["left", "right"].into_iter().zip(ends_s);
+        feet.filter(|(_, at_s)| *at_s < self.ground.end_s).collect()
     }
 
-    /// Returns true for free hinges without a comparison with elastic joints.
-    fn lacks_elastic_joints(&self) -> bool {
-        self.computed.scenario.motion.kind == &FREE_HINGES
-            && !self.all_models.contains(&&ELASTIC_JOINTS)
+    /// Returns the acceleration that starts the structure; `None` if it differs between the sides.
+    fn common_start_g(&self) -> Option<f64> {
+        let Sides { right, left } = self.incipient_acceleration_g;
+        right.filter(|right| left.is_some_and(|left| (right - left).abs() <= 1e-9 * right))
     }
 
-    /// Returns the limits of four links, or of a column on its toe, in parts of a sentence; `None` if no friction is reported.
-    fn limits(&self) -> Option<Vec<String>> {
-        let (scenario, history) = (self.computed.scenario, self.computed.history);
-        if self.is_row() {
-            return self.sliding().is_none().then(Vec::new);
-        }
-        // Advises to compare with free hinges only if the comparison was not requested.
-        let compared = self.all_models.contains(&&FREE_HINGES);
-        let advice = (!compared).then_some("compare with --hinges both");
-        caveats::four_link_limits(history, &scenario.structure, advice)
+    /// Returns the friction that prevents sliding; `None` if joints slip, and for mechanisms that did not rock.
+    fn reported_friction(&self) -> Option<FrictionDemand> {
+        let is_reported = match &self.mechanisms {
+            None => self.sliding().is_none(),
+            Some(own) => own
+                .thrust
+                .is_some_and(|thrust| thrust.rocking_share_thrust_excess_below_0_05.is_some()),
+        };
+        self.friction.filter(|_| is_reported)
     }
 
-    fn coefficient(&self, friction: &f64) -> String {
-        caveats::coefficient(*friction, 3)
+    /// Returns the conditions of the outcome: friction that stone may not have, and properties that change the outcome.
+    fn conditions(&self) -> Vec<Caveat<'_>> {
+        let conditions = [
+            self.friction_condition(),
+            self.changed_outcome(),
+            self.without_verdict(),
+        ];
+        let decided = |_: &Caveat<'_>| self.outcome.outcome != OutcomeKind::Incomplete;
+        conditions.into_iter().flatten().filter(decided).collect()
+    }
+}
+
+/// Returns the smallest and the largest value in all repetitions.
+fn range(value: &RepeatedValue) -> String {
+    range_ends([value.min, value.max], 6).join(" to ")
+}
+
+/// Returns the largest final slip of joints, in mm.
+fn largest_end_mm(slips: &[Slip]) -> f64 {
+    slips.iter().map(|slip| slip.end_mm).fold(0.0, f64::max)
+}
+
+/// Returns the position of a point in the format of `--point`.
+fn place_of(point: &PointPeaks) -> String {
+    place(Vector2::new(point.x_m, point.y_m))
+}
+
+/// Returns the ratio of a push to the push that starts the structure, in words; empty if the structure starts at zero push.
+fn times(push_g: &f64, starts_g: &f64) -> String {
+    match push_g / starts_g {
+        times if times.is_finite() => format!(", {times:.2} times as much"),
+        _ => String::new(),
+    }
+}
+
+impl ImpactSummary {
+    /// Returns the joints that closed and opened, each with the verb.
+    fn moved_joints(&self) -> [(&[usize], &'static str); 2] {
+        [
+            (&self.closed_joints, "close"),
+            (&self.opened_joints, "open"),
+        ]
     }
 
-    fn place(&self, x_m: &f64, y_m: &f64) -> String {
-        place(Vector2::new(*x_m, *y_m))
+    /// Returns true if four digits of the fraction of the energy that it keeps would be "1.0000", although it takes energy.
+    fn takes_little(&self) -> bool {
+        self.restitution < 1.0 && format!("{:.4}", self.restitution) == "1.0000"
     }
+}
+
+/// Returns the numbers of joints; consecutive joints as `3-7`.
+fn joint_numbers(joints: &[usize]) -> String {
+    let runs = joints.chunk_by(|one, next| one + 1 == *next);
+    let names = runs.map(|run| match run {
+        [joint] => joint.to_string(),
+        [first, last] => format!("{first}, {last}"),
+        [first, .., last] => format!("{first}-{last}"),
+        [] => String::new(),
+    });
+    names.collect::<Vec<_>>().join(", ")
 }
 
 /// Returns the values with the largest peaks that are printed as nonzero, in their order.
-fn largest<T>(cycles: &[T], peak_rad: impl Fn(&T) -> f64) -> Vec<&T> {
+fn largest<T: Copy>(cycles: Vec<T>, peak_rad: impl Fn(T) -> f64) -> Vec<T> {
     let mut rocking: Vec<usize> = (0..cycles.len())
-        .filter(|index| peak_rad(&cycles[*index]) > STRAIGHT_RAD)
+        .filter(|index| peak_rad(cycles[*index]) > STRAIGHT_RAD)
         .collect();
-    rocking.sort_by(|a, b| peak_rad(&cycles[*b]).total_cmp(&peak_rad(&cycles[*a])));
+    rocking.sort_by(|a, b| peak_rad(cycles[*b]).total_cmp(&peak_rad(cycles[*a])));
     rocking.truncate(MAX_HALF_CYCLES);
     rocking.sort_unstable();
-    rocking.into_iter().map(|index| &cycles[index]).collect()
-}
-
-/// Impacts that may be described, with their times: the first impact, and each impact that takes more energy than all before.
-#[derive(Default)]
-pub(super) struct NotableImpacts(Vec<(f64, Impact)>);
-
-impl NotableImpacts {
-    pub(super) fn note(&mut self, event: &Event) {
-        let (time_s, Some(impact)) = (event.time_s, &event.impact) else {
-            return;
-        };
-        let hardest = self.0.last();
-        if hardest.is_none_or(|(_, hardest)| energy_loss_j(impact) > energy_loss_j(hardest)) {
-            self.0.push((time_s, impact.clone()));
-        }
-    }
+    rocking.into_iter().map(|index| cycles[index]).collect()
 }

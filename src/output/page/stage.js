@@ -1,7 +1,4 @@
 // Draws the motion on a canvas. All data are in #data, in metres, seconds and radians.
-const find = (id) => document.getElementById(id);
-const data = JSON.parse(find("data").textContent);
-const buffer = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer;
 const { frames, sections, unit_m: unitM } = data;
 const bodies = data.bodies.length;
 
@@ -31,7 +28,6 @@ const NO_THRUST = -32768;
 // ---- the state of the page ----
 let time = start;
 let playing = false;
-const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
 /** Returns the frame before time t, the next frame, and the fraction of the interval between both; 0 if their hinges differ. */
 function moment(t) {
@@ -92,7 +88,6 @@ function roundStep(rough) {
   return power * [1, 2, 5, 10].find((digit) => digit * power >= rough);
 }
 
-const farthest = (values) => values.reduce((most, value) => Math.max(most, Math.abs(value ?? 0)), 0);
 const groundX = Array.from({ length: count }, (_, i) => groundM[2 * i]);
 // After a pulse the ground may keep a velocity. The view follows ground that moves far.
 find("ride").checked = farthest(groundX) > 0.1 * Math.max(width, height);

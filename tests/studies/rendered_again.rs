@@ -1,0 +1,127 @@
+//! The words and the page of a run, and the words of capacity curves, are functions of their JSON alone: they are rendered again from the files.
+
+use std::fs;
+use std::path::Path;
+
+use crate::common::program::{archrock, printed, scenarios, stdout};
+use crate::common::results::json;
+use archrock::studies::capacity;
+use archrock::studies::run::report::page_of;
+use archrock::studies::run::words_of;
+use serde_json::Value;
+
+/// Removes the lines about files from printed words, and the heading before the first of these lines.
+fn words(printed: &str, first: &str) -> String {
+    let about_files = |line: &&str| {
+        let begins = ["  results in ", "both in ", "all in ", "  snapshots at "];
+        begins.iter().any(|begin| line.starts_with(begin))
+    };
+    let lines = printed.lines().skip_while(|line| *line != first);
+    let lines = lines.filter(|line| !about_files(line));
+    lines.map(|line| format!("{line}\n")).collect()
+}
+
+/// Runs a scenario, and compares the printed words with those of its `summary.json`. Returns them.
+fn rendered_again(folder: &Path, scenario: &str, options: &[&str]) -> String {
+    let arguments = [&["run", scenario, "--out", "o", "--no-report"], options].concat();
+    let said = printed(folder, &arguments);
+    let again = words_of(&json(&folder.join("o/summary.json"))).unwrap();
+    assert_eq!(words(&said, again.lines().next().unwrap()), again);
+    again
+}
+
+#[test]
+fn words_of_a_run_are_rendered_again_from_its_json() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let uncertain = "[arch]\nmean_radius_m = 4.609197050803642\nthickness_ratio = 0.13306427265472975\nembrace_deg = 157.5\nvoussoirs = 5\n\
+         [free_hinges]\nfriction_coefficient = 0.5969922684006939\n\
+         [ground.one_sine]\namplitude_g = 0.808543\nduration_s = 0.46925101434657324\n[simulation]\noutput_step_s = 0.05";
+    fs::write(at.join("uncertain.toml"), uncertain).unwrap();
+    let varied = "[column]\nheight_m = 3.0\nwidth_m = 0.6\ndrums = 3\n[elastic_joints]\nnormal_stiffness_gpa_m = 20.0\ncompressive_strength_mpa = 10.0\n\
+         [ground.half_sine]\namplitude_g = 0.3\nduration_s = 0.4\n";
+    fs::write(at.join("varied.toml"), varied).unwrap();
+    let file = |name: &str| format!("{}", scenarios().join(name).display());
+    for (scenario, options, shown) in [
+        (file("semicircle-pulse.toml"), &[][..], "four links"),
+        (file("column-pulse.toml"), &[], "restitution"),
+        (file("never-moved.toml"), &[], "never moves"),
+        (file("overturning-at-once.toml"), &[], "overturns to the"),
+        (
+            file("voussoirs-step-pair.toml"),
+            &["--hinges", "free", "--point", "0,10"],
+            "the point 0,10 moves",
+        ),
+        (file("two-feet.toml"), &[], "the right foot moves by"),
+        (file("tie.toml"), &[], "tie 1 pulled with"),
+        (
+            file("drums-step-pair.toml"),
+            &["--set", "simulation.duration_s=0.5"],
+            "NO VERDICT",
+        ),
+        ("uncertain.toml".to_owned(), &[], "UNCERTAIN: overturns in"),
+        ("varied.toml".to_owned(), &[], "with rigid joints"),
+    ] {
+        let words = rendered_again(at, &scenario, options);
+        assert!(words.contains(shown), "{words}");
+    }
+}
+
+#[test]
+fn words_of_several_models_are_rendered_again_from_their_json() {
+    let folder = tempfile::tempdir().unwrap();
+    let scenario = scenarios().join("semicircle-pulse.toml");
+    let scenario = scenario.to_str().unwrap();
+    let options = [
+        "run",
+        scenario,
+        "--hinges",
+        "four,free,elastic",
+        "--set",
+        "arch.voussoirs=7",
+        "--set",
+        "elastic_joints.normal_stiffness_gpa_m=20",
+        "--no-report",
+    ];
+    let said = printed(folder.path(), &options);
+    let answer = archrock(
+        folder.path(),
+        &[&options[..], &["--format", "json"]].concat(),
+    );
+    let json: Value = serde_json::from_str(&stdout(&answer)).unwrap();
+    let again = words_of(&json).unwrap();
+    assert_eq!(words(&said, again.lines().next().unwrap()), again);
+    assert!(again.contains("compared with elastic joints"), "{again}");
+}
+
+#[test]
+fn the_page_of_a_run_is_rendered_again_from_its_data() {
+    let folder = tempfile::tempdir().unwrap();
+    for (scenario, options) in [
+        ("column-pulse.toml", &[][..]),
+        ("overturning-at-once.toml", &["--point", "0,5"]),
+        ("tie.toml", &["--no-repeat"]),
+        ("two-feet.toml", &["--no-repeat"]),
+    ] {
+        let scenario = scenarios().join(scenario);
+        let arguments = [&["run", scenario.to_str().unwrap(), "--out", "o"], options].concat();
+        printed(folder.path(), &arguments);
+        let page = fs::read_to_string(folder.path().join("o/report.html")).unwrap();
+        let (_, data) = page.split_once("id=\"data\">").unwrap();
+        let (data, _) = data.split_once("</script>").unwrap();
+        assert!(page_of(data).unwrap() == page, "{scenario:?}");
+    }
+}
+
+#[test]
+fn words_of_capacity_curves_are_rendered_again_from_their_json() {
+    let folder = tempfile::tempdir().unwrap();
+    for scenario in ["semicircle-pulse.toml", "tie.toml"] {
+        let scenario = scenarios().join(scenario);
+        let arguments = ["capacity", scenario.to_str().unwrap(), "--out", "o"];
+        let said = printed(folder.path(), &arguments);
+        let json = json(&folder.path().join("o/capacity.json"));
+        let summary: capacity::Summary = serde_json::from_value(json).unwrap();
+        assert!(said.contains(summary.to_string().trim()), "{said}");
+    }
+}
