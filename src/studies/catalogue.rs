@@ -13,6 +13,7 @@ use super::ensemble::uncertain_threshold::FirstEdges;
 use super::ensemble::{Ensemble, Question};
 use super::map::OverturningMap;
 use super::part::{self, PartFile};
+use super::results::{WordsOf, words_of_json};
 use super::run::{self, RunOptions, Sinks};
 use super::spread::{self, Direction};
 use super::suite::{Heading, RecordSuite};
@@ -94,6 +95,8 @@ pub struct StudyKind {
     pub is_history: bool,
     /// True if the scenario needs a ground motion.
     pub needs_motion: bool,
+    /// Makes the words of its report from its JSON alone; `None` if the report cannot be read back.
+    pub words_of: Option<WordsOf>,
     compute: Compute,
 }
 
@@ -108,10 +111,15 @@ impl Eq for StudyKind {}
 /// The history of a scenario, with one or several models of motion.
 pub const RUN: StudyKind = StudyKind {
     is_history: true,
-    ..StudyKind::whole("run", &run::FILES, |scenarios, options, style, work| {
-        let (options, figure) = (&options.run, style.figure);
-        run::results(scenarios, options, figure, work.sinks, work.watch)
-    })
+    ..StudyKind::whole(
+        "run",
+        &run::FILES,
+        Some(run::words_of),
+        |scenarios, options, style, work| {
+            let (options, figure) = (&options.run, style.figure);
+            run::results(scenarios, options, figure, work.sinks, work.watch)
+        },
+    )
 };
 /// The map of the pulses that overturn the structure, over two quantities.
 pub const MAP: StudyKind = StudyKind::of::<OverturningMap<'_>>(|scenarios, _, style, rows| {
@@ -125,6 +133,7 @@ pub const SUITE: StudyKind = StudyKind::of::<RecordSuite<'_>>(|scenarios, _, sty
 pub const THRESHOLD: StudyKind = StudyKind::whole(
     "threshold",
     &threshold::FILES,
+    Some(words_of_json::<threshold::Summary>),
     |scenarios, options, style, Work { runner, watch, .. }| {
         threshold::results(scenarios, &options.factors, style.figure, &runner, watch)
     },
@@ -144,6 +153,7 @@ pub const CAPACITY: StudyKind = StudyKind {
     ..StudyKind::whole(
         "capacity",
         &capacity::FILES,
+        Some(words_of_json::<capacity::Summary>),
         |scenarios, options, style, _| {
             let scenario = &scenarios[0];
             scenario.check_as_built().map_err(StudyError::Scenario)?;
@@ -155,23 +165,30 @@ pub const CAPACITY: StudyKind = StudyKind {
 /// The movement of a springing at which the arch falls.
 pub const SPREAD: StudyKind = StudyKind {
     needs_motion: false,
-    ..StudyKind::whole("spread", &spread::FILES, |scenarios, options, style, _| {
-        let (scenario, directions) = (&scenarios[0], &options.directions);
-        let found = spread::spread(scenario, directions)?;
-        Ok(spread::report(scenario, &found, style.figure)?)
-    })
+    ..StudyKind::whole(
+        "spread",
+        &spread::FILES,
+        None,
+        |scenarios, options, style, _| {
+            let (scenario, directions) = (&scenarios[0], &options.directions);
+            let found = spread::spread(scenario, directions)?;
+            Ok(spread::report(scenario, &found, style.figure)?)
+        },
+    )
 };
 /// The check of the first mechanism by the Circolare 7/2019.
-pub const VERIFY: StudyKind = StudyKind::whole("verify", &verify::FILES, |scenarios, _, _, _| {
-    let scenario = &scenarios[0];
-    scenario.check_as_built().map_err(StudyError::Scenario)?;
-    if scenario.right_foot.is_some() {
-        let message = "the histories of a check shake both feet alike: leave [ground.right] out";
-        return Err(StudyError::scenario(message));
-    }
-    let check = verify::verify(scenario).map_err(StudyError::scenario)?;
-    Ok(verify::report(scenario, &check)?)
-});
+pub const VERIFY: StudyKind =
+    StudyKind::whole("verify", &verify::FILES, None, |scenarios, _, _, _| {
+        let scenario = &scenarios[0];
+        scenario.check_as_built().map_err(StudyError::Scenario)?;
+        if scenario.right_foot.is_some() {
+            let message =
+                "the histories of a check shake both feet alike: leave [ground.right] out";
+            return Err(StudyError::scenario(message));
+        }
+        let check = verify::verify(scenario).map_err(StudyError::scenario)?;
+        Ok(verify::report(scenario, &check)?)
+    });
 /// Endings and courses of histories for samples of the uncertain numbers.
 pub const UNCERTAIN: StudyKind = StudyKind::of_samples::<Histories>();
 /// The factor from which samples of the uncertain numbers overturn.
@@ -216,21 +233,33 @@ impl StudyKind {
     const fn whole(
         name: &'static str,
         files: &'static [&'static str],
+        words_of: Option<WordsOf>,
         compute: fn(&[Scenario], &Options, Style, Work<'_, '_>) -> Result<Results, StudyError>,
     ) -> Self {
-        Self::with(name, files, Compute::Whole(compute))
+        Self::with(name, files, words_of, Compute::Whole(compute))
     }
 
     const fn of<S: ReportedStudy>(
         compute: fn(&[Scenario], &Options, Style, RowSource<'_>) -> Result<Computation, StudyError>,
     ) -> Self {
-        Self::with(S::NAME, S::FILES, Compute::ByRows(compute))
+        Self::with(
+            S::NAME,
+            S::FILES,
+            Some(words_of_json::<S::Report>),
+            Compute::ByRows(compute),
+        )
     }
 
-    const fn with(name: &'static str, files: &'static [&'static str], compute: Compute) -> Self {
+    const fn with(
+        name: &'static str,
+        files: &'static [&'static str],
+        words_of: Option<WordsOf>,
+        compute: Compute,
+    ) -> Self {
         Self {
             name,
             files,
+            words_of,
             is_history: false,
             needs_motion: true,
             compute,

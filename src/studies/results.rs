@@ -64,6 +64,9 @@ pub trait ReportedStudy: Study {
     /// The names of all files that its results may have, the seal last.
     const FILES: &'static [&'static str];
 
+    /// Its report.
+    type Report: DeserializeOwned + Template;
+
     /// Makes the report and the other files of all rows.
     ///
     /// # Errors
@@ -133,18 +136,18 @@ impl Results {
     }
 }
 
-/// Returns the words of a report, made from its JSON alone.
-///
-/// # Errors
-/// When the text is not the JSON of such a report.
-#[doc(hidden)]
-pub fn words_of_json<R: DeserializeOwned + Template>(json: &str) -> serde_json::Result<String> {
-    let report: R = serde_json::from_str(json)?;
-    Ok(words_of(&report))
+/// Function that makes the words of a report from its JSON alone. The error means that it is not the JSON of such a report.
+pub type WordsOf = fn(&Value) -> serde_json::Result<String>;
+
+/// The [`WordsOf`] reports of one type.
+pub(super) fn words_of_json<R: DeserializeOwned + Template>(
+    json: &Value,
+) -> serde_json::Result<String> {
+    Ok(words_of(&R::deserialize(json)?))
 }
 
 fn words_of(report: &impl Template) -> String {
-    render(report).trim_end().to_owned()
+    render(report).trim().to_owned()
 }
 
 /// A result without files, as JSON and in words.

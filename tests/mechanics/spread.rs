@@ -1607,7 +1607,7 @@ fn a_scenario_can_give_the_movement_of_its_springings() {
             "right = { spread_m = -9.5 }",
             "pushes the springings 9.5 m towards each other",
         ),
-        ("right = { spread_m = 0.7 }", "with joints that are rigid"),
+        ("right = { spread_m = 0.7 }", "with rigid joints"),
         (
             "right = { spread_m = 0.53 }",
             "with joints as soft as these",

@@ -1,11 +1,10 @@
-//! The words and the page of a run, and the words of capacity curves, are functions of their JSON alone: they are rendered again from the files.
+//! The words and the page of a run are functions of their JSON alone: they are rendered again from the files.
 
 use std::fs;
 use std::path::Path;
 
 use crate::common::program::{archrock, printed, scenarios, stdout};
 use crate::common::results::json;
-use archrock::studies::capacity;
 use archrock::studies::run::report::page_of;
 use archrock::studies::run::words_of;
 use serde_json::Value;
@@ -16,9 +15,9 @@ fn words(printed: &str, first: &str) -> String {
         let begins = ["  results in ", "both in ", "all in ", "  snapshots at "];
         begins.iter().any(|begin| line.starts_with(begin))
     };
-    let lines = printed.lines().skip_while(|line| *line != first);
-    let lines = lines.filter(|line| !about_files(line));
-    lines.map(|line| format!("{line}\n")).collect()
+    let lines = printed.lines().skip_while(|line| line.trim() != first);
+    let lines: Vec<&str> = lines.filter(|line| !about_files(line)).collect();
+    lines.join("\n").trim().to_owned()
 }
 
 /// Runs a scenario, and compares the printed words with those of its `summary.json`. Returns them.
@@ -110,18 +109,5 @@ fn the_page_of_a_run_is_rendered_again_from_its_data() {
         let (_, data) = page.split_once("id=\"data\">").unwrap();
         let (data, _) = data.split_once("</script>").unwrap();
         assert!(page_of(data).unwrap() == page, "{scenario:?}");
-    }
-}
-
-#[test]
-fn words_of_capacity_curves_are_rendered_again_from_their_json() {
-    let folder = tempfile::tempdir().unwrap();
-    for scenario in ["semicircle-pulse.toml", "tie.toml"] {
-        let scenario = scenarios().join(scenario);
-        let arguments = ["capacity", scenario.to_str().unwrap(), "--out", "o"];
-        let said = printed(folder.path(), &arguments);
-        let json = json(&folder.path().join("o/capacity.json"));
-        let summary: capacity::Summary = serde_json::from_value(json).unwrap();
-        assert!(said.contains(summary.to_string().trim()), "{said}");
     }
 }

@@ -3,17 +3,16 @@
 use std::fs;
 use std::path::Path;
 
-use archrock::studies::ensemble::{
-    uncertain_map, uncertain_run, uncertain_suite, uncertain_threshold,
+use archrock::studies::catalogue::{
+    CAPACITY, MAP, SUITE, THRESHOLD, THRESHOLD_ALONG, UNCERTAIN, UNCERTAIN_MAP, UNCERTAIN_SUITE,
+    UNCERTAIN_THRESHOLD,
 };
 use archrock::studies::peaks;
-use archrock::studies::results::words_of_json;
+use archrock::studies::results::WordsOf;
 
 use crate::common::COLUMN;
-use crate::common::program::{archrock, stderr, stdout};
-
-/// Function that makes the words of a report of one type.
-type WordsOf = fn(&str) -> serde_json::Result<String>;
+use crate::common::program::{archrock, scenarios, stderr, stdout};
+use crate::common::results::json;
 
 /// Runs a command and compares its output with the words made of files in its results.
 #[track_caller]
@@ -21,13 +20,65 @@ fn same_words(at: &Path, arguments: &[&str], reports: &[(&str, WordsOf)]) {
     let output = archrock(at, &[arguments, &["--out", "r"]].concat());
     let said = stdout(&output) + &stderr(&output);
     for (file, words_of) in reports {
-        let json = fs::read_to_string(at.join("r").join(file)).unwrap();
-        let words = words_of(&json).unwrap();
+        let words = words_of(&json(&at.join("r").join(file))).unwrap();
         assert!(!words.is_empty(), "{arguments:?}: {file}");
         let line = format!("{words}\n");
         assert!(said.contains(&line), "{arguments:?}: {line}{said}");
     }
     fs::remove_dir_all(at.join("r")).unwrap();
+}
+
+#[test]
+fn studies_have_the_words_of_their_json() {
+    let folder = tempfile::tempdir().unwrap();
+    let small = [
+        "--set",
+        "map.duration_s.count=4",
+        "--set",
+        "map.amplitude_g.count=4",
+    ];
+    let free = ["--hinges", "free", "--set", "arch.voussoirs=7"];
+    let few = ["--from", "0.5", "--to", "2", "--stride", "0.3"];
+    let along = ["--along", "arch.thickness_ratio=0.12..0.2:3"];
+    let suite = ["--set", "suite.peaks_g.count=4"];
+    for (kind, file, command, options) in [
+        (MAP, "semicircle-map.toml", "map", &small[..]),
+        (
+            MAP,
+            "semicircle-map.toml",
+            "map",
+            &[&small[..], &free].concat(),
+        ),
+        (THRESHOLD, "semicircle-pulse.toml", "threshold", &few),
+        (THRESHOLD, "elastic-joints.toml", "threshold", &few),
+        (
+            THRESHOLD,
+            "semicircle-pulse.toml",
+            "threshold",
+            &[
+                &few[..],
+                &["--hinges", "four,free", "--set", "arch.voussoirs=7"],
+            ]
+            .concat(),
+        ),
+        (
+            THRESHOLD_ALONG,
+            "semicircle-pulse.toml",
+            "threshold",
+            &[&few[..], &along].concat(),
+        ),
+        (SUITE, "column-suite.toml", "suite", &suite),
+        (CAPACITY, "tie.toml", "capacity", &[]),
+    ] {
+        let file = scenarios().join(file);
+        let arguments = [&[command, file.to_str().unwrap()], options].concat();
+        let report = kind.files.iter().find(|name| name.ends_with(".json"));
+        same_words(
+            folder.path(),
+            &arguments,
+            &[(report.unwrap(), kind.words_of.unwrap())],
+        );
+    }
 }
 
 #[test]
@@ -49,36 +100,23 @@ fn samples_have_the_words_of_their_json() {
     // Many of the histories that end early have no verdict.
     fs::write(at.join("early.toml"), text(1.02)).unwrap();
     fs::write(at.join("late.toml"), text(60.0)).unwrap();
-    let questions: [(&str, &str, WordsOf); 4] = [
-        ("run", "uncertain", words_of_json::<uncertain_run::Summary>),
-        (
-            "threshold",
-            "uncertain_threshold",
-            words_of_json::<uncertain_threshold::Summary>,
-        ),
-        (
-            "suite",
-            "uncertain_suite",
-            words_of_json::<uncertain_suite::Summary>,
-        ),
-        (
-            "map",
-            "uncertain_map",
-            words_of_json::<uncertain_map::Summary>,
-        ),
-    ];
-    for (command, folder, words_of) in questions {
+    for (command, kind) in [
+        ("run", UNCERTAIN),
+        ("threshold", UNCERTAIN_THRESHOLD),
+        ("suite", UNCERTAIN_SUITE),
+        ("map", UNCERTAIN_MAP),
+    ] {
         for file in ["early.toml", "late.toml"] {
-            let report = format!("{folder}/uncertain.json");
-            same_words(at, &[command, file], &[(&report, words_of)]);
+            let report = format!("{}/uncertain.json", kind.name);
+            same_words(at, &[command, file], &[(&report, kind.words_of.unwrap())]);
         }
     }
     let models = ["run", "late.toml", "--hinges", "four,free"];
     let few = ["--set", "uncertain.samples=4"];
     let compared: [(&str, WordsOf); 3] = [
-        ("four/uncertain/uncertain.json", questions[0].2),
-        ("free/uncertain/uncertain.json", questions[0].2),
-        ("models/peaks.json", words_of_json::<peaks::Summary>),
+        ("four/uncertain/uncertain.json", UNCERTAIN.words_of.unwrap()),
+        ("free/uncertain/uncertain.json", UNCERTAIN.words_of.unwrap()),
+        ("models/peaks.json", peaks::words_of),
     ];
     same_words(at, &[&models[..], &few].concat(), &compared);
 }

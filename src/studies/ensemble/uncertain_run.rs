@@ -62,6 +62,7 @@ fn many_cases(scenario: &Scenario) -> Result<Box<dyn Model>, String> {
 
 impl Question for Histories {
     type Answer = HistoryAnswer;
+    type Report = Summary;
 
     const NAME: &'static str = "uncertain";
 

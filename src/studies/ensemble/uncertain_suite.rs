@@ -96,6 +96,7 @@ impl Capacities {
 
 impl Question for Capacities {
     type Answer = Edges;
+    type Report = Summary;
 
     const NAME: &'static str = "uncertain_suite";
 

@@ -88,6 +88,7 @@ fn strength_in_words(strength: f64, at_most: bool, at: &str) -> String {
 
 impl Question for FirstEdges {
     type Answer = FirstEdge;
+    type Report = Summary;
 
     const NAME: &'static str = "uncertain_threshold";
 

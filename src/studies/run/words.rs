@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use askama::Template;
 use nalgebra::Vector2;
+use serde::Deserialize as _;
 use serde_json::Value;
 
 use super::caveats::{Caveat, STONE_FRICTION, coefficient};
@@ -81,21 +82,19 @@ pub(super) struct Files {
 /// # Errors
 /// When the JSON is not a summary of a run.
 pub fn words_of(json: &Value) -> serde_json::Result<String> {
-    if json.get("program").is_some() {
-        let summary: Summary = serde::Deserialize::deserialize(json)?;
-        return Ok(render(&Printed {
-            comparison: None,
-            runs: vec![(&summary, None)],
-        }));
-    }
-    let comparison: Comparison = serde::Deserialize::deserialize(json)?;
-    Ok(render(&Printed {
-        runs: comparison
-            .summaries()
-            .map(|summary| (summary, None))
-            .collect(),
-        comparison: Some(&comparison),
-    }))
+    let comparison: Option<Comparison> = match json.get("program") {
+        Some(_) => None,
+        None => Some(Comparison::deserialize(json)?),
+    };
+    let runs = match &comparison {
+        Some(comparison) => comparison.summaries().cloned().collect(),
+        None => vec![Summary::deserialize(json)?],
+    };
+    let words = render(&Printed {
+        comparison: comparison.as_ref(),
+        runs: runs.iter().map(|summary| (summary, None)).collect(),
+    });
+    Ok(words.trim().to_owned())
 }
 
 /// Largest number of half cycles that are described.

@@ -207,6 +207,8 @@ impl Study for RecordSuite<'_> {
 impl ReportedStudy for RecordSuite<'_> {
     const FILES: &'static [&'static str] = &report::FILES;
 
+    type Report = report::Summary;
+
     fn results(&self, rows: Vec<CaseRow>, style: Style) -> Result<Results, OutputError> {
         Heading::new(self.scenario, self.suite).report(rows, style.figure)
     }

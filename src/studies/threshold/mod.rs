@@ -15,7 +15,7 @@ mod varied;
 
 pub(super) use digits::{rounded, rounded_down, rounded_range};
 pub use factors::{EDGE_WIDTH, Factors};
-pub use report::FILES;
+pub use report::{FILES, Summary};
 pub use varied::{VariedThreshold, vary};
 
 use std::ops::ControlFlow;
