@@ -228,6 +228,14 @@ pub(super) fn case(
     (ground, request)
 }
 
+/// Returns a number of records in words.
+fn records_in_words(records: usize) -> String {
+    match records {
+        1 => "1 record".to_owned(),
+        count => format!("{count} records"),
+    }
+}
+
 /// Returns the ending of a complete history; `None` if there is none.
 fn complete(result: &Result<Ending, NoHistory>) -> Option<&Ending> {
     let ending = result.as_ref().ok();

@@ -1,8 +1,7 @@
 //! The picture of the fragility under a suite of records.
 
 use super::fragility::Fragility;
-use super::report::records_in_words;
-use super::{Counts, Heading, SuiteFragility};
+use super::{Counts, Heading, SuiteFragility, records_in_words};
 use crate::output::{
     BELOW_PX, Chart, Figure, Key, LEFT_PX, Mark, Scale, Shape, Sheet, Sign, Stroke, color,
 };

@@ -7,7 +7,9 @@ use serde_json::Value;
 use super::fragility::{Fragility, NoFit};
 use super::ida::Fractiles;
 use super::strength::{Capacity, Efficiency, MEASURES, efficiencies, few};
-use super::{CaseRow, Counts, FragilityRow, Heading, SuiteFragility, ida, picture};
+use super::{
+    CaseRow, Counts, FragilityRow, Heading, SuiteFragility, ida, picture, records_in_words,
+};
 use crate::argument::plain;
 use crate::output::{Column, Figure, OutputError, column, csv, each, fields, list};
 use crate::scenario::{Measure, Spectral, shown};
@@ -429,14 +431,6 @@ impl Curve {
             "",
         );
         Some(format!("median {median}, dispersion {dispersion}"))
-    }
-}
-
-/// Returns a number of records in words.
-pub(super) fn records_in_words(records: usize) -> String {
-    match records {
-        1 => "1 record".to_owned(),
-        count => format!("{count} records"),
     }
 }
 
