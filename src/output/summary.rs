@@ -1,7 +1,8 @@
 //! Summaries as JSON, from the types of results.
 
-use serde::{Serialize, Serializer};
-use serde_json::Value;
+use serde::de::{DeserializeOwned, Error as _};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde_json::{Map, Value};
 use serde_value::Value as Exact;
 
 use super::OutputError;
@@ -24,6 +25,15 @@ pub struct Named<V>(pub Vec<(String, V)>);
 impl<V: Serialize> Serialize for Named<V> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_map(self.0.iter().map(|(name, value)| (name, value)))
+    }
+}
+
+impl<'de, V: DeserializeOwned> Deserialize<'de> for Named<V> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let entries = Map::deserialize(deserializer)?.into_iter();
+        let read = entries.map(|(name, value)| Ok((name, V::deserialize(value)?)));
+        let read = read.collect::<Result<_, serde_json::Error>>();
+        read.map(Self).map_err(D::Error::custom)
     }
 }
 

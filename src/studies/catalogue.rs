@@ -158,7 +158,7 @@ pub const SPREAD: StudyKind = StudyKind {
     ..StudyKind::whole("spread", &spread::FILES, |scenarios, options, style, _| {
         let (scenario, directions) = (&scenarios[0], &options.directions);
         let found = spread::spread(scenario, directions)?;
-        Ok(spread::report(scenario, &found, style.figure)?)
+        spread::report(scenario, &found, style.figure)
     })
 };
 /// The check of the first mechanism by the Circolare 7/2019.
