@@ -168,11 +168,11 @@ pub const SPREAD: StudyKind = StudyKind {
     ..StudyKind::whole(
         "spread",
         &spread::FILES,
-        None,
+        Some(words_of_json::<spread::Summary>),
         |scenarios, options, style, _| {
             let (scenario, directions) = (&scenarios[0], &options.directions);
             let found = spread::spread(scenario, directions)?;
-            Ok(spread::report(scenario, &found, style.figure)?)
+            spread::report(scenario, &found, style.figure)
         },
     )
 };

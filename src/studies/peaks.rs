@@ -6,9 +6,8 @@
 
 use askama::Template;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
 
-use super::results::{Results, words_of_json};
+use super::results::Results;
 use super::statistics::{ascending, fractile, shares_up_to};
 use crate::output::{CURVES, Chart, Figure, Mark, OutputError, Scale, column, csv, filters};
 
@@ -100,14 +99,6 @@ impl ModelSummary {
             peak_rotation_84_rad: at(0.84),
         }
     }
-}
-
-/// Returns the words of a comparison, made from its JSON alone.
-///
-/// # Errors
-/// When it is not the JSON of a comparison.
-pub fn words_of(json: &Value) -> serde_json::Result<String> {
-    words_of_json::<Summary>(json)
 }
 
 /// Compares the distributions of several models of the same cases: report, table and picture.

@@ -139,10 +139,11 @@ impl Results {
 /// Function that makes the words of a report from its JSON alone. The error means that it is not the JSON of such a report.
 pub type WordsOf = fn(&Value) -> serde_json::Result<String>;
 
-/// The [`WordsOf`] reports of one type.
-pub(super) fn words_of_json<R: DeserializeOwned + Template>(
-    json: &Value,
-) -> serde_json::Result<String> {
+/// Makes the words of a report of this type from its JSON alone: a [`WordsOf`].
+///
+/// # Errors
+/// When it is not the JSON of such a report.
+pub fn words_of_json<R: DeserializeOwned + Template>(json: &Value) -> serde_json::Result<String> {
     Ok(words_of(&R::deserialize(json)?))
 }
 

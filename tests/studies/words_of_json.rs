@@ -7,8 +7,8 @@ use archrock::studies::catalogue::{
     CAPACITY, MAP, SUITE, THRESHOLD, THRESHOLD_ALONG, UNCERTAIN, UNCERTAIN_MAP, UNCERTAIN_SUITE,
     UNCERTAIN_THRESHOLD,
 };
-use archrock::studies::peaks;
-use archrock::studies::results::WordsOf;
+use archrock::studies::results::{WordsOf, words_of_json};
+use archrock::studies::{impact, limit, peaks, spread};
 
 use crate::common::COLUMN;
 use crate::common::program::{archrock, scenarios, stderr, stdout};
@@ -81,6 +81,78 @@ fn studies_have_the_words_of_their_json() {
     }
 }
 
+/// Compares the words that a command prints with those made of the JSON that it prints.
+#[track_caller]
+fn same_printed(arguments: &[&str], words_of: WordsOf) {
+    let at = Path::new("scenarios");
+    let [words, json] = [&[][..], &["--format", "json"]].map(|format| {
+        let output = archrock(at, &[arguments, format].concat());
+        assert!(
+            output.status.success(),
+            "{arguments:?}: {}",
+            stderr(&output)
+        );
+        stdout(&output)
+    });
+    let again = words_of(&serde_json::from_str(&json).unwrap()).unwrap();
+    assert_eq!(again, words.trim_end(), "{arguments:?}");
+}
+
+#[test]
+fn limits_have_the_words_of_their_json() {
+    let slips = ["--set", "free_hinges.friction_coefficient=0.4"];
+    let moves = ["--set", "supports.right.spread_m=0.001"];
+    let cases: [(&str, &[&[&str]]); 8] = [
+        ("column-pulse.toml", &[]),
+        ("semicircle-pulse.toml", &[]),
+        ("drums-step-pair.toml", &[&slips]),
+        ("voussoirs-step-pair.toml", &[&slips]),
+        ("voussoirs-step-pair.toml", &[&slips, &moves]),
+        ("pointed-arch-on-piers.toml", &[]),
+        ("tie.toml", &[]),
+        ("tie.toml", &[&moves]),
+    ];
+    for (file, set) in cases {
+        let arguments = [&["limit", file], &set.concat()[..]].concat();
+        same_printed(&arguments, words_of_json::<limit::Summary>);
+    }
+}
+
+#[test]
+fn impacts_have_the_words_of_their_json() {
+    let details = ["--models", "--certificate"];
+    let cases: [(&str, &[&str]); 6] = [
+        ("column-pulse.toml", &[]),
+        ("semicircle-pulse.toml", &[]),
+        ("semicircle-pulse.toml", &details),
+        ("voussoirs-step-pair.toml", &details),
+        ("pointed-arch-on-piers.toml", &details),
+        ("semicircle-pulse.toml", &["--set", "impact.model=mirrored"]),
+    ];
+    for (file, more) in cases {
+        let arguments = [&["impact", file], more].concat();
+        same_printed(&arguments, words_of_json::<impact::Summary>);
+    }
+}
+
+#[test]
+fn spreads_have_the_words_of_their_json() {
+    let folder = tempfile::tempdir().unwrap();
+    let scenario = |name: &str| fs::canonicalize(Path::new("scenarios").join(name)).unwrap();
+    let slips = ["--set", "free_hinges.friction_coefficient=0.3"];
+    let cases: [(&str, &[&str]); 3] = [
+        ("voussoirs-step-pair.toml", &slips),
+        ("pointed-arch-on-piers.toml", &["--angle", "30"]),
+        ("tie.toml", &["--angle", "0"]),
+    ];
+    for (file, more) in cases {
+        let file = scenario(file);
+        let arguments = [&["spread", file.to_str().unwrap()], more].concat();
+        let reports: [(&str, WordsOf); 1] = [("spread.json", words_of_json::<spread::Summary>)];
+        same_words(folder.path(), &arguments, &reports);
+    }
+}
+
 #[test]
 fn samples_have_the_words_of_their_json() {
     let folder = tempfile::tempdir().unwrap();
@@ -116,7 +188,7 @@ fn samples_have_the_words_of_their_json() {
     let compared: [(&str, WordsOf); 3] = [
         ("four/uncertain/uncertain.json", UNCERTAIN.words_of.unwrap()),
         ("free/uncertain/uncertain.json", UNCERTAIN.words_of.unwrap()),
-        ("models/peaks.json", peaks::words_of),
+        ("models/peaks.json", words_of_json::<peaks::Summary>),
     ];
     same_words(at, &[&models[..], &few].concat(), &compared);
 }

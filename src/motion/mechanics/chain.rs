@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 
 use nalgebra::Vector2;
-use serde::{Serialize, Serializer};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::bisection::{Width, bisect, middle};
 use crate::mechanics::{Edge, MassMoments, Pose, Sway};
@@ -93,19 +93,23 @@ pub struct Link<M> {
 }
 
 /// Hinge between two parts of a structure, or between a part and the ground.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Hinge {
     /// Hinge at an edge of a section of an arch.
     Section {
         /// Angle of the section from the left springing, in radians; in files `angle_deg`, in degrees.
-        #[serde(rename = "angle_deg", serialize_with = "in_degrees")]
+        #[serde(
+            rename = "angle_deg",
+            serialize_with = "in_degrees",
+            deserialize_with = "of_degrees"
+        )]
         angle_rad: f64,
         /// The edge.
         edge: Edge,
     },
     /// Hinge at the toe of a column's base on this side; `toe` in files.
-    Toe(#[serde(serialize_with = "as_toe")] Sway),
+    Toe(#[serde(serialize_with = "as_toe", deserialize_with = "of_toe")] Sway),
     /// Hinge at a joint of a row of blocks.
     Joint {
         /// Index of the joint, from 0 at the left springing or the base.
@@ -119,8 +123,20 @@ fn in_degrees<S: Serializer>(angle_rad: &f64, serializer: S) -> Result<S::Ok, S:
     angle_rad.to_degrees().serialize(serializer)
 }
 
+fn of_degrees<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    f64::deserialize(deserializer).map(f64::to_radians)
+}
+
 fn as_toe<S: Serializer>(side: &Sway, serializer: S) -> Result<S::Ok, S::Error> {
     BTreeMap::from([("toe", side)]).serialize(serializer)
+}
+
+fn of_toe<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Sway, D::Error> {
+    #[derive(Deserialize)]
+    struct OfToe {
+        toe: Sway,
+    }
+    OfToe::deserialize(deserializer).map(|of| of.toe)
 }
 
 impl<M: Mechanism> Link<M> {

@@ -18,10 +18,10 @@
 //! rocking.
 
 use crate::mechanics::{Link, Mechanism, MechanismChain, Sway};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Free-standing block.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Block {
     /// Frequency parameter `p = sqrt(3 g / (4 R))`, in rad/s.
     #[serde(rename = "p_rad_s")]
@@ -31,7 +31,7 @@ pub struct Block {
 }
 
 /// Blocks equivalent to a structure.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Equivalent {
     /// Slenderness `alpha = atan(A_L)` of both blocks, in radians.
     pub slenderness_rad: f64,

@@ -2,8 +2,8 @@
 
 mod report;
 
-pub use self::report::chain;
-use self::report::{Certificate, ModelComparison, Summary, chain_of_four_links};
+use self::report::{Certificate, ModelComparison, chain_of_four_links};
+pub use self::report::{Summary, chain};
 use super::results::{PrintedResult, StudyError};
 use crate::mechanics::Profile;
 use crate::mechanics::four_link::certificate::{
@@ -136,10 +136,10 @@ pub fn four_links_result(
     };
     let impacts = |first| chain_of_four_links(&LinkImpact { first, ..*impact }, count);
     let mut summary = Summary::new(scenario, model, (sides, count), impacts);
-    summary.chosen = format!("impact {}{}", impact.index, impact.after_first());
+    summary.chosen = Some(format!("impact {}{}", impact.index, impact.after_first()));
     if let Some(before) = impact.before().map(|link| &link.mechanism) {
         if options.models {
-            summary.models = Some(impact.by_models(before, summary.model));
+            summary.models = Some(impact.by_models(before, scenario.motion.impact().model));
         }
         if options.certificate {
             let projection = impact.largest_restitution(before, options.joints);

@@ -3,8 +3,10 @@
 //!
 //! Impulses are per metre of depth, for a closing rate of 1 rad/s of the mechanism before the impact.
 
+use std::borrow::Cow;
+
 use askama::Template;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::LinkImpact;
 use crate::argument::fixed;
@@ -18,40 +20,37 @@ use crate::output::{Cell, OutputError, column, csv, filters};
 use crate::{Hinge, ImpactModel, MechanismModel, Scenario, Sway};
 
 /// Impacts of the structure of a scenario.
-#[derive(Clone, Debug, PartialEq, Serialize, Template)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Template)]
 #[template(path = "studies/impact/words.txt")]
 pub struct Summary {
     /// Impacts after a first sway to the right; of a symmetric structure, after a first sway to the chosen side.
     pub impacts: Vec<ChainImpact>,
     /// Impacts after a first sway to the left; absent unless the structure is an arch of four links that is not symmetric.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub impacts_after_left: Option<Vec<ChainImpact>>,
     /// One impact by all impact models; absent unless requested.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub models: Option<Vec<ModelComparison>>,
     /// The largest restitution of all admissible motions; absent unless requested.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub certificate: Option<Certificate>,
     /// Warnings about unlikely numbers of the scenario.
     pub warnings: Vec<String>,
     /// The mechanism before the first impact of each chain.
-    #[serde(skip)]
-    pub(super) starts: Vec<SwayingMechanism>,
+    pub starts: Vec<SwayingMechanism>,
     /// The requested number of impacts.
-    #[serde(skip)]
-    pub(super) count: usize,
-    /// The impact of `models` and `certificate`, in words.
-    #[serde(skip)]
-    pub(super) chosen: String,
-    /// The impact model of the scenario.
-    #[serde(skip)]
-    pub(super) model: ImpactModel,
-    #[serde(skip)]
-    pub(super) restitution_factor: f64,
+    pub count: usize,
+    /// The impact of `models` and `certificate`, in words; absent unless the structure moves as four links.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub chosen: Option<String>,
+    /// Name of the impact model of the scenario.
+    pub model: Cow<'static, str>,
+    /// Factor of the scenario on restitution coefficients.
+    pub restitution_factor: f64,
 }
 
 /// An impact of a chain.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ChainImpact {
     /// Number of the impact, from 1.
     pub index: usize,
@@ -67,7 +66,7 @@ pub struct ChainImpact {
 }
 
 /// The impulses of an impact; null without an impulse line.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Impulses {
     /// The impulse at each hinge, on the part towards the crown.
     pub impulses: Option<Vec<HingeImpulse>>,
@@ -76,7 +75,7 @@ pub struct Impulses {
 }
 
 /// A mechanism, given by its sway and hinges.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SwayingMechanism {
     /// The side to which the mechanism sways.
     pub sway: Sway,
@@ -85,10 +84,10 @@ pub struct SwayingMechanism {
 }
 
 /// The impulse at a hinge, per metre of depth.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HingeImpulse {
     /// The hinge, from `a` on the left.
-    pub hinge: &'static str,
+    pub hinge: char,
     /// Horizontal impulse, to the right, in N s per metre.
     pub x_n_s_per_m: f64,
     /// Vertical impulse, upwards, in N s per metre.
@@ -96,58 +95,58 @@ pub struct HingeImpulse {
 }
 
 /// The position of a section.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SectionPosition {
     /// Joint of a row, counted from the left; absent for a ring.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub joint: Option<usize>,
     /// Angle of a ring from the left, in degrees; absent for a row.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub angle_deg: Option<f64>,
 }
 
 /// Extremes of an impulse line. Infinite values, which mean tension, are null.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LineExtremes {
     /// True if the line is compressive and stays inside the structure.
     pub admissible: bool,
     /// The largest eccentricity over the thickness: 0.5 at the edges.
     pub largest_eccentricity_ratio: Option<f64>,
     /// The joint of a row with the largest eccentricity.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub largest_eccentricity_joint: Option<usize>,
     /// The angle of a ring at the largest eccentricity, in degrees.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub largest_eccentricity_angle_deg: Option<f64>,
     /// The least normal impulse, in N s per metre.
     pub least_normal_n_s_per_m: Option<f64>,
     /// The joint of a row with the least normal impulse.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub least_normal_joint: Option<usize>,
     /// The angle of a ring at the least normal impulse, in degrees.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub least_normal_angle_deg: Option<f64>,
     /// The largest ratio of the tangential to the normal impulse.
     pub largest_tangential_ratio: Option<f64>,
     /// The joint of a row with the largest ratio.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub largest_tangential_joint: Option<usize>,
     /// The angle of a ring at the largest ratio, in degrees.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub largest_tangential_angle_deg: Option<f64>,
 }
 
 /// An impact by an impact model.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ModelComparison {
     /// The impact model.
-    pub model: &'static str,
+    pub model: Cow<'static, str>,
     /// The impact; null if no mechanism can follow by this model.
     pub impact: Option<ModelImpact>,
 }
 
 /// The result of an impact model.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ModelImpact {
     /// Kinetic energy after the impact over that before.
     pub restitution: f64,
@@ -159,7 +158,7 @@ pub struct ModelImpact {
 }
 
 /// The largest restitution of all admissible motions, compared with that of the chain.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Certificate {
     /// Number of the impact.
     pub index: usize,
@@ -175,18 +174,14 @@ pub struct Certificate {
     pub impulse_line_admissible: Option<bool>,
     /// Joints that open in the motion that keeps the most energy.
     pub opened_joints: Vec<OpenedJoint>,
-    /// Extremes of the impulse line of the four-link mechanism.
-    #[serde(skip)]
-    line: Option<LineExtremes>,
+    /// Extremes of the impulse line of the four-link mechanism; null without an impulse line.
+    pub impulse_line: Option<LineExtremes>,
     /// Neighbouring joints that open, from the left springing.
-    #[serde(skip)]
-    zones: Vec<Zone>,
-    #[serde(skip)]
-    is_row: bool,
+    pub zones: Vec<Zone>,
 }
 
 /// A joint that opens.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OpenedJoint {
     /// Position of the joint.
     #[serde(flatten)]
@@ -198,13 +193,16 @@ pub struct OpenedJoint {
 }
 
 /// Adjacent joints of a continuous ring that open about the same edge, or one joint.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Zone {
-    edge: Edge,
-    /// The first and the last section of the zone.
-    ends: [f64; 2],
-    /// Sum of the opening rates.
-    rate: f64,
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Zone {
+    /// The edge about which the joints open.
+    pub edge: Edge,
+    /// The first section of the zone.
+    pub from: SectionPosition,
+    /// The last section of the zone.
+    pub to: SectionPosition,
+    /// Sum of the opening rates over the closing rate.
+    pub opening_rate_ratio: f64,
 }
 
 impl SwayingMechanism {
@@ -244,7 +242,7 @@ impl Impulses {
         let unit = impact.model.impulse_unit_n_s_per_m();
         let at_hinges = |line: &ImpulseLine| {
             let impulses = line.hinge_impulses_from_left(impact.sway());
-            let names = ["a", "b", "c", "d"].into_iter();
+            let names = ['a', 'b', 'c', 'd'].into_iter();
             let hinges = names.zip(impulses).map(|(hinge, impulse)| HingeImpulse {
                 hinge,
                 x_n_s_per_m: impulse.x * unit,
@@ -332,7 +330,7 @@ impl ModelComparison {
             }
         });
         Self {
-            model: model.name(),
+            model: model.name().into(),
             impact: found,
         }
     }
@@ -352,7 +350,7 @@ impl Certificate {
             opened_joints.reverse();
         }
         let is_ring = impact.chain().sites == HingeSites::Anywhere;
-        let mut zones: Vec<Zone> = Vec::new();
+        let mut zones: Vec<([f64; 2], Zone)> = Vec::new();
         for edge in [Edge::Intrados, Edge::Extrados] {
             let opened = projection.opened().filter(|(_, own, _)| *own == edge);
             let opened: Vec<_> = opened.collect();
@@ -360,10 +358,17 @@ impl Certificate {
                 let mut ends = [zone[0].0, zone[zone.len() - 1].0].map(from_left);
                 ends.sort_by(f64::total_cmp);
                 let rate = zone.iter().map(|(.., rate)| rate).sum();
-                zones.push(Zone { edge, ends, rate });
+                let [from, to] = ends.map(|section| SectionPosition::of(profile, section));
+                let zone = Zone {
+                    edge,
+                    from,
+                    to,
+                    opening_rate_ratio: rate,
+                };
+                zones.push((ends, zone));
             }
         }
-        zones.sort_by(|a, b| a.ends[0].total_cmp(&b.ends[0]));
+        zones.sort_by(|(a, _), (b, _)| a[0].total_cmp(&b[0]));
         let four_link = impact.after().map_or(0.0, |link| link.link.restitution);
         let line = impact.line().map(|line| LineExtremes::of(impact, line));
         Self {
@@ -374,21 +379,20 @@ impl Certificate {
             gap: projection.restitution - four_link,
             impulse_line_admissible: line.map(|line| line.admissible),
             opened_joints,
-            line,
-            zones,
-            is_row: profile.joint(0.0).is_some(),
+            impulse_line: line,
+            zones: zones.into_iter().map(|(_, zone)| zone).collect(),
         }
     }
+}
 
-    /// Returns the sections of a zone in words.
-    fn sections(&self, zone: &Zone) -> String {
-        let section = |section: f64| match self.is_row {
-            true => section.to_string(),
-            false => fixed(section.to_degrees(), 3),
-        };
-        match zone.ends {
-            [from, to] if from == to => section(from),
-            [from, to] => format!("{} to {}", section(from), section(to)),
+impl Zone {
+    /// Returns the sections of the zone in words.
+    fn sections(&self) -> String {
+        let [from, to] = [self.from, self.to].map(|end| cell(&end.joint, &end.angle_deg));
+        if from == to {
+            from
+        } else {
+            format!("{from} to {to}")
         }
     }
 }
@@ -412,8 +416,8 @@ impl Summary {
             warnings: scenario.unlikely(),
             starts: starts.collect(),
             count,
-            chosen: String::new(),
-            model: impact.model,
+            chosen: None,
+            model: impact.model.name().into(),
             restitution_factor: impact.restitution_factor,
         }
     }

@@ -68,8 +68,7 @@ fn of_row(scenario: &Scenario, row: &Row) -> Result<Summary, StabilityError> {
         summary.ties = Some(ties(row)?);
         summary.tie_places = scenario.structure.tie_places();
     }
-    summary.is_stack = !scenario.structure.has_horizontal_thrust();
-    if summary.is_stack {
+    if !scenario.structure.has_horizontal_thrust() {
         return Ok(summary);
     }
     summary.four_links = Some(match scenario.mechanisms() {
@@ -118,7 +117,7 @@ fn ties(row: &Row) -> Result<Ties, StabilityError> {
             without: without.unwrap_or_default(),
             yielding,
         }),
-        hold: false,
+        mechanism_without: None,
     })
 }
 
@@ -177,7 +176,7 @@ fn of_moved_row(
         summary.ties = Some(Ties {
             forces_at_rest_n: stance.forces_n().collect(),
             limits: None,
-            hold: follower.is_held_by_ties(),
+            mechanism_without: Some(follower.is_held_by_ties()),
         });
     }
     if let Some(coefficient) = coefficient {

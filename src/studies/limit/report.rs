@@ -1,7 +1,7 @@
 //! The report of limit analysis: the summary as JSON, from which the words follow.
 
 use askama::Template;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::argument::fixed;
 use crate::mechanics::settling::Pin;
@@ -11,7 +11,7 @@ use crate::output::{Named, filters};
 use crate::{Hinge, MechanismModel, Row, Sway};
 
 /// The onset of motion of a structure, to either side.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Template)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, Template)]
 #[template(path = "studies/limit/words/words.txt")]
 pub struct Summary {
     /// Ground acceleration that starts the structure, in units of gravity: `A_L`, or the first motion with moved springings. Null if no push
@@ -23,48 +23,43 @@ pub struct Summary {
     pub mechanism: Sides<Vec<OpenHinge>>,
     /// Rotations of the bodies at the unstable equilibrium of the first mechanism to the right, in radians; absent unless the structure moves as
     /// four links or as a column.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unstable_rotations: Option<Named<f64>>,
     /// Equivalent free-standing blocks; absent unless the structure moves as four links or as a column.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub equivalent_block: Option<Equivalent>,
     /// The push at which a structure on moved springings collapses, in units of gravity; absent without moved springings.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub capacity_g: Option<Sides<Option<f64>>>,
     /// The reason why the push at collapse was not found; null if it was found, or if there is none.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub capacity_not_found: Option<Sides<Option<String>>>,
     /// Hinges on which a structure on moved springings stands; absent without moved springings.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hinges: Option<Vec<Pin>>,
     /// Tie forces, and the pushes that depend on ties; absent without ties.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ties: Option<Ties>,
     /// The first mechanism of a row as four links; absent unless the structure is an arch of blocks.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub four_links: Option<FourLinks>,
     /// The onset of motion with slipping joints; absent unless joints may slip.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub friction: Option<Friction>,
     /// Warnings about unlikely numbers of the scenario.
     pub warnings: Vec<String>,
-    /// Names of the bodies of the first mechanism.
-    #[serde(skip)]
-    pub(super) bodies: Vec<String>,
-    /// Frame of reference, and the position of each tie, in words.
-    #[serde(skip)]
-    pub(super) tie_places: Vec<String>,
-    /// True if a row is a stack on its base.
-    #[serde(skip)]
-    pub(super) is_stack: bool,
+    /// Names of the bodies of the first mechanism, from left to right; absent unless the structure moves as four links or as a column.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub bodies: Vec<String>,
+    /// Frame of reference, and the position of each tie, in words; absent without ties.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub tie_places: Vec<String>,
 }
 
 /// A hinge of the mechanism that starts.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum OpenHinge {
-    /// A hinge of four links or of a column.
-    Link(Hinge),
     /// A joint of a row that opens.
     Joint {
         /// The joint, from 0 at the left springing or the base.
@@ -76,23 +71,25 @@ pub enum OpenHinge {
         /// Vertical position of that edge, in metres.
         y_m: f64,
     },
+    /// A hinge of four links or of a column: it has no position, so that it is read last.
+    Link(Hinge),
 }
 
 /// Tie forces, and the pushes that depend on ties.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Ties {
     /// Force of each tie at rest, in N.
     pub forces_at_rest_n: Vec<f64>,
     /// Limit analysis without ties and with yielding ties; absent with moved springings.
     #[serde(flatten)]
     pub limits: Option<TieLimits>,
-    /// True if a structure on moved springings is a mechanism without its ties.
-    #[serde(skip)]
-    pub(super) hold: bool,
+    /// True if a structure on moved springings is a mechanism without its ties; absent without moved springings.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mechanism_without: Option<bool>,
 }
 
 /// Limit analysis without ties and with yielding ties.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TieLimits {
     /// True if the structure stands without its ties.
     pub stands_without: bool,
@@ -103,7 +100,7 @@ pub struct TieLimits {
 }
 
 /// Plastic limit to one side: the largest push if each tie has its best force, at most its yield force.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct YieldingTies {
     /// The push, in units of gravity; null if there is no limit while ties hold.
     pub incipient_acceleration_g: Option<f64>,
@@ -114,7 +111,7 @@ pub struct YieldingTies {
 }
 
 /// The first mechanism of a row as four links.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum FourLinks {
     /// The row does not move as four links.
@@ -127,7 +124,7 @@ pub enum FourLinks {
 }
 
 /// The first mechanism of four links to one side.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FourLinkSide {
     /// Hinges from left to right.
     pub hinges: Vec<Hinge>,
@@ -138,7 +135,7 @@ pub struct FourLinkSide {
 }
 
 /// The onset of motion of a row whose joints slip.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Friction {
     /// The coefficient of friction of the scenario.
     pub coefficient: f64,
@@ -148,7 +145,7 @@ pub struct Friction {
 }
 
 /// The onset of motion of a row with slipping joints.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum FrictionLimit {
     /// The undeformed row.
@@ -167,7 +164,7 @@ pub enum FrictionLimit {
 }
 
 /// The onset to one side of a row whose joints slip.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FrictionSide {
     /// The push, in units of gravity, an upper bound if sliding governs; null if no push starts the row.
     pub incipient_acceleration_g: Option<f64>,
@@ -178,7 +175,7 @@ pub struct FrictionSide {
 }
 
 /// A joint of a mechanism in which joints slip.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct YieldingJoint {
     /// The joint, from 0 at the left springing or the base.
     pub joint: usize,

@@ -8,7 +8,7 @@ use nalgebra::Vector2;
 use rayon::iter::{
     IndexedParallelIterator as _, IntoParallelRefIterator as _, ParallelIterator as _,
 };
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 pub use self::report::{FILES, report};
@@ -30,7 +30,7 @@ const ALIGNED: &str = "its three hinges lie on one line, and the thrust grows be
 const LONGEST_RATIO: f64 = 1.0;
 
 /// Direction in which a springing moves.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Direction {
     /// The springing that moves; the other one is fixed.
     pub springing: Sway,
@@ -73,7 +73,7 @@ impl Direction {
 }
 
 /// The arch at a movement of a springing.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stage {
     /// Movement of the springing, in metres.
     pub movement_m: f64,
@@ -107,7 +107,7 @@ pub struct Stage {
 }
 
 /// An open hinge.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OpenHinge {
     /// Position of the hinge.
     #[serde(flatten)]
@@ -127,7 +127,7 @@ named! {
 }
 
 /// A push that was not found.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MissingPush {
     /// The push.
     pub push: Push,
@@ -139,7 +139,7 @@ pub struct MissingPush {
 }
 
 /// The arch while a springing moves in one direction.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SpreadPath {
     /// The direction of the movement.
     #[serde(flatten)]
@@ -159,25 +159,22 @@ pub struct SpreadPath {
 }
 
 /// An arch on springings that move.
-#[derive(Clone, Debug, PartialEq, Serialize, Template)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Template)]
 #[template(path = "studies/spread/words.txt")]
 pub struct Summary {
     /// Distance between the springings at the intrados, in metres.
     pub clear_span_m: f64,
     /// Weight of the arch, in N.
     pub weight_n: f64,
+    /// Coefficient of friction of the scenario; absent if joints cannot slip.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub friction_coefficient: Option<f64>,
     /// The path for each direction.
     pub paths: Vec<SpreadPath>,
     /// Warnings about unlikely numbers of the scenario.
     pub warnings: Vec<String>,
     /// The scenario with all defaults.
     pub scenario: Value,
-    /// The blocks of the arch.
-    #[serde(skip)]
-    pub row: Row,
-    /// Coefficient of friction of the scenario; `None` if joints cannot slip.
-    #[serde(skip)]
-    pub friction_coefficient: Option<f64>,
 }
 
 /// Moves a springing of the arch of a scenario in each of these directions, from the undeformed position or the position of `[supports]`.
@@ -203,7 +200,6 @@ pub fn spread(scenario: &Scenario, directions: &[Direction]) -> Result<Summary, 
         warnings: scenario.unlikely(),
         scenario: scenario.to_json(),
         friction_coefficient: scenario.motion.options.friction_coefficient(),
-        row: row.clone(),
     })
 }
 

@@ -20,7 +20,12 @@ const LEAST_PX: f64 = 180.0;
 const FIRST_MOTION_PX: f64 = 1.0;
 
 /// Draws pushes and arches.
-pub(super) fn draw(figure: Figure, title: &str, spread: &Summary, scene: &Scene) -> String {
+pub(super) fn draw(
+    figure: Figure,
+    title: &str,
+    spread: &Summary,
+    (row, scene): (&Row, &Scene),
+) -> String {
     let mut sheet = Sheet::new(figure, title);
     pushes(figure, spread).add_to(&mut sheet);
     sheet.gap(10.0);
@@ -29,7 +34,7 @@ pub(super) fn draw(figure: Figure, title: &str, spread: &Summary, scene: &Scene)
     for paths in spread.paths.chunks(columns) {
         let cells: Vec<Cell<'_>> = paths
             .iter()
-            .filter_map(|path| Cell::new(&spread.row, scene, path, cell_px))
+            .filter_map(|path| Cell::new(row, scene, path, cell_px))
             .collect();
         let heights_px = cells.iter().map(|cell| cell.height_px);
         let height_px = heights_px.fold(0.0, f64::max);

@@ -5,7 +5,7 @@ use super::{SpreadPath, Stage, Summary};
 use crate::mechanics::Sides;
 use crate::output::{Cell, Figure, OutputError, Scene, column, csv, list, several};
 use crate::scenario::Scenario;
-use crate::studies::results::Results;
+use crate::studies::results::{Results, StudyError};
 
 /// Names of the files, the seal last.
 pub const FILES: [&str; 3] = ["spread.svg", "spread.csv", "spread.json"];
@@ -13,17 +13,18 @@ pub const FILES: [&str; 3] = ["spread.svg", "spread.csv", "spread.json"];
 /// Makes files and words of all paths.
 ///
 /// # Errors
-/// When a value is not finite.
+/// When a value is not finite, or the structure is not a row of blocks.
 pub fn report(
     scenario: &Scenario,
     spread: &Summary,
     figure: Figure,
-) -> Result<Results, OutputError> {
-    let scene = Scene::of_row(&spread.row, &scenario.structure);
+) -> Result<Results, StudyError> {
+    let row = scenario.structure.row().map_err(StudyError::scenario)?;
+    let scene = Scene::of_row(&row, &scenario.structure);
     let title = scenario.title.as_deref().unwrap_or("Springings that move");
-    let picture = draw(figure, title, spread, &scene);
+    let picture = draw(figure, title, spread, (&row, &scene));
     let others = [picture.into_bytes(), table(spread)?];
-    Results::new(&FILES, spread, others)
+    Ok(Results::new(&FILES, spread, others)?)
 }
 
 /// Makes the table of all stages of all paths.

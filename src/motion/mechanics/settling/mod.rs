@@ -17,7 +17,7 @@ mod held;
 mod pins;
 
 use nalgebra::Vector2;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use self::descent::Descent;
@@ -129,7 +129,7 @@ pub struct Condition {
 }
 
 /// Snap of a row from one set of hinges to another, or its fall.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Snap {
     /// Position along the path, in metres if supports move.
     #[serde(rename = "at_m")]

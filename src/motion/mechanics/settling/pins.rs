@@ -4,7 +4,7 @@
 //! Newton's method solves for the rotations of the bodies and the force in the last pin.
 
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2, Vector3};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::Condition;
 use crate::mechanics::chain::LEAST_LOAD;
@@ -31,7 +31,7 @@ const STIFFER: f64 = 1e6;
 const ENDS: [f64; 2] = [-1.0, 1.0];
 
 /// Hinge: a joint that turns about one of its corners.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Pin {
     /// Index of the joint, from 0 on the left support.
     pub joint: usize,
