@@ -502,7 +502,8 @@ impl History {
     /// `report.html` with the verdict on it. Simulates the history again, with the line of thrust.
     fn report(&self, py: Python<'_>) -> PyResult<String> {
         let scenario = self.shaken();
-        let verdict = run::Summary::of(&self.computed(&scenario, Some(self.repeated(py)?))).verdict_line();
+        let verdict =
+            run::Summary::of(&self.computed(&scenario, Some(self.repeated(py)?))).verdict_line();
         let mut filming = Filming {
             report: Report::new(&scenario, &*self.model),
             signals: Signals::new(),

@@ -94,8 +94,14 @@ pub fn study<'py>(
     let scenario = Arc::clone(scenario);
     let done = watched(py, progress, move |watch| {
         let rows = RowSource::Compute(runner, None, watch);
-        kind.compute(slice::from_ref(&*scenario), &options, STYLE, rows, Sinks::default())
-            .map_err(failed)
+        kind.compute(
+            slice::from_ref(&*scenario),
+            &options,
+            STYLE,
+            rows,
+            Sinks::default(),
+        )
+        .map_err(failed)
     })?;
     match done {
         Computation::Complete(results, _) => Ok(to_python(py, results)),
@@ -125,8 +131,14 @@ pub fn compute_part(
         };
         let rows = RowSource::Compute(runner, Some(task), watch);
         let options = Options::default();
-        kind.compute(slice::from_ref(&*scenario), &options, STYLE, rows, Sinks::default())
-            .map_err(failed)
+        kind.compute(
+            slice::from_ref(&*scenario),
+            &options,
+            STYLE,
+            rows,
+            Sinks::default(),
+        )
+        .map_err(failed)
     })?;
     match done {
         Computation::Partial { part, .. } | Computation::Complete(_, Some(part)) => {
