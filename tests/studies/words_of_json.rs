@@ -11,6 +11,7 @@ use archrock::studies::limit;
 use archrock::studies::peaks;
 use archrock::studies::results::words_of_json;
 use archrock::studies::spread;
+use archrock::studies::verify;
 
 use crate::common::COLUMN;
 use crate::common::program::{archrock, stderr, stdout};
@@ -103,6 +104,14 @@ fn spreads_have_the_words_of_their_json() {
         let reports: [(&str, WordsOf); 1] = [("spread.json", words_of_json::<spread::Summary>)];
         same_words(folder.path(), &arguments, &reports);
     }
+}
+
+#[test]
+fn a_check_with_histories_has_the_words_of_its_json() {
+    let file = fs::canonicalize("scenarios/semicircle-verify.toml").unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let reports: [(&str, WordsOf); 1] = [("verify.json", words_of_json::<verify::Summary>)];
+    same_words(folder.path(), &["verify", file.to_str().unwrap()], &reports);
 }
 
 #[test]
