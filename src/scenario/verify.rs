@@ -30,6 +30,8 @@
 
 use std::collections::BTreeMap;
 
+use serde::Deserialize;
+
 use super::files::Files;
 use super::listing::{RecordListing, written};
 use super::prelude::*;
@@ -363,7 +365,7 @@ pub struct PointDemand {
 }
 
 /// The rule that defines a limit state in terms of displacements.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StateRule {
     /// Fraction of the ultimate displacement that is allowed.
     pub part_of_d0: f64,

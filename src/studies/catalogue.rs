@@ -95,8 +95,8 @@ pub struct StudyKind {
     pub is_history: bool,
     /// True if the scenario needs a ground motion.
     pub needs_motion: bool,
-    /// Makes the words of its report from its JSON alone; `None` if the report cannot be read back.
-    pub words_of: Option<WordsOf>,
+    /// Makes the words of its report from its JSON alone.
+    pub words_of: WordsOf,
     compute: Compute,
 }
 
@@ -114,7 +114,7 @@ pub const RUN: StudyKind = StudyKind {
     ..StudyKind::whole(
         "run",
         &run::FILES,
-        Some(run::words_of),
+        run::words_of,
         |scenarios, options, style, work| {
             let (options, figure) = (&options.run, style.figure);
             run::results(scenarios, options, figure, work.sinks, work.watch)
@@ -133,7 +133,7 @@ pub const SUITE: StudyKind = StudyKind::of::<RecordSuite<'_>>(|scenarios, _, sty
 pub const THRESHOLD: StudyKind = StudyKind::whole(
     "threshold",
     &threshold::FILES,
-    Some(words_of_json::<threshold::Summary>),
+    words_of_json::<threshold::Summary>,
     |scenarios, options, style, Work { runner, watch, .. }| {
         threshold::results(scenarios, &options.factors, style.figure, &runner, watch)
     },
@@ -153,7 +153,7 @@ pub const CAPACITY: StudyKind = StudyKind {
     ..StudyKind::whole(
         "capacity",
         &capacity::FILES,
-        Some(words_of_json::<capacity::Summary>),
+        words_of_json::<capacity::Summary>,
         |scenarios, options, style, _| {
             let scenario = &scenarios[0];
             scenario.check_as_built().map_err(StudyError::Scenario)?;
@@ -168,7 +168,7 @@ pub const SPREAD: StudyKind = StudyKind {
     ..StudyKind::whole(
         "spread",
         &spread::FILES,
-        Some(words_of_json::<spread::Summary>),
+        words_of_json::<spread::Summary>,
         |scenarios, options, style, _| {
             let (scenario, directions) = (&scenarios[0], &options.directions);
             let found = spread::spread(scenario, directions)?;
@@ -177,8 +177,11 @@ pub const SPREAD: StudyKind = StudyKind {
     )
 };
 /// The check of the first mechanism by the Circolare 7/2019.
-pub const VERIFY: StudyKind =
-    StudyKind::whole("verify", &verify::FILES, None, |scenarios, _, _, _| {
+pub const VERIFY: StudyKind = StudyKind::whole(
+    "verify",
+    &verify::FILES,
+    words_of_json::<verify::Summary>,
+    |scenarios, _, _, _| {
         let scenario = &scenarios[0];
         scenario.check_as_built().map_err(StudyError::Scenario)?;
         if scenario.right_foot.is_some() {
@@ -188,7 +191,8 @@ pub const VERIFY: StudyKind =
         }
         let check = verify::verify(scenario).map_err(StudyError::scenario)?;
         Ok(verify::report(scenario, &check)?)
-    });
+    },
+);
 /// Endings and courses of histories for samples of the uncertain numbers.
 pub const UNCERTAIN: StudyKind = StudyKind::of_samples::<Histories>();
 /// The factor from which samples of the uncertain numbers overturn.
@@ -233,7 +237,7 @@ impl StudyKind {
     const fn whole(
         name: &'static str,
         files: &'static [&'static str],
-        words_of: Option<WordsOf>,
+        words_of: WordsOf,
         compute: fn(&[Scenario], &Options, Style, Work<'_, '_>) -> Result<Results, StudyError>,
     ) -> Self {
         Self::with(name, files, words_of, Compute::Whole(compute))
@@ -245,7 +249,7 @@ impl StudyKind {
         Self::with(
             S::NAME,
             S::FILES,
-            Some(words_of_json::<S::Report>),
+            words_of_json::<S::Report>,
             Compute::ByRows(compute),
         )
     }
@@ -253,7 +257,7 @@ impl StudyKind {
     const fn with(
         name: &'static str,
         files: &'static [&'static str],
-        words_of: Option<WordsOf>,
+        words_of: WordsOf,
         compute: Compute,
     ) -> Self {
         Self {

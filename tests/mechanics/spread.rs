@@ -723,7 +723,7 @@ fn commands_report_an_arch_held_by_its_tie() {
     let words = printed(folder.path(), &["limit", "a.toml"]);
     assert_eq!(
         reported["ties"],
-        serde_json::json!({ "forces_at_rest_n": [force_n] })
+        serde_json::json!({ "forces_at_rest_n": [force_n], "mechanism_without": true })
     );
     let listed = hinges
         .iter()

@@ -160,7 +160,7 @@ fn seen_in_a_mirror(reported: &Value, key: &str, last: u64) -> Value {
                     });
                     named.collect()
                 }
-                "hinges" | "opened_joints" => seen.rev().collect(),
+                "hinges" | "opened_joints" | "zones" => seen.rev().collect(),
                 _ => seen.collect(),
             }
         }

@@ -7,6 +7,7 @@ use crate::common::program::{archrock, printed as print_of, refused, scenarios};
 use crate::common::prose::{golden, shows};
 use crate::common::{ARCH, COLUMN};
 use archrock::scenario::LimitState;
+use archrock::studies::results::words_of_json;
 use archrock::studies::verify::{
     DisplacementCheck, GoverningSide, Mechanism, Method, SideCheck, StateCheck, Summary,
     VerifyError, page, verify, words,
@@ -28,7 +29,20 @@ fn on_piers() -> String {
 }
 
 fn check(text: &str) -> Summary {
-    verify(&parsed(text)).unwrap_or_else(|error| panic!("{error}"))
+    let check = verify(&parsed(text)).unwrap_or_else(|error| panic!("{error}"));
+    has_the_words_of_its_json(&check);
+    check
+}
+
+#[track_caller]
+fn has_the_words_of_its_json(check: &Summary) {
+    let json = serde_json::to_string(check).unwrap();
+    let again = words_of_json::<Summary>(&serde_json::from_str(&json).unwrap()).unwrap();
+    assert_eq!(again, words(check).trim_end());
+    let read: Summary = serde_json::from_str(&json).unwrap();
+    for (state, one) in &check.states {
+        assert_eq!(read.states[state].demand, one.demand);
+    }
 }
 
 fn side(check: &Summary, state: LimitState, sway: Sway) -> &SideCheck {
@@ -279,9 +293,10 @@ fn a_spectrum_of_points_names_no_clause() {
     let path = folder.path().join("a.toml");
     let scenario = Scenario::read(&path).unwrap();
     let check = verify(&scenario).unwrap();
+    has_the_words_of_its_json(&check);
     let slv = displacement(&check, LimitState::Slv, Sway::Right);
     printed(slv.demand_m, "0.17435");
-    printed(slv.by_displacement.zeta_e, "0.91768");
+    printed(slv.zeta_e_by_displacement(), "0.91768");
     let sld = side(&check, LimitState::Sld, Sway::Right)
         .activation
         .unwrap();

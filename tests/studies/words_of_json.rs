@@ -5,7 +5,7 @@ use std::path::Path;
 
 use archrock::studies::catalogue::{
     CAPACITY, MAP, SUITE, THRESHOLD, THRESHOLD_ALONG, UNCERTAIN, UNCERTAIN_MAP, UNCERTAIN_SUITE,
-    UNCERTAIN_THRESHOLD,
+    UNCERTAIN_THRESHOLD, VERIFY,
 };
 use archrock::studies::results::{WordsOf, words_of_json};
 use archrock::studies::{impact, limit, peaks, spread};
@@ -69,6 +69,7 @@ fn studies_have_the_words_of_their_json() {
         ),
         (SUITE, "column-suite.toml", "suite", &suite),
         (CAPACITY, "tie.toml", "capacity", &[]),
+        (VERIFY, "semicircle-verify.toml", "verify", &[]),
     ] {
         let file = scenarios().join(file);
         let arguments = [&[command, file.to_str().unwrap()], options].concat();
@@ -76,7 +77,7 @@ fn studies_have_the_words_of_their_json() {
         same_words(
             folder.path(),
             &arguments,
-            &[(report.unwrap(), kind.words_of.unwrap())],
+            &[(report.unwrap(), kind.words_of)],
         );
     }
 }
@@ -180,14 +181,14 @@ fn samples_have_the_words_of_their_json() {
     ] {
         for file in ["early.toml", "late.toml"] {
             let report = format!("{}/uncertain.json", kind.name);
-            same_words(at, &[command, file], &[(&report, kind.words_of.unwrap())]);
+            same_words(at, &[command, file], &[(&report, kind.words_of)]);
         }
     }
     let models = ["run", "late.toml", "--hinges", "four,free"];
     let few = ["--set", "uncertain.samples=4"];
     let compared: [(&str, WordsOf); 3] = [
-        ("four/uncertain/uncertain.json", UNCERTAIN.words_of.unwrap()),
-        ("free/uncertain/uncertain.json", UNCERTAIN.words_of.unwrap()),
+        ("four/uncertain/uncertain.json", UNCERTAIN.words_of),
+        ("free/uncertain/uncertain.json", UNCERTAIN.words_of),
         ("models/peaks.json", words_of_json::<peaks::Summary>),
     ];
     same_words(at, &[&models[..], &few].concat(), &compared);

@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 
 use rayon::iter::{IntoParallelIterator as _, ParallelIterator as _};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::mechanism::Mechanism;
 use super::spectrum::Spectrum;
@@ -37,7 +37,7 @@ const STEP_S: f64 = 0.002;
 const AFTER_S: f64 = 10.0;
 
 /// The largest displacement to one side under a record.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Peak {
     /// The largest displacement, in metres; `None` if the structure overturns to that side, or a history ended too early.
     pub peak_m: Option<f64>,
@@ -51,7 +51,7 @@ pub struct Peak {
 }
 
 /// The peaks under a record that acts in both directions in turn; the larger peak counts.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RecordPeaks {
     /// Name of the record file.
     pub file: String,
@@ -67,7 +67,7 @@ pub struct RecordPeaks {
 }
 
 /// The results of all records to one side.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HistorySide {
     /// Restitution of the first impact after a sway to that side; `None` if the impact stops the structure.
     pub restitution: Option<f64>,
@@ -91,7 +91,6 @@ pub struct HistorySide {
     /// True if the side passes with capacities divided by FC; `None` if that depends on a history without a verdict.
     pub passed_over_fc: Option<bool>,
     /// True if a record overturns the structure to that side.
-    #[serde(skip)]
     pub overturned: bool,
 }
 
@@ -106,7 +105,7 @@ named! {
 }
 
 /// The ratio of the mean 5 % spectrum of the records to the demanded spectrum.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct MeanSpectrum {
     /// The shortest period of the comparison, in seconds.
     pub from_s: f64,
@@ -121,7 +120,7 @@ pub struct MeanSpectrum {
 }
 
 /// The histories of a limit state.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Histories {
     /// The peak that is compared with the capacity.
     pub demand: ComparedPeak,

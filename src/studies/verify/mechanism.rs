@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use nalgebra::Vector2;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::{CheckInput, VerifyError};
 use crate::mechanics::capacity::Control;
@@ -20,7 +20,7 @@ use crate::studies::capacity::Bodies;
 use crate::{Hinge, ImpactModel, MechanismModel, Row, Sway};
 
 /// A hinge with its position.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PlacedHinge {
     /// The hinge.
     #[serde(flatten)]
@@ -32,7 +32,7 @@ pub struct PlacedHinge {
 }
 
 /// A rigid body of a mechanism, with its virtual displacement per unit displacement of the common centre.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Body {
     /// Mass of the body, with the fill and loads that it carries, in kg.
     pub mass_kg: f64,
@@ -51,7 +51,7 @@ pub struct Body {
 }
 
 /// A tie of a mechanism.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HeldTie {
     /// Prestress of the tie, in kN.
     pub force_kn: f64,
@@ -60,7 +60,7 @@ pub struct HeldTie {
 }
 
 /// The mechanism that starts to one side.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Mechanism {
     /// Hinges from left to right.
     pub hinges: Vec<PlacedHinge>,

@@ -10,11 +10,12 @@ mod picture;
 mod report;
 mod spectrum;
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 use askama::Template;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use thiserror::Error;
 
@@ -91,7 +92,7 @@ pub enum VerifyError {
 }
 
 /// The ratio of capacity to demand.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Margin {
     /// The ground acceleration that the structure resists, as `a_g`, in g; `None` if a spectrum of points has no peak.
     pub ag_capacity_g: Option<f64>,
@@ -115,7 +116,7 @@ impl Margin {
 }
 
 /// The check of the onset of motion (SLD).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ActivationCheck {
     /// Spectral acceleration at which motion starts, divided by FC, in g.
     pub capacity_g: f64,
@@ -127,7 +128,7 @@ pub struct ActivationCheck {
 }
 
 /// The simplified check of SLV, by the behaviour factor.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SimplifiedCheck {
     /// The activation acceleration that is multiplied by q, as `a_g`, in g.
     pub activation_ag_g: f64,
@@ -139,7 +140,7 @@ pub struct SimplifiedCheck {
 }
 
 /// The check by displacements (SLV, SLC).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DisplacementCheck {
     /// The fraction of the ultimate displacement that the limit state allows, in metres.
     pub reached_m: f64,
@@ -167,16 +168,20 @@ pub struct DisplacementCheck {
     /// The governing result: the ratio of displacements, or the activation if motion starts later.
     #[serde(flatten)]
     pub margin: Margin,
-    /// The ratio of displacement capacity to demand.
-    #[serde(skip)]
-    pub by_displacement: Margin,
-    /// The activation acceleration, as `a_g` in g; `None` unless it governs.
-    #[serde(skip)]
+    /// The activation acceleration, as `a_g` in g; absent unless it governs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub activation_ag_g: Option<f64>,
 }
 
+impl DisplacementCheck {
+    /// Returns the ratio of displacement capacity to demand.
+    pub fn zeta_e_by_displacement(&self) -> f64 {
+        self.capacity_m / self.demand_m
+    }
+}
+
 /// The checks of a limit state to one side.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SideCheck {
     /// The governing result; `None` if the state cannot be checked.
     pub zeta_e: Option<f64>,
@@ -270,7 +275,7 @@ named! {
 }
 
 /// The check of a limit state.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StateCheck {
     /// The verdict.
     pub verdict: Verdict,
@@ -292,7 +297,7 @@ pub struct StateCheck {
 }
 
 /// A decision where the text of the Circolare leaves a choice.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Decision {
     /// Name of the decision on the page.
     pub name: String,
@@ -301,17 +306,17 @@ pub struct Decision {
 }
 
 /// The check of a scenario by the Circolare 7/2019.
-#[derive(Clone, Debug, PartialEq, Serialize, Template)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Template)]
 #[template(path = "studies/verify/words.txt")]
 pub struct Summary {
     /// Name of the program.
-    pub program: &'static str,
+    pub program: Cow<'static, str>,
     /// Version of the program.
-    pub version: &'static str,
+    pub version: Cow<'static, str>,
     /// Title of the scenario.
     pub title: Option<String>,
     /// The source of the formulas; `None` for spectra and limits given by the engineer.
-    pub formulas: Option<&'static str>,
+    pub formulas: Option<Cow<'static, str>>,
     /// SHA-256 of the scenario with every default written out, as `archrock check` prints it.
     pub scenario_sha256: String,
     /// Files from which the scenario was read.
@@ -346,8 +351,8 @@ pub struct Summary {
     pub not_covered: Vec<String>,
     /// The scenario with all defaults.
     pub scenario: Value,
-    /// The frame of reference and the place of each tie, in words; empty without ties.
-    #[serde(skip)]
+    /// The frame of reference and the place of each tie, in words; absent without ties.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub tie_places: Vec<String>,
     /// True if the left side is the mirror image of the right one, including all numbers.
     #[serde(skip)]
@@ -409,10 +414,10 @@ pub fn verify(scenario: &Scenario) -> Result<Summary, VerifyError> {
     let verdicts = states.iter().map(|(state, one)| (*state, one.verdict));
     let has_top = structure.stands_on_one_support();
     let mut summary = Summary {
-        program: env!("CARGO_PKG_NAME"),
-        version: env!("CARGO_PKG_VERSION"),
+        program: env!("CARGO_PKG_NAME").into(),
+        version: env!("CARGO_PKG_VERSION").into(),
         title: scenario.title.as_deref().map(str::to_owned),
-        formulas: by_the_code.then_some(formulas),
+        formulas: by_the_code.then(|| formulas.into()),
         scenario_sha256: sha256(scenario.to_resolved_toml().as_bytes()),
         files: scenario.files().to_vec(),
         zeta_e: results.fold(f64::INFINITY, f64::min),
@@ -564,12 +569,7 @@ impl CheckInput<'_> {
             acceleration_g,
             period_s,
             demand_m,
-            resonance_m: match spectrum {
-                Spectrum::Floor { floor, .. } if period_s > floor.resonance_s() => {
-                    Some(floor.resonance_m(damping_percent, gravity_m_s2))
-                }
-                _ => None,
-            },
+            resonance_m: spectrum.resonance_m(period_s, damping_percent, gravity_m_s2),
             demand_acceleration_g: spectrum.acceleration_g(period_s, damping_percent)?,
             by_displacement_ag_g: by_displacement.ag_capacity_g,
             activation_governs: activation_ag_g.is_some(),
@@ -582,7 +582,6 @@ impl CheckInput<'_> {
             },
             zeta_e_crown: crown.map(|(capacity_m, .., demand_m)| capacity_m / demand_m),
             margin,
-            by_displacement,
             activation_ag_g,
         })
     }

@@ -133,9 +133,7 @@ impl StateCheck {
                 .iter()
                 .map(|one| ("a mode of the building", one.mode.damping_percent))
                 .collect(),
-            Spectrum::Points {
-                damping_percent, ..
-            } => vec![("the spectrum", *damping_percent)],
+            Spectrum::Points { points, .. } => vec![("the spectrum", points.damping_percent)],
         };
         given.extend(
             self.rule
@@ -171,7 +169,7 @@ impl Summary {
     /// Returns the clause of a formula; empty if clauses are not cited.
     fn clause(&self, clause: &str) -> Safe<String> {
         let cited = format!(" <span class=\"clause\">[{clause}]</span>");
-        Safe(self.formulas.map_or_else(String::new, |_| cited))
+        Safe(self.formulas.as_ref().map_or_else(String::new, |_| cited))
     }
 }
 

@@ -1,6 +1,6 @@
 //! The spectrum of a limit state on the ground, at a height in a building, or from points.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::dynamics::demand::floor::{FloorSpectrum, Mode};
 use crate::dynamics::demand::points::{PeriodOutOfRange, PointSpectrum};
@@ -8,11 +8,9 @@ use crate::dynamics::{GroundSpectrum, Site};
 use crate::scenario::{Demand, LimitState, StateRule};
 
 /// The spectrum of a limit state at the place of the mechanism.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Spectrum {
-    /// Spectrum of the ground by NTC 2018.
-    Ground(Ground),
     /// Spectrum at a height in a building by NTC 2018.
     Floor {
         /// The spectrum of the ground.
@@ -22,24 +20,21 @@ pub enum Spectrum {
         modes: Vec<FloorMode>,
         /// Peak acceleration of the floor that carries the mechanism, in g.
         a_z_g: f64,
-        /// The spectrum of that floor.
-        #[serde(skip)]
-        floor: FloorSpectrum,
     },
+    /// Spectrum of the ground by NTC 2018. It has fewer keys than that of a floor, so that it is read last of the two.
+    Ground(Ground),
     /// Spectrum given by points.
     Points {
         /// Name of the file of points.
         spectrum: String,
-        /// Damping of the given spectrum, in per cent.
-        damping_percent: f64,
-        /// Periods in seconds, and accelerations in g.
-        #[serde(rename = "points_s_g")]
+        /// The spectrum.
+        #[serde(flatten)]
         points: PointSpectrum,
     },
 }
 
 /// The spectrum of the ground by NTC 2018.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Ground {
     /// The spectrum.
     #[serde(flatten)]
@@ -49,7 +44,7 @@ pub struct Ground {
 }
 
 /// A mode of the building.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FloorMode {
     /// The mode.
     #[serde(flatten)]
@@ -60,6 +55,13 @@ pub struct FloorMode {
     pub a_z_g: f64,
     /// Amplification at the damping of the mechanism [C7.2.6].
     pub f: f64,
+}
+
+fn floor_spectrum(ground: &Ground, modes: &[FloorMode]) -> FloorSpectrum {
+    FloorSpectrum {
+        ground: ground.spectrum,
+        modes: modes.iter().map(|one| one.mode).collect(),
+    }
 }
 
 impl Spectrum {
@@ -75,7 +77,6 @@ impl Spectrum {
                 let points = points.get(&state)?.clone();
                 return Some(Self::Points {
                     spectrum: points.spectrum,
-                    damping_percent: points.damping_percent,
                     points: points.points,
                 });
             }
@@ -107,7 +108,6 @@ impl Spectrum {
             ground,
             modes: modes.collect(),
             a_z_g: floor.peak_g(),
-            floor,
         })
     }
 
@@ -150,9 +150,28 @@ impl Spectrum {
     ) -> Result<f64, PeriodOutOfRange> {
         match self {
             Self::Ground(ground) => Ok(ground.spectrum.acceleration_g(period_s, damping_percent)),
-            Self::Floor { floor, .. } => Ok(floor.acceleration_g(period_s, damping_percent)),
+            Self::Floor { ground, modes, .. } => {
+                let floor = floor_spectrum(ground, modes);
+                Ok(floor.acceleration_g(period_s, damping_percent))
+            }
             Self::Points { points, .. } => points.acceleration_g(period_s, damping_percent),
         }
+    }
+
+    /// Returns the smallest displacement demand, in metres, on a floor at a period beyond resonance with the building; `None` below it and on
+    /// the ground.
+    pub(super) fn resonance_m(
+        &self,
+        period_s: f64,
+        damping_percent: f64,
+        gravity_m_s2: f64,
+    ) -> Option<f64> {
+        let Self::Floor { ground, modes, .. } = self else {
+            return None;
+        };
+        let floor = floor_spectrum(ground, modes);
+        let is_beyond = period_s > floor.resonance_s();
+        is_beyond.then(|| floor.resonance_m(damping_percent, gravity_m_s2))
     }
 
     /// Computes the displacement demand on a mechanism whose period has lengthened to `period_s`, in metres. For points it is the largest demand
@@ -171,7 +190,8 @@ impl Spectrum {
             Self::Ground(Ground { spectrum, .. }) => {
                 spectrum.largest_displacement_m(period_s, damping_percent, gravity_m_s2)
             }
-            Self::Floor { floor, .. } => {
+            Self::Floor { ground, modes, .. } => {
+                let floor = floor_spectrum(ground, modes);
                 floor.displacement_m(period_s, damping_percent, gravity_m_s2)
             }
             Self::Points { points, .. } => {

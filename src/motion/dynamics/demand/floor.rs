@@ -3,7 +3,7 @@
 //! In addition, on the safe side, peak and ordinates are at least those of the ground at every period. The clause requires that only for periods
 //! above the first one; its spectrum is below that of the ground where a building sways little.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::{damping_factor, displacement_m};
 use crate::dynamics::GroundSpectrum;
@@ -12,7 +12,7 @@ use crate::dynamics::GroundSpectrum;
 pub(crate) const PLATEAU: [f64; 2] = [0.8, 1.1];
 
 /// A mode of a building, in its present state.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Mode {
     /// Period, in seconds.
     pub t_s: f64,
@@ -57,7 +57,8 @@ impl Mode {
 /// The spectrum at the height of a mechanism in a building.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FloorSpectrum {
-    ground: GroundSpectrum,
+    /// The spectrum of the ground.
+    pub ground: GroundSpectrum,
     /// The modes of the building.
     pub modes: Vec<Mode>,
 }

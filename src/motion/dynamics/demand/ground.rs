@@ -1,6 +1,6 @@
 //! The elastic response spectrum of the horizontal ground motion, NTC 2018, § 3.2.3.2.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::{damping_factor, displacement_m};
 use crate::argument::{ArgumentError, allow, short};
@@ -86,7 +86,7 @@ impl Topography {
 }
 
 /// Seismic hazard of a site for a limit state (§ 3.2).
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Hazard {
     /// Peak acceleration `a_g` on rigid ground, in g.
     pub ag_g: f64,
@@ -106,7 +106,7 @@ pub struct Site {
 }
 
 /// The elastic spectrum of a site for a limit state.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GroundSpectrum {
     /// Subsoil category.
     pub soil: Soil,

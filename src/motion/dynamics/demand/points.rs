@@ -1,19 +1,19 @@
 //! Spectrum given by points, with linear interpolation.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::{damping_factor, displacement_m};
 
 /// Accelerations at increasing periods, at one damping.
 #[readonly::make]
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(transparent)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PointSpectrum {
-    /// Period in seconds and acceleration in g.
+    /// Damping of the given spectrum, in per cent.
+    pub damping_percent: f64,
+    /// Periods in seconds, and accelerations in g.
+    #[serde(rename = "points_s_g")]
     pub points: Vec<(f64, f64)>,
-    #[serde(skip)]
-    damping_percent: f64,
 }
 
 /// Reason why points do not form a spectrum.
