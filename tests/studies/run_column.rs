@@ -218,7 +218,10 @@ fn limit_and_impact_name_the_toes() {
     // A flat column stops at the first impact.
     fs::write(&path, "[column]\nheight_m = 1\nwidth_m = 2\n").unwrap();
     let impact: Value = serde_json::from_str(&archrock(&arguments, &path)).unwrap();
-    assert_eq!(impact, json!({ "impacts": [], "warnings": [] }));
+    assert_eq!(
+        [&impact["impacts"], &impact["warnings"]],
+        [&json!([]), &json!([])]
+    );
     assert!(!archrock(&["impact"], &path).is_empty());
     let flat = "[column]\nheight_m = 1\nwidth_m = 2\n[initial]\nsway = 'left'\nrotation_rad = 0.3";
     let folder = results(flat, &[]);

@@ -39,6 +39,12 @@ fn studies_have_the_words_of_their_json() {
     ];
     let free = ["--hinges", "free", "--set", "arch.voussoirs=7"];
     let few = ["--from", "0.5", "--to", "2", "--stride", "0.3"];
+    let elastic = [
+        "--hinges",
+        "elastic",
+        "--set",
+        "elastic_joints.normal_stiffness_gpa_m=20",
+    ];
     let along = ["--along", "arch.thickness_ratio=0.12..0.2:3"];
     let suite = ["--set", "suite.peaks_g.count=4"];
     for (kind, file, command, options) in [
@@ -50,7 +56,12 @@ fn studies_have_the_words_of_their_json() {
             &[&small[..], &free].concat(),
         ),
         (THRESHOLD, "semicircle-pulse.toml", "threshold", &few),
-        (THRESHOLD, "elastic-joints.toml", "threshold", &few),
+        (
+            THRESHOLD,
+            "column-pulse.toml",
+            "threshold",
+            &[&few[..], &elastic].concat(),
+        ),
         (
             THRESHOLD,
             "semicircle-pulse.toml",
