@@ -56,7 +56,7 @@ impl ModelOptions for RowOptions {
         Some(model(*self, structure, site).ok()?.longest_step_s(request))
     }
 
-    /// Rejects a coefficient of friction with which the structure slides on its moved springings. [`check_friction`] checks the undeformed structure.
+    /// Rejects a coefficient of friction with which the structure slides on its moved springings. `check_friction` checks the undeformed structure.
     fn check(
         &self,
         table: &mut Table<'_>,

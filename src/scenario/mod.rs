@@ -403,7 +403,7 @@ impl Scenario {
     /// Makes the model of motion of the structure.
     ///
     /// # Errors
-    /// As [`MotionModel::model`].
+    /// When the structure has no such model.
     pub fn model(&self) -> Result<Box<dyn Model>, ModelError> {
         let MotionModel { options, site, .. } = &self.motion;
         options.model(&self.structure, site)
@@ -412,7 +412,7 @@ impl Scenario {
     /// Makes models of this structure with other stiffness and contact, and with rigid joints; empty unless joints are elastic.
     ///
     /// # Errors
-    /// As [`MotionModel::model`].
+    /// When the structure has no such model.
     pub fn variations(&self) -> Result<Vec<Variation>, ModelError> {
         let MotionModel { options, site, .. } = &self.motion;
         options.variations(&self.structure, site)
