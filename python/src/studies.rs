@@ -59,6 +59,29 @@ fn runner(threads: Option<u16>) -> Runner {
     }
 }
 
+/// Computes a study, or a shard of it into a file in a folder, where an interrupted computation continues.
+fn compute(
+    py: Python<'_>,
+    progress: Option<Py<PyAny>>,
+    kind: StudyKind,
+    scenario: &Arc<archrock::Scenario>,
+    options: Options,
+    (runner, part): (Runner, Option<(Shard, PathBuf)>),
+) -> PyResult<Computation> {
+    let scenario = Arc::clone(scenario);
+    watched(py, progress, move |watch| {
+        let task = part.as_ref().map(|(shard, folder)| Task {
+            folder,
+            shard: *shard,
+            resume: true,
+        });
+        let rows = RowSource::Compute(runner, task, watch);
+        let (scenarios, sinks) = (slice::from_ref(&*scenario), Sinks::default());
+        kind.compute(scenarios, &options, STYLE, rows, sinks)
+            .map_err(failed)
+    })
+}
+
 /// Computes a study of a scenario, all in memory. `factors` are those of a threshold, and `along` its range and whether impacts are left
 /// out.
 #[pyfunction]
@@ -91,18 +114,7 @@ pub fn study<'py>(
         true => scenario.moving()?,
         false => &scenario.inner,
     };
-    let scenario = Arc::clone(scenario);
-    let done = watched(py, progress, move |watch| {
-        let rows = RowSource::Compute(runner, None, watch);
-        kind.compute(
-            slice::from_ref(&*scenario),
-            &options,
-            STYLE,
-            rows,
-            Sinks::default(),
-        )
-        .map_err(failed)
-    })?;
+    let done = compute(py, progress, kind, scenario, options, (runner, None))?;
     match done {
         Computation::Complete(results, _) => Ok(to_python(py, results)),
         Computation::Partial { .. } => unreachable!("a computation in memory is no part"),
@@ -122,24 +134,9 @@ pub fn compute_part(
 ) -> PyResult<PathBuf> {
     let (kind, runner) = (kind_of(kind)?, runner(threads));
     let shard = shard.parse::<Shard>().map_err(refused)?;
-    let scenario = Arc::clone(scenario.moving()?);
-    let done = watched(py, progress, move |watch| {
-        let task = Task {
-            folder: &folder,
-            shard,
-            resume: true,
-        };
-        let rows = RowSource::Compute(runner, Some(task), watch);
-        let options = Options::default();
-        kind.compute(
-            slice::from_ref(&*scenario),
-            &options,
-            STYLE,
-            rows,
-            Sinks::default(),
-        )
-        .map_err(failed)
-    })?;
+    let part = (runner, Some((shard, folder)));
+    let options = Options::default();
+    let done = compute(py, progress, kind, scenario.moving()?, options, part)?;
     match done {
         Computation::Partial { part, .. } | Computation::Complete(_, Some(part)) => {
             Ok(part.path().to_owned())

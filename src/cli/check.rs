@@ -3,18 +3,18 @@
 use std::path::{Path, PathBuf};
 
 use archrock::dynamics::ground::intensity::Intensity;
-use archrock::dynamics::peak::Peak;
 use archrock::output::scene::Scene;
 use archrock::output::{elevation, record as output};
-use archrock::scenario::{Format, Layout, RecordedQuantity, Scenario, Series};
+use archrock::scenario::{Format, Layout, Scenario, Series};
+use archrock::studies::record::record;
 use archrock::studies::results::StudyError;
 use archrock::{GroundMotion, Request};
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use super::figure::FigureOption;
 use super::scenario_file::{Input, SetOption};
 use super::{
-    Failure, Format as Printed, check_no_errors, collect_input_error, commands, print, print_all,
+    Failure, Format as Printed, check_no_errors, collect_input_error, named_files, print, print_all,
 };
 
 #[derive(clap::Args)]
@@ -71,7 +71,7 @@ fn check_file(file: &Path, arguments: &Arguments) -> Result<(String, Value), Fai
             text += "; dashed: as built; circles: open hinges";
         }
         let picture = elevation::draw(arguments.figure.get()?, title, &scene, &text);
-        commands::write_picture(plot, &picture)?;
+        named_files::write_picture(plot, &picture)?;
     }
     let notes = scenario.structure.tie_places();
     let notes: String = notes.iter().map(|note| format!("# {note}\n")).collect();
@@ -170,74 +170,9 @@ fn check_record(file: &Path, arguments: &Arguments) -> Result<(String, Value), F
         let title = file.file_name().unwrap_or_default().to_string_lossy();
         let figure = arguments.figure.get()?;
         let picture = output::draw(figure, &title, &samples, &intensity, GRAVITY_M_S2);
-        commands::write_picture(plot, &picture)?;
+        named_files::write_picture(plot, &picture)?;
     }
-    Ok((
-        record_text(&series, &intensity),
-        record_json(&series, &intensity),
-    ))
-}
-
-fn record_json(series: &Series, intensity: &Intensity) -> Value {
-    let [from_s, to_s] = intensity.significant_s;
-    json!({
-        "file": series.name(),
-        "format": kind(series),
-        "sampling": series.sampling().to_string(),
-        "peak_acceleration_m_s2": intensity.acceleration_m_s2.value,
-        "peak_acceleration_time_s": intensity.acceleration_m_s2.time_s,
-        "mean_acceleration_g": series.mean_g(GRAVITY_M_S2),
-        "mean_removed": series.layout.remove_mean,
-        "peak_velocity_m_s": intensity.velocity_m_s.value,
-        "peak_velocity_time_s": intensity.velocity_m_s.time_s,
-        "peak_displacement_m": intensity.displacement_m.value,
-        "peak_displacement_time_s": intensity.displacement_m.time_s,
-        "arias_intensity_m_s": intensity.arias_m_s,
-        "significant_from_s": from_s,
-        "significant_to_s": to_s,
-    })
-}
-
-fn record_text(series: &Series, intensity: &Intensity) -> String {
-    let peak = |peak: Peak, unit| format!("{:.4} {unit} at {:.3} s", peak.value, peak.time_s);
-    let acceleration_g = intensity.acceleration_m_s2.value / GRAVITY_M_S2;
-    let acceleration = peak(intensity.acceleration_m_s2, "m/s2");
-    let velocity = peak(intensity.velocity_m_s, "m/s");
-    let displacement = peak(intensity.displacement_m, "m");
-    let mean = match series.layout.remove_mean {
-        true => "removed".to_owned(),
-        false => format!("{:.3e} g", series.mean_g(GRAVITY_M_S2)),
-    };
-    let (name, kind, sampling) = (series.name(), kind(series), series.sampling());
-    let ([from_s, to_s], lasts_s) = (intensity.significant_s, intensity.significant_duration_s());
-    let arias_m_s = intensity.arias_m_s;
-    format!(
-        "{name}: {kind}
-  {sampling}
-  peak acceleration {acceleration_g:.4} g = {acceleration}
-  mean acceleration {mean}
-  peak velocity {velocity}
-  peak displacement {displacement}
-  Arias intensity {arias_m_s:.4} m/s
-  significant duration (5 to 95 %) {lasts_s:.3} s, from {from_s:.3} to {to_s:.3} s
-  velocity and displacement are integrated from zero, without baseline correction; g = {GRAVITY_M_S2} m/s2
-"
-    )
-}
-
-/// Returns format and unit of a record, in words.
-fn kind(series: &Series) -> String {
-    let format = match series.layout.format {
-        Format::At2 => "AT2 file (PEER)",
-        Format::Asc => "ASC file (ESM)",
-        Format::Knet => "file of K-NET",
-        Format::Csv if series.layout.wrapped => "table with several samples a row",
-        Format::Csv => "table",
-    };
-    let quantity = match series.layout.quantity {
-        RecordedQuantity::Acceleration => "accelerations",
-        RecordedQuantity::Velocity => "velocities",
-    };
-    let (unit, columns) = (series.unit.name(), &series.columns);
-    format!("{format}, {quantity} in {unit}{columns}")
+    let found = record(&series, &intensity, GRAVITY_M_S2);
+    let found = found.map_err(StudyError::from)?;
+    Ok((found.text, found.json))
 }

@@ -10,7 +10,7 @@ use archrock::studies::pictures;
 use super::figure::FigureOption;
 use super::parsers::FirstOption;
 use super::scenario_file::ScenarioFile;
-use super::{Failure, Format, commands, print, show, warn};
+use super::{Failure, Format, limit, named_files, print, show, warn};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -65,7 +65,7 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
         return show(&answer.json, &answer.text, arguments.format);
     }
     let options = "--models, --certificate, --line and --plot are";
-    let model = commands::four_links(&scenario, options);
+    let model = limit::four_links(&scenario, options);
     let impact = LinkImpact {
         model: &model.map_err(|wrong| input.with_file_name(wrong))?,
         first,
@@ -98,7 +98,7 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
         let picture = picture.ok_or_else(|| {
             format!("--plot: impact {index} stops the arch; there is no mechanism after it to draw")
         })?;
-        commands::write_picture(plot, &picture)?;
+        named_files::write_picture(plot, &picture)?;
     }
     let sites = impact.chain().sites;
     if let (HingeSites::Voussoirs(count), Some(_)) = (sites, arguments.joints) {
@@ -131,5 +131,5 @@ fn write_line(path: &Path, impact: &LinkImpact<'_>) -> Result<(), Failure> {
         let message = "not a regular file; use - for standard output";
         return Err(format!("--line {}: {message}", path.display()).into());
     }
-    commands::write_named(path, &table, "--line")
+    named_files::write_named(path, &table, "--line")
 }

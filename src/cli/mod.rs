@@ -5,12 +5,13 @@
 
 mod capacity_spread_verify;
 mod check;
-mod commands;
 mod examples;
 mod figure;
 mod impact;
 mod init;
+mod limit;
 mod models;
+mod named_files;
 mod parsers;
 mod progress;
 mod run;
@@ -50,7 +51,7 @@ enum Command {
     Run(run::Arguments),
     /// Print the incipient acceleration, the mechanism to either side and the equivalent block.
     #[command(after_help = examples::LIMIT)]
-    Limit(commands::LimitArguments),
+    Limit(limit::LimitArguments),
     /// Print the mechanisms after successive impacts, their restitution and impulses.
     #[command(after_help = examples::IMPACT)]
     Impact(impact::Arguments),
@@ -165,7 +166,7 @@ pub fn main() -> ExitCode {
     let result = match arguments.command {
         Command::Init(init) => init::init(&init),
         Command::Run(run) => run::run(&run, arguments.quiet),
-        Command::Limit(limit) => commands::limit(&limit),
+        Command::Limit(limit) => limit::limit(&limit),
         Command::Impact(arguments) => impact::impact(&arguments),
         Command::Capacity(capacity) => capacity_spread_verify::capacity(&capacity),
         Command::Spread(spread) => capacity_spread_verify::spread(&spread),

@@ -11,7 +11,7 @@ use glob::{MatchOptions, Pattern, PatternError};
 use super::error::ensure;
 use super::shown;
 
-/// Where the files of a scenario are.
+/// The place of the files of a scenario.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Files {
     /// The folder to which names are relative; empty for files in memory.

@@ -43,7 +43,7 @@ pub(crate) fn sha256(bytes: &[u8]) -> String {
 pub(super) struct InputFiles {
     /// The files; the scenario itself is the first.
     pub(super) files: Vec<InputFile>,
-    /// Where the files are.
+    /// The place of the files.
     pub(super) place: Files,
 }
 

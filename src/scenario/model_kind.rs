@@ -1,4 +1,4 @@
-//! What every model of motion has: names, properties, and options in a table of the scenario.
+//! Names and properties of a model of motion, and its options in a table of the scenario.
 
 use std::fmt::Debug;
 use std::sync::Arc;

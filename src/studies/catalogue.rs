@@ -67,7 +67,7 @@ pub enum Computation {
     },
 }
 
-/// How a study is computed from scenarios that differ only in their models of motion; most studies take one.
+/// Computation of a study of scenarios that differ only in their models of motion; most studies take one.
 #[derive(Clone, Copy, Debug)]
 enum Compute {
     /// At once.
@@ -76,7 +76,7 @@ enum Compute {
     ByRows(fn(&[Scenario], &Options, Style, RowSource<'_>) -> Result<Computation, StudyError>),
 }
 
-/// What a study that is computed at once works with.
+/// Threads, progress and sinks for a study that is computed at once.
 struct Work<'w, 's> {
     runner: Runner,
     watch: Watch<'w>,

@@ -27,6 +27,7 @@ pub mod part;
 pub mod peaks;
 pub mod pictures;
 pub mod quotable;
+pub mod record;
 mod remarks;
 pub mod results;
 pub mod run;

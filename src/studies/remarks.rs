@@ -229,7 +229,7 @@ impl ModelCheck {
     }
 }
 
-/// What the reports on many cases begin with.
+/// The common part of reports on many cases; it comes first.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct CaseSummary {
     /// Name of the program.

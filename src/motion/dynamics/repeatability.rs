@@ -579,7 +579,7 @@ pub(super) const LARGEST_LOSS_RATIO: f64 = 0.01;
 
 /// Largest energy, over the energy barrier of the first mechanism, below which a survivor is certain without a repetition of its path.
 const FAR_FROM_OVERTURNING: f64 = 0.5;
-/// The same for elastic joints. Under records, survivors between a third and half of the barrier overturned with other steps.
+/// [`FAR_FROM_OVERTURNING`] of elastic joints. Under records, survivors between a third and half of the barrier overturned with other steps.
 const ELASTIC_FAR_FROM_OVERTURNING: f64 = 0.25;
 
 /// Largest energy, over the same barrier, above which a survivor is certain only with all repetitions, although its path repeats.

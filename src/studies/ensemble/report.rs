@@ -66,7 +66,7 @@ pub(super) fn why_not<'a, A: 'a>() -> Column<'a, Line<'a, A>> {
 /// The uncertainty that samples do not cover.
 const NOT_CONSIDERED: &str = "not considered: numbers that [uncertain] does not name, other ground motions, and the model of motion itself";
 
-/// What the reports on samples begin with.
+/// The common part of all reports on samples; it comes first.
 #[derive(Serialize, Deserialize)]
 pub(super) struct SampleSummary {
     /// Name of the program.

@@ -115,7 +115,7 @@ pub type OpenFolder<'w> = &'w mut dyn FnMut(&Scenario, &[&str]) -> Result<Option
 /// Receives the rotations in place of a file.
 pub type RotationsOutput<'w> = Option<Box<dyn io::Write + 'w>>;
 
-/// What receives the tables of a run while it is computed.
+/// The receivers of the tables of a run, which are written while it is computed.
 #[derive(Default)]
 pub struct Sinks<'w> {
     /// The folders; without it no files are written.

@@ -196,14 +196,14 @@ pub struct Thrust {
     pub rocking_share_thrust_excess_below_0_01: Option<f64>,
     /// Share of the time in motion in which the excess is at most 0.05; null if the structure never moved.
     pub rocking_share_thrust_excess_below_0_05: Option<f64>,
-    /// How well four links describe the motion; null for a column, and if the structure never moved.
+    /// Quality of four links as a model of the motion; null for a column, and if the structure never moved.
     pub four_links: Option<FourLinkQuality>,
     /// True for a continuous ring, which needs `voussoirs` to compare it with free hinges.
     pub is_continuous: bool,
 }
 
 named! {
-    /// How well four links describe a motion.
+    /// Quality of four links as a model of a motion.
     #[derive(PartialOrd)]
     pub enum FourLinkQuality {
         /// The thrust line leaves the arch by at most a hundredth of its thickness.

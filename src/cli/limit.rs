@@ -1,15 +1,15 @@
-//! The command `limit`, and functions that several commands share.
+//! The command `limit`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use archrock::output::print::{PictureFormat, PrintError};
 use archrock::output::scene::Scene;
-use archrock::output::write_named_file;
 use archrock::scenario::Scenario;
-use archrock::studies::{limit, pictures};
+use archrock::studies::limit::limit as compute;
+use archrock::studies::pictures;
 use archrock::{FourLinkError, FourLinks};
 
 use super::figure::FigureOption;
+use super::named_files::write_picture;
 use super::parsers::FirstOption;
 use super::scenario_file::ScenarioFile;
 use super::{Failure, Format, show, warn};
@@ -45,7 +45,7 @@ pub fn limit(arguments: &LimitArguments) -> Result<(), Failure> {
         let picture = pictures::limit(figure, &model, first, &scene);
         write_picture(plot, &picture)?;
     }
-    let found = limit::limit(&scenario).map_err(|wrong| input.with_file_name(wrong.into()))?;
+    let found = compute(&scenario).map_err(|wrong| input.with_file_name(wrong.into()))?;
     show(&found.json, &found.text, arguments.format)
 }
 
@@ -62,18 +62,4 @@ pub fn four_links(scenario: &Scenario, what: &str) -> Result<FourLinks, Failure>
             })
         })?
         .ok_or_else(|| Failure::Input(format!("{what} for arches only; the scenario has a column")))
-}
-
-/// Writes a picture to the file named by `--plot`.
-pub fn write_picture(path: &Path, picture: &str) -> Result<(), Failure> {
-    let input = |wrong: PrintError| Failure::Input(format!("--plot: {wrong}"));
-    let format = PictureFormat::of_file(path).map_err(input)?;
-    let picture = format.of_picture(picture).map_err(input)?;
-    write_named(path, &picture, "--plot")
-}
-
-/// Writes a file that this option names.
-pub fn write_named(path: &Path, contents: &[u8], option: &str) -> Result<(), Failure> {
-    let written = write_named_file(path, contents);
-    written.map_err(|error| Failure::Input(format!("{error}; choose another file with {option}")))
 }

@@ -1,0 +1,91 @@
+//! The report on a record of ground motion: its peaks and intensities.
+
+use askama::Template;
+use serde::{Deserialize, Serialize};
+
+use super::results::PrintedResult;
+use crate::dynamics::ground::intensity::Intensity;
+use crate::output::{OutputError, filters};
+use crate::scenario::{Format, RecordedQuantity, Series};
+
+/// Report on a record. Velocity and displacement are integrated from zero.
+#[derive(Serialize, Deserialize, Template)]
+#[template(path = "studies/record.txt")]
+pub struct Summary {
+    /// Name of the file.
+    file: String,
+    /// Format, quantity and unit, in words.
+    format: String,
+    /// Number of samples and their interval, in words.
+    sampling: String,
+    /// Gravity, in m/s2.
+    gravity_m_s2: f64,
+    /// Peak acceleration, in m/s2.
+    peak_acceleration_m_s2: f64,
+    /// Time of the peak acceleration, in seconds.
+    peak_acceleration_time_s: f64,
+    /// Mean acceleration, in units of gravity.
+    mean_acceleration_g: f64,
+    /// True if the mean was removed.
+    mean_removed: bool,
+    /// Peak velocity, in m/s.
+    peak_velocity_m_s: f64,
+    /// Time of the peak velocity, in seconds.
+    peak_velocity_time_s: f64,
+    /// Peak displacement, in metres.
+    peak_displacement_m: f64,
+    /// Time of the peak displacement, in seconds.
+    peak_displacement_time_s: f64,
+    /// Arias intensity, in m/s.
+    arias_intensity_m_s: f64,
+    /// Start of the significant duration, which has 5 to 95 % of the Arias intensity, in seconds.
+    significant_from_s: f64,
+    /// End of the significant duration, in seconds.
+    significant_to_s: f64,
+}
+
+/// Makes the report on a record with these intensities.
+///
+/// # Errors
+/// When a number is not finite.
+pub fn record(
+    series: &Series,
+    intensity: &Intensity,
+    gravity_m_s2: f64,
+) -> Result<PrintedResult, OutputError> {
+    let [significant_from_s, significant_to_s] = intensity.significant_s;
+    PrintedResult::of(&Summary {
+        file: series.name().to_owned(),
+        format: format(series),
+        sampling: series.sampling().to_string(),
+        gravity_m_s2,
+        peak_acceleration_m_s2: intensity.acceleration_m_s2.value,
+        peak_acceleration_time_s: intensity.acceleration_m_s2.time_s,
+        mean_acceleration_g: series.mean_g(gravity_m_s2),
+        mean_removed: series.layout.remove_mean,
+        peak_velocity_m_s: intensity.velocity_m_s.value,
+        peak_velocity_time_s: intensity.velocity_m_s.time_s,
+        peak_displacement_m: intensity.displacement_m.value,
+        peak_displacement_time_s: intensity.displacement_m.time_s,
+        arias_intensity_m_s: intensity.arias_m_s,
+        significant_from_s,
+        significant_to_s,
+    })
+}
+
+/// Returns format and unit of a record, in words.
+fn format(series: &Series) -> String {
+    let format = match series.layout.format {
+        Format::At2 => "AT2 file (PEER)",
+        Format::Asc => "ASC file (ESM)",
+        Format::Knet => "file of K-NET",
+        Format::Csv if series.layout.wrapped => "table with several samples a row",
+        Format::Csv => "table",
+    };
+    let quantity = match series.layout.quantity {
+        RecordedQuantity::Acceleration => "accelerations",
+        RecordedQuantity::Velocity => "velocities",
+    };
+    let (unit, columns) = (series.unit.name(), &series.columns);
+    format!("{format}, {quantity} in {unit}{columns}")
+}
