@@ -1,9 +1,19 @@
-//! The only clock of the library: it dates a check, times the slowest step of a run and the progress of a study.
+//! The clocks of the library: the date of a check, and the time of the slowest step of a run and of the progress of a study.
 
-use std::time::{Duration, SystemTime, UNIX_EPOCH};
+use std::sync::OnceLock;
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-/// Returns the time since 1970 (UTC); `None` where there is no clock, as in a browser.
+/// False in a browser, which has no clock for the library.
+const HAS_CLOCK: bool = !cfg!(target_family = "wasm");
+
+/// Returns the time since 1970 (UTC); `None` without a clock.
 pub(crate) fn since_1970() -> Option<Duration> {
-    let now = (!cfg!(target_family = "wasm")).then(SystemTime::now)?;
+    let now = HAS_CLOCK.then(SystemTime::now)?;
     now.duration_since(UNIX_EPOCH).ok()
+}
+
+/// Returns the time since the first call, which never goes back; `None` without a clock.
+pub(crate) fn elapsed() -> Option<Duration> {
+    static START: OnceLock<Instant> = OnceLock::new();
+    HAS_CLOCK.then(|| START.get_or_init(Instant::now).elapsed())
 }

@@ -133,6 +133,9 @@ pub fn compute_part(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<PathBuf> {
     let (kind, runner) = (kind_of(kind)?, runner(threads));
+    if !kind.has_parts() {
+        return Err(refused(format!("{:?} has no parts", kind.name)));
+    }
     let shard = shard.parse::<Shard>().map_err(refused)?;
     let part = (runner, Some((shard, folder)));
     let options = Options::default();
@@ -141,7 +144,7 @@ pub fn compute_part(
         Computation::Partial { part, .. } | Computation::Complete(_, Some(part)) => {
             Ok(part.path().to_owned())
         }
-        Computation::Complete(_, None) => Err(refused(format!("{:?} has no parts", kind.name))),
+        Computation::Complete(_, None) => unreachable!("a study with parts has a file"),
     }
 }
 

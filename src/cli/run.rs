@@ -136,10 +136,12 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
         let words = heading(scenarios) + &found.words("  ") + "\n";
         // A closed pipe ends the words, not the work.
         printed = printed.and_then(|()| arguments.print(&words, quiet));
-        summaries.push(found.summary(RUN)?);
+        if matches!(arguments.format, Format::Json) {
+            summaries.push(found.summary(RUN)?);
+        }
     }
     printed?;
-    if matches!(arguments.format, Format::Json) && !summaries.is_empty() {
+    if !summaries.is_empty() {
         print_all(summaries)?;
     }
     match failures.is_empty() {

@@ -17,7 +17,7 @@ use super::figure::FigureOption;
 use super::models::warn_of;
 use super::progress::print_status;
 use super::scenario_file::{Destination, Input};
-use super::study::{Found, StudyArguments};
+use super::study::{CommandResults, StudyArguments};
 use super::{Failure, Format, print};
 
 #[derive(clap::Args)]
@@ -205,12 +205,17 @@ pub fn merge(arguments: &MergeArguments) -> Result<(), Failure> {
     place.check_names(kind.files)?;
     place.prepare(&results)?;
     place.publish()?;
-    show(&Found::alone(results), kind, &place, arguments.format)
+    show(
+        &CommandResults::alone(results),
+        kind,
+        &place,
+        arguments.format,
+    )
 }
 
 /// Prints published results.
 fn show(
-    found: &Found,
+    found: &CommandResults,
     kind: StudyKind,
     place: &Destination,
     format: Format,

@@ -8,7 +8,7 @@ use std::sync::atomic::Ordering;
 use std::time::Duration;
 use std::{process, slice};
 
-use archrock::scenario::Scenario;
+use archrock::scenario::{ModelKind, Scenario};
 use archrock::studies::catalogue::{Computation, Options, RowSource, StudyKind};
 use archrock::studies::part::{PartError, PartErrorKind, PartFile, Shard, rows_in};
 use archrock::studies::peaks;
@@ -125,27 +125,24 @@ pub struct Session<'s> {
 }
 
 /// The results of a command on scenarios that differ only in their models of motion.
-pub struct Found {
+pub struct CommandResults {
     /// The results on the samples of each model that has `[uncertain]`.
-    samples: Vec<OfSamples>,
+    samples: Vec<SampleResults>,
     /// The comparison of the models by the largest rotations of their samples.
     compared: Option<Results>,
     /// The results on the scenario itself.
     pub own: Results,
-    /// True if there are several models.
-    several: bool,
 }
 
 /// The results on the samples of a model.
-struct OfSamples {
-    /// Name and label of the model.
-    model: [&'static str; 2],
+struct SampleResults {
+    model: &'static ModelKind,
     results: Results,
     /// Their folder, and the names of their files, in words.
     place: String,
 }
 
-/// The JSON of results, after those on samples.
+/// JSON of all results: of the scenario itself, of its samples, and of the comparison of models.
 #[derive(Serialize)]
 struct Summary<'f> {
     #[serde(flatten)]
@@ -156,24 +153,23 @@ struct Summary<'f> {
     peaks: Option<&'f Value>,
 }
 
-impl Found {
+impl CommandResults {
     /// Makes the results of a study without samples.
     pub const fn alone(own: Results) -> Self {
         Self {
             samples: Vec::new(),
             compared: None,
             own,
-            several: false,
         }
     }
 
-    /// Returns the report on the samples, which has the probability of overturning, and then that on the scenario itself. Without samples, `indent`
-    /// comes first.
+    /// Returns the report on the samples, which has the probability of overturning, and then that on the scenario itself. `indent` precedes the report
+    /// if there are no samples.
     pub fn words(&self, indent: &str) -> String {
         let mut words = String::new();
         for one in &self.samples {
-            if self.several {
-                words += &format!("{}\n", one.model[1]);
+            if self.samples.len() > 1 {
+                words += &format!("{}\n", one.model.label);
             }
             let place = &one.place;
             words += &format!("  {}\n  results in {place}\n", one.results.words);
@@ -193,9 +189,9 @@ impl Found {
         let samples = self.samples.iter().filter(|_| !kind.is_history);
         let samples = samples.map(|one| {
             let summary = one.results.summary.clone();
-            match self.several {
-                true => (one.model[0].to_owned(), json!({ "uncertain": summary })),
-                false => ("uncertain".to_owned(), summary),
+            match self.samples.len() {
+                1 => ("uncertain".to_owned(), summary),
+                _ => (one.model.option.to_owned(), json!({ "uncertain": summary })),
             }
         });
         let summary = Summary {
@@ -343,14 +339,14 @@ impl<'s> Session<'s> {
     }
 
     /// Computes a study of scenarios that differ in their models of motion, after the samples of those that have `[uncertain]`, whose results
-    /// are in folders of their own inside `place`. The words on the samples come first, then a comparison of the models. Of a part, only the
+    /// are in folders of their own inside `place`.  Of a part, only the
     /// samples are computed if there are any; without a folder there are none.
     pub fn with_samples(
         &mut self,
         [kind, samples]: [StudyKind; 2],
         scenarios: &[Scenario],
         place: Option<&Destination>,
-    ) -> Result<Option<Found>, Failure> {
+    ) -> Result<Option<CommandResults>, Failure> {
         let several = scenarios.len() > 1;
         let has_samples = scenarios.iter().any(|one| one.uncertain.is_some());
         if self.work.is_part() && place.is_none() {
@@ -374,8 +370,8 @@ impl<'s> Session<'s> {
         for (scenario, place) in with_samples.flat_map(|one| Some(one).zip(place)) {
             let place = place.of_model(scenario, several).within(samples.name);
             let computed = self.compute(samples, slice::from_ref(scenario), Some(&place))?;
-            of_samples.extend(computed.map(|results| OfSamples {
-                model: [scenario.motion.kind.option, scenario.motion.kind.label],
+            of_samples.extend(computed.map(|results| SampleResults {
+                model: scenario.motion.kind,
                 place: place.describe(&results),
                 results,
             }));
@@ -393,17 +389,17 @@ impl<'s> Session<'s> {
         };
         // Of the studies of samples, only that of histories has rotations.
         let compared = of_samples.iter().filter(|_| kind.is_history);
-        let models = compared.map(|one| (one.model[1], &one.results));
+        let models = compared.map(|one| (one.model.label, &one.results));
         let title = scenarios[0].title.as_deref();
-        Ok(Some(Found {
+        Ok(Some(CommandResults {
             compared: self.compare(kind, title, models, place)?,
             samples: of_samples,
             own,
-            several,
         }))
     }
 
-    /// Compares how far models of motion rock in the same cases, in a folder beside theirs. `None` where there are not several.
+    /// Compares the largest rotations of several models in the same cases, and prepares the comparison beside their folders. `None` for one model, or
+    /// without a folder.
     pub fn compare<'r>(
         &self,
         kind: StudyKind,

@@ -23,7 +23,10 @@ pub(super) struct Files {
 impl Files {
     /// Returns the path of a file.
     pub(super) fn path(&self, name: &str) -> PathBuf {
-        self.folder.join(name)
+        match self.in_memory {
+            Some(_) => without_current_folders(Path::new(name)),
+            None => self.folder.join(name),
+        }
     }
 
     /// Reads the contents of a file of at most 64 MiB. The error is a phrase that follows the name.
@@ -36,6 +39,14 @@ impl Files {
         let is_file = fs::metadata(path).map_err(unreadable)?.is_file();
         ensure(is_file, || "is not a file")?;
         read_at_most(fs::File::open(path).map_err(unreadable)?, 64, "record")
+    }
+
+    /// Returns the one path of a file that may have several.
+    pub(super) fn identity(&self, path: PathBuf) -> PathBuf {
+        match self.in_memory {
+            Some(_) => path,
+            None => path.canonicalize().unwrap_or(path),
+        }
     }
 
     /// Returns true if there is a file with this path.
@@ -52,7 +63,8 @@ impl Files {
         let path = self.path(pattern);
         let no_file =
             |is: &str| format!("{is}; must be a file or a pattern such as \"folder/*.at2\"");
-        ensure(!path.is_dir(), || no_file("is a folder"))?;
+        let is_folder = self.in_memory.is_none() && path.is_dir();
+        ensure(!is_folder, || no_file("is a folder"))?;
         if self.has(&path) {
             return Ok(vec![file_name(Path::new(pattern))?]);
         }
@@ -110,10 +122,15 @@ pub(super) fn read_at_most(reader: impl Read, mib: u64, what: &str) -> Result<Ve
 /// First characters of cells that spreadsheets interpret as formulas. A tab would be another, but it is a control character.
 const FORMULA: [char; 4] = ['=', '+', '-', '@'];
 
+/// Returns a path without the parts `.`.
+pub(super) fn without_current_folders(path: &Path) -> PathBuf {
+    let parts = path.components();
+    parts.filter(|part| *part != Component::CurDir).collect()
+}
+
 /// Returns the name of a file for scenarios and results. The name must fit on one line and in one cell.
 fn file_name(path: &Path) -> Result<String, String> {
-    let parts = path.components();
-    let plain: PathBuf = parts.filter(|part| *part != Component::CurDir).collect();
+    let plain = without_current_folders(path);
     match plain.to_str() {
         Some(name) if name.starts_with(FORMULA) => Err(format!(
             "names {}, which spreadsheets that open the table of results would take for a formula: give the file a name \

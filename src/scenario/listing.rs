@@ -111,7 +111,7 @@ fn list(
         });
         for file in files.into_iter().flatten() {
             let path = table.files().path(&file);
-            if seen.insert(path.canonicalize().unwrap_or(path)) {
+            if seen.insert(table.files().identity(path)) {
                 found.insert(file, element);
             }
         }

@@ -3,6 +3,9 @@
 use std::fmt::Debug;
 use std::sync::Arc;
 
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
 use super::prelude::*;
 use super::structure::{ModelError, Structure};
 use crate::dynamics::Variation;
@@ -36,6 +39,21 @@ pub struct ModelKind {
 impl PartialEq for ModelKind {
     fn eq(&self, other: &Self) -> bool {
         self.name == other.name
+    }
+}
+
+impl Serialize for ModelKind {
+    /// Writes the name of the option `--hinges`.
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.option)
+    }
+}
+
+impl<'de> Deserialize<'de> for &'static ModelKind {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let name = String::deserialize(deserializer)?;
+        let unknown = || D::Error::custom(format!("unknown model of motion {name:?}"));
+        ModelKind::of_option(&name).ok_or_else(unknown)
     }
 }
 

@@ -15,6 +15,18 @@ use crate::{ImpactLaw, ImpactModel, Request};
 /// All models of motion, the least trustworthy first.
 pub static MODELS: [&ModelKind; 3] = [&FOUR_LINKS, &FREE_HINGES, &ELASTIC_JOINTS];
 
+impl ModelKind {
+    /// Returns the model with this name of the option `--hinges`.
+    pub fn of_option(name: &str) -> Option<&'static Self> {
+        MODELS.into_iter().find(|model| model.option == name)
+    }
+
+    /// Returns the position in [`MODELS`], the order of trust.
+    pub fn rank(&self) -> Option<usize> {
+        MODELS.into_iter().position(|model| model == self)
+    }
+}
+
 /// The model of motion of a scenario, with its options.
 #[derive(Clone, Debug)]
 pub struct MotionModel {

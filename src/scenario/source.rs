@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::error::{Fault, ScenarioErrors};
-use super::files::{Files, read_at_most};
+use super::files::{Files, read_at_most, without_current_folders};
 
 /// The text of a scenario, and its name in errors.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -30,9 +30,11 @@ impl Source {
     /// Makes a source that reads no files from disk, but these contents by the names in the scenario.
     #[must_use]
     pub fn with_files(self, contents: impl IntoIterator<Item = (PathBuf, Vec<u8>)>) -> Self {
+        let contents = contents.into_iter();
+        let named = contents.map(|(name, bytes)| (without_current_folders(&name), bytes));
         let files = Files {
             folder: PathBuf::new(),
-            in_memory: Some(Arc::new(contents.into_iter().collect())),
+            in_memory: Some(Arc::new(named.collect())),
         };
         Self { files, ..self }
     }

@@ -13,7 +13,6 @@ use super::ensemble::uncertain_threshold::FirstEdges;
 use super::ensemble::{Ensemble, Question};
 use super::map::OverturningMap;
 use super::part::{self, PartFile};
-use super::results::{WordsOf, words_of_json};
 use super::run::{self, RunOptions, Sinks};
 use super::spread::{self, Direction};
 use super::suite::{Heading, RecordSuite};
@@ -71,10 +70,14 @@ pub enum Computation {
 #[derive(Clone, Copy, Debug)]
 enum Compute {
     /// At once.
-    Whole(fn(&[Scenario], &Options, Style, Work<'_, '_>) -> Result<Results, StudyError>),
+    Whole(ComputeWhole),
     /// By rows, which are kept in a file, so the work can be divided and resumed.
-    ByRows(fn(&[Scenario], &Options, Style, RowSource<'_>) -> Result<Computation, StudyError>),
+    ByRows(ComputeByRows),
 }
+
+type ComputeWhole = fn(&[Scenario], &Options, Style, Work<'_, '_>) -> Result<Results, StudyError>;
+type ComputeByRows =
+    fn(&[Scenario], &Options, Style, RowSource<'_>) -> Result<Computation, StudyError>;
 
 /// Threads, progress and sinks for a study that is computed at once.
 struct Work<'w, 's> {
@@ -95,8 +98,6 @@ pub struct StudyKind {
     pub is_history: bool,
     /// True if the scenario needs a ground motion.
     pub needs_motion: bool,
-    /// Makes the words of its report from its JSON alone.
-    pub words_of: WordsOf,
     compute: Compute,
 }
 
@@ -111,15 +112,10 @@ impl Eq for StudyKind {}
 /// The history of a scenario, with one or several models of motion.
 pub const RUN: StudyKind = StudyKind {
     is_history: true,
-    ..StudyKind::whole(
-        "run",
-        &run::FILES,
-        run::words_of,
-        |scenarios, options, style, work| {
-            let (options, figure) = (&options.run, style.figure);
-            run::results(scenarios, options, figure, work.sinks, work.watch)
-        },
-    )
+    ..StudyKind::whole("run", &run::FILES, |scenarios, options, style, work| {
+        let (options, figure) = (&options.run, style.figure);
+        run::results(scenarios, options, figure, work.sinks, work.watch)
+    })
 };
 /// The map of the pulses that overturn the structure, over two quantities.
 pub const MAP: StudyKind = StudyKind::of::<OverturningMap<'_>>(|scenarios, _, style, rows| {
@@ -133,7 +129,6 @@ pub const SUITE: StudyKind = StudyKind::of::<RecordSuite<'_>>(|scenarios, _, sty
 pub const THRESHOLD: StudyKind = StudyKind::whole(
     "threshold",
     &threshold::FILES,
-    words_of_json::<threshold::Summary>,
     |scenarios, options, style, Work { runner, watch, .. }| {
         threshold::results(scenarios, &options.factors, style.figure, &runner, watch)
     },
@@ -153,7 +148,6 @@ pub const CAPACITY: StudyKind = StudyKind {
     ..StudyKind::whole(
         "capacity",
         &capacity::FILES,
-        words_of_json::<capacity::Summary>,
         |scenarios, options, style, _| {
             let scenario = &scenarios[0];
             scenario.check_as_built().map_err(StudyError::Scenario)?;
@@ -165,34 +159,23 @@ pub const CAPACITY: StudyKind = StudyKind {
 /// The movement of a springing at which the arch falls.
 pub const SPREAD: StudyKind = StudyKind {
     needs_motion: false,
-    ..StudyKind::whole(
-        "spread",
-        &spread::FILES,
-        words_of_json::<spread::Summary>,
-        |scenarios, options, style, _| {
-            let (scenario, directions) = (&scenarios[0], &options.directions);
-            let found = spread::spread(scenario, directions)?;
-            spread::report(scenario, &found, style.figure)
-        },
-    )
+    ..StudyKind::whole("spread", &spread::FILES, |scenarios, options, style, _| {
+        let (scenario, directions) = (&scenarios[0], &options.directions);
+        let found = spread::spread(scenario, directions)?;
+        spread::report(scenario, &found, style.figure)
+    })
 };
 /// The check of the first mechanism by the Circolare 7/2019.
-pub const VERIFY: StudyKind = StudyKind::whole(
-    "verify",
-    &verify::FILES,
-    words_of_json::<verify::Summary>,
-    |scenarios, _, _, _| {
-        let scenario = &scenarios[0];
-        scenario.check_as_built().map_err(StudyError::Scenario)?;
-        if scenario.right_foot.is_some() {
-            let message =
-                "the histories of a check shake both feet alike: leave [ground.right] out";
-            return Err(StudyError::scenario(message));
-        }
-        let check = verify::verify(scenario).map_err(StudyError::scenario)?;
-        Ok(verify::report(scenario, &check)?)
-    },
-);
+pub const VERIFY: StudyKind = StudyKind::whole("verify", &verify::FILES, |scenarios, _, _, _| {
+    let scenario = &scenarios[0];
+    scenario.check_as_built().map_err(StudyError::Scenario)?;
+    if scenario.right_foot.is_some() {
+        let message = "the histories of a check shake both feet alike: leave [ground.right] out";
+        return Err(StudyError::scenario(message));
+    }
+    let check = verify::verify(scenario).map_err(StudyError::scenario)?;
+    Ok(verify::report(scenario, &check)?)
+});
 /// Endings and courses of histories for samples of the uncertain numbers.
 pub const UNCERTAIN: StudyKind = StudyKind::of_samples::<Histories>();
 /// The factor from which samples of the uncertain numbers overturn.
@@ -237,33 +220,19 @@ impl StudyKind {
     const fn whole(
         name: &'static str,
         files: &'static [&'static str],
-        words_of: WordsOf,
-        compute: fn(&[Scenario], &Options, Style, Work<'_, '_>) -> Result<Results, StudyError>,
+        compute: ComputeWhole,
     ) -> Self {
-        Self::with(name, files, words_of, Compute::Whole(compute))
+        Self::with(name, files, Compute::Whole(compute))
     }
 
-    const fn of<S: ReportedStudy>(
-        compute: fn(&[Scenario], &Options, Style, RowSource<'_>) -> Result<Computation, StudyError>,
-    ) -> Self {
-        Self::with(
-            S::NAME,
-            S::FILES,
-            words_of_json::<S::Report>,
-            Compute::ByRows(compute),
-        )
+    const fn of<S: ReportedStudy>(compute: ComputeByRows) -> Self {
+        Self::with(S::NAME, S::FILES, Compute::ByRows(compute))
     }
 
-    const fn with(
-        name: &'static str,
-        files: &'static [&'static str],
-        words_of: WordsOf,
-        compute: Compute,
-    ) -> Self {
+    const fn with(name: &'static str, files: &'static [&'static str], compute: Compute) -> Self {
         Self {
             name,
             files,
-            words_of,
             is_history: false,
             needs_motion: true,
             compute,
@@ -355,11 +324,14 @@ pub fn merge(
             "unknown study {study:?}: merge with the version of archrock that wrote the parts"
         )));
     };
+    let damaged = |_| {
+        let message = "the parts are damaged, or of another version: compute them again";
+        StudyError::scenario(message)
+    };
     if kind == SUITE {
         let style = style(kind, None).map_err(StudyError::Scenario)?;
         let (header, rows) = part::merge(parts)?;
-        let heading: Heading =
-            serde_json::from_value(header.options).map_err(StudyError::scenario)?;
+        let heading: Heading = serde_json::from_value(header.options).map_err(damaged)?;
         return Ok((kind, heading.report(rows, style.figure)?));
     }
     let scenario = match given {
@@ -371,7 +343,7 @@ pub fn merge(
         }
     };
     let options: Option<Options> =
-        serde_json::from_value(header.options.clone()).map_err(StudyError::scenario)?;
+        serde_json::from_value(header.options.clone()).map_err(damaged)?;
     let style = style(kind, Some(&scenario)).map_err(StudyError::Scenario)?;
     let (scenarios, options) = (std::slice::from_ref(&scenario), options.unwrap_or_default());
     match kind.compute(

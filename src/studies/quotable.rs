@@ -5,7 +5,7 @@
 //! the same for all of them. Four links of an arch are quoted only if their thrust line was followed, and inside their model.
 
 use crate::dynamics::thrust::MODEL_LIMIT;
-use crate::scenario::{FOUR_LINKS, FREE_HINGES, MODELS, ModelKind};
+use crate::scenario::{FOUR_LINKS, FREE_HINGES, ModelKind};
 
 /// The answer of a model of motion.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,8 +52,7 @@ fn outside_four_links(excess_ratio: Option<f64>) -> Option<String> {
 
 /// Returns the answer that may be quoted, in words; `None` without models.
 pub fn in_words(answers: &[ModelAnswer]) -> Option<String> {
-    let rank = |one: &&ModelAnswer| MODELS.iter().position(|model| *model == one.model);
-    let best = answers.iter().max_by_key(rank)?;
+    let best = answers.iter().max_by_key(|one| one.model.rank())?;
     let label = best.label;
     let more = match best.model {
         model if model == &FREE_HINGES => "; the stiffness of joints is not considered",

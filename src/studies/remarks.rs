@@ -162,13 +162,13 @@ pub(crate) struct ModelCheck {
         skip_serializing_if = "is_zero"
     )]
     of: usize,
-    /// Largest excess of the thrust line, over the thickness; absent if it is zero, or for other models.
+    /// Largest excess of the thrust line, over the thickness; absent if it is unknown, or for other models.
     #[serde(
         default,
         rename = "largest_thrust_excess_ratio",
-        skip_serializing_if = "is_zero"
+        skip_serializing_if = "Option::is_none"
     )]
-    largest_ratio: f64,
+    largest_ratio: Option<f64>,
 }
 
 fn is_zero<N: Default + PartialEq>(number: &N) -> bool {
@@ -185,17 +185,13 @@ impl ModelCheck {
         check
     }
 
-    /// Makes the check of a number of histories outside the model and of a number of all; `None` for other models. If none is outside, the excess is
-    /// at most the limit.
+    /// Makes the check of a number of histories outside the model and of a number of all; `None` for other models. The excesses are unknown.
     pub(crate) fn counted(counts: Option<[usize; 2]>) -> Self {
         let [outside, of] = counts.unwrap_or_default();
         Self {
             outside: counts.map(|_| outside),
             of,
-            largest_ratio: match counts {
-                Some([0, _]) => MODEL_LIMIT,
-                _ => 0.0,
-            },
+            largest_ratio: None,
         }
     }
 
@@ -206,7 +202,7 @@ impl ModelCheck {
         };
         self.of += 1;
         *self.outside.get_or_insert(0) += usize::from(ratio > MODEL_LIMIT);
-        self.largest_ratio = self.largest_ratio.max(ratio);
+        self.largest_ratio = Some(self.largest_ratio.map_or(ratio, |most| most.max(ratio)));
     }
 
     /// Returns the number of `cases` outside the model, or the largest excess of the thrust line, and the remedy, in words. `None` if the thrust line
@@ -219,13 +215,17 @@ impl ModelCheck {
                  thicknesses), not on the safe side: compute them with free hinges"
             ));
         }
-        let ratio = self.largest_ratio;
-        (ratio > EXCESS_LEVELS[1]).then(|| {
-            format!(
-                "four links are a rough guide, not on the safe side: the thrust line leaves the arch by up to {ratio:.3} thicknesses; \
-                 compare with free hinges"
-            )
-        })
+        let leaves = match self.largest_ratio {
+            None if of == 0 => return None,
+            None => format!("may leave the arch by up to {MODEL_LIMIT}"),
+            Some(ratio) if ratio > EXCESS_LEVELS[1] => {
+                format!("leaves the arch by up to {ratio:.3}")
+            }
+            Some(_) => return None,
+        };
+        Some(format!(
+            "four links are a rough guide, not on the safe side: the thrust line {leaves} thicknesses; compare with free hinges"
+        ))
     }
 }
 
@@ -284,7 +284,7 @@ fn first_of(remarks: &[Remark], file: &str) -> Option<String> {
     Some(format!("the first: {first}{listed}"))
 }
 
-/// Number of cases with each outcome, by its name in tables.
+/// Number of cases with each outcome, by its name in tables; falling ground counts as failed.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub(crate) struct OutcomeCounts(BTreeMap<String, usize>);

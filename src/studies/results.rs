@@ -64,9 +64,6 @@ pub trait ReportedStudy: Study {
     /// The names of all files that its results may have, the seal last.
     const FILES: &'static [&'static str];
 
-    /// Its report.
-    type Report: DeserializeOwned + Template;
-
     /// Makes the report and the other files of all rows.
     ///
     /// # Errors
@@ -136,10 +133,7 @@ impl Results {
     }
 }
 
-/// Function that makes the words of a report from its JSON alone. The error means that it is not the JSON of such a report.
-pub type WordsOf = fn(&Value) -> serde_json::Result<String>;
-
-/// Makes the words of a report of this type from its JSON alone: a [`WordsOf`].
+/// Makes the words of a report of this type from its JSON alone.
 ///
 /// # Errors
 /// When it is not the JSON of such a report.
@@ -147,7 +141,8 @@ pub fn words_of_json<R: DeserializeOwned + Template>(json: &Value) -> serde_json
     Ok(words_of(&R::deserialize(json)?))
 }
 
-fn words_of(report: &impl Template) -> String {
+/// Returns the words of a report, without a line break at the end.
+pub(super) fn words_of(report: &impl Template) -> String {
     render(report).trim().to_owned()
 }
 

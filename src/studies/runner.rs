@@ -168,8 +168,8 @@ const TICK: Duration = Duration::from_millis(100);
 impl Runner {
     /// Computes the rows of all cases in memory. Returns them in the order of the cases.
     ///
-    /// `watch` receives the progress at the beginning, ten times a second, and at the end, on this thread; with one thread between two cases. When `watch` returns `Break`, the
-    /// cases under way are finished and no others are started.
+    /// `watch` receives the progress on this thread: at the beginning, ten times a second, and at the end. Without threads it is called between groups
+    /// of cases. When `watch` returns `Break`, the cases under way are finished and no others are started.
     ///
     /// # Errors
     /// When `watch` returns `Break` or threads cannot be started.
@@ -274,14 +274,13 @@ impl Runner {
             is_cancelled = is_cancelled || watch(Progress { done, all }).is_break();
             Ok(is_cancelled)
         };
-        let processors = thread::available_parallelism().ok();
-        match self.threads.or(processors).map_or(1, NonZeroUsize::get) {
-            1 => one_by_one(&in_groups(todo, family, 1), rows_of, &mut add)?,
-            _ => {
-                let pool = self.pool()?;
-                let groups = in_groups(todo, family, pool.current_num_threads());
-                on_threads(&pool, &groups, rows_of, &mut add)?;
-            }
+        // Even with one thread for the cases, this thread reports the progress and can cancel while they are computed.
+        if thread::available_parallelism().is_ok() {
+            let pool = self.pool()?;
+            let groups = in_groups(todo, family, pool.current_num_threads());
+            on_threads(&pool, &groups, rows_of, &mut add)?;
+        } else {
+            one_by_one(&in_groups(todo, family, 1), rows_of, &mut add)?;
         }
         let done = rows.len();
         match done < all {
@@ -294,7 +293,7 @@ impl Runner {
 /// Receiver of new rows. It returns true once the work is cancelled.
 type Add<'a, R> = &'a mut dyn FnMut(Vec<(usize, R)>) -> Result<bool, RunnerError>;
 
-/// Computes the rows of groups of cases on this thread.
+/// Computes the rows of groups of cases on this thread, where there are no others, as in a browser.
 fn one_by_one<R>(
     groups: &[Vec<usize>],
     rows_of: impl Fn(&[usize]) -> Vec<R>,
@@ -302,7 +301,7 @@ fn one_by_one<R>(
 ) -> Result<(), RunnerError> {
     let (mut new, mut added) = (Vec::new(), None);
     for indices in groups {
-        let now = clock::since_1970();
+        let now = clock::elapsed();
         let since_added = now.zip(added).map(|(now, added)| now.saturating_sub(added));
         if since_added.is_none_or(|since_added| since_added >= TICK) {
             added = now;
@@ -384,4 +383,26 @@ fn in_groups(
         }
     }
     groups
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Where there are no threads, cases are computed in their order, and a cancelled work starts no further group.
+    #[test]
+    fn groups_are_computed_one_by_one() {
+        let groups = [vec![2, 0], vec![1], vec![3]];
+        let square = |indices: &[usize]| indices.iter().map(|index| index * index).collect();
+        let mut rows = Vec::new();
+        let mut add = |new: Vec<(usize, usize)>| {
+            rows.extend(new);
+            Ok(false)
+        };
+        one_by_one(&groups, square, &mut add).unwrap();
+        assert_eq!(rows, [(2, 4), (0, 0), (1, 1), (3, 9)]);
+        let mut cancelled = |_: Vec<(usize, usize)>| Ok(true);
+        let none = |_: &[usize]| -> Vec<usize> { panic!("a group was started") };
+        one_by_one(&groups, none, &mut cancelled).unwrap();
+    }
 }

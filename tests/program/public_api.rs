@@ -134,6 +134,7 @@ impl Packages {
             }
             Item::Fn(one) => list(&one.sig.ident, &one.vis, Entry::Item("fn".to_owned())),
             Item::Const(one) => list(&one.ident, &one.vis, Entry::Item("const".to_owned())),
+            Item::Static(one) => list(&one.ident, &one.vis, Entry::Item("static".to_owned())),
             Item::Type(one) => list(&one.ident, &one.vis, Entry::Item("type".to_owned())),
             // `named!` has an enum whose variants have names.
             Item::Macro(one) => {

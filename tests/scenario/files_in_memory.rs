@@ -49,6 +49,23 @@ fn every_example_is_the_same_with_its_files_in_memory() {
     assert!(records > 10, "{records} records");
 }
 
+/// Names may begin with `./`, and a folder on the disk with the name of a file does not matter.
+#[test]
+fn names_of_files_in_memory_have_nothing_to_do_with_the_disk() {
+    let table = b"0.0,0.0\n0.2,2.0\n0.4,-2.0\n0.6,0.0\n".to_vec();
+    let column = "[column]\nheight_m = 4\nwidth_m = 0.8\n";
+    for name in ["./a.csv", "a.csv", "src"] {
+        let text = format!(
+            "{column}[suite]\nrecords = ['{name}']\nformat = 'csv'\nunit = 'm/s2'\nscales = [1.0]\n"
+        );
+        let source = Source::of_text(&text, "s.toml");
+        let source = source.with_files([(PathBuf::from(name), table.clone())]);
+        let scenario = Scenario::of(&source, &ReadOptions::default());
+        let scenario = scenario.unwrap_or_else(|error| panic!("{name}: {error}"));
+        assert_eq!(scenario.suite.as_ref().unwrap().records.len(), 1, "{name}");
+    }
+}
+
 #[test]
 fn files_on_a_disk_are_not_read_with_files_in_memory() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");

@@ -93,6 +93,25 @@ fn words_of_several_models_are_rendered_again_from_their_json() {
     assert!(again.contains("compared with elastic joints"), "{again}");
 }
 
+/// The JSON of a command on several models with samples also has the comparison of their largest rotations.
+#[test]
+fn words_of_models_with_samples_are_rendered_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "[column]\nheight_m = 4\nwidth_m = 0.8\n[ground.half_sine]\namplitude_g = 0.3\nduration_s = 0.5\n\
+                [uncertain]\nsamples = 3\n'column.width_m' = { from = 0.7, to = 0.9 }\n";
+    fs::write(folder.path().join("s.toml"), text).unwrap();
+    let options = ["run", "s.toml", "--hinges", "four,free", "--out", "o"];
+    let answer = archrock(
+        folder.path(),
+        &[&options[..], &["--format", "json"]].concat(),
+    );
+    let json: Value = serde_json::from_str(&stdout(&answer)).unwrap();
+    assert!(json["peaks"].is_object() && json["free"]["uncertain"].is_object());
+    let said = printed(folder.path(), &options);
+    let again = words_of(&json).unwrap();
+    assert_eq!(words(&said, again.lines().next().unwrap()), again);
+}
+
 #[test]
 fn the_page_of_a_run_is_rendered_again_from_its_data() {
     let folder = tempfile::tempdir().unwrap();

@@ -3,16 +3,20 @@
 use std::fs;
 use std::path::Path;
 
-use archrock::studies::catalogue::{
-    CAPACITY, MAP, SUITE, THRESHOLD, THRESHOLD_ALONG, UNCERTAIN, UNCERTAIN_MAP, UNCERTAIN_SUITE,
-    UNCERTAIN_THRESHOLD, VERIFY,
+use archrock::studies::ensemble::{
+    uncertain_map, uncertain_run, uncertain_suite, uncertain_threshold,
 };
-use archrock::studies::results::{WordsOf, words_of_json};
-use archrock::studies::{impact, limit, peaks, spread};
+use archrock::studies::results::words_of_json;
+use archrock::studies::threshold::{self, along};
+use archrock::studies::{capacity, impact, limit, map, peaks, spread, suite, verify};
+use serde_json::Value;
 
 use crate::common::COLUMN;
 use crate::common::program::{archrock, scenarios, stderr, stdout};
 use crate::common::results::json;
+
+/// Function that makes the words of a report of one type from its JSON.
+type WordsOf = fn(&Value) -> serde_json::Result<String>;
 
 /// Runs a command and compares its output with the words made of files in its results.
 #[track_caller]
@@ -22,8 +26,12 @@ fn same_words(at: &Path, arguments: &[&str], reports: &[(&str, WordsOf)]) {
     for (file, words_of) in reports {
         let words = words_of(&json(&at.join("r").join(file))).unwrap();
         assert!(!words.is_empty(), "{arguments:?}: {file}");
-        let line = format!("{words}\n");
-        assert!(said.contains(&line), "{arguments:?}: {line}{said}");
+        let after = said.split_once(&format!("{words}\n"));
+        let (_, after) = after.unwrap_or_else(|| panic!("{arguments:?}: {words}\n{said}"));
+        // No line of the report follows.
+        let other = ["  results in ", "  sampled from "];
+        let is_end = !after.starts_with("  ") || other.iter().any(|line| after.starts_with(line));
+        assert!(is_end, "{arguments:?}: {words}\n{said}");
     }
     fs::remove_dir_all(at.join("r")).unwrap();
 }
@@ -47,23 +55,42 @@ fn studies_have_the_words_of_their_json() {
     ];
     let along = ["--along", "arch.thickness_ratio=0.12..0.2:3"];
     let suite = ["--set", "suite.peaks_g.count=4"];
-    for (kind, file, command, options) in [
-        (MAP, "semicircle-map.toml", "map", &small[..]),
+    for (report, file, command, options) in [
         (
-            MAP,
+            ("map.json", words_of_json::<map::report::Summary> as WordsOf),
+            "semicircle-map.toml",
+            "map",
+            &small[..],
+        ),
+        (
+            ("map.json", words_of_json::<map::report::Summary> as WordsOf),
             "semicircle-map.toml",
             "map",
             &[&small[..], &free].concat(),
         ),
-        (THRESHOLD, "semicircle-pulse.toml", "threshold", &few),
         (
-            THRESHOLD,
+            (
+                "threshold.json",
+                words_of_json::<threshold::Summary> as WordsOf,
+            ),
+            "semicircle-pulse.toml",
+            "threshold",
+            &few,
+        ),
+        (
+            (
+                "threshold.json",
+                words_of_json::<threshold::Summary> as WordsOf,
+            ),
             "column-pulse.toml",
             "threshold",
             &[&few[..], &elastic].concat(),
         ),
         (
-            THRESHOLD,
+            (
+                "threshold.json",
+                words_of_json::<threshold::Summary> as WordsOf,
+            ),
             "semicircle-pulse.toml",
             "threshold",
             &[
@@ -73,23 +100,39 @@ fn studies_have_the_words_of_their_json() {
             .concat(),
         ),
         (
-            THRESHOLD_ALONG,
+            (
+                "threshold_along.json",
+                words_of_json::<along::Summary> as WordsOf,
+            ),
             "semicircle-pulse.toml",
             "threshold",
             &[&few[..], &along].concat(),
         ),
-        (SUITE, "column-suite.toml", "suite", &suite),
-        (CAPACITY, "tie.toml", "capacity", &[]),
-        (VERIFY, "semicircle-verify.toml", "verify", &[]),
+        (
+            ("fragility.json", words_of_json::<suite::Summary> as WordsOf),
+            "column-suite.toml",
+            "suite",
+            &suite,
+        ),
+        (
+            (
+                "capacity.json",
+                words_of_json::<capacity::Summary> as WordsOf,
+            ),
+            "tie.toml",
+            "capacity",
+            &[],
+        ),
+        (
+            ("verify.json", words_of_json::<verify::Summary> as WordsOf),
+            "semicircle-verify.toml",
+            "verify",
+            &[],
+        ),
     ] {
         let file = scenarios().join(file);
         let arguments = [&[command, file.to_str().unwrap()], options].concat();
-        let report = kind.files.iter().find(|name| name.ends_with(".json"));
-        same_words(
-            folder.path(),
-            &arguments,
-            &[(report.unwrap(), kind.words_of)],
-        );
+        same_words(folder.path(), &arguments, &[report]);
     }
 }
 
@@ -184,22 +227,35 @@ fn samples_have_the_words_of_their_json() {
     // Many of the histories that end early have no verdict.
     fs::write(at.join("early.toml"), text(1.02)).unwrap();
     fs::write(at.join("late.toml"), text(60.0)).unwrap();
-    for (command, kind) in [
-        ("run", UNCERTAIN),
-        ("threshold", UNCERTAIN_THRESHOLD),
-        ("suite", UNCERTAIN_SUITE),
-        ("map", UNCERTAIN_MAP),
-    ] {
+    let questions: [(&str, &str, WordsOf); 4] = [
+        ("run", "uncertain", words_of_json::<uncertain_run::Summary>),
+        (
+            "threshold",
+            "uncertain_threshold",
+            words_of_json::<uncertain_threshold::Summary>,
+        ),
+        (
+            "suite",
+            "uncertain_suite",
+            words_of_json::<uncertain_suite::Summary>,
+        ),
+        (
+            "map",
+            "uncertain_map",
+            words_of_json::<uncertain_map::Summary>,
+        ),
+    ];
+    for (command, folder, words_of) in questions {
         for file in ["early.toml", "late.toml"] {
-            let report = format!("{}/uncertain.json", kind.name);
-            same_words(at, &[command, file], &[(&report, kind.words_of)]);
+            let report = format!("{folder}/uncertain.json");
+            same_words(at, &[command, file], &[(&report, words_of)]);
         }
     }
     let models = ["run", "late.toml", "--hinges", "four,free"];
     let few = ["--set", "uncertain.samples=4"];
     let compared: [(&str, WordsOf); 3] = [
-        ("four/uncertain/uncertain.json", UNCERTAIN.words_of),
-        ("free/uncertain/uncertain.json", UNCERTAIN.words_of),
+        ("four/uncertain/uncertain.json", questions[0].2),
+        ("free/uncertain/uncertain.json", questions[0].2),
         ("models/peaks.json", words_of_json::<peaks::Summary>),
     ];
     same_words(at, &[&models[..], &few].concat(), &compared);

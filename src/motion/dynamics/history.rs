@@ -85,10 +85,14 @@ named! {
 impl OutcomeKind {
     /// Returns the outcome, with the side to which the structure overturned.
     pub fn to(self, sway: Option<Sway>) -> Outcome {
-        use Outcome::{Incomplete, NeverMoved, Rest, StillRocking, Vibrates};
-        let others = [NeverMoved, Vibrates, Rest, StillRocking, Incomplete];
-        let other = others.into_iter().find(|other| other.kind() == self);
-        other.unwrap_or(Outcome::Overturned(sway.unwrap_or_default()))
+        match self {
+            Self::NeverMoved => Outcome::NeverMoved,
+            Self::Vibrates => Outcome::Vibrates,
+            Self::Rest => Outcome::Rest,
+            Self::Overturned => Outcome::Overturned(sway.unwrap_or_default()),
+            Self::StillRocking => Outcome::StillRocking,
+            Self::Incomplete => Outcome::Incomplete,
+        }
     }
 }
 

@@ -1,4 +1,4 @@
-// Shared by all pages. The data are in #data.
+// The data of a page, which are in #data, and the colours of its style.
 const find = (id) => document.getElementById(id);
 const data = JSON.parse(find("data").textContent);
 const buffer = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer;

@@ -1,5 +1,5 @@
 // Curves over time, drawn with uPlot: all zoom together, and show one instant.
-// The page defines the instant `time`, the ends `start` and `historyEnd`, and `seek`, which moves to another instant.
+// `stage.js` defines the instant `time` and the ends `start` and `historyEnd`; `seek` of `player.js` moves to another instant.
 const plots = [];
 let following = false;
 

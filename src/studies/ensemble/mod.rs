@@ -14,7 +14,6 @@ pub mod uncertain_run;
 pub mod uncertain_suite;
 pub mod uncertain_threshold;
 
-use askama::Template;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -29,9 +28,6 @@ use crate::scenario::{Scenario, Uncertain};
 pub trait Question: Sized + Sync {
     /// The answer for a sample.
     type Answer: Serialize + DeserializeOwned + Send;
-
-    /// Its report.
-    type Report: DeserializeOwned + Template;
 
     /// Name of the study, in part files and in their names.
     const NAME: &'static str;
@@ -149,8 +145,6 @@ impl<Q: Question> Study for Ensemble<'_, Q> {
 
 impl<Q: Question> ReportedStudy for Ensemble<'_, Q> {
     const FILES: &'static [&'static str] = Q::FILES;
-
-    type Report = Q::Report;
 
     fn results(&self, rows: Vec<Self::Row>, style: Style) -> Result<Results, OutputError> {
         let samples = Samples::new(self.scenario, self.uncertain, &rows);

@@ -76,7 +76,8 @@ impl<'a, A> Samples<'a, A> {
 
     /// Returns the number of valid structures without an answer.
     pub(super) fn unknown(&self) -> usize {
-        self.reasons().failed + self.reasons().incomplete
+        let reasons = self.reasons();
+        reasons.failed + reasons.incomplete
     }
 
     /// Returns the numbers of samples without an answer.

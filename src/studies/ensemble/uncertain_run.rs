@@ -62,8 +62,6 @@ fn many_cases(scenario: &Scenario) -> Result<Box<dyn Model>, String> {
 
 impl Question for Histories {
     type Answer = HistoryAnswer;
-    type Report = Summary;
-
     const NAME: &'static str = "uncertain";
 
     const FILES: &'static [&'static str] = &[
@@ -301,7 +299,7 @@ impl HistoryAnswer {
 pub struct Summary {
     #[serde(flatten)]
     all: SampleSummary,
-    /// The history of the scenario itself; null if it has no verdict.
+    /// The history of the scenario itself; null if it has no answer.
     own: Option<OwnHistory>,
     /// Share of the samples with each outcome; empty if no sample has an answer. In that of `overturned`, uncertain samples count with the fraction
     /// of their repetitions that overturn.
@@ -335,15 +333,13 @@ impl OwnHistory {
         }
     }
 
-    /// Returns the largest part of the rotation or energy from which the structure would overturn, in percent, and the quantity. Rounded down as in
-    /// `run`: a value just below 100 % must not be printed as 100 %.
+    /// Returns the largest part of the rotation or energy from which the structure would overturn, and the quantity.
     fn margin(&self) -> Option<(f64, &'static str)> {
         let rotation = self
             .peak_rotation_over_critical
             .map(|part| (part, "rotation"));
         let energy = || Some((self.peak_potential_over_barrier?, "energy"));
-        let (part, what) = rotation.or_else(energy)?;
-        Some(((1000.0 * part).floor() / 10.0, what))
+        rotation.or_else(energy)
     }
 }
 

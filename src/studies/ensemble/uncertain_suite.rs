@@ -96,8 +96,6 @@ impl Capacities {
 
 impl Question for Capacities {
     type Answer = Edges;
-    type Report = Summary;
-
     const NAME: &'static str = "uncertain_suite";
 
     const FILES: &'static [&'static str] = &[

@@ -88,8 +88,6 @@ fn strength_in_words(strength: f64, at_most: bool, at: &str) -> String {
 
 impl Question for FirstEdges {
     type Answer = FirstEdge;
-    type Report = Summary;
-
     const NAME: &'static str = "uncertain_threshold";
 
     const FILES: &'static [&'static str] = &[
@@ -200,13 +198,13 @@ fn probabilities(samples: &Samples<'_, FirstEdge>) -> Vec<ProbabilityAt> {
     let edges = samples.answers();
     let strengths = |how| edges.clone().flat_map(move |edge| edge.strengths(how));
     let [steps, possible, certain] = TREATMENTS.map(|how| ascending_weighted(strengths(how)));
-    let (all, mut expected) = (edges.clone().count(), 0.0);
+    let (all, unknown, mut expected) = (edges.clone().count(), samples.unknown(), 0.0);
     let at = |alike: &[[f64; 2]]| {
         let factor = alike[0][0];
         expected += alike.iter().map(|[_, share]| share).sum::<f64>();
         let [certain, possible] =
             [&certain, &possible].map(|end| end.partition_point(|at| at[0] <= factor));
-        let share = Share::of_counts([certain, possible, all, samples.unknown()], expected);
+        let share = Share::of_counts([certain, possible, all, unknown], expected);
         factor.is_finite().then_some((factor, share?))
     };
     let alike = steps.chunk_by(|a, b| a[0] == b[0]);

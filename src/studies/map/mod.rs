@@ -2,7 +2,7 @@
 
 pub(super) mod page;
 pub mod picture;
-mod report;
+pub mod report;
 
 use std::cell::OnceCell;
 use std::collections::BTreeSet;

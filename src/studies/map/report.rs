@@ -29,8 +29,6 @@ pub struct Summary {
 impl ReportedStudy for OverturningMap<'_> {
     const FILES: &'static [&'static str] = &["map.svg", "map.html", SUMMARY, "map.csv"];
 
-    type Report = Summary;
-
     fn results(&self, cells: Vec<CellRow>, style: Style) -> Result<Results, OutputError> {
         let scenario = self.scenario;
         let title = scenario.title.as_deref().unwrap_or("Overturning map");

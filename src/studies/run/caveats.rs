@@ -14,9 +14,10 @@ pub(super) const STONE_FRICTION: [f64; 2] = [0.5, 0.8];
 
 /// Returns a coefficient of friction as text. Values above 10, which no stone has, occur at almost unloaded joints.
 pub(super) fn coefficient(friction: &f64, decimals: usize) -> String {
-    match friction {
-        friction if *friction > 10.0 => "more than 10".to_owned(),
-        friction => format!("{friction:.decimals$}"),
+    if *friction > 10.0 {
+        "more than 10".to_owned()
+    } else {
+        format!("{friction:.decimals$}")
     }
 }
 
@@ -91,7 +92,7 @@ impl Summary {
 
     /// Returns the opposite outcome and the properties with which it occurs; `None` if no property changes the outcome.
     pub(super) fn changed_outcome(&self) -> Option<Caveat<'_>> {
-        let opposite = match Verdict::from(self.outcome.get()) {
+        let opposite = match Verdict::from(self.outcome.with_side()) {
             Verdict::Overturns => Verdict::Survives,
             Verdict::Survives => Verdict::Overturns,
             _ => return None,

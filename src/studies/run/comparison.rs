@@ -7,7 +7,6 @@ use super::summary::Summary;
 use crate::Verdict;
 use crate::dynamics::OutcomeKind;
 use crate::output::{Named, filters};
-use crate::scenario::MODELS;
 
 /// The runs of one structure with several models of motion.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -46,14 +45,13 @@ impl Comparison {
         (rows, wide)
     }
 
-    /// Returns the model with the fewest assumptions with each model that differs from it. Without a verdict or a motion there is no difference.
+    /// Returns pairs of the most reliable model and another one. Pairs without a verdict, and pairs in which nothing moves, are left out.
     pub(super) fn pairs(&self) -> Vec<[&Summary; 2]> {
-        let rank = |summary: &&Summary| MODELS.iter().position(|model| *model == summary.model());
-        let best = self.summaries().max_by_key(rank);
+        let best = self.summaries().max_by_key(|one| one.model.rank());
         let pairs = best.into_iter().flat_map(|best| {
             let others = self
                 .summaries()
-                .filter(move |other| rank(other) != rank(&best));
+                .filter(move |other| other.model != best.model);
             others.map(move |other| [best, other])
         });
         let differs = |[best, other]: &[&Summary; 2]| {
@@ -72,6 +70,6 @@ impl Comparison {
 impl Summary {
     /// Returns the name of its model in sentences.
     pub(super) fn label(&self) -> &'static str {
-        self.model().label
+        self.model.label
     }
 }

@@ -197,11 +197,10 @@ pub fn results(
         results.files = vec![(OVERLAY, overlay(&runs, &all).into_bytes())];
     }
     let printed = all.iter().map(|one| (&one.summary, one.files.as_ref()));
-    let words = render(&Printed {
+    results.words = super::results::words_of(&Printed {
         comparison: comparison.as_ref(),
         runs: printed.collect(),
     });
-    results.words = words.trim().to_owned();
     Ok(results)
 }
 
@@ -310,13 +309,12 @@ impl<'a> Run<'a> {
             varied: &varied,
         });
         summary.points = drawings.points.peaks();
-        // Only the file and its words contain the time of computation, which would otherwise differ between equal histories.
+        // [`summary`] omits the computing time, so that equal histories have equal summaries.
         let longest_step = history.row().and_then(|row| row.longest_step);
         summary.longest_step_us = longest_step.map(|step| (step.as_secs_f64() * 1e6).round());
         if self.all_models.len() > 1 {
             summary.to_quote = None;
-            let names = self.all_models.iter().map(|model| model.option.to_owned());
-            summary.compared_models = names.collect();
+            summary.compared_models = self.all_models.to_vec();
         }
         summary.uncertain = uncertainty.map(|samples| samples.summary.clone());
         let files = folder.map(|folder| {
@@ -329,7 +327,7 @@ impl<'a> Run<'a> {
         Ok(ModelResults {
             answer: summary.answer(scenario),
             summary,
-            curves: drawings.curves.clone(),
+            curves: drawings.curves,
             files: files.transpose()?,
         })
     }
@@ -627,7 +625,7 @@ impl Recorder for RunRecorder<'_, '_> {
     }
 
     fn clock(&self) -> Option<Duration> {
-        clock::since_1970()
+        clock::elapsed()
     }
 
     fn step(&mut self, time_s: f64, poses: &[Pose], hinges: &[OpenHinge]) {

@@ -14,12 +14,11 @@ use crate::dynamics::{HalfCycle, OutcomeKind, Repeatability, ThrustRecord};
 use crate::mechanics::Sides;
 use crate::output::mechanisms::columns;
 use crate::output::{Named, OutputError, summary_of};
-use crate::scenario::{ELASTIC_JOINTS, FOUR_LINKS, FREE_HINGES, Ground, ModelKind, Scenario};
+use crate::scenario::{ELASTIC_JOINTS, Ground, ModelKind, Scenario};
 use crate::studies::quotable::{self, ModelAnswer};
 use crate::{MechanismModel, Model, Outcome, Summary as History, Sway, Verdict};
 
 /// A computed motion, with its repetitions and variations.
-#[derive(Clone)]
 pub struct ComputedRun<'a> {
     /// The scenario.
     pub scenario: &'a Scenario,
@@ -43,6 +42,8 @@ pub struct Summary {
     pub program: String,
     /// Version of the program.
     pub version: String,
+    /// Model of motion, as in the option `--hinges`.
+    pub model: &'static ModelKind,
     /// The scenario with all defaults.
     pub scenario: Value,
     /// Checksums of the records.
@@ -101,7 +102,7 @@ pub struct Summary {
     pub to_quote: Option<String>,
     /// Models of motion of all runs whose words are printed together; absent for one model.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub compared_models: Vec<String>,
+    pub compared_models: Vec<&'static ModelKind>,
     /// Summary of the samples of `[uncertain]`, as their `uncertain.json`; absent without samples.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub uncertain: Option<Value>,
@@ -204,7 +205,6 @@ pub struct Thrust {
 
 named! {
     /// Quality of four links as a model of a motion.
-    #[derive(PartialOrd)]
     pub enum FourLinkQuality {
         /// The thrust line leaves the arch by at most a hundredth of its thickness.
         Sufficient = "sufficient",
@@ -327,13 +327,8 @@ impl OutcomeSummary {
     }
 
     /// Returns the outcome with its side.
-    pub(super) fn get(&self) -> Outcome {
+    pub(super) fn with_side(&self) -> Outcome {
         self.outcome.to(self.overturning_sway)
-    }
-
-    /// Returns the time of overturning, in seconds; `None` if the structure did not overturn.
-    pub(super) fn overturned_s(&self) -> Option<f64> {
-        self.overturning_sway.map(|_| self.outcome_time_s)
     }
 }
 
@@ -357,6 +352,7 @@ impl Summary {
         let mut summary = Self {
             program: env!("CARGO_PKG_NAME").to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
+            model: scenario.motion.kind,
             scenario: scenario.to_json(),
             record_checksums: scenario.record_checksums(),
             verdict: Verdict::counted(history.outcome, count),
@@ -394,15 +390,6 @@ impl Summary {
         summary
     }
 
-    /// Returns the model of motion.
-    pub(super) fn model(&self) -> &'static ModelKind {
-        match &self.row {
-            None => &FOUR_LINKS,
-            Some(row) if row.elastic.is_none() => &FREE_HINGES,
-            Some(_) => &ELASTIC_JOINTS,
-        }
-    }
-
     /// Returns the answer that may be quoted: a certain outcome that does not depend on the stiffness and contact of its joints.
     pub(super) fn answer(&self, scenario: &Scenario) -> ModelAnswer {
         let happens = match self.outcome.outcome {
@@ -418,7 +405,7 @@ impl Summary {
             (_, Some(change)) => Some(format!(
                 "THE OUTCOME DEPENDS ON JOINT STIFFNESS AND CONTACT: it {happens} this motion as given, and {change}"
             )),
-            _ if *self.model() == ELASTIC_JOINTS && self.variations.is_empty() => {
+            _ if *self.model == ELASTIC_JOINTS && self.variations.is_empty() => {
                 Some("the dependence of the outcome on joint stiffness is unknown".to_owned())
             }
             _ => self.without_verdict().map(|caveat| caveat.to_string()),
@@ -437,7 +424,7 @@ impl Summary {
             .as_ref()
             .and_then(|own| own.thrust_excess_ratio);
         ModelAnswer::new(
-            self.model(),
+            self.model,
             scenario.structure.has_horizontal_thrust(),
             excess_ratio,
             answer,
@@ -608,7 +595,7 @@ impl VariationSummary {
     /// Returns the verdict; incomplete if the history failed.
     pub(super) fn verdict(&self) -> Verdict {
         match &self.end {
-            VariationOutcome::Computed { outcome, .. } => outcome.get().into(),
+            VariationOutcome::Computed { outcome, .. } => outcome.with_side().into(),
             VariationOutcome::Failed { .. } => Verdict::Incomplete,
         }
     }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use askama::Template;
 use nalgebra::Vector2;
 use serde::Deserialize as _;
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 use super::caveats::{Caveat, STONE_FRICTION, coefficient};
 use super::comparison::Comparison;
@@ -84,17 +84,21 @@ pub(super) struct Files {
 pub fn words_of(json: &Value) -> serde_json::Result<String> {
     let comparison: Option<Comparison> = match json.get("program") {
         Some(_) => None,
-        None => Some(Comparison::deserialize(json)?),
+        None => {
+            let mut models = Map::deserialize(json)?;
+            // A command adds the comparison of the samples, which is no model.
+            models.shift_remove("peaks");
+            Some(Comparison::deserialize(Value::Object(models))?)
+        }
     };
     let runs = match &comparison {
         Some(comparison) => comparison.summaries().cloned().collect(),
         None => vec![Summary::deserialize(json)?],
     };
-    let words = render(&Printed {
+    Ok(super::super::results::words_of(&Printed {
         comparison: comparison.as_ref(),
         runs: runs.iter().map(|summary| (summary, None)).collect(),
-    });
-    Ok(words.trim().to_owned())
+    }))
 }
 
 /// Largest number of half cycles that are described.
@@ -136,9 +140,8 @@ impl Summary {
     }
 
     /// Returns true if the runs of several models are printed together, and this one is among them.
-    pub(super) fn is_compared_with(&self, model: &ModelKind) -> bool {
-        let mut compared = self.compared_models.iter();
-        compared.any(|name| name == model.option)
+    pub(super) fn is_compared_with(&self, model: &'static ModelKind) -> bool {
+        self.compared_models.contains(&model)
     }
 
     fn elastic(&self) -> Option<ElasticSummary> {

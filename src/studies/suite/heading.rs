@@ -6,7 +6,7 @@ use serde_json::Value;
 use super::{CaseRow, SuiteFragility};
 use crate::argument::plain;
 use crate::output::{Figure, Scale};
-use crate::scenario::{FOUR_LINKS, MODELS, Measure, ModelKind, Scenario, Spacing, Spectral, Suite};
+use crate::scenario::{Measure, ModelKind, Scenario, Spacing, Spectral, Suite};
 
 /// The parts of a scenario that the report of its suite needs. Part files keep them, so that `merge` needs no record files.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -14,8 +14,8 @@ pub struct Heading {
     title: Option<String>,
     /// The scenario with all defaults.
     pub(super) scenario: Value,
-    /// The `--hinges` option of the model of motion.
-    model: String,
+    /// The model of motion.
+    pub(super) model: &'static ModelKind,
     pub(super) is_arch: bool,
     /// The measure of the intensities.
     pub measure: Measure,
@@ -31,20 +31,13 @@ impl Heading {
         Self {
             title: scenario.title.clone(),
             scenario: scenario.to_json(),
-            model: scenario.motion.kind.option.to_owned(),
+            model: scenario.motion.kind,
             is_arch: scenario.structure.has_horizontal_thrust(),
             measure: suite.measure,
             spacing: suite.levels.spacing(),
             spectral: suite.spectral,
             warnings: scenario.unlikely(),
         }
-    }
-
-    /// Returns the model of motion.
-    pub(super) fn model(&self) -> &'static ModelKind {
-        let mut models = MODELS.into_iter();
-        let own = models.find(|model| model.option == self.model);
-        own.unwrap_or(&FOUR_LINKS)
     }
 
     pub(super) fn title(&self) -> &str {

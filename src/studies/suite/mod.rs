@@ -14,6 +14,7 @@ use serde_json::{Value, json};
 
 use self::fragility::{Fragility, NoFit, Observation, by_intensity, fit};
 pub use self::heading::Heading;
+pub use self::report::Summary;
 use self::strength::Strength;
 use super::ending::{Ending, NoHistory, Verdict, check_finite};
 use super::threshold::survival::{Survival, VerdictRange};
@@ -206,8 +207,6 @@ impl Study for RecordSuite<'_> {
 
 impl ReportedStudy for RecordSuite<'_> {
     const FILES: &'static [&'static str] = &report::FILES;
-
-    type Report = report::Summary;
 
     fn results(&self, rows: Vec<CaseRow>, style: Style) -> Result<Results, OutputError> {
         Heading::new(self.scenario, self.suite).report(rows, style.figure)

@@ -89,11 +89,11 @@ pub struct Summary {
 /// The levels of a suite.
 #[derive(Serialize, Deserialize)]
 struct Levels {
-    /// Their number.
+    /// Number of levels.
     count: usize,
-    /// The lowest.
+    /// Lowest level.
     from: f64,
-    /// The highest.
+    /// Highest level.
     to: f64,
 }
 
@@ -250,7 +250,7 @@ impl Heading {
                 )),
             }
         });
-        ModelAnswer::new(self.model(), self.is_arch, excess_ratio, answer)
+        ModelAnswer::new(self.model, self.is_arch, excess_ratio, answer)
     }
 
     /// Returns the failed and uncertain cases among those that count, with the reasons.
@@ -271,10 +271,9 @@ impl Heading {
             column("scale", |case: &CaseRow| case.scale),
             column("peak_g", |case: &CaseRow| case.peak_g),
         ];
-        all.extend(columns::columns(
-            self.model().has_joints,
-            |case: &CaseRow| case.result.as_ref().map_err(|_| FAILED),
-        ));
+        all.extend(columns::columns(self.model.has_joints, |case: &CaseRow| {
+            case.result.as_ref().map_err(|_| FAILED)
+        }));
         all
     }
 
@@ -375,8 +374,8 @@ impl Summary {
             period_s,
             damping_percent,
         } = self.spectral;
-        let at = match words {
-            "spectral acceleration" => {
+        let at = match one.measure.as_str() {
+            "spectral_acceleration_g" => {
                 format!(" at {} s and {} %", plain(period_s), plain(damping_percent))
             }
             _ => String::new(),

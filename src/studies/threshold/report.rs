@@ -163,6 +163,10 @@ pub fn report(
     let answers = models
         .clone()
         .map(|(one, scenario)| one.answer(scenario, peak_g));
+    let answers = answers.collect::<Vec<_>>();
+    let models: Vec<ModelSummary> = models
+        .map(|(threshold, scenario)| threshold.summary(scenario, peak_g))
+        .collect();
     let falls = |sample: &FactorSample| matches!(sample.result, Err(NoHistory::GroundFalls(_)));
     let falls = thresholds.iter().flat_map(|one| &one.samples).any(falls);
     let (ground, gravity_m_s2) = (scenario.ground_motion(), scenario.gravity_m_s2());
@@ -176,11 +180,9 @@ pub fn report(
         peak_acceleration_g: peak_g,
         factors: *factors,
         free_fall_factor: ground.free_fall_factor(gravity_m_s2).filter(|_| falls),
-        warnings: warnings(scenarios, thresholds),
-        to_quote: quotable::in_words(&answers.collect::<Vec<_>>()),
-        models: models
-            .map(|(threshold, scenario)| threshold.summary(scenario, peak_g))
-            .collect(),
+        warnings: warnings(scenarios, &models),
+        to_quote: quotable::in_words(&answers),
+        models,
     };
     let picture = picture::draw(figure, title, peak_g, factors, thresholds);
     let others = [picture.into_bytes(), table(&report.models)?];
@@ -213,18 +215,21 @@ fn table(models: &[ModelSummary]) -> Result<Vec<u8>, OutputError> {
 }
 
 /// Returns the warnings of all models without duplicates, and histories without a verdict.
-fn warnings(scenarios: &[Scenario], thresholds: &[Threshold]) -> Vec<String> {
+fn warnings(scenarios: &[Scenario], models: &[ModelSummary]) -> Vec<String> {
     let mut warnings: Vec<String> = Vec::new();
     for warning in scenarios.iter().flat_map(Scenario::unlikely) {
         if !warnings.contains(&warning) {
             warnings.push(warning);
         }
     }
-    let remarks = thresholds.iter().map(Threshold::remarks);
-    warnings.extend(remarks.flat_map(|remarks| remarks.warnings("histories")));
-    let varied = thresholds.iter().flat_map(|threshold| &threshold.varied);
     warnings.extend(
-        varied.filter_map(|varied| Some(format!("with {}: {}", varied.name, varied.no_verdict()?))),
+        models
+            .iter()
+            .flat_map(|model| model.remarks.warnings("histories")),
+    );
+    let varied = models.iter().flat_map(|model| &model.variations);
+    warnings.extend(
+        varied.filter_map(|varied| Some(format!("with {}: {}", varied.with, varied.no_verdict()?))),
     );
     warnings
 }
@@ -309,11 +314,11 @@ impl Threshold {
             }
             _ => Err("the smallest factor tried is not certainly survived".to_owned()),
         };
-        let (hinges, is_arch) = (
+        let (model, is_arch) = (
             scenario.motion.kind,
             scenario.structure.has_horizontal_thrust(),
         );
-        ModelAnswer::new(hinges, is_arch, self.safe_excess_ratio, answer)
+        ModelAnswer::new(model, is_arch, self.safe_excess_ratio, answer)
     }
 
     /// Returns the remarks on the histories.

@@ -22,18 +22,6 @@ pub struct VariedThreshold {
     pub incomplete: usize,
 }
 
-impl VariedThreshold {
-    /// Returns the number of histories without a verdict, in words; `None` if all have one.
-    pub fn no_verdict(&self) -> Option<String> {
-        let count = self.incomplete;
-        let below = match &self.factor {
-            Ok(Some(_)) => " of weaker motions",
-            _ => "",
-        };
-        (count > 0).then(|| format!("no verdict from {count} histories{below}"))
-    }
-}
-
 /// Number of histories that are computed together; some models are faster that way.
 const TOGETHER: usize = 4;
 

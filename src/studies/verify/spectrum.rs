@@ -21,7 +21,7 @@ pub enum Spectrum {
         /// Peak acceleration of the floor that carries the mechanism, in g.
         a_z_g: f64,
     },
-    /// Spectrum of the ground by NTC 2018. It has fewer keys than that of a floor, so that it is read last of the two.
+    /// Spectrum of the ground by NTC 2018. It follows `Floor`, because the first variant that fits is read, and the JSON of a floor fits this one as well.
     Ground(Ground),
     /// Spectrum given by points.
     Points {

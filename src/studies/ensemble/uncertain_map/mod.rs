@@ -318,8 +318,6 @@ impl CellsOfSamples<'_> {
 impl ReportedStudy for CellsOfSamples<'_> {
     const FILES: &'static [&'static str] = &report::FILES;
 
-    type Report = Summary;
-
     fn results(&self, rows: Vec<CellRow>, style: Style) -> Result<Results, OutputError> {
         let parts = self.parts(&rows);
         let samples = Samples::new(self.scenario, self.uncertain, &parts);

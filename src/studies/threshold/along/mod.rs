@@ -4,6 +4,8 @@ mod no_impact;
 mod picture;
 mod report;
 
+pub use self::report::Summary;
+
 use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};

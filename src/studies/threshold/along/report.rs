@@ -34,8 +34,6 @@ const SUMMARY: &str = "threshold_along.json";
 impl ReportedStudy for Along<'_> {
     const FILES: &'static [&'static str] = &["threshold_along.svg", SUMMARY, "threshold_along.csv"];
 
-    type Report = Summary;
-
     fn results(&self, rows: Vec<AlongRow>, style: Style) -> Result<Results, OutputError> {
         let incomplete = |row: &&AlongRow| row.edge == Err(NoAnswer::Incomplete);
         let remarks = self.remarks(&rows);
