@@ -91,7 +91,7 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     }
     let count: usize = files.iter().map(|file| file.tasks.len()).sum();
     if count > 1 && arguments.to_stdout() {
-        return Err("--rotations - is for one scenario: run them one by one".into());
+        return Err("--rotations - takes one scenario; run them one by one".into());
     }
     let roots = files
         .iter()
@@ -236,7 +236,7 @@ impl Arguments {
         let input = self.set.open(path)?;
         let models = self.models.read(&input)?;
         if models.len() > 1 && self.to_stdout() {
-            return Err(input.input_error("--rotations - is for one model: choose one by --hinges"));
+            return Err(input.input_error("--rotations - takes one model; choose with --hinges"));
         }
         if self.no_repeat && !models.iter().any(|one| one.motion.kind.has_joints) {
             let message = "--no-repeat goes with free hinges and elastic joints: four links and columns are not repeated";

@@ -96,10 +96,9 @@ impl MapOption {
         let by_peak = self.color == Color::Peak;
         let maps = [catalogue::MAP, catalogue::UNCERTAIN_MAP];
         match scenario.filter(|_| maps.contains(&kind)) {
-            Some(_) if by_peak && kind == catalogue::UNCERTAIN_MAP => Err(
-                "--color is about maps of outcomes, and these are parts of a map of probability"
-                    .to_owned(),
-            ),
+            Some(_) if by_peak && kind == catalogue::UNCERTAIN_MAP => {
+                Err("--color applies to outcome maps only".to_owned())
+            }
             Some(scenario) => self.style(scenario, figure),
             None if self.dimensionless || by_peak => {
                 Err("--color and --dimensionless are for maps only".to_owned())

@@ -27,7 +27,7 @@ use super::progress::{
     Display, INTERRUPTED, INTERRUPTED_CODE, listen_to_interrupts, print_always, print_status,
     progress_text, remaining_time,
 };
-use super::scenario_file::{Destination, Input, ScenarioFile};
+use super::scenario_file::{Input, ScenarioFile};
 use super::{Failure, Format, show};
 
 /// Options of every study of many histories.
