@@ -140,7 +140,13 @@ fn compute(
     scenarios: &[Scenario],
     style: Style,
 ) -> Result<(), Failure> {
-    let mut job = study.job(input, style, Options::default(), kinds[0], &scenarios[0])?;
+    let mut job = study.job(
+        input,
+        style,
+        Options::default(),
+        kinds[0],
+        Origin::of(&scenarios[0]),
+    )?;
     let (root, several) = (job.root.clone(), scenarios.len() > 1);
     let mut all = Vec::new();
     for one in scenarios.chunks(1) {

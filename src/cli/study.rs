@@ -109,11 +109,11 @@ impl StudyArguments {
         style: Style,
         options: Options,
         kind: StudyKind,
-        scenario: &Scenario,
+        origin: Origin,
     ) -> Result<StudyJob<'s>, Failure> {
         let destination = input.results(self.out.as_deref());
         let (pictures, is_part) = (self.figure.figure_format, self.work.is_part());
-        let root = destination.lock(kind, Origin::of(scenario), pictures, is_part)?;
+        let root = destination.lock(kind, origin, pictures, is_part)?;
         Ok(StudyJob {
             input: Some(input),
             work: self.work,

@@ -1,5 +1,6 @@
 //! The command `threshold`.
 
+use archrock::output::Origin;
 use archrock::scenario::Scenario;
 use archrock::studies::catalogue::{Options, THRESHOLD, THRESHOLD_ALONG, UNCERTAIN_THRESHOLD};
 use archrock::studies::results::Style;
@@ -59,6 +60,7 @@ pub fn threshold(arguments: &Arguments) -> Result<(), Failure> {
         return thresholds_along(study, &input, style, options);
     }
     let models = study.models.read(&input)?;
+    let origin = Origin::of(&models[0]);
     let tasks = arguments.suite.tasks(&input, models, check)?;
     let root = input.results(study.out.as_deref());
     check_distinct(tasks.iter().map(|task| task.place(&root)))?;
@@ -66,10 +68,9 @@ pub fn threshold(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(ignored) = scenarios.find_map(Scenario::ignored) {
         print_status(ignored);
     }
-    let first = &tasks[0].scenarios[0];
-    let title = first.title.as_deref();
+    let title = tasks[0].scenarios[0].title.as_deref();
     let title = title.map_or(String::new(), |title| format!("{title}\n"));
-    let mut job = study.job(&input, style, options, THRESHOLD, first)?;
+    let mut job = study.job(&input, style, options, THRESHOLD, origin)?;
     let mut all = Vec::new();
     for task in &tasks {
         super::warn(&task.scenarios[0].unlikely());
@@ -110,6 +111,12 @@ fn thresholds_along(
         return Err(input.input_error(message));
     }
     warn_of(std::slice::from_ref(&scenario));
-    let job = study.job(input, style, options, THRESHOLD_ALONG, &scenario)?;
+    let job = study.job(
+        input,
+        style,
+        options,
+        THRESHOLD_ALONG,
+        Origin::of(&scenario),
+    )?;
     job.finish(THRESHOLD_ALONG, &scenario, study.format)
 }

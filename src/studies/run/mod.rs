@@ -24,6 +24,7 @@ mod summary;
 mod tables;
 mod words;
 
+use std::collections::BTreeMap;
 use std::io;
 use std::ops::ControlFlow;
 use std::time::Duration;
@@ -307,15 +308,17 @@ impl<'a> Run<'a> {
         }
         summary.uncertain = samples.map(|samples| samples.summary.clone());
         let files = folder.map(|folder| {
-            let mut tables = files.into_iter();
-            tables.try_for_each(|(_, table)| folder.complete(table))?;
+            let mut tables: BTreeMap<_, _> = files.into_iter().collect();
             let film_pictures = drawings.add_film(self, folder)?;
             let of_samples = samples.map_or("", |samples| &samples.words);
-            for (name, text) in drawings.files(self, &history, of_samples, &summary) {
-                folder.write(name, text.as_bytes())?;
+            let mut texts = drawings.texts(self, &history, of_samples, &summary);
+            texts.insert(SUMMARY, pretty(&summary_of(&summary)?));
+            for name in self.files() {
+                match tables.remove(name) {
+                    Some(table) => folder.complete(table)?,
+                    None => folder.write(name, texts[name].as_bytes())?,
+                }
             }
-            let json = pretty(&summary_of(&summary)?);
-            folder.write(SUMMARY, json.as_bytes())?;
             let snapshots = drawings.snapshots.as_ref();
             Ok::<_, OutputError>(Files {
                 folder: folder.path().to_owned(),
@@ -439,13 +442,13 @@ impl Drawings {
     }
 
     /// Makes the pictures, and the page with the words.
-    fn files(
+    fn texts(
         &self,
         run: &Run<'_>,
         history: &History,
         uncertainty: &str,
         summary: &Summary,
-    ) -> Vec<(&'static str, String)> {
+    ) -> BTreeMap<&'static str, String> {
         let (figure, title) = (run.figure, title(run.scenario));
         let subject = run.subject(title);
         let picture = self.timeline.draw(figure, &subject, history, &self.points);
@@ -462,13 +465,13 @@ impl Drawings {
         });
         let snapshots = self.snapshots.as_ref();
         let snapshots = snapshots.map(|snapshots| snapshots.draw(figure, title));
-        let files = [
+        let texts = [
             (PICTURE, Some(picture)),
             (REPORT, report),
             (SNAPSHOTS, snapshots),
         ];
-        let files = files.into_iter();
-        files
+        let texts = texts.into_iter();
+        texts
             .filter_map(|(name, text)| Some((name, text?)))
             .collect()
     }
