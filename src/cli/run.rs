@@ -154,6 +154,9 @@ struct FileTasks {
     destination: Option<Destination>,
 }
 
+/// Tasks with one locked folder around their results, if files are written.
+type LockedTasks = (Option<Folder>, Vec<ScenarioTask>);
+
 impl Arguments {
     /// Whether the rotations go to standard output.
     const fn to_stdout(&self) -> bool {
@@ -210,11 +213,8 @@ impl Arguments {
     }
 
     /// Locks the folders around the results, and returns the tasks in each. Files of one name share a folder.
-    fn locked(
-        &self,
-        files: Vec<FileTasks>,
-    ) -> Result<Vec<(Option<Folder>, Vec<ScenarioTask>)>, Failure> {
-        let mut all: Vec<(Option<Folder>, Vec<ScenarioTask>)> = Vec::new();
+    fn locked(&self, files: Vec<FileTasks>) -> Result<Vec<LockedTasks>, Failure> {
+        let mut all: Vec<LockedTasks> = Vec::new();
         for file in files {
             let path = file.destination.as_ref().map(|one| &*one.path);
             let mut known = all.iter_mut();

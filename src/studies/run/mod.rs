@@ -308,17 +308,11 @@ impl<'a> Run<'a> {
         }
         summary.uncertain = samples.map(|samples| samples.summary.clone());
         let files = folder.map(|folder| {
-            let mut tables: BTreeMap<_, _> = files.into_iter().collect();
-            let film_pictures = drawings.add_film(self, folder)?;
             let of_samples = samples.map_or("", |samples| &samples.words);
             let mut texts = drawings.texts(self, &history, of_samples, &summary);
             texts.insert(SUMMARY, pretty(&summary_of(&summary)?));
-            for name in self.files() {
-                match tables.remove(name) {
-                    Some(table) => folder.complete(table)?,
-                    None => folder.write(name, texts[name].as_bytes())?,
-                }
-            }
+            let film_pictures = drawings.add_film(self, folder)?;
+            self.write(folder, files.into_iter().collect(), &texts)?;
             let snapshots = drawings.snapshots.as_ref();
             Ok::<_, OutputError>(Files {
                 folder: folder.path().to_owned(),
@@ -344,6 +338,20 @@ impl<'a> Run<'a> {
         let tables = names.into_iter().filter(|name| name.ends_with(".csv"));
         let created = tables.map(|name| Ok((name, folder.create(name)?)));
         created.collect()
+    }
+
+    /// Completes the tables and writes the other files, the seal last.
+    fn write(
+        &self,
+        folder: &Folder,
+        mut tables: BTreeMap<&str, NewFile>,
+        texts: &BTreeMap<&str, String>,
+    ) -> Result<(), OutputError> {
+        let mut names = self.files().into_iter();
+        names.try_for_each(|name| match tables.remove(name) {
+            Some(table) => folder.complete(table),
+            None => folder.write(name, texts[name].as_bytes()),
+        })
     }
 
     /// The subject of the pictures.
