@@ -51,7 +51,7 @@ struct LockedFolder {
 
 /// A file of results that is being written, under a hidden name.
 #[derive(Debug)]
-pub struct NewFile {
+pub(crate) struct NewFile {
     /// The path that it will have.
     path: PathBuf,
     pub(crate) writer: BufWriter<NamedTempFile>,
@@ -147,7 +147,7 @@ impl Folder {
     ///
     /// # Errors
     /// When the file cannot be created, or as for [`Folder::check`].
-    pub fn create(&self, name: &str) -> Result<NewFile, OutputError> {
+    pub(crate) fn create(&self, name: &str) -> Result<NewFile, OutputError> {
         let (path, mut locked) = (self.path.join(name), self.locked.borrow_mut());
         // The user may have removed the folder since it was locked.
         if !locked.path.exists() {
@@ -166,7 +166,7 @@ impl Folder {
     ///
     /// # Errors
     /// When the system reports an error.
-    pub fn complete(&self, NewFile { path, writer }: NewFile) -> Result<(), OutputError> {
+    pub(crate) fn complete(&self, NewFile { path, writer }: NewFile) -> Result<(), OutputError> {
         let file = writer.into_inner().map_err(IntoInnerError::into_error);
         let synced = file.and_then(|file| file.as_file().sync_data().map(|()| file));
         let file = synced.map_err(OutputError::io(cannot_write(&path)))?;
@@ -465,7 +465,7 @@ mod tests {
         folder.write("x.csv", b"whole").unwrap();
         let mut file = folder.create("y.csv").unwrap();
         file.writer.write_all(b"half").unwrap();
-        drop((folder, file));
+        drop((file, folder));
         assert!(names(root.path()).is_empty());
     }
 
