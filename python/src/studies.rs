@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::slice;
 use std::sync::Arc;
 
-use archrock::output::{Batch, Figure, Origin};
+use archrock::output::{Figure, Folder, Origin};
 use archrock::studies::catalogue::{self as studies, Computation, Options, RowSource, StudyKind};
 use archrock::studies::part::Shard;
 use archrock::studies::results::{Results, StudyError, Style};
@@ -185,14 +185,12 @@ fn write(path: &Path, files: &[(String, Vec<u8>)]) -> PyResult<Vec<String>> {
     let summary = of_json.next().map(|(_, text)| serde_json::from_slice(text));
     let summary: Option<serde_json::Value> = summary.and_then(Result::ok);
     let origin = summary.map(|summary| Origin::of_summary(&summary));
-    let batch =
-        Batch::lock(path, command, origin.unwrap_or_default(), true).map_err(not_written)?;
-    let warnings = batch.warnings();
-    let mut folder = batch.folder(path, &names).map_err(not_written)?;
+    let folder =
+        Folder::lock(path, command, origin.unwrap_or_default(), true).map_err(not_written)?;
+    let warnings = folder.warnings();
     for (name, contents) in files {
         folder.write(name, contents).map_err(not_written)?;
     }
-    folder.complete().map_err(not_written)?;
-    batch.publish().map_err(not_written)?;
+    folder.publish().map_err(not_written)?;
     Ok(warnings)
 }

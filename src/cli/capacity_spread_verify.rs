@@ -12,7 +12,7 @@ use nalgebra::Vector2;
 use super::figure::FigureOption;
 use super::parsers::{number, point_m, side};
 use super::scenario_file::ScenarioFile;
-use super::study::{Session, WorkOptions};
+use super::study::{StudyJob, WorkOptions};
 use super::{Failure, Format, warn};
 
 /// Options of commands without long histories.
@@ -101,8 +101,15 @@ fn run(
     };
     warn(&scenario.unlikely());
     let style = Style::of(figure.get()?);
-    let session = Session::new(Some(&input), WorkOptions::default(), style, options);
-    let place = figure.with_picture_format(input.results(arguments.out.as_deref())?);
-    place.lock(kind, Origin::of(&scenario), false)?;
-    session.finish(kind, &scenario, &place, arguments.format)
+    let destination = input.results(arguments.out.as_deref());
+    let root = destination.lock(kind, Origin::of(&scenario), figure.figure_format, false)?;
+    let job = StudyJob {
+        input: Some(&input),
+        work: WorkOptions::default(),
+        style,
+        options,
+        root: Some(root),
+        finished_parts: Vec::new(),
+    };
+    job.finish(kind, &scenario, arguments.format)
 }

@@ -39,7 +39,7 @@ const GRAVITY_M_S2: f64 = 9.81;
 
 pub fn check(arguments: &Arguments) -> Result<(), Failure> {
     if arguments.plot.is_some() && arguments.files.len() > 1 {
-        return Err("--plot is of one file: check them one by one".into());
+        return Err("--plot takes one file".into());
     }
     let (mut texts, mut contents, mut wrong) = (Vec::new(), Vec::new(), Vec::new());
     for file in &arguments.files {
@@ -155,7 +155,7 @@ fn check_record(file: &Path, arguments: &Arguments) -> Result<(String, Value), F
         .partition(|assignment| has_all || !Layout::is_of_tables(assignment.key()));
     if left_out.iter().any(|assignment| assignment.key() == "unit") {
         super::warn(&[format!(
-            "{}: `unit` is for the tables among the files; this one has its own",
+            "{}: ignored `unit`: this file states its unit",
             file.display()
         )]);
     }

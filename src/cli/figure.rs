@@ -5,7 +5,6 @@ use archrock::output::print::PictureFormat;
 
 use super::Failure;
 use super::parsers::number;
-use super::scenario_file::Destination;
 
 /// The options of every command that draws.
 #[derive(clap::Args, Clone, Copy, Debug, Default)]
@@ -29,7 +28,7 @@ pub struct FigureOption {
     no_title: bool,
     /// Also write every picture in this format, beside its SVG: pdf or png.
     #[arg(long, value_name = "FORMAT")]
-    figure_format: Option<PictureFormat>,
+    pub figure_format: Option<PictureFormat>,
 }
 
 impl FigureOption {
@@ -43,11 +42,6 @@ impl FigureOption {
         figure.height = self.figure_height;
         figure.has_title = !self.no_title;
         Ok(figure)
-    }
-
-    /// Sets the format of pictures of a folder.
-    pub fn with_picture_format(self, place: Destination) -> Destination {
-        place.with_pictures(self.figure_format)
     }
 }
 

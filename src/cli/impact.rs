@@ -55,7 +55,7 @@ impl Arguments {
 
 pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
     let input = arguments.scenario.open()?;
-    let scenario = input.as_built(input.read(None)?)?;
+    let scenario = input.without_moved_springings(input.read(None)?)?;
     warn(&scenario.unlikely());
     let (first, count) = (arguments.first.sway, usize::from(arguments.count));
     if !scenario.structure.has_horizontal_thrust() && !arguments.of_arches_only() {

@@ -82,7 +82,7 @@ pub fn init(arguments: &Arguments) -> Result<(), Failure> {
         }
     }
     print_status(&format!(
-        "{written} written; now: archrock {command} {}",
+        "{written} written. Next: archrock {command} {}",
         file.display()
     ));
     Ok(())

@@ -34,7 +34,7 @@ pub fn limit(arguments: &LimitArguments) -> Result<(), Failure> {
     let input = arguments.scenario.open()?;
     let mut scenario = input.read_statics()?;
     if arguments.plot.is_some() {
-        scenario = input.as_built(scenario)?;
+        scenario = input.without_moved_springings(scenario)?;
     }
     warn(&scenario.unlikely());
     if let Some(plot) = &arguments.plot {

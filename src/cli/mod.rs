@@ -129,11 +129,18 @@ impl From<ScenarioErrors> for Failure {
 
 impl From<OutputError> for Failure {
     fn from(error: OutputError) -> Self {
-        if error.is_closed_pipe() {
-            Self::ClosedPipe
-        } else {
-            Self::Work(error.to_string())
-        }
+        let other = "choose another folder with --out";
+        Self::Input(match &error {
+            error if error.is_closed_pipe() => return Self::ClosedPipe,
+            OutputError::OfOtherScenario(..) => format!("{error}: {other}, or remove that one"),
+            OutputError::Taken { .. } | OutputError::NoManifest(_) => {
+                format!("{error}; move what is there, or {other}")
+            }
+            OutputError::Unusable { .. } | OutputError::InUse(_) | OutputError::IsInput(_) => {
+                format!("{error}; {other}")
+            }
+            error => return Self::Work(error.to_string()),
+        })
     }
 }
 

@@ -50,7 +50,7 @@ impl ModelsOption {
     pub fn read_one(&self, input: &Input<'_>, command: &str) -> Result<Scenario, Failure> {
         let mut scenarios = self.read(input)?;
         if scenarios.len() > 1 {
-            let message = format!("{command} is for one model: choose it by --hinges");
+            let message = format!("{command} takes one model; choose with --hinges");
             return Err(input.input_error(message));
         }
         Ok(scenarios.remove(0))

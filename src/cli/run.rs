@@ -3,7 +3,7 @@
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
-use archrock::output::Origin;
+use archrock::output::{Folder, Origin};
 use archrock::scenario::{Scenario, shown_lines};
 use archrock::studies::catalogue::{Options, RUN, UNCERTAIN};
 use archrock::studies::results::Style;
@@ -13,8 +13,8 @@ use nalgebra::Vector2;
 use super::figure::{FigureOption, PanelsOption};
 use super::models::ModelsOption;
 use super::parsers::{number, point_m};
-use super::scenario_file::{Destination, ScenarioTask, SetOption, SuiteOption};
-use super::study::{Session, WorkOptions};
+use super::scenario_file::{Destination, ScenarioTask, SetOption, SuiteOption, check_distinct};
+use super::study::{StudyJob, WorkOptions};
 use super::{Failure, Format, check_no_errors, collect_input_error, print, print_all};
 
 #[derive(clap::Args)]
@@ -82,62 +82,59 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
         run: arguments.options()?,
         ..Options::default()
     };
-    let (mut roots, mut tasks, mut wrong) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut files, mut wrong) = (Vec::new(), Vec::new());
     for path in &arguments.scenarios {
-        if let Some((root, own)) =
-            collect_input_error(arguments.read(path, &options.run, &roots), &mut wrong)?
-        {
-            roots.extend(root);
-            tasks.extend(own);
-        }
+        files.extend(collect_input_error(
+            arguments.read(path, &options.run),
+            &mut wrong,
+        )?);
     }
-    if tasks.len() > 1 && arguments.to_stdout() {
-        return Err("--rotations - is for one scenario: run them one by one".into());
+    let count: usize = files.iter().map(|file| file.tasks.len()).sum();
+    if count > 1 && arguments.to_stdout() {
+        return Err("--rotations - takes one scenario; run them one by one".into());
     }
-    collect_input_error(Destination::check_distinct(&tasks), &mut wrong)?;
+    let roots = files
+        .iter()
+        .flat_map(|file| Some(&file.tasks).zip(file.destination.as_ref()));
+    let places = roots.flat_map(|(tasks, root)| tasks.iter().map(|task| task.place(root)));
+    collect_input_error(check_distinct(places), &mut wrong)?;
     check_no_errors(&wrong)?;
-    for (root, origin) in &roots {
-        root.lock(RUN, origin.clone(), arguments.work.is_part())?;
-    }
-    let (mut summaries, mut failures, mut done) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut summaries, mut failures) = (Vec::new(), Vec::new());
     let mut printed = Ok(());
-    for (index, (name, scenarios, place)) in tasks.iter().enumerate() {
-        super::warn(&scenarios[0].unlikely());
-        let mut session = Session::new(None, arguments.work, style, options.clone());
-        let found = session.with_samples([RUN, UNCERTAIN], scenarios, place.as_ref());
-        let found = match found {
-            // The other scenarios are still run.
-            Err(Failure::Work(message)) if tasks.len() > 1 => {
-                place.iter().for_each(Destination::abandon);
-                failures.push(format!("{name}: {message}"));
-                None
-            }
-            found => {
-                done.push((session, place));
-                found?
-            }
+    for (root, tasks) in arguments.locked(files)? {
+        let mut job = StudyJob {
+            input: None,
+            work: arguments.work,
+            style,
+            options: options.clone(),
+            root,
+            finished_parts: Vec::new(),
         };
-        // All results in a folder replace the earlier ones together, once the last of them is complete.
-        let in_folder = |other: &Option<Destination>| {
-            let both = other.as_ref().zip(place.as_ref());
-            both.is_some_and(|(other, place)| other.shares_lock(place))
-        };
-        if !tasks[index + 1..]
-            .iter()
-            .any(|(_, _, later)| in_folder(later))
-        {
-            let complete = done.extract_if(.., |(_, place)| in_folder(place));
-            let complete: Vec<_> = complete.collect();
-            for (mut session, place) in complete {
-                session.publish(place.as_ref())?;
+        for (index, task) in tasks.iter().enumerate() {
+            let scenarios = &task.scenarios;
+            super::warn(&scenarios[0].unlikely());
+            let folder = job.root.as_ref().map(|root| task.folder(root));
+            let found = job.compute_with_samples([RUN, UNCERTAIN], scenarios, folder.as_ref());
+            let found = match found {
+                // The other scenarios are still run.
+                Err(Failure::Work(message)) if count > 1 => {
+                    folder.iter().for_each(Folder::abandon);
+                    failures.push(format!("{}: {message}", task.name));
+                    None
+                }
+                found => found?,
+            };
+            // All results in a folder replace the earlier ones together, once the last of them is complete.
+            if index + 1 == tasks.len() {
+                job.publish()?;
             }
-        }
-        let Some(found) = found else { continue };
-        let words = heading(scenarios) + &found.words("  ") + "\n";
-        // A closed pipe ends the words, not the work.
-        printed = printed.and_then(|()| arguments.print(&words, quiet));
-        if matches!(arguments.format, Format::Json) {
-            summaries.push(found.summary(RUN)?);
+            let Some(found) = found else { continue };
+            let words = heading(scenarios) + &found.words("  ") + "\n";
+            // A closed pipe ends the words, not the work.
+            printed = printed.and_then(|()| arguments.print(&words, quiet));
+            if matches!(arguments.format, Format::Json) {
+                summaries.push(found.summary(RUN)?);
+            }
         }
     }
     printed?;
@@ -150,8 +147,15 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     }
 }
 
-/// The folder around the results of a scenario file.
-type ResultsRoot = (Destination, Origin);
+/// The tasks of a scenario file, and the folder around their results, if files are written.
+struct FileTasks {
+    tasks: Vec<ScenarioTask>,
+    origin: Origin,
+    destination: Option<Destination>,
+}
+
+/// Tasks with one locked folder around their results, if files are written.
+type LockedTasks = (Option<Folder>, Vec<ScenarioTask>);
 
 impl Arguments {
     /// Whether the rotations go to standard output.
@@ -204,42 +208,54 @@ impl Arguments {
             exaggeration: self.exaggerate,
             poses: self.poses,
             points_m: self.points_m.clone(),
-            uncertainty: Vec::new(),
+            samples: Vec::new(),
         })
     }
 
-    /// The scenarios of a file, and the folder around their results, if files are written. Files of one name share a folder, and its lock.
-    fn read(
-        &self,
-        path: &Path,
-        options: &RunOptions,
-        others: &[ResultsRoot],
-    ) -> Result<(Option<ResultsRoot>, Vec<ScenarioTask>), Failure> {
+    /// Locks the folders around the results, and returns the tasks in each. Files of one name share a folder.
+    fn locked(&self, files: Vec<FileTasks>) -> Result<Vec<LockedTasks>, Failure> {
+        let mut all: Vec<LockedTasks> = Vec::new();
+        for file in files {
+            let path = file.destination.as_ref().map(|one| &*one.path);
+            let mut known = all.iter_mut();
+            let shared =
+                known.find(|(root, _)| path.is_some() && root.as_ref().map(Folder::path) == path);
+            if let Some((_, tasks)) = shared {
+                tasks.extend(file.tasks);
+                continue;
+            }
+            let (pictures, is_part) = (self.figure.figure_format, self.work.is_part());
+            let lock = |one: Destination| one.lock(RUN, file.origin, pictures, is_part);
+            all.push((file.destination.map(lock).transpose()?, file.tasks));
+        }
+        Ok(all)
+    }
+
+    /// Reads the scenarios of a file.
+    fn read(&self, path: &Path, options: &RunOptions) -> Result<FileTasks, Failure> {
         let input = self.set.open(path)?;
         let models = self.models.read(&input)?;
         if models.len() > 1 && self.to_stdout() {
-            return Err(input.input_error("--rotations - is for one model: choose one by --hinges"));
+            return Err(input.input_error("--rotations - takes one model; choose with --hinges"));
         }
         if self.no_repeat && !models.iter().any(|one| one.motion.kind.has_joints) {
             let message = "--no-repeat goes with free hinges and elastic joints: four links and columns are not repeated";
             return Err(input.input_error(message));
         }
         let origin = Origin::of(&models[0]);
-        let root = match &self.out {
-            Some(out) if self.scenarios.len() > 1 => Destination::of(out).within(input.stem()),
-            out => input.results(out.as_deref())?,
+        let destination = match &self.out {
+            Some(out) if self.scenarios.len() > 1 => Destination::of(&out.join(input.stem())),
+            out => input.results(out.as_deref()),
         };
-        let root = self
-            .has_folder()
-            .then(|| self.figure.with_picture_format(root));
-        let known = || others.iter().map(|(other, _)| other);
-        let root = root.map(|root| root.with_lock_of(known()));
         let check = |scenario: &Scenario| {
             scenario.check_for_run()?;
             check(scenario, options)
         };
-        let tasks = self.suite.tasks(&input, models, root.as_ref(), check)?;
-        Ok((root.map(|root| (root, origin)), tasks))
+        Ok(FileTasks {
+            tasks: self.suite.tasks(&input, models, check)?,
+            origin,
+            destination: self.has_folder().then_some(destination),
+        })
     }
 }
 

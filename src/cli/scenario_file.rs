@@ -1,17 +1,13 @@
 //! The scenario of a command: its file, the options that change it, and the folder of its results.
 
-use std::cell::OnceCell;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::rc::Rc;
 use std::{env, io};
 
 use archrock::output::print::PictureFormat;
-use archrock::output::{Batch, Folder, Manifest, Origin, OutputError};
-use archrock::scenario::{Assignment, ModelKind, ReadOptions, Scenario, Source, shown};
+use archrock::output::{Folder, Origin};
+use archrock::scenario::{Assignment, ModelKind, ReadOptions, Scenario, Source};
 use archrock::studies::catalogue::StudyKind;
-use archrock::studies::peaks;
-use archrock::studies::results::Results;
 
 use super::progress::with_notice;
 use super::{Failure, check_no_errors};
@@ -72,18 +68,36 @@ pub struct SuiteOption {
     suite: bool,
 }
 
-/// Name of a task, scenarios that differ only in their model of motion, and the folder for their results, if there is one. The name is that of
-/// the scenario file, with the record of the suite.
-pub type ScenarioTask = (String, Vec<Scenario>, Option<Destination>);
+/// Scenarios that differ only in their model of motion.
+pub struct ScenarioTask {
+    /// The scenario file, with the record of the suite.
+    pub name: String,
+    pub scenarios: Vec<Scenario>,
+    /// The folder for their results in that of the scenario file; `None` for that one.
+    subfolder: Option<PathBuf>,
+}
+
+impl ScenarioTask {
+    /// Returns the folder for its results, in that of its scenario file.
+    pub fn folder(&self, root: &Folder) -> Folder {
+        let subfolder = self.subfolder.as_ref();
+        subfolder.map_or_else(|| root.clone(), |name| root.within(name))
+    }
+
+    /// Returns its name, and the path of the folder for its results.
+    pub fn place(&self, root: &Destination) -> (String, PathBuf) {
+        let path = [Some(&root.path), self.subfolder.as_ref()];
+        (self.name.clone(), path.into_iter().flatten().collect())
+    }
+}
 
 impl SuiteOption {
-    /// Returns the tasks of a scenario file, with the folder `root`. With `--suite` there is one task for each record of the suite, with a
-    /// folder inside `root`. All scenarios must pass `check`.
+    /// Returns the tasks of a scenario file. With `--suite` there is one task for each record of the suite, with a folder of its own. All
+    /// scenarios must pass `check`.
     pub fn tasks(
         self,
         input: &Input<'_>,
         models: Vec<Scenario>,
-        root: Option<&Destination>,
         check: impl Fn(&Scenario) -> Result<(), String>,
     ) -> Result<Vec<ScenarioTask>, Failure> {
         let file = input.path.display().to_string();
@@ -91,21 +105,27 @@ impl SuiteOption {
         let records = models.iter();
         let records = records.flat_map(|model| model.by_record().into_iter().enumerate());
         for (index, (record, scenario)) in records.filter(|_| self.suite) {
-            if let Some((_, scenarios, _)) = tasks.get_mut(index) {
-                scenarios.push(scenario);
+            if let Some(task) = tasks.get_mut(index) {
+                task.scenarios.push(scenario);
             } else {
-                let name = Path::new(&record).file_name().unwrap_or_default();
-                let place = root.map(|root| root.within(name));
-                tasks.push((format!("{file}, {record}"), vec![scenario], place));
+                tasks.push(ScenarioTask {
+                    name: format!("{file}, {record}"),
+                    scenarios: vec![scenario],
+                    subfolder: Path::new(&record).file_name().map(PathBuf::from),
+                });
             }
         }
         if !self.suite {
-            tasks.push((file, models, root.cloned()));
+            tasks.push(ScenarioTask {
+                name: file,
+                scenarios: models,
+                subfolder: None,
+            });
         } else if tasks.is_empty() {
             let message = "--suite is for a scenario with a table [suite], which names records";
             return Err(input.input_error(message));
         }
-        let mut scenarios = tasks.iter().flat_map(|(_, scenarios, _)| scenarios);
+        let mut scenarios = tasks.iter().flat_map(|task| &task.scenarios);
         let checked = scenarios.try_for_each(check);
         checked.map_err(|message| input.input_error(message))?;
         Ok(tasks)
@@ -155,8 +175,8 @@ impl Input<'_> {
         })
     }
 
-    /// Returns an error for a scenario with moved springings.
-    pub fn as_built(&self, scenario: Scenario) -> Result<Scenario, Failure> {
+    /// Returns the scenario; moved springings are an error.
+    pub fn without_moved_springings(&self, scenario: Scenario) -> Result<Scenario, Failure> {
         let built = scenario.check_as_built();
         built.map_err(|message| self.input_error(message))?;
         Ok(scenario)
@@ -183,27 +203,14 @@ impl Input<'_> {
         Path::new(self.path.file_stem().unwrap_or_default())
     }
 
-    /// Returns the folder for results: `out`, or a folder named after the scenario file. The latter is an error if it contains results of
-    /// another scenario file with the same name.
-    pub fn results(&self, out: Option<&Path>) -> Result<Destination, Failure> {
-        if let Some(out) = out {
-            return Ok(Destination::of(out));
-        }
-        let path = Path::new("results").join(self.stem());
-        let scenario_file = (!is_stdin(self.path)).then(|| origin(self.path));
-        if let Some(own) = &scenario_file {
-            let manifest = Manifest::read(&path).map_err(suggest_other_folder)?;
-            if let Some(other) = manifest.other_scenario_file(own) {
-                let (path, other) = (path.display(), shown(other));
-                let remedy = "choose another folder with --out, or remove that one";
-                return Err(format!("{path} holds the results of {other}: {remedy}").into());
-            }
-        }
-        let place = Destination::of(&path);
-        Ok(Destination {
+    /// Returns the folder for results: `out`, or a folder named after the scenario file.
+    pub fn results(&self, out: Option<&Path>) -> Destination {
+        let scenario_file = (out.is_none() && !is_stdin(self.path)).then(|| origin(self.path));
+        let default = || Path::new("results").join(self.stem());
+        Destination {
+            path: out.map_or_else(default, Path::to_owned),
             scenario_file,
-            ..place
-        })
+        }
     }
 }
 
@@ -215,16 +222,11 @@ fn origin(path: &Path) -> String {
     below.unwrap_or(&own).display().to_string()
 }
 
-/// The folder for results.
-#[derive(Clone, Default)]
+/// The folder for results, before it is locked.
 pub struct Destination {
-    path: PathBuf,
+    pub path: PathBuf,
     /// The scenario file after which the folder is named; `None` with `--out`.
     scenario_file: Option<String>,
-    /// Format of pictures in addition to SVG.
-    pictures: Option<PictureFormat>,
-    /// The results in the locked folder. Folders inside this one share the lock.
-    locked: Rc<OnceCell<Batch>>,
 }
 
 impl Destination {
@@ -232,152 +234,40 @@ impl Destination {
     pub fn of(path: &Path) -> Self {
         Self {
             path: path.to_owned(),
-            ..Self::default()
+            scenario_file: None,
         }
     }
 
-    /// Shares the lock of a destination with the same folder, if one is among these.
-    pub fn with_lock_of<'d>(self, mut known: impl Iterator<Item = &'d Self>) -> Self {
-        match known.find(|known| known.path == self.path) {
-            Some(known) => Self {
-                locked: Rc::clone(&known.locked),
-                ..self
-            },
-            None => self,
-        }
-    }
-
-    /// Returns true if the folders of two destinations share a lock.
-    pub fn shares_lock(&self, other: &Self) -> bool {
-        Rc::ptr_eq(&self.locked, &other.locked)
-    }
-
-    /// Locks the folder and everything below it for the results of a study, unless it is locked, before anything is written. Prints warnings
-    /// about results of other commands from another scenario. Several parts of a study may be computed in one folder at the same time.
-    pub fn lock(&self, kind: StudyKind, mut origin: Origin, is_part: bool) -> Result<(), Failure> {
-        if self.locked.get().is_some() {
-            return Ok(());
-        }
+    /// Locks the folder and everything below it for the results of a study, before anything is written. Prints warnings about results of other
+    /// commands from another scenario. `pictures` is the format of pictures in addition to SVG. Several parts of a study may be computed in one folder at the same time.
+    pub fn lock(
+        &self,
+        kind: StudyKind,
+        mut origin: Origin,
+        pictures: Option<PictureFormat>,
+        is_part: bool,
+    ) -> Result<Folder, Failure> {
         origin.scenario_file.clone_from(&self.scenario_file);
-        let batch = Batch::lock(&self.path, kind.name, origin, !is_part);
-        let batch = batch.map_err(suggest_other_folder)?;
+        let mut folder = Folder::lock(&self.path, kind.name, origin, !is_part)?;
+        folder.pictures = pictures;
         if !is_part {
-            super::warn(&batch.warnings());
+            super::warn(&folder.warnings());
         }
-        self.locked.get_or_init(|| batch);
-        Ok(())
-    }
-
-    fn locked(&self) -> &Batch {
-        self.locked.get().expect("the folder is locked")
-    }
-
-    /// Returns the folder inside this one for the comparison of several models: `models`, or another name if that folder belongs to another
-    /// command.
-    pub fn models_folder(&self, kind: StudyKind) -> Self {
-        let models = self.within("models");
-        match self
-            .locked()
-            .is_of_other_command(&models.path.join(peaks::SUMMARY))
-        {
-            true => self.within(format!("models_{}", kind.name)),
-            false => models,
-        }
-    }
-
-    /// Gives all results in the locked folder their names.
-    pub fn publish(&self) -> Result<(), Failure> {
-        Ok(self.locked().publish()?)
-    }
-
-    /// Deletes the results in this folder that are not published.
-    pub fn abandon(&self) {
-        self.locked().abandon(&self.path);
-    }
-
-    /// Returns an error if files with these names cannot be written to the folder.
-    pub fn check_names(&self, names: &[&str]) -> Result<(), Failure> {
-        let checked = self.locked().check(&self.path, names);
-        Ok(checked.map_err(suggest_other_folder)?)
-    }
-
-    /// Returns the path of the folder.
-    pub fn path(&self) -> &Path {
-        &self.path
-    }
-
-    /// Returns the folder for a model of motion: a subfolder if there are several models.
-    pub fn of_model(&self, scenario: &Scenario, several: bool) -> Self {
-        match several {
-            true => self.within(scenario.motion.kind.option),
-            false => self.clone(),
-        }
-    }
-
-    /// Returns a folder inside this one.
-    pub fn within(&self, name: impl AsRef<Path>) -> Self {
-        Self {
-            path: self.path.join(name),
-            ..self.clone()
-        }
-    }
-
-    /// Sets the format of pictures in addition to SVG.
-    pub fn with_pictures(self, pictures: Option<PictureFormat>) -> Self {
-        Self { pictures, ..self }
-    }
-
-    /// Returns an error if two tasks would write to the same folder.
-    pub fn check_distinct(tasks: &[ScenarioTask]) -> Result<(), Failure> {
-        let mut first = BTreeMap::new();
-        let mut wrong = Vec::new();
-        for (name, _, place) in tasks {
-            let path = place.iter().map(|place| &place.path);
-            for (path, other) in path.filter_map(|path| Some((path, first.insert(path, name)?))) {
-                wrong.push(format!(
-                    "{other} and {name} would both have their results in {}: rename one, or run them one by one with --out",
-                    path.display()
-                ));
-            }
-        }
-        check_no_errors(&wrong)
-    }
-
-    /// Prepares results in the folder without publishing them. A history has already written its files.
-    pub fn prepare(&self, results: &Results) -> Result<(), Failure> {
-        if results.files.is_empty() {
-            return Ok(());
-        }
-        Ok(results.write(self.open(&results.names())?)?)
-    }
-
-    /// Returns the folder and the names of its result files, in words.
-    pub fn describe(&self, results: &Results) -> String {
-        let also = self.pictures.filter(|format| *format != PictureFormat::Svg);
-        let also = also.map_or("", |format| match format {
-            PictureFormat::Pdf => ", pictures also as PDF",
-            _ => ", pictures also as PNG",
-        });
-        let (path, names) = (self.path.display(), results.names().join(", "));
-        format!("{path}: {names}{also}")
-    }
-
-    /// Opens the folder for files with these names, the seal last. The error suggests `--out`.
-    pub fn open(&self, names: &[&str]) -> Result<Folder, String> {
-        let folder = self.locked().folder(&self.path, names);
-        Ok(folder
-            .map_err(suggest_other_folder)?
-            .with_pictures(self.pictures))
+        Ok(folder)
     }
 }
 
-/// Returns the error of a folder that cannot be used.
-fn suggest_other_folder(error: OutputError) -> String {
-    let remedy = match error {
-        OutputError::Taken { .. } | OutputError::NoManifest { .. } => {
-            "move what is there, or choose another folder with --out"
+/// Returns an error if two of these named tasks would write to the same folder.
+pub fn check_distinct(tasks: impl Iterator<Item = (String, PathBuf)>) -> Result<(), Failure> {
+    let mut first = BTreeMap::new();
+    let mut wrong = Vec::new();
+    for (name, path) in tasks {
+        if let Some(other) = first.insert(path.clone(), name.clone()) {
+            wrong.push(format!(
+                "{other} and {name} would both have their results in {}: rename one, or run them one by one with --out",
+                path.display()
+            ));
         }
-        _ => "choose another folder with --out",
-    };
-    format!("{error}; {remedy}")
+    }
+    check_no_errors(&wrong)
 }

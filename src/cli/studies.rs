@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::slice;
 
-use archrock::output::{Figure, Manifest, Origin, pretty};
+use archrock::output::{Figure, Folder, Manifest, Origin, pretty};
 use archrock::scenario::Scenario;
 use archrock::studies::catalogue::{self, Options, StudyKind, merge as merged};
 use archrock::studies::ensemble::uncertain_map::CellsOfSamples;
@@ -17,7 +17,7 @@ use super::figure::FigureOption;
 use super::models::warn_of;
 use super::progress::print_status;
 use super::scenario_file::{Destination, Input};
-use super::study::{CommandResults, StudyArguments};
+use super::study::{CommandResults, StudyArguments, describe};
 use super::{Failure, Format, print};
 
 #[derive(clap::Args)]
@@ -96,10 +96,9 @@ impl MapOption {
         let by_peak = self.color == Color::Peak;
         let maps = [catalogue::MAP, catalogue::UNCERTAIN_MAP];
         match scenario.filter(|_| maps.contains(&kind)) {
-            Some(_) if by_peak && kind == catalogue::UNCERTAIN_MAP => Err(
-                "--color is about maps of outcomes, and these are parts of a map of probability"
-                    .to_owned(),
-            ),
+            Some(_) if by_peak && kind == catalogue::UNCERTAIN_MAP => {
+                Err("--color applies to outcome maps only".to_owned())
+            }
             Some(scenario) => self.style(scenario, figure),
             None if self.dimensionless || by_peak => {
                 Err("--color and --dimensionless are for maps only".to_owned())
@@ -141,32 +140,39 @@ fn compute(
     scenarios: &[Scenario],
     style: Style,
 ) -> Result<(), Failure> {
-    let (place, origin) = (study.place(input)?, Origin::of(&scenarios[0]));
-    place.lock(kinds[0], origin, study.work.is_part())?;
-    let mut session = study.session(input, style, Options::default());
-    let several = scenarios.len() > 1;
+    let mut job = study.job(
+        input,
+        style,
+        Options::default(),
+        kinds[0],
+        Origin::of(&scenarios[0]),
+    )?;
+    let (root, several) = (job.root.clone(), scenarios.len() > 1);
     let mut all = Vec::new();
     for one in scenarios.chunks(1) {
-        let place = place.of_model(&one[0], several);
-        let found = session.with_samples(kinds, one, Some(&place))?;
-        all.extend(found.map(|found| (one[0].motion.kind.label, found)));
+        let model = one[0].motion.kind;
+        let folder = root.as_ref().map(|root| root.of_model(model, several));
+        let found = job.compute_with_samples(kinds, one, folder.as_ref())?;
+        all.extend(found.map(|found| (model, folder, found)));
     }
-    let models = all.iter().map(|(model, found)| (*model, &found.own));
+    let models = all
+        .iter()
+        .map(|(model, _, found)| (model.label, &found.own));
     let title = scenarios[0].title.as_deref();
-    let compared = session.compare(kinds[0], title, models, Some(&place))?;
-    session.publish(Some(&place))?;
-    if let (false, [(_, found)]) = (several, &all[..]) {
-        return show(found, kinds[0], &place, study.format);
+    let compared = job.compare(kinds[0], title, models, root.as_ref())?;
+    job.publish()?;
+    if let (false, [(_, folder, found)]) = (several, &all[..]) {
+        return show(found, kinds[0], folder.as_ref(), study.format);
     }
     let mut summaries = Vec::new();
-    for (scenario, (model, found)) in scenarios.iter().zip(&all) {
-        print_status(model);
-        let place = place.of_model(scenario, several);
-        show(found, kinds[0], &place, Format::Text)?;
-        let name = scenario.motion.kind.option;
-        summaries.push((name.to_owned(), found.summary(kinds[0])?));
+    for (model, folder, found) in &all {
+        print_status(model.label);
+        show(found, kinds[0], folder.as_ref(), Format::Text)?;
+        summaries.push((model.option.to_owned(), found.summary(kinds[0])?));
     }
-    let answers = all.iter().filter_map(|(_, found)| found.own.answer.clone());
+    let answers = all
+        .iter()
+        .filter_map(|(.., found)| found.own.answer.clone());
     let to_quote = quotable::in_words(&answers.collect::<Vec<_>>());
     if let Some(compared) = compared {
         print_status(&compared.words);
@@ -189,41 +195,38 @@ pub fn merge(arguments: &MergeArguments) -> Result<(), Failure> {
     let beside = parts[0].parent();
     let beside = beside.filter(|folder| !folder.as_os_str().is_empty());
     let beside = beside.unwrap_or(Path::new("."));
-    let place = Destination::of(arguments.out.as_deref().unwrap_or(beside));
-    let place = arguments.figure.with_picture_format(place);
+    let destination = Destination::of(arguments.out.as_deref().unwrap_or(beside));
     let mut style =
         |kind, scenario: Option<&Scenario>| arguments.map.merged(kind, scenario, figure);
     let (kind, results) = merged(parts, None, &mut style)?;
     let origin = Origin::of_summary(&results.summary);
     // Samples are merged into a folder inside that of their command.
-    let around = place.path().parent();
-    if let Some(around) = around.filter(|_| place.path().ends_with(kind.name)) {
+    let around = destination.path.parent();
+    if let Some(around) = around.filter(|_| destination.path.ends_with(kind.name)) {
         let manifest = Manifest::read(around)?;
         super::warn(&manifest.warnings(around, kind.name, &origin));
     }
-    place.lock(kind, origin, false)?;
-    place.check_names(kind.files)?;
-    place.prepare(&results)?;
-    place.publish()?;
-    show(
-        &CommandResults::alone(results),
-        kind,
-        &place,
-        arguments.format,
-    )
+    let folder = destination.lock(kind, origin, arguments.figure.figure_format, false)?;
+    folder.check(kind.files)?;
+    results.write(&folder)?;
+    folder.publish()?;
+    let found = CommandResults::alone(results);
+    show(&found, kind, Some(&folder), arguments.format)
 }
 
 /// Prints published results.
 fn show(
     found: &CommandResults,
     kind: StudyKind,
-    place: &Destination,
+    folder: Option<&Folder>,
     format: Format,
 ) -> Result<(), Failure> {
     if let Format::Json = format {
         return print(&pretty(&found.summary(kind)?));
     }
     print_status(&found.words(""));
-    print_status(&format!("  results in {}", place.describe(&found.own)));
+    if let Some(folder) = folder {
+        print_status(&format!("  results in {}", describe(folder, &found.own)));
+    }
     Ok(())
 }

@@ -6,14 +6,16 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
-use std::{process, slice};
+use std::{mem, process, slice};
 
+use archrock::output::print::PictureFormat;
+use archrock::output::{Folder, Origin};
 use archrock::scenario::{ModelKind, Scenario};
 use archrock::studies::catalogue::{Computation, Options, RowSource, StudyKind};
 use archrock::studies::part::{PartError, PartErrorKind, PartFile, Shard, rows_in};
 use archrock::studies::peaks;
 use archrock::studies::results::{Results, StudyError, Style};
-use archrock::studies::run::{SampleReport, Sinks};
+use archrock::studies::run::Sinks;
 use archrock::studies::runner::{Progress, Runner, RunnerError, Task};
 
 use serde::Serialize;
@@ -25,7 +27,7 @@ use super::progress::{
     Display, INTERRUPTED, INTERRUPTED_CODE, listen_to_interrupts, print_always, print_status,
     progress_text, remaining_time,
 };
-use super::scenario_file::{Destination, Input, ScenarioFile};
+use super::scenario_file::{Input, ScenarioFile};
 use super::{Failure, Format, show};
 
 /// Options of every study of many histories.
@@ -100,28 +102,40 @@ impl WorkOptions {
 }
 
 impl StudyArguments {
-    /// The folder for results.
-    pub fn place(&self, input: &Input<'_>) -> Result<Destination, Failure> {
-        Ok(self
-            .figure
-            .with_picture_format(input.results(self.out.as_deref())?))
-    }
-
-    /// The studies of this command.
-    pub fn session<'s>(&self, input: &'s Input<'s>, style: Style, options: Options) -> Session<'s> {
-        Session::new(Some(input), self.work, style, options)
+    /// Locks the folder for the results of a study, and prepares the computation.
+    pub fn job<'s>(
+        &self,
+        input: &'s Input<'s>,
+        style: Style,
+        options: Options,
+        kind: StudyKind,
+        origin: Origin,
+    ) -> Result<StudyJob<'s>, Failure> {
+        let destination = input.results(self.out.as_deref());
+        let (pictures, is_part) = (self.figure.figure_format, self.work.is_part());
+        let root = destination.lock(kind, origin, pictures, is_part)?;
+        Ok(StudyJob {
+            input: Some(input),
+            work: self.work,
+            style,
+            options,
+            root: Some(root),
+            finished_parts: Vec::new(),
+        })
     }
 }
 
-/// The studies of a command.
-pub struct Session<'s> {
+/// Computes the studies of a command.
+pub struct StudyJob<'s> {
     /// The scenario file, which errors about the scenario name.
-    input: Option<&'s Input<'s>>,
-    work: WorkOptions,
-    style: Style,
-    options: Options,
+    pub input: Option<&'s Input<'s>>,
+    pub work: WorkOptions,
+    pub style: Style,
+    pub options: Options,
+    /// The locked folder for all results, if files are written.
+    pub root: Option<Folder>,
     /// The files that keep the rows of results until these are published.
-    pending: Vec<PartFile>,
+    pub finished_parts: Vec<PartFile>,
 }
 
 /// The results of a command on scenarios that differ only in their models of motion.
@@ -141,6 +155,9 @@ struct SampleResults {
     /// Their folder, and the names of their files, in words.
     place: String,
 }
+
+/// Heading of the report on the scenario without uncertainty, after that on its samples.
+const NOMINAL_HEADING: &str = "the scenario with its given numbers:\n  ";
 
 /// JSON of all results: of the scenario itself, of its samples, and of the comparison of models.
 #[derive(Serialize)]
@@ -179,7 +196,7 @@ impl CommandResults {
         }
         let heading = match words.is_empty() {
             true => indent,
-            false => "the scenario itself:\n  ",
+            false => NOMINAL_HEADING,
         };
         words + heading + &self.own.words
     }
@@ -203,39 +220,34 @@ impl CommandResults {
     }
 }
 
-impl<'s> Session<'s> {
-    /// The studies of a command, none of which is computed yet.
-    pub const fn new(
-        input: Option<&'s Input<'s>>,
-        work: WorkOptions,
-        style: Style,
-        options: Options,
-    ) -> Self {
-        Self {
-            input,
-            work,
-            style,
-            options,
-            pending: Vec::new(),
-        }
-    }
+/// Returns the folder with its result files, in words.
+pub fn describe(folder: &Folder, results: &Results) -> String {
+    let also = match folder.pictures {
+        None | Some(PictureFormat::Svg) => "",
+        Some(PictureFormat::Pdf) => ", pictures also as PDF",
+        Some(PictureFormat::Png) => ", pictures also as PNG",
+    };
+    let (path, names) = (folder.path().display(), results.names().join(", "));
+    format!("{path}: {names}{also}")
+}
 
-    /// Publishes the results in a folder, if there is one.
-    pub fn publish(&mut self, place: Option<&Destination>) -> Result<(), Failure> {
-        place.map_or(Ok(()), Destination::publish)?;
-        let mut pending = self.pending.drain(..);
-        Ok(pending.try_for_each(PartFile::remove)?)
+impl StudyJob<'_> {
+    /// Publishes all results.
+    pub fn publish(&mut self) -> Result<(), Failure> {
+        self.root.as_ref().map_or(Ok(()), Folder::publish)?;
+        let mut parts = self.finished_parts.drain(..);
+        Ok(parts.try_for_each(PartFile::remove)?)
     }
 
     /// Returns an error if the results of a study cannot be written to the folder. Of a run, only the last name is known in advance.
-    fn check_names(&self, kind: StudyKind, place: Option<&Destination>) -> Result<(), Failure> {
+    fn check_names(&self, kind: StudyKind, folder: Option<&Folder>) -> Result<(), Failure> {
         let first = if kind.is_history {
             kind.files.len() - 1
         } else {
             0
         };
-        let place = place.filter(|_| !self.work.is_part());
-        place.map_or(Ok(()), |place| place.check_names(&kind.files[first..]))
+        let folder = folder.filter(|_| !self.work.is_part());
+        Ok(folder.map_or(Ok(()), |folder| folder.check(&kind.files[first..]))?)
     }
 
     /// Computes a study, and prepares its results in the folder, if there is one. Of a part, reports the file and returns `None`.
@@ -243,20 +255,20 @@ impl<'s> Session<'s> {
         &mut self,
         kind: StudyKind,
         scenarios: &[Scenario],
-        place: Option<&Destination>,
+        folder: Option<&Folder>,
     ) -> Result<Option<Results>, Failure> {
         let work = self.work;
         let shard = work.shard.unwrap_or(Shard::WHOLE);
-        let task = place.map(|place| Task {
-            folder: place.path(),
+        let task = folder.map(|folder| Task {
+            folder: folder.path(),
             shard,
             resume: work.resume,
         });
-        self.check_names(kind, place.filter(|_| !kind.is_history))?;
+        self.check_names(kind, folder.filter(|_| !kind.is_history))?;
         let threads = work.threads.and_then(|n| NonZeroUsize::new(n.into()));
         let runner = Runner { threads };
         let (mut shown, mut last) = (None, 0);
-        let samples_are_kept = !self.pending.is_empty();
+        let samples_are_kept = !self.finished_parts.is_empty();
         let mut watch = |progress: Progress| {
             let Progress { done, all } = progress;
             // The history of the next model begins.
@@ -291,12 +303,8 @@ impl<'s> Session<'s> {
             });
             ControlFlow::Continue(())
         };
-        let mut open = |scenario: &Scenario, names: &[&str]| {
-            let place = place.map(|place| place.of_model(scenario, scenarios.len() > 1));
-            place.map(|place| place.open(names)).transpose()
-        };
         let sinks = Sinks {
-            open: Some(&mut open),
+            folder: folder.cloned(),
             rotations: self.options.run.no_rotations.then(stdout),
         };
         let rows = RowSource::Compute(runner, task, &mut watch);
@@ -308,8 +316,8 @@ impl<'s> Session<'s> {
         });
         match done? {
             Computation::Complete(results, part) => {
-                place.map_or(Ok(()), |place| place.prepare(&results))?;
-                self.pending.extend(part);
+                folder.map_or(Ok(()), |folder| results.write(folder))?;
+                self.finished_parts.extend(part);
                 Ok(Some(results))
             }
             Computation::Partial { part, cases, all } => {
@@ -327,29 +335,29 @@ impl<'s> Session<'s> {
         mut self,
         kind: StudyKind,
         scenario: &Scenario,
-        place: &Destination,
         format: Format,
     ) -> Result<(), Failure> {
-        let found = self.compute(kind, slice::from_ref(scenario), Some(place))?;
-        self.publish(Some(place))?;
-        found.map_or(Ok(()), |found| {
-            print_status(&format!("results in {}", place.describe(&found)));
-            show(&found.summary, &(found.words + "\n"), format)
-        })
+        let root = self.root.clone();
+        let found = self.compute(kind, slice::from_ref(scenario), root.as_ref())?;
+        self.publish()?;
+        let Some(found) = found else { return Ok(()) };
+        if let Some(root) = root {
+            print_status(&format!("results in {}", describe(&root, &found)));
+        }
+        show(&found.summary, &(found.words + "\n"), format)
     }
 
     /// Computes a study of scenarios that differ in their models of motion, after the samples of those that have `[uncertain]`, whose results
-    /// are in folders of their own inside `place`.  Of a part, only the
-    /// samples are computed if there are any; without a folder there are none.
-    pub fn with_samples(
+    /// are in folders of their own inside `folder`. Of a part, only the samples are computed if there are any; without a folder there are none.
+    pub fn compute_with_samples(
         &mut self,
         [kind, samples]: [StudyKind; 2],
         scenarios: &[Scenario],
-        place: Option<&Destination>,
+        folder: Option<&Folder>,
     ) -> Result<Option<CommandResults>, Failure> {
         let several = scenarios.len() > 1;
         let has_samples = scenarios.iter().any(|one| one.uncertain.is_some());
-        if self.work.is_part() && place.is_none() {
+        if self.work.is_part() && folder.is_none() {
             return Err("--shard writes a file: name a folder for it with --out".into());
         }
         if self.work.is_part() && !has_samples && !kind.has_parts() {
@@ -357,42 +365,49 @@ impl<'s> Session<'s> {
                 "--shard computes a part of the samples of [uncertain], which the scenario lacks";
             return Err(message.into());
         }
-        if let Some(place) = place.filter(|_| !has_samples) {
-            warn_of_rows(place, samples);
+        if let Some(folder) = folder.filter(|_| !has_samples) {
+            warn_of_rows(folder, samples);
         }
         // Samples may take long, so the names of other results are checked before them.
         for scenario in scenarios {
-            let place = place.map(|place| place.of_model(scenario, several && kind.is_history));
-            self.check_names(kind, place.as_ref())?;
+            let several = several && kind.is_history;
+            let folder = folder.map(|folder| folder.of_model(scenario.motion.kind, several));
+            self.check_names(kind, folder.as_ref())?;
         }
-        let mut of_samples = Vec::new();
+        let (mut models, mut of_samples) = (Vec::new(), Vec::new());
         let with_samples = scenarios.iter().filter(|one| one.uncertain.is_some());
-        for (scenario, place) in with_samples.flat_map(|one| Some(one).zip(place)) {
-            let place = place.of_model(scenario, several).within(samples.name);
-            let computed = self.compute(samples, slice::from_ref(scenario), Some(&place))?;
-            of_samples.extend(computed.map(|results| SampleResults {
-                model: scenario.motion.kind,
-                place: place.describe(&results),
-                results,
-            }));
+        for (scenario, folder) in with_samples.flat_map(|one| Some(one).zip(folder)) {
+            let model = scenario.motion.kind;
+            let folder = folder.of_model(model, several).within(samples.name);
+            if let Some(results) =
+                self.compute(samples, slice::from_ref(scenario), Some(&folder))?
+            {
+                models.push((model, describe(&folder, &results)));
+                of_samples.push(results);
+            }
         }
-        let reports = of_samples.iter().map(|one| SampleReport {
-            words: one.results.words.clone(),
-            summary: one.results.summary.clone(),
-        });
-        self.options.run.uncertainty = reports.collect();
         if self.work.is_part() && has_samples {
             return Ok(None);
         }
-        let Some(own) = self.compute(kind, scenarios, place)? else {
-            return Ok(None);
-        };
+        // The page of a run begins with the words about its samples, and its JSON contains theirs.
+        self.options.run.samples = of_samples;
+        let own = self.compute(kind, scenarios, folder)?;
+        let of_samples = mem::take(&mut self.options.run.samples).into_iter();
+        let Some(own) = own else { return Ok(None) };
+        let of_samples = of_samples
+            .zip(models)
+            .map(|(results, (model, place))| SampleResults {
+                model,
+                results,
+                place,
+            });
+        let of_samples: Vec<SampleResults> = of_samples.collect();
         // Of the studies of samples, only that of histories has rotations.
         let compared = of_samples.iter().filter(|_| kind.is_history);
         let models = compared.map(|one| (one.model.label, &one.results));
         let title = scenarios[0].title.as_deref();
         Ok(Some(CommandResults {
-            compared: self.compare(kind, title, models, place)?,
+            compared: self.compare(kind, title, models, folder)?,
             samples: of_samples,
             own,
         }))
@@ -405,25 +420,30 @@ impl<'s> Session<'s> {
         kind: StudyKind,
         title: Option<&str>,
         models: impl Iterator<Item = (&'r str, &'r Results)>,
-        place: Option<&Destination>,
+        folder: Option<&Folder>,
     ) -> Result<Option<Results>, Failure> {
         let models = models.map(|(label, results)| (label, &results.largest_rotations_rad[..]));
         let models: Vec<(&str, &[f64])> = models.collect();
-        let (2.., Some(place)) = (models.len(), place) else {
+        let (2.., Some(folder)) = (models.len(), folder) else {
             return Ok(None);
         };
         let title = title.unwrap_or("Largest rotations of several models");
         let results = peaks::results(title, &models, self.style.figure);
         let results = results.map_err(StudyError::from)?;
-        place.models_folder(kind).prepare(&results)?;
+        let mut beside = folder.within("models");
+        if beside.check(&results.names()).is_err() {
+            // Another command has compared models here.
+            beside = folder.within(format!("models_{}", kind.name));
+        }
+        results.write(&beside)?;
         Ok(Some(results))
     }
 }
 
 /// Warns about rows of an interrupted study of samples. A command without samples does not remove them.
-fn warn_of_rows(place: &Destination, samples: StudyKind) {
-    let part = place.within(samples.name);
-    let part = part.path().join(Shard::WHOLE.file_name(samples.name));
+fn warn_of_rows(folder: &Folder, samples: StudyKind) {
+    let part = folder.path().join(samples.name);
+    let part = part.join(Shard::WHOLE.file_name(samples.name));
     if let Some(rows) = rows_in(&part).filter(|rows| *rows > 0) {
         let kept = "cases of samples from an interrupted run; they are not part of the results of this run";
         super::warn(&[format!("{} has {rows} {kept}", part.display())]);

@@ -9,8 +9,8 @@ use archrock::studies::threshold::{Factors, check};
 
 use super::models::warn_of;
 use super::progress::print_status;
-use super::scenario_file::{Destination, Input, SuiteOption};
-use super::study::{Session, StudyArguments};
+use super::scenario_file::{Input, SuiteOption, check_distinct};
+use super::study::{StudyArguments, describe};
 use super::{Failure, Format, print, print_all};
 
 #[derive(clap::Args)]
@@ -55,33 +55,34 @@ pub fn threshold(arguments: &Arguments) -> Result<(), Failure> {
         }),
         ..Options::default()
     };
-    let mut session = study.session(&input, Style::of(study.figure.get()?), options);
+    let style = Style::of(study.figure.get()?);
     if arguments.along.is_some() {
-        return thresholds_along(study, session, &input);
+        return thresholds_along(study, &input, style, options);
     }
     let models = study.models.read(&input)?;
     let origin = Origin::of(&models[0]);
-    let root = study.place(&input)?;
-    let tasks = arguments.suite.tasks(&input, models, Some(&root), check)?;
-    Destination::check_distinct(&tasks)?;
-    let mut scenarios = tasks.iter().flat_map(|(_, scenarios, _)| scenarios);
+    let tasks = arguments.suite.tasks(&input, models, check)?;
+    let root = input.results(study.out.as_deref());
+    check_distinct(tasks.iter().map(|task| task.place(&root)))?;
+    let mut scenarios = tasks.iter().flat_map(|task| &task.scenarios);
     if let Some(ignored) = scenarios.find_map(Scenario::ignored) {
         print_status(ignored);
     }
-    let title = tasks[0].1[0].title.as_deref();
+    let title = tasks[0].scenarios[0].title.as_deref();
     let title = title.map_or(String::new(), |title| format!("{title}\n"));
-    root.lock(THRESHOLD, origin, study.work.is_part())?;
+    let mut job = study.job(&input, style, options, THRESHOLD, origin)?;
     let mut all = Vec::new();
-    for (_, scenarios, place) in &tasks {
-        super::warn(&scenarios[0].unlikely());
+    for task in &tasks {
+        super::warn(&task.scenarios[0].unlikely());
+        let folder = job.root.as_ref().map(|root| task.folder(root));
         let kinds = [THRESHOLD, UNCERTAIN_THRESHOLD];
-        let found = session.with_samples(kinds, scenarios, place.as_ref())?;
-        all.extend(found.map(|found| (found, place)));
+        let found = job.compute_with_samples(kinds, &task.scenarios, folder.as_ref())?;
+        all.extend(found.map(|found| (found, folder)));
     }
-    session.publish(Some(&root))?;
-    for (found, place) in &all {
-        if let Some(place) = place {
-            print_status(&format!("results in {}", place.describe(&found.own)));
+    job.publish()?;
+    for (found, folder) in &all {
+        if let Some(folder) = folder {
+            print_status(&format!("results in {}", describe(folder, &found.own)));
         }
     }
     match study.format {
@@ -100,8 +101,9 @@ pub fn threshold(arguments: &Arguments) -> Result<(), Failure> {
 /// Computes the threshold for each value of a key.
 fn thresholds_along(
     study: &StudyArguments,
-    session: Session<'_>,
     input: &Input<'_>,
+    style: Style,
+    options: Options,
 ) -> Result<(), Failure> {
     let scenario = study.models.read_one(input, "--along")?;
     if scenario.uncertain.is_some() {
@@ -109,7 +111,12 @@ fn thresholds_along(
         return Err(input.input_error(message));
     }
     warn_of(std::slice::from_ref(&scenario));
-    let place = study.place(input)?;
-    place.lock(THRESHOLD_ALONG, Origin::of(&scenario), study.work.is_part())?;
-    session.finish(THRESHOLD_ALONG, &scenario, &place, study.format)
+    let job = study.job(
+        input,
+        style,
+        options,
+        THRESHOLD_ALONG,
+        Origin::of(&scenario),
+    )?;
+    job.finish(THRESHOLD_ALONG, &scenario, study.format)
 }

@@ -1,31 +1,39 @@
 //! Folders of results. All files of one command get their names together.
 
+use std::cell::RefCell;
 use std::fs::{self, File, TryLockError};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, IntoInnerError, Write as _};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::rc::Rc;
 
 use tempfile::{NamedTempFile, TempPath};
 
 use super::manifest::{MANIFEST, Manifest, Origin, command_line};
 use super::print::PictureFormat;
 use super::{OutputError, pretty};
+use crate::scenario::ModelKind;
 
-/// The results of one command, in a folder and its subfolders.
+/// The folder for the results of one command, or a folder inside it.
 ///
-/// The folder and everything below it stay locked while this value or one of its [`Folder`]s exists: no other command writes there. The system
-/// unlocks the folder when the program ends, even if the program is killed.
+/// The folder and everything below it stay locked while this value or a clone of it exists: no other command writes there. The system unlocks
+/// the folder when the program ends, even if the program is killed.
 ///
-/// Every file is written under a hidden name in the folder. [`Batch::publish`] removes the results of the last run of the same command, which
-/// the [`Manifest`] of the folder lists, and then renames all files. The manifest is written last. It is the seal: results that it calls
-/// complete are those of one run. A file that it does not list, or that the scenario needs, is never removed or replaced.
+/// Every file is written under a hidden name. [`Folder::publish`] removes the results of the last run of the same command, which the
+/// [`Manifest`] of the folder lists, and then renames all files. The manifest is written last. It is the seal: results that it calls complete
+/// are those of one run. A file that it does not list, or that the scenario needs, is never removed or replaced.
 ///
 /// A killed run leaves its hidden files; the next run removes them.
 #[derive(Clone, Debug)]
-pub struct Batch(Arc<Mutex<Inner>>);
+pub struct Folder {
+    path: PathBuf,
+    /// Format of pictures in addition to SVG.
+    pub pictures: Option<PictureFormat>,
+    locked: Rc<RefCell<LockedFolder>>,
+}
 
+/// The folder that a command has locked, with the results that it has prepared.
 #[derive(Debug)]
-struct Inner {
+struct LockedFolder {
     path: PathBuf,
     /// The name of the command in the manifest.
     command: String,
@@ -41,35 +49,31 @@ struct Inner {
     prepared: Vec<(String, TempPath)>,
 }
 
-/// A folder in which results are being prepared.
+/// A file of results that is being written, under a hidden name.
 #[derive(Debug)]
-pub struct Folder {
+pub(crate) struct NewFile {
+    /// The path that it will have.
     path: PathBuf,
-    /// Complete files, still under hidden names.
-    done: Vec<(String, TempPath)>,
-    files: Vec<(String, BufWriter<NamedTempFile>)>,
-    /// Format of pictures in addition to SVG.
-    pictures: Option<PictureFormat>,
-    batch: Batch,
+    pub(crate) writer: BufWriter<NamedTempFile>,
 }
 
 /// Prefix of the hidden names.
 const PREFIX: &str = ".archrock-";
 
-impl Batch {
+impl Folder {
     /// Locks the folder and everything below it for the results of a command, exclusively if `alone`, otherwise shared. Creates the folder if
     /// necessary.
     ///
     /// # Errors
-    /// When the folder cannot be created, another command is writing to this folder, a folder below it or a folder above it, or an earlier
-    /// result of the command is now an input of the scenario.
+    /// When the folder cannot be created, another command is writing to this folder, a folder below it or a folder above it, the folder is named
+    /// after a scenario file and has results of another one, or an earlier result of the command is now an input of the scenario.
     pub fn lock(
         path: &Path,
         command: &str,
         origin: Origin,
         alone: bool,
     ) -> Result<Self, OutputError> {
-        let mut inner = Inner {
+        let mut locked = LockedFolder {
             path: path.to_owned(),
             command: command.to_owned(),
             origin,
@@ -79,66 +83,124 @@ impl Batch {
             made: Vec::new(),
             prepared: Vec::new(),
         };
-        inner.make(path)?;
-        inner.lock()?;
-        let mut last = inner.last().iter();
-        last.try_for_each(|name| inner.check(&path.join(name)))?;
-        Ok(Self(Arc::new(Mutex::new(inner))))
+        locked.make_and_lock()?;
+        if let Some(other) = locked.manifest.other_scenario_file(&locked.origin) {
+            let other = other.to_owned();
+            return Err(OutputError::OfOtherScenario(path.to_owned(), other));
+        }
+        let mut last = locked.last().iter();
+        last.try_for_each(|name| locked.check(&path.join(name)))?;
+        Ok(Self {
+            path: path.to_owned(),
+            pictures: None,
+            locked: Rc::new(RefCell::new(locked)),
+        })
     }
 
-    /// Returns an error if files with these names in the folder, or a folder below it, cannot be written.
+    /// Returns the path of the folder.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Returns a folder inside this one, which shares the lock.
+    #[must_use]
+    pub fn within(&self, name: impl AsRef<Path>) -> Self {
+        let path = self.path.join(name);
+        Self {
+            path,
+            ..self.clone()
+        }
+    }
+
+    /// Returns the folder for a model of motion: a folder inside this one if there are several models.
+    #[must_use]
+    pub fn of_model(&self, model: &ModelKind, several: bool) -> Self {
+        match several {
+            true => self.within(model.option),
+            false => self.clone(),
+        }
+    }
+
+    /// Returns an error if files with these names cannot be written here.
     ///
     /// # Errors
     /// When one of them is an input of the scenario, or is there and is no earlier result of the command.
-    pub fn check(&self, path: &Path, names: &[&str]) -> Result<(), OutputError> {
-        let inner = self.inner();
-        names
-            .iter()
-            .try_for_each(|name| inner.check(&path.join(name)))
+    pub fn check(&self, names: &[&str]) -> Result<(), OutputError> {
+        let locked = self.locked.borrow();
+        let mut paths = names.iter().map(|name| self.path.join(name));
+        paths.try_for_each(|path| locked.check(&path))
     }
 
-    /// Returns true if another command has a result with this path.
-    pub fn is_of_other_command(&self, path: &Path) -> bool {
-        let inner = self.inner();
-        inner
-            .manifest
-            .is_of_other(&inner.command, &inner.relative(path))
-    }
-
-    /// Returns warnings about results of other commands in the folder that come from another scenario.
+    /// Returns warnings about results of other commands in the locked folder that come from another scenario.
     pub fn warnings(&self) -> Vec<String> {
-        let inner = self.inner();
-        inner
-            .manifest
-            .warnings(&inner.path, &inner.command, &inner.origin)
+        let LockedFolder {
+            path,
+            command,
+            origin,
+            manifest,
+            ..
+        } = &*self.locked.borrow();
+        manifest.warnings(path, command, origin)
     }
 
-    /// Opens the folder, or a folder below it, for files with these names, the seal last.
+    /// Creates a file that is written in pieces.
     ///
     /// # Errors
-    /// When the folder or a file in it cannot be created, or as for [`Batch::check`].
-    pub fn folder(&self, path: &Path, names: &[&str]) -> Result<Folder, OutputError> {
-        let mut inner = self.inner();
+    /// When the file cannot be created, or as for [`Folder::check`].
+    pub(crate) fn create(&self, name: &str) -> Result<NewFile, OutputError> {
+        let (path, mut locked) = (self.path.join(name), self.locked.borrow_mut());
         // The user may have removed the folder since it was locked.
-        let root = inner.path.clone();
-        if !root.exists() {
-            inner.make(&root)?;
-            inner.lock()?;
+        if !locked.path.exists() {
+            locked.make_and_lock()?;
         }
-        drop(inner);
-        let mut folder = Folder {
-            path: path.to_owned(),
-            done: Vec::new(),
-            files: Vec::new(),
-            pictures: None,
-            batch: self.clone(),
-        };
-        for name in names {
-            let file = folder.hidden(name)?;
-            let file = (String::from(*name), BufWriter::new(file));
-            folder.files.push(file);
+        locked.check(&path)?;
+        let name_alone = path.file_name().unwrap_or_default().to_string_lossy();
+        // The system's message would name the hidden file.
+        let file = hidden_file(&locked.path, &name_alone)
+            .map_err(|error| OutputError::unusable(cannot_write(&path))(error.kind().into()))?;
+        let writer = BufWriter::new(file);
+        Ok(NewFile { path, writer })
+    }
+
+    /// Completes a file. It gets its name when the results are published.
+    ///
+    /// # Errors
+    /// When the system reports an error.
+    pub(crate) fn complete(&self, NewFile { path, writer }: NewFile) -> Result<(), OutputError> {
+        let file = writer.into_inner().map_err(IntoInnerError::into_error);
+        let synced = file.and_then(|file| file.as_file().sync_data().map(|()| file));
+        let file = synced.map_err(OutputError::io(cannot_write(&path)))?;
+        let mut locked = self.locked.borrow_mut();
+        let name = locked.relative(&path);
+        locked.prepared.push((name, file.into_temp_path()));
+        Ok(())
+    }
+
+    /// Adds a complete file. The name may be in a subfolder.
+    ///
+    /// # Errors
+    /// When the file cannot be written, or as for [`Folder::check`].
+    pub fn add(&self, name: &str, contents: &[u8]) -> Result<(), OutputError> {
+        let mut file = self.create(name)?;
+        let written = file.writer.write_all(contents);
+        written.map_err(OutputError::io(cannot_write(&file.path)))?;
+        self.complete(file)
+    }
+
+    /// Adds a complete file, and a picture also in the other format. The last file of a command is its seal.
+    ///
+    /// # Errors
+    /// When a file cannot be written, or as for [`Folder::check`].
+    pub fn write(&self, name: &str, contents: &[u8]) -> Result<(), OutputError> {
+        let other = self.pictures.filter(|format| *format != PictureFormat::Svg);
+        if let Some((stem, format)) = name.strip_suffix(".svg").zip(other) {
+            let other = format!("{stem}.{}", format.name());
+            let picture = format.of_picture(&String::from_utf8_lossy(contents));
+            let what = cannot_write(&self.path.join(&other));
+            let picture = picture.map_err(io::Error::other);
+            self.add(&other, &picture.map_err(OutputError::io(what))?)?;
         }
-        Ok(folder)
+        self.add(name, contents)
     }
 
     /// Removes the results of the last run of the command, then gives all complete files their names. Does nothing if there are none.
@@ -146,71 +208,62 @@ impl Batch {
     /// # Errors
     /// When the system reports an error. The manifest then calls the results incomplete, or they are unchanged.
     pub fn publish(&self) -> Result<(), OutputError> {
-        let mut inner = self.inner();
-        let failed = |path: &Path| OutputError::io(format!("cannot write {}", path.display()));
-        let prepared = std::mem::take(&mut inner.prepared);
+        let mut locked = self.locked.borrow_mut();
+        let failed = |path: &Path| OutputError::io(cannot_write(path));
+        let prepared = std::mem::take(&mut locked.prepared);
         let new: Vec<String> = prepared.iter().map(|(name, _)| name.clone()).collect();
         if new.is_empty() {
             return Ok(());
         }
         new.iter()
-            .try_for_each(|name| inner.check(&inner.path.join(name)))?;
-        let last = inner.last().to_vec();
-        inner.list([&last[..], &new].concat(), false)?;
+            .try_for_each(|name| locked.check(&locked.path.join(name)))?;
+        let last = locked.last().to_vec();
+        locked.list([&last[..], &new].concat(), false)?;
         // The last file was written last: without it, the others are incomplete.
-        for path in last.iter().rev().map(|name| inner.path.join(name)) {
+        for path in last.iter().rev().map(|name| locked.path.join(name)) {
             remove_if_there(&path).map_err(failed(&path))?;
             let folders = path.ancestors().skip(1);
-            for folder in folders.take_while(|folder| *folder != inner.path) {
+            for folder in folders.take_while(|folder| *folder != locked.path) {
                 // A folder with other files stays.
                 let _ = fs::remove_dir(folder);
             }
         }
         for (name, file) in prepared {
-            let path = inner.path.join(name);
+            let path = locked.path.join(name);
             fs::create_dir_all(path.parent().unwrap_or(&path)).map_err(failed(&path))?;
             file.persist(&path)
                 .map_err(|error| failed(&path)(error.error))?;
         }
-        inner.list(new, true)
+        locked.list(new, true)
     }
 
-    /// Deletes all files that are complete but not published, in this folder of the batch and below it.
-    pub fn abandon(&self, folder: &Path) {
-        let mut inner = self.inner();
-        let below = inner.relative(folder);
-        inner
+    /// Deletes all files that are complete but not published, in this folder and below it.
+    pub fn abandon(&self) {
+        let mut locked = self.locked.borrow_mut();
+        let below = locked.relative(&self.path);
+        locked
             .prepared
             .retain(|(name, _)| !Path::new(name).starts_with(&below));
     }
-
-    fn inner(&self) -> MutexGuard<'_, Inner> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
-    }
 }
 
-impl Inner {
-    /// Creates a folder and its missing parent folders.
-    fn make(&mut self, path: &Path) -> Result<(), OutputError> {
-        for ancestor in path.ancestors().collect::<Vec<_>>().into_iter().rev() {
-            if ancestor.as_os_str().is_empty() || ancestor.exists() {
+impl LockedFolder {
+    /// Creates the folder and its missing parent folders, locks it, takes shared locks of all folders above it, and reads the manifest.
+    fn make_and_lock(&mut self) -> Result<(), OutputError> {
+        for folder in self.path.ancestors().collect::<Vec<_>>().into_iter().rev() {
+            if folder.as_os_str().is_empty() || folder.exists() {
                 continue;
             }
-            match fs::create_dir(ancestor) {
-                Ok(()) => self.made.push(ancestor.to_owned()),
+            match fs::create_dir(folder) {
+                Ok(()) => self.made.push(folder.to_owned()),
                 // Another run created it first.
-                Err(_) if ancestor.is_dir() => {}
+                Err(_) if folder.is_dir() => {}
                 Err(error) => {
-                    let what = format!("cannot make the folder {}", ancestor.display());
-                    return Err(OutputError::io(what)(error));
+                    let what = format!("cannot make the folder {}", folder.display());
+                    return Err(OutputError::unusable(what)(error));
                 }
             }
         }
-        Ok(())
-    }
-
-    /// Locks the folder, takes shared locks of all folders above it, and reads the manifest.
-    fn lock(&mut self) -> Result<(), OutputError> {
         self.locks = lock(&self.path, self.alone)?.into_iter().collect();
         // With links in the path, the folders above differ from those in the path.
         let canonical = self.path.canonicalize().unwrap_or_default();
@@ -263,11 +316,11 @@ impl Inner {
         let text = serde_json::to_value(&self.manifest).map(|it| pretty(&it));
         let text = text.map_err(io::Error::from);
         let written = text.and_then(|text| write_whole(&path, text.as_bytes()));
-        written.map_err(OutputError::io(format!("cannot write {}", path.display())))
+        written.map_err(OutputError::io(cannot_write(&path)))
     }
 }
 
-impl Drop for Inner {
+impl Drop for LockedFolder {
     /// Removes everything that was not published.
     fn drop(&mut self) {
         self.prepared.clear();
@@ -278,94 +331,8 @@ impl Drop for Inner {
     }
 }
 
-impl Folder {
-    /// Sets the format in which pictures are written in addition to SVG.
-    #[must_use]
-    pub fn with_pictures(mut self, pictures: Option<PictureFormat>) -> Self {
-        self.pictures = pictures;
-        self
-    }
-
-    /// Returns the path of the folder.
-    pub fn path(&self) -> &Path {
-        &self.path
-    }
-
-    /// Writes to the file with this name.
-    ///
-    /// # Errors
-    /// When the system reports an error.
-    ///
-    /// # Panics
-    /// When the folder was not opened with this name.
-    pub fn write(&mut self, name: &str, contents: impl AsRef<[u8]>) -> Result<(), OutputError> {
-        let found = self.files.iter_mut().find(|(known, _)| known == name);
-        let file = &mut found.expect("the names are those given to `folder`").1;
-        let written = file.write_all(contents.as_ref());
-        written.map_err(self.cannot_write(name))
-    }
-
-    /// Returns all files with their names, to be written.
-    pub fn files(&mut self) -> impl Iterator<Item = (&str, &mut impl Write)> {
-        self.files.iter_mut().map(|(name, file)| (&**name, file))
-    }
-
-    /// Adds a file with these contents. It is not the seal. The name may be in a subfolder.
-    ///
-    /// # Errors
-    /// When the file cannot be written, or as for [`Batch::check`].
-    pub fn add(&mut self, name: &str, contents: &[u8]) -> Result<(), OutputError> {
-        let mut file = self.hidden(name)?;
-        let written = file.write_all(contents);
-        written
-            .and_then(|()| file.as_file().sync_data())
-            .map_err(self.cannot_write(name))?;
-        self.done
-            .insert(0, (name.to_owned(), file.into_temp_path()));
-        Ok(())
-    }
-
-    /// Completes the files. They get their names when the batch is published.
-    ///
-    /// # Errors
-    /// When the system reports an error, or as for [`Batch::check`].
-    pub fn complete(mut self) -> Result<(), OutputError> {
-        for (name, writer) in std::mem::take(&mut self.files) {
-            let file = writer
-                .into_inner()
-                .map_err(|error| self.cannot_write(&name)(error.into_error()))?;
-            let other = self.pictures.filter(|format| *format != PictureFormat::Svg);
-            if let Some((stem, format)) = name.strip_suffix(".svg").zip(other) {
-                let other = format!("{stem}.{}", format.name());
-                let bytes = converted(&file, format).map_err(self.cannot_write(&other))?;
-                self.add(&other, &bytes)?;
-            }
-            file.as_file()
-                .sync_data()
-                .map_err(self.cannot_write(&name))?;
-            self.done.push((name, file.into_temp_path()));
-        }
-        let mut inner = self.batch.inner();
-        for (name, file) in self.done {
-            let name = inner.relative(&self.path.join(name));
-            inner.prepared.push((name, file));
-        }
-        Ok(())
-    }
-
-    /// Creates a file under a hidden name, in the folder of the batch.
-    fn hidden(&self, name: &str) -> Result<NamedTempFile, OutputError> {
-        let (path, inner) = (self.path.join(name), self.batch.inner());
-        inner.check(&path)?;
-        let name_alone = path.file_name().unwrap_or_default().to_string_lossy();
-        // The system's message would name the hidden file.
-        hidden_file(&inner.path, &name_alone)
-            .map_err(|error| self.cannot_write(name)(error.kind().into()))
-    }
-
-    fn cannot_write(&self, name: &str) -> impl FnOnce(io::Error) -> OutputError + use<> {
-        OutputError::io(format!("cannot write {}", self.path.join(name).display()))
-    }
+fn cannot_write(path: &Path) -> String {
+    format!("cannot write {}", path.display())
 }
 
 /// Creates a file under a hidden name in a folder.
@@ -384,7 +351,7 @@ fn hidden_file(folder: &Path, name: &str) -> io::Result<NamedTempFile> {
 /// # Errors
 /// When the system reports an error, or the file is there and was not written by this program.
 pub fn write_named_file(path: &Path, contents: &[u8]) -> Result<(), OutputError> {
-    let cannot = || OutputError::io(format!("cannot write {}", path.display()));
+    let cannot = || OutputError::io(cannot_write(path));
     if path.exists() && !path.is_file() {
         // A device, such as that of standard output.
         return fs::write(path, contents).map_err(cannot());
@@ -422,12 +389,6 @@ fn beginning(contents: &[u8]) -> String {
             .replace(|it: char| it.is_ascii_digit() || it == '.', ""),
         Err(_) => format!("{:?}", &contents[..contents.len().min(BYTES)]),
     }
-}
-
-/// Converts a picture to another format.
-fn converted(picture: &NamedTempFile, format: PictureFormat) -> io::Result<Vec<u8>> {
-    let picture = fs::read_to_string(picture.path())?;
-    format.of_picture(&picture).map_err(io::Error::other)
 }
 
 /// Locks a folder, exclusively or shared; `None` if the folder cannot be locked. The system unlocks it when the program ends, even if it is
@@ -483,29 +444,28 @@ mod tests {
 
     const ALL: [&str; 2] = ["x.csv", "seal.json"];
 
-    fn lock(path: &Path) -> Result<Batch, OutputError> {
-        Batch::lock(path, "run", Origin::default(), true)
+    fn lock(path: &Path) -> Result<Folder, OutputError> {
+        Folder::lock(path, "run", Origin::default(), true)
     }
 
     /// Writes the contents into all files, and publishes them.
     fn write(path: &Path, all: &[&str], contents: &str) -> Result<(), OutputError> {
-        let batch = lock(path)?;
-        let mut folder = batch.folder(path, all)?;
-        for (_, file) in folder.files() {
-            file.write_all(contents.as_bytes()).unwrap();
+        let folder = lock(path)?;
+        for name in all {
+            folder.write(name, contents.as_bytes())?;
         }
-        folder.complete()?;
-        batch.publish()
+        folder.publish()
     }
 
     #[test]
     fn what_is_not_completed_leaves_nothing() {
         let root = tempfile::tempdir().unwrap();
         let path = root.path().join("a/b");
-        let batch = lock(&path).unwrap();
-        let mut folder = batch.folder(&path.join("c"), &ALL).unwrap();
-        folder.write("x.csv", b"half").unwrap();
-        drop((folder, batch));
+        let folder = lock(&path).unwrap().within("c");
+        folder.write("x.csv", b"whole").unwrap();
+        let mut file = folder.create("y.csv").unwrap();
+        file.writer.write_all(b"half").unwrap();
+        drop((file, folder));
         assert!(names(root.path()).is_empty());
     }
 
@@ -558,17 +518,18 @@ mod tests {
     #[test]
     fn a_folder_is_written_to_by_one_run_at_a_time() {
         let root = tempfile::tempdir().unwrap();
-        let batch = lock(root.path()).unwrap();
-        let mut working = batch.folder(root.path(), &ALL).unwrap();
-        working.write("x.csv", b"slow").unwrap();
+        let working = lock(root.path()).unwrap();
+        let mut file = working.create("x.csv").unwrap();
+        file.writer.write_all(b"slow").unwrap();
         let before = names(root.path());
         for below in ["", "below"] {
             let error = lock(&root.path().join(below)).unwrap_err();
             assert!(error.to_string().contains("is being written to"), "{error}");
             assert_eq!(names(root.path()), before);
         }
-        working.complete().unwrap();
-        batch.publish().unwrap();
+        working.complete(file).unwrap();
+        working.write("seal.json", b"").unwrap();
+        working.publish().unwrap();
         assert_eq!(names(root.path()), [MANIFEST, "seal.json", "x.csv"]);
     }
 

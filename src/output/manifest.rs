@@ -80,18 +80,11 @@ impl Manifest {
         self.results.get(command).map_or(&[], |it| &it.files)
     }
 
-    /// Returns true if the results of another command contain this file.
-    pub(super) fn is_of_other(&self, command: &str, file: &str) -> bool {
-        let mut others = self.results.iter().filter(|(name, _)| *name != command);
-        others.any(|(_, results)| results.files.iter().any(|name| name == file))
-    }
-
-    /// Returns a scenario file other than this one, if the folder holds its results.
-    pub fn other_scenario_file(&self, own: &str) -> Option<&str> {
-        let mut files = self
-            .results
-            .values()
-            .filter_map(|it| it.origin.scenario_file.as_deref());
+    /// Returns another scenario file after which the folder is named; `None` if the folder of the results is not named after theirs.
+    pub(super) fn other_scenario_file(&self, origin: &Origin) -> Option<&str> {
+        let own = origin.scenario_file.as_deref()?;
+        let results = self.results.values();
+        let mut files = results.filter_map(|it| it.origin.scenario_file.as_deref());
         files.find(|file| *file != own)
     }
 

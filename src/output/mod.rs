@@ -32,7 +32,8 @@ pub(crate) use axes::{Axes, Scale};
 pub(crate) use chart::{BELOW_PX, Chart, LEFT_PX, Mark, Shape};
 pub(crate) use envelope::{Envelope, Thinned};
 pub use figure::Figure;
-pub use folder::{Batch, Folder, write_named_file};
+pub(crate) use folder::NewFile;
+pub use folder::{Folder, write_named_file};
 pub use manifest::{Manifest, Origin};
 pub use panels::Subject;
 pub(crate) use panels::{Panels, StateHistory};
@@ -47,7 +48,7 @@ pub(crate) use table::{
 pub(crate) use template::{filters, render};
 use thiserror::Error;
 
-use crate::scenario::shown_lines;
+use crate::scenario::{shown, shown_lines};
 
 /// Errors of writing results.
 #[derive(Debug, Error)]
@@ -61,6 +62,17 @@ pub enum OutputError {
         /// The error of the system.
         source: io::Error,
     },
+    /// The system does not let the program write to the folder for the results.
+    #[error("{what}: {source}")]
+    Unusable {
+        /// The failed action, with the path.
+        what: String,
+        /// The error of the system.
+        source: io::Error,
+    },
+    /// The folder is named after a scenario file, and has the results of another one.
+    #[error("{} holds the results of {}", .0.display(), shown(.1))]
+    OfOtherScenario(PathBuf, String),
     /// Another run is writing to the folder.
     #[error("the folder {} is being written to by another run", .0.display())]
     InUse(PathBuf),
@@ -95,6 +107,10 @@ impl OutputError {
     pub(crate) fn io(what: impl Into<String>) -> impl FnOnce(io::Error) -> Self {
         let what = what.into();
         |source| Self::Io { what, source }
+    }
+
+    fn unusable(what: String) -> impl FnOnce(io::Error) -> Self {
+        |source| Self::Unusable { what, source }
     }
 
     fn csv(what: impl Into<String>) -> impl FnOnce(csv::Error) -> Self {

@@ -7,8 +7,8 @@ use crate::scenario::shown_lines;
 /// The name and version of the program, as pages show them.
 pub(crate) const PROGRAM: &str = concat!(env!("CARGO_PKG_NAME"), " ", env!("CARGO_PKG_VERSION"));
 
-/// Scripts and styles of pages with a moving structure and curves over time. The scripts share one scope, in this order: the base, the stage,
-/// the plots, the curves of the page, and the player.
+/// Scripts and styles of pages with a moving structure and curves over time. The scripts share one scope, in this order; the script of a page follows
+/// them and calls `createPlayer` with its motion and its curves.
 pub(crate) const BASE: &str = include_str!("page/base.js");
 pub(crate) const STAGE: &str = include_str!("page/stage.js");
 pub(crate) const PLOTS: &str = include_str!("page/plots.js");

@@ -121,15 +121,13 @@ impl Results {
         self.files.iter().map(|(name, _)| *name).collect()
     }
 
-    /// Writes the files into a folder and marks the folder as complete.
+    /// Writes the files into a folder, where they get their names when the results are published.
     ///
     /// # Errors
-    /// When the system reports an error.
-    pub fn write(&self, mut folder: Folder) -> Result<(), OutputError> {
-        for (name, contents) in &self.files {
-            folder.write(name, contents)?;
-        }
-        folder.complete()
+    /// When the system reports an error, or as for [`Folder::check`].
+    pub fn write(&self, folder: &Folder) -> Result<(), OutputError> {
+        let mut files = self.files.iter();
+        files.try_for_each(|(name, contents)| folder.write(name, contents))
     }
 }
 

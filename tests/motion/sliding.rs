@@ -74,7 +74,7 @@ fn high_friction_prevents_sliding() {
         assert_eq!(with.yields.len(), without.openings.len());
         for (with, without) in with.yields.iter().zip(&without.openings) {
             assert_eq!(with.joint, without.joint);
-            assert_eq!(with.slips, None);
+            assert_eq!(with.slips_towards, None);
         }
     }
 }

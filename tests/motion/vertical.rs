@@ -229,7 +229,7 @@ fn the_vertical_acceleration_is_the_last_column_if_present() {
             &RunOptions::default(),
             Figure::SCREEN,
             Sinks {
-                open: None,
+                folder: None,
                 rotations: Some(Box::new(&mut text)),
             },
             &mut |_| ControlFlow::Continue(()),

@@ -92,7 +92,7 @@ fn the_summary_lists_the_warnings() {
     assert!(
         reported
             .iter()
-            .any(|warning| warning.contains("needs a friction of ")),
+            .any(|warning| warning.contains("needs a friction coefficient of ")),
         "{reported:?}"
     );
     // Unlikely numbers, which the program prints as warnings.

@@ -51,7 +51,7 @@ fn every_kind_runs_at_once_and_its_comments_are_true() {
         let init = archrock(folder.path(), &["init", kind]);
         assert_eq!(init.status.code(), Some(0), "{}", stderr(&init));
         let name = format!("{kind}.toml");
-        assert!(stderr(&init).contains(&format!("now: archrock {command} {name}")));
+        assert!(stderr(&init).contains(&format!("Next: archrock {command} {name}")));
         let run = archrock(folder.path(), &[command, &name]);
         assert_eq!(run.status.code(), Some(0), "{}", stderr(&run));
         assert!(folder.path().join("results").join(kind).is_dir());

@@ -150,7 +150,7 @@ fn several_scenarios_run_one_after_another() {
         path,
         &["run", "a.toml", "b.toml", "--rotations", "-"],
     ));
-    assert!(said.contains("--rotations - is for one scenario"));
+    assert!(said.contains("--rotations - takes one scenario"));
 }
 
 #[test]

@@ -195,7 +195,7 @@ fn several_files_are_checked_at_once_and_one_is_drawn() {
     // Keys that are ignored for a file with its own unit cause a warning.
     let output = check(&two);
     assert!(
-        stderr(&output).contains("g.AT2: `unit` is for the tables among the files"),
+        stderr(&output).contains("g.AT2: ignored `unit`"),
         "{}",
         stderr(&output)
     );
@@ -243,7 +243,7 @@ fn several_files_are_checked_at_once_and_one_is_drawn() {
     stdout(&check(&["s.toml", "--plot", "s.svg"]));
     assert!(folder.path().join("s.svg").exists());
     let both = refusal(&check(&["g.AT2", "gal.at2", "--plot", "r.svg"]));
-    assert!(both.contains("--plot is of one file"));
+    assert!(both.contains("--plot takes one file"));
 }
 
 #[test]

@@ -500,7 +500,7 @@ fn the_verdict_names_repetitions_that_overturn_to_the_other_side() {
     fs::write(folder.path().join("s.toml"), text).unwrap();
     let words = printed(folder.path(), &["run", "s.toml", "--no-report"]);
     assert!(
-        words.contains("ANOTHER OUTCOME, overturned to the right with half steps"),
+        words.contains("DIFFERENT OUTCOME, overturned to the right with half steps"),
         "{words}"
     );
     assert!(

@@ -626,7 +626,7 @@ fn a_push_is_compared_with_the_onset_on_its_side() {
     }
 }
 
-/// A cap that bears half a hundredth of the weight on a face of 30 degrees needs a friction of 0.58 there, and does not count; one with two
+/// A cap that bears half a hundredth of the weight on a face of 30 degrees needs a friction coefficient of 0.58 there, and does not count; one with two
 /// hundredths does. Under a push too weak to move it the rest needs the ratio of that push to gravity.
 #[test]
 fn needed_friction_counts_joints_bearing_a_hundredth_of_the_weight() {

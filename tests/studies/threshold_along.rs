@@ -373,7 +373,7 @@ fn faults_are_refused_with_a_remedy() {
         &["--hinges", "four,free", "--set", "arch.voussoirs=7"],
     ]
     .concat();
-    refused(at, &two, &["--along is for one model"]);
+    refused(at, &two, &["--along takes one model"]);
     let free = [
         &along(RANGE)[..],
         &[

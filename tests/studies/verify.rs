@@ -9,8 +9,8 @@ use crate::common::{ARCH, COLUMN};
 use archrock::scenario::LimitState;
 use archrock::studies::results::words_of_json;
 use archrock::studies::verify::{
-    DisplacementCheck, GoverningSide, Mechanism, Method, SideCheck, StateCheck, Summary,
-    VerifyError, page, verify, words,
+    DisplacementCheck, GoverningSide, Mechanism, Method, Page, SideCheck, StateCheck, Summary,
+    VerifyError, page_of, verify, words,
 };
 use archrock::{Scenario, Sway};
 use nalgebra::Vector2;
@@ -260,7 +260,7 @@ fn c8_7_1_2_1_8_a_capacity_reached_before_onset_counts_as_the_onset() {
     assert_eq!(json["states"]["slv"]["method"], "activation");
     assert_eq!(json["states"]["slv"]["side"], "either");
     // The row of the page has the accelerations that are compared, not the displacements.
-    let html = page(&parsed(&text), &check, "2025-01-31");
+    let html = page(&parsed(&text), &check);
     let row = html
         .split("<tr class=\"counts\">")
         .find(|row| row.contains(">SLV<"));
@@ -611,7 +611,7 @@ fn c8_7_1_1_the_friction_of_the_scenario_counts() {
     assert_eq!(check_enough.warnings, Vec::<String>::new());
     let json = serde_json::to_value(&check_enough).unwrap();
     assert_eq!(json["allowed_friction"], 0.52);
-    assert!(page(&enough, &check_enough, "").contains("0.52"));
+    assert!(page(&enough, &check_enough).contains("0.52"));
     assert_eq!(check(&with(0.8)).allowed_friction, 0.577);
     // This arch needs 0.590. With a smaller coefficient it slides first, with the same words whether the coefficient is that of the scenario or of
     // the Circolare, and whether the arch has joints or is continuous.
@@ -653,7 +653,7 @@ fn the_page_shows_both_sides_if_they_differ() {
     ] {
         let scenario = parsed(&format!("{structure}{DEMAND}"));
         let check = verify(&scenario).unwrap();
-        let html = page(&scenario, &check, "2025-01-31");
+        let html = page(&scenario, &check);
         assert_eq!(html.contains("mirror image"), sides == 1, "{structure}");
         assert_eq!(html.contains("either side"), sides == 1, "{structure}");
         for sway in ["right", "left"] {
@@ -681,7 +681,7 @@ fn unlikely_and_ignored_input_causes_warnings() {
     );
     let scenario = parsed(&text);
     let check = verify(&scenario).unwrap();
-    let html = page(&scenario, &check, "");
+    let html = page(&scenario, &check);
     for words in ["0.1 %", "9.8 m/s2", "[uncertain]"] {
         let mut given = check.warnings.iter();
         assert!(
@@ -692,7 +692,7 @@ fn unlikely_and_ignored_input_causes_warnings() {
         assert!(html.contains(words), "{words}");
     }
     assert_eq!(check.warnings.len(), 3);
-    assert_eq!(check.top, "top");
+    assert_eq!(check.top.name(), "top");
     assert!(html.contains("With the top as control point") && !html.contains("crown"));
 
     let folder = in_folder("[blocks]\njoints = 'j.csv'\nsupports = 'left'\n", DEMAND);
@@ -797,6 +797,32 @@ fn verify_prints_and_writes_the_check() {
     ] {
         let own = parsed(&format!("{COLUMN}{text}"));
         assert_eq!(parsed(&own.to_toml()), own);
+    }
+}
+
+/// Returns the page of a check, after it has been made again from its JSON alone.
+fn page(scenario: &Scenario, check: &Summary) -> String {
+    let page = Page::new(scenario, check, Some("2025-01-31".to_owned()));
+    let json = serde_json::to_string(&page).unwrap();
+    assert_eq!(page_of(&json).unwrap(), page.html());
+    page.html()
+}
+
+/// The words of all limit states and structures are functions of the JSON of the page.
+#[test]
+fn the_page_is_rendered_again_from_its_json() {
+    for text in [
+        format!("{ARCH}{DEMAND}"),
+        format!("{}{DEMAND}{HEIGHT}", on_piers()),
+        format!("{COLUMN}{DEMAND}[verify]\nsides = 'right'\nfree_standing = {{ t0_s = 0.15 }}\n"),
+        format!("{TIED}{DEMAND}"),
+        format!("{DRUMS}{DEMAND}"),
+    ] {
+        let scenario = parsed(&text);
+        let html = page(&scenario, &verify(&scenario).unwrap());
+        assert!(html.contains(", 2025-01-31</td>"), "{text}");
+        let dated = Page::new(&scenario, &verify(&scenario).unwrap(), None);
+        assert_eq!(dated.html(), html.replace(", 2025-01-31</td>", "</td>"));
     }
 }
 

@@ -7,6 +7,7 @@
 
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, SolverStatus};
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::cone_program;
@@ -23,14 +24,16 @@ const LARGEST_COEFFICIENT: f64 = 100.0;
 const FRICTION_EXCESS_TOLERANCE: f64 = 1e-8;
 
 /// Joint that opens or slips in a mechanism.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct YieldingJoint {
-    /// Index of the joint.
+    /// The joint, from 0 at the left springing or the base.
     pub joint: usize,
-    /// Flags of opening at the intrados and at the extrados, beyond the dilation due to slip.
-    pub opens: [bool; 2],
-    /// Edge towards which the right block slips; `None` without slip.
-    pub slips: Option<Edge>,
+    /// True if the joint opens at the intrados by more than dilatancy due to slipping.
+    pub opens_intrados: bool,
+    /// True if the joint opens at the extrados by more than dilatancy due to slipping.
+    pub opens_extrados: bool,
+    /// The edge towards which the right block slips; `None` if the joint does not slip.
+    pub slips_towards: Option<Edge>,
 }
 
 /// Push of the first motion of a row with sliding joints.
@@ -45,7 +48,9 @@ pub struct FrictionOnset {
 impl FrictionOnset {
     /// Returns whether a joint of the mechanism slips.
     pub fn sliding_governs(&self) -> bool {
-        self.yields.iter().any(|joint| joint.slips.is_some())
+        self.yields
+            .iter()
+            .any(|joint| joint.slips_towards.is_some())
     }
 }
 
@@ -290,11 +295,13 @@ impl FrictionProgram {
             .enumerate()
             .map(|(joint, rates)| YieldingJoint {
                 joint,
-                opens: [moves(rates[0]), moves(rates[1])],
+                opens_intrados: moves(rates[0]),
+                opens_extrados: moves(rates[1]),
                 // Friction at its bound acts against the slip.
-                slips: Edge::only([moves(rates[2]), moves(rates[3])]),
+                slips_towards: Edge::only([moves(rates[2]), moves(rates[3])]),
             });
-        let yields = yields.filter(|joint| joint.opens != [false; 2] || joint.slips.is_some());
+        let yields = yields
+            .filter(|it| it.opens_intrados || it.opens_extrados || it.slips_towards.is_some());
         Ok(Some((solution.x[0], yields.collect())))
     }
 }

@@ -4,8 +4,8 @@ mod report;
 
 use self::report::open_joints;
 pub use self::report::{
-    FourLinkSide, FourLinks, Friction, FrictionLimit, FrictionSide, OpenHinge, Summary, TieLimits,
-    Ties, YieldingJoint, YieldingTies,
+    FourLinkSide, FourLinks, Friction, FrictionLimit, FrictionSide, MechanismHinge, Summary,
+    TieLimits, Ties, YieldingTies,
 };
 use super::results::{PrintedResult, StudyError};
 use crate::mechanics::friction::{self, FrictionOnset};
@@ -125,16 +125,10 @@ fn ties(row: &Row) -> Result<Ties, StabilityError> {
 fn with_friction(row: &Row, coefficient: f64) -> Result<Friction, FrictionError> {
     let sides = Sides::try_of(|sway| {
         let onset = friction::onset(row, coefficient, sway)?;
-        let joint = |joint: &friction::YieldingJoint| YieldingJoint {
-            joint: joint.joint,
-            opens_intrados: joint.opens[0],
-            opens_extrados: joint.opens[1],
-            slips_towards: joint.slips,
-        };
         Ok::<_, FrictionError>(FrictionSide {
             incipient_acceleration_g: onset.as_ref().map(|onset| onset.acceleration_g),
             sliding_governs: onset.as_ref().is_some_and(FrictionOnset::sliding_governs),
-            mechanism: onset.map(|onset| onset.yields.iter().map(joint).collect()),
+            mechanism: onset.map(|onset| onset.yields),
         })
     })?;
     Ok(Friction {

@@ -4,6 +4,7 @@ use askama::Template;
 use serde::{Deserialize, Serialize};
 
 use crate::argument::fixed;
+use crate::mechanics::friction::YieldingJoint;
 use crate::mechanics::settling::Pin;
 use crate::mechanics::{Edge, Equivalent, RowOnset, Sides};
 use crate::output::mechanisms::{HINGES, by_body, columns, degrees};
@@ -20,7 +21,7 @@ pub struct Summary {
     /// Ground acceleration that starts the structure, in m/s2; null if no push starts it.
     pub incipient_acceleration_m_s2: Sides<Option<f64>>,
     /// Hinges of the mechanism that starts, from left to right.
-    pub mechanism: Sides<Vec<OpenHinge>>,
+    pub mechanism: Sides<Vec<MechanismHinge>>,
     /// Rotations of the bodies at the unstable equilibrium of the first mechanism to the right, in radians; absent unless the structure moves as
     /// four links or as a column.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -59,7 +60,7 @@ pub struct Summary {
 /// A hinge of the mechanism that starts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
-pub enum OpenHinge {
+pub enum MechanismHinge {
     /// A joint of a row that opens.
     Joint {
         /// The joint, from 0 at the left springing or the base.
@@ -107,7 +108,7 @@ pub struct YieldingTies {
     /// The smallest tie forces that give this push, in N; null if there is no limit while ties hold.
     pub forces_n: Option<Vec<f64>>,
     /// Hinges of the mechanism.
-    pub mechanism: Vec<OpenHinge>,
+    pub mechanism: Vec<MechanismHinge>,
 }
 
 /// The first mechanism of a row as four links.
@@ -174,24 +175,11 @@ pub struct FrictionSide {
     pub mechanism: Option<Vec<YieldingJoint>>,
 }
 
-/// A joint of a mechanism in which joints slip.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct YieldingJoint {
-    /// The joint, from 0 at the left springing or the base.
-    pub joint: usize,
-    /// True if the joint opens at the intrados by more than dilatancy due to slipping.
-    pub opens_intrados: bool,
-    /// True if the joint opens at the extrados by more than dilatancy due to slipping.
-    pub opens_extrados: bool,
-    /// The edge towards which the right block slips; `None` if the joint does not slip.
-    pub slips_towards: Option<Edge>,
-}
-
 impl Summary {
     /// Makes a summary of the push that starts the structure and its mechanism.
     pub(super) fn new(
         incipient_acceleration_g: Sides<Option<f64>>,
-        mechanism: Sides<Vec<OpenHinge>>,
+        mechanism: Sides<Vec<MechanismHinge>>,
         gravity_m_s2: f64,
     ) -> Self {
         let in_m_s2 = |push_g: &Option<f64>| push_g.map(|push_g| push_g * gravity_m_s2);
@@ -210,7 +198,7 @@ impl Summary {
         let names = columns(&bodies, "rotation", "rad").into_iter();
         let hinges = |sway| {
             let hinges = model.hinges_after(0, sway);
-            hinges.into_iter().map(OpenHinge::Link).collect()
+            hinges.into_iter().map(MechanismHinge::Link).collect()
         };
         let starts_g = Sides::of(|sway| model.incipient_acceleration_g(sway));
         Self {
@@ -244,12 +232,12 @@ impl Summary {
 }
 
 /// Returns the joints of a row that open in a mechanism.
-pub(super) fn open_joints(row: &Row, onset: Option<&RowOnset>) -> Vec<OpenHinge> {
+pub(super) fn open_joints(row: &Row, onset: Option<&RowOnset>) -> Vec<MechanismHinge> {
     let openings = onset.into_iter().flat_map(|onset| &onset.openings);
     let open = openings.map(|opening| {
         let corner = opening.hinge.unwrap_or(Edge::Intrados);
         let corner_m = row.joints[opening.joint].corner_m(corner);
-        OpenHinge::Joint {
+        MechanismHinge::Joint {
             joint: opening.joint,
             edge: opening.hinge,
             x_m: corner_m.x,
@@ -259,7 +247,7 @@ pub(super) fn open_joints(row: &Row, onset: Option<&RowOnset>) -> Vec<OpenHinge>
     open.collect()
 }
 
-impl OpenHinge {
+impl MechanismHinge {
     /// Returns a line about the hinge at this position in the mechanism, from 0.
     fn words(&self, position: &usize) -> String {
         let named = |edge: &Option<Edge>, otherwise| edge.map_or(otherwise, Edge::name);
@@ -289,19 +277,17 @@ impl OpenHinge {
     }
 }
 
-impl YieldingJoint {
-    /// Returns the motion of the joint in words.
-    fn words(&self) -> String {
-        // Hinges are named by the edge about which the joint turns.
-        let opens = match (self.opens_intrados, self.opens_extrados) {
-            (true, true) => Some("parts at both edges".to_owned()),
-            (true, false) => Some("opens with its hinge at the extrados".to_owned()),
-            (false, true) => Some("opens with its hinge at the intrados".to_owned()),
-            (false, false) => None,
-        };
-        let slips = self.slips_towards;
-        let slips = slips.map(|edge| format!("slips, its right side towards the {}", edge.name()));
-        let does: Vec<String> = opens.into_iter().chain(slips).collect();
-        does.join(" and ")
-    }
+/// Returns the motion of a joint in words.
+fn motion_in_words(joint: &YieldingJoint) -> String {
+    // Hinges are named by the edge about which the joint turns.
+    let opens = match (joint.opens_intrados, joint.opens_extrados) {
+        (true, true) => Some("parts at both edges".to_owned()),
+        (true, false) => Some("opens with its hinge at the extrados".to_owned()),
+        (false, true) => Some("opens with its hinge at the intrados".to_owned()),
+        (false, false) => None,
+    };
+    let slips = joint.slips_towards;
+    let slips = slips.map(|edge| format!("slips, its right side towards the {}", edge.name()));
+    let does: Vec<String> = opens.into_iter().chain(slips).collect();
+    does.join(" and ")
 }

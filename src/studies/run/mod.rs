@@ -24,12 +24,12 @@ mod summary;
 mod tables;
 mod words;
 
+use std::collections::BTreeMap;
 use std::io;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
 use nalgebra::Vector2;
-use serde_json::Value;
 
 use self::comparison::Comparison;
 pub use self::impacts::NotableImpacts;
@@ -50,7 +50,8 @@ use crate::dynamics::repeatability::Repetitions;
 use crate::dynamics::variation::Variations;
 use crate::dynamics::{FallEnd, Repeatability};
 use crate::output::{
-    Figure, Folder, Named, OutputError, Scene, Subject, TableWriter, pretty, render, summary_of,
+    Figure, Folder, Named, NewFile, OutputError, Scene, Subject, TableWriter, pretty, render,
+    summary_of,
 };
 use crate::scenario::{ModelKind, Scenario};
 use crate::{Event, Model, OpenHinge, Pose, Recorder, Sample, Summary as History, Sway};
@@ -96,21 +97,9 @@ pub struct RunOptions {
     pub poses: bool,
     /// Points of the undeformed structure, in metres, whose displacements are reported: at most [`MAX_POINTS`].
     pub points_m: Vec<Vector2<f64>>,
-    /// The report on the samples of `[uncertain]` for each model; empty without samples.
-    pub uncertainty: Vec<SampleReport>,
+    /// The results on the samples of `[uncertain]` for each model, whose words begin the page and whose JSON ends the summary; empty without samples.
+    pub samples: Vec<Results>,
 }
-
-/// The report on the samples of a model: its page begins with the words, and its summary ends with the JSON.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SampleReport {
-    /// The report in words.
-    pub words: String,
-    /// The report as JSON.
-    pub summary: Value,
-}
-
-/// Opens the folder for the results of a scenario with its model of motion, for files of these names; `None`: no files are written.
-pub type OpenFolder<'w> = &'w mut dyn FnMut(&Scenario, &[&str]) -> Result<Option<Folder>, String>;
 
 /// Receives the rotations in place of a file.
 pub type RotationsOutput<'w> = Option<Box<dyn io::Write + 'w>>;
@@ -118,8 +107,8 @@ pub type RotationsOutput<'w> = Option<Box<dyn io::Write + 'w>>;
 /// The receivers of the tables of a run, which are written while it is computed.
 #[derive(Default)]
 pub struct Sinks<'w> {
-    /// The folders; without it no files are written.
-    pub open: Option<OpenFolder<'w>>,
+    /// The folder; with several models of motion each has a folder inside it. `None`: no files are written.
+    pub folder: Option<Folder>,
     /// The output for the rotations in place of a file.
     pub rotations: RotationsOutput<'w>,
 }
@@ -172,12 +161,11 @@ pub fn results(
         .collect();
     let (runs, mut all) = (runs.map_err(StudyError::Scenario)?, Vec::new());
     for (number, run) in runs.iter().enumerate() {
-        // Opened before the history starts, so a folder that cannot be written costs no simulation.
-        let open = sinks.open.as_mut();
-        let folder = open.map_or(Ok(None), |open| open(run.scenario, &run.files()));
-        let folder = folder.map_err(StudyError::Scenario)?;
-        let uncertainty = options.uncertainty.get(number);
-        all.push(run.compute(folder, sinks.rotations.take(), uncertainty, &mut *watch)?);
+        let folder = sinks.folder.as_ref();
+        let folder = folder.map(|it| it.of_model(run.scenario.motion.kind, runs.len() > 1));
+        let samples = options.samples.get(number);
+        let rotations = sinks.rotations.take();
+        all.push(run.compute(folder.as_ref(), rotations, samples, &mut *watch)?);
     }
     let mut results = Results::default();
     let comparison = (all.len() > 1).then(|| {
@@ -263,14 +251,16 @@ impl<'a> Run<'a> {
     /// `[uncertain]`. Rotations go to `rotations` instead, if it is given.
     fn compute(
         &self,
-        mut folder: Option<Folder>,
+        folder: Option<&Folder>,
         rotations: RotationsOutput<'_>,
-        uncertainty: Option<&SampleReport>,
+        samples: Option<&Results>,
         watch: Watch<'_>,
     ) -> Result<ModelResults, StudyError> {
         let (scenario, model) = (self.scenario, &*self.model);
         let (ground, request) = (scenario.ground_motion(), scenario.request());
         let mut drawings = Drawings::new(self, folder.is_some());
+        // Created before the history starts, so a folder that cannot be written costs no simulation.
+        let mut files = folder.map_or_else(|| Ok(Vec::new()), |folder| self.create(folder))?;
         let repeats = !self.options.no_repeat && model.row().is_some();
         let repetitions = repeats.then(|| Repetitions::start(model, ground, &request));
         let variations = match self.options.no_repeat {
@@ -281,7 +271,7 @@ impl<'a> Run<'a> {
         let duration_ms = (request.end_s * MILLISECONDS).round() as usize;
         let (history, rows) = {
             let mut recorder = RunRecorder {
-                tables: Tables::new(self, folder.as_mut(), rotations)?,
+                tables: Tables::new(self, &mut files, rotations)?,
                 drawings: &mut drawings,
                 watch: &mut *watch,
                 duration_ms,
@@ -316,13 +306,22 @@ impl<'a> Run<'a> {
             summary.to_quote = None;
             summary.compared_models = self.all_models.to_vec();
         }
-        summary.uncertain = uncertainty.map(|samples| samples.summary.clone());
+        summary.uncertain = samples.map(|samples| samples.summary.clone());
         let files = folder.map(|folder| {
-            let of_samples = uncertainty.map_or("", |samples| &samples.words);
-            let mut files = drawings.files(self, &history, of_samples, &summary);
-            let json = pretty(&summary_of(&summary)?);
-            files.push((SUMMARY, json.into_bytes()));
-            self.write(folder, files, &drawings, rows)
+            let of_samples = samples.map_or("", |samples| &samples.words);
+            let mut texts = drawings.texts(self, &history, of_samples, &summary);
+            texts.insert(SUMMARY, pretty(&summary_of(&summary)?));
+            let film_pictures = drawings.add_film(self, folder)?;
+            self.write(folder, files.into_iter().collect(), &texts)?;
+            let snapshots = drawings.snapshots.as_ref();
+            Ok::<_, OutputError>(Files {
+                folder: folder.path().to_owned(),
+                names: self.files(),
+                rows,
+                film_pictures,
+                outside_times_s: snapshots
+                    .map_or_else(Default::default, Snapshots::outside_times_s),
+            })
         });
         Ok(ModelResults {
             answer: summary.answer(scenario),
@@ -332,28 +331,27 @@ impl<'a> Run<'a> {
         })
     }
 
-    /// Writes the files and the film into the folder; `rows` is the number of samples in the tables.
+    /// Creates its tables in a folder to which all its files can be written.
+    fn create(&self, folder: &Folder) -> Result<Vec<(&'static str, NewFile)>, OutputError> {
+        let names = self.files();
+        folder.check(&names)?;
+        let tables = names.into_iter().filter(|name| name.ends_with(".csv"));
+        let created = tables.map(|name| Ok((name, folder.create(name)?)));
+        created.collect()
+    }
+
+    /// Completes the tables and writes the other files, the seal last.
     fn write(
         &self,
-        mut folder: Folder,
-        files: Vec<(&'static str, Vec<u8>)>,
-        drawings: &Drawings,
-        rows: usize,
-    ) -> Result<Files, OutputError> {
-        let snapshots = drawings.snapshots.as_ref();
-        let written = Files {
-            folder: folder.path().to_owned(),
-            names: self.files(),
-            rows,
-            film_pictures: drawings.add_film(self, &mut folder)?,
-            outside_times_s: snapshots.map_or_else(Default::default, Snapshots::outside_times_s),
-        };
-        let results = Results {
-            files,
-            ..Results::default()
-        };
-        results.write(folder)?;
-        Ok(written)
+        folder: &Folder,
+        mut tables: BTreeMap<&str, NewFile>,
+        texts: &BTreeMap<&str, String>,
+    ) -> Result<(), OutputError> {
+        let mut names = self.files().into_iter();
+        names.try_for_each(|name| match tables.remove(name) {
+            Some(table) => folder.complete(table),
+            None => folder.write(name, texts[name].as_bytes()),
+        })
     }
 
     /// The subject of the pictures.
@@ -452,13 +450,13 @@ impl Drawings {
     }
 
     /// Makes the pictures, and the page with the words.
-    fn files(
+    fn texts(
         &self,
         run: &Run<'_>,
         history: &History,
         uncertainty: &str,
         summary: &Summary,
-    ) -> Vec<(&'static str, Vec<u8>)> {
+    ) -> BTreeMap<&'static str, String> {
         let (figure, title) = (run.figure, title(run.scenario));
         let subject = run.subject(title);
         let picture = self.timeline.draw(figure, &subject, history, &self.points);
@@ -475,18 +473,19 @@ impl Drawings {
         });
         let snapshots = self.snapshots.as_ref();
         let snapshots = snapshots.map(|snapshots| snapshots.draw(figure, title));
-        let files = [
+        let texts = [
             (PICTURE, Some(picture)),
             (REPORT, report),
             (SNAPSHOTS, snapshots),
         ];
-        let files = files.into_iter();
-        let files = files.filter_map(|(name, text)| Some((name, text?.into_bytes())));
-        files.collect()
+        let texts = texts.into_iter();
+        texts
+            .filter_map(|(name, text)| Some((name, text?)))
+            .collect()
     }
 
     /// Adds the film to the folder. Returns the number of its pictures; `None` without film.
-    fn add_film(&self, run: &Run<'_>, folder: &mut Folder) -> Result<Option<usize>, OutputError> {
+    fn add_film(&self, run: &Run<'_>, folder: &Folder) -> Result<Option<usize>, OutputError> {
         let Some(film) = &self.film else {
             return Ok(None);
         };
@@ -513,13 +512,13 @@ struct Tables<'f> {
 impl<'f> Tables<'f> {
     fn new(
         run: &Run<'_>,
-        folder: Option<&'f mut Folder>,
+        files: &'f mut [(&str, NewFile)],
         rotations: RotationsOutput<'f>,
     ) -> Result<Self, OutputError> {
         type File<'f> = Box<dyn io::Write + 'f>;
         let model = &*run.model;
-        let files = folder.into_iter().flat_map(Folder::files);
-        let files = files.map(|(name, file)| (name, Box::new(file) as File<'f>));
+        let files = files.iter_mut();
+        let files = files.map(|(name, file)| (*name, Box::new(&mut file.writer) as File<'f>));
         let streamed = rotations.map(|file| (ROTATIONS, file));
         let mut tables = Self::default();
         for (name, file) in streamed.into_iter().chain(files) {

@@ -1,7 +1,7 @@
 //! The tables of a run: `rotations.csv`, `poses.csv`, `joints.csv`, `events.csv` and `impacts.csv`.
 
 use crate::output::mechanisms::columns;
-use crate::output::{Cell, Column, column, list, numbers, row_number, several};
+use crate::output::{Cell, Column, column, fields, list, numbers, row_number, several};
 use crate::{Event, GroundMotion, Hinge, Impact, MechanismModel, Model, Sample, Sway};
 
 use super::Scales;
@@ -25,12 +25,9 @@ pub(super) fn rotations(
 ) -> Vec<Column<'static, Sample>> {
     let bodies = model.bodies();
     let rates = columns(&bodies, "rate", "rad_s");
-    let mut all = vec![
-        column("time_s", |sample: &Sample| sample.time_s),
-        column("ground_acceleration_m_s2", |sample: &Sample| {
-            sample.ground_acceleration_m_s2
-        }),
-        column("phase", |sample: &Sample| sample.phase),
+    let sampled = fields!(|sample: &Sample| sample => time_s, ground_acceleration_m_s2, phase);
+    let mut all = Vec::from(sampled);
+    all.extend([
         column("state", |sample: &Sample| sample.state.name()),
         numbers(columns(&bodies, "rotation", "rad"), |sample: &Sample| {
             &sample.rotations_rad
@@ -43,18 +40,14 @@ pub(super) fn rotations(
             }),
         },
         column("friction_demand", |sample: &Sample| sample.demand.friction),
-    ];
+    ]);
     if ground.has_vertical() {
-        all.push(column("vertical_acceleration_m_s2", |sample: &Sample| {
-            sample.vertical_acceleration_m_s2
-        }));
+        all.extend(fields!(|sample: &Sample| sample => vertical_acceleration_m_s2));
     }
     if ground.right_foot().is_some() {
-        all.push(column("right_foot_x_m", |sample: &Sample| {
-            sample.feet_apart_m.x
-        }));
-        all.push(column("right_foot_y_m", |sample: &Sample| {
-            sample.feet_apart_m.y
+        let names = ["x", "y"].map(|axis| format!("right_foot_{axis}_m"));
+        all.push(numbers(names, |sample: &Sample| {
+            sample.feet_apart_m.as_slice()
         }));
     }
     if let Some(scales) = scales {

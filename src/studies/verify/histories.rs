@@ -149,19 +149,6 @@ fn both_pass(sides: &Sides<HistorySide>, passed: fn(&HistorySide) -> Option<bool
     }
 }
 
-impl HistorySide {
-    /// Returns the verdict without and with FC, in words.
-    pub const fn verdict(&self) -> &'static str {
-        match (self.passed, self.passed_over_fc) {
-            (Some(true), Some(true)) => "passed",
-            (Some(true), Some(false)) => "passed without FC only",
-            (Some(false), _) => "not passed",
-            (None, Some(false)) => "not passed with FC, no verdict without",
-            (_, None) | (None, Some(true)) => "no verdict",
-        }
-    }
-}
-
 /// Computes the histories of a limit state; `None` if it has no records.
 pub(super) fn histories(
     input: &CheckInput<'_>,

@@ -31,7 +31,7 @@ use crate::scenario::{
 };
 pub use histories::{ComparedPeak, Histories, HistorySide, MeanSpectrum, Peak, RecordPeaks};
 pub use mechanism::{Body, CapacityCurves, HeldTie, Mechanism, PlacedHinge};
-pub use report::{FILES, page, report, words};
+pub use report::{FILES, Page, SidePictures, page_of, report, words};
 pub use spectrum::{FloorMode, Ground, Spectrum};
 
 /// Friction coefficient that the Circolare gives for walls (C8.7.1.2.1.2).
@@ -205,16 +205,6 @@ named! {
     }
 }
 
-impl Method {
-    /// Returns the name in words.
-    const fn words(self) -> &'static str {
-        match self {
-            Self::Simplified => "q times activation",
-            named => named.name(),
-        }
-    }
-}
-
 /// The result of a method, with capacity and demand in a unit.
 type MethodResult = (Method, Margin, Option<([f64; 2], &'static str)>);
 
@@ -296,6 +286,16 @@ pub struct StateCheck {
     pub sides: BTreeMap<Sway, SideCheck>,
 }
 
+named! {
+    /// The highest point of a structure.
+    pub enum HighestPoint {
+        /// The crown of an arch.
+        Crown = "crown",
+        /// The top of a structure on one support.
+        Top = "top",
+    }
+}
+
 /// A decision where the text of the Circolare leaves a choice.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Decision {
@@ -355,11 +355,9 @@ pub struct Summary {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub tie_places: Vec<String>,
     /// True if the left side is the mirror image of the right one, including all numbers.
-    #[serde(skip)]
     pub is_symmetric: bool,
-    /// Name of the highest point: the crown of an arch, or the top of a structure on one support.
-    #[serde(skip)]
-    pub top: &'static str,
+    /// The highest point, a second control point of the capacity curve.
+    pub top: HighestPoint,
 }
 
 /// Returns true if two numbers of mirrored sides differ by rounding errors only.
@@ -412,7 +410,6 @@ pub fn verify(scenario: &Scenario) -> Result<Summary, VerifyError> {
     let formulas = "Circolare 7/2019, C8.7.1.2.1, with the spectra of NTC 2018";
     let results = states.values().filter_map(|one| one.zeta_e);
     let verdicts = states.iter().map(|(state, one)| (*state, one.verdict));
-    let has_top = structure.stands_on_one_support();
     let mut summary = Summary {
         program: env!("CARGO_PKG_NAME").into(),
         version: env!("CARGO_PKG_VERSION").into(),
@@ -437,9 +434,12 @@ pub fn verify(scenario: &Scenario) -> Result<Summary, VerifyError> {
         not_covered: Vec::new(),
         scenario: scenario.to_json(),
         tie_places: structure.tie_places(),
-        top: if has_top { "top" } else { "crown" },
+        top: match structure.stands_on_one_support() {
+            true => HighestPoint::Top,
+            false => HighestPoint::Crown,
+        },
     };
-    report::add_notes(scenario, &mut summary);
+    report::add_notes(&mut summary, scenario.unlikely());
     Ok(summary)
 }
 

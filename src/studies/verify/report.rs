@@ -6,17 +6,16 @@ use std::collections::BTreeMap;
 
 use askama::Template;
 use askama::filters::Safe;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::histories::{FOR_THE_MEAN, SPECTRUM_MARGIN};
 use super::{
-    Decision, FRICTION, Histories, Mechanism, Method, PlacedHinge, Spectrum, StateCheck, Summary,
-    Verdict, alike, picture,
+    Decision, FRICTION, HighestPoint, Histories, Mechanism, Method, PlacedHinge, Spectrum,
+    StateCheck, Summary, Verdict, alike, picture,
 };
 use crate::clock;
 use crate::dynamics::demand::damping_factor;
-use crate::mechanics::Edge;
 use crate::output::{Figure, OutputError, filters, render};
 use crate::scenario::{CONFIDENCE_FACTOR, CheckedSides, LimitState, Scenario, StateRule};
 use crate::studies::{Results, no_verdict};
@@ -37,9 +36,8 @@ const MOST_POINTS: usize = 40;
 /// When a value is not finite.
 pub fn report(scenario: &Scenario, check: &Summary) -> Result<Results, OutputError> {
     let today = clock::since_1970().map(|since| date_of(since.as_secs() / 86_400));
-    let today = today.unwrap_or_default();
-    let page = page(scenario, check, &today);
-    Results::new(&FILES, check, [page.into_bytes()])
+    let page = Page::new(scenario, check, today);
+    Results::new(&FILES, check, [page.html().into_bytes()])
 }
 
 /// Returns the verdict in a sentence, then the result for each limit state, with the governing side.
@@ -47,45 +45,69 @@ pub fn words(check: &Summary) -> String {
     render(check)
 }
 
-/// Makes the page of a check. `date` is the date of the check, empty if it is unknown.
-pub fn page(scenario: &Scenario, check: &Summary, date: &str) -> String {
-    let is_one = check.printed_sides() == 1;
-    let figure = if is_one { "78mm" } else { "90mm" };
-    let figure: Figure = figure.parse().expect("a width of a figure");
-    let drawn = |(sway, mechanism): (&Sway, _)| {
-        let structure = &scenario.structure;
-        SidePictures {
-            sway: *sway,
-            mechanism,
-            picture: picture::mechanism(figure, structure, *sway, mechanism),
-            curve: picture::capacity(figure, check, *sway, mechanism),
-        }
-    };
-    let shown = check.mechanisms.iter().take(check.printed_sides());
-    render(&Page {
-        drawn: shown.map(drawn).collect(),
-        described: scenario.structure.described(),
-        resolved: scenario.to_resolved_toml(),
-        check,
-        date,
-        is_one,
-    })
-}
-
 /// The printed page.
-#[derive(Template)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Template)]
 #[template(path = "studies/verify/page.html")]
-struct Page<'a> {
-    check: &'a Summary,
-    date: &'a str,
-    /// The printed sides: one if the left side is the mirror image of the right one.
-    drawn: Vec<SidePictures<'a>>,
-    is_one: bool,
-    described: String,
-    resolved: String,
+pub struct Page {
+    /// The check.
+    pub check: Summary,
+    /// Date of the check, such as 2025-01-31; `None` if it is unknown.
+    pub date: Option<String>,
+    /// Pictures of the printed sides: one if the left side is the mirror image of the right one.
+    pub pictures: BTreeMap<Sway, SidePictures>,
+    /// The structure in words.
+    pub described: String,
+    /// The scenario with every default written out.
+    pub resolved: String,
 }
 
-impl Page<'_> {
+/// The pictures of a side, as SVG.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SidePictures {
+    /// The mechanism.
+    pub mechanism: String,
+    /// The capacity curve; `None` if there is none.
+    pub curve: Option<String>,
+}
+
+/// Makes the HTML of a page again from its JSON.
+///
+/// # Errors
+/// When the JSON is not that of a [`Page`].
+pub fn page_of(json: &str) -> serde_json::Result<String> {
+    serde_json::from_str(json).map(|page: Page| page.html())
+}
+
+impl Page {
+    /// Makes the page of a check.
+    pub fn new(scenario: &Scenario, check: &Summary, date: Option<String>) -> Self {
+        let figure = match check.printed_sides() {
+            1 => "78mm",
+            _ => "90mm",
+        };
+        let figure: Figure = figure.parse().expect("a width of a figure");
+        let drawn = |(sway, mechanism): (&Sway, _)| {
+            let pictures = SidePictures {
+                mechanism: picture::mechanism(figure, &scenario.structure, *sway, mechanism),
+                curve: picture::capacity(figure, check, *sway, mechanism),
+            };
+            (*sway, pictures)
+        };
+        let printed = check.mechanisms.iter().take(check.printed_sides());
+        Self {
+            check: check.clone(),
+            date,
+            pictures: printed.map(drawn).collect(),
+            described: scenario.structure.described(),
+            resolved: scenario.to_resolved_toml(),
+        }
+    }
+
+    /// Returns the page as HTML.
+    pub fn html(&self) -> String {
+        render(self)
+    }
+
     /// Returns the hinges with their letters on the picture.
     fn hinge_letters<'a>(
         &self,
@@ -103,19 +125,6 @@ impl Page<'_> {
         let mut states = self.check.states.values();
         states.any(|one| matches!(one.demand, Spectrum::Floor { .. }))
     }
-
-    fn title(&self) -> &str {
-        let title = self.check.title.as_deref();
-        title.unwrap_or("Check of local mechanisms")
-    }
-}
-
-/// The pictures of a side.
-struct SidePictures<'a> {
-    sway: Sway,
-    mechanism: &'a Mechanism,
-    picture: String,
-    curve: Option<String>,
 }
 
 impl StateCheck {
@@ -123,24 +132,6 @@ impl StateCheck {
     fn governs(&self, sway: &Sway, method: &Method) -> bool {
         let side = self.side.map_or("", super::GoverningSide::name);
         self.method.as_ref() == Some(method) && ["either", sway.name()].contains(&side)
-    }
-
-    /// Returns dampings that are probably fractions instead of per cent, with their owners.
-    fn small_dampings(&self) -> Vec<(&'static str, f64)> {
-        let mut given: Vec<(&str, f64)> = match &self.demand {
-            Spectrum::Ground(_) => Vec::new(),
-            Spectrum::Floor { modes, .. } => modes
-                .iter()
-                .map(|one| ("a mode of the building", one.mode.damping_percent))
-                .collect(),
-            Spectrum::Points { points, .. } => vec![("the spectrum", points.damping_percent)],
-        };
-        given.extend(
-            self.rule
-                .map(|rule| ("the mechanism", rule.damping_percent)),
-        );
-        given.retain(|(_, percent)| *percent < LEAST_DAMPING_PERCENT);
-        given
     }
 }
 
@@ -173,45 +164,21 @@ impl Summary {
     }
 }
 
-impl PlacedHinge {
-    /// Returns the position in the structure, in words.
-    fn place(&self) -> String {
-        match self.hinge {
-            Hinge::Section { edge, .. } => edge.name().to_owned(),
-            Hinge::Toe(side) => format!("{} toe", side.name()),
-            Hinge::Joint { joint, edge } => {
-                format!("joint {joint}, {}", edge.map_or("parted", Edge::name))
-            }
-        }
-    }
-}
-
 /// The notes, one per line, in four paragraphs.
 #[derive(Template)]
 #[template(path = "studies/verify/notes.txt")]
 struct Notes<'a> {
     check: &'a Summary,
-    scenario: &'a Scenario,
 }
 
 impl Notes<'_> {
-    /// Returns the allowed friction coefficient with its source, in words.
-    fn allowed(&self) -> String {
-        let allowed = self.check.allowed_friction;
-        if allowed < FRICTION {
-            format!("the scenario has {allowed}")
-        } else {
-            format!("the Circolare has {FRICTION} for walls")
-        }
-    }
-
     fn no_verdict(&self, histories: &Histories) -> Option<String> {
         no_verdict(histories.incomplete, histories.records.len(), "records")
     }
 
     fn has_curve(&self) -> bool {
         let mut mechanisms = self.check.mechanisms.values();
-        mechanisms.any(|one| one.curves.is_some())
+        mechanisms.any(|one| one.curve_m_g.is_some())
     }
 
     fn has_histories(&self) -> bool {
@@ -220,9 +187,9 @@ impl Notes<'_> {
     }
 }
 
-/// Adds decisions, assumptions, gaps and warnings to a check.
-pub(super) fn add_notes(scenario: &Scenario, check: &mut Summary) {
-    let text = render(&Notes { check, scenario });
+/// Adds decisions, assumptions, gaps and warnings to a check. `unlikely` are warnings about the scenario.
+pub(super) fn add_notes(check: &mut Summary, unlikely: Vec<String>) {
+    let text = render(&Notes { check });
     let mut parts = text.split("\n\n").map(|part| {
         let lines = part.lines().skip(1).map(str::to_owned);
         lines.collect::<Vec<String>>()
@@ -238,7 +205,7 @@ pub(super) fn add_notes(scenario: &Scenario, check: &mut Summary) {
     check.decisions = decisions.collect();
     check.assumptions = part();
     check.not_covered = part();
-    check.warnings = [scenario.unlikely(), part()].concat();
+    check.warnings = [unlikely, part()].concat();
 }
 
 /// Returns true if the left side is the mirror image of the right one, including all numbers.

@@ -1,35 +1,35 @@
 // The curves of a run.
-const [groundT, groundY] = curve(data.curves.ground_g);
-addPlot("Ground acceleration (g)", 150, groundT, [{ name: "ground", color: "--ink", values: groundY }]);
-const turns = data.bodies.map((_, body) =>
-  Array.from({ length: historyCount }, (_, i) => rotations[i * bodies + body] * frames.rotation_unit_rad),
-);
-const most = data.largest_body;
-const few = bodies <= 3;
-const dashes = [[], [8, 4], [3, 3]];
-const look = (body) =>
-  few
-    ? { name: data.bodies[body] || "rotation", color: `--curve-${body + 1}`, dash: dashes[body] }
-    : body === most
-      ? { name: `block ${data.bodies[body]}, which turns most`, color: "--curve-1", width: 2.5 }
-      : { name: `block ${data.bodies[body]}`, color: "--soft", width: 0.6 };
-// The block with the largest rotation is drawn above the others.
-const order = data.bodies.map((_, body) => body);
-if (!few) order.push(...order.splice(most, 1));
-const turning = order.map((body) => ({ ...look(body), values: turns[body] }));
-const named = few ? turning : [{ ...look(most), values: turns[most] }, { ...look((most + 1) % bodies), name: "other blocks" }];
-addPlot("Rotation (rad, anticlockwise)", 230, Array.from(times.subarray(0, historyCount)), turning, named);
-for (const { curves } of data.points ?? []) {
-  // Each curve is thinned separately, so their times differ.
-  const [ts, ...values] = uPlot.join(curves.map(({ curve: encoded }) => curve(encoded)));
-  const look = ({ name }, axis) => ({ name, color: `--curve-${axis + 1}`, dash: dashes[axis], values: values[axis] });
-  addPlot("Displacement (mm)", 150, ts, curves.map(look));
-}
-const [energyT, energyY] = curve(data.curves.energy);
-addPlot(data.energy_label, 150, energyT, [{ name: "energy", color: "--ink", values: energyY }]);
-if (data.curves.excess) {
-  const [excessT, excessY] = curve(data.curves.excess);
-  const label = "Thrust line outside the arch (parts of the thickness, cut off at 1)";
-  addPlot(label, 150, excessT, [{ name: "excess", color: "--ink", values: excessY }]);
-}
-showAll();
+createPlayer(data, (plots, stage) => {
+  const [groundT, groundY] = curve(data.curves.ground_g);
+  plots.add("Ground acceleration (g)", 150, groundT, [{ name: "ground", color: "--ink", values: groundY }]);
+  const bodies = data.bodies.length;
+  const turns = data.bodies.map((_, body) => stage.turns(body));
+  const most = data.largest_body;
+  const few = bodies <= 3;
+  const dashes = [[], [8, 4], [3, 3]];
+  const look = (body) =>
+    few
+      ? { name: data.bodies[body] || "rotation", color: `--curve-${body + 1}`, dash: dashes[body] }
+      : body === most
+        ? { name: `block ${data.bodies[body]}, which turns most`, color: "--curve-1", width: 2.5 }
+        : { name: `block ${data.bodies[body]}`, color: "--soft", width: 0.6 };
+  // The block with the largest rotation is drawn above the others.
+  const order = data.bodies.map((_, body) => body);
+  if (!few) order.push(...order.splice(most, 1));
+  const turning = order.map((body) => ({ ...look(body), values: turns[body] }));
+  const named = few ? turning : [{ ...look(most), values: turns[most] }, { ...look((most + 1) % bodies), name: "other blocks" }];
+  plots.add("Rotation (rad, anticlockwise)", 230, Array.from(stage.times.subarray(0, stage.historyCount)), turning, named);
+  for (const { curves } of data.points ?? []) {
+    // Each curve is thinned separately, so their times differ.
+    const [ts, ...values] = uPlot.join(curves.map(({ curve: encoded }) => curve(encoded)));
+    const look = ({ name }, axis) => ({ name, color: `--curve-${axis + 1}`, dash: dashes[axis], values: values[axis] });
+    plots.add("Displacement (mm)", 150, ts, curves.map(look));
+  }
+  const [energyT, energyY] = curve(data.curves.energy);
+  plots.add(data.energy_label, 150, energyT, [{ name: "energy", color: "--ink", values: energyY }]);
+  if (data.curves.excess) {
+    const [excessT, excessY] = curve(data.curves.excess);
+    const label = "Thrust line outside the arch (parts of the thickness, cut off at 1)";
+    plots.add(label, 150, excessT, [{ name: "excess", color: "--ink", values: excessY }]);
+  }
+});
