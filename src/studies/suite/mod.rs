@@ -318,10 +318,11 @@ pub struct Counts {
     /// Number of cases that had neither overturned nor come to rest.
     #[serde(rename = "still_rocking_counted_as_not_overturned")]
     pub still_rocking: usize,
-    /// Number of cases whose history ended too early for a verdict. They count at both ends only.
+    /// Number of cases whose history ended too early for a verdict: left out of `cases` and of the curve. Only the curves `with_uncertain_as_survived`
+    /// and `with_uncertain_as_overturned` count them.
     #[serde(rename = "incomplete_left_out")]
     pub incomplete: usize,
-    /// Number of cases whose history could not be computed. They count at both ends only.
+    /// Number of cases whose history could not be computed: left out and counted as incomplete ones.
     #[serde(rename = "failed_left_out")]
     pub failed: usize,
 }
