@@ -3,6 +3,7 @@
 
 use askama::Template;
 use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 
 use super::influence::InfluencedAnswer;
 use super::report::{self, Band, Line, SampleSummary, why_not};
@@ -157,10 +158,8 @@ impl Question for FirstEdges {
         FirstEdge::of(scenario, &self.factors)
     }
 
-    fn settings(&self) -> Vec<String> {
-        let factors = self.factors;
-        let (from, to, stride) = (factors.from, factors.to, factors.stride);
-        vec![format!("factors:{from:?}:{to:?}:{stride:?}")]
+    fn options(&self) -> Value {
+        json!({ "factors": self.factors })
     }
 }
 
