@@ -131,8 +131,8 @@ impl Question for Histories {
             followed_body: self.body,
         };
         let has_joints = samples.scenario.motion.kind.has_joints;
-        let mut columns = columns::columns(has_joints, |line: &Line<'_, HistoryAnswer>| {
-            let answer = line.answer.as_ref();
+        let mut columns = columns::columns(has_joints, |(_, row): &Line<'_, HistoryAnswer>| {
+            let answer = row.answer.as_ref();
             answer.map(|answer| &answer.ending).map_err(NoAnswer::name)
         });
         let potential = |one: &HistoryAnswer| one.potential_over_barrier;

@@ -5,7 +5,7 @@ use askama::Template;
 use serde::{Deserialize, Serialize};
 
 use super::influence::InfluencedAnswer;
-use super::report::{self, SampleSummary, lines, of_answer, why_not};
+use super::report::{self, SampleSummary, of_answer, why_not};
 use super::uncertain_threshold::{StrengthBand, first_strength};
 use super::{NoAnswer, Question, Samples};
 use crate::output::{Chart, Figure, Key, Mark, OutputError, Scale, Stroke, color, column, csv};
@@ -44,9 +44,9 @@ impl Capacities {
     fn table(&self, samples: &Samples<'_, Edges>) -> Result<Vec<u8>, OutputError> {
         type Row<'a> = (usize, &'a str, &'static str, &'a FirstEdge);
         let mut rows: Vec<Row<'_>> = Vec::new();
-        for line in lines(samples) {
-            let edges = line.answer.iter().flatten().zip(self.shakes());
-            rows.extend(edges.map(|(edge, (record, sign))| (line.number, record, sign, edge)));
+        for (number, row) in samples.lines() {
+            let edges = row.answer.iter().flatten().zip(self.shakes());
+            rows.extend(edges.map(|(edge, (record, sign))| (number, record, sign, edge)));
         }
         let mut columns = vec![
             column("sample", |row: &Row<'_>| row.0),

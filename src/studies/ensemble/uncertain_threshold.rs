@@ -142,8 +142,8 @@ impl Question for FirstEdges {
             column("factor", |at: &ProbabilityAt| at.0),
             list(names, |at: &ProbabilityAt| at.1.numbers()),
         ];
-        let columns = FirstEdge::columns("first_factor", |line: &Line<'_, FirstEdge>| {
-            line.answer.as_ref().ok()
+        let columns = FirstEdge::columns("first_factor", |(_, row): &Line<'_, FirstEdge>| {
+            row.answer.as_ref().ok()
         });
         let others = [
             draw(figure, samples, &probabilities).into_bytes(),
