@@ -1,22 +1,26 @@
 //! The endings of histories as columns of a table.
 
 use super::{Ending, NoHistory, Verdict};
-use crate::Sway;
+use crate::dynamics::OutcomeKind;
 use crate::output::{Column, column, each, list};
+use crate::{Outcome, Sway};
 
 /// Outcome of a case whose history could not be computed.
 pub(crate) const FAILED: &str = "failed";
 /// Outcome of a case whose overturning is uncertain.
 pub(crate) const UNCERTAIN: &str = "uncertain";
 
+/// Outcome of a case that overturned.
+pub(crate) const OVERTURNED: &str = OutcomeKind::Overturned.name();
+
 /// Names of the outcomes that count, the first is overturning.
 pub(crate) const OUTCOMES: [&str; 6] = [
-    "overturned",
+    OVERTURNED,
     UNCERTAIN,
-    "rest",
-    "never_moved",
-    "vibrates",
-    "still_rocking",
+    Outcome::Rest.name(),
+    Outcome::NeverMoved.name(),
+    Outcome::Vibrates.name(),
+    Outcome::StillRocking.name(),
 ];
 
 /// Outcome of an arch that cannot carry its own weight.

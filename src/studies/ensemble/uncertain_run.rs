@@ -17,13 +17,10 @@ use crate::output::{
     filters, list,
 };
 use crate::scenario::{MotionModel, Scenario, Structure};
-use crate::studies::ending::columns::{self, OUTCOMES};
+use crate::studies::ending::columns::{self, OUTCOMES, OVERTURNED};
 use crate::studies::statistics::{Share, band, fractile, quantile};
 use crate::studies::{ModelCheck, Results};
 use crate::{Ending, Factors, Model, NoHistory, Sample, Verdict};
-
-/// Name of the outcome of overturned samples.
-const OVERTURNED: &str = OUTCOMES[0];
 
 /// Largest number of times at which samples are compared.
 const MOST_TIMES: usize = 300;

@@ -14,7 +14,7 @@ use crate::dynamics::OutcomeCount;
 use crate::dynamics::thrust::MODEL_LIMIT;
 use crate::output::{Figure, OutputError, column, csv, fields};
 use crate::scenario::{Ground, Scenario};
-use crate::studies::ending::columns::{GROUND_FALLS, OUTCOMES};
+use crate::studies::ending::columns::{GROUND_FALLS, OVERTURNED};
 use crate::studies::ending::{NoHistory, Verdict, outcome_name};
 use crate::studies::quotable::{self, ModelAnswer};
 use crate::studies::statistics::ascending;
@@ -377,7 +377,7 @@ impl ModelSummary {
     /// Returns true if the first history that overturns the structure is outside the model of four links.
     fn overturns_outside_model(&self) -> bool {
         let mut samples = self.samples.iter();
-        let first = samples.find(|sample| sample.outcome == OUTCOMES[0]);
+        let first = samples.find(|sample| sample.outcome == OVERTURNED);
         let excess = first.and_then(|first| first.history?.thrust_excess_ratio);
         excess.is_some_and(|ratio| ratio > MODEL_LIMIT)
     }
