@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 
 use archrock::{
     Column, Factors, FreeHinges, ImpactModel, Model, Pulse, Request, RockingColumn, Runner,
-    thresholds,
+    threshold,
 };
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -19,14 +19,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // From the pulse itself to twenty times as strong, in strides of 5 %.
     let (factors, request) = (Factors::new(1.0, 20.0, 0.05)?, Request::default());
     let go_on = |_| ControlFlow::Continue(());
-    for found in thresholds(
-        &models,
-        &ground,
-        &request,
-        &factors,
-        &Runner::default(),
-        go_on,
-    )? {
+    for model in models {
+        let found = threshold(
+            model,
+            &ground,
+            &request,
+            &factors,
+            &Runner::default(),
+            go_on,
+        )?;
         for band in found.bands() {
             println!(
                 "{} overturns from {:.4} to {:.4} g",

@@ -110,7 +110,7 @@ pub use scenario::{Scenario, Structure};
 pub use studies::ending::{Ending, NoHistory, Verdict};
 pub use studies::map::OverturningMap;
 pub use studies::runner::Runner;
-pub use studies::threshold::{Factors, Threshold, thresholds};
+pub use studies::threshold::{Factors, Threshold, threshold};
 
 /// The tasks of the document compile and run.
 #[cfg(doctest)]

@@ -133,7 +133,7 @@ pub fn compute_part(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<PathBuf> {
     let (kind, runner) = (kind_of(kind)?, runner(threads));
-    if !kind.has_parts() {
+    if !kind.has_parts {
         return Err(refused(format!("{:?} has no parts", kind.name)));
     }
     let shard = shard.parse::<Shard>().map_err(refused)?;

@@ -360,7 +360,7 @@ impl StudyJob<'_> {
         if self.work.is_part() && folder.is_none() {
             return Err("--shard writes a file: name a folder for it with --out".into());
         }
-        if self.work.is_part() && !has_samples && !kind.has_parts() {
+        if self.work.is_part() && !has_samples && !kind.has_parts {
             let message =
                 "--shard computes a part of the samples of [uncertain], which the scenario lacks";
             return Err(message.into());
@@ -462,10 +462,10 @@ fn interrupted(
 ) -> String {
     let file = task.map(|task| task.folder.join(task.shard.file_name(kind.name)));
     match file {
-        _ if !kind.has_parts() && samples_are_kept => {
+        _ if !kind.has_parts && samples_are_kept => {
             "interrupted: the samples are kept; continue with --resume".to_owned()
         }
-        _ if !kind.has_parts() => "interrupted".to_owned(),
+        _ if !kind.has_parts => "interrupted".to_owned(),
         Some(file) if !file.exists() => {
             format!("interrupted; {} was removed meanwhile", file.display())
         }

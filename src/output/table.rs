@@ -84,7 +84,7 @@ where
 }
 
 /// Returns the cells of several numbers that a row may lack.
-pub(crate) fn each<const N: usize>(numbers: Option<[f64; N]>) -> [Option<f64>; N] {
+pub(crate) fn each<T: Copy, const N: usize>(numbers: Option<[T; N]>) -> [Option<T>; N] {
     numbers.map_or([None; N], |numbers| numbers.map(Some))
 }
 

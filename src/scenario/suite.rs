@@ -20,12 +20,12 @@ use super::sequence::Sequence;
 use super::simulation::Simulation;
 
 named! {
-    /// The measure of the levels of a suite, named by its key in `[suite]`.
+    /// The measure of the levels of a suite, by its name in results.
     pub enum Measure {
         /// Factors on the records.
-        Scale = "scales",
+        Scale = "scale",
         /// Peak accelerations to which the records are scaled, in units of gravity.
-        PeakG = "peaks_g",
+        PeakG = "peak_g",
     }
 }
 
@@ -42,11 +42,19 @@ impl Measure {
         }
     }
 
-    /// Returns the name of a single level in results.
-    pub const fn column(self) -> &'static str {
+    /// Returns the key of the levels in `[suite]`.
+    const fn key(self) -> &'static str {
         match self {
-            Self::Scale => "scale",
-            Self::PeakG => "peak_g",
+            Self::Scale => "scales",
+            Self::PeakG => "peaks_g",
+        }
+    }
+
+    /// Returns the unit that follows a level in words.
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Self::Scale => "",
+            Self::PeakG => " g",
         }
     }
 
@@ -112,7 +120,7 @@ impl Suite {
         let patterns = table.required(RECORDS, &one_or_more(&text()));
         let format = Format::read(table);
         let levels = Measure::ALL.iter().filter_map(|&measure| {
-            let levels = Sequence::read(table, measure.name(), measure.range())?;
+            let levels = Sequence::read(table, measure.key(), measure.range())?;
             Some((measure, levels))
         });
         let levels: Vec<_> = levels.collect();
@@ -161,7 +169,7 @@ impl Serialize for Suite {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let records = written(&[(RECORDS, &self.records)]);
         let own = [
-            (self.measure.name(), json!(self.levels)),
+            (self.measure.key(), json!(self.levels)),
             ("both_signs", json!(self.both_signs)),
             (SPECTRAL_PERIOD_S, json!(self.spectral.period_s)),
             (

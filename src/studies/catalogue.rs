@@ -66,25 +66,25 @@ pub enum Computation {
     },
 }
 
-/// Computation of a study of scenarios that differ only in their models of motion; most studies take one.
-#[derive(Clone, Copy, Debug)]
-enum Compute {
-    /// At once.
-    Whole(ComputeWhole),
-    /// By rows, which are kept in a file, so the work can be divided and resumed.
-    ByRows(ComputeByRows),
+impl From<Results> for Computation {
+    fn from(results: Results) -> Self {
+        Self::Complete(results, None)
+    }
 }
 
-type ComputeWhole = fn(&[Scenario], &Options, Style, Work<'_, '_>) -> Result<Results, StudyError>;
-type ComputeByRows =
-    fn(&[Scenario], &Options, Style, RowSource<'_>) -> Result<Computation, StudyError>;
-
-/// Threads, progress and sinks for a study that is computed at once.
-struct Work<'w, 's> {
-    runner: Runner,
-    watch: Watch<'w>,
-    sinks: Sinks<'s>,
+impl<'w> RowSource<'w> {
+    /// Returns the threads and the progress of a study without parts.
+    fn at_once(self) -> Result<(Runner, Watch<'w>), StudyError> {
+        match self {
+            Self::Compute(runner, _, watch) => Ok((runner, watch)),
+            Self::Merge(_) => Err(StudyError::scenario("this study has no parts")),
+        }
+    }
 }
+
+/// Computes a study of scenarios that differ only in their models of motion; most studies take one.
+type Compute =
+    fn(&[Scenario], &Options, Style, RowSource<'_>, Sinks<'_>) -> Result<Computation, StudyError>;
 
 /// A study that a scenario describes.
 #[derive(Clone, Copy, Debug)]
@@ -98,6 +98,8 @@ pub struct StudyKind {
     pub is_history: bool,
     /// True if the scenario needs a ground motion.
     pub needs_motion: bool,
+    /// True if its rows are kept in a file, so the work can be divided and resumed.
+    pub has_parts: bool,
     compute: Compute,
 }
 
@@ -112,30 +114,37 @@ impl Eq for StudyKind {}
 /// The history of a scenario, with one or several models of motion.
 pub const RUN: StudyKind = StudyKind {
     is_history: true,
-    ..StudyKind::whole("run", &run::FILES, |scenarios, options, style, work| {
-        let (options, figure) = (&options.run, style.figure);
-        run::results(scenarios, options, figure, work.sinks, work.watch)
-    })
+    ..StudyKind::whole(
+        "run",
+        &run::FILES,
+        |scenarios, options, style, rows, sinks| {
+            let (_, watch) = rows.at_once()?;
+            let results = run::results(scenarios, &options.run, style.figure, sinks, watch)?;
+            Ok(results.into())
+        },
+    )
 };
 /// The map of the pulses that overturn the structure, over two quantities.
-pub const MAP: StudyKind = StudyKind::of::<OverturningMap<'_>>(|scenarios, _, style, rows| {
+pub const MAP: StudyKind = StudyKind::of::<OverturningMap<'_>>(|scenarios, _, style, rows, _| {
     computed(OverturningMap::of(&scenarios[0]), style, rows)
 });
 /// The records that overturn the structure.
-pub const SUITE: StudyKind = StudyKind::of::<RecordSuite<'_>>(|scenarios, _, style, rows| {
+pub const SUITE: StudyKind = StudyKind::of::<RecordSuite<'_>>(|scenarios, _, style, rows, _| {
     computed(RecordSuite::of(&scenarios[0]), style, rows)
 });
 /// The factors by which the ground motion overturns the structure, for one or several models of motion.
 pub const THRESHOLD: StudyKind = StudyKind::whole(
     "threshold",
     &threshold::FILES,
-    |scenarios, options, style, Work { runner, watch, .. }| {
-        threshold::results(scenarios, &options.factors, style.figure, &runner, watch)
+    |scenarios, options, style, rows, _| {
+        let (runner, watch) = rows.at_once()?;
+        let factors = &options.factors;
+        Ok(threshold::results(scenarios, factors, style.figure, &runner, watch)?.into())
     },
 );
 /// The threshold for each value of a key along a range.
 pub const THRESHOLD_ALONG: StudyKind =
-    StudyKind::of::<Along<'_>>(|scenarios, options, style, rows| {
+    StudyKind::of::<Along<'_>>(|scenarios, options, style, rows, _| {
         let along = options.along.clone();
         let along =
             along.ok_or("a threshold along a range needs its key and its values".to_owned());
@@ -148,34 +157,40 @@ pub const CAPACITY: StudyKind = StudyKind {
     ..StudyKind::whole(
         "capacity",
         &capacity::FILES,
-        |scenarios, options, style, _| {
+        |scenarios, options, style, _, _| {
             let scenario = &scenarios[0];
             scenario.check_as_built().map_err(StudyError::Scenario)?;
             let sides = capacity(scenario, options.point_m).map_err(StudyError::scenario)?;
-            Ok(capacity::report(scenario, &sides, style.figure)?)
+            Ok(capacity::report(scenario, &sides, style.figure)?.into())
         },
     )
 };
 /// The movement of a springing at which the arch falls.
 pub const SPREAD: StudyKind = StudyKind {
     needs_motion: false,
-    ..StudyKind::whole("spread", &spread::FILES, |scenarios, options, style, _| {
-        let (scenario, directions) = (&scenarios[0], &options.directions);
-        let found = spread::spread(scenario, directions)?;
-        spread::report(scenario, &found, style.figure)
-    })
+    ..StudyKind::whole(
+        "spread",
+        &spread::FILES,
+        |scenarios, options, style, _, _| {
+            let (scenario, directions) = (&scenarios[0], &options.directions);
+            let found = spread::spread(scenario, directions)?;
+            Ok(spread::report(scenario, &found, style.figure)?.into())
+        },
+    )
 };
 /// The check of the first mechanism by the Circolare 7/2019.
-pub const VERIFY: StudyKind = StudyKind::whole("verify", &verify::FILES, |scenarios, _, _, _| {
-    let scenario = &scenarios[0];
-    scenario.check_as_built().map_err(StudyError::Scenario)?;
-    if scenario.right_foot.is_some() {
-        let message = "the histories of a check shake both feet alike: leave [ground.right] out";
-        return Err(StudyError::scenario(message));
-    }
-    let check = verify::verify(scenario).map_err(StudyError::scenario)?;
-    Ok(verify::report(scenario, &check)?)
-});
+pub const VERIFY: StudyKind =
+    StudyKind::whole("verify", &verify::FILES, |scenarios, _, _, _, _| {
+        let scenario = &scenarios[0];
+        scenario.check_as_built().map_err(StudyError::Scenario)?;
+        if scenario.right_foot.is_some() {
+            let message =
+                "the histories of a check shake both feet alike: leave [ground.right] out";
+            return Err(StudyError::scenario(message));
+        }
+        let check = verify::verify(scenario).map_err(StudyError::scenario)?;
+        Ok(verify::report(scenario, &check)?.into())
+    });
 /// Endings and courses of histories for samples of the uncertain numbers.
 pub const UNCERTAIN: StudyKind = StudyKind::of_samples::<Histories>();
 /// The factor from which samples of the uncertain numbers overturn.
@@ -184,7 +199,7 @@ pub const UNCERTAIN_THRESHOLD: StudyKind = StudyKind::of_samples::<FirstEdges>()
 pub const UNCERTAIN_SUITE: StudyKind = StudyKind::of_samples::<Capacities>();
 /// The probability that pulses overturn samples of the uncertain numbers, over two quantities.
 pub const UNCERTAIN_MAP: StudyKind =
-    StudyKind::of::<CellsOfSamples<'_>>(|scenarios, _, style, rows| {
+    StudyKind::of::<CellsOfSamples<'_>>(|scenarios, _, style, rows, _| {
         computed(CellsOfSamples::of(&scenarios[0]), style, rows)
     });
 
@@ -217,35 +232,26 @@ impl StudyKind {
         kinds.find(|kind| has_all(kind) && kind.files.last() == names.last())
     }
 
-    const fn whole(
-        name: &'static str,
-        files: &'static [&'static str],
-        compute: ComputeWhole,
-    ) -> Self {
-        Self::with(name, files, Compute::Whole(compute))
-    }
-
-    const fn of<S: ReportedStudy>(compute: ComputeByRows) -> Self {
-        Self::with(S::NAME, S::FILES, Compute::ByRows(compute))
-    }
-
-    const fn with(name: &'static str, files: &'static [&'static str], compute: Compute) -> Self {
+    const fn whole(name: &'static str, files: &'static [&'static str], compute: Compute) -> Self {
         Self {
             name,
             files,
             is_history: false,
             needs_motion: true,
+            has_parts: false,
             compute,
         }
     }
 
-    /// Returns true if its rows are kept in a file, so the work can be divided and resumed.
-    pub const fn has_parts(self) -> bool {
-        matches!(self.compute, Compute::ByRows(_))
+    const fn of<S: ReportedStudy>(compute: Compute) -> Self {
+        Self {
+            has_parts: true,
+            ..Self::whole(S::NAME, S::FILES, compute)
+        }
     }
 
     const fn of_samples<Q: Question>() -> Self {
-        Self::of::<Ensemble<'_, Q>>(|scenarios, options, style, rows| {
+        Self::of::<Ensemble<'_, Q>>(|scenarios, options, style, rows, _| {
             let study = Ensemble::<Q>::of(&scenarios[0], options.factors);
             computed(study, style, rows)
         })
@@ -264,21 +270,7 @@ impl StudyKind {
         rows: RowSource<'_>,
         sinks: Sinks<'_>,
     ) -> Result<Computation, StudyError> {
-        match (self.compute, rows) {
-            (Compute::ByRows(compute), rows) => compute(scenarios, options, style, rows),
-            (Compute::Whole(compute), RowSource::Compute(runner, _, watch)) => {
-                let work = Work {
-                    runner,
-                    watch,
-                    sinks,
-                };
-                let results = compute(scenarios, options, style, work)?;
-                Ok(Computation::Complete(results, None))
-            }
-            (Compute::Whole(_), RowSource::Merge(_)) => {
-                Err(StudyError::Scenario(format!("{} has no parts", self.name)))
-            }
-        }
+        (self.compute)(scenarios, options, style, rows, sinks)
     }
 }
 

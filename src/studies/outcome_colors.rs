@@ -1,7 +1,10 @@
 //! Colours of outcomes, the same in all pictures.
 
-use super::ending::columns::{CANNOT_STAND, FAILED, GROUND_FALLS, NOT_FOUR_LINKS, UNCERTAIN};
+use super::ending::columns::{
+    CANNOT_STAND, FAILED, GROUND_FALLS, NOT_FOUR_LINKS, OVERTURNED, UNCERTAIN,
+};
 use super::ending::{Ending, NoHistory, outcome_name};
+use crate::Outcome;
 use crate::output::{Key, Sign, color};
 
 /// Colour of results with the same kind of outcome.
@@ -35,22 +38,30 @@ impl OutcomeColor {
 
     /// In the order of the legend.
     pub(crate) const ALL: [Self; 21] = [
-        Self::new("never_moved", "never moves", "#b0b0b0"),
-        Self::new("vibrates", "vibrates without opening", "#dfe8c8"),
-        Self::new("rest", "comes to rest", "#a9d3f5"),
+        Self::new(Outcome::NeverMoved.name(), "never moves", "#b0b0b0"),
+        Self::new(
+            Outcome::Vibrates.name(),
+            "vibrates without opening",
+            "#dfe8c8",
+        ),
+        Self::new(Outcome::Rest.name(), "comes to rest", "#a9d3f5"),
         SURVIVED[0],
         SURVIVED[1],
         SURVIVED[2],
         SURVIVED[3],
         SURVIVED[4],
         SURVIVED[5],
-        Self::new("still_rocking", "still rocking", "#6f8ba0"),
+        Self::new(Outcome::StillRocking.name(), "still rocking", "#6f8ba0"),
         Self::new("overturned-0", "overturns without impact", color::VERMILION),
         Self::new("overturned-1", "overturns after 1 impact", color::ORANGE),
         Self::new("overturned-2", "overturns after 2 impacts", "#f0e442"),
         Self::new("overturned-more", "overturns after more", color::PURPLE),
-        Self::new("overturned", "overturns", "#a6361c"),
-        Self::new("incomplete", "ends too early for a verdict", "#8c7aa0"),
+        Self::new(OVERTURNED, "overturns", "#a6361c"),
+        Self::new(
+            Outcome::Incomplete.name(),
+            "ends too early for a verdict",
+            "#8c7aa0",
+        ),
         Self::new(UNCERTAIN, "uncertain whether it overturns", color::GREEN),
         Self::new(CANNOT_STAND, "cannot stand", "#ffffff"),
         Self::new(NOT_FOUR_LINKS, "not four links", "#c8bfae"),
@@ -69,10 +80,10 @@ impl OutcomeColor {
     /// landings of free hinges come in cascades, and their number does not matter.
     pub(crate) fn of(outcome: &str, impacts: Option<usize>) -> Self {
         let name = match (outcome, impacts) {
-            ("overturned", Some(0)) => "overturned-0",
-            ("overturned", Some(1)) => "overturned-1",
-            ("overturned", Some(2)) => "overturned-2",
-            ("overturned", Some(_)) => "overturned-more",
+            (OVERTURNED, Some(0)) => "overturned-0",
+            (OVERTURNED, Some(1)) => "overturned-1",
+            (OVERTURNED, Some(2)) => "overturned-2",
+            (OVERTURNED, Some(_)) => "overturned-more",
             (outcome, _) => outcome,
         };
         let known = Self::ALL.into_iter().find(|color| color.name == name);

@@ -6,7 +6,9 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::ending::columns::{CANNOT_STAND, FAILED, GROUND_FALLS, NOT_FOUR_LINKS, UNCERTAIN};
+use super::ending::columns::{
+    CANNOT_STAND, FAILED, GROUND_FALLS, NOT_FOUR_LINKS, OVERTURNED, UNCERTAIN,
+};
 use super::ending::{Ending, NoHistory, Verdict, outcome_name};
 use crate::dynamics::OutcomeCount;
 use crate::dynamics::thrust::{EXCESS_LEVELS, MODEL_LIMIT};
@@ -291,13 +293,13 @@ pub(crate) struct OutcomeCounts(BTreeMap<String, usize>);
 
 /// The outcomes of cases: names in tables, and words, in the order of a sentence.
 const OUTCOME_WORDS: [(&str, &str); 10] = [
-    ("never_moved", "never moved"),
-    ("vibrates", "vibrated without opening"),
-    ("rest", "came to rest"),
-    ("overturned", "overturned"),
+    (Outcome::NeverMoved.name(), "never moved"),
+    (Outcome::Vibrates.name(), "vibrated without opening"),
+    (Outcome::Rest.name(), "came to rest"),
+    (OVERTURNED, "overturned"),
     (STILL_ROCKING, "still rocking"),
     (UNCERTAIN, "uncertain"),
-    ("incomplete", "incomplete"),
+    (Outcome::Incomplete.name(), "incomplete"),
     (CANNOT_STAND, "unable to stand"),
     (NOT_FOUR_LINKS, "too thick for four links"),
     (FAILED, "failed"),

@@ -183,4 +183,12 @@ impl Style {
             factors: None,
         }
     }
+
+    /// Returns the style of the same picture on a page.
+    pub(super) const fn on_screen(self) -> Self {
+        Self {
+            figure: Figure::SCREEN,
+            ..self
+        }
+    }
 }

@@ -8,7 +8,7 @@ use archrock::studies::ending::Ending;
 use archrock::studies::map::OverturningMap;
 use archrock::studies::runner::{Runner, Study};
 use archrock::studies::suite::RecordSuite;
-use archrock::studies::threshold::{EDGE_WIDTH, Factors, thresholds};
+use archrock::studies::threshold::{EDGE_WIDTH, Factors, threshold};
 use archrock::{Outcome, Scenario, Summary};
 
 use crate::common::parsed;
@@ -163,11 +163,9 @@ fn thresholds_equal_those_of_single_runs() {
         let runner = Runner {
             threads: NonZeroUsize::new(threads),
         };
-        let models: [(&str, &dyn archrock::Model); 1] = [("elastic", &*model)];
+        let model = ("elastic", &*model);
         let go_on = |_| ControlFlow::Continue(());
-        thresholds(&models, ground, &request, &factors, &runner, go_on)
-            .unwrap()
-            .remove(0)
+        threshold(model, ground, &request, &factors, &runner, go_on).unwrap()
     });
     assert_eq!(found[0], found[1]);
     let falls = |factor: f64| {

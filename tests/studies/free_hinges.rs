@@ -20,7 +20,7 @@ use archrock::studies::map::OverturningMap;
 use archrock::studies::map::picture::draw;
 use archrock::studies::results::Style;
 use archrock::studies::runner::{Runner, Study as _};
-use archrock::studies::threshold::{Factors, Threshold, thresholds};
+use archrock::studies::threshold::{Factors, Threshold, threshold};
 use archrock::{Arch, Column, ImpactModel, Model, Pulse, Request, RockingColumn};
 
 const ARCH: &str =
@@ -280,10 +280,12 @@ fn a_block_under_a_step_pair_has_one_band_without_gaps() {
     let factors = Factors::new(0.655, 0.658, 5e-4).unwrap();
     let runner = Runner::default();
     let go_on = |_| ControlFlow::Continue(());
-    let found = thresholds(&models, &ground, &request, &factors, &runner, go_on).unwrap();
+    let found =
+        models.map(|model| threshold(model, &ground, &request, &factors, &runner, go_on).unwrap());
     for threshold in &found {
-        let verdicts: Vec<_> = threshold.ranges.iter().map(|range| range.0).collect();
-        assert_eq!(verdicts, [Verdict::Survives, Verdict::Overturns]);
+        let verdicts: Vec<_> = threshold.ranges.iter().map(|range| range.verdict).collect();
+        let expected = [Verdict::Survives, Verdict::Overturns].map(Some);
+        assert_eq!(verdicts, expected);
         let edge = threshold.lowest_factor().unwrap();
         assert!((edge - 0.65649).abs() < 1e-4, "{} {edge}", threshold.model);
     }

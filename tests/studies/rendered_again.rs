@@ -1,10 +1,11 @@
-//! The words and the page of a run are functions of their JSON alone: they are rendered again from the files.
+//! The words and the pages of a run and of a map are functions of their JSON: they are rendered again from the files.
 
 use std::fs;
 use std::path::Path;
 
 use crate::common::program::{archrock, printed, scenarios, stdout};
 use crate::common::results::json;
+use archrock::studies::map;
 use archrock::studies::run::report::page_of;
 use archrock::studies::run::words_of;
 use serde_json::Value;
@@ -125,8 +126,53 @@ fn the_page_of_a_run_is_rendered_again_from_its_data() {
         let arguments = [&["run", scenario.to_str().unwrap(), "--out", "o"], options].concat();
         printed(folder.path(), &arguments);
         let page = fs::read_to_string(folder.path().join("o/report.html")).unwrap();
-        let (_, data) = page.split_once("id=\"data\">").unwrap();
-        let (data, _) = data.split_once("</script>").unwrap();
+        let data = between(&page, "id=\"data\">", "</script>");
         assert!(page_of(data).unwrap() == page, "{scenario:?}");
+    }
+}
+
+/// Returns the part of a page between two marks.
+fn between<'p>(page: &'p str, before: &str, after: &str) -> &'p str {
+    let (_, rest) = page.split_once(before).unwrap();
+    rest.split_once(after).unwrap().0
+}
+
+/// The page is a function of the picture and the data inside it. Cells that are uncertain, or outside the model of four links, are in the data.
+#[test]
+fn the_page_of_a_map_is_rendered_again_from_its_data() {
+    let folder = tempfile::tempdir().unwrap();
+    let samples = "uncertain={ samples = 3, \"arch.thickness_ratio\" = { deviation = 0.005 } }";
+    let free = ["--hinges", "free", "--set", "arch.voussoirs=8"];
+    for (options, page) in [
+        (&[][..], "map.html"),
+        (&["--color", "peak", "--dimensionless"], "map.html"),
+        (
+            &[&free[..], &["--set", "map.repeat=true"]].concat(),
+            "map.html",
+        ),
+        (&["--set", samples], "uncertain_map/map.html"),
+    ] {
+        let scenario = scenarios().join("semicircle-map.toml");
+        let few = ["duration_s", "amplitude_g"].map(|axis| format!("map.{axis}.count=4"));
+        let arguments = ["map", scenario.to_str().unwrap(), "--out", "o"];
+        let arguments = [
+            &arguments,
+            &["--set", &few[0], "--set", &few[1]][..],
+            options,
+        ]
+        .concat();
+        printed(folder.path(), &arguments);
+        let page = fs::read_to_string(folder.path().join("o").join(page)).unwrap();
+        let picture = between(
+            &page,
+            "aria-describedby=\"numbers\">\n",
+            "<div id=\"cell\">",
+        );
+        let data = between(&page, "id=\"data\">", "</script>");
+        assert!(
+            map::page::page_of(picture, data).unwrap() == page,
+            "{options:?}"
+        );
+        fs::remove_dir_all(folder.path().join("o")).unwrap();
     }
 }

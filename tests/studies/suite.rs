@@ -828,7 +828,7 @@ fn heading() -> Heading {
 
 fn heading_of(model: &str) -> Heading {
     let heading = serde_json::json!({
-        "title": null, "scenario": {}, "model": model, "is_arch": true, "measure": "scales", "spacing": "linear",
+        "title": null, "scenario": {}, "model": model, "is_arch": true, "measure": "scale", "spacing": "linear",
         "spectral": { "period_s": 1.0, "damping_percent": 5.0 }, "warnings": [],
     });
     serde_json::from_value(heading).unwrap()

@@ -21,7 +21,7 @@ use archrock::studies::results::StudyError;
 use archrock::studies::runner::{Progress, Runner, RunnerError};
 use archrock::studies::threshold::picture::draw;
 use archrock::studies::threshold::{
-    EDGE_WIDTH, FactorRange, Factors, RangeEnd, Threshold, thresholds,
+    EDGE_WIDTH, FactorRange, Factors, RangeEnd, Threshold, threshold,
 };
 use archrock::{
     Column, GroundMotion, ImpactModel, Model, Outcome, Pulse, Recorder, Request, RockingColumn,
@@ -32,19 +32,16 @@ use nalgebra::Vector2;
 use serde_json::Value;
 
 fn found(model: &dyn Model, ground: &GroundMotion, end_s: f64, factors: &Factors) -> Threshold {
-    let models = [("model", model)];
     let go_on = |_| ControlFlow::Continue(());
-    let mut found = thresholds(
-        &models,
+    threshold(
+        ("model", model),
         ground,
         &request(end_s),
         factors,
         &Runner::default(),
         go_on,
     )
-    .unwrap();
-    assert_eq!(found.len(), 1);
-    found.remove(0)
+    .unwrap()
 }
 
 fn factors(from: f64, to: f64, stride: f64) -> Factors {
@@ -286,8 +283,8 @@ fn uncertain_factors_are_ranges_of_their_own() {
         (Verdict::Overturns, 6.5, 8.0),
     ];
     assert_eq!(threshold.ranges.len(), expected.len());
-    for ((verdict, range), (other, from, to)) in pairs(&threshold.ranges, &expected) {
-        assert_eq!(verdict, other);
+    for (range, (verdict, from, to)) in pairs(&threshold.ranges, &expected) {
+        assert_eq!(range.verdict, Some(*verdict));
         assert!((range.from / from - 1.0).abs() < EDGE_WIDTH, "{range:?}");
         assert!((range.to / to - 1.0).abs() < EDGE_WIDTH, "{range:?}");
     }
@@ -315,7 +312,7 @@ fn uncertain_factors_are_ranges_of_their_own() {
         "{reasons:?}"
     );
     assert_eq!(threshold.lowest_factor(), Some(threshold.bands()[0].from));
-    assert_eq!(threshold.survives_up_to(), Some(threshold.ranges[0].1.to));
+    assert_eq!(threshold.survives_up_to(), Some(threshold.ranges[0].to));
 
     let picture = draw(
         Figure::SCREEN,
@@ -371,27 +368,20 @@ fn bands_and_gaps_of_any_models_side_by_side() {
         ("never", &never),
     ];
     let all = factors(1.0, 8.0, 0.1);
-    let mut last = None;
     let runner = Runner::default();
-    let found = thresholds(
-        &models,
-        &unit_pulse(),
-        &request(1.0),
-        &all,
-        &runner,
-        |progress| {
+    let found = models.map(|model| {
+        let mut last = None;
+        let watch = |progress: Progress| {
             last = Some((progress.done, progress.all));
             ControlFlow::Continue(())
-        },
-    )
-    .unwrap();
-    let cases = 3 * all.values().len() + 3;
-    assert_eq!(last, Some((cases, cases)));
-    let names: Vec<_> = found
-        .iter()
-        .map(|threshold| threshold.model.as_str())
-        .collect();
-    assert_eq!(names, ["islands", "always", "never"]);
+        };
+        let found = threshold(model, &unit_pulse(), &request(1.0), &all, &runner, watch).unwrap();
+        let edges = if model.0 == "islands" { 3 } else { 0 };
+        let cases = all.values().len() + edges;
+        assert_eq!(last, Some((cases, cases)));
+        assert_eq!(found.model, model.0);
+        found
+    });
     let near = |range: FactorRange, from: f64, to: f64| {
         (range.from / from - 1.0).abs() < EDGE_WIDTH && (range.to / to - 1.0).abs() < EDGE_WIDTH
     };
@@ -403,6 +393,7 @@ fn bands_and_gaps_of_any_models_side_by_side() {
     assert!(islands.bands()[0].from >= 2.0 && islands.bands()[0].to < 3.0);
     assert!(islands.gaps()[0].from >= 3.0 && islands.gaps()[0].to < 4.0);
     let whole = FactorRange {
+        verdict: Some(Verdict::Overturns),
         from: 1.0,
         to: 8.0,
         from_end: RangeEnd::Sampled,
@@ -471,17 +462,17 @@ fn a_threshold_can_be_cancelled_and_refuses_invalid_requests() {
         thread::sleep(Duration::from_millis(1));
         Some(false)
     });
-    let models: [(&str, &dyn Model); 1] = [("rule", &rule)];
+    let model: (&str, &dyn Model) = ("rule", &rule);
     let all = factors(1.0, 8.0, 0.001);
     let runner = Runner::default();
     let stop = |_: Progress| ControlFlow::Break(());
-    let error = thresholds(&models, &unit_pulse(), &request(1.0), &all, &runner, stop).unwrap_err();
+    let error = threshold(model, &unit_pulse(), &request(1.0), &all, &runner, stop).unwrap_err();
     let StudyError::Runner(RunnerError::Cancelled(progress)) = error else {
         panic!("{error}");
     };
     assert!(progress.done < 1000 && progress.all == all.values().len());
-    let error = thresholds(
-        &models,
+    let error = threshold(
+        model,
         &unit_pulse(),
         &request(f64::NAN),
         &all,

@@ -1,6 +1,5 @@
 //! The capacity curves of a scenario: see [`crate::mechanics::capacity`].
 
-mod picture;
 mod report;
 
 use nalgebra::Vector2;

@@ -6,10 +6,11 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::held_row;
-use super::picture::draw;
 use crate::mechanics::capacity::{CurvePoint, TieEventDisplacements};
 use crate::mechanics::{Capacity, Parts as _, Sides};
-use crate::output::{Figure, Named, OutputError, column, csv, fields, filters};
+use crate::output::{
+    CURVES, Chart, Figure, Mark, Named, OutputError, column, csv, fields, filters,
+};
 use crate::studies::results::Results;
 use crate::{Scenario, Sway};
 
@@ -102,9 +103,20 @@ pub fn report(
         scenario: scenario.to_json(),
     };
     let title = scenario.title.as_deref().unwrap_or("Capacity");
-    let picture = draw(figure, title, sides);
+    let picture = chart(sides, figure).draw(figure, title);
     let others = [picture.into_bytes(), table(sides)?];
     Results::new(&FILES, &summary, others)
+}
+
+/// Makes the chart of acceleration against displacement of the control point, for both sides.
+fn chart(sides: &Sides<Capacity>, figure: Figure) -> Chart {
+    let curves = sides.iter().zip(CURVES).map(|((sway, side), stroke)| {
+        let points = side.curve.iter();
+        let points = points.map(|point| (point.displacement_m, point.acceleration_g));
+        Mark::curve(format!("to the {}", sway.name()), stroke, points)
+    });
+    let labels = ["displacement of the control point (m)", "a (g)"];
+    Chart::around(figure, 330.0, labels, curves.collect())
 }
 
 /// Makes the table of the points of the curves, to the right first. The secant period is empty at the unstable equilibrium.

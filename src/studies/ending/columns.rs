@@ -1,22 +1,26 @@
 //! The endings of histories as columns of a table.
 
 use super::{Ending, NoHistory, Verdict};
-use crate::Sway;
-use crate::output::{Column, column, list};
+use crate::dynamics::OutcomeKind;
+use crate::output::{Column, column, each, list};
+use crate::{Outcome, Sway};
 
 /// Outcome of a case whose history could not be computed.
 pub(crate) const FAILED: &str = "failed";
 /// Outcome of a case whose overturning is uncertain.
 pub(crate) const UNCERTAIN: &str = "uncertain";
 
+/// Outcome of a case that overturned.
+pub(crate) const OVERTURNED: &str = OutcomeKind::Overturned.name();
+
 /// Names of the outcomes that count, the first is overturning.
 pub(crate) const OUTCOMES: [&str; 6] = [
-    "overturned",
+    OVERTURNED,
     UNCERTAIN,
-    "rest",
-    "never_moved",
-    "vibrates",
-    "still_rocking",
+    Outcome::Rest.name(),
+    Outcome::NeverMoved.name(),
+    Outcome::Vibrates.name(),
+    Outcome::StillRocking.name(),
 ];
 
 /// Outcome of an arch that cannot carry its own weight.
@@ -68,12 +72,32 @@ impl Ending {
     }
 }
 
+/// Function that returns a number of an ending; `None` if the number is unknown.
+type NumberOf = fn(&Ending) -> Option<f64>;
+
+/// Numbers of an ending, by name.
+pub(crate) const NUMBERS: [(&str, NumberOf); 5] = [
+    ("outcome_time_s", Ending::known_time_s),
+    ("peak_rotation_over_critical", |ending| {
+        ending.peak_over_critical
+    }),
+    ("peak_rotation_rad", Ending::peak_of_row_rad),
+    ("energy_defect_ratio", |ending| {
+        Some(ending.energy_defect_ratio)
+    }),
+    ("thrust_excess_ratio", |ending| ending.thrust_excess_ratio),
+];
+
 /// Function that returns the ending of a row, or the outcome to report if the row has none.
 type Ended<R> = fn(&R) -> Result<&Ending, &'static str>;
 
 /// Returns the columns of the ending of a row. Sway, and impacts before overturning, are empty unless overturning is certain. The numbers of an
 /// uncertain case are those of the history itself, not of its repetitions.
 pub(crate) fn columns<'a, R: 'a>(free_hinges: bool, ended: Ended<R>) -> Vec<Column<'a, R>> {
+    let number = |which: usize| {
+        let (name, of) = NUMBERS[which];
+        column(name, move |row| of(ended(row).ok()?))
+    };
     let mut columns = vec![
         column("outcome", move |row| {
             ended(row).map_or_else(|reason| reason, Ending::outcome_name)
@@ -83,32 +107,16 @@ pub(crate) fn columns<'a, R: 'a>(free_hinges: bool, ended: Ended<R>) -> Vec<Colu
         }),
         column("impacts", move |row| ended(row).ok()?.known_impacts()),
         column("impacts_before_overturning", move |row| {
-            let overturned = ended(row)
-                .ok()
-                .filter(|one| one.certain_overturning_sway().is_some());
-            overturned?.impacts
-        }),
-        column("outcome_time_s", move |row| ended(row).ok()?.known_time_s()),
-        column("peak_rotation_over_critical", move |row| {
-            ended(row).ok()?.peak_over_critical
-        }),
-        column("energy_defect_ratio", move |row| {
-            Some(ended(row).ok()?.energy_defect_ratio)
-        }),
-        column("thrust_excess_ratio", move |row| {
-            ended(row).ok()?.thrust_excess_ratio
+            let ending = ended(row).ok()?;
+            ending.certain_overturning_sway().and(ending.impacts)
         }),
     ];
+    columns.extend([0, 1, 3, 4].map(number));
     if free_hinges {
-        columns.push(column("peak_rotation_rad", move |row| {
-            ended(row).ok()?.peak_of_row_rad()
-        }));
+        columns.push(number(2));
         columns.push(list(["overturns_in", "of"], move |row| {
             let count = ended(row).ok().and_then(|ending| ending.count.as_ref());
-            [
-                count.map(|count| count.overturns_in),
-                count.map(|count| count.of),
-            ]
+            each(count.map(|count| [count.overturns_in, count.of]))
         }));
     }
     columns

@@ -16,6 +16,7 @@ pub mod uncertain_threshold;
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+use serde_json::Value;
 
 pub use self::samples::{SampleRow, Samples};
 pub use super::ending::NoAnswer;
@@ -65,9 +66,9 @@ pub trait Question: Sized + Sync {
         self.answer(scenario)
     }
 
-    /// Returns other settings on which the answers depend, in words.
-    fn settings(&self) -> Vec<String> {
-        Vec::new()
+    /// Returns the options on which the answers depend, as [`Study::options`].
+    fn options(&self) -> Value {
+        Value::Null
     }
 }
 
@@ -128,10 +129,8 @@ impl<Q: Question> Study for Ensemble<'_, Q> {
         Some(self.scenario)
     }
 
-    fn inputs(&self) -> Vec<String> {
-        let mut inputs = self.scenario.record_checksums();
-        inputs.extend(self.question.settings());
-        inputs
+    fn options(&self) -> Value {
+        self.question.options()
     }
 
     fn count(&self) -> usize {

@@ -5,45 +5,32 @@ use serde_json::Value;
 
 use super::influence::{InfluencedAnswer, Influences, NumberInfluence, percent};
 use super::samples::ReasonCounts;
-use super::{NoAnswer, Samples};
+use super::{NoAnswer, SampleRow, Samples};
 use crate::output::{Cell, Column, Figure, OutputError, column, csv, list};
 use crate::studies::ModelCheck;
 use crate::studies::statistics::Share;
 
-/// A row of the table of samples: the number of the sample, from 1, or 0 for the scenario itself; its values; and its answer.
-pub(super) struct Line<'a, A> {
-    pub(super) number: usize,
-    values: Vec<Option<f64>>,
-    pub(super) answer: &'a Result<A, NoAnswer>,
-}
-
-/// Returns the rows of the table of samples: the scenario itself, then all samples.
-pub(super) fn lines<'a, A>(samples: &Samples<'a, A>) -> Vec<Line<'a, A>> {
-    let own = Line {
-        number: 0,
-        values: samples.uncertain.keys.iter().map(|key| key.own).collect(),
-        answer: samples.own,
-    };
-    let rows = samples.rows.iter().zip(1..).map(|(row, number)| Line {
-        number,
-        values: row.values.iter().copied().map(Some).collect(),
-        answer: &row.answer,
-    });
-    [own].into_iter().chain(rows).collect()
-}
+/// A row of the table of samples: the number of the sample, from 1, or 0 for the scenario itself; and its values and answer.
+pub(super) type Line<'a, A> = (usize, &'a SampleRow<A>);
 
 /// Makes the table of samples: their numbers, their values, and these columns.
 pub(super) fn table<'a, A: 'a>(
     samples: &Samples<'a, A>,
     columns: impl IntoIterator<Item = Column<'a, Line<'a, A>>>,
 ) -> Result<Vec<u8>, OutputError> {
-    let keys = samples.uncertain.keys.iter().map(|key| key.key.clone());
+    let uncertain = &samples.uncertain.keys;
+    let keys = uncertain.iter().map(|key| key.key.clone());
     let mut all = vec![
-        column("sample", |line: &Line<'_, A>| line.number),
-        list(keys, |line: &Line<'_, A>| line.values.clone()),
+        column("sample", |(number, _): &Line<'_, A>| *number),
+        list(keys, |(number, row): &Line<'_, A>| -> Vec<Option<f64>> {
+            match number {
+                0 => uncertain.iter().map(|key| key.own).collect(),
+                _ => row.values.iter().copied().map(Some).collect(),
+            }
+        }),
     ];
     all.extend(columns);
-    csv(all, &lines(samples))
+    csv(all, &samples.lines().collect::<Vec<_>>())
 }
 
 /// Returns a column of the answers; it is empty for samples without an answer.
@@ -51,15 +38,15 @@ pub(super) fn of_answer<'a, A: 'a, C: Into<Cell<'static>>>(
     name: &'static str,
     cell: impl Fn(&A) -> C + 'a,
 ) -> Column<'a, Line<'a, A>> {
-    column(name, move |line: &Line<'_, A>| {
-        line.answer.as_ref().ok().map(&cell)
+    column(name, move |(_, row): &Line<'_, A>| {
+        row.answer.as_ref().ok().map(&cell)
     })
 }
 
 /// Returns the column with the reasons of samples without an answer.
 pub(super) fn why_not<'a, A: 'a>() -> Column<'a, Line<'a, A>> {
-    column("why_not", |line: &Line<'_, A>| {
-        line.answer.as_ref().err().map(NoAnswer::name)
+    column("why_not", |(_, row): &Line<'_, A>| {
+        row.answer.as_ref().err().map(NoAnswer::name)
     })
 }
 

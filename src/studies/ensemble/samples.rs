@@ -23,6 +23,8 @@ pub struct Samples<'a, A> {
     /// The scenario.
     pub(crate) scenario: &'a Scenario,
     pub(crate) uncertain: &'a Uncertain,
+    /// The scenario itself, and the samples in their order.
+    all: &'a [SampleRow<A>],
     /// The answer of the scenario itself.
     pub(crate) own: &'a Result<A, NoAnswer>,
     /// The samples, in their order.
@@ -37,15 +39,21 @@ impl<'a, A> Samples<'a, A> {
         uncertain: &'a Uncertain,
         rows: &'a [SampleRow<A>],
     ) -> Self {
-        let (own, samples) = rows.split_first().expect("the scenario itself is a case");
-        let (rows, moved) = samples.split_at(uncertain.samples.min(samples.len()));
+        let (all, moved) = rows.split_at((1 + uncertain.samples).min(rows.len()));
+        let (own, rows) = all.split_first().expect("the scenario itself is a case");
         Self {
             scenario,
             uncertain,
+            all,
             own: &own.answer,
             rows,
             moved,
         }
+    }
+
+    /// Returns the scenario itself and all samples, with their numbers from 0.
+    pub(super) fn lines(&self) -> impl Iterator<Item = (usize, &'a SampleRow<A>)> + use<'a, A> {
+        self.all.iter().enumerate()
     }
 
     /// Returns the title of the scenario, or `otherwise` without one.
@@ -60,7 +68,7 @@ impl<'a, A> Samples<'a, A> {
 
     /// Returns the numbers of the samples without an answer, from 1, and the reasons.
     pub(super) fn without(&self) -> impl Iterator<Item = (usize, &'a NoAnswer)> + use<'a, A> {
-        let rows = (1..).zip(self.rows);
+        let rows = self.lines().skip(1);
         rows.filter_map(|(number, row)| Some((number, row.answer.as_ref().err()?)))
     }
 

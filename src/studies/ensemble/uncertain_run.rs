@@ -17,13 +17,10 @@ use crate::output::{
     filters, list,
 };
 use crate::scenario::{MotionModel, Scenario, Structure};
-use crate::studies::ending::columns::{self, OUTCOMES};
+use crate::studies::ending::columns::{self, OUTCOMES, OVERTURNED};
 use crate::studies::statistics::{Share, band, fractile, quantile};
 use crate::studies::{ModelCheck, Results};
 use crate::{Ending, Factors, Model, NoHistory, Sample, Verdict};
-
-/// Name of the outcome of overturned samples.
-const OVERTURNED: &str = OUTCOMES[0];
 
 /// Largest number of times at which samples are compared.
 const MOST_TIMES: usize = 300;
@@ -131,8 +128,8 @@ impl Question for Histories {
             followed_body: self.body,
         };
         let has_joints = samples.scenario.motion.kind.has_joints;
-        let mut columns = columns::columns(has_joints, |line: &Line<'_, HistoryAnswer>| {
-            let answer = line.answer.as_ref();
+        let mut columns = columns::columns(has_joints, |(_, row): &Line<'_, HistoryAnswer>| {
+            let answer = row.answer.as_ref();
             answer.map(|answer| &answer.ending).map_err(NoAnswer::name)
         });
         let potential = |one: &HistoryAnswer| one.potential_over_barrier;

@@ -5,11 +5,11 @@ use askama::Template;
 use serde::{Deserialize, Serialize};
 
 use super::influence::InfluencedAnswer;
-use super::report::{self, SampleSummary, lines, of_answer, why_not};
+use super::report::{self, SampleSummary, of_answer, why_not};
 use super::uncertain_threshold::{StrengthBand, first_strength};
 use super::{NoAnswer, Question, Samples};
 use crate::output::{Chart, Figure, Key, Mark, OutputError, Scale, Stroke, color, column, csv};
-use crate::scenario::{Scenario, Suite, shown};
+use crate::scenario::{Measure, Scenario, Suite, shown};
 use crate::studies::statistics::{
     ascending_weighted, bootstrap, interval, shares_up_to, weighted_fractile,
 };
@@ -44,9 +44,9 @@ impl Capacities {
     fn table(&self, samples: &Samples<'_, Edges>) -> Result<Vec<u8>, OutputError> {
         type Row<'a> = (usize, &'a str, &'static str, &'a FirstEdge);
         let mut rows: Vec<Row<'_>> = Vec::new();
-        for line in lines(samples) {
-            let edges = line.answer.iter().flatten().zip(self.shakes());
-            rows.extend(edges.map(|(edge, (record, sign))| (line.number, record, sign, edge)));
+        for (number, row) in samples.lines() {
+            let edges = row.answer.iter().flatten().zip(self.shakes());
+            rows.extend(edges.map(|(edge, (record, sign))| (number, record, sign, edge)));
         }
         let mut columns = vec![
             column("sample", |row: &Row<'_>| row.0),
@@ -79,7 +79,7 @@ impl Capacities {
         if let Ok(own) = samples.own {
             marks.push(steps("own", OWN, own.iter().collect()));
         }
-        let label = self.suite.measure.column().replace('_', " ");
+        let label = self.suite.measure.name().replace('_', " ");
         let y_axis = ("share that overturns", Scale::exactly(0.0, 1.0, 5));
         let chart = Chart {
             keys: vec![
@@ -138,7 +138,7 @@ impl Question for Capacities {
         let limits = [model.in_words(CHECKED), samples.no_verdict()];
         let report = Summary {
             all: SampleSummary::new(samples, model, limits, influences),
-            intensity: self.suite.measure.column().to_owned(),
+            intensity: self.suite.measure,
             quote: "both".to_owned(),
             first_intensity: StrengthBand::of(edges.clone()),
             own_first_intensity: StrengthBand::of(counted.of_itself()),
@@ -180,7 +180,7 @@ pub struct Summary {
     #[serde(flatten)]
     all: SampleSummary,
     /// The measure of the intensities.
-    intensity: String,
+    intensity: Measure,
     /// Name of the distribution in `fragility` to quote: it has the scatter of records and of uncertain numbers.
     quote: String,
     /// The intensity at which a record first overturns a sample.
@@ -370,7 +370,7 @@ impl<'a> Counted<'a> {
         let own = |level: &f64| share(self.of_itself().collect(), *level);
         let all = |level: &f64| share(self.of_samples().collect(), *level);
         let columns = [
-            column(self.question.suite.measure.column(), |level: &f64| *level),
+            column(self.question.suite.measure.name(), |level: &f64| *level),
             column("record_to_record", own),
             column("both", all),
         ];

@@ -3,6 +3,7 @@
 
 use askama::Template;
 use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 
 use super::influence::InfluencedAnswer;
 use super::report::{self, Band, Line, SampleSummary, why_not};
@@ -141,8 +142,8 @@ impl Question for FirstEdges {
             column("factor", |at: &ProbabilityAt| at.0),
             list(names, |at: &ProbabilityAt| at.1.numbers()),
         ];
-        let columns = FirstEdge::columns("first_factor", |line: &Line<'_, FirstEdge>| {
-            line.answer.as_ref().ok()
+        let columns = FirstEdge::columns("first_factor", |(_, row): &Line<'_, FirstEdge>| {
+            row.answer.as_ref().ok()
         });
         let others = [
             draw(figure, samples, &probabilities).into_bytes(),
@@ -157,10 +158,8 @@ impl Question for FirstEdges {
         FirstEdge::of(scenario, &self.factors)
     }
 
-    fn settings(&self) -> Vec<String> {
-        let factors = self.factors;
-        let (from, to, stride) = (factors.from, factors.to, factors.stride);
-        vec![format!("factors:{from:?}:{to:?}:{stride:?}")]
+    fn options(&self) -> Value {
+        json!({ "factors": self.factors })
     }
 }
 

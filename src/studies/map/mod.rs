@@ -1,6 +1,6 @@
 //! The overturning map: a history for every cell of a plane of two quantities.
 
-pub(super) mod page;
+pub mod page;
 pub mod picture;
 pub mod report;
 

@@ -1,132 +1,143 @@
 //! `map.html`: a map with a cursor. It shows the numbers of a cell, and the command that runs the cell.
 
+use std::collections::BTreeMap;
+
 use askama::Template;
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
-use serde_json::{Map, Value, json};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
-use super::picture::{self, Drawn};
+use super::picture::{ColoredCells, Drawn};
 use super::{CellRow, Described, OverturningMap, described};
 use crate::output::page::{PROGRAM, script_safe};
 use crate::output::{Figure, filters, render};
 use crate::scenario::{Ground, Quantity, toml_text};
-use crate::studies::outcome_colors::OutcomeColor;
-use crate::studies::{Ending, Style};
-
-/// Makes the page of a map.
-pub fn page(title: &str, map: &OverturningMap<'_>, rows: &[CellRow], style: Style) -> String {
-    let style = Style {
-        figure: Figure::SCREEN,
-        ..style
-    };
-    let drawn = picture::drawn(title, map, rows, style);
-    let kinds = rows.iter().map(|row| picture::color_of(row, style));
-    let doubt = |(index, row): (usize, &CellRow)| {
-        let doubt = row.result.as_ref().ok()?.doubt()?;
-        Some((index, doubt.to_string()))
-    };
-    let cells = Cells {
-        palette: &OutcomeColor::ALL,
-        kinds: kinds.collect(),
-        doubts: rows.iter().enumerate().filter_map(doubt).collect(),
-        outside: rows.iter().map(CellRow::is_outside_model).collect(),
-        columns: columns(rows),
-    };
-    cells.page(title, map, &drawn)
-}
-
-/// The cells of the page.
-pub(crate) struct Cells<'c> {
-    /// All kinds of cells.
-    pub(crate) palette: &'c [OutcomeColor],
-    /// The kind of each cell.
-    pub(crate) kinds: Vec<OutcomeColor>,
-    /// Indices of the uncertain cells, with the reasons.
-    pub(crate) doubts: Vec<(usize, String)>,
-    /// True for cells outside the model of four links.
-    pub(crate) outside: Vec<bool>,
-    /// Columns with a number for each cell: name and values; `None` for a cell without a value.
-    pub(crate) columns: Vec<(&'static str, Vec<Option<f64>>)>,
-}
+use crate::studies::ending::columns::NUMBERS;
 
 const SCRIPT: &str = include_str!("page/page.js");
 
-#[derive(Template)]
+/// The page: a picture for the screen, and all other data, as JSON inside it. Encoded numbers are in base 64.
+#[derive(Serialize, Deserialize, Template)]
 #[template(path = "studies/map/page/page.html")]
-struct Page<'p> {
-    title: &'p str,
-    picture: &'p str,
+struct Page {
+    #[serde(skip)]
+    picture: String,
+    title: String,
     scenario: String,
-    data: String,
+    axes: [PageAxis; 2],
+    sheet_px: SheetSize,
+    /// The colour of each cell, as the number of its label.
+    kinds: String,
+    /// The reasons of uncertain cells, by the number of the cell.
+    doubts: BTreeMap<usize, String>,
+    /// Cells outside the model of four links.
+    outside: Vec<usize>,
+    labels: Vec<String>,
+    columns: Vec<PageColumn>,
+    command: String,
 }
 
-impl Cells<'_> {
-    /// Makes the page from a picture for the screen.
-    pub(crate) fn page(&self, title: &str, map: &OverturningMap<'_>, drawn: &Drawn) -> String {
-        render(&Page {
-            title,
-            picture: &drawn.picture,
-            scenario: map.scenario.to_toml(),
-            data: script_safe(&self.data(map, drawn)),
-        })
-    }
+#[derive(Serialize, Deserialize)]
+struct PageAxis {
+    label: String,
+    values: Vec<f64>,
+    edges_px: Vec<f64>,
+}
 
-    fn data(&self, map: &OverturningMap<'_>, drawn: &Drawn) -> Value {
-        let index = |kind: &OutcomeColor| {
-            let place = self.palette.iter().position(|known| known == kind);
+#[derive(Serialize, Deserialize)]
+struct SheetSize {
+    width: f64,
+    height: f64,
+}
+
+/// A number for each cell; NaN for a cell without a value.
+#[derive(Serialize, Deserialize)]
+struct PageColumn {
+    name: String,
+    values: String,
+}
+
+/// Renders a page of a map again from its picture and the JSON inside it.
+///
+/// # Errors
+/// When the JSON is not that of a page.
+pub fn page_of(picture: &str, data: &str) -> serde_json::Result<String> {
+    let page = serde_json::from_str::<Page>(data)?;
+    let picture = picture.to_owned();
+    Ok(render(&Page { picture, ..page }))
+}
+
+/// Name and numbers of a column; `None` for a cell without a value.
+pub(crate) type CellNumbers = (&'static str, Vec<Option<f64>>);
+
+impl ColoredCells {
+    /// Makes the page from a picture for the screen, with reasons of uncertain cells and columns of numbers.
+    pub(crate) fn page(
+        &self,
+        title: &str,
+        map: &OverturningMap<'_>,
+        drawn: Drawn,
+        doubts: BTreeMap<usize, String>,
+        columns: impl IntoIterator<Item = CellNumbers>,
+    ) -> String {
+        let index = |color| {
+            let place = self.palette.iter().position(|known| known == color);
             u8::try_from(place.unwrap_or(0)).unwrap_or(0)
         };
-        let kinds: Vec<u8> = self.kinds.iter().map(index).collect();
-        let columns = self.columns.iter().map(|(name, values)| {
-            // NaN marks a missing value.
+        let kinds: Vec<u8> = self.colors.iter().map(index).collect();
+        let columns = columns.into_iter().map(|(name, values)| {
             let values = values.iter().map(|value| value.unwrap_or(f64::NAN));
             let bytes: Vec<u8> = values.flat_map(f64::to_le_bytes).collect();
-            json!({ "name": name, "values": BASE64_STANDARD.encode(bytes) })
+            PageColumn {
+                name: name.to_owned(),
+                values: BASE64_STANDARD.encode(bytes),
+            }
         });
-        let axes = map.axes;
-        let values = &map.values;
-        let axis = |i: usize| {
-            json!({
-                "label": described(axes[i]).label,
-                "values": values[i],
-                "edges_px": drawn.edges_px[i],
-            })
+        let axis = |i: usize| PageAxis {
+            label: described(map.axes[i]).label.to_owned(),
+            values: map.values[i].clone(),
+            edges_px: drawn.edges_px[i].clone(),
         };
-        let doubts = self.doubts.iter();
-        let doubts: Map<String, Value> = doubts
-            .map(|(index, doubt)| (index.to_string(), json!(doubt)))
-            .collect();
         let outside = (0..self.outside.len()).filter(|index| self.outside[*index]);
-        let labels: Vec<&str> = self.palette.iter().map(|color| color.label).collect();
-        json!({
-            "axes": [axis(0), axis(1)],
-            "sheet_px": { "width": Figure::SCREEN.width_px, "height": drawn.height_px },
-            "kinds": BASE64_STANDARD.encode(kinds),
-            "doubts": doubts,
-            "outside": outside.collect::<Vec<_>>(),
-            "labels": labels,
-            "columns": columns.collect::<Vec<_>>(),
-            "command": command(map),
+        let labels = self.palette.iter().map(|color| color.label.to_owned());
+        render(&Page {
+            title: title.to_owned(),
+            scenario: map.scenario.to_toml(),
+            axes: [axis(0), axis(1)],
+            sheet_px: SheetSize {
+                width: Figure::SCREEN.width_px,
+                height: drawn.height_px,
+            },
+            kinds: BASE64_STANDARD.encode(kinds),
+            doubts,
+            outside: outside.collect(),
+            labels: labels.collect(),
+            columns: columns.collect(),
+            command: command(map),
+            picture: drawn.picture,
         })
     }
+}
+
+/// Returns the reasons of uncertain cells, by the number of the cell.
+pub(super) fn doubts(rows: &[CellRow]) -> BTreeMap<usize, String> {
+    let doubt = |row: &CellRow| Some(row.result.as_ref().ok()?.doubt()?.to_string());
+    let doubts = rows.iter().map(doubt).enumerate();
+    doubts
+        .filter_map(|(index, doubt)| Some((index, doubt?)))
+        .collect()
 }
 
 /// Returns the columns with numbers of the cells.
-fn columns(rows: &[CellRow]) -> Vec<(&'static str, Vec<Option<f64>>)> {
-    type Of = fn(&Ending) -> Option<f64>;
-    let all: [(&str, Of); 6] = [
-        ("impacts", |of| Some(of.known_impacts()? as f64)),
-        ("outcome_time_s", Ending::known_time_s),
-        ("peak_rotation_over_critical", |of| of.peak_over_critical),
-        ("peak_rotation_rad", Ending::peak_of_row_rad),
-        ("energy_defect_ratio", |of| Some(of.energy_defect_ratio)),
-        ("thrust_excess_ratio", |of| of.thrust_excess_ratio),
-    ];
-    let column = |(name, of): (_, Of)| {
-        let cells = rows.iter().map(|row| of(row.result.as_ref().ok()?));
+pub(super) fn columns(rows: &[CellRow]) -> impl Iterator<Item = CellNumbers> {
+    let endings = move || rows.iter().map(|row| row.result.as_ref().ok());
+    let impacts = endings().map(|ending| Some(ending?.known_impacts()? as f64));
+    let numbers = NUMBERS.into_iter().map(move |(name, of)| {
+        let cells = endings().map(|ending| of(ending?));
         (name, cells.collect())
-    };
-    all.map(column).into()
+    });
+    [("impacts", impacts.collect())].into_iter().chain(numbers)
 }
 
 /// Returns the command that runs a cell, with placeholders for its two values. The command contains the whole scenario, so it depends neither on

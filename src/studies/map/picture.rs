@@ -3,14 +3,36 @@
 use super::{CellRow, OverturningMap, described};
 use crate::Outcome;
 use crate::output::caption::caption;
-use crate::output::sheet::{self as output};
-use crate::output::{Axes, Chart, Figure, Key, LEFT_PX, Mark, Scale, Shape, Sign, Stroke, color};
+use crate::output::{
+    Axes, Chart, Figure, Key, LEFT_PX, Mark, Scale, Shape, Sheet, Sign, Stroke, color,
+};
 use crate::scenario::{Axis, Quantity};
 use crate::studies::outcome_colors::{self, OutcomeColor};
 use crate::studies::results::Style;
 
+/// The cells of a map by colour, for any kinds of cells.
+pub(crate) struct ColoredCells {
+    /// All colours, in the order of the legend.
+    pub(crate) palette: &'static [OutcomeColor],
+    /// The colour of each cell.
+    pub(crate) colors: Vec<OutcomeColor>,
+    /// True for cells outside the model of four links.
+    pub(crate) outside: Vec<bool>,
+}
+
+impl ColoredCells {
+    /// Makes the cells of a map of outcomes.
+    pub(super) fn of_outcomes(rows: &[CellRow], style: Style) -> Self {
+        Self {
+            palette: &OutcomeColor::ALL,
+            colors: rows.iter().map(|row| color_of(row, style)).collect(),
+            outside: rows.iter().map(CellRow::is_outside_model).collect(),
+        }
+    }
+}
+
 /// Returns the colour of a cell.
-pub(super) fn color_of(cell: &CellRow, style: Style) -> OutcomeColor {
+fn color_of(cell: &CellRow, style: Style) -> OutcomeColor {
     if let (true, Ok(ending)) = (style.by_peak, &cell.result)
         && let (Outcome::Vibrates | Outcome::Rest | Outcome::StillRocking, Some(peak)) =
             (ending.outcome, ending.peak_over_critical)
@@ -69,8 +91,8 @@ pub(crate) struct Drawn {
     pub(crate) edges_px: [Vec<f64>; 2],
 }
 
-/// Axes and cells of a map, for any kinds of cells.
-pub(crate) struct Sheet<'s> {
+/// The chart of a map, for any kinds of cells.
+pub(crate) struct MapChart<'s> {
     title: &'s str,
     map: &'s OverturningMap<'s>,
     style: Style,
@@ -79,8 +101,8 @@ pub(crate) struct Sheet<'s> {
     edges: [Vec<f64>; 2],
 }
 
-impl<'s> Sheet<'s> {
-    /// Makes the sheet of a map.
+impl<'s> MapChart<'s> {
+    /// Makes the chart of a map, without cells.
     pub(crate) fn new(title: &'s str, map: &'s OverturningMap<'s>, style: Style) -> Self {
         let factors = style.factors.unwrap_or([1.0; 2]);
         let [x, y] = [0, 1].map(|i: usize| scale(map.axes[i], factors[i], style.figure));
@@ -112,14 +134,19 @@ impl<'s> Sheet<'s> {
         Mark::curve(name, line, diagonals)
     }
 
-    /// Fills the cells by their kinds, which the palette must contain, hatches cells outside the model of four links, and draws marks over them. The
-    /// legend has the kinds, then these keys.
+    /// Fills the cells with their colours, which the palette must contain, hatches cells outside the model of four links, and draws marks over them.
+    /// The legend has the colours, then these keys.
     pub(crate) fn draw(
         self,
-        (palette, kinds, outside): (&[OutcomeColor], &[OutcomeColor], &[bool]),
+        cells: &ColoredCells,
         mut keys: Vec<Key>,
         mut marks: Vec<Mark>,
     ) -> Drawn {
+        let ColoredCells {
+            palette,
+            colors,
+            outside,
+        } = cells;
         if outside.contains(&true) {
             let name = "outside-model";
             let sign = Sign::LineOn(CELL, name, OUTSIDE);
@@ -140,15 +167,15 @@ impl<'s> Sheet<'s> {
         };
         let mut chart = Chart::new(560.0, (x_label, x), (y_label, y));
         // The stroke closes gaps between cells.
-        let fills = palette.iter().map(|kind| {
-            let cells = runs(edges, kinds).filter(|(own, _)| own == kind);
+        let fills = palette.iter().map(|color| {
+            let cells = runs(edges, colors).filter(|(own, _)| own == color);
             let boxes = Shape::Boxes(cells.map(|(_, corners)| corners).collect());
-            Mark::new(kind.name, Stroke::new(kind.fill, 0.4, ""), boxes)
+            Mark::new(color.name, Stroke::new(color.fill, 0.4, ""), boxes)
         });
         chart.below = fills.collect();
-        chart.keys = [outcome_colors::keys(palette, kinds), keys].concat();
+        chart.keys = [outcome_colors::keys(palette, colors), keys].concat();
         chart.marks = marks;
-        let mut sheet = output::Sheet::new(figure, title);
+        let mut sheet = Sheet::new(figure, title);
         if figure.has_title {
             sheet.caption(11.0, &caption(map.scenario, &map.axes));
         }
@@ -171,15 +198,15 @@ impl<'s> Sheet<'s> {
     }
 }
 
-/// Returns runs of equal cells in each column: their kind and two opposite corners.
+/// Returns runs of equal cells in each column: their colour and two opposite corners.
 fn runs<'c>(
     [x_edges, y_edges]: &'c [Vec<f64>; 2],
-    kinds: &'c [OutcomeColor],
+    colors: &'c [OutcomeColor],
 ) -> impl Iterator<Item = (OutcomeColor, [(f64, f64); 2])> + 'c {
-    let columns = kinds.chunks(y_edges.len() - 1).zip(x_edges.windows(2));
-    columns.flat_map(move |(kinds, x)| {
+    let columns = colors.chunks(y_edges.len() - 1).zip(x_edges.windows(2));
+    columns.flat_map(move |(colors, x)| {
         let mut bottom = 0;
-        kinds.chunk_by(|a, b| a == b).map(move |run| {
+        colors.chunk_by(|a, b| a == b).map(move |run| {
             let low = (x[0], y_edges[bottom]);
             bottom += run.len();
             (run[0], [low, (x[1], y_edges[bottom])])
@@ -189,7 +216,8 @@ fn runs<'c>(
 
 /// Draws a map.
 pub fn draw(title: &str, map: &OverturningMap<'_>, rows: &[CellRow], style: Style) -> String {
-    drawn(title, map, rows, style).picture
+    let cells = ColoredCells::of_outcomes(rows, style);
+    drawn(title, map, rows, &cells, style).picture
 }
 
 /// Returns the picture of a map, with the positions of its cells.
@@ -197,17 +225,16 @@ pub(super) fn drawn(
     title: &str,
     map: &OverturningMap<'_>,
     rows: &[CellRow],
+    cells: &ColoredCells,
     style: Style,
 ) -> Drawn {
-    let kinds: Vec<_> = rows.iter().map(|row| color_of(row, style)).collect();
-    let sheet = Sheet::new(title, map, style);
+    let chart = MapChart::new(title, map, style);
     let sign = Sign::LineOn(CELL, "doubtful", DOUBTFUL);
     let key = Key::new("another outcome in a repetition", sign);
     let keys = map.repeat.then_some(key).into_iter().collect();
     let doubtful: Vec<bool> = rows.iter().map(CellRow::is_doubtful).collect();
-    let hatch = sheet.hatch("doubtful", DOUBTFUL, [0, 1], &doubtful);
-    let outside: Vec<bool> = rows.iter().map(CellRow::is_outside_model).collect();
-    sheet.draw((&OutcomeColor::ALL, &kinds, &outside), keys, vec![hatch])
+    let hatch = chart.hatch("doubtful", DOUBTFUL, [0, 1], &doubtful);
+    chart.draw(cells, keys, vec![hatch])
 }
 
 /// Background of lines in the legend: light, as most cells.

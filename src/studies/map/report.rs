@@ -3,7 +3,8 @@
 use askama::Template;
 use serde::{Deserialize, Serialize};
 
-use super::{CellRow, NoHistory, OverturningMap, page, picture};
+use super::picture::{self, ColoredCells};
+use super::{CellRow, NoHistory, OverturningMap, page};
 use crate::argument::plain;
 use crate::output::{Column, OutputError, column, csv};
 use crate::scenario::{Quantity, Scenario};
@@ -40,9 +41,13 @@ impl ReportedStudy for OverturningMap<'_> {
             other_outcomes_in_repetitions: self.repeat.then(|| doubtful.count()),
             all: CaseSummary::new(scenario, cells.len(), remarks, warnings),
         };
+        let colored = ColoredCells::of_outcomes(&cells, style);
+        let picture = |style| picture::drawn(title, self, &cells, &colored, style);
+        let (doubts, columns) = (page::doubts(&cells), page::columns(&cells));
+        let page = colored.page(title, self, picture(style.on_screen()), doubts, columns);
         let others = [
-            picture::draw(title, self, &cells, style).into_bytes(),
-            page::page(title, self, &cells, style).into_bytes(),
+            picture(style).picture.into_bytes(),
+            page.into_bytes(),
             csv(self.columns(), &cells)?,
         ];
         Results::new(Self::FILES, &report, others)

@@ -78,7 +78,7 @@ pub struct Stage {
     /// Movement of the springing, in metres.
     pub movement_m: f64,
     /// Open hinges; none before the first movement.
-    pub hinges: Vec<OpenHinge>,
+    pub hinges: Vec<HingeOpening>,
     /// Horizontal force between springings and arch, in N. `None` before the first movement, because it is not determined, and with three hinges
     /// on one line, because it is infinite.
     pub thrust_n: Option<f64>,
@@ -106,9 +106,9 @@ pub struct Stage {
     pub poses: Vec<Pose>,
 }
 
-/// An open hinge.
+/// An open hinge with its rotation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct OpenHinge {
+pub struct HingeOpening {
     /// Position of the hinge.
     #[serde(flatten)]
     pub hinge: Pin,
@@ -289,7 +289,7 @@ fn stage(follower: &Follower<'_>, movement_m: f64, weight_n: f64) -> Stage {
     });
     let open = |state: &HingeState| {
         let hinges = state.hinges.iter().zip(&state.hinge_rotations_rad);
-        let open = hinges.map(|(hinge, rotation_rad)| OpenHinge {
+        let open = hinges.map(|(hinge, rotation_rad)| HingeOpening {
             hinge: *hinge,
             rotation_rad: *rotation_rad,
         });
@@ -328,7 +328,7 @@ impl Stage {
 
     /// Returns the hinges as numbers of joints with the initials of their edges.
     fn hinges_in_letters(&self) -> String {
-        let letters = self.hinges.iter().map(|OpenHinge { hinge, .. }| {
+        let letters = self.hinges.iter().map(|HingeOpening { hinge, .. }| {
             let edge = &hinge.edge.name()[..1];
             format!("{}{edge}", hinge.joint)
         });

@@ -96,13 +96,15 @@ pub enum NoFit {
     NoObservations,
     /// Every case survives: their number, and the highest intensity.
     #[error(
-        "none of {0} cases overturns up to the intensity {highest}: add higher intensities",
+        "{} up to the intensity {highest}: add higher intensities",
+        in_words(*.0, "the only case does not overturn", |cases| format!("none of {cases} cases overturns")),
         highest = plain(*.1)
     )]
     NoneOverturned(usize, f64),
     /// No case survives: their number, and the lowest intensity.
     #[error(
-        "all {0} cases overturn down to the intensity {lowest}: add lower intensities",
+        "{} down to the intensity {lowest}: add lower intensities",
+        in_words(*.0, "the only case overturns", |cases| format!("all {cases} cases overturn")),
         lowest = plain(*.1)
     )]
     AllOverturned(usize, f64),
@@ -136,6 +138,14 @@ pub enum NoFit {
          computed; add intensities at which few and at which most cases overturn"
     )]
     Undetermined,
+}
+
+/// Returns a number of cases in words, which differ for one case.
+fn in_words(cases: usize, only: &str, several: fn(usize) -> String) -> String {
+    match cases {
+        1 => only.to_owned(),
+        _ => several(cases),
+    }
 }
 
 impl Fragility {

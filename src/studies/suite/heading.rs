@@ -66,6 +66,6 @@ impl Heading {
     /// Returns the level of a case in words.
     pub(super) fn level(&self, case: &CaseRow) -> String {
         let level = plain(case.level(self.measure));
-        format!("{} {level}", self.measure.column())
+        format!("{} {level}", self.measure.name())
     }
 }

@@ -27,7 +27,7 @@ pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility) -> Stri
     let mut chart = Chart::new(480.0, (&label, x), (y_label, y));
     let critical = Mark::upright("critical", CRITICAL, 1.0, y);
     chart.marks.extend(over_critical.then_some(critical));
-    let records = results.shakes();
+    let records: Vec<&[CaseRow]> = results.shakes().collect();
     let are_named = records.len() <= NAMED;
     for (cases, named) in records.iter().zip(CURVES.into_iter().cycle()) {
         let stroke = if are_named { named } else { MANY };
@@ -66,12 +66,7 @@ pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility) -> Stri
 }
 
 /// Draws the curve of a record through its surviving cases, and a mark for each case.
-fn of_record(
-    name: &str,
-    stroke: Stroke,
-    cases: &[&CaseRow],
-    results: &SuiteFragility,
-) -> Vec<Mark> {
+fn of_record(name: &str, stroke: Stroke, cases: &[CaseRow], results: &SuiteFragility) -> Vec<Mark> {
     let level = |case: &CaseRow| case.level(results.measure);
     // Overturned cases interrupt the curve.
     let points = cases.iter();

@@ -318,10 +318,11 @@ pub struct Counts {
     /// Number of cases that had neither overturned nor come to rest.
     #[serde(rename = "still_rocking_counted_as_not_overturned")]
     pub still_rocking: usize,
-    /// Number of cases whose history ended too early for a verdict. They count at both ends only.
+    /// Number of cases whose history ended too early for a verdict: left out of `cases` and of the curve. Only the curves `with_uncertain_as_survived`
+    /// and `with_uncertain_as_overturned` count them.
     #[serde(rename = "incomplete_left_out")]
     pub incomplete: usize,
-    /// Number of cases whose history could not be computed. They count at both ends only.
+    /// Number of cases whose history could not be computed: left out and counted as incomplete ones.
     #[serde(rename = "failed_left_out")]
     pub failed: usize,
 }
@@ -394,7 +395,7 @@ impl SuiteFragility {
     /// Computes the results of these cases.
     pub fn new(measure: Measure, cases: Vec<CaseRow>) -> Self {
         let mirrored_count = !mirrored_are_images(&cases);
-        let evidence = counting(&cases, mirrored_count);
+        let evidence: Vec<&CaseRow> = shakes(&cases, mirrored_count).flatten().collect();
         let indices: BTreeMap<&str, usize> = names(&cases).into_iter().zip(0..).collect();
         // Each curve counts a share of 0 to 1 in its own way; `None` does not count.
         let fit_of = |overturned: fn(Option<f64>) -> Option<f64>| {
@@ -455,7 +456,7 @@ impl SuiteFragility {
     pub fn survivals(&self) -> Vec<(&CaseRow, Survival)> {
         let mut survivals: Vec<(&CaseRow, Survival)> = Vec::new();
         for cases in self.cases.chunk_by(CaseRow::has_shake_of) {
-            let survival = self.survival(&cases.iter().collect::<Vec<_>>());
+            let survival = self.survival(cases);
             let case = &cases[0];
             let last = survivals.last();
             let last = last.filter(|(other, _)| case.mirrored && other.record == case.record);
@@ -467,11 +468,11 @@ impl SuiteFragility {
     }
 
     /// Returns the intensities that the structure survives under a record, from its cases with one sign, the weakest first.
-    fn survival(&self, cases: &[&CaseRow]) -> Survival {
-        let level = |case: &&CaseRow| (case.level(self.measure), case.verdict());
+    fn survival(&self, cases: &[CaseRow]) -> Survival {
+        let level = |case: &CaseRow| (case.level(self.measure), case.verdict());
         let levels: Vec<_> = cases.iter().map(level).collect();
         let mut survival = Survival::of_levels(&levels);
-        let is = |verdict| move |case: &&CaseRow| case.verdict() == Some(verdict);
+        let is = |verdict| move |case: &CaseRow| case.verdict() == Some(verdict);
         let Some(first) = cases.iter().position(is(Verdict::Overturns)) else {
             return survival;
         };
@@ -496,14 +497,12 @@ impl SuiteFragility {
 
     /// Returns the cases that count.
     fn evidence(&self) -> Vec<&CaseRow> {
-        counting(&self.cases, self.mirrored_count)
+        self.shakes().flatten().collect()
     }
 
     /// Returns the cases that count, grouped by record and sign, the weakest first.
-    fn shakes(&self) -> Vec<Vec<&CaseRow>> {
-        let evidence = self.evidence();
-        let shakes = evidence.chunk_by(|a, b| a.has_shake_of(b));
-        shakes.map(<[_]>::to_vec).collect()
+    fn shakes(&self) -> impl Iterator<Item = &[CaseRow]> {
+        shakes(&self.cases, self.mirrored_count)
     }
 
     /// Returns the number of records.
@@ -524,10 +523,10 @@ impl SuiteFragility {
     }
 }
 
-/// Returns the cases that count: all, or those whose record is not mirrored.
-fn counting(cases: &[CaseRow], mirrored_count: bool) -> Vec<&CaseRow> {
-    let counts = |case: &&CaseRow| mirrored_count || !case.mirrored;
-    cases.iter().filter(counts).collect()
+/// Returns the cases that count, all or those whose record is not mirrored, grouped by record and sign.
+fn shakes(cases: &[CaseRow], mirrored_count: bool) -> impl Iterator<Item = &[CaseRow]> {
+    let shakes = cases.chunk_by(CaseRow::has_shake_of);
+    shakes.filter(move |cases| mirrored_count || !cases[0].mirrored)
 }
 
 /// Returns true if every mirrored case is exactly the mirror image of the original case.

@@ -17,10 +17,10 @@ pub(super) fn draw(
     let (x_label, x) = heading.axis(results, figure);
     let curves = curves(results);
     let mut marks: Vec<Mark> = Vec::new();
-    for (fit, style) in &curves {
+    for (fit, (name, _, line)) in &curves {
         let intensities = along(&x, &curves).into_iter();
         let points = intensities.map(|x| (x, fit.probability(x)));
-        marks.push(Mark::curve(style.name, style.line, points));
+        marks.push(Mark::curve(*name, *line, points));
     }
     let circle = |name, at| Mark::new(name, POINT, Shape::Circle(at, 4.5));
     for level in &results.levels {
@@ -49,23 +49,22 @@ pub(super) fn draw(
     sheet.finish()
 }
 
-/// The style of a curve.
-struct CurveStyle {
-    name: &'static str,
-    label: &'static str,
-    line: Stroke,
-}
+/// Name, label and line of a curve.
+type CurveStyle = (&'static str, &'static str, Stroke);
 
 /// The curve with uncertain cases counted by their fractions, then those with doubtful cases as survived and as overturned.
 const STYLES: [CurveStyle; 3] = [
-    style("fit", "lognormal curve", ""),
-    style("fit-certain", "uncertain cases survive", "2 4"),
-    style("fit-with-uncertain", "uncertain cases overturn", "7 4"),
+    ("fit", "lognormal curve", line("")),
+    ("fit-certain", "uncertain cases survive", line("2 4")),
+    (
+        "fit-with-uncertain",
+        "uncertain cases overturn",
+        line("7 4"),
+    ),
 ];
 
-const fn style(name: &'static str, label: &'static str, dashes: &'static str) -> CurveStyle {
-    let line = Stroke::new(color::BLUE, 2.0, dashes);
-    CurveStyle { name, label, line }
+const fn line(dashes: &'static str) -> Stroke {
+    Stroke::new(color::BLUE, 2.0, dashes)
 }
 
 /// Returns the curves to draw.
@@ -83,11 +82,10 @@ fn keys(results: &SuiteFragility, curves: &[(&Fragility, CurveStyle)]) -> Vec<Ke
         records_in_words(results.record_count())
     );
     let mut keys = vec![Key::new(text, Sign::Circle(4.5, POINT))];
-    keys.extend(
-        curves
-            .iter()
-            .map(|(_, style)| Key::line(style.label, style.line)),
-    );
+    let lines = curves
+        .iter()
+        .map(|(_, (_, label, line))| Key::line(*label, *line));
+    keys.extend(lines);
     if curves.len() > 1 {
         keys.push(Key::new("between these", Sign::Band(BETWEEN, 1.0)));
     }

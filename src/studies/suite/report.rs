@@ -51,7 +51,7 @@ pub struct Summary {
     /// Number of all computed cases with each outcome.
     outcomes: OutcomeCounts,
     /// The measure of the intensities.
-    intensity: String,
+    intensity: Measure,
     #[serde(flatten)]
     curve: Curve,
     /// Number of records.
@@ -167,7 +167,7 @@ impl Heading {
             warnings: self.warnings.iter().cloned().chain(limits).collect(),
             to_quote: quotable::in_words(std::slice::from_ref(&answer)),
             outcomes: OutcomeCounts::of(results.cases.iter().map(|case| &case.result)),
-            intensity: self.measure.column().to_owned(),
+            intensity: self.measure,
             curve: (&results.fit).into(),
             records: results.record_count(),
             counts: Counts::of(&results.evidence()),
@@ -201,7 +201,7 @@ impl Heading {
                 Err(reason) => format!("no curve: {reason}{taken}"),
             });
         let caption = captions.collect::<Vec<_>>().join("; ");
-        let mut fractiles = vec![column(self.measure.column(), |at: &Fractiles| at.intensity)];
+        let mut fractiles = vec![column(self.measure.name(), |at: &Fractiles| at.intensity)];
         fractiles.extend(fields!(|at: &Fractiles| at => cases, overturned));
         let names = ["peak_16", "peak_50", "peak_84"];
         fractiles.push(list(names, |at: &Fractiles| at.peaks));
@@ -240,7 +240,7 @@ impl Heading {
         });
         let excess_ratio = cases.filter_map(excess).reduce(f64::max);
         let answer = lowest.map_or(Err("there are no cases".to_owned()), |(case, survival)| {
-            let (record, unit) = (case.record_in_words(), unit(self.measure.column()));
+            let (record, unit) = (case.record_in_words(), self.measure.unit());
             match survival.survives_up_to.map(rounded_down) {
                 Some(safe) => Ok(format!(
                     "survives all records up to {safe}{unit} ({record})"
@@ -284,7 +284,7 @@ impl Heading {
             list(names, move |level: &FragilityRow| each(curve(level)))
         };
         let intensity = |level: &FragilityRow| level.intensity;
-        let mut all = vec![column(self.measure.column(), intensity)];
+        let mut all = vec![column(self.measure.name(), intensity)];
         all.extend(fields!(
             |level: &FragilityRow| level.counts => cases, overturned, still_rocking, incomplete, failed
         ));
@@ -360,7 +360,7 @@ impl Summary {
                 _ => format!(", {cases} {kind} cases {how}"),
             };
             let curve = curve?;
-            let words = curve.in_words(self.unit());
+            let words = curve.in_words(self.intensity.unit());
             Some((taken, words.ok_or(curve.no_fit.clone().unwrap_or_default())))
         };
         curves.into_iter().filter_map(in_words).collect()
@@ -392,11 +392,6 @@ impl Summary {
         let others = self.intensity_measures.iter().skip(1);
         let others = others.map(|one| self.measure(one));
         others.collect::<Vec<_>>().join(", ")
-    }
-
-    /// Returns the unit that follows an intensity.
-    fn unit(&self) -> &'static str {
-        unit(&self.intensity)
     }
 }
 
@@ -436,13 +431,4 @@ impl Curve {
 /// Returns the number of decimals that show two significant digits of an error.
 fn digits(error: f64) -> usize {
     (1.0 - error.log10().floor()).clamp(0.0, 12.0) as usize
-}
-
-/// Returns the unit that follows an intensity in this measure.
-fn unit(intensity: &str) -> &'static str {
-    if intensity == Measure::PeakG.column() {
-        " g"
-    } else {
-        ""
-    }
 }

@@ -87,15 +87,14 @@ pub struct Efficiency {
 impl SuiteFragility {
     /// Computes the capacity under each record; under mirrored records only if they count.
     pub fn capacities(&self) -> Vec<Capacity<'_>> {
-        let shakes = self.shakes().into_iter();
-        shakes.map(|levels| self.capacity(&levels)).collect()
+        self.shakes().map(|levels| self.capacity(levels)).collect()
     }
 
-    fn capacity<'a>(&self, levels: &[&'a CaseRow]) -> Capacity<'a> {
-        let overturns = |case: &&CaseRow| case.verdict() == Some(Verdict::Overturns);
+    fn capacity<'a>(&self, levels: &'a [CaseRow]) -> Capacity<'a> {
+        let overturns = |case: &CaseRow| case.verdict() == Some(Verdict::Overturns);
         let first = levels.iter().position(overturns);
         let below = first.and_then(|first| levels[first.checked_sub(1)?].known_verdict());
-        let own = levels[first.unwrap_or(0)];
+        let own = &levels[first.unwrap_or(0)];
         let safe = self.survival(levels).survives_up_to;
         let level = first.map(|_| own.overturns_from(self.measure));
         let scale_of = |level: f64| own.scale * level / own.level(self.measure);

@@ -59,9 +59,12 @@ named! {
     }
 }
 
-/// A range of factors with one verdict. The histories at both ends were computed and have that verdict.
+/// A range of factors with one verdict, or without histories. The histories at both ends were computed and have that verdict.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FactorRange {
+    /// The verdict; `None` without histories.
+    #[serde(skip)]
+    pub verdict: Option<Verdict>,
     /// Smallest factor of the range.
     pub from: f64,
     /// Largest factor of the range.
@@ -79,8 +82,8 @@ pub struct Threshold {
     pub model: String,
     /// The histories for all factors, ascending. They include the last history of a bisection that failed or met the third verdict.
     pub samples: Vec<FactorSample>,
-    /// The ranges of equal verdicts, ascending.
-    pub ranges: Vec<(Verdict, FactorRange)>,
+    /// All ranges of tried factors, ascending.
+    pub ranges: Vec<FactorRange>,
     /// The lowest factors of structures with other stiffness and contact, and with rigid joints; empty unless joints are elastic and a factor
     /// overturns the structure.
     pub varied: Vec<VariedThreshold>,
@@ -91,10 +94,8 @@ pub struct Threshold {
 impl Threshold {
     /// Returns the ranges with a verdict, ascending.
     pub fn of(&self, wanted: Verdict) -> Vec<FactorRange> {
-        let ranges = self.ranges.iter();
-        ranges
-            .filter_map(|(verdict, range)| (*verdict == wanted).then_some(*range))
-            .collect()
+        let is_wanted = |range: &FactorRange| range.verdict == Some(wanted);
+        self.ranges.iter().copied().filter(is_wanted).collect()
     }
 
     /// Returns the ranges that overturn the structure, ascending.
@@ -153,20 +154,17 @@ impl Threshold {
             let (first, last) = (&run[0], &run[run.len() - 1]);
             let before = start.checked_sub(1).map(|index| &samples[index]);
             start += run.len();
-            let Some(verdict) = first.verdict() else {
-                continue;
-            };
             let (edge, from_end) = end(before, Some(first));
             let from = edge.map_or(first.factor, |(_, high)| *high);
             let (edge, to_end) = end(Some(last), samples.get(start));
             let to = edge.map_or(last.factor, |(low, _)| *low);
-            let range = FactorRange {
+            ranges.push(FactorRange {
+                verdict: first.verdict(),
                 from,
                 to,
                 from_end,
                 to_end,
-            };
-            ranges.push((verdict, range));
+            });
         }
         Self {
             model,
@@ -178,48 +176,38 @@ impl Threshold {
     }
 }
 
-/// Computes the factors on the ground motion by which each of the named models overturns.
+/// Computes the factors on the ground motion by which a model, given with its name, overturns.
 ///
 /// `watch` receives the progress as in [`Runner::rows`]: first over all factors, then over the edges as well.
 ///
 /// # Errors
 /// When `watch` returns `Break`, threads cannot be started, or the request is not valid. Failed histories are part of the results.
-pub fn thresholds(
-    models: &[(&str, &dyn Model)],
+pub fn threshold(
+    (name, model): (&str, &dyn Model),
     ground: &GroundMotion,
     request: &Request,
     factors: &Factors,
     runner: &Runner,
     mut watch: impl FnMut(Progress) -> ControlFlow<()>,
-) -> Result<Vec<Threshold>, StudyError> {
+) -> Result<Threshold, StudyError> {
     request.check(ground).map_err(StudyError::scenario)?;
     let factors = factors.values();
     let shaking = Shaking {
-        models,
+        model,
         ground,
         request,
     };
-    // Cases are ordered by model, then by factor.
-    let sampled = models.len() * factors.len();
-    let model_of = |index: usize| index / factors.len();
-    let family = |index| {
-        let together = models[model_of(index)].1.is_elastic();
-        together.then_some(model_of(index))
-    };
-    // A case without a family is computed alone.
+    let family = |_| model.is_elastic().then_some(0);
     let samples_of = |indices: &[usize]| {
-        let of_them = indices.iter().map(|index| factors[index % factors.len()]);
-        shaking.samples(model_of(indices[0]), &of_them.collect::<Vec<_>>())
+        let of_them = indices.iter().map(|index| factors[*index]);
+        shaking.samples(&of_them.collect::<Vec<_>>())
     };
-    let samples = runner.each_of_families(sampled, family, samples_of, &mut watch)?;
-    let changes = samples.chunks(factors.len()).enumerate();
-    let changes = changes.flat_map(|(model, samples)| {
-        let pairs = samples.windows(2);
-        let pairs = pairs.map(move |pair| (model, &pair[0], &pair[1]));
-        pairs.filter(|(_, below, above)| {
-            let both = below.verdict().zip(above.verdict());
-            both.is_some_and(|(below, above)| below != above)
-        })
+    let sampled = factors.len();
+    let mut samples = runner.each_of_families(sampled, family, samples_of, &mut watch)?;
+    let pairs = samples.windows(2).map(|pair| (&pair[0], &pair[1]));
+    let changes = pairs.filter(|(below, above)| {
+        let both = below.verdict().zip(above.verdict());
+        both.is_some_and(|(below, above)| below != above)
     });
     let changes: Vec<Change<'_>> = changes.collect();
     let search = |index: usize| shaking.search(changes[index]);
@@ -229,32 +217,25 @@ pub fn thresholds(
             all: sampled + progress.all,
         })
     })?;
-    let threshold = |(model, samples): (usize, &[FactorSample])| {
-        let (mut samples, mut edges) = (samples.to_vec(), Vec::new());
-        let own = changes.iter().zip(&found);
-        let own = own.filter(|((of, ..), _)| *of == model);
-        for found in own.flat_map(|(_, found)| found) {
-            match found {
-                Ok(edge) => edges.push(*edge),
-                Err(sample) => samples.push(sample.clone()),
-            }
+    let mut edges = Vec::new();
+    for found in found.into_iter().flatten() {
+        match found {
+            Ok(edge) => edges.push(edge),
+            Err(sample) => samples.push(sample),
         }
-        samples.sort_by(|a, b| a.factor.total_cmp(&b.factor));
-        let mut threshold = Threshold::new(models[model].0.to_owned(), samples, &edges);
-        if let (Some(_), Some(safe)) = (models[model].1.as_mechanisms(), threshold.survives_up_to())
-        {
-            // The largest safe factor is from a bisection, and is not among the samples.
-            let last = shaking.samples(model, &[safe]);
-            let below = threshold.samples.iter();
-            let below = below.filter(|sample| sample.factor <= safe);
-            let endings = below.chain(&last).flat_map(|sample| &sample.result);
-            let excesses = endings.filter_map(|ending| ending.thrust_excess_ratio);
-            threshold.safe_excess_ratio = excesses.reduce(f64::max);
-        }
-        threshold
-    };
-    let of_models = samples.chunks(factors.len()).enumerate();
-    Ok(of_models.map(threshold).collect())
+    }
+    samples.sort_by(|a, b| a.factor.total_cmp(&b.factor));
+    let mut threshold = Threshold::new(name.to_owned(), samples, &edges);
+    if let (Some(_), Some(safe)) = (model.as_mechanisms(), threshold.survives_up_to()) {
+        // The largest safe factor is from a bisection, and is not among the samples.
+        let last = shaking.samples(&[safe]);
+        let below = threshold.samples.iter();
+        let below = below.filter(|sample| sample.factor <= safe);
+        let endings = below.chain(&last).flat_map(|sample| &sample.result);
+        let excesses = endings.filter_map(|ending| ending.thrust_excess_ratio);
+        threshold.safe_excess_ratio = excesses.reduce(f64::max);
+    }
+    Ok(threshold)
 }
 
 /// Checks that a scenario has a ground motion to scale, and starts from rest.
@@ -290,41 +271,40 @@ pub fn results(
 ) -> Result<Results, StudyError> {
     let scenario = &scenarios[0];
     check(scenario).map_err(StudyError::Scenario)?;
-    let models = scenarios.iter().map(|scenario| scenario.model());
-    let models: Result<Vec<_>, _> = models.collect();
-    let models = models.map_err(StudyError::scenario)?;
-    let names = scenarios.iter().map(|scenario| scenario.model_name());
-    let models: Vec<(&str, &dyn Model)> = names.zip(models.iter().map(|model| &**model)).collect();
     let (ground, request) = (scenario.ground_motion(), scenario.request());
-    let mut found = thresholds(&models, ground, &request, factors, runner, &mut *watch)?;
-    for (threshold, scenario) in found.iter_mut().zip(scenarios) {
+    let mut found = Vec::new();
+    for scenario in scenarios {
+        let model = scenario.model().map_err(StudyError::scenario)?;
+        let model = (scenario.model_name(), &*model);
+        let mut threshold = threshold(model, ground, &request, factors, runner, &mut *watch)?;
         threshold.check_known()?;
         if threshold.lowest_factor().is_some() {
             let variations = scenario.variations().map_err(StudyError::failed)?;
             let case = (ground, &request);
             threshold.varied = vary(&variations, factors, case, runner, &mut *watch)?;
         }
+        found.push(threshold);
     }
     Ok(report::report(scenarios, factors, &found, figure)?)
 }
 
-/// The models, the ground motion and the request.
+/// The model, the ground motion and the request.
 #[derive(Clone, Copy)]
 struct Shaking<'a> {
-    models: &'a [(&'a str, &'a dyn Model)],
+    model: &'a dyn Model,
     ground: &'a GroundMotion,
     request: &'a Request,
 }
 
 impl Shaking<'_> {
-    /// Histories of a model for several factors, in their order.
-    fn samples(&self, model: usize, factors: &[f64]) -> Vec<FactorSample> {
+    /// Computes the histories for several factors, in their order.
+    fn samples(&self, factors: &[f64]) -> Vec<FactorSample> {
         let cases = factors.iter();
         let cases = cases.map(|factor| {
             let ground = self.ground.scaled(*factor);
             Ok((ground.map_err(SimulationError::from)?, *self.request))
         });
-        let endings = answered(cases, |cases| Ending::of_all(self.models[model].1, cases));
+        let endings = answered(cases, |cases| Ending::of_all(self.model, cases));
         let samples = factors.iter().copied().zip(endings);
         let sample = |(factor, result)| FactorSample { factor, result };
         samples.map(sample).collect()
@@ -332,16 +312,16 @@ impl Shaking<'_> {
 
     /// Finds the edge between neighbouring factors with different verdicts. If a history has a third verdict, returns this history and the edges
     /// on both sides of it; if a history fails, returns that history.
-    fn search(&self, (model, below, above): Change<'_>) -> Vec<Found> {
+    fn search(&self, (below, above): Change<'_>) -> Vec<Found> {
         let width = Width::Relative(EDGE_WIDTH);
-        let together = self.models[model].1.is_elastic();
-        let steps = if together { STEPS_AHEAD } else { 1 };
+        let is_elastic = self.model.is_elastic();
+        let steps = if is_elastic { STEPS_AHEAD } else { 1 };
         let (mut low, mut high) = (below.factor, above.factor);
         let mut ahead: Vec<FactorSample> = Vec::new();
         let edge = try_bisect(low, high, width, |factor| {
             let known = |ahead: &[FactorSample]| ahead.iter().position(|it| it.factor == factor);
             let place = known(&ahead).unwrap_or_else(|| {
-                ahead = self.samples(model, &next_middles(low, high, width, steps));
+                ahead = self.samples(&next_middles(low, high, width, steps));
                 // The first history ahead is the one that is needed now.
                 0
             });
@@ -363,16 +343,16 @@ impl Shaking<'_> {
         };
         let mut found = Vec::new();
         if met.verdict().is_some() {
-            found.extend(self.search((model, below, &met)));
-            found.extend(self.search((model, &met, above)));
+            found.extend(self.search((below, &met)));
+            found.extend(self.search((&met, above)));
         }
         found.push(Err(met));
         found
     }
 }
 
-/// Neighbouring samples with different verdicts, with the index of their model.
-type Change<'a> = (usize, &'a FactorSample, &'a FactorSample);
+/// Neighbouring samples with different verdicts.
+type Change<'a> = (&'a FactorSample, &'a FactorSample);
 
 /// Two close factors with different verdicts, or a history between the factors.
 type Found = Result<(f64, f64), FactorSample>;

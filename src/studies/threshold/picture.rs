@@ -139,8 +139,8 @@ fn scale(
 fn edges(threshold: &Threshold) -> impl Iterator<Item = f64> {
     let mut last = f64::NAN;
     let ranges = threshold.ranges.iter();
-    let ranges = ranges.filter(|(verdict, _)| *verdict != Verdict::Survives);
-    let ends = ranges.flat_map(|(_, at)| [(at.from, at.from_end), (at.to, at.to_end)]);
+    let ranges = ranges.filter(|range| range.verdict != Some(Verdict::Survives));
+    let ends = ranges.flat_map(|at| [(at.from, at.from_end), (at.to, at.to_end)]);
     let ends = ends.filter_map(|(factor, end)| (end == RangeEnd::Edge).then_some(factor));
     // One of the two factors that enclose the edge between a band and an uncertain range is enough.
     ends.filter(move |factor| {

@@ -14,7 +14,7 @@ use crate::dynamics::OutcomeCount;
 use crate::dynamics::thrust::MODEL_LIMIT;
 use crate::output::{Figure, OutputError, column, csv, fields};
 use crate::scenario::{Ground, Scenario};
-use crate::studies::ending::columns::{GROUND_FALLS, OUTCOMES};
+use crate::studies::ending::columns::{GROUND_FALLS, OVERTURNED};
 use crate::studies::ending::{NoHistory, Verdict, outcome_name};
 use crate::studies::quotable::{self, ModelAnswer};
 use crate::studies::statistics::ascending;
@@ -79,7 +79,7 @@ struct ModelSummary {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     variations: Vec<VariedSummary>,
     /// All histories, in order of ascending factors.
-    samples: Vec<SampleSummary>,
+    samples: Vec<TriedFactor>,
 }
 
 /// A range of factors.
@@ -113,7 +113,7 @@ struct VariedSummary {
 
 /// The history at a factor.
 #[derive(Serialize, Deserialize)]
-struct SampleSummary {
+struct TriedFactor {
     /// The factor.
     factor: f64,
     /// Outcome of the history.
@@ -191,7 +191,7 @@ pub fn report(
 
 /// Makes the table of the samples, ordered by model, then by factor.
 fn table(models: &[ModelSummary]) -> Result<Vec<u8>, OutputError> {
-    type Row<'a> = (&'a str, &'a SampleSummary);
+    type Row<'a> = (&'a str, &'a TriedFactor);
     let rows = models.iter().flat_map(|model| {
         let samples = model.samples.iter();
         samples.map(|sample| (&*model.model, sample))
@@ -272,7 +272,7 @@ impl Threshold {
             incomplete: ranges(self.of(Verdict::Incomplete)),
             remarks: self.remarks(),
             variations: varied.collect(),
-            samples: self.samples.iter().map(SampleSummary::of).collect(),
+            samples: self.samples.iter().map(TriedFactor::of).collect(),
         }
     }
 
@@ -345,7 +345,7 @@ impl ModelSummary {
     }
 
     /// Returns the samples with a history on ground that does not fall.
-    fn histories(&self) -> impl Iterator<Item = &SampleSummary> {
+    fn histories(&self) -> impl Iterator<Item = &TriedFactor> {
         self.samples
             .iter()
             .filter(|sample| sample.outcome != GROUND_FALLS)
@@ -367,7 +367,7 @@ impl ModelSummary {
 
     /// Returns the number of histories that still rock at the end, and of all.
     fn still_rocking(&self) -> [usize; 2] {
-        let rocking = |sample: &&SampleSummary| sample.outcome == Outcome::StillRocking.name();
+        let rocking = |sample: &&TriedFactor| sample.outcome == Outcome::StillRocking.name();
         [
             self.histories().filter(rocking).count(),
             self.histories().count(),
@@ -377,7 +377,7 @@ impl ModelSummary {
     /// Returns true if the first history that overturns the structure is outside the model of four links.
     fn overturns_outside_model(&self) -> bool {
         let mut samples = self.samples.iter();
-        let first = samples.find(|sample| sample.outcome == OUTCOMES[0]);
+        let first = samples.find(|sample| sample.outcome == OVERTURNED);
         let excess = first.and_then(|first| first.history?.thrust_excess_ratio);
         excess.is_some_and(|ratio| ratio > MODEL_LIMIT)
     }
@@ -392,7 +392,7 @@ impl VariedSummary {
     }
 }
 
-impl SampleSummary {
+impl TriedFactor {
     fn of(sample: &FactorSample) -> Self {
         let ending = sample.result.as_ref();
         Self {

@@ -35,36 +35,22 @@ impl Survival {
     /// their last strength.
     pub fn of_levels(levels: &[(f64, Option<Verdict>)]) -> Self {
         let runs = levels.chunk_by(|a, b| a.1 == b.1);
-        Self::of_ranges(
-            runs.map(|run| VerdictRange {
-                verdict: run[0].1,
-                from: run[0].0,
-                to: run[run.len() - 1].0,
-            })
-            .collect(),
-        )
+        let ranges = runs.map(|run| VerdictRange {
+            verdict: run[0].1,
+            from: run[0].0,
+            to: run[run.len() - 1].0,
+        });
+        Self::of_ranges(ranges.collect())
     }
 
     /// Makes the survival of a threshold, with ranges that end at its edges.
     pub fn of_threshold(threshold: &Threshold) -> Self {
-        let mut ranges = threshold.ranges.iter();
-        let samples = &threshold.samples;
-        let runs = samples.chunk_by(|a, b| a.verdict() == b.verdict());
-        Self::of_ranges(
-            runs.map(|run| match run[0].verdict().and_then(|_| ranges.next()) {
-                Some((verdict, range)) => VerdictRange {
-                    verdict: Some(*verdict),
-                    from: range.from,
-                    to: range.to,
-                },
-                None => VerdictRange {
-                    verdict: None,
-                    from: run[0].factor,
-                    to: run[run.len() - 1].factor,
-                },
-            })
-            .collect(),
-        )
+        let ranges = threshold.ranges.iter().map(|range| VerdictRange {
+            verdict: range.verdict,
+            from: range.from,
+            to: range.to,
+        });
+        Self::of_ranges(ranges.collect())
     }
 
     /// Makes the survival of all ranges of tried strengths, ascending.

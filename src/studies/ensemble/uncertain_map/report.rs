@@ -1,16 +1,18 @@
 //! Files and words of a map of samples: a map of probability, the crossings of its levels, and the influence of the uncertain numbers.
 
+use std::collections::BTreeMap;
+
 use askama::Template;
 use serde::{Deserialize, Serialize};
 
 use super::{CellCounts, CellRow, CellsOfSamples, Crossing, LEVELS, OUTSIDE, Samples};
-use crate::output::{Figure, Key, Mark, OutputError, Stroke, color, column, csv, each, list};
+use crate::output::{Key, Mark, OutputError, Stroke, color, column, csv, each, list};
 use crate::studies::ending::columns::{OUTCOMES, yes};
 use crate::studies::ensemble::influence::{InfluencedAnswer, percent};
 use crate::studies::ensemble::report::{Band, SampleSummary};
 use crate::studies::ensemble::samples::ReasonCounts;
-use crate::studies::map::page::Cells;
-use crate::studies::map::picture::{Drawn, Sheet};
+use crate::studies::map::page::CellNumbers;
+use crate::studies::map::picture::{ColoredCells, Drawn, MapChart};
 use crate::studies::outcome_colors::OutcomeColor;
 use crate::studies::runner::Study as _;
 use crate::studies::statistics::{Share, band, quantile};
@@ -136,18 +138,17 @@ pub(super) fn report(
         part_that_overturns: each(band(parts.collect(), quantile)).into(),
     };
     let title = samples.title("Probability of overturning");
-    let screen = Style {
-        figure: Figure::SCREEN,
-        ..style
+    let colored = ColoredCells {
+        palette: &PALETTE,
+        colors: counts.iter().map(color_of).collect(),
+        outside: counts.iter().map(CellCounts::is_outside_model).collect(),
     };
-    let drawn = draw(title, study, &counts, &crossings, screen);
+    let picture = |style| draw(title, study, &colored, &crossings, style);
+    let (screen, columns) = (picture(style.on_screen()), page_columns(&counts));
+    let page = colored.page(title, &study.map, screen, BTreeMap::new(), columns);
     let others = [
-        draw(title, study, &counts, &crossings, style)
-            .picture
-            .into_bytes(),
-        page_cells(&counts)
-            .page(title, &study.map, &drawn)
-            .into_bytes(),
+        picture(style).picture.into_bytes(),
+        page.into_bytes(),
         report.all.draw_influences(samples, style.figure),
         crossing_table(study, &crossings)?,
         table(study, &counts)?,
@@ -251,12 +252,11 @@ fn crossing_table(
 fn draw(
     title: &str,
     study: &CellsOfSamples<'_>,
-    counts: &[CellCounts],
+    cells: &ColoredCells,
     crossings: &[Crossing],
     style: Style,
 ) -> Drawn {
-    let kinds: Vec<OutcomeColor> = counts.iter().map(color_of).collect();
-    let sheet = Sheet::new(title, &study.map, style);
+    let chart = MapChart::new(title, &study.map, style);
     let (mut keys, mut lines) = (Vec::new(), Vec::new());
     for (level, (name, stroke)) in LINES.into_iter().enumerate() {
         if crossings
@@ -268,20 +268,15 @@ fn draw(
         // A line is interrupted where the level is not reached, or is reached below the map.
         let points = crossings
             .iter()
-            .map(|crossing| sheet.point(crossing.x, crossing.inside(level).unwrap_or(f64::NAN)));
+            .map(|crossing| chart.point(crossing.x, crossing.inside(level).unwrap_or(f64::NAN)));
         lines.push(Mark::curve(name, stroke, points));
     }
-    let outside: Vec<bool> = counts.iter().map(CellCounts::is_outside_model).collect();
-    sheet.draw(
-        (&PALETTE, &kinds, &outside),
-        keys,
-        vec![Mark::clipped(lines)],
-    )
+    chart.draw(cells, keys, vec![Mark::clipped(lines)])
 }
 
-/// Returns the cells of the page.
-fn page_cells(counts: &[CellCounts]) -> Cells<'static> {
-    let numbers = SHARE.into_iter().enumerate().map(|(which, name)| {
+/// Returns the columns of the page.
+fn page_columns(counts: &[CellCounts]) -> impl Iterator<Item = CellNumbers> {
+    let shares = SHARE.into_iter().enumerate().map(|(which, name)| {
         let of = |cell: &CellCounts| Some(cell.overturned?.numbers()[which]);
         (name, counts.iter().map(of).collect())
     });
@@ -290,11 +285,5 @@ fn page_cells(counts: &[CellCounts]) -> Cells<'static> {
         let parts = counts.iter().map(|cell| cell.part(which));
         (name, parts.collect())
     });
-    Cells {
-        palette: &PALETTE,
-        kinds: counts.iter().map(color_of).collect(),
-        doubts: Vec::new(),
-        outside: counts.iter().map(CellCounts::is_outside_model).collect(),
-        columns: numbers.chain(others).collect(),
-    }
+    shares.chain(others)
 }
