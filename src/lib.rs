@@ -84,33 +84,24 @@ pub mod studies;
 pub use archrock_motion::{dynamics, mechanics};
 
 pub use argument::ArgumentError;
-pub use dynamics::ElasticJoints;
-pub use dynamics::EndCondition;
-pub use dynamics::free_hinges::{FreeHinges, RowOptions};
-pub use dynamics::ground::{GroundError, GroundMotion, Pulse, PulseShape, WaveTrain};
-pub use dynamics::history::{Event, EventKind, Impact, OpenHinge, Outcome, Sample, State, Summary};
-pub use dynamics::model::{
-    Case, Initial, Job, Jobs, MechanismModel, Model, Recorder, Request, SimulationError,
+pub use dynamics::{
+    Case, ElasticJoints, EndCondition, Event, EventKind, FreeHinges, GroundError, GroundMotion,
+    History, Impact, Initial, Job, Jobs, MEMORY_BYTES, MechanismModel, MemoryError, Model,
+    OpenHinge, Outcome, Pulse, PulseShape, Recorder, Request, RowModelError, RowMotionError,
+    RowOptions, Sample, Samples, SimulationError, State, Summary, WaveTrain,
 };
-pub use dynamics::{History, MEMORY_BYTES, MemoryError, Samples};
-pub use dynamics::{RowModelError, RowMotionError};
-pub use mechanics::Arch;
-pub use mechanics::Pose;
-pub use mechanics::Row;
-pub use mechanics::Sway;
-pub use mechanics::chain::Hinge;
 pub use mechanics::elastic_joint::{
     Contact, ElasticProperties, JointStiffness, Materials, Stiffness,
 };
-pub use mechanics::four_link::impact::{ImpactLaw, ImpactModel};
-pub use mechanics::masonry::Masonry;
-pub use mechanics::{Column, RockingColumn};
-pub use mechanics::{FourLinkError, FourLinks};
+pub use mechanics::{
+    Arch, Column, FourLinkError, FourLinks, Hinge, ImpactLaw, ImpactModel, Masonry, Pose,
+    RockingColumn, Row, Sway,
+};
 pub use scenario::{Scenario, Structure};
-pub use studies::ending::{Ending, NoHistory, Verdict};
+pub use studies::Runner;
 pub use studies::map::OverturningMap;
-pub use studies::runner::Runner;
 pub use studies::threshold::{Factors, Threshold, thresholds};
+pub use studies::{Ending, NoHistory, Verdict};
 
 /// The tasks of the document compile and run.
 #[cfg(doctest)]

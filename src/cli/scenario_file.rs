@@ -6,12 +6,9 @@ use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::{env, io};
 
-use archrock::output::print::PictureFormat;
-use archrock::output::{Batch, Folder, Manifest, Origin, OutputError};
+use archrock::output::{Batch, Folder, Manifest, Origin, OutputError, PictureFormat};
 use archrock::scenario::{Assignment, ModelKind, ReadOptions, Scenario, Source, shown};
-use archrock::studies::catalogue::StudyKind;
-use archrock::studies::peaks;
-use archrock::studies::results::Results;
+use archrock::studies::{PEAKS_SUMMARY, Results, StudyKind};
 
 use super::progress::with_notice;
 use super::{Failure, check_no_errors};
@@ -278,7 +275,7 @@ impl Destination {
         let models = self.within("models");
         match self
             .locked()
-            .is_of_other_command(&models.path.join(peaks::SUMMARY))
+            .is_of_other_command(&models.path.join(PEAKS_SUMMARY))
         {
             true => self.within(format!("models_{}", kind.name)),
             false => models,

@@ -9,12 +9,11 @@ use std::time::Duration;
 use std::{process, slice};
 
 use archrock::scenario::{ModelKind, Scenario};
-use archrock::studies::catalogue::{Computation, Options, RowSource, StudyKind};
-use archrock::studies::part::{PartError, PartErrorKind, PartFile, Shard, rows_in};
-use archrock::studies::peaks;
-use archrock::studies::results::{Results, StudyError, Style};
 use archrock::studies::run::{SampleReport, Sinks};
-use archrock::studies::runner::{Progress, Runner, RunnerError, Task};
+use archrock::studies::{
+    Computation, Options, PartError, PartErrorKind, PartFile, Progress, Results, RowSource, Runner,
+    RunnerError, Shard, StudyError, StudyKind, Style, Task, peak_results, rows_in,
+};
 
 use serde::Serialize;
 use serde_json::{Map, Value, json};
@@ -413,7 +412,7 @@ impl<'s> Session<'s> {
             return Ok(None);
         };
         let title = title.unwrap_or("Largest rotations of several models");
-        let results = peaks::results(title, &models, self.style.figure);
+        let results = peak_results(title, &models, self.style.figure);
         let results = results.map_err(StudyError::from)?;
         place.models_folder(kind).prepare(&results)?;
         Ok(Some(results))

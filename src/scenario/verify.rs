@@ -36,9 +36,7 @@ use super::files::Files;
 use super::listing::{RecordListing, written};
 use super::prelude::*;
 use super::record::{Decimal, Format, LineFault, Series, faulty, read_numbers};
-use crate::dynamics::demand::floor::Mode;
-use crate::dynamics::demand::ground::{Hazard, Soil, Topography};
-use crate::dynamics::demand::points::PointSpectrum;
+use crate::dynamics::demand::{Hazard, Mode, PointSpectrum, Soil, Topography};
 use crate::dynamics::{GroundSpectrum, Site};
 
 named! {

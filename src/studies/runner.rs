@@ -26,7 +26,7 @@
 //!     ControlFlow::Continue(())
 //! })?;
 //! assert_eq!((done, rows[30]), (1000, 900));
-//! # Ok::<(), archrock::studies::runner::RunnerError>(())
+//! # Ok::<(), archrock::studies::RunnerError>(())
 //! ```
 
 use std::collections::BTreeMap;

@@ -2,7 +2,7 @@
 
 use crate::common::schema::violations;
 use crate::common::{ARCH, COLUMN};
-use archrock::dynamics::free_hinges::RowOptions;
+use archrock::dynamics::RowOptions;
 use archrock::scenario::{
     FREE_HINGES, Ground, Quantity, Scenario, ScenarioErrors, Simulation, Source, Structure,
     TextPosition, shown, shown_lines,

@@ -5,8 +5,7 @@ use std::path::Path;
 
 use crate::common::program::{archrock, printed, scenarios, stdout};
 use crate::common::results::json;
-use archrock::studies::run::report::page_of;
-use archrock::studies::run::words_of;
+use archrock::studies::run::{page_of, words_of};
 use serde_json::Value;
 
 /// Removes the lines about files from printed words, and the heading before the first of these lines.

@@ -7,8 +7,7 @@ use serde_json::Value;
 
 use super::held_row;
 use super::picture::draw;
-use crate::mechanics::capacity::{CurvePoint, TieEventDisplacements};
-use crate::mechanics::{Capacity, Parts as _, Sides};
+use crate::mechanics::{Capacity, CurvePoint, Parts as _, Sides, TieEventDisplacements};
 use crate::output::{Figure, Named, OutputError, column, csv, fields, filters};
 use crate::studies::results::Results;
 use crate::{Scenario, Sway};

@@ -8,16 +8,21 @@
 mod influence;
 mod report;
 mod samples;
-pub mod sensitivity;
-pub mod uncertain_map;
-pub mod uncertain_run;
-pub mod uncertain_suite;
-pub mod uncertain_threshold;
+mod sensitivity;
+pub(super) mod uncertain_map;
+pub(super) mod uncertain_run;
+pub(super) mod uncertain_suite;
+pub(super) mod uncertain_threshold;
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 pub use self::samples::{SampleRow, Samples};
+pub use self::sensitivity::{sensitivities, total_indices};
+pub use self::uncertain_map::{CellsOfSamples, Summary as UncertainMapSummary};
+pub use self::uncertain_run::{Histories, HistoryAnswer, Summary as UncertainRunSummary};
+pub use self::uncertain_suite::Summary as UncertainSuiteSummary;
+pub use self::uncertain_threshold::Summary as UncertainThresholdSummary;
 pub use super::ending::NoAnswer;
 use super::threshold::Factors;
 use super::{ReportedStudy, Results, Study, Style};

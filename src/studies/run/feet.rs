@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
 use crate::Summary as History;
-use crate::dynamics::peak::CONSTANT;
+use crate::dynamics::CONSTANT;
 use crate::scenario::Scenario;
 
 /// Number of equal steps at which the displacement is computed.

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::packed::curve;
 use super::summary::PointPeaks;
-use crate::dynamics::peak::CONSTANT;
+use crate::dynamics::CONSTANT;
 use crate::output::mechanisms::columns;
 use crate::output::point::StructurePoint;
 use crate::output::{CURVES, Cell, Column, Envelope, Mark, Panels, Scene, StateHistory, several};
