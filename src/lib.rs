@@ -13,13 +13,13 @@
 //!
 //! The modules, from the bottom up:
 //!
-//! - [`mechanics`]: pure functions. Shapes and rigid motions of their parts ([`mechanics::geometry`]); the arch
-//!   ([`mechanics::arch`]) and the column ([`Column`]); arches of other shapes, on piers, with fill and loads
+//! - [`mechanics`]: pure functions. Shapes and rigid motions of their parts; the arch
+//!   ([`Arch`]) and the column ([`Column`]); arches of other shapes, on piers, with fill and loads
 //!   ([`mechanics::masonry`]), as rows of blocks ([`mechanics::Row`]); four-link mechanisms
 //!   ([`mechanics::four_link`]): onset, finite motion, impact, the chain of mechanisms through which
 //!   impacts lead, and the certificate of its restitution; limit analysis of joints that open ([`mechanics::stability`]) and slip ([`mechanics::friction`]).
-//! - [`dynamics`]: motion in time. The ground ([`dynamics::ground`]), models of motion ([`dynamics::model`]) and
-//!   their histories ([`dynamics::history`]); rows of blocks with rigid joints ([`dynamics::free_hinges`]) and with elastic joints
+//! - [`dynamics`]: motion in time. The ground ([`GroundMotion`]), models of motion ([`Model`]) and
+//!   their histories ([`History`]); rows of blocks with rigid joints ([`FreeHinges`]) and with elastic joints
 //!   ([`ElasticJoints`]).
 //! - [`scenario`]: what to simulate, read from a TOML file. [`studies`]: a [run](studies::run), and many histories evaluated together.
 //!   [`output`]: results as CSV, JSON and pictures.
@@ -62,7 +62,7 @@
 //! left springing. The ground acceleration is positive to the right, so that a negative one pushes the
 //! arch to the right. The restitution coefficient is the ratio of kinetic energies after and before an
 //! impact. [`mechanics`] works in mean radii, unit density and the frame in which a mechanism sways right;
-//! SI units begin with [`mechanics::arch`] and [`Column`], and [`scenario`] converts
+//! SI units begin with [`Arch`] and [`Column`], and [`scenario`] converts
 //! accelerations given in g.
 //!
 //! # Sources

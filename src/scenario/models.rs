@@ -33,9 +33,9 @@ pub struct MotionModel {
     /// Names and properties of the model.
     pub kind: &'static ModelKind,
     /// Options of the model.
-    pub options: Arc<dyn ModelOptions>,
+    pub(crate) options: Arc<dyn ModelOptions>,
     /// The conditions at time 0.
-    pub site: Site,
+    pub(super) site: Site,
 }
 
 impl PartialEq for MotionModel {

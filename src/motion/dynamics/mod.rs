@@ -33,7 +33,7 @@ pub use self::model::{
     Case, FEET_NEED_JOINTS, Initial, Job, Jobs, MechanismModel, Model, Recorder, Repetition,
     Request, SimulationError, WithoutDemand,
 };
-pub use self::peak::{CONSTANT, Peak};
+pub use self::peak::{NO_RISE, Peak};
 pub use self::recording::{History, MEMORY_BYTES, MemoryError, Recording, Samples};
 pub use self::repeatability::{OutcomeCount, Repeatability, Verdict};
 pub(crate) use self::row::clock::Settings;

@@ -1,4 +1,4 @@
-//! The capacity curves of a scenario: see [`crate::mechanics::capacity`].
+//! The capacity curves of a scenario: see [`crate::mechanics::Capacity`].
 
 mod picture;
 mod report;

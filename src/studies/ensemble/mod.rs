@@ -1,9 +1,9 @@
 //! Ensembles: a question that is answered for every sample of a scenario with uncertain numbers.
 //!
 //! An ensemble is a study. Its first case is the scenario itself; each other case is a sample of [`Uncertain`]. A [`Question`] is answered for
-//! each case: the history of the sample ([`uncertain_run`]), the first factor that overturns it (`uncertain_threshold`), or the intensity of each
+//! each case: the history of the sample (`uncertain_run`), the first factor that overturns it (`uncertain_threshold`), or the intensity of each
 //! record that overturns it (`uncertain_suite`). Shards, resuming, threads, shares and influences are common to all questions. The cells of a map
-//! ([`uncertain_map`]) are a separate study, whose cases are cells of samples.
+//! (`uncertain_map`) are a separate study, whose cases are cells of samples.
 
 mod influence;
 mod report;
