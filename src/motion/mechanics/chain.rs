@@ -42,7 +42,7 @@ pub struct MechanismState {
 pub struct Demand {
     /// Largest distance of the thrust line beyond the structure, over the thickness; zero if it stays inside.
     pub excess_ratio: f64,
-    /// Friction coefficient required to prevent sliding: the largest value of all sections with at least [`LEAST_LOAD`].
+    /// Friction coefficient required to prevent sliding: the largest value of all sections with at least `LEAST_LOAD`.
     pub friction: f64,
 }
 
