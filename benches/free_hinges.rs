@@ -4,14 +4,12 @@
 
 use std::f64::consts::PI;
 
-use archrock::dynamics::ground::{GroundMotion, Pulse};
-use archrock::mechanics::four_link::limit::incipient;
-use archrock::mechanics::four_link::mechanism::HingeSites;
-use archrock::mechanics::geometry::field::{Side, Twist};
-use archrock::mechanics::{Ring, Row};
+use archrock::dynamics::{GroundMotion, Pulse};
+use archrock::mechanics::four_link::{HingeSites, incipient};
+use archrock::mechanics::{Ring, Row, Side, Twist};
 use archrock::scenario::Scenario;
+use archrock::studies::Study as _;
 use archrock::studies::map::OverturningMap;
-use archrock::studies::runner::Study as _;
 use archrock_motion::internals::contact::{ContactProgram, Load};
 use archrock_motion::internals::free_hinges::{Settings, simulate};
 use archrock_motion::internals::joints::Placement;

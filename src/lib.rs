@@ -13,13 +13,13 @@
 //!
 //! The modules, from the bottom up:
 //!
-//! - [`mechanics`]: pure functions. Shapes and rigid motions of their parts ([`mechanics::geometry`]); the arch
-//!   ([`mechanics::arch`]) and the column ([`Column`]); arches of other shapes, on piers, with fill and loads
+//! - [`mechanics`]: pure functions. Shapes and rigid motions of their parts; the arch
+//!   ([`Arch`]) and the column ([`Column`]); arches of other shapes, on piers, with fill and loads
 //!   ([`mechanics::masonry`]), as rows of blocks ([`mechanics::Row`]); four-link mechanisms
 //!   ([`mechanics::four_link`]): onset, finite motion, impact, the chain of mechanisms through which
 //!   impacts lead, and the certificate of its restitution; limit analysis of joints that open ([`mechanics::stability`]) and slip ([`mechanics::friction`]).
-//! - [`dynamics`]: motion in time. The ground ([`dynamics::ground`]), models of motion ([`dynamics::model`]) and
-//!   their histories ([`dynamics::history`]); rows of blocks with rigid joints ([`dynamics::free_hinges`]) and with elastic joints
+//! - [`dynamics`]: motion in time. The ground ([`GroundMotion`]), models of motion ([`Model`]) and
+//!   their histories ([`History`]); rows of blocks with rigid joints ([`FreeHinges`]) and with elastic joints
 //!   ([`ElasticJoints`]).
 //! - [`scenario`]: what to simulate, read from a TOML file. [`studies`]: a [run](studies::run), and many histories evaluated together.
 //!   [`output`]: results as CSV, JSON and pictures.
@@ -62,7 +62,7 @@
 //! left springing. The ground acceleration is positive to the right, so that a negative one pushes the
 //! arch to the right. The restitution coefficient is the ratio of kinetic energies after and before an
 //! impact. [`mechanics`] works in mean radii, unit density and the frame in which a mechanism sways right;
-//! SI units begin with [`mechanics::arch`] and [`Column`], and [`scenario`] converts
+//! SI units begin with [`Arch`] and [`Column`], and [`scenario`] converts
 //! accelerations given in g.
 //!
 //! # Sources
@@ -84,33 +84,24 @@ pub mod studies;
 pub use archrock_motion::{dynamics, mechanics};
 
 pub use argument::ArgumentError;
-pub use dynamics::ElasticJoints;
-pub use dynamics::EndCondition;
-pub use dynamics::free_hinges::{FreeHinges, RowOptions};
-pub use dynamics::ground::{GroundError, GroundMotion, Pulse, PulseShape, WaveTrain};
-pub use dynamics::history::{Event, EventKind, Impact, OpenHinge, Outcome, Sample, State, Summary};
-pub use dynamics::model::{
-    Case, Initial, Job, Jobs, MechanismModel, Model, Recorder, Request, SimulationError,
+pub use dynamics::{
+    Case, ElasticJoints, EndCondition, Event, EventKind, FreeHinges, GroundError, GroundMotion,
+    History, Impact, Initial, Job, Jobs, MEMORY_BYTES, MechanismModel, MemoryError, Model,
+    OpenHinge, Outcome, Pulse, PulseShape, Recorder, Request, RowModelError, RowMotionError,
+    RowOptions, Sample, Samples, SimulationError, State, Summary, WaveTrain,
 };
-pub use dynamics::{History, MEMORY_BYTES, MemoryError, Samples};
-pub use dynamics::{RowModelError, RowMotionError};
-pub use mechanics::Arch;
-pub use mechanics::Pose;
-pub use mechanics::Row;
-pub use mechanics::Sway;
-pub use mechanics::chain::Hinge;
 pub use mechanics::elastic_joint::{
     Contact, ElasticProperties, JointStiffness, Materials, Stiffness,
 };
-pub use mechanics::four_link::impact::{ImpactLaw, ImpactModel};
-pub use mechanics::masonry::Masonry;
-pub use mechanics::{Column, RockingColumn};
-pub use mechanics::{FourLinkError, FourLinks};
+pub use mechanics::{
+    Arch, Column, FourLinkError, FourLinks, Hinge, ImpactLaw, ImpactModel, Masonry, Pose,
+    RockingColumn, Row, Sway,
+};
 pub use scenario::{Scenario, Structure};
-pub use studies::ending::{Ending, NoHistory, Verdict};
+pub use studies::Runner;
 pub use studies::map::OverturningMap;
-pub use studies::runner::Runner;
 pub use studies::threshold::{Factors, Threshold, threshold};
+pub use studies::{Ending, NoHistory, Verdict};
 
 /// The tasks of the document compile and run.
 #[cfg(doctest)]

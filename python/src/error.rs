@@ -6,8 +6,7 @@ use std::fmt::Display;
 use archrock::MemoryError;
 use archrock::output::OutputError;
 use archrock::scenario::{ScenarioError, ScenarioErrors};
-use archrock::studies::part::{PartError, PartErrorKind};
-use archrock::studies::runner::RunnerError;
+use archrock::studies::{PartError, PartErrorKind, RunnerError};
 use pyo3::PyErr;
 use pyo3::exceptions::{PyMemoryError, PyOSError, PyRuntimeError, PyValueError};
 

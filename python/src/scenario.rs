@@ -6,7 +6,7 @@ use std::path::{Component, Path};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use archrock::scenario::{Assignment, MODELS, ModelKind, ReadOptions, ScenarioErrors, Source};
-use archrock::studies::{impact, limit};
+use archrock::studies::{impact_chain, limit};
 use archrock::{GroundMotion, MechanismModel, Model, Sway};
 use numpy::{PyArray1, PyArrayMethods as _};
 use pyo3::exceptions::PyValueError;
@@ -239,7 +239,7 @@ impl Scenario {
 
     /// The acceleration that starts it to either side, as `archrock limit --format json`.
     fn limit_json(&self, py: Python<'_>) -> PyResult<String> {
-        let answer = py.detach(|| limit::limit(&self.inner)).map_err(refused)?;
+        let answer = py.detach(|| limit(&self.inner)).map_err(refused)?;
         Ok(answer.json.to_string())
     }
 
@@ -251,7 +251,7 @@ impl Scenario {
                 "`sway = {sway:?}` is not one of \"right\" and \"left\""
             ))
         })?;
-        let impacts = self.of_mechanisms(py, |model| impact::chain(model, first, count))?;
+        let impacts = self.of_mechanisms(py, |model| impact_chain(model, first, count))?;
         Ok(json!(impacts).to_string())
     }
 

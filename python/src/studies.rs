@@ -6,13 +6,10 @@ use std::slice;
 use std::sync::Arc;
 
 use archrock::output::{Figure, Folder, Origin};
-use archrock::studies::catalogue::{self as studies, Computation, Options, RowSource, StudyKind};
-use archrock::studies::part::Shard;
-use archrock::studies::results::{Results, StudyError, Style};
+use archrock::studies;
+use archrock::studies::{Computation, Options, Results, RowSource, Runner, Shard, StudyError, StudyKind, Style, Task};
 use archrock::studies::run::Sinks;
-use archrock::studies::runner::{Runner, Task};
-use archrock::studies::threshold::Factors;
-use archrock::studies::threshold::along::AlongOptions;
+use archrock::studies::threshold::{AlongOptions, Factors};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;

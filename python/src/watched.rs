@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::Duration;
 
-use archrock::studies::runner::Progress;
+use archrock::studies::Progress;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 

@@ -4,9 +4,7 @@ use std::path::PathBuf;
 
 use archrock::Sway;
 use archrock::output::Origin;
-use archrock::studies::catalogue::{CAPACITY, Options, SPREAD, StudyKind, VERIFY};
-use archrock::studies::results::Style;
-use archrock::studies::spread::Direction;
+use archrock::studies::{CAPACITY, Direction, Options, SPREAD, StudyKind, Style, VERIFY};
 use nalgebra::Vector2;
 
 use super::figure::FigureOption;

@@ -2,12 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use archrock::dynamics::ground::intensity::Intensity;
-use archrock::output::scene::Scene;
-use archrock::output::{elevation, record as output};
+use archrock::dynamics::Intensity;
+use archrock::output::{Scene, draw_elevation, draw_record};
 use archrock::scenario::{Format, Layout, Scenario, Series};
-use archrock::studies::record::record;
-use archrock::studies::results::StudyError;
+use archrock::studies::{StudyError, record};
 use archrock::{GroundMotion, Request};
 use serde_json::Value;
 
@@ -70,7 +68,7 @@ fn check_file(file: &Path, arguments: &Arguments) -> Result<(String, Value), Fai
         if scene.has_settled() {
             text += "; dashed: as built; circles: open hinges";
         }
-        let picture = elevation::draw(arguments.figure.get()?, title, &scene, &text);
+        let picture = draw_elevation(arguments.figure.get()?, title, &scene, &text);
         named_files::write_picture(plot, &picture)?;
     }
     let notes = scenario.structure.tie_places();
@@ -169,7 +167,7 @@ fn check_record(file: &Path, arguments: &Arguments) -> Result<(String, Value), F
     if let Some(plot) = &arguments.plot {
         let title = file.file_name().unwrap_or_default().to_string_lossy();
         let figure = arguments.figure.get()?;
-        let picture = output::draw(figure, &title, &samples, &intensity, GRAVITY_M_S2);
+        let picture = draw_record(figure, &title, &samples, &intensity, GRAVITY_M_S2);
         named_files::write_picture(plot, &picture)?;
     }
     let found = record(&series, &intensity, GRAVITY_M_S2);

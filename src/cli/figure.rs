@@ -1,7 +1,6 @@
 //! The style of pictures.
 
-use archrock::output::figure::{Figure, Height, Panel};
-use archrock::output::print::PictureFormat;
+use archrock::output::{Figure, Height, Panel, PictureFormat};
 
 use super::Failure;
 use super::parsers::number;

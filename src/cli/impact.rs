@@ -2,10 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use archrock::mechanics::four_link::mechanism::HingeSites;
-use archrock::output::scene::Scene;
-use archrock::studies::impact::{ImpactOptions, LinkImpact, chain_result, four_links_result};
-use archrock::studies::pictures;
+use archrock::mechanics::four_link::HingeSites;
+use archrock::output::Scene;
+use archrock::studies::{ImpactOptions, LinkImpact, chain_result, draw_impact, four_links_result};
 
 use super::figure::FigureOption;
 use super::parsers::FirstOption;
@@ -94,7 +93,7 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
     }
     if let Some(plot) = &arguments.plot {
         let scene = Scene::new(&scenario.structure);
-        let picture = pictures::impact(arguments.figure.get()?, &impact, &scene);
+        let picture = draw_impact(arguments.figure.get()?, &impact, &scene);
         let picture = picture.ok_or_else(|| {
             format!("--plot: impact {index} stops the arch; there is no mechanism after it to draw")
         })?;

@@ -2,10 +2,9 @@
 
 use std::path::PathBuf;
 
-use archrock::output::scene::Scene;
+use archrock::output::Scene;
 use archrock::scenario::Scenario;
-use archrock::studies::limit::limit as compute;
-use archrock::studies::pictures;
+use archrock::studies::{draw_limit, limit as compute};
 use archrock::{FourLinkError, FourLinks};
 
 use super::figure::FigureOption;
@@ -42,7 +41,7 @@ pub fn limit(arguments: &LimitArguments) -> Result<(), Failure> {
         let model =
             four_links(&scenario, "--plot is").map_err(|wrong| input.with_file_name(wrong))?;
         let (figure, scene) = (arguments.figure.get()?, Scene::new(&scenario.structure));
-        let picture = pictures::limit(figure, &model, first, &scene);
+        let picture = draw_limit(figure, &model, first, &scene);
         write_picture(plot, &picture)?;
     }
     let found = compute(&scenario).map_err(|wrong| input.with_file_name(wrong.into()))?;

@@ -2,8 +2,7 @@
 
 use std::path::Path;
 
-use archrock::output::print::{PictureFormat, PrintError};
-use archrock::output::write_named_file;
+use archrock::output::{PictureFormat, PrintError, write_named_file};
 
 use super::Failure;
 

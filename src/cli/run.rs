@@ -5,9 +5,8 @@ use std::path::{Path, PathBuf};
 
 use archrock::output::{Folder, Origin};
 use archrock::scenario::{Scenario, shown_lines};
-use archrock::studies::catalogue::{Options, RUN, UNCERTAIN};
-use archrock::studies::results::Style;
 use archrock::studies::run::{RunOptions, check, heading};
+use archrock::studies::{Options, RUN, Style, UNCERTAIN};
 use nalgebra::Vector2;
 
 use super::figure::{FigureOption, PanelsOption};

@@ -4,10 +4,9 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::{env, io};
 
-use archrock::output::print::PictureFormat;
-use archrock::output::{Folder, Origin};
+use archrock::output::{Folder, Origin, PictureFormat};
 use archrock::scenario::{Assignment, ModelKind, ReadOptions, Scenario, Source};
-use archrock::studies::catalogue::StudyKind;
+use archrock::studies::StudyKind;
 
 use super::progress::with_notice;
 use super::{Failure, check_no_errors};

@@ -5,11 +5,12 @@ use std::slice;
 
 use archrock::output::{Figure, Folder, Manifest, Origin, pretty};
 use archrock::scenario::Scenario;
-use archrock::studies::catalogue::{self, Options, StudyKind, merge as merged};
-use archrock::studies::ensemble::uncertain_map::CellsOfSamples;
+use archrock::studies::ensemble::CellsOfSamples;
 use archrock::studies::map::OverturningMap;
-use archrock::studies::quotable;
-use archrock::studies::results::Style;
+use archrock::studies::{
+    MAP, Options, SUITE, StudyKind, Style, UNCERTAIN_MAP, UNCERTAIN_SUITE, merge as merged,
+    quoted_in_words,
+};
 use clap::ValueEnum;
 use serde_json::Value;
 
@@ -94,9 +95,9 @@ impl MapOption {
         figure: Figure,
     ) -> Result<Style, String> {
         let by_peak = self.color == Color::Peak;
-        let maps = [catalogue::MAP, catalogue::UNCERTAIN_MAP];
+        let maps = [MAP, UNCERTAIN_MAP];
         match scenario.filter(|_| maps.contains(&kind)) {
-            Some(_) if by_peak && kind == catalogue::UNCERTAIN_MAP => {
+            Some(_) if by_peak && kind == UNCERTAIN_MAP => {
                 Err("--color applies to outcome maps only".to_owned())
             }
             Some(scenario) => self.style(scenario, figure),
@@ -118,7 +119,7 @@ pub fn map(arguments: &MapArguments) -> Result<(), Failure> {
     if scenario.uncertain.is_some() {
         CellsOfSamples::of(&scenario).map_err(|message| input.input_error(message))?;
     }
-    let kinds = [catalogue::MAP, catalogue::UNCERTAIN_MAP];
+    let kinds = [MAP, UNCERTAIN_MAP];
     compute(kinds, study, &input, &[scenario], style)
 }
 
@@ -127,7 +128,7 @@ pub fn suite(study: &StudyArguments) -> Result<(), Failure> {
     let scenarios = study.models.read(&input)?;
     warn_of(&scenarios);
     let style = Style::of(study.figure.get()?);
-    let kinds = [catalogue::SUITE, catalogue::UNCERTAIN_SUITE];
+    let kinds = [SUITE, UNCERTAIN_SUITE];
     compute(kinds, study, &input, &scenarios, style)
 }
 
@@ -173,7 +174,7 @@ fn compute(
     let answers = all
         .iter()
         .filter_map(|(.., found)| found.own.answer.clone());
-    let to_quote = quotable::in_words(&answers.collect::<Vec<_>>());
+    let to_quote = quoted_in_words(&answers.collect::<Vec<_>>());
     if let Some(compared) = compared {
         print_status(&compared.words);
         summaries.push(("peaks".to_owned(), compared.summary));

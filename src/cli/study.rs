@@ -8,15 +8,13 @@ use std::sync::atomic::Ordering;
 use std::time::Duration;
 use std::{mem, process, slice};
 
-use archrock::output::print::PictureFormat;
-use archrock::output::{Folder, Origin};
+use archrock::output::{Folder, Origin, PictureFormat};
 use archrock::scenario::{ModelKind, Scenario};
-use archrock::studies::catalogue::{Computation, Options, RowSource, StudyKind};
-use archrock::studies::part::{PartError, PartErrorKind, PartFile, Shard, rows_in};
-use archrock::studies::peaks;
-use archrock::studies::results::{Results, StudyError, Style};
 use archrock::studies::run::Sinks;
-use archrock::studies::runner::{Progress, Runner, RunnerError, Task};
+use archrock::studies::{
+    Computation, Options, PartError, PartErrorKind, PartFile, Progress, Results, RowSource, Runner,
+    RunnerError, Shard, StudyError, StudyKind, Style, Task, peak_results, rows_in,
+};
 
 use serde::Serialize;
 use serde_json::{Map, Value, json};
@@ -428,7 +426,7 @@ impl StudyJob<'_> {
             return Ok(None);
         };
         let title = title.unwrap_or("Largest rotations of several models");
-        let results = peaks::results(title, &models, self.style.figure);
+        let results = peak_results(title, &models, self.style.figure);
         let results = results.map_err(StudyError::from)?;
         let mut beside = folder.within("models");
         if beside.check(&results.names()).is_err() {

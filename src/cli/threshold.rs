@@ -2,10 +2,8 @@
 
 use archrock::output::Origin;
 use archrock::scenario::Scenario;
-use archrock::studies::catalogue::{Options, THRESHOLD, THRESHOLD_ALONG, UNCERTAIN_THRESHOLD};
-use archrock::studies::results::Style;
-use archrock::studies::threshold::along::{AlongOptions, KeyRange};
-use archrock::studies::threshold::{Factors, check};
+use archrock::studies::threshold::{AlongOptions, Factors, KeyRange, check};
+use archrock::studies::{Options, Style, THRESHOLD, THRESHOLD_ALONG, UNCERTAIN_THRESHOLD};
 
 use super::models::warn_of;
 use super::progress::print_status;

@@ -39,7 +39,7 @@ pub(crate) fn curve_g(ground: &GroundMotion, gravity_m_s2: f64, end_s: f64) -> V
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dynamics::ground::Pulse;
+    use crate::dynamics::Pulse;
 
     #[test]
     fn a_rectangle_has_upright_edges_and_ends_where_the_history_does() {

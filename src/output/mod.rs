@@ -5,39 +5,44 @@
 pub(crate) mod axes;
 pub(crate) mod caption;
 pub(crate) mod chart;
-pub mod elevation;
+pub(crate) mod elevation;
 pub(crate) mod envelope;
-pub mod figure;
+pub(crate) mod figure;
 mod folder;
 pub(crate) mod ground;
 mod manifest;
 pub(crate) mod mechanisms;
 pub(crate) mod page;
 pub(crate) mod panels;
-pub mod point;
-pub mod print;
-pub mod record;
-pub mod scene;
+pub(crate) mod point;
+pub(crate) mod print;
+pub(crate) mod record;
+pub(crate) mod scene;
 pub(crate) mod sheet;
 pub(crate) mod summary;
 pub(crate) mod svg;
 pub(crate) mod table;
 pub(crate) mod template;
-pub mod text;
+pub(crate) mod text;
 
 use std::io;
 use std::path::PathBuf;
 
 pub(crate) use axes::{Axes, Scale};
 pub(crate) use chart::{BELOW_PX, Chart, LEFT_PX, Mark, Shape};
+pub use elevation::draw as draw_elevation;
 pub(crate) use envelope::{Envelope, Thinned};
-pub use figure::Figure;
+pub use figure::{Figure, Height, Panel};
 pub(crate) use folder::NewFile;
 pub use folder::{Folder, write_named_file};
 pub use manifest::{Manifest, Origin};
 pub use panels::Subject;
 pub(crate) use panels::{Panels, StateHistory};
-pub(crate) use scene::{Piece, Scene};
+pub use point::StructurePoint;
+pub use print::{PictureFormat, PrintError};
+pub use record::draw as draw_record;
+pub(crate) use scene::Piece;
+pub use scene::Scene;
 use serde_json::Value;
 pub(crate) use sheet::{Key, PartHeight, Sheet, Sign};
 pub(crate) use summary::{Named, summary_of};
@@ -46,6 +51,7 @@ pub(crate) use table::{
     Cell, Column, TableWriter, column, csv, each, fields, list, numbers, row_number, several,
 };
 pub(crate) use template::{filters, render};
+pub use text::text_px;
 use thiserror::Error;
 
 use crate::scenario::{shown, shown_lines};

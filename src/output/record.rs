@@ -7,7 +7,7 @@ use super::figure::Figure;
 use super::panels::{Panels, scale_around};
 use super::sheet::{Key, Sign};
 use super::svg::{Stroke, color};
-use crate::dynamics::ground::intensity::Intensity;
+use crate::dynamics::Intensity;
 
 /// Draws acceleration, velocity, displacement and the build-up of the Arias intensity, with the significant duration shaded. `samples` are times
 /// in s and accelerations in m/s2.

@@ -8,7 +8,7 @@ use super::record::{KnownRecords, MAX_ACCELERATION_G, Record, free_fall};
 use super::source::Source;
 use super::table;
 use crate::argument::{self, ArgumentError};
-use crate::dynamics::ground::{Pulse, PulseShape, WaveTrain};
+use crate::dynamics::{Pulse, PulseShape, WaveTrain};
 use crate::{GroundMotion, Request};
 
 pub(super) const AMPLITUDE_G: Number = within(&(-MAX_ACCELERATION_G..=MAX_ACCELERATION_G));

@@ -21,7 +21,7 @@ pub static FOUR_LINKS: ModelKind = ModelKind {
 };
 
 pub(super) const RESTITUTION: Number = within(&(0.0..=1.0));
-const MODELS: [ImpactModel; 4] = [
+const IMPACT_MODELS: [ImpactModel; 4] = [
     ImpactModel::MaxRestitution,
     ImpactModel::SameSections,
     ImpactModel::Mirrored,
@@ -29,13 +29,13 @@ const MODELS: [ImpactModel; 4] = [
 ];
 /// Reads `[impact]`.
 fn read(table: &mut Table<'_>) -> ReadResult<ImpactLaw> {
-    let names = MODELS.map(|model| model.name());
+    let names = IMPACT_MODELS.map(|model| model.name());
     let name = table.or("model", &one_of(&names), names[0]);
     let restitution = table.optional("restitution", &RESTITUTION);
     // Upper bound far above measured values, which are 0.67 to 0.97 times the theory.
     let restitution_factor = table.or("restitution_factor", &within(&(0.0..=100.0)), 1.0);
     let index = names.iter().position(|one| *one == name);
-    let mut model = MODELS[index.unwrap_or(0)];
+    let mut model = IMPACT_MODELS[index.unwrap_or(0)];
     if let ImpactModel::Prescribed { .. } = model {
         let restitution = table.needed("restitution", &RESTITUTION, restitution);
         model = ImpactModel::Prescribed { restitution };

@@ -19,13 +19,12 @@ use super::record::{Decimal, faulty, read_numbers};
 use super::tie::{self, PULLS_OVER, TieTable};
 use crate::Masonry;
 use crate::argument::ArgumentError;
-use crate::mechanics::MAX_BLOCKS;
-use crate::mechanics::arch::{DENSITY_KG_M3, DEPTH_M};
 use crate::mechanics::masonry::{
     BasketArch, Dimensions, Fill, FillLevel, GivenBlocks, MasonryError, Material, Pier, Piers,
     Remedy,
 };
 use crate::mechanics::stability::collapse_mechanism;
+use crate::mechanics::{DENSITY_KG_M3, DEPTH_M, MAX_BLOCKS};
 use crate::mechanics::{Joint, MeasuredAt, PlacedLoad, RowError, Shape, Supports};
 
 const PIER_BLOCKS: Count = Count(1..=MAX_BLOCKS, "a pier of one piece");

@@ -80,7 +80,7 @@ pub use input_file::InputFile;
 use input_file::InputFiles;
 pub(crate) use input_file::sha256;
 pub use map::{Axis, Map, Quantity};
-pub use model_kind::{ModelKind, ModelOptions, Site};
+pub use model_kind::ModelKind;
 pub use models::{MODELS, MotionModel};
 use prelude::*;
 use record::KnownRecords;
@@ -489,7 +489,7 @@ impl Scenario {
     /// The table to remove.
     pub fn check_as_built(&self) -> Result<(), String> {
         let wrong = "this is computed for the structure on the springings that were built: leave [supports] out; the studies `limit` and \
-                     `spread` compute the push it bears where they have moved";
+                     `spread` compute its capacity on moved springings";
         ensure(self.motion.supports().is_none(), || wrong.to_owned())
     }
 

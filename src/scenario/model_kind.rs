@@ -58,11 +58,11 @@ impl<'de> Deserialize<'de> for &'static ModelKind {
 }
 
 /// A model of motion, or the reason why the structure has none.
-pub type AnyModel = Result<Box<dyn Model>, ModelError>;
+pub(crate) type AnyModel = Result<Box<dyn Model>, ModelError>;
 
 /// The conditions under which a structure stands at time 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Site {
+pub(crate) struct Site {
     /// Movements of the supports before time 0, from `[supports]`.
     pub(super) supports: Movements,
     /// Acceleration of gravity, in m/s2, from `[simulation]`.
@@ -70,7 +70,7 @@ pub struct Site {
 }
 
 /// The options of a model of motion, from its table.
-pub trait ModelOptions: Debug + Send + Sync {
+pub(crate) trait ModelOptions: Debug + Send + Sync {
     /// Returns the contents of the scenario table of the model.
     fn to_json(&self) -> Value;
 

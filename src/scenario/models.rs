@@ -33,9 +33,9 @@ pub struct MotionModel {
     /// Names and properties of the model.
     pub kind: &'static ModelKind,
     /// Options of the model.
-    pub options: Arc<dyn ModelOptions>,
+    pub(crate) options: Arc<dyn ModelOptions>,
     /// The conditions at time 0.
-    pub site: Site,
+    pub(super) site: Site,
 }
 
 impl PartialEq for MotionModel {
@@ -50,7 +50,7 @@ impl MotionModel {
     /// [`ElasticJoints::for_many_cases`](crate::ElasticJoints::for_many_cases).
     ///
     /// # Errors
-    /// As [`ModelOptions::model`].
+    /// As [`Scenario::model`](super::Scenario::model).
     pub fn model_for_many_cases(&self, structure: &Structure) -> AnyModel {
         self.options.model_for_many_cases(structure, &self.site)
     }

@@ -14,7 +14,7 @@ use super::prelude::*;
 use super::record::{KnownRecords, Record};
 use super::structure::Structure;
 use crate::GroundMotion;
-use crate::dynamics::model::FEET_NEED_JOINTS;
+use crate::dynamics::FEET_NEED_JOINTS;
 
 /// Smallest velocity of a wave, in m/s; smaller values are probably in another unit.
 const SLOWEST_M_S: f64 = 1.0;

@@ -36,9 +36,7 @@ use super::files::Files;
 use super::listing::{RecordListing, written};
 use super::prelude::*;
 use super::record::{Decimal, Format, LineFault, Series, faulty, read_numbers};
-use crate::dynamics::demand::floor::Mode;
-use crate::dynamics::demand::ground::{Hazard, Soil, Topography};
-use crate::dynamics::demand::points::PointSpectrum;
+use crate::dynamics::demand::{Hazard, Mode, PointSpectrum, Soil, Topography};
 use crate::dynamics::{GroundSpectrum, Site};
 
 named! {
@@ -438,7 +436,7 @@ impl Demand {
         let mut states = LimitState::ALL.iter().map(|state| state.name());
         let demand = if states.any(|state| table.gives_in(state, "spectrum")) {
             if let Some(key) = CODE_KEYS.into_iter().find(|key| table.gives(key)) {
-                let wrong = "goes with ag_g, f0 and tc_star_s; spectra from files are taken as they are: leave it out";
+                let wrong = "applies to ag_g, f0 and tc_star_s; spectra from files are used unchanged: leave it out";
                 return Err(table.wrong(key, wrong));
             }
             Self::Points(points(table)?)

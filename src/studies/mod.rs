@@ -1,46 +1,67 @@
 //! Studies: the report of one history, or the evaluation of many together.
 //!
-//! A [study](runner::Study) is a list of cases. Each case depends only on its definition, so the cases can be
+//! A [study](Study) is a list of cases. Each case depends only on its definition, so the cases can be
 //! computed in any order, by any number of threads, on several machines, and resumed later. The
-//! [runner](runner::Runner) computes them in memory, or in [files](part) that can be resumed and merged. The result
+//! [runner](Runner) computes them in memory, or in [files](PartFile) that can be resumed and merged. The result
 //! of a case is a row, which stays a typed value from the computation to the last file.
 //!
 //! - [`run`]: one history, with all its reports;
 //! - [`map`]: overturning or survival under pulses, over two quantities;
 //! - [`threshold`]: the ranges of factors by which a ground motion overturns the structure, with the safe gaps between them, and the lowest
-//!   overturning factor [along](threshold::along) a range of values of one key;
-//! - [`suite`]: overturning under the records of a suite at several levels, and the [`fragility`](suite::fragility) curve;
-//! - [`survival`](threshold::survival): a brief report of the strengths of a motion that a structure survives;
-//! - [`capacity`]: static capacity curves, without a history;
-//! - [`spread`]: the movement of a springing at which the arch collapses, without a history;
+//!   overturning factor [along](threshold::Along) a range of values of one key;
+//! - [`suite`]: overturning under the records of a suite at several levels, and the [fragility](suite::Fragility) curve;
+//! - [survival](threshold::Survival): a brief report of the strengths of a motion that a structure survives;
+//! - [`capacity()`]: static capacity curves, without a history;
+//! - [`spread()`]: the movement of a springing at which the arch collapses, without a history;
 //! - [`verify`]: a check of local mechanisms by the Circolare 7/2019, with a printed page.
 
-pub mod capacity;
-pub mod catalogue;
-pub mod ending;
+mod capacity;
+mod catalogue;
+pub(crate) mod ending;
 pub mod ensemble;
-pub mod impact;
-pub mod limit;
+mod impact;
+mod limit;
 pub mod map;
 mod outcome_colors;
-pub mod part;
-pub mod peaks;
-pub mod pictures;
-pub mod quotable;
-pub mod record;
+mod part;
+mod peaks;
+mod pictures;
+mod quotable;
+mod record;
 mod remarks;
-pub mod results;
+mod results;
 pub mod run;
-pub mod runner;
-pub mod spread;
-pub mod statistics;
+mod runner;
+mod spread;
+mod statistics;
 pub mod suite;
 pub mod threshold;
 pub mod verify;
 
-use ending::{Ending, NoAnswer, NoHistory, Verdict};
-use quotable::ModelAnswer;
+pub use capacity::{CapacityCurveError, Summary as CapacitySummary, capacity};
+pub use catalogue::{
+    CAPACITY, Computation, MAP, Options, RUN, RowSource, SPREAD, SUITE, StudyKind, THRESHOLD,
+    THRESHOLD_ALONG, UNCERTAIN, UNCERTAIN_MAP, UNCERTAIN_SUITE, UNCERTAIN_THRESHOLD, VERIFY, merge,
+};
+use ending::NoAnswer;
+pub use ending::{Ending, NoHistory, Steps, Verdict, outcome_name};
+pub use impact::{
+    ImpactOptions, LinkImpact, Summary as ImpactSummary, chain as impact_chain, chain_result,
+    four_links_result,
+};
+pub use limit::{Summary as LimitSummary, limit};
+pub use part::{
+    Header, PartError, PartErrorKind, PartFile, Shard, merge as merge_parts, read_header, rows_in,
+};
+pub use peaks::{SUMMARY as PEAKS_SUMMARY, Summary as PeaksSummary, results as peak_results};
+pub use pictures::{impact as draw_impact, limit as draw_limit};
+pub use quotable::{ModelAnswer, in_words as quoted_in_words};
+pub use record::record;
 use remarks::{CaseSummary, ModelCheck, OutcomeCounts, Remark, Remarks, no_verdict};
-use results::{ReportedStudy, Results, StudyError, Style};
-use runner::{Progress, Runner, RunnerError, Study, Task, Watch};
+use results::ReportedStudy;
+pub use results::{Results, StudyError, Style, words_of_json};
+use runner::Watch;
+pub use runner::{Progress, Runner, RunnerError, Study, Task};
+pub use spread::{Direction, Summary as SpreadSummary, spread};
+pub use statistics::Share;
 use threshold::{rounded, rounded_down};

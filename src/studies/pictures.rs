@@ -3,9 +3,7 @@
 use nalgebra::Vector2;
 
 use super::impact::LinkImpact;
-use crate::mechanics::four_link::chain::ArchLink;
-use crate::mechanics::four_link::impact::closing_field;
-use crate::mechanics::four_link::resultant::ResultantLine;
+use crate::mechanics::four_link::{ArchLink, ResultantLine, closing_field};
 use crate::mechanics::{Edge, MechanismChain as _, Profile};
 use crate::output::elevation::{BODIES, SheetTransform, View, draw_dimensions, room_px};
 use crate::output::mechanisms::HINGES;

@@ -4,7 +4,7 @@
 //! up to which the structure certainly survives, over all computed stiffnesses and contacts of its joints, or with an outcome that is certain and
 //! the same for all of them. Four links of an arch are quoted only if their thrust line was followed, and inside their model.
 
-use crate::dynamics::thrust::MODEL_LIMIT;
+use crate::dynamics::MODEL_LIMIT;
 use crate::scenario::{FOUR_LINKS, FREE_HINGES, ModelKind};
 
 /// The answer of a model of motion.

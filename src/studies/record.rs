@@ -4,7 +4,7 @@ use askama::Template;
 use serde::{Deserialize, Serialize};
 
 use super::results::PrintedResult;
-use crate::dynamics::ground::intensity::Intensity;
+use crate::dynamics::Intensity;
 use crate::output::{OutputError, filters};
 use crate::scenario::{Format, RecordedQuantity, Series};
 

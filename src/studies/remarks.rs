@@ -10,8 +10,7 @@ use super::ending::columns::{
     CANNOT_STAND, FAILED, GROUND_FALLS, NOT_FOUR_LINKS, OVERTURNED, UNCERTAIN,
 };
 use super::ending::{Ending, NoHistory, Verdict, outcome_name};
-use crate::dynamics::OutcomeCount;
-use crate::dynamics::thrust::{EXCESS_LEVELS, MODEL_LIMIT};
+use crate::dynamics::{EXCESS_LEVELS, MODEL_LIMIT, OutcomeCount};
 use crate::{Outcome, Scenario};
 
 /// A failed or uncertain case, as results list it.

@@ -80,7 +80,7 @@ pub struct Results {
     pub words: String,
     /// The summary as JSON.
     pub summary: Value,
-    /// The largest rotation of each case of a suite or sample of a run, in radians, for the [comparison](super::peaks) of models of motion.
+    /// The largest rotation of each case of a suite or sample of a run, in radians, for the comparison of models of motion.
     /// Infinite if the case overturned.
     pub largest_rotations_rad: Vec<f64>,
     /// The answer of a suite that may be quoted, for the comparison of models of motion.

@@ -1,33 +1,4 @@
 //! Computes the cases of a study on all processors and reports progress. The work can be cancelled and resumed.
-//!
-//! ```
-//! use std::ops::ControlFlow;
-//!
-//! use archrock::studies::runner::{Runner, Study};
-//!
-//! struct Squares;
-//!
-//! impl Study for Squares {
-//!     type Row = usize;
-//!     const NAME: &'static str = "squares";
-//!
-//!     fn count(&self) -> usize {
-//!         1000
-//!     }
-//!
-//!     fn rows(&self, indices: &[usize]) -> Vec<usize> {
-//!         indices.iter().map(|index| index * index).collect()
-//!     }
-//! }
-//!
-//! let mut done = 0;
-//! let rows = Runner::default().rows(&Squares, |progress| {
-//!     done = progress.done;
-//!     ControlFlow::Continue(())
-//! })?;
-//! assert_eq!((done, rows[30]), (1000, 900));
-//! # Ok::<(), archrock::studies::runner::RunnerError>(())
-//! ```
 
 use std::collections::BTreeMap;
 use std::num::NonZeroUsize;
@@ -152,6 +123,35 @@ pub struct Task<'p> {
 pub type RowsInFile<R> = (Option<Vec<R>>, PartFile);
 
 /// Computes the rows of studies.
+///
+/// ```
+/// use std::ops::ControlFlow;
+///
+/// use archrock::studies::{Runner, Study};
+///
+/// struct Squares;
+///
+/// impl Study for Squares {
+///     type Row = usize;
+///     const NAME: &'static str = "squares";
+///
+///     fn count(&self) -> usize {
+///         1000
+///     }
+///
+///     fn rows(&self, indices: &[usize]) -> Vec<usize> {
+///         indices.iter().map(|index| index * index).collect()
+///     }
+/// }
+///
+/// let mut done = 0;
+/// let rows = Runner::default().rows(&Squares, |progress| {
+///     done = progress.done;
+///     ControlFlow::Continue(())
+/// })?;
+/// assert_eq!((done, rows[30]), (1000, 900));
+/// # Ok::<(), archrock::studies::RunnerError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Runner {
     /// The number of threads; `None`: as many as there are processors.
@@ -213,7 +213,7 @@ impl Runner {
         Ok(rows.into_values().collect())
     }
 
-    /// Computes the rows of a shard. Each is saved in a part file (see [`super::part`]), so a killed program can resume the work. Returns the
+    /// Computes the rows of a shard. Each is saved in a part file (see [`PartFile`]), so a killed program can resume the work. Returns the
     /// file, and the rows if the shard is the whole study.
     ///
     /// `watch` is as in [`Runner::rows`]. All rows that its progress counts are already in the file.

@@ -8,8 +8,8 @@ pub mod prose;
 pub mod results;
 pub mod schema;
 
-use archrock::dynamics::ground::Pulse;
-use archrock::mechanics::four_link::mechanism::HingeSites;
+use archrock::dynamics::Pulse;
+use archrock::mechanics::four_link::HingeSites;
 use archrock::mechanics::masonry::{
     BasketArch, CircularArch, Dimensions, Fill, FillLevel, Masonry, Material, Pier, Piers,
     PlacedLoad, Shape,

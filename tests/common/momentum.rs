@@ -1,8 +1,7 @@
 //! The momentum theorems of the paper, solved in their printed form.
 
-use archrock::mechanics::Profile;
-use archrock::mechanics::four_link::mechanism::FourLink;
-use archrock::mechanics::geometry::field::{Field, Momentum};
+use archrock::mechanics::four_link::FourLink;
+use archrock::mechanics::{Field, Momentum, Profile};
 use nalgebra::{Matrix5, Vector2, Vector5};
 
 /// The solution of the five equations (7)-(10) of the paper.

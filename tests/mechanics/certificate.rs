@@ -1,14 +1,11 @@
 //! The projection onto all admissible velocity fields: published values, convergence, both sides of the optimality
 //! conditions, and the four-link restitution coefficient below it.
 
-use archrock::mechanics::four_link::certificate::{
-    DEFAULT_JOINTS, Projection, joints_rad, project,
+use archrock::mechanics::four_link::{
+    DEFAULT_JOINTS, FourLink, HingeSites, Impact, ImpactModel, Projection, closing_field, impact,
+    incipient, joints_rad, project,
 };
-use archrock::mechanics::four_link::impact::{Impact, ImpactModel, closing_field, impact};
-use archrock::mechanics::four_link::limit::incipient;
-use archrock::mechanics::four_link::mechanism::{FourLink, HingeSites};
-use archrock::mechanics::geometry::field::{Field, Momentum, Twist};
-use archrock::mechanics::{Edge, Ring};
+use archrock::mechanics::{Edge, Field, Momentum, Ring, Twist};
 
 const ANYWHERE: HingeSites = HingeSites::Anywhere;
 
@@ -132,7 +129,7 @@ fn the_field_opens_joints_and_has_the_reported_energy() {
         // Both springings stand still, so the rotations close. The tolerances are those of the solver, 1e-10,
         // summed over the joints.
         let end = projection.joints.last().unwrap().angle_rad;
-        let right = field.at(end, archrock::mechanics::geometry::field::Side::After);
+        let right = field.at(end, archrock::mechanics::Side::After);
         assert!(
             right.rate.abs() < 1e-8 && right.at_center.norm() < 1e-8,
             "{right:?}"
@@ -155,7 +152,7 @@ fn the_impulses_are_compressive_inside_the_ring_and_complementary() {
     ] {
         let projection = case.project(360);
         let change = case.before.minus(&case.field(&projection));
-        let vector = |joint: &archrock::mechanics::four_link::certificate::Joint| {
+        let vector = |joint: &archrock::mechanics::four_link::Joint| {
             let (tangent, radial) = (
                 case.ring.tangent(joint.angle_rad),
                 case.ring.radial(joint.angle_rad),

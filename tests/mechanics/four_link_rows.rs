@@ -1,14 +1,12 @@
 //! Four links on rows of blocks: circular voussoirs against the ring, static against kinematic theorem, mirror images.
 
 use crate::common::{Random, random_masonry};
-use archrock::dynamics::free_hinges::FreeHinges;
-use archrock::mechanics::Ring;
-use archrock::mechanics::chain::{Hinge, Mechanism as _, MechanismChain as _};
-use archrock::mechanics::four_link::certificate::project;
-use archrock::mechanics::four_link::impact::closing_field;
+use archrock::dynamics::FreeHinges;
+use archrock::mechanics::four_link::{closing_field, project};
 use archrock::mechanics::masonry::{Dimensions, Masonry, Material, Piers, PlacedLoad, Shape};
 use archrock::mechanics::stability::{collapse_mechanism, onset};
 use archrock::mechanics::{Block, Row, Supports};
+use archrock::mechanics::{Hinge, Mechanism as _, MechanismChain as _, Ring};
 use archrock::{
     Arch, FourLinkError, FourLinks, GroundMotion, ImpactLaw, ImpactModel, Initial, Model as _,
     Outcome, Pulse, Request, Sample, Sway,
@@ -310,7 +308,7 @@ fn the_thrust_line_in_motion_passes_through_the_hinges() {
         let acceleration = (body_force_g.x * c.s_x + body_force_g.y * c.s_y
             - 0.5 * c.inertia_slope * rate * rate)
             / c.inertia;
-        let motion = archrock::mechanics::chain::MechanismState {
+        let motion = archrock::mechanics::MechanismState {
             q_rad,
             rate,
             acceleration,

@@ -2,13 +2,11 @@
 
 use crate::common::momentum::MomentumTheorems;
 use crate::common::{Random, assert_hinges, climb, degrees, ring, semicircle};
-use archrock::mechanics::Profile;
-use archrock::mechanics::four_link::impact::{ImpactModel, closing_field, impact, projection};
-use archrock::mechanics::four_link::limit::incipient;
-use archrock::mechanics::four_link::mechanism::{FourLink, HingeSites};
-use archrock::mechanics::four_link::resultant::ResultantLine;
-use archrock::mechanics::geometry::field::{Field, Side};
+use archrock::mechanics::four_link::{
+    FourLink, HingeSites, ImpactModel, ResultantLine, closing_field, impact, incipient, projection,
+};
 use archrock::mechanics::{Edge, Ring};
+use archrock::mechanics::{Field, Profile, Side};
 use proptest::prelude::*;
 
 const MAX: ImpactModel = ImpactModel::MaxRestitution;
@@ -405,7 +403,7 @@ fn best_of_joints(
     count: usize,
     section: impl Fn(usize) -> f64,
 ) -> f64 {
-    use archrock::mechanics::geometry::field::Twist;
+    use archrock::mechanics::Twist;
     let unit = |i: usize, edge: Edge| {
         let twist = Twist::rotation(ring.point(section(i), edge), 1.0);
         Field::from_jumps(&[(section(i), twist)])

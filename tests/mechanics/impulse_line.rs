@@ -6,11 +6,9 @@ use std::path::Path;
 use crate::common::momentum::MomentumTheorems;
 use crate::common::program::{printed, refused};
 use crate::common::results::{Row, Table};
-use archrock::mechanics::Sway;
-use archrock::mechanics::four_link::impact::{ImpactModel, closing_field, impact};
-use archrock::mechanics::four_link::mechanism::{EDGES, HingeSites};
-use archrock::mechanics::geometry::field::Side;
+use archrock::mechanics::four_link::{EDGES, HingeSites, ImpactModel, closing_field, impact};
 use archrock::mechanics::{Edge, Ring};
+use archrock::mechanics::{Side, Sway};
 use archrock::{Arch, FourLinks};
 use nalgebra::Vector2;
 
@@ -96,7 +94,7 @@ fn impulses_change_the_momentum_of_each_body() {
             let on_bodies = [[a, -b], [b, c], [-c, d]];
             let (angles, points) = (link.mechanism.hinges_rad, link.mechanism.points);
             for (body, impulses) in on_bodies.into_iter().enumerate() {
-                let part = |of: &archrock::mechanics::geometry::field::Field| {
+                let part = |of: &archrock::mechanics::Field| {
                     of.momentum_to(ring, angles[body + 1]) - of.momentum_to(ring, angles[body])
                 };
                 let gain = part(&moved) - part(&closing);
@@ -475,7 +473,7 @@ fn impulses_of_a_run_are_in_newton_seconds() {
             value("rate_right_before_rad_s"),
             value("rate_middle_before_rad_s"),
         );
-        let about = |pole, rate| archrock::mechanics::geometry::field::Twist::rotation(pole, rate);
+        let about = |pole, rate| archrock::mechanics::Twist::rotation(pole, rate);
         let right = about(hinge(180.0, Edge::Extrados), right_before);
         let at_c = hinge(closing_c, Edge::Intrados);
         let middle = right + about(at_c, middle_before - right_before);

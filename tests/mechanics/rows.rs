@@ -1,8 +1,7 @@
 //! Rows of blocks from arbitrary numbers: either an error, or a row that can be shaken.
 
 use crate::common::{between_faces, number, straight_sided_arch};
-use archrock::dynamics::RowModelError;
-use archrock::dynamics::free_hinges::{FreeHinges, RowOptions};
+use archrock::dynamics::{FreeHinges, RowModelError, RowOptions};
 use archrock::mechanics::Ring;
 use archrock::mechanics::stability::StabilityError;
 use archrock::mechanics::{Block, Drum, Joint, MAX_BLOCKS, Row, RowError, Supports};

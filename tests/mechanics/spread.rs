@@ -2,15 +2,14 @@
 //! found by convex programmes in which any joint may open.
 
 use archrock::ElasticJoints;
-use archrock::dynamics::ground::Pulse;
-use archrock::dynamics::model::{Model as _, Request};
+use archrock::dynamics::{Model as _, Pulse, Request};
 use archrock::mechanics::Row;
 use archrock::mechanics::Sway;
 use archrock::mechanics::elastic_joint::{ElasticProperties, ElasticStructure, RestError};
 use archrock::mechanics::settling::{Follower, Movement, Movements, SettlingError};
 use archrock::mechanics::{Anchor, Tie};
 use archrock::mechanics::{Edge, Ring};
-use archrock::studies::spread::{Direction, spread};
+use archrock::studies::{Direction, spread};
 use archrock_motion::internals::contact::ContactError;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{

@@ -9,16 +9,11 @@ use crate::common::run;
 use crate::common::sampled;
 use crate::common::semicircle;
 use crate::common::seven_voussoirs;
-use archrock::dynamics::free_hinges::FreeHinges;
-use archrock::dynamics::history::Summary;
-use archrock::dynamics::model::{Recorder, WithoutDemand};
-use archrock::mechanics::Edge;
-use archrock::mechanics::chain::{
-    Demand, Hinge, Mechanism as _, MechanismChain as _, MechanismState,
+use archrock::dynamics::{FreeHinges, Recorder, Summary, WithoutDemand};
+use archrock::mechanics::four_link::{HingeSites, Linkage, SectionResultant, ThrustLine};
+use archrock::mechanics::{
+    Demand, Edge, Hinge, Mechanism as _, MechanismChain as _, MechanismState,
 };
-use archrock::mechanics::four_link::mechanism::HingeSites;
-use archrock::mechanics::four_link::resultant::SectionResultant;
-use archrock::mechanics::four_link::{Linkage, ThrustLine};
 use archrock::{
     Arch, Column, FourLinks, GroundMotion, History, ImpactModel, Model, Pulse, RockingColumn,
     Sample, State, Sway,

@@ -12,7 +12,7 @@ use archrock::mechanics::settling::Follower;
 use archrock::mechanics::stability::{StabilityError, limit_with_yielding_ties, onset};
 use archrock::mechanics::{Anchor, Tie, TieError};
 use archrock::mechanics::{Row, Supports};
-use archrock::studies::limit::limit;
+use archrock::studies::limit;
 use archrock::studies::verify::{Page, verify};
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{

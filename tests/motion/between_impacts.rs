@@ -4,9 +4,8 @@ use crate::common::{
     GRAVITY, REST_ENERGY_RATIO, four_links, impact_times_s, pairs, released, request, run,
     run_sampled, semicircle, seven_voussoirs, three,
 };
-use archrock::mechanics::chain::{Link, Mechanism as _, MechanismChain as _};
-use archrock::mechanics::four_link::Linkage;
-use archrock::mechanics::four_link::mechanism::HingeSites;
+use archrock::mechanics::four_link::{HingeSites, Linkage};
+use archrock::mechanics::{Link, Mechanism as _, MechanismChain as _};
 use archrock::{FourLinks, GroundMotion, Outcome, Pulse, Request, Sway};
 use archrock_motion::internals::hybrid::rocking::Rocking;
 

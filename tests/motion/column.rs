@@ -3,7 +3,7 @@
 use crate::common::pulse;
 use std::f64::consts::PI;
 
-use archrock::mechanics::chain::MechanismChain as _;
+use archrock::mechanics::MechanismChain as _;
 use archrock::{
     Column, EventKind, GroundMotion, History, ImpactModel, Initial, Model as _, Outcome, Pulse,
     Request, RockingColumn, Sample, State, Sway,

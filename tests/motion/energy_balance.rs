@@ -1,10 +1,10 @@
 //! The energy balance of a row: a doubtful balance is reported, and a wrong one is an error.
 
 use crate::common::{GRAVITY, released, request};
-use archrock::dynamics::RowMotionError;
-use archrock::dynamics::free_hinges::{DOUBTFUL_ENERGY_ERROR, FreeHinges, RowOptions};
-use archrock::dynamics::ground::{GroundMotion, Pulse};
-use archrock::dynamics::model::{Model as _, SimulationError};
+use archrock::dynamics::{
+    DOUBTFUL_ENERGY_ERROR, FreeHinges, GroundMotion, Model as _, Pulse, RowMotionError, RowOptions,
+    SimulationError,
+};
 use archrock::mechanics::Column;
 use archrock::mechanics::Sway;
 

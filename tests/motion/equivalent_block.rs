@@ -1,7 +1,6 @@
 //! Equivalent blocks and the dimensionless view, compared with the motions that they represent.
 
-use archrock::mechanics::chain::{Mechanism as _, MechanismChain};
-use archrock::mechanics::equivalent_towards;
+use archrock::mechanics::{Mechanism as _, MechanismChain, equivalent_towards};
 use archrock::studies::run::Scales;
 use archrock::{
     Arch, Column, FourLinks, GroundMotion, ImpactModel, Initial, MechanismModel, Model as _, Pulse,

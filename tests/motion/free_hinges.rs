@@ -8,17 +8,14 @@ use crate::common::between_faces;
 use crate::common::random_history;
 use crate::common::random_row;
 use crate::common::ring;
-use archrock::dynamics::ground::{GroundMotion, Pulse};
-use archrock::dynamics::history::{Event, Impact, Outcome, Sample, Summary};
-use archrock::dynamics::model::Recorder;
-use archrock::mechanics::chain::Mechanism as _;
-use archrock::mechanics::four_link::impact::ImpactModel;
-use archrock::mechanics::four_link::limit::incipient;
-use archrock::mechanics::four_link::mechanism::{FourLink, HingeSites};
-use archrock::mechanics::four_link::{Linkage, certificate};
-use archrock::mechanics::geometry::field::{Side, Twist};
+use archrock::dynamics::{Event, GroundMotion, Impact, Outcome, Pulse, Recorder, Sample, Summary};
+use archrock::mechanics::four_link::{
+    FourLink, HingeSites, ImpactModel, Linkage, incipient, joints_rad, project,
+};
 use archrock::mechanics::stability::{StabilityError, collapse_mechanism, onset};
-use archrock::mechanics::{Block, Drum, Edge, Joint, Ring, Row, RowError, Supports, Sway};
+use archrock::mechanics::{
+    Block, Drum, Edge, Joint, Mechanism as _, Ring, Row, RowError, Side, Supports, Sway, Twist,
+};
 use archrock::{Column, Model, Request, RockingColumn, RowMotionError};
 use archrock_motion::internals::contact::{ContactProgram, Load};
 use archrock_motion::internals::free_hinges::{Settings, simulate};
@@ -268,8 +265,8 @@ fn a_full_closure_keeps_the_energy_of_the_cone() {
         let row = Row::arch(&ring, voussoirs, 1.0, 1.0, 1.0).unwrap();
         let (_, ours) = projected(&row, &free);
         assert!((ours - kept).abs() < 6e-9, "{ours} {kept}");
-        let joints = certificate::joints_rad(&ring, sites, voussoirs, None);
-        let cone = certificate::project(&closing, &ring, &joints).unwrap();
+        let joints = joints_rad(&ring, sites, voussoirs, None);
+        let cone = project(&closing, &ring, &joints).unwrap();
         assert!((ours - cone.restitution).abs() < 1e-8);
     }
 }

@@ -6,8 +6,8 @@ use crate::common::{
     sampled, semicircle, seven_voussoirs, three,
 };
 use archrock::dynamics::Recording;
-use archrock::mechanics::chain::{Mechanism as _, MechanismChain as _};
-use archrock::mechanics::four_link::mechanism::HingeSites;
+use archrock::mechanics::four_link::HingeSites;
+use archrock::mechanics::{Mechanism as _, MechanismChain as _};
 use archrock::{
     Arch, FourLinks, GroundMotion, History, ImpactModel, Model as _, Outcome, Pulse, Request,
     Sample, State, Sway,

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use archrock::dynamics::history::Cost;
+use archrock::dynamics::Cost;
 use archrock_motion::internals::hybrid::engine::{
     EngineError, EngineSettings, Finish, HybridSystem, Observer, SystemState, Transition, simulate,
 };

@@ -5,15 +5,10 @@ use std::ops::ControlFlow;
 
 use crate::common::{GRAVITY, Random};
 use archrock::Sway;
-use archrock::dynamics::ground::{GroundMotion, Pulse};
-use archrock::dynamics::history::{Event, Summary};
-use archrock::dynamics::model::Recorder;
-use archrock::mechanics::chain::Hinge;
-use archrock::mechanics::four_link::certificate;
-use archrock::mechanics::four_link::mechanism::{FourLink, HingeSites};
+use archrock::dynamics::{Event, GroundMotion, Pulse, Recorder, Summary};
+use archrock::mechanics::four_link::{FourLink, HingeSites, joints_rad, project};
 use archrock::mechanics::stability::{collapse_mechanism, onset};
-use archrock::mechanics::{Drum, Row};
-use archrock::mechanics::{Edge, Ring};
+use archrock::mechanics::{Drum, Edge, Hinge, Ring, Row};
 use archrock_motion::internals::free_hinges::{Settings, simulate};
 
 fn peaks_rad(run: &Summary) -> Vec<f64> {
@@ -145,13 +140,9 @@ fn certified(ring: &Ring, voussoirs: usize, landed: &[(usize, Edge)]) -> Option<
         hinges_rad.reverse();
     }
     let closing = FourLink::new(ring, hinges_rad.try_into().unwrap())?;
-    let joints = certificate::joints_rad(ring, HingeSites::Voussoirs(voussoirs), voussoirs, None);
+    let joints = joints_rad(ring, HingeSites::Voussoirs(voussoirs), voussoirs, None);
     let closing = closing.field().scaled(-1.0);
-    Some(
-        certificate::project(&closing, ring, &joints)
-            .unwrap()
-            .restitution,
-    )
+    Some(project(&closing, ring, &joints).unwrap().restitution)
 }
 
 /// If four corners alone are open, they land at one instant: one impact, whose energy the certificate gives from the interior-point

@@ -7,10 +7,9 @@ use crate::common::pulse;
 use crate::common::{
     GRAVITY, four_links, number, run, run_sampled, sampled, semicircle, seven_voussoirs,
 };
-use archrock::dynamics::free_hinges::FreeHinges;
-use archrock::mechanics::Ring;
-use archrock::mechanics::chain::{Mechanism as _, MechanismChain};
-use archrock::mechanics::four_link::mechanism::HingeSites;
+use archrock::dynamics::FreeHinges;
+use archrock::mechanics::four_link::HingeSites;
+use archrock::mechanics::{Mechanism as _, MechanismChain, Ring};
 use archrock::{
     Arch, ArgumentError, Column, Event, FourLinkError, FourLinks, GroundMotion, Hinge, History,
     ImpactModel, Initial, MechanismModel, Model, OpenHinge, Pose, Pulse, Recorder, Request,

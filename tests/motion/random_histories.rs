@@ -2,8 +2,8 @@
 
 use crate::common;
 use crate::common::three;
-use archrock::mechanics::chain::{Mechanism as _, MechanismChain as _};
-use archrock::mechanics::four_link::mechanism::HingeSites;
+use archrock::mechanics::four_link::HingeSites;
+use archrock::mechanics::{Mechanism as _, MechanismChain as _};
 use archrock::{
     FourLinks, GroundMotion, ImpactModel, Initial, Model as _, Outcome, Pulse, Request, Sample,
     State, Sway,

@@ -7,16 +7,14 @@ use crate::common::GRAVITY;
 use crate::common::Random;
 use crate::common::between_faces;
 use crate::common::random_history;
-use archrock::dynamics::free_hinges::FreeHinges;
-use archrock::dynamics::ground::{GroundMotion, Pulse};
-use archrock::dynamics::history::{Outcome, Sample, Sliding, Summary};
-use archrock::dynamics::model::Recorder;
-use archrock::mechanics::chain::Hinge;
+use archrock::dynamics::{
+    FreeHinges, GroundMotion, Outcome, Pulse, Recorder, Sample, Sliding, Summary,
+};
 use archrock::mechanics::friction::{FrictionError, least_coefficient, onset};
 use archrock::mechanics::masonry::{
     BasketArch, Dimensions, Fill, FillLevel, GivenBlocks, Masonry, Material, Pier, Piers, Shape,
 };
-use archrock::mechanics::{Column, Edge, Joint, Ring, Row, Supports, Sway, stability};
+use archrock::mechanics::{Column, Edge, Hinge, Joint, Ring, Row, Supports, Sway, stability};
 use archrock_motion::internals::complementarity;
 use archrock_motion::internals::coulomb::{SlipProgram, TangentialMode};
 use archrock_motion::internals::free_hinges::{Settings, simulate};

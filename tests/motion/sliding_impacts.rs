@@ -3,9 +3,7 @@
 use std::ops::ControlFlow;
 
 use crate::common::GRAVITY;
-use archrock::dynamics::ground::{GroundMotion, Pulse};
-use archrock::dynamics::history::{Event, Impact, Sample, Summary};
-use archrock::dynamics::model::Recorder;
+use archrock::dynamics::{Event, GroundMotion, Impact, Pulse, Recorder, Sample, Summary};
 use archrock::mechanics::Ring;
 use archrock::mechanics::Row;
 use archrock_motion::internals::free_hinges::{Settings, simulate};

@@ -1,7 +1,6 @@
 //! Arches of rigid blocks that rock on springings that have moved.
 
-use archrock::dynamics::ground::{GroundMotion, Pulse};
-use archrock::dynamics::history::{Outcome, State};
+use archrock::dynamics::{GroundMotion, Outcome, Pulse, State};
 use archrock::mechanics::Ring;
 use archrock::mechanics::Row;
 use archrock::mechanics::Sway;

@@ -11,11 +11,9 @@ use crate::common::program::{
 use crate::common::prose::{golden, shows};
 use crate::common::results::{Table, json, named};
 use crate::common::{parsed, pulse, run_sampled, sampled};
-use archrock::dynamics::history::EventKind;
-use archrock::mechanics::capacity::TieEventDisplacements;
-use archrock::mechanics::{Anchor, Tie, TieMemory};
-use archrock::mechanics::{Drum, Row};
-use archrock::studies::capacity::capacity;
+use archrock::dynamics::EventKind;
+use archrock::mechanics::{Anchor, Drum, Row, Tie, TieEventDisplacements, TieMemory};
+use archrock::studies::capacity;
 use archrock::{
     Contact, ElasticJoints, ElasticProperties, FreeHinges, GroundMotion, JointStiffness, Model,
     Pulse, Request, RowOptions, Stiffness,

@@ -12,7 +12,7 @@ use crate::common::program::{
 use crate::common::prose::{golden, shows};
 use crate::common::results::{Table, named};
 use crate::common::{parsed, pulse, run_sampled, sampled};
-use archrock::dynamics::model::SimulationError;
+use archrock::dynamics::SimulationError;
 use archrock::mechanics::settling::{Movement, Movements};
 use archrock::mechanics::{Drum, Row};
 use archrock::{

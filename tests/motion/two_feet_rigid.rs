@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use archrock::dynamics::history::{Outcome, State};
+use archrock::dynamics::{Outcome, State};
 use archrock::mechanics::Edge;
 use archrock::mechanics::settling::{Follower, Movement, Movements};
 use archrock::mechanics::{Anchor, Tie};

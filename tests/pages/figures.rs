@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::common::program::{archrock, refusal, scenarios, stderr};
 use crate::common::results::{named, points, texts};
-use archrock::output::text::text_px;
+use archrock::output::text_px;
 use roxmltree::{Document, Node};
 
 /// A rectangle in pixels: left, top, right, bottom.

@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::Command;
 
 use crate::common::program::{archrock, stderr};
-use archrock::dynamics::thrust::MODEL_LIMIT;
+use archrock::dynamics::MODEL_LIMIT;
 use serde_json::{Value, json};
 
 const SCENARIO: &str = "[arch]\nmean_radius_m = 5.0\nthickness_m = 0.75\nembrace_deg = 180.0\n\

@@ -8,16 +8,11 @@ use crate::common::results::{Table, named, number, points, texts};
 use crate::common::{ON_A_PIER, UNEVEN_ARCH};
 use archrock::mechanics::Edge;
 use archrock::mechanics::Profile;
-use archrock::mechanics::four_link::chain::Chain;
-use archrock::output::Figure;
-use archrock::output::scene::Scene;
+use archrock::mechanics::four_link::Chain;
+use archrock::output::{Figure, Scene};
 use archrock::scenario::Structure;
-use archrock::studies::ending::outcome_name;
-use archrock::studies::impact::LinkImpact;
-use archrock::studies::map::{OverturningMap, picture};
-use archrock::studies::pictures;
-use archrock::studies::results::Style;
-use archrock::studies::runner::Study as _;
+use archrock::studies::map::{self, OverturningMap};
+use archrock::studies::{LinkImpact, Study as _, Style, draw_impact, draw_limit, outcome_name};
 use archrock::{Arch, FourLinks, ImpactModel, Scenario, Sway};
 use nalgebra::Vector2;
 use roxmltree::{Document, Node};
@@ -109,7 +104,7 @@ fn limit_shows_the_thrust_line_inside_the_ring_and_through_its_hinges() {
     for (thickness_ratio, embrace_deg) in [(0.15, 180.0), (0.15, 157.5), (0.1, 120.0)] {
         let (arch, scene) = arch(thickness_ratio, embrace_deg);
         let chain = arch.chain();
-        let picture = pictures::limit(Figure::SCREEN, &arch, Sway::Right, &scene);
+        let picture = draw_limit(Figure::SCREEN, &arch, Sway::Right, &scene);
         let document = Document::parse(&picture).unwrap();
         let sheet = check_hinges(&document, chain, 0, Sway::Right);
         let lines = named(&document, "thrust line");
@@ -137,7 +132,7 @@ fn joints_are_drawn_for_voussoirs() {
     let arch = Arch::new(10.0, 0.15, 157.5).unwrap();
     let (arch, scene) = drawn(arch.with_voussoirs(7).unwrap());
     let chain = arch.chain();
-    let picture = pictures::limit(Figure::SCREEN, &arch, Sway::Right, &scene);
+    let picture = draw_limit(Figure::SCREEN, &arch, Sway::Right, &scene);
     let document = Document::parse(&picture).unwrap();
     let count = |document: &Document<'_>, names: &[&str]| {
         let nodes = names.iter().map(|name| named(document, name).len());
@@ -147,7 +142,7 @@ fn joints_are_drawn_for_voussoirs() {
     assert_eq!(count(&document, &["still", "left", "middle", "right"]), 7);
     // The hinges are at joints.
     check_hinges(&document, chain, 0, Sway::Right);
-    let picture = pictures::impact(Figure::SCREEN, &impact(&arch, 1), &scene).unwrap();
+    let picture = draw_impact(Figure::SCREEN, &impact(&arch, 1), &scene).unwrap();
     let document = Document::parse(&picture).unwrap();
     let bodies = (1..9).map(|body| named(&document, &format!("body {body}")).len());
     // Those of the two mechanisms stand still beside the bodies.
@@ -160,7 +155,7 @@ fn joints_are_drawn_for_voussoirs() {
 fn limit_shows_rigid_bodies_joined_at_hinges() {
     let (arch, scene) = arch(0.15, 180.0);
     let chain = arch.chain();
-    let picture = pictures::limit(Figure::SCREEN, &arch, Sway::Right, &scene);
+    let picture = draw_limit(Figure::SCREEN, &arch, Sway::Right, &scene);
     let document = Document::parse(&picture).unwrap();
     let hinges: Vec<_> = named(&document, "hinge").iter().map(center).collect();
     assert_eq!(hinges.len(), 4);
@@ -195,7 +190,7 @@ fn limit_shows_rigid_bodies_joined_at_hinges() {
 fn the_second_impact_has_a_picture_of_its_own() {
     let (arch, scene) = arch(0.15, 180.0);
     let chain = arch.chain();
-    let picture = pictures::impact(Figure::SCREEN, &impact(&arch, 2), &scene).unwrap();
+    let picture = draw_impact(Figure::SCREEN, &impact(&arch, 2), &scene).unwrap();
     let document = Document::parse(&picture).unwrap();
     check_hinges(&document, chain, 2, Sway::Right);
     let title = &texts(&document)[0];
@@ -212,7 +207,7 @@ fn the_second_impact_has_a_picture_of_its_own() {
             .fold(f64::INFINITY, f64::min)
     };
     assert!(left("body 1") < left("body 2") && left("body 2") < left("body 3"));
-    assert!(pictures::impact(Figure::SCREEN, &impact(&arch, 0), &scene).is_none());
+    assert!(draw_impact(Figure::SCREEN, &impact(&arch, 0), &scene).is_none());
 
     let folder = tempfile::tempdir().unwrap();
     let text = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.15\nembrace_deg = 180\n";
@@ -233,7 +228,7 @@ fn the_second_impact_has_a_picture_of_its_own() {
 fn impact_shows_the_bodies_of_the_paper_and_the_impulse_line() {
     let (arch, scene) = arch(0.15, 180.0);
     let chain = arch.chain();
-    let picture = pictures::impact(Figure::SCREEN, &impact(&arch, 1), &scene).unwrap();
+    let picture = draw_impact(Figure::SCREEN, &impact(&arch, 1), &scene).unwrap();
     let document = Document::parse(&picture).unwrap();
     let sheet = check_hinges(&document, chain, 1, Sway::Left);
     assert!(
@@ -600,7 +595,7 @@ fn the_map_shows_every_cell() {
     let rows: Vec<_> = (0..cells.count())
         .map(|index| cells.rows(&[index]).remove(0))
         .collect();
-    let picture = picture::draw("a < b", &cells, &rows, Style::of(Figure::SCREEN));
+    let picture = map::draw("a < b", &cells, &rows, Style::of(Figure::SCREEN));
     let document = Document::parse(&picture).unwrap();
     assert!(texts(&document).iter().any(|text| text == "a < b"));
 

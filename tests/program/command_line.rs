@@ -469,7 +469,7 @@ fn usage_errors_have_exit_code_two() {
 /// this one checks that they arrive: finite, in order, under their names.
 #[test]
 fn random_scenarios_run_to_an_outcome() {
-    use archrock::dynamics::ground::Pulse;
+    use archrock::dynamics::Pulse;
     use proptest::prelude::*;
     use proptest::test_runner::{Config, TestRunner};
 

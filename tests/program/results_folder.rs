@@ -7,7 +7,8 @@ use std::process::Child;
 use std::thread::sleep;
 use std::time::Duration;
 
-use archrock::studies::catalogue::{self, StudyKind};
+use archrock::studies::StudyKind;
+use archrock::studies::{UNCERTAIN, UNCERTAIN_SUITE, UNCERTAIN_THRESHOLD};
 
 use crate::common::program::{
     RUN_FILES, archrock, command, names, refused, result_names, scenarios, stderr,
@@ -307,20 +308,16 @@ fn results_of_other_commands_stay_with_a_warning_for_other_scenarios() {
     scenario(0.8);
     let quick = ["--from", "1", "--to", "2", "--stride", "0.5"];
     let commands: [(&[&str], &str, StudyKind); 3] = [
-        (
-            &["run", "s.toml", "--out", "o"],
-            "summary.json",
-            catalogue::UNCERTAIN,
-        ),
+        (&["run", "s.toml", "--out", "o"], "summary.json", UNCERTAIN),
         (
             &["threshold", "s.toml", "--out", "o"],
             "threshold.json",
-            catalogue::UNCERTAIN_THRESHOLD,
+            UNCERTAIN_THRESHOLD,
         ),
         (
             &["suite", "s.toml", "--out", "o"],
             "suite.csv",
-            catalogue::UNCERTAIN_SUITE,
+            UNCERTAIN_SUITE,
         ),
     ];
     let line = |arguments: &[&'static str]| -> Vec<&'static str> {

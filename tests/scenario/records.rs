@@ -8,7 +8,7 @@ use std::path::Path;
 use crate::common::motions::{G, NGA_WEST2, Style, at2, run, scaled, semicircle, synthetic};
 use crate::common::program::refused;
 use crate::common::{impact_times_s, pairs};
-use archrock::dynamics::ground::GroundVelocity;
+use archrock::dynamics::GroundVelocity;
 use archrock::scenario::Ground;
 use archrock::{GroundMotion, Outcome, Pulse, Scenario};
 

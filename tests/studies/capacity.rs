@@ -2,12 +2,11 @@
 
 use crate::common::parsed;
 use crate::common::program;
-use archrock::mechanics::capacity::{Capacity, CurvePoint};
-use archrock::mechanics::chain::{Mechanism as _, MechanismChain as _};
 use archrock::mechanics::settling::Held;
 use archrock::mechanics::stability::onset;
+use archrock::mechanics::{Capacity, CurvePoint, Mechanism as _, MechanismChain as _};
 use archrock::scenario::Structure;
-use archrock::studies::capacity::{self, CapacityCurveError};
+use archrock::studies::{self, CapacityCurveError};
 use archrock::{
     Column, FourLinks, GroundMotion, ImpactModel, Initial, Model as _, Request, Scenario, Sway,
 };
@@ -18,7 +17,7 @@ fn capacity(
     scenario: &Scenario,
     point_m: Option<Vector2<f64>>,
 ) -> Result<[Capacity; 2], CapacityCurveError> {
-    capacity::capacity(scenario, point_m).map(Into::into)
+    studies::capacity(scenario, point_m).map(Into::into)
 }
 
 const SIDES: [Sway; 2] = [Sway::Right, Sway::Left];

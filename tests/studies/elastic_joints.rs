@@ -4,11 +4,10 @@ use std::fs;
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 
-use archrock::studies::ending::Ending;
 use archrock::studies::map::OverturningMap;
-use archrock::studies::runner::{Runner, Study};
 use archrock::studies::suite::RecordSuite;
 use archrock::studies::threshold::{EDGE_WIDTH, Factors, threshold};
+use archrock::studies::{Ending, Runner, Study};
 use archrock::{Outcome, Scenario, Summary};
 
 use crate::common::parsed;

@@ -3,9 +3,7 @@
 use std::f64::consts::{LN_10, TAU};
 
 use crate::common::Random;
-use archrock::studies::suite::fragility::{
-    Errors, Fraction, Fragility, NoFit, Observation, fit, fractions,
-};
+use archrock::studies::suite::{Errors, Fraction, Fragility, NoFit, Observation, fit, fractions};
 use proptest::prelude::*;
 
 /// Cases from counts by intensity, each with its own record.

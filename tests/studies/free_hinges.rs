@@ -9,18 +9,15 @@ use crate::common::parsed;
 use crate::common::program::{done, files, refused, scenarios};
 use crate::common::prose::golden;
 use crate::common::results::Table;
-use archrock::dynamics::free_hinges::{FreeHinges, RowOptions};
 use archrock::dynamics::repeatability::Repeatability;
+use archrock::dynamics::{FreeHinges, RowOptions};
 use archrock::output::Figure;
 use archrock::scenario::{
     FOUR_LINKS, FREE_HINGES, ModelKind, ReadOptions, Scenario, ScenarioErrors, Source,
 };
-use archrock::studies::ending::{Ending, NoHistory, Verdict, outcome_name};
-use archrock::studies::map::OverturningMap;
-use archrock::studies::map::picture::draw;
-use archrock::studies::results::Style;
-use archrock::studies::runner::{Runner, Study as _};
+use archrock::studies::map::{OverturningMap, draw};
 use archrock::studies::threshold::{Factors, Threshold, threshold};
+use archrock::studies::{Ending, NoHistory, Runner, Study as _, Style, Verdict, outcome_name};
 use archrock::{Arch, Column, ImpactModel, Model, Pulse, Request, RockingColumn};
 
 const ARCH: &str =

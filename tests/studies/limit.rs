@@ -8,17 +8,14 @@ use std::fs;
 use crate::common;
 use crate::common::program::printed;
 use crate::common::{Random, assert_hinges, climb, ring};
-use archrock::mechanics::Edge;
 use archrock::mechanics::Ring;
-use archrock::mechanics::chain::{Mechanism, critical_rad};
-use archrock::mechanics::four_link::Linkage;
 use archrock::mechanics::four_link::carries_its_weight;
-use archrock::mechanics::four_link::limit::{
-    LimitError, acceleration_g, incipient, least_thickness_ratio,
+use archrock::mechanics::four_link::{
+    FourLink, HingeSites, LimitError, Linkage, acceleration_g, incipient, least_thickness_ratio,
 };
-use archrock::mechanics::four_link::mechanism::{FourLink, HingeSites};
+use archrock::mechanics::{Edge, Mechanism, critical_rad};
 use archrock::scenario::Scenario;
-use archrock::studies::limit::limit;
+use archrock::studies::limit;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
     DefaultSettings, DefaultSolver, IPSolver as _, NonnegativeConeT, SolverStatus,

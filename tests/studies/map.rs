@@ -12,10 +12,9 @@ use std::time::{Duration, Instant};
 use crate::common::program::{command, done, files, refused};
 use crate::common::{ARCH, GRAVITY, four_links, request};
 use crate::studies::threshold_along::without_impact;
-use archrock::mechanics::four_link::mechanism::HingeSites;
-use archrock::studies::ending::{Ending, NoHistory};
+use archrock::mechanics::four_link::HingeSites;
 use archrock::studies::map::OverturningMap;
-use archrock::studies::runner::Study as _;
+use archrock::studies::{Ending, NoHistory, Study as _};
 use archrock::{Outcome, Pulse, Scenario};
 
 fn ending(map: &OverturningMap<'_>, index: usize) -> Ending {

@@ -4,7 +4,7 @@ use std::fs;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use archrock::dynamics::thrust::MODEL_LIMIT;
+use archrock::dynamics::MODEL_LIMIT;
 use archrock::{FreeHinges, GroundMotion, Model, Outcome, Pulse, Request, Sample};
 use roxmltree::Document;
 use serde_json::Value;

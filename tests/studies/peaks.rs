@@ -5,10 +5,9 @@ use std::fs;
 use crate::common::program::stdout;
 use crate::common::program::{archrock, scenarios, stderr};
 use crate::common::results::{Row, Table, json, named, strokes};
-use archrock::dynamics::free_hinges::FreeHinges;
-use archrock::mechanics::FourLinks;
-use archrock::mechanics::chain::{Mechanism as _, MechanismChain as _};
-use archrock::mechanics::four_link::impact::ImpactModel;
+use archrock::dynamics::FreeHinges;
+use archrock::mechanics::four_link::ImpactModel;
+use archrock::mechanics::{FourLinks, Mechanism as _, MechanismChain as _};
 use archrock::{Arch, GroundMotion, Initial, Model as _, Request, Sway};
 use serde_json::Value;
 

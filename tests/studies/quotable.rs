@@ -6,7 +6,7 @@ use crate::common::program::{done, printed, scenarios};
 use crate::common::results::json;
 use crate::common::{ARCH, COLUMN};
 use archrock::scenario::{ELASTIC_JOINTS, FOUR_LINKS, FREE_HINGES, ModelKind};
-use archrock::studies::quotable::{ModelAnswer, in_words};
+use archrock::studies::{ModelAnswer, quoted_in_words};
 
 fn answer(
     model: &'static ModelKind,
@@ -26,7 +26,7 @@ fn answer(
 /// their model; one rigid block has no thrust line to leave.
 #[test]
 fn the_model_with_the_fewest_assumptions_answers() {
-    let quoted = |answers: &[ModelAnswer]| in_words(answers).unwrap();
+    let quoted = |answers: &[ModelAnswer]| quoted_in_words(answers).unwrap();
     let four = answer(&FOUR_LINKS, true, Some(0.04), "3");
     let free = answer(&FREE_HINGES, true, None, "2");
     let elastic = answer(&ELASTIC_JOINTS, true, None, "1");
@@ -65,7 +65,7 @@ fn the_model_with_the_fewest_assumptions_answers() {
         quoted(&[block]),
         "to quote: survives up to 3, with one rigid block"
     );
-    assert_eq!(in_words(&[]), None);
+    assert_eq!(quoted_in_words(&[]), None);
 }
 
 /// A comparison never recommends a model whose verdict is uncertain.
@@ -164,7 +164,7 @@ fn the_quoted_strength_is_inside_the_model_with_any_stride() {
     let failed = Err("the smallest factor tried is not certainly survived".to_owned());
     let none = ModelAnswer::new(&FOUR_LINKS, true, None, failed);
     assert!(
-        in_words(&[none])
+        quoted_in_words(&[none])
             .unwrap()
             .ends_with("the smallest factor tried is not certainly survived")
     );

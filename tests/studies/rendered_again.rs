@@ -6,8 +6,7 @@ use std::path::Path;
 use crate::common::program::{archrock, printed, scenarios, stdout};
 use crate::common::results::json;
 use archrock::studies::map;
-use archrock::studies::run::report::page_of;
-use archrock::studies::run::words_of;
+use archrock::studies::run::{page_of, words_of};
 use serde_json::Value;
 
 /// Removes the lines about files from printed words, and the heading before the first of these lines.
@@ -169,10 +168,7 @@ fn the_page_of_a_map_is_rendered_again_from_its_data() {
             "<div id=\"cell\">",
         );
         let data = between(&page, "id=\"data\">", "</script>");
-        assert!(
-            map::page::page_of(picture, data).unwrap() == page,
-            "{options:?}"
-        );
+        assert!(map::page_of(picture, data).unwrap() == page, "{options:?}");
         fs::remove_dir_all(folder.path().join("o")).unwrap();
     }
 }

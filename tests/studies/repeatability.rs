@@ -3,14 +3,13 @@
 use std::ops::ControlFlow;
 
 use crate::common::{GRAVITY, Random, noise, random_row};
-use archrock::dynamics::EndCondition;
-use archrock::dynamics::free_hinges::{FreeHinges, RowOptions};
-use archrock::dynamics::ground::{GroundMotion, Pulse};
-use archrock::dynamics::history::{Details, HalfCycle, Outcome, State, Summary};
-use archrock::dynamics::model::Model;
 use archrock::dynamics::repeatability::{OutcomeCount, Repeatability, Repetitions, Verdict};
+use archrock::dynamics::{
+    Details, EndCondition, FreeHinges, GroundMotion, HalfCycle, Model, Outcome, Pulse, RowOptions,
+    State, Summary,
+};
 use archrock::scenario::Scenario;
-use archrock::studies::ending::Ending;
+use archrock::studies::Ending;
 use archrock::{Contact, ElasticJoints, ElasticProperties, Request, SimulationError, Sway};
 
 /// Steps, relative to those of a run, with which results called certain must hold.

@@ -8,9 +8,8 @@ use std::fs;
 use std::path::PathBuf;
 
 use crate::common::program::{archrock, stderr};
-use archrock::dynamics::free_hinges::FreeHinges;
-use archrock::dynamics::history::{Details, HalfCycle, Summary};
 use archrock::dynamics::repeatability::Repeatability;
+use archrock::dynamics::{Details, FreeHinges, HalfCycle, Summary};
 use archrock::studies::run;
 use archrock::{Column, Model as _, Pulse, Request};
 use serde_json::Value;

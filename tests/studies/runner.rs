@@ -10,10 +10,11 @@ use std::time::Duration;
 
 use crate::common::parsed;
 use crate::common::program::{archrock, stderr};
-use archrock::studies::ending::NoHistory;
 use archrock::studies::map::{CellRow, OverturningMap};
-use archrock::studies::part::{self, Header, PartErrorKind, PartFile, Shard};
-use archrock::studies::runner::{Progress, Runner, RunnerError, Study, Task};
+use archrock::studies::{
+    Header, NoHistory, PartErrorKind, PartFile, Progress, Runner, RunnerError, Shard, Study, Task,
+    merge_parts, read_header,
+};
 
 /// Cases of a few milliseconds whose rows are hard to write exactly; some of them fail.
 #[derive(Default)]
@@ -127,7 +128,7 @@ fn cancelled_work_stops_soon_and_is_resumed() {
     assert!(0 < done && done < COUNT);
     let path = folder.path().join("slow.part");
     assert_eq!(
-        part::read_header(&path).unwrap(),
+        read_header(&path).unwrap(),
         Header::new(&study, Shard::WHOLE)
     );
     let header = Header::new(&study, Shard::WHOLE);
@@ -173,11 +174,11 @@ fn shards_are_merged_to_the_whole() {
             }
         })
         .collect();
-    let (header, rows) = part::merge::<Result<f64, String>>(&paths).unwrap();
+    let (header, rows) = merge_parts::<Result<f64, String>>(&paths).unwrap();
     assert_eq!(header, Header::new(&Slow::default(), Shard::WHOLE));
     assert_eq!(rows, all());
     // Rows are not read as another type.
-    let error = part::merge::<bool>(&paths).unwrap_err();
+    let error = merge_parts::<bool>(&paths).unwrap_err();
     assert_eq!(error.kind, PartErrorKind::Unusable);
 }
 

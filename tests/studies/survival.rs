@@ -1,7 +1,7 @@
 //! The line of words about the strengths that a structure survives.
 
-use archrock::studies::ending::Verdict;
-use archrock::studies::threshold::survival::{Survival, in_words};
+use archrock::studies::Verdict;
+use archrock::studies::threshold::{Survival, in_words};
 
 fn survival(outcomes: &str) -> Survival {
     let levels = outcomes.bytes().zip(1..).map(|(outcome, level)| {

@@ -13,16 +13,12 @@ use crate::common::prose::{golden, shows, skeleton};
 use crate::common::pulse;
 use crate::common::results::{Row, Table, named};
 use crate::common::{GRAVITY, pairs, request, semicircle, seven_voussoirs};
-use archrock::dynamics::history::{Cost, Details, MechanismSummary};
-use archrock::dynamics::model::Repetition;
+use archrock::dynamics::{Cost, Details, MechanismSummary, Repetition};
 use archrock::output::Figure;
-use archrock::studies::ending::{Verdict, outcome_name};
-use archrock::studies::results::StudyError;
-use archrock::studies::runner::{Progress, Runner, RunnerError};
-use archrock::studies::threshold::picture::draw;
 use archrock::studies::threshold::{
-    EDGE_WIDTH, FactorRange, Factors, RangeEnd, Threshold, threshold,
+    EDGE_WIDTH, FactorRange, Factors, RangeEnd, Threshold, draw, threshold,
 };
+use archrock::studies::{Progress, Runner, RunnerError, StudyError, Verdict, outcome_name};
 use archrock::{
     Column, GroundMotion, ImpactModel, Model, Outcome, Pulse, Recorder, Request, RockingColumn,
     Scenario, SimulationError, Summary, Sway,

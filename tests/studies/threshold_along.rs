@@ -8,9 +8,8 @@ use crate::common::program::{done, files, printed, refused};
 use crate::common::prose::golden;
 use crate::common::results::Table;
 use crate::common::{ARCH, COLUMN, GRAVITY, parsed};
-use archrock::studies::runner::Study as _;
-use archrock::studies::threshold::Factors;
-use archrock::studies::threshold::along::{Along, AlongOptions, AlongRow, KeyRange};
+use archrock::studies::Study as _;
+use archrock::studies::threshold::{Along, AlongOptions, AlongRow, Factors, KeyRange};
 use archrock::{Outcome, Pulse, Request, Sway};
 
 /// The rows along a range of equally spaced values, such as `ground.ricker.duration_s=1..2:3`.

@@ -8,12 +8,11 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use archrock::Scenario;
-use archrock::studies::ensemble::sensitivity::{sensitivities, total_indices};
-use archrock::studies::ensemble::uncertain_run::{Histories, HistoryAnswer};
-use archrock::studies::ensemble::{Ensemble, SampleRow};
-use archrock::studies::runner::Runner;
-use archrock::studies::statistics::Share;
+use archrock::studies::ensemble::{
+    Ensemble, Histories, HistoryAnswer, SampleRow, sensitivities, total_indices,
+};
 use archrock::studies::threshold::Factors;
+use archrock::studies::{Runner, Share};
 
 use crate::common::program::{
     archrock, done, files, names, printed, refused, scenarios, shown_commands,

@@ -7,11 +7,11 @@ use crate::common::program::{archrock, printed as print_of, refused, scenarios};
 use crate::common::prose::{golden, shows};
 use crate::common::{ARCH, COLUMN};
 use archrock::scenario::LimitState;
-use archrock::studies::results::words_of_json;
 use archrock::studies::verify::{
     DisplacementCheck, GoverningSide, Mechanism, Method, Page, SideCheck, StateCheck, Summary,
     VerifyError, page_of, verify, words,
 };
+use archrock::studies::words_of_json;
 use archrock::{Scenario, Sway};
 use nalgebra::Vector2;
 use serde_json::Value;
@@ -181,7 +181,7 @@ fn c8_7_1_2_1_the_control_point_at_the_crown() {
         printed(own.zeta_e_crown.unwrap(), zeta_e);
         // The displacement of the crown itself does not depend on the grouping of masses.
         let scenario = parsed(&format!("{structure}{DEMAND}"));
-        let grouped = archrock::studies::capacity::capacity(&scenario, None).unwrap();
+        let grouped = archrock::studies::capacity(&scenario, None).unwrap();
         let grouped = grouped.to(*sway);
         let ratio = grouped.end().displacement_m / crown.end().displacement_m;
         assert!((ratio - 1.0).abs() < 1e-12);

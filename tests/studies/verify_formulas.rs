@@ -5,14 +5,14 @@ use crate::common::parsed;
 use crate::common::program::scenarios;
 use crate::common::{ARCH, COLUMN};
 use crate::common::{GRAVITY, Random};
-use archrock::dynamics::demand::floor::{FloorSpectrum, Mode};
-use archrock::dynamics::demand::ground::{GroundSpectrum, Hazard, Site, Soil, Topography};
-use archrock::dynamics::demand::oscillator::peak_displacement;
-use archrock::dynamics::demand::points::PointSpectrum;
-use archrock::dynamics::demand::{damping_factor, displacement_m};
-use archrock::mechanics::BodyPoint;
-use archrock::mechanics::capacity::{Capacity, CapacityError, Control, Displaced};
-use archrock::mechanics::virtual_work::{MovingBody, Participation, load_multiplier};
+use archrock::dynamics::demand::{
+    FloorSpectrum, GroundSpectrum, Hazard, Mode, PointSpectrum, Site, Soil, Topography,
+    damping_factor, displacement_m, peak_displacement,
+};
+use archrock::mechanics::{
+    BodyPoint, Capacity, CapacityError, Control, Displaced, MovingBody, Participation,
+    load_multiplier,
+};
 use archrock::scenario::Structure;
 use archrock::{MechanismModel, Pose, Scenario, Sway};
 use nalgebra::Vector2;

@@ -8,8 +8,7 @@ use std::sync::LazyLock;
 use crate::common::browser;
 use crate::common::program::{assert_shown_output_is_printed, printed, refused, scenarios};
 use crate::common::prose::{shows, skeleton};
-use archrock::mechanics::Edge;
-use archrock::mechanics::chain::Hinge;
+use archrock::mechanics::{Edge, Hinge};
 use archrock::scenario::LimitState;
 use archrock::studies::verify::{
     ComparedPeak, Histories, RecordPeaks, Summary, VerifyError, verify, words,

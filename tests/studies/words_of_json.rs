@@ -4,11 +4,13 @@ use std::fs;
 use std::path::Path;
 
 use archrock::studies::ensemble::{
-    uncertain_map, uncertain_run, uncertain_suite, uncertain_threshold,
+    UncertainMapSummary, UncertainRunSummary, UncertainSuiteSummary, UncertainThresholdSummary,
 };
-use archrock::studies::results::words_of_json;
-use archrock::studies::threshold::{self, along};
-use archrock::studies::{capacity, impact, limit, map, peaks, spread, suite, verify};
+use archrock::studies::threshold::{self, AlongSummary};
+use archrock::studies::{
+    CapacitySummary, ImpactSummary, LimitSummary, PeaksSummary, SpreadSummary, map, suite, verify,
+    words_of_json,
+};
 use serde_json::Value;
 
 use crate::common::COLUMN;
@@ -57,13 +59,13 @@ fn studies_have_the_words_of_their_json() {
     let suite = ["--set", "suite.peaks_g.count=4"];
     for (report, file, command, options) in [
         (
-            ("map.json", words_of_json::<map::report::Summary> as WordsOf),
+            ("map.json", words_of_json::<map::MapSummary> as WordsOf),
             "semicircle-map.toml",
             "map",
             &small[..],
         ),
         (
-            ("map.json", words_of_json::<map::report::Summary> as WordsOf),
+            ("map.json", words_of_json::<map::MapSummary> as WordsOf),
             "semicircle-map.toml",
             "map",
             &[&small[..], &free].concat(),
@@ -102,7 +104,7 @@ fn studies_have_the_words_of_their_json() {
         (
             (
                 "threshold_along.json",
-                words_of_json::<along::Summary> as WordsOf,
+                words_of_json::<AlongSummary> as WordsOf,
             ),
             "semicircle-pulse.toml",
             "threshold",
@@ -115,10 +117,7 @@ fn studies_have_the_words_of_their_json() {
             &suite,
         ),
         (
-            (
-                "capacity.json",
-                words_of_json::<capacity::Summary> as WordsOf,
-            ),
+            ("capacity.json", words_of_json::<CapacitySummary> as WordsOf),
             "tie.toml",
             "capacity",
             &[],
@@ -169,7 +168,7 @@ fn limits_have_the_words_of_their_json() {
     ];
     for (file, set) in cases {
         let arguments = [&["limit", file], &set.concat()[..]].concat();
-        same_printed(&arguments, words_of_json::<limit::Summary>);
+        same_printed(&arguments, words_of_json::<LimitSummary>);
     }
 }
 
@@ -186,7 +185,7 @@ fn impacts_have_the_words_of_their_json() {
     ];
     for (file, more) in cases {
         let arguments = [&["impact", file], more].concat();
-        same_printed(&arguments, words_of_json::<impact::Summary>);
+        same_printed(&arguments, words_of_json::<ImpactSummary>);
     }
 }
 
@@ -203,7 +202,7 @@ fn spreads_have_the_words_of_their_json() {
     for (file, more) in cases {
         let file = scenario(file);
         let arguments = [&["spread", file.to_str().unwrap()], more].concat();
-        let reports: [(&str, WordsOf); 1] = [("spread.json", words_of_json::<spread::Summary>)];
+        let reports: [(&str, WordsOf); 1] = [("spread.json", words_of_json::<SpreadSummary>)];
         same_words(folder.path(), &arguments, &reports);
     }
 }
@@ -228,22 +227,18 @@ fn samples_have_the_words_of_their_json() {
     fs::write(at.join("early.toml"), text(1.02)).unwrap();
     fs::write(at.join("late.toml"), text(60.0)).unwrap();
     let questions: [(&str, &str, WordsOf); 4] = [
-        ("run", "uncertain", words_of_json::<uncertain_run::Summary>),
+        ("run", "uncertain", words_of_json::<UncertainRunSummary>),
         (
             "threshold",
             "uncertain_threshold",
-            words_of_json::<uncertain_threshold::Summary>,
+            words_of_json::<UncertainThresholdSummary>,
         ),
         (
             "suite",
             "uncertain_suite",
-            words_of_json::<uncertain_suite::Summary>,
+            words_of_json::<UncertainSuiteSummary>,
         ),
-        (
-            "map",
-            "uncertain_map",
-            words_of_json::<uncertain_map::Summary>,
-        ),
+        ("map", "uncertain_map", words_of_json::<UncertainMapSummary>),
     ];
     for (command, folder, words_of) in questions {
         for file in ["early.toml", "late.toml"] {
@@ -256,7 +251,7 @@ fn samples_have_the_words_of_their_json() {
     let compared: [(&str, WordsOf); 3] = [
         ("four/uncertain/uncertain.json", questions[0].2),
         ("free/uncertain/uncertain.json", questions[0].2),
-        ("models/peaks.json", words_of_json::<peaks::Summary>),
+        ("models/peaks.json", words_of_json::<PeaksSummary>),
     ];
     same_words(at, &[&models[..], &few].concat(), &compared);
 }

@@ -2,31 +2,38 @@
 pub mod demand;
 pub(crate) mod elastic_joints;
 pub(crate) mod fall;
-pub mod free_hinges;
-pub mod ground;
-pub mod history;
+pub(crate) mod free_hinges;
+pub(crate) mod ground;
+pub(crate) mod history;
 pub(crate) mod hybrid;
-pub mod model;
-pub mod peak;
+pub(crate) mod model;
+pub(crate) mod peak;
 mod recorder;
 pub(crate) mod recording;
 pub mod repeatability;
 mod request;
 pub(crate) mod row;
-pub mod thrust;
+pub(crate) mod thrust;
 pub(crate) mod until;
-pub mod variation;
+pub(crate) mod variation;
 
-pub use self::demand::ground::{GroundSpectrum, Site};
+pub use self::demand::{GroundSpectrum, Site};
 pub use self::elastic_joints::ElasticJoints;
 pub use self::fall::FallEnd;
-pub use self::free_hinges::RowOptions;
-pub use self::ground::{GroundMotion, GroundVelocity};
-pub use self::history::{
-    Cost, Details, Event, EventKind, HalfCycle, OpenHinge, Outcome, OutcomeKind, Sample, Sliding,
-    State, Summary, TieSample,
+pub use self::free_hinges::{DOUBTFUL_ENERGY_ERROR, FreeHinges, RowOptions};
+pub use self::ground::{
+    GroundError, GroundMotion, GroundVelocity, Intensity, Piece, Pulse, PulseShape, WaveTrain,
 };
-pub use self::model::{MechanismModel, Model, Repetition, Request, SimulationError};
+pub use self::history::{
+    Cost, Details, ElasticSummary, Event, EventKind, HalfCycle, Impact, JointPressure,
+    MechanismSummary, OpenHinge, Outcome, OutcomeKind, RowSummary, Sample, Sliding, State, Stress,
+    Summary, TieSample, TieSummary,
+};
+pub use self::model::{
+    Case, FEET_NEED_JOINTS, Initial, Job, Jobs, MechanismModel, Model, Recorder, Repetition,
+    Request, SimulationError, WithoutDemand,
+};
+pub use self::peak::{NO_RISE, Peak};
 pub use self::recording::{History, MEMORY_BYTES, MemoryError, Recording, Samples};
 pub use self::repeatability::{OutcomeCount, Repeatability, Verdict};
 pub(crate) use self::row::clock::Settings;
@@ -34,6 +41,6 @@ pub use self::row::error::{RowModelError, RowMotionError};
 pub(crate) use self::row::input::MotionInput;
 pub(crate) use self::row::observer::MotionObserver;
 pub(crate) use self::row::stepper::Stepper;
-pub use self::thrust::ThrustRecord;
+pub use self::thrust::{EXCESS_LEVELS, LASTING, MODEL_LIMIT, ThrustRecord};
 pub use self::until::EndCondition;
-pub use self::variation::Variation;
+pub use self::variation::{Variation, VariationResult, Variations};

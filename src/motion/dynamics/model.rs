@@ -256,7 +256,7 @@ pub trait MechanismModel: Model {
     /// mechanism after `impacts` impacts and a first sway to a side. `None` without such a mechanism.
     fn shift_kg_m(&self, first: Sway, impacts: usize, q_rad: f64) -> Option<f64>;
 
-    /// Returns the rigid bodies of the first mechanism to a side, as [`crate::mechanics::capacity::moving_bodies`]; `None` without such a mechanism.
+    /// Returns the rigid bodies of the first mechanism to a side; `None` without such a mechanism.
     fn moving_bodies(&self, sway: Sway) -> Option<Vec<MovingBody>>;
 
     /// Returns the side to which moving ground overturns the structure from rest before its first impact; `None` if it does not.

@@ -1,7 +1,7 @@
 //! Largest values over time.
 
 /// Rise of a value, relative to it, below which it counts as constant.
-pub const CONSTANT: f64 = 1e-12;
+pub const NO_RISE: f64 = 1e-12;
 
 /// Largest value over time, and the time at which it is first reached.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -14,7 +14,7 @@ pub struct Peak {
 
 impl Peak {
     pub(super) fn note(&mut self, value: f64, time_s: f64) {
-        if value > self.value * (1.0 + CONSTANT) {
+        if value > self.value * (1.0 + NO_RISE) {
             *self = Self { value, time_s };
         }
     }

@@ -63,11 +63,6 @@ impl FrictionDemands {
 pub const MODEL_LIMIT: f64 = 0.5;
 
 impl ThrustRecord {
-    /// Returns the friction coefficient that prevents sliding: the lasting demand of a row, the largest one of a mechanism.
-    pub fn required_friction(&self) -> f64 {
-        self.lasting_friction.unwrap_or(self.largest_friction.value)
-    }
-
     /// Adds the demand at an instant.
     pub(crate) fn note_demand(&mut self, time_s: f64, demand: &Demand) {
         self.largest_excess.note(demand.excess_ratio, time_s);

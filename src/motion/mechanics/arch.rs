@@ -67,7 +67,7 @@ impl MeasuredAt {
 ///
 /// ```
 ///
-/// # use archrock_motion::mechanics::arch::Arch;
+/// # use archrock_motion::mechanics::Arch;
 /// // Mean radius, thickness over mean radius, embrace angle in degrees.
 /// let arch = Arch::new(10.0, 0.15, 157.5)?.with_voussoirs(7)?;
 /// assert!((arch.incipient()?.acceleration_g - 0.370009738).abs() < 1e-9);

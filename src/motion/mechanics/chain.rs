@@ -42,7 +42,7 @@ pub struct MechanismState {
 pub struct Demand {
     /// Largest distance of the thrust line beyond the structure, over the thickness; zero if it stays inside.
     pub excess_ratio: f64,
-    /// Friction coefficient required to prevent sliding: the largest value of all sections with at least [`LEAST_LOAD`].
+    /// Friction coefficient required to prevent sliding: the largest value of all sections with at least `LEAST_LOAD`.
     pub friction: f64,
 }
 
@@ -163,7 +163,7 @@ impl<M: Mechanism> Link<M> {
 /// Mechanisms by which a structure rocks under an impact model.
 ///
 /// The mechanism after an impact depends on the mechanism before it, not on the velocity. The sequence therefore follows from the mechanism that
-/// starts at the incipient acceleration. Every implementor is a [`Model`](crate::dynamics::model::Model).
+/// starts at the incipient acceleration. Every implementor is a [`Model`](crate::dynamics::Model).
 pub trait MechanismChain: std::fmt::Debug + Send + Sync {
     /// Type of the mechanisms.
     type Mechanism: Mechanism + Send + Sync;

@@ -1,9 +1,9 @@
 //! Mechanics of arches and columns: pure functions, no time, no files.
-pub mod arch;
+pub(crate) mod arch;
 mod block;
 pub(crate) mod blocks;
-pub mod capacity;
-pub mod chain;
+pub(crate) mod capacity;
+pub(crate) mod chain;
 pub(crate) mod column;
 pub(crate) mod complementarity;
 mod cone_program;
@@ -14,7 +14,7 @@ pub(crate) mod equivalent;
 pub mod four_link;
 pub(crate) mod four_links;
 pub mod friction;
-pub mod geometry;
+pub(crate) mod geometry;
 pub(crate) mod joints;
 pub(crate) mod lanes;
 pub mod masonry;
@@ -26,12 +26,19 @@ pub(crate) mod slip;
 pub mod stability;
 pub(crate) mod sway;
 pub(crate) mod tie;
-pub mod virtual_work;
+pub(crate) mod virtual_work;
 
-pub use self::arch::{Arch, MeasuredAt};
+pub use self::arch::{
+    Arch, DENSITY_KG_M3, DEPTH_M, EMBRACE_DEG, MAGNITUDE, MIN_THICKNESS_RATIO, MeasuredAt,
+    THICKNESS_RATIO_BOUND, VOUSSOIRS,
+};
 pub use self::blocks::{Block, Drum, Joint, MAX_BLOCKS, Row, RowError, Supports};
-pub use self::capacity::{Capacity, Displaced};
-pub use self::chain::{Demand, Hinge, Link, Mechanism, MechanismChain};
+pub use self::capacity::{
+    Capacity, CapacityError, Control, CurvePoint, Displaced, TieEventDisplacements,
+};
+pub use self::chain::{
+    Coefficients, Demand, Hinge, Link, Mechanism, MechanismChain, MechanismState, critical_rad,
+};
 pub use self::column::{Column, RockingColumn};
 pub(crate) use self::contact::Corners;
 pub use self::elastic_joint::{ElasticStructure, Equilibrium};
@@ -41,7 +48,7 @@ pub use self::four_link::limit::LimitError;
 pub use self::four_links::{FourLinkError, FourLinks};
 pub use self::friction::FrictionError;
 pub use self::geometry::curve::Curve;
-pub use self::geometry::field::{Field, Momentum, Twist};
+pub use self::geometry::field::{Field, Momentum, Side, Twist, turned};
 pub use self::geometry::pose::{BodyPoint, Pose};
 pub use self::geometry::profile::Profile;
 pub use self::geometry::ring::{Edge, MassMoments, Ring};
@@ -55,4 +62,6 @@ pub use self::sides::Sides;
 pub use self::stability::{RowOnset, StabilityError};
 pub use self::sway::Sway;
 pub use self::tie::{Anchor, Tie, TieError, TieLine, TieMemory};
-pub use self::virtual_work::MovingBody;
+pub use self::virtual_work::{
+    MovingBody, MovingTie, Participation, load_multiplier, per_displacement_of_centre,
+};

@@ -15,10 +15,10 @@ use super::prelude::*;
 use super::span::Circular;
 use super::tie::{self, TieTable};
 use crate::argument::rounded_up;
-use crate::mechanics::MAX_BLOCKS;
-use crate::mechanics::four_link::limit::least_thickness_ratio;
+use crate::mechanics::four_link::least_thickness_ratio;
 use crate::mechanics::masonry::{CircularArch, LoadOutlines};
-use crate::mechanics::{LimitError, Parts, PlacedLoad, RowError, Shape, Supports, Tie, arch};
+use crate::mechanics::{DENSITY_KG_M3, DEPTH_M, MAX_BLOCKS};
+use crate::mechanics::{LimitError, Parts, PlacedLoad, RowError, Shape, Supports, Tie};
 use crate::{
     Arch, Column, FourLinkError, FourLinks, FreeHinges, ImpactLaw, ImpactModel, Masonry,
     MechanismModel, RockingColumn, Row, RowModelError, RowOptions, Sway,
@@ -240,8 +240,8 @@ enum StructureTable {
 /// free hinges it must have voussoirs and stand.
 fn read_arch(table: &mut Table<'_>, free_hinges: bool, alone: bool) -> ReadResult<StructureTable> {
     let circular = Circular::read(table);
-    let depth_m = table.or("depth_m", &MAGNITUDE, arch::DEPTH_M);
-    let density_kg_m3 = table.or("density_kg_m3", &MAGNITUDE, arch::DENSITY_KG_M3);
+    let depth_m = table.or("depth_m", &MAGNITUDE, DEPTH_M);
+    let density_kg_m3 = table.or("density_kg_m3", &MAGNITUDE, DENSITY_KG_M3);
     let voussoirs = table.optional("voussoirs", &VOUSSOIRS);
     let joints_deg = table.optional("joints_deg", &list(&JOINT_DEG));
     let equal = "`voussoirs` are equal: give one of them";
@@ -324,8 +324,8 @@ fn read_column(table: &mut Table<'_>, free_hinges: bool) -> ReadResult<Column> {
     let drums = table.optional("drums", &DRUMS);
     let drum_heights_m = table.optional("drum_heights_m", &list(&MAGNITUDE));
     let top_width_m = table.optional("top_width_m", &MAGNITUDE);
-    let depth_m = table.or("depth_m", &MAGNITUDE, arch::DEPTH_M);
-    let density_kg_m3 = table.or("density_kg_m3", &MAGNITUDE, arch::DENSITY_KG_M3);
+    let depth_m = table.or("depth_m", &MAGNITUDE, DEPTH_M);
+    let density_kg_m3 = table.or("density_kg_m3", &MAGNITUDE, DENSITY_KG_M3);
     let pedestal = table.or("pedestal", &switch(), false);
     if !free_hinges && let Some(key) = DRUM_KEYS.into_iter().find(|key| table.gives(key)) {
         let wrong = "needs a table [free_hinges] or [elastic_joints]: Housner's model is a single prismatic block";

@@ -1,14 +1,13 @@
-//! The capacity curves of a scenario: see [`crate::mechanics::capacity`].
+//! The capacity curves of a scenario: see [`crate::mechanics::Capacity`].
 
 mod report;
 
 use nalgebra::Vector2;
 use thiserror::Error;
 
-pub use self::report::{CapacitySide, FILES, Oscillator, Summary, report};
-use crate::mechanics::capacity::{CapacityError, Control};
+pub use self::report::{FILES, Summary, report};
 use crate::mechanics::settling::{Held, HeldError};
-use crate::mechanics::{BodyPoint, Capacity, Parts, RowError, Sides};
+use crate::mechanics::{BodyPoint, Capacity, CapacityError, Control, Parts, RowError, Sides};
 use crate::{FourLinkError, Hinge, MechanismModel, Row, Scenario, Structure, Sway};
 
 /// Reasons why a scenario has no capacity curves.

@@ -6,8 +6,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::held_row;
-use crate::mechanics::capacity::{CurvePoint, TieEventDisplacements};
-use crate::mechanics::{Capacity, Parts as _, Sides};
+use crate::mechanics::{Capacity, CurvePoint, Parts as _, Sides, TieEventDisplacements};
 use crate::output::{
     CURVES, Chart, Figure, Mark, Named, OutputError, column, csv, fields, filters,
 };

@@ -8,10 +8,9 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 pub use self::columns::outcome_name;
-use crate::dynamics::OutcomeCount;
 pub use crate::dynamics::repeatability::Verdict;
 use crate::dynamics::repeatability::{CheckedHistory, checked};
-use crate::dynamics::thrust::MODEL_LIMIT;
+use crate::dynamics::{MODEL_LIMIT, OutcomeCount};
 use crate::mechanics::{LimitError, StabilityError};
 use crate::scenario::ModelError;
 use crate::{

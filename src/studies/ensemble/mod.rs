@@ -1,24 +1,29 @@
 //! Ensembles: a question that is answered for every sample of a scenario with uncertain numbers.
 //!
 //! An ensemble is a study. Its first case is the scenario itself; each other case is a sample of [`Uncertain`]. A [`Question`] is answered for
-//! each case: the history of the sample ([`uncertain_run`]), the first factor that overturns it (`uncertain_threshold`), or the intensity of each
+//! each case: the history of the sample (`uncertain_run`), the first factor that overturns it (`uncertain_threshold`), or the intensity of each
 //! record that overturns it (`uncertain_suite`). Shards, resuming, threads, shares and influences are common to all questions. The cells of a map
-//! ([`uncertain_map`]) are a separate study, whose cases are cells of samples.
+//! (`uncertain_map`) are a separate study, whose cases are cells of samples.
 
 mod influence;
 mod report;
 mod samples;
-pub mod sensitivity;
-pub mod uncertain_map;
-pub mod uncertain_run;
-pub mod uncertain_suite;
-pub mod uncertain_threshold;
+mod sensitivity;
+pub(super) mod uncertain_map;
+pub(super) mod uncertain_run;
+pub(super) mod uncertain_suite;
+pub(super) mod uncertain_threshold;
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 pub use self::samples::{SampleRow, Samples};
+pub use self::sensitivity::{sensitivities, total_indices};
+pub use self::uncertain_map::{CellsOfSamples, Summary as UncertainMapSummary};
+pub use self::uncertain_run::{Histories, HistoryAnswer, Summary as UncertainRunSummary};
+pub use self::uncertain_suite::Summary as UncertainSuiteSummary;
+pub use self::uncertain_threshold::Summary as UncertainThresholdSummary;
 pub use super::ending::NoAnswer;
 use super::threshold::Factors;
 use super::{ReportedStudy, Results, Study, Style};

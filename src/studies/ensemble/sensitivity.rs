@@ -40,7 +40,7 @@ pub struct Total {
 ///
 /// `answers` has the answer of each sample. `moved` has, for each sample in turn, one answer per number: that of the sample with another value
 /// of this number alone. `None` in either list means no answer. Returns `None` if the answers do not vary, or there are fewer than
-/// [`LEAST_SAMPLES`].
+/// `LEAST_SAMPLES`.
 pub fn total_indices(answers: &[Option<f64>], moved: &[Option<f64>]) -> Option<Vec<Total>> {
     let numbers = moved.len() / answers.len().max(1);
     let samples: Vec<usize> = (0..answers.len())
@@ -85,7 +85,7 @@ const MOST_HARMONICS: usize = 8;
 const SAMPLES_PER_HARMONIC: usize = 16;
 
 /// Computes the sensitivity of the answers of the samples to each number, from `values[sample][number]` and `answers[sample]`. `None` if the
-/// answers do not vary, or there are fewer than [`LEAST_SAMPLES`].
+/// answers do not vary, or there are fewer than `LEAST_SAMPLES`.
 pub fn sensitivities(values: &[Vec<f64>], answers: &[f64]) -> Option<Vec<Sensitivity>> {
     let count = answers.len();
     if count < LEAST_SAMPLES || moments(answers)[1] <= 0.0 {

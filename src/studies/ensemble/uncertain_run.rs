@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::influence::{InfluencedAnswer, percent};
 use super::report::{self, Band, Line, SampleSummary, of_answer};
 use super::{NoAnswer, Question, Samples};
-use crate::dynamics::model::WithoutDemand;
+use crate::dynamics::WithoutDemand;
 use crate::dynamics::repeatability::repeated;
 use crate::output::panels::{MAIN, scale_around};
 use crate::output::{

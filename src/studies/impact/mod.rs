@@ -6,13 +6,10 @@ use self::report::{Certificate, ModelComparison, chain_of_four_links};
 pub use self::report::{Summary, chain};
 use super::results::{PrintedResult, StudyError};
 use crate::mechanics::Profile;
-use crate::mechanics::four_link::certificate::{
-    DEFAULT_JOINTS, Projection, ProjectionError, joints_rad, project,
+use crate::mechanics::four_link::{
+    ArchLink, Chain, DEFAULT_JOINTS, FourLink, ImpulseLine, Projection, ProjectionError,
+    closing_field, impact as impact_by, joints_rad, project,
 };
-use crate::mechanics::four_link::chain::{ArchLink, Chain};
-use crate::mechanics::four_link::impact::{closing_field, impact as impact_by};
-use crate::mechanics::four_link::impulse_line::ImpulseLine;
-use crate::mechanics::four_link::mechanism::FourLink;
 use crate::{FourLinks, ImpactModel, MechanismModel, Scenario, Sway};
 
 /// The impact that leads to a link of the chain of four links, after a first sway to a given side.

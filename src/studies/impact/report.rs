@@ -10,10 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::LinkImpact;
 use crate::argument::fixed;
-use crate::mechanics::four_link::certificate::Projection;
-use crate::mechanics::four_link::impact::Impact;
-use crate::mechanics::four_link::impulse_line::ImpulseLine;
-use crate::mechanics::four_link::mechanism::HingeSites;
+use crate::mechanics::four_link::{HingeSites, Impact, ImpulseLine, Projection};
 use crate::mechanics::{Edge, Profile};
 use crate::output::mechanisms::{HINGES, degrees};
 use crate::output::{Cell, OutputError, column, csv, filters};

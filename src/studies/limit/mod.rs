@@ -4,8 +4,8 @@ mod report;
 
 use self::report::open_joints;
 pub use self::report::{
-    FourLinkSide, FourLinks, Friction, FrictionLimit, FrictionSide, MechanismHinge, Summary,
-    TieLimits, Ties, YieldingTies,
+    FourLinkSide, FourLinks, Friction, FrictionLimit, FrictionSide, Summary, TieLimits, Ties,
+    YieldingTies,
 };
 use super::results::{PrintedResult, StudyError};
 use crate::mechanics::friction::{self, FrictionOnset};

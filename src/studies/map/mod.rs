@@ -1,8 +1,8 @@
 //! The overturning map: a history for every cell of a plane of two quantities.
 
-pub mod page;
-pub mod picture;
-pub mod report;
+pub(super) mod page;
+pub(super) mod picture;
+mod report;
 
 use std::cell::OnceCell;
 use std::collections::BTreeSet;
@@ -11,6 +11,9 @@ use std::sync::{Arc, OnceLock};
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
+pub use self::page::page_of;
+pub use self::picture::draw;
+pub use self::report::Summary as MapSummary;
 use super::ending::{Ending, NoHistory, answered};
 use super::runner::Study;
 use crate::dynamics::{OutcomeCount, Repetition};

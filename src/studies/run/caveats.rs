@@ -4,8 +4,7 @@ use askama::Template;
 
 use super::summary::{FourLinkQuality, Summary, Thrust};
 use crate::Verdict;
-use crate::dynamics::OutcomeKind;
-use crate::dynamics::thrust::EXCESS_LEVELS;
+use crate::dynamics::{EXCESS_LEVELS, OutcomeKind};
 use crate::output::filters;
 use crate::scenario::FREE_HINGES;
 

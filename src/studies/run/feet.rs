@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
 use crate::Summary as History;
-use crate::dynamics::peak::CONSTANT;
+use crate::dynamics::NO_RISE;
 use crate::scenario::Scenario;
 
 /// Number of equal steps at which the displacement is computed.
@@ -38,7 +38,7 @@ impl FeetApart {
         let largest_m = apart_m.iter().map(|m| m.norm()).fold(0.0, f64::max);
         let farthest = apart_m
             .iter()
-            .position(|m| m.norm() >= largest_m * (1.0 - CONSTANT))?;
+            .position(|m| m.norm() >= largest_m * (1.0 - NO_RISE))?;
         let (feet_farthest_apart_time_s, feet_farthest_apart_m) =
             (times_s[farthest], apart_m[farthest]);
         let feet_apart_at_end_m = *apart_m.last()?;

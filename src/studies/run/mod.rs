@@ -17,7 +17,7 @@ mod overlay;
 mod packed;
 mod picture;
 mod points;
-pub mod report;
+mod report;
 mod scales;
 mod snapshots;
 mod summary;
@@ -37,7 +37,7 @@ use self::overlay::Curves;
 use self::picture::Timeline;
 pub use self::points::MAX_POINTS;
 use self::points::ObservedPoints;
-use self::report::Report;
+pub use self::report::{Report, page_of};
 pub use self::scales::Scales;
 use self::snapshots::Snapshots;
 pub use self::summary::{ComputedRun, OutcomeSummary, Summary, summary};
@@ -47,8 +47,7 @@ use super::quotable::{self, ModelAnswer};
 use super::{Progress, Results, RunnerError, StudyError, Watch};
 use crate::clock;
 use crate::dynamics::repeatability::Repetitions;
-use crate::dynamics::variation::Variations;
-use crate::dynamics::{FallEnd, Repeatability};
+use crate::dynamics::{FallEnd, Repeatability, Variations};
 use crate::output::{
     Figure, Folder, Named, NewFile, OutputError, Scene, Subject, TableWriter, pretty, render,
     summary_of,

@@ -119,7 +119,7 @@ impl OpenJoints {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dynamics::history::OpenHinge;
+    use crate::dynamics::OpenHinge;
     use nalgebra::Vector2;
 
     /// Returns a sample in which joint 1 of 3 is open at the intrados; if `parted`, joint 2 is open at both edges.

@@ -60,7 +60,7 @@ pub fn draw(figure: Figure, subject: &Subject<'_>, histories: &[(&str, &Curves)]
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dynamics::history::State;
+    use crate::dynamics::State;
 
     /// A column that sways right turns clockwise. Its rotation is negative, as in the table and on the page.
     #[test]

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::packed::curve;
 use super::summary::PointPeaks;
-use crate::dynamics::peak::CONSTANT;
+use crate::dynamics::NO_RISE;
 use crate::output::mechanisms::columns;
 use crate::output::point::StructurePoint;
 use crate::output::{CURVES, Cell, Column, Envelope, Mark, Panels, Scene, StateHistory, several};
@@ -95,7 +95,7 @@ impl ObservedPoints {
                 if is_sample {
                     along.millimetres.push(time_s, 1e3 * displaced_m);
                 }
-                if displaced_m.abs() > along.farthest_m.abs() * (1.0 + CONSTANT) {
+                if displaced_m.abs() > along.farthest_m.abs() * (1.0 + NO_RISE) {
                     (along.farthest_m, along.time_s) = (*displaced_m, time_s);
                 }
             }

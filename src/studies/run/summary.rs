@@ -6,11 +6,11 @@ use serde_json::Value;
 use super::Scales;
 use super::feet::FeetApart;
 use super::impacts::{ImpactSummary, NotableImpacts};
-use crate::dynamics::history::{ElasticSummary, RowSummary};
 use crate::dynamics::repeatability::key;
-use crate::dynamics::thrust::{EXCESS_LEVELS, MODEL_LIMIT};
-use crate::dynamics::variation::VariationResult;
-use crate::dynamics::{HalfCycle, OutcomeKind, Repeatability, ThrustRecord};
+use crate::dynamics::{
+    EXCESS_LEVELS, ElasticSummary, HalfCycle, MODEL_LIMIT, OutcomeKind, Repeatability, RowSummary,
+    ThrustRecord, VariationResult,
+};
 use crate::mechanics::Sides;
 use crate::output::mechanisms::columns;
 use crate::output::{Named, OutputError, summary_of};

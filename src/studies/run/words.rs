@@ -15,12 +15,10 @@ use super::summary::{
     FourLinkQuality, FrictionDemand, PointPeaks, STRAIGHT_RAD, Summary, VariationOutcome,
 };
 use super::{FILM, OVERLAY, ROTATIONS};
-use crate::dynamics::free_hinges::DOUBTFUL_ENERGY_ERROR;
-use crate::dynamics::history::ElasticSummary;
 use crate::dynamics::repeatability::{
     FIRST_REPETITIONS, LEAST_SLIP_M, RepeatedHalfCycle, RepeatedValue, SAME_PEAK_RATIO,
 };
-use crate::dynamics::{HalfCycle, OutcomeKind, Sliding};
+use crate::dynamics::{DOUBTFUL_ENERGY_ERROR, ElasticSummary, HalfCycle, OutcomeKind, Sliding};
 use crate::mechanics::Sides;
 use crate::output::mechanisms::by_body;
 use crate::output::{filters, range_ends, render};

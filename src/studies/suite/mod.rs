@@ -1,21 +1,22 @@
 //! A suite of records: a history for every record at every level, and the fragility of the structure.
 
-pub mod fragility;
+mod fragility;
 mod heading;
 mod ida;
 mod picture;
 mod report;
-pub mod strength;
+pub(super) mod strength;
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use self::fragility::{Fragility, NoFit, Observation, by_intensity, fit};
+use self::fragility::by_intensity;
+pub use self::fragility::{Errors, Fraction, Fragility, NoFit, Observation, fit, fractions};
 pub use self::heading::Heading;
 pub use self::report::Summary;
-use self::strength::Strength;
+pub use self::strength::{Strength, efficiencies};
 use super::ending::{Ending, NoHistory, Verdict, check_finite};
 use super::threshold::survival::{Survival, VerdictRange};
 use super::{ReportedStudy, Results, Study, Style};

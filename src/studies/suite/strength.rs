@@ -7,8 +7,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::{CaseRow, SuiteFragility};
-use crate::dynamics::demand::oscillator::peak_displacement;
-use crate::dynamics::ground::intensity::Intensity;
+use crate::dynamics::Intensity;
+use crate::dynamics::demand::peak_displacement;
 use crate::scenario::{Series, Spectral};
 use crate::studies::ending::Verdict;
 use crate::studies::statistics::{bootstrap, interval};

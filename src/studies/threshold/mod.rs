@@ -4,18 +4,21 @@
 //! between them, and **uncertain** ranges in which repetitions disagree. So factors are sampled upwards in equal strides, and bisection only
 //! finds the edge between two neighbours with different verdicts. Ranges narrower than a stride may be missed.
 
-pub mod along;
+pub(super) mod along;
 mod digits;
 mod factors;
 pub(crate) mod first_edge;
-pub mod picture;
+mod picture;
 mod report;
-pub mod survival;
+pub(crate) mod survival;
 mod varied;
 
+pub use along::{Along, AlongOptions, AlongRow, KeyRange, Summary as AlongSummary};
 pub(super) use digits::{rounded, rounded_down, rounded_range};
 pub use factors::{EDGE_WIDTH, Factors};
+pub use picture::draw;
 pub use report::{FILES, Summary};
+pub use survival::{Survival, VerdictRange, in_words};
 pub use varied::{VariedThreshold, vary};
 
 use std::ops::ControlFlow;

@@ -10,8 +10,7 @@ use super::{
     EDGE_WIDTH, FactorRange, FactorSample, Factors, RangeEnd, Threshold, VariedThreshold, peak_g,
     picture,
 };
-use crate::dynamics::OutcomeCount;
-use crate::dynamics::thrust::MODEL_LIMIT;
+use crate::dynamics::{MODEL_LIMIT, OutcomeCount};
 use crate::output::{Figure, OutputError, column, csv, fields};
 use crate::scenario::{Ground, Scenario};
 use crate::studies::ending::columns::{GROUND_FALLS, OVERTURNED};

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use super::mechanism::Mechanism;
 use super::spectrum::Spectrum;
 use super::{CheckInput, SideCheck, VerifyError};
-use crate::dynamics::demand::oscillator::peak_displacement;
+use crate::dynamics::demand::peak_displacement;
 use crate::mechanics::Sides;
 use crate::scenario::{LimitState, Series, StateRule};
 use crate::studies::remarks::ModelCheck;

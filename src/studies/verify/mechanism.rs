@@ -6,14 +6,11 @@ use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
 use super::{CheckInput, VerifyError};
-use crate::mechanics::capacity::Control;
 use crate::mechanics::settling::Held;
 use crate::mechanics::stability::onset;
-use crate::mechanics::virtual_work::{
-    MovingTie, Participation, load_multiplier, per_displacement_of_centre,
-};
 use crate::mechanics::{
-    BodyPoint, Capacity, Displaced, Edge, FrictionError, MovingBody, Parts as _, RowOnset, friction,
+    BodyPoint, Capacity, Control, Displaced, Edge, FrictionError, MovingBody, MovingTie,
+    Participation, Parts as _, RowOnset, friction, load_multiplier, per_displacement_of_centre,
 };
 use crate::scenario::{CheckedSides, Structure};
 use crate::studies::capacity::Bodies;

@@ -21,8 +21,7 @@ use thiserror::Error;
 
 use crate::Sway;
 use crate::bisection::{Width, bisect};
-use crate::dynamics::demand::ground::Hazard;
-use crate::dynamics::demand::points::PeriodOutOfRange;
+use crate::dynamics::demand::{Hazard, PeriodOutOfRange};
 use crate::dynamics::{GroundSpectrum, Site};
 use crate::mechanics::Capacity;
 use crate::output::filters;

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use nalgebra::Vector2;
 
 use super::{Body, Mechanism, Summary};
-use crate::mechanics::geometry::field::turned;
+use crate::mechanics::turned;
 use crate::output::elevation::{BODIES, SheetTransform, View, draw_dimensions, room_px};
 use crate::output::{
     Anchor, CURVES, Chart, Drawing, Figure, Key, Mark, PartHeight, Scale, Scene, Shape, Sheet,

@@ -2,8 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::dynamics::demand::floor::{FloorSpectrum, Mode};
-use crate::dynamics::demand::points::{PeriodOutOfRange, PointSpectrum};
+use crate::dynamics::demand::{FloorSpectrum, Mode, PeriodOutOfRange, PointSpectrum};
 use crate::dynamics::{GroundSpectrum, Site};
 use crate::scenario::{Demand, LimitState, StateRule};
 

@@ -1,15 +1,20 @@
-//! Demand of earthquakes on an oscillator: elastic spectra of the Italian code NTC 2018 on the ground ([`ground`]) and at a
-//! height in a building ([`floor`]), spectra given by points ([`points`]), and those of records ([`oscillator`]).
+//! Demand of earthquakes on an oscillator: elastic spectra of the Italian code NTC 2018 on the ground ([`GroundSpectrum`]) and at a
+//! height in a building ([`FloorSpectrum`]), spectra given by points ([`PointSpectrum`]), and those of records ([`peak_displacement`]).
 //!
 //! Clauses are those of NTC 2018 (§) and of the Circolare 7/2019 (C). Accelerations are in units of gravity, periods in
 //! seconds, damping in per cent of the critical.
 
-pub mod floor;
-pub mod ground;
-pub mod oscillator;
-pub mod points;
+mod floor;
+mod ground;
+mod oscillator;
+mod points;
 
 use std::f64::consts::PI;
+
+pub use floor::{FloorSpectrum, Mode};
+pub use ground::{GroundSpectrum, Hazard, Site, Soil, Topography};
+pub use oscillator::peak_displacement;
+pub use points::{PeriodOutOfRange, PointError, PointSpectrum};
 
 /// Returns the factor from ordinates at 5 % damping to those at another damping: `sqrt(10 / (5 + xi))`, at least 0.55 (§ 3.2.3.2.1).
 pub fn damping_factor(damping_percent: f64) -> f64 {

@@ -21,7 +21,7 @@ use crate::mechanics::{ElasticStructure, Equilibrium, Movements, Row, Sway};
 /// Row of rigid blocks, as an arch or a stack, whose joints carry no tension, deform elastically, slip and crush.
 ///
 /// The motion starts from equilibrium under self-weight. No impact dissipates energy instantaneously, and the hinge of a joint is inside its edge.
-/// Such a row therefore overturns earlier than the same row with rigid joints ([`FreeHinges`](crate::dynamics::free_hinges::FreeHinges)).
+/// Such a row therefore overturns earlier than the same row with rigid joints ([`FreeHinges`](crate::dynamics::FreeHinges)).
 #[readonly::make]
 #[derive(Clone, Debug)]
 pub struct ElasticJoints {

@@ -7,7 +7,7 @@
 //! combination of the two is therefore monotone**, as is the margin to the onset of rocking.
 
 mod error;
-pub mod intensity;
+mod intensity;
 mod motion;
 mod piece;
 mod pulse;
@@ -16,6 +16,7 @@ mod shape;
 mod velocity;
 
 pub use error::GroundError;
+pub use intensity::Intensity;
 pub use motion::GroundMotion;
 pub use piece::Piece;
 pub use pulse::{Pulse, PulseShape};

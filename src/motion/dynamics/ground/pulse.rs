@@ -86,7 +86,7 @@ impl Pulse {
 ///
 /// ```
 ///
-/// # use archrock_motion::dynamics::ground::{GroundError, Pulse};
+/// # use archrock_motion::dynamics::{GroundError, Pulse};
 /// let ground = Pulse::OneSine.lasting_s(0.5).starting_at_s(1.0).horizontal_m_s2(-2.0)?;
 /// assert_eq!(ground.end_s(), 1.5);
 ///

@@ -18,7 +18,7 @@ impl GroundMotion {
     ///
     /// ```
     ///
-    /// # use archrock_motion::dynamics::ground::{GroundError, GroundMotion};
+    /// # use archrock_motion::dynamics::{GroundError, GroundMotion};
     /// let ground = GroundMotion::from_samples(0.01, &[0.0, 0.8, -1.2, 0.3])?;
     /// assert_eq!(ground.peaks_m_s2(f64::INFINITY).x, 1.2);
     ///

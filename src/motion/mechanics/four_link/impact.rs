@@ -20,7 +20,7 @@ pub enum ImpactModel {
     ///
     /// Assumes that hinges form wherever the least energy is lost, and that impulses pass through the hinges
     /// of the new mechanism only, Eqs. (7)-(10). The model of the paper. The projection onto all admissible
-    /// fields ([`super::certificate`]) shows how far four hinges are from the smallest possible loss.
+    /// fields ([`project`](super::project)) shows how far four hinges are from the smallest possible loss.
     MaxRestitution,
     /// Hinges at the opposite edges of the sections that close.
     ///

@@ -76,7 +76,7 @@ pub struct Extremes {
 }
 
 impl Extremes {
-    /// Returns whether the line is compressive and stays inside the ring, to [`EDGE_TOLERANCE`].
+    /// Returns whether the line is compressive and stays inside the ring, to `EDGE_TOLERANCE`.
     pub fn is_admissible(&self) -> bool {
         self.normal.value > 0.0 && self.eccentricity_ratio.value <= 0.5 + EDGE_TOLERANCE
     }

@@ -34,7 +34,7 @@ impl Demand {
     /// Returns the demand of resultants at their sections; `weight` is that of the whole structure, in the unit of the resultants.
     ///
     /// The excess is `|M| / (N t) - 1/2` and the friction `|V| / N`, with the moment `M` about the axis and the components `N` and `V`. For
-    /// `N < 0.01 weight` ([`LEAST_LOAD`]) the line is hardly ever inside. The excess is then `(|M| - N t / 2) / (0.01 weight t)`. This is a
+    /// `N < 0.01 weight` (`LEAST_LOAD`) the line is hardly ever inside. The excess is then `(|M| - N t / 2) / (0.01 weight t)`. This is a
     /// continuous extension, finite, and increases with the tension. The friction demand is then zero.
     pub fn of_sections(sections: impl Iterator<Item = SectionResultant>, weight: f64) -> Self {
         sections.fold(Self::default(), |demand, section| {
@@ -322,7 +322,7 @@ fn largest(known: Demand, start_rad: f64, end_rad: f64, at: &impl Fn(f64) -> Dem
     demand
 }
 
-/// Returns the friction at the section between two samples where the normal force reaches [`LEAST_LOAD`]; zero if both samples count, or neither.
+/// Returns the friction at the section between two samples where the normal force reaches `LEAST_LOAD`; zero if both samples count, or neither.
 fn load_edge(
     (from_rad, from): &(f64, Demand),
     (to_rad, to): &(f64, Demand),

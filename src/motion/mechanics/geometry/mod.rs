@@ -1,6 +1,6 @@
 //! Shapes, and the rigid motions of their parts.
 pub(crate) mod curve;
-pub mod field;
+pub(crate) mod field;
 pub(crate) mod pose;
 pub(crate) mod profile;
 pub(crate) mod rigid;

@@ -10,7 +10,7 @@ pub struct Pose {
     /// Cosine and sine of the rotation.
     turn: Vector2<f64>,
     /// Displacement of the body's point at the origin, in the unit of length of the structure that gives
-    /// the pose; metres in a [`Sample`](crate::dynamics::history::Sample).
+    /// the pose; metres in a [`Sample`](crate::dynamics::Sample).
     pub translation: Vector2<f64>,
 }
 
