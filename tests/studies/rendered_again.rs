@@ -52,7 +52,11 @@ fn words_of_a_run_are_rendered_again_from_its_json() {
             "the point 0,10 moves",
         ),
         (file("two-feet.toml"), &[], "the right foot moves by"),
-        (file("tie.toml"), &[], "tie 1 pulled with"),
+        (
+            file("tie.toml"),
+            &["--set", "simulation.duration_s=1"],
+            "tie 1 pulled with",
+        ),
         (
             file("drums-step-pair.toml"),
             &["--set", "simulation.duration_s=0.5"],

@@ -97,7 +97,7 @@ fn studies_have_the_words_of_their_json() {
             "threshold",
             &[
                 &few[..],
-                &["--hinges", "four,free", "--set", "arch.voussoirs=7"],
+                &["--hinges", "four,free", "--set", "arch.voussoirs=5"],
             ]
             .concat(),
         ),
