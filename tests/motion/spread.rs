@@ -505,6 +505,6 @@ fn a_run_on_moved_springings_reports_both_pushes() {
     refused(
         folder.path(),
         &["capacity", "arch.toml"],
-        &["the studies `limit` and `spread` compute the push"],
+        &["the studies `limit` and `spread` compute its capacity"],
     );
 }

@@ -355,7 +355,7 @@ fn spectra_of_points_are_refused_beyond_their_range() {
         (
             POINTS,
             "[demand]\nsoil = 'B'\n[demand.slv]\nspectrum = 'slv.csv'\n",
-            &["a.toml:5:8", "`soil = 'B'` goes with ag_g"],
+            &["a.toml:5:8", "`soil = 'B'` applies to ag_g"],
         ),
         (
             POINTS,
