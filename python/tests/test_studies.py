@@ -161,7 +161,7 @@ def test_a_suite_is_that_of_the_program(program: Program, tmp_path: Path) -> Non
 
     given = Record.read(RECORDS / records[0].name, peak_g=1.0)
     wrong: list[tuple[Any, str]] = [
-        ([given], "is scaled itself"),
+        ([given], "is scaled: leave"),
         ([records[0], records[0]], "the name of two records"),
         ([records[0], Record([0.0, 1.0], [0.0, 1.0], unit="m/s2")], "in one unit"),
         ([], "records"),

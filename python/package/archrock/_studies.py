@@ -858,7 +858,7 @@ def _record_files(records: Sequence[Record]) -> tuple[dict[str, Any], dict[str, 
             raise ValueError(f"{record.name!r}: the records must be horizontal")
         if table.get("scale") != 1.0:
             raise ValueError(
-                f"{record.name!r} is scaled itself: leave `scale` and `peak_g` out, records are taken as they are"
+                f"{record.name!r} is scaled: leave its `scale` and `peak_g` out"
             )
         if record.name in files:
             raise ValueError(f"{record.name!r} is the name of two records: give each its own")
