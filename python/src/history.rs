@@ -6,8 +6,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
-use archrock::dynamics::{FallEnd, Summary};
 use archrock::dynamics::repeatability::Repeatability;
+use archrock::dynamics::{FallEnd, Summary};
 use archrock::dynamics::{Recording, Samples};
 use archrock::mechanics::Demand;
 use archrock::output::{Scene, StructurePoint};

@@ -7,9 +7,11 @@ use std::sync::Arc;
 
 use archrock::output::{Figure, Folder, Origin};
 use archrock::studies;
-use archrock::studies::{Computation, Options, Results, RowSource, Runner, Shard, StudyError, StudyKind, Style, Task};
 use archrock::studies::run::Sinks;
 use archrock::studies::threshold::{AlongOptions, Factors};
+use archrock::studies::{
+    Computation, Options, Results, RowSource, Runner, Shard, StudyError, StudyKind, Style, Task,
+};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
