@@ -3,10 +3,13 @@
 use crate::common::{Random, pulse};
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use archrock::mechanics::MechanismChain as _;
 use archrock::{
     ArgumentError, BackWall, Column, GroundMotion, History, ImpactModel, Initial, Model as _,
     Outcome, Pulse, Request, RockingColumn, Sway,
 };
+
+use nalgebra::Vector2;
 
 const GRAVITY_M_S2: f64 = 9.81;
 
@@ -156,6 +159,18 @@ fn no_push_towards_the_wall_starts_it() {
     let ground = pulse(Pulse::Rectangular, -3.0, 1.0);
     let summary = model.simulate(&ground, &REQUEST, None).unwrap();
     assert_eq!(summary.outcome, Outcome::NeverMoved);
+}
+
+/// At rest the wall carries a push towards it; a push away from it, here to the left, is carried by the base.
+#[test]
+fn the_wall_carries_a_push_towards_it() {
+    let model = model(&column(4.0, 0.1, wall(Sway::Right, None)).unwrap());
+    let towards = model.demand_at_rest(Vector2::new(0.3, -1.0));
+    assert_eq!((towards.friction, towards.excess_ratio), (0.0, 0.0));
+    let middle = model.eccentricity_ratios_at_rest(Vector2::new(0.3, -1.0));
+    assert!(middle.iter().all(|ratio| *ratio == Some(0.0)));
+    let away = model.demand_at_rest(Vector2::new(-0.3, -1.0));
+    assert!(away.friction == 0.3 && away.excess_ratio > 0.5);
 }
 
 #[test]
