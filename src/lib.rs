@@ -94,7 +94,7 @@ pub use mechanics::elastic_joint::{
     Contact, ElasticProperties, JointStiffness, Materials, Stiffness,
 };
 pub use mechanics::{
-    Arch, Column, FourLinkError, FourLinks, Hinge, ImpactLaw, ImpactModel, Masonry, Pose,
+    Arch, BackWall, Column, FourLinkError, FourLinks, Hinge, ImpactLaw, ImpactModel, Masonry, Pose,
     RockingColumn, Row, Sway,
 };
 pub use scenario::{Scenario, Structure};

@@ -16,6 +16,8 @@ pub(crate) const STONE: &str = "#f3efe6";
 /// Colour of fill.
 const FILL: &str = "#e3d5bd";
 const OUTLINE: Stroke = Stroke::new(color::BLACK, 1.1, "");
+/// Colour of a wall behind the structure.
+const WALL: &str = "#c9c9c9";
 /// Outline of fill.
 const FILL_LINE: Stroke = Stroke::new("#b59f78", 0.6, "");
 const DIMENSION: Stroke = Stroke::new("#444444", 0.8, "");
@@ -87,6 +89,7 @@ pub fn draw(figure: Figure, title: &str, scene: &Scene, text: &str) -> String {
         let view = View::new(scene, place, poses, hinges);
         draw_dimensions(drawing, &view.place, scene);
         supports(drawing, &view.place, scene);
+        view.draw_wall(drawing);
         view.draw_fill(drawing);
         if !poses.is_empty() {
             view.draw_built(drawing, "built");
@@ -154,8 +157,16 @@ impl<'a> View<'a> {
 
     /// Draws fill and loads; `has_masses` adds the masses of loads.
     pub(crate) fn draw_carried(&self, drawing: &mut Drawing, has_masses: bool) {
+        self.draw_wall(drawing);
         self.draw_fill(drawing);
         self.draw_loads(drawing, None, has_masses);
+    }
+
+    /// Draws the wall behind the structure.
+    fn draw_wall(&self, drawing: &mut Drawing) {
+        if let Some(wall) = self.scene.wall() {
+            drawing.polygon("wall behind", self.corners(&wall), WALL, BUILT);
+        }
     }
 
     fn draw_fill(&self, drawing: &mut Drawing) {

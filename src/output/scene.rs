@@ -26,6 +26,8 @@ pub struct Scene {
     pub fill_m: Vec<FillColumn>,
     /// The loads, each with its block and the position of its middle in the undeformed structure, in metres.
     loads: Vec<((usize, Vector2<f64>), PlacedLoad)>,
+    /// Outline of the wall behind a column, in metres.
+    wall_m: Option<[Vector2<f64>; 4]>,
     /// The dimensions of the structure.
     pub dimensions: Vec<Dimension>,
 }
@@ -100,6 +102,7 @@ impl Scene {
             ties: ties.to_vec(),
             fill_m: carries.map_or_else(Vec::new, |(carried, _)| carried.fill_m.clone()),
             loads: loads.collect(),
+            wall_m: structure.wall_outline_m(),
             dimensions: structure.dimensions(),
         }
     }
@@ -146,10 +149,19 @@ impl Scene {
         widened(self.blocks_m(), ends.map(|end| end.at_m))
     }
 
-    /// Returns the lower left and the upper right corner of the undeformed blocks, in metres.
+    /// Returns the wall behind a column, which does not move.
+    pub fn wall(&self) -> Option<Piece> {
+        let outline_m = self.wall_m?.to_vec();
+        Some(Piece {
+            body: None,
+            outline_m,
+        })
+    }
+
+    /// Returns the lower left and the upper right corner of the undeformed blocks and of the wall behind them, in metres.
     pub fn blocks_m(&self) -> [Vector2<f64>; 2] {
         let empty = [f64::INFINITY, f64::NEG_INFINITY].map(Vector2::repeat);
-        let pieces = self.pieces(&[]).into_iter();
+        let pieces = self.pieces(&[]).into_iter().chain(self.wall());
         widened(empty, pieces.flat_map(|piece| piece.outline_m))
     }
 

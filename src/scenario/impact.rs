@@ -65,6 +65,31 @@ impl ModelOptions for ImpactLaw {
         Ok(structure.model(*self)?)
     }
 
+    /// Rejects an impact law beside the restitution of a wall behind a column.
+    fn check(
+        &self,
+        table: &mut Table<'_>,
+        structure: &Structure,
+        _: &Site,
+        _: Option<f64>,
+    ) -> ReadResult<()> {
+        let back = match structure {
+            Structure::Column(column) => column.wall(),
+            _ => None,
+        };
+        let is_given = back.is_some_and(|(wall, _)| wall.restitution.is_some());
+        let is_own = self.is_theory() && !matches!(self.model, ImpactModel::Prescribed { .. });
+        let wrong = "is the energy ratio of the impact on the wall, which `restitution` of [column.back] gives as a ratio of rates; leave one out";
+        ensure(!is_given || is_own, || {
+            let key = if self.is_theory() {
+                "restitution"
+            } else {
+                "restitution_factor"
+            };
+            table.wrong_in(&["impact"], key, wrong)
+        })
+    }
+
     fn law(&self) -> Option<ImpactLaw> {
         Some(*self)
     }

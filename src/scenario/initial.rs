@@ -25,6 +25,12 @@ pub(super) fn read(
     };
     table.check_faultless()?;
     if let Some(structure) = structure {
+        let is_held = structure.wall_behind() == Some(initial.sway);
+        table.refuse(
+            is_held,
+            "sway",
+            "points to the wall of [column.back]; release the column to the other side",
+        )?;
         let limit_rad = structure.release_limit_rad();
         let wrong = "releases from the first mechanism of four links, and this arch does not start as one; leave \
                      [initial] out";

@@ -1,5 +1,6 @@
 //! Motions: engines and histories, against closed forms and other programs.
 
+mod back_wall;
 mod between_impacts;
 mod column;
 mod elastic_joints;

@@ -720,7 +720,8 @@ fn a_run_reports_its_ties() {
     refuses(&["run", "s.toml", "--hinges", "four"], four);
     let words = printed(folder.path(), &["capacity", "s.toml", "--out", "curve"]);
     let reported = json(&folder.path().join("curve/capacity.json"));
-    let [right, left] = capacity(&parsed(text), None).unwrap().into();
+    let sides = capacity(&parsed(text), None).unwrap();
+    let [right, left] = sides.map(|side| side.clone().unwrap()).into();
     for side in [&right, &left] {
         let TieEventDisplacements {
             yields_at_m,

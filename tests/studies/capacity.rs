@@ -17,7 +17,8 @@ fn capacity(
     scenario: &Scenario,
     point_m: Option<Vector2<f64>>,
 ) -> Result<[Capacity; 2], CapacityCurveError> {
-    studies::capacity(scenario, point_m).map(Into::into)
+    let sides = studies::capacity(scenario, point_m)?;
+    Ok(sides.map(|side| side.clone().unwrap()).into())
 }
 
 const SIDES: [Sway; 2] = [Sway::Right, Sway::Left];
@@ -198,7 +199,12 @@ fn curves_begin_at_no_displacement_and_no_period() {
         }
         let table = std::fs::read_to_string(folder.path().join("out/capacity.csv")).unwrap();
         assert!(!table.contains("NaN"), "{}", path.display());
-        for side in ["right", "left"] {
+        // A wall behind a column leaves one side.
+        let sides: &[&str] = match path.ends_with("facade.toml") {
+            true => &["right"],
+            false => &["right", "left"],
+        };
+        for side in sides {
             let first = table.lines().find(|line| line.starts_with(side)).unwrap();
             let cells: Vec<&str> = first.split(',').collect();
             assert_eq!([cells[2], cells[4], cells[6]], ["0.0"; 3], "{first}");

@@ -29,4 +29,5 @@ mod uncertain;
 mod verify;
 mod verify_formulas;
 mod verify_histories;
+mod walls;
 mod words_of_json;

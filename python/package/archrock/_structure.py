@@ -61,7 +61,10 @@ class Structure(Described):
         whole = set(tables) == {"arch"} and isinstance(arch, dict)
         # If hinges may open anywhere, there are no blocks.
         four = whole and isinstance(arch, dict) and not {"voussoirs", "joints_deg"} & set(arch)
-        self._model = "four_links" if four else "free_hinges"
+        # A wall behind a column goes with Housner's model.
+        column = tables.get("column")
+        held = isinstance(column, dict) and "back" in column
+        self._model = "four_links" if four or held else "free_hinges"
         self._native = NativeScenario(to_toml(tables), None, files, self._model, ())
         self._bases = {}
         self._describe(json.loads(self._native.structure_json()), files)
@@ -167,6 +170,8 @@ class Column(Structure):
             beyond the base.
         depth_m: length out of plane; ``None``: the default, 1.
         density_kg_m3: density; ``None``: the default, 2000.
+        back: table ``[column.back]``: a wall behind the column, from which it can only move away, such as
+            ``{"side": "left"}``, perhaps with ``height_m`` and ``restitution``; not with drums. ``None``: it stands free.
 
     Raises:
         ValueError: when a number is not allowed, with the library's explanation.
@@ -185,6 +190,7 @@ class Column(Structure):
         pedestal: bool | None = None,
         depth_m: float | None = None,
         density_kg_m3: float | None = None,
+        back: Mapping[str, Any] | None = None,
     ) -> None:
         super().__init__(
             column={
@@ -196,6 +202,7 @@ class Column(Structure):
                 "pedestal": pedestal,
                 "depth_m": depth_m,
                 "density_kg_m3": density_kg_m3,
+                "back": back,
             }
         )
 

@@ -419,6 +419,9 @@ impl Event {
 pub struct Impact {
     /// Sway of the mechanism that closed.
     pub sway_before: Sway,
+    /// True if the structure strikes a wall behind it, and leaves to the side from which it came.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub strikes_wall: bool,
     /// Kinetic energy after the impact over that before it; 0 if no mechanism can follow.
     pub restitution: f64,
     /// Kinetic energy before, in J.
@@ -442,7 +445,10 @@ pub struct Impact {
 impl Impact {
     /// Returns the sway of the mechanism that opened.
     pub const fn sway_after(&self) -> Sway {
-        self.sway_before.opposite()
+        match self.strikes_wall {
+            true => self.sway_before,
+            false => self.sway_before.opposite(),
+        }
     }
 }
 

@@ -237,6 +237,18 @@ pub trait MechanismModel: Model {
     /// first mechanism. `None` if an earlier impact stops the structure.
     fn restitution_from(&self, first: Sway, impacts: usize) -> Option<f64>;
 
+    /// Returns the side to which the structure sways after `impacts` impacts and a first sway to a side. Every impact changes the side, unless a wall
+    /// prevents that.
+    fn sway_after(&self, first: Sway, impacts: usize) -> Sway;
+
+    /// Returns the right side if a push starts the structure to the right, and otherwise the left side, to which alone it moves.
+    fn first_side(&self) -> Sway {
+        match self.incipient_acceleration_g(Sway::Right) {
+            Some(_) => Sway::Right,
+            None => Sway::Left,
+        }
+    }
+
     /// Returns the hinges, from left to right, of the mechanism after `impacts` impacts that now sways to `sway`; empty without such a mechanism.
     fn hinges_after(&self, impacts: usize, sway: Sway) -> Vec<Hinge>;
 

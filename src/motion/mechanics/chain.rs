@@ -177,7 +177,7 @@ pub trait MechanismChain: std::fmt::Debug + Send + Sync {
         self.mass_unit_kg() * self.length_m() * self.length_m()
     }
 
-    /// Returns the horizontal acceleration at which rocking starts from rest to a side, in multiples of gravity.
+    /// Returns the horizontal acceleration at which rocking starts from rest to a side to which the structure can sway, in multiples of gravity.
     fn incipient_towards_g(&self, sway: Sway) -> f64;
     /// Returns the incipient acceleration to the right, in multiples of gravity; for symmetric structures, to either side.
     fn incipient_g(&self) -> f64 {
@@ -240,7 +240,13 @@ pub trait MechanismChain: std::fmt::Debug + Send + Sync {
     fn eccentricity_ratios_at_rest(&self, _body_force_g: Vector2<f64>) -> Vec<Option<f64>> {
         Vec::new()
     }
-    /// Returns the mechanism after a number of impacts and a first sway to this side; `None` if an earlier impact stops the structure.
+    /// Returns the side of the sway a number of impacts after a sway to this side, and equally before it. Every impact changes the side, unless a wall
+    /// prevents that.
+    fn sway_across(&self, sway: Sway, impacts: usize) -> Sway {
+        sway.before(impacts)
+    }
+    /// Returns the mechanism after a number of impacts and a first sway to this side; `None` if it cannot sway to that side, or if an earlier impact
+    /// stops the structure.
     fn link_from(&self, first: Sway, impacts: usize) -> Option<&Link<Self::Mechanism>>;
     /// Returns the mechanism after a number of impacts and a first sway to the right; for symmetric structures, to either side.
     fn link(&self, impacts: usize) -> Option<&Link<Self::Mechanism>> {

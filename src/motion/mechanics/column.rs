@@ -13,6 +13,8 @@
 //! At an impact it passes from one toe to the other. Only one mechanism can follow, so the models that
 //! search for it ([`ImpactModel::MaxRestitution`], [`ImpactModel::SameSections`],
 //! [`ImpactModel::Mirrored`]) all reduce to Housner's.
+//!
+//! With a wall behind it (see [`BackWall`]) it turns about one toe only, and every impact leads to the same mechanism.
 
 use std::f64::consts::FRAC_PI_2;
 use std::ops::RangeInclusive;
@@ -21,15 +23,16 @@ use nalgebra::{Rotation2, Vector2};
 use serde::Serialize;
 
 use super::arch::{DENSITY_KG_M3, DEPTH_M};
+use super::back_wall::{percussion_height, rate_passed, three_impacts};
 use super::blocks::{GRAVITY_M_S2, MAX_BLOCKS};
 use super::chain::{Coefficients, MechanismState};
 use super::tie::TieError;
-use crate::argument::{ArgumentError, allow, within};
+use crate::argument::{ArgumentError, allow, plain, within};
 use crate::mechanics::four_link::resultant::SectionResultant;
 use crate::mechanics::four_link::thrust::Load;
 use crate::mechanics::{
-    Demand, Hinge, ImpactLaw, ImpactModel, Link, MassMoments, Mechanism, MechanismChain, Pose, Row,
-    RowError, Sway, Tie, Twist,
+    BackWall, Demand, Hinge, ImpactLaw, ImpactModel, Link, MassMoments, Mechanism, MechanismChain,
+    Pose, Row, RowError, Sway, Tie,
 };
 
 /// Column that rotates about its right toe; lengths in half diagonals, unit density and depth.
@@ -151,6 +154,9 @@ pub struct Column {
     top_width_m: Option<f64>,
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pedestal: bool,
+    /// Wall behind the column; `None` if it stands free. Rows of its drums ignore the wall.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub back: Option<BackWall>,
     /// Ties of the column.
     #[serde(skip)]
     pub ties: Vec<Tie>,
@@ -173,6 +179,7 @@ impl Column {
             drum_heights_m: None,
             top_width_m: None,
             pedestal: false,
+            back: None,
             ties: Vec::new(),
             gravity_m_s2: GRAVITY_M_S2,
         })
@@ -237,6 +244,64 @@ impl Column {
             gravity_m_s2,
             ..self
         })
+    }
+
+    /// Returns this column with a wall behind it.
+    ///
+    /// # Errors
+    /// If the wall is higher than the column, the restitution is not in 0 to 1, or it has no default because the wall is too low.
+    pub fn with_back(mut self, back: BackWall) -> Result<Self, ArgumentError> {
+        let height_m = back.height_m.unwrap_or(self.height_m);
+        let allowed = format_args!("from 0 to the height of the column, {:?} m", self.height_m);
+        let fits = (0.0..=self.height_m).contains(&height_m);
+        allow(fits, "height_m", height_m, allowed)?;
+        if let Some(restitution) = back.restitution {
+            within("restitution", restitution, 0.0..=1.0)?;
+        }
+        self.back = Some(back);
+        if let Some((wall, contact_m)) = self.wall() {
+            let ([_, inner], moments) = self.toes_and_moments();
+            let lowest_m = plain(percussion_height(&moments, inner) * self.half_diagonal_m());
+            let allowed = format_args!(
+                "above {lowest_m}, the height of the centre of percussion in metres: a lower wall does not throw the column back; or give \
+                 `restitution`"
+            );
+            let is_known = wall.restitution.is_some() || self.three_impacts(contact_m).is_some();
+            allow(is_known, "height_m", contact_m, allowed)?;
+        }
+        Ok(self)
+    }
+
+    /// Returns the wall behind the column with its height in metres; `None` without a wall, or if its height is zero.
+    pub fn wall(&self) -> Option<(BackWall, f64)> {
+        let back = self.back?;
+        let height_m = back.height_m.unwrap_or(self.height_m);
+        (height_m > 0.0).then_some((back, height_m))
+    }
+
+    /// Returns the only side to which the column can move, away from the wall behind it; `None` if it can move to both sides.
+    pub fn away_from_wall(&self) -> Option<Sway> {
+        self.wall().map(|(wall, _)| wall.side.opposite())
+    }
+
+    /// Returns the ratio of the rates after and before an impact on the wall behind the column; `None` without a wall.
+    pub fn wall_restitution(&self) -> Option<f64> {
+        let (wall, height_m) = self.wall()?;
+        wall.restitution.or_else(|| self.three_impacts(height_m))
+    }
+
+    /// Returns the ratio of rates of three impacts in turn; `None` if they do not throw the column back.
+    fn three_impacts(&self, contact_m: f64) -> Option<f64> {
+        let ([outer, inner], moments) = self.toes_and_moments();
+        let contact = inner + Vector2::new(0.0, contact_m / self.half_diagonal_m());
+        three_impacts(&moments, [outer, inner, contact])
+    }
+
+    /// Returns the right and the left toe in half diagonals, and the mass moments about the middle of the base for unit mass.
+    fn toes_and_moments(&self) -> ([Vector2<f64>; 2], MassMoments) {
+        let diagonal_m = self.height_m.hypot(self.width_m);
+        let toe = Vector2::new(self.width_m / diagonal_m, 0.0);
+        ([toe, -toe], unit_moments(self.height_m / diagonal_m))
     }
 
     /// Returns half the diagonal of its outline, in metres, for a top as wide as the base.
@@ -317,10 +382,13 @@ pub struct RockingColumn {
     first: Link<Tilting>,
     /// Link after one or more impacts; `None` if the first impact stops the column.
     next: Option<Link<Tilting>>,
+    /// The only side to which it sways, away from a wall behind it; `None` if it sways to both sides.
+    away: Option<Sway>,
 }
 
 impl RockingColumn {
-    /// Returns the column under an impact model.
+    /// Returns the column under an impact model. A prescribed restitution coefficient, or a factor on it, applies to impacts on the base, or on the
+    /// wall behind the column.
     ///
     /// # Errors
     /// If a prescribed restitution coefficient is not in 0 to 1, or the column is not one prismatic block.
@@ -347,7 +415,8 @@ impl RockingColumn {
         let (rate_ratio, restitution) = match law.model {
             ImpactModel::Prescribed { restitution } => (restitution.sqrt(), restitution),
             ImpactModel::MaxRestitution | ImpactModel::SameSections | ImpactModel::Mirrored => {
-                let rate_ratio = rate_ratio(sin, cos);
+                let rate_ratio = column.wall_restitution();
+                let rate_ratio = rate_ratio.unwrap_or_else(|| base_rate_ratio(sin, cos));
                 (rate_ratio, rate_ratio * rate_ratio)
             }
         };
@@ -358,7 +427,17 @@ impl RockingColumn {
             incipient_g: sin / cos,
             first: link(1.0, 1.0),
             next: (rate_ratio > 0.0).then(|| link(rate_ratio, restitution)),
+            away: column.away_from_wall(),
         })
+    }
+
+    /// Returns the force per unit mass that the base carries at rest: the wall behind the column carries a push towards it.
+    fn on_base(&self, body_force_g: Vector2<f64>) -> Vector2<f64> {
+        let is_held = |away: Sway| away.sign() * body_force_g.x < 0.0;
+        match self.away.is_some_and(is_held) {
+            true => Vector2::new(0.0, body_force_g.y),
+            false => body_force_g,
+        }
     }
 }
 
@@ -368,16 +447,18 @@ impl RockingColumn {
 ///
 /// The rate is not positive from `sin^2(alpha) = 2/3` on, a width of `sqrt(2)` heights: the old toe of such a flat column would move into the ground.
 /// The column stops instead.
-fn rate_ratio(sin: f64, cos: f64) -> f64 {
-    // About the middle of the base; the mass cancels.
-    let moments = MassMoments {
+fn base_rate_ratio(sin: f64, cos: f64) -> f64 {
+    let toe = Vector2::new(sin, 0.0);
+    rate_passed(&unit_moments(cos), toe, Vector2::new(-sin, 0.0))
+}
+
+/// Returns the mass moments of a block of unit mass and half diagonal about the middle of its base, from the cosine of the slenderness.
+fn unit_moments(cos: f64) -> MassMoments {
+    MassMoments {
         mass: 1.0,
         first: Vector2::new(0.0, cos),
         polar: 1.0 / 3.0 + cos * cos,
-    };
-    let closing = Twist::rotation(Vector2::new(sin, 0.0), 1.0).momentum(&moments);
-    let opening = Twist::rotation(Vector2::new(-sin, 0.0), 1.0);
-    opening.power(&closing) / opening.power(&opening.momentum(&moments))
+    }
 }
 
 /// Returns the sections at which the thrust line is reported, as fractions of the height.
@@ -426,6 +507,7 @@ impl MechanismChain for RockingColumn {
     }
 
     fn demand_at_rest(&self, body_force_g: Vector2<f64>) -> Demand {
+        let body_force_g = self.on_base(body_force_g);
         let mechanism = &self.first.mechanism;
         let moment = body_force_g.x * mechanism.cos;
         base_demand(mechanism, -body_force_g, moment)
@@ -449,11 +531,22 @@ impl MechanismChain for RockingColumn {
     }
 
     fn eccentricity_ratios_at_rest(&self, body_force_g: Vector2<f64>) -> Vec<Option<f64>> {
-        let load = Load::uniform(body_force_g);
+        let load = Load::uniform(self.on_base(body_force_g));
         self.first.mechanism.eccentricity_ratios(&load)
     }
 
-    fn link_from(&self, _: Sway, impacts: usize) -> Option<&Link<Tilting>> {
+    fn sway_across(&self, sway: Sway, impacts: usize) -> Sway {
+        self.away.unwrap_or_else(|| sway.before(impacts))
+    }
+
+    fn link(&self, impacts: usize) -> Option<&Link<Tilting>> {
+        self.link_from(self.away.unwrap_or_default(), impacts)
+    }
+
+    fn link_from(&self, first: Sway, impacts: usize) -> Option<&Link<Tilting>> {
+        if self.away.is_some_and(|away| away != first) {
+            return None;
+        }
         match impacts {
             0 => Some(&self.first),
             _ => self.next.as_ref(),
@@ -461,7 +554,8 @@ impl MechanismChain for RockingColumn {
     }
 
     fn hinges(&self, impacts: usize, sway: Sway) -> Vec<Hinge> {
-        let link = self.link(impacts);
+        let is_possible = self.away.is_none_or(|away| away == sway);
+        let link = self.link(impacts).filter(|_| is_possible);
         link.map_or(Vec::new(), |_| vec![Hinge::Toe(sway)])
     }
 

@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 use super::Structure;
 use crate::mechanics::masonry::{CircularArch, Pier, Piers};
 use crate::mechanics::{MeasuredAt, Shape};
-use crate::{Arch, Masonry, Row};
+use crate::{Arch, Column, Masonry, Row, Sway};
 
 /// A dimension of a structure.
 #[derive(Clone, Debug, PartialEq)]
@@ -79,10 +79,29 @@ impl Structure {
             Self::Column(column) => {
                 let half_m = 0.5 * column.width_m;
                 let high = Vector2::new(half_m, column.height_m);
-                width_and_height([Vector2::new(-half_m, 0.0), high]).into()
+                let own = width_and_height([Vector2::new(-half_m, 0.0), high]);
+                own.into_iter().chain(of_wall(column)).collect()
             }
             Self::Masonry(masonry) => of_masonry(masonry),
         }
+    }
+}
+
+impl Structure {
+    /// Returns the outline of the wall behind a column for drawings, in metres, as thick as the column; `None` without a wall.
+    pub fn wall_outline_m(&self) -> Option<[Vector2<f64>; 4]> {
+        let Self::Column(column) = self else {
+            return None;
+        };
+        let (wall, height_m) = column.wall()?;
+        let [near_m, far_m] = [0.5, 1.5].map(|part| part * column.width_m * wall.side.sign());
+        let corners_m = [
+            (near_m, 0.0),
+            (near_m, height_m),
+            (far_m, height_m),
+            (far_m, 0.0),
+        ];
+        Some(corners_m.map(|(x_m, y_m)| Vector2::new(x_m, y_m)))
     }
 }
 
@@ -124,6 +143,19 @@ fn span_and_rise(ends: Ends, crown_m: f64, line: Option<MeasuredAt>) -> [Dimensi
         dimension.words += &line;
     }
     dimensions
+}
+
+/// Returns the height of the wall behind a column if it is lower than the column.
+fn of_wall(column: &Column) -> Option<Dimension> {
+    let (wall, height_m) = column.wall()?;
+    let x_m = 0.5 * column.width_m * wall.side.sign();
+    let side = match wall.side {
+        Sway::Right => DimensionSide::Right,
+        Sway::Left => DimensionSide::Left,
+    };
+    let ends = [0.0, height_m].map(|y_m| Vector2::new(x_m, y_m));
+    let wall = Dimension::new(side, ends, "wall behind", true);
+    Some(wall).filter(|_| height_m < column.height_m)
 }
 
 fn of_masonry(masonry: &Masonry) -> Vec<Dimension> {

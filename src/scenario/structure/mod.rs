@@ -20,7 +20,7 @@ use crate::mechanics::masonry::{CircularArch, LoadOutlines};
 use crate::mechanics::{DENSITY_KG_M3, DEPTH_M, MAX_BLOCKS};
 use crate::mechanics::{LimitError, Parts, PlacedLoad, RowError, Shape, Supports, Tie};
 use crate::{
-    Arch, Column, FourLinkError, FourLinks, FreeHinges, ImpactLaw, ImpactModel, Masonry,
+    Arch, BackWall, Column, FourLinkError, FourLinks, FreeHinges, ImpactLaw, ImpactModel, Masonry,
     MechanismModel, RockingColumn, Row, RowModelError, RowOptions, Sway,
 };
 
@@ -74,6 +74,8 @@ impl Structure {
         let structure = match read {
             StructureTable::Arch(arch) => Self::Arch(arch),
             StructureTable::Column(column) if beside.is_ties_at_most() => {
+                let is_held = column.back.is_some() && !ties.is_empty();
+                table.refuse(is_held, "tie", NO_TIES)?;
                 Self::Column(tie::tied_column(table, &ties, column, gravity_m_s2)?)
             }
             StructureTable::Column(_) => {
@@ -136,6 +138,14 @@ impl Structure {
         }
     }
 
+    /// Returns the side of the wall behind a column, towards which it cannot move; `None` without a wall.
+    pub fn wall_behind(&self) -> Option<Sway> {
+        match self {
+            Self::Column(column) => column.away_from_wall().map(Sway::opposite),
+            Self::Arch(_) | Self::Masonry(_) => None,
+        }
+    }
+
     /// Returns fill and loads for drawings; `None` if the structure cannot carry any.
     pub fn fill_and_loads(&self) -> Option<(&LoadOutlines, &[PlacedLoad])> {
         match self {
@@ -155,8 +165,8 @@ impl Structure {
     }
 
     /// Returns true for shapes that are symmetric for all dimensions.
-    pub const fn is_symmetric(&self) -> bool {
-        !matches!(self, Self::Masonry(_))
+    pub fn is_symmetric(&self) -> bool {
+        !matches!(self, Self::Masonry(_)) && self.wall_behind().is_none()
     }
 
     /// Returns the circular arch; `None` for other structures, and for an arch with piers, fill, loads or ties.
@@ -312,6 +322,24 @@ fn why_not(arch: &Arch, error: LimitError) -> String {
     }
 }
 
+/// Message about ties of a column with a wall behind it.
+const NO_TIES: &str = "cannot be combined with [column.back]: a column with ties moves as a row of blocks, without contact with a wall behind it; leave \
+                       one out";
+/// Message about a wall behind a row of blocks.
+const NO_BLOCKS: &str = "goes with Housner's model only, a single prismatic block: rows of blocks (drums, a taper, free hinges, elastic joints) have no \
+                         contact with a wall behind them; leave these out, or leave [column.back] out";
+
+/// Reads `[column.back]`.
+fn read_back(table: &mut Table<'_>) -> ReadResult<BackWall> {
+    let back = BackWall {
+        side: table.required("side", &one_of(Sway::ALL)),
+        height_m: table.optional("height_m", &within(&(0.0..=1e12))),
+        restitution: table.optional("restitution", &within(&(0.0..=1.0))),
+    };
+    table.check_faultless()?;
+    Ok(back)
+}
+
 const DRUMS: Count = Count(1..=MAX_BLOCKS, "each is a block");
 
 /// Keys of `[column]` that need a model with joints.
@@ -327,11 +355,13 @@ fn read_column(table: &mut Table<'_>, free_hinges: bool) -> ReadResult<Column> {
     let depth_m = table.or("depth_m", &MAGNITUDE, DEPTH_M);
     let density_kg_m3 = table.or("density_kg_m3", &MAGNITUDE, DENSITY_KG_M3);
     let pedestal = table.or("pedestal", &switch(), false);
+    let back = table.table("back", read_back);
     if !free_hinges && let Some(key) = DRUM_KEYS.into_iter().find(|key| table.gives(key)) {
         let wrong = "needs a table [free_hinges] or [elastic_joints]: Housner's model is a single prismatic block";
         table.wrong(key, wrong);
     }
     table.check_relations(&[AtMostOne(&["drums", "drum_heights_m"], GIVE_ONE)])?;
+    table.refuse(back.is_some() && free_hinges, "back", NO_BLOCKS)?;
     let column = Column::new(height_m, width_m)
         .and_then(|column| column.with_depth_m(depth_m))
         .and_then(|column| column.with_density_kg_m3(density_kg_m3))
@@ -345,6 +375,13 @@ fn read_column(table: &mut Table<'_>, free_hinges: bool) -> ReadResult<Column> {
         })
         .expect("the ranges of the keys are within those of a column")
         .on_pedestal(pedestal);
+    if let Some(back) = back {
+        let column = column.with_back(back);
+        return column.map_err(|error| {
+            let wrong = format!("does not fit: `height_m` must be {}", error.allowed);
+            table.wrong_in(&["back"], error.argument, wrong)
+        });
+    }
     let Some(heights_m) = drum_heights_m else {
         return Ok(column);
     };

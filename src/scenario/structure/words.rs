@@ -4,7 +4,7 @@ use super::Structure;
 use super::dimensions::{circular, metres};
 use crate::mechanics::masonry::FillLevel;
 use crate::mechanics::{MeasuredAt, Shape, Tie};
-use crate::{Arch, Masonry};
+use crate::{Arch, Column, Masonry};
 
 impl Structure {
     /// Returns the structure in words, with properties that its drawing does not show.
@@ -21,7 +21,7 @@ impl Structure {
                 parts.extend(arch.voussoirs.map(|count| format!("{count} voussoirs")));
                 parts.extend(measured(arch));
             }
-            Self::Column(_) => parts.push("column".to_owned()),
+            Self::Column(column) => parts.push(of_column(column)),
             Self::Masonry(masonry) => parts.extend(of_masonry(masonry)),
         }
         let [depth, density] = [depth_m, density_kg_m3].map(metres);
@@ -82,6 +82,22 @@ impl Structure {
 fn measured(arch: &Arch) -> Option<String> {
     let line = arch.measured_at?;
     Some(format!("span and rise {}", line.in_words()))
+}
+
+fn of_column(column: &Column) -> String {
+    let Some((wall, height_m)) = column.wall() else {
+        return "column".to_owned();
+    };
+    let (side, height) = (wall.side.name(), metres(height_m));
+    let ratio = column.wall_restitution().map_or(0.0, rounded);
+    format!(
+        "column against a wall of {height} m on its {side}, restitution (ratio of rates) {ratio}"
+    )
+}
+
+/// Returns a number rounded to four decimals.
+fn rounded(x: f64) -> f64 {
+    (x * 1e4).round() / 1e4
 }
 
 fn of_masonry(masonry: &Masonry) -> Vec<String> {

@@ -31,7 +31,7 @@ pub enum CapacityCurveError {
     Control(#[from] CapacityError),
 }
 
-/// Computes the capacity curves to the right and to the left. The control point `point_m` is in metres: x from the middle to the right; y from
+/// Computes the capacity curves to the right and to the left; `None` for the side of a wall behind a column. The control point `point_m` is in metres: x from the middle to the right; y from
 /// the centre of a circular arch, otherwise from the springings or the base, upwards. `None` chooses the crown, or the top of a column.
 ///
 /// # Errors
@@ -39,7 +39,7 @@ pub enum CapacityCurveError {
 pub fn capacity(
     scenario: &Scenario,
     point_m: Option<Vector2<f64>>,
-) -> Result<Sides<Capacity>, CapacityCurveError> {
+) -> Result<Sides<Option<Capacity>>, CapacityCurveError> {
     let gravity_m_s2 = scenario.gravity_m_s2();
     if let Some(row) = held_row(&scenario.structure)? {
         let control = control(&row, point_m)?;
@@ -49,20 +49,27 @@ pub fn capacity(
             let (masses, control) = Bodies::of_row(&held).masses(&row, control);
             let capacity = Capacity::new(sway, displaced, &masses, control, gravity_m_s2)?;
             // Ties change the push that the first mechanism of a row resists.
-            Ok(capacity.with_ties(&held.tie_event_fractions(), displaced, gravity_m_s2))
+            Ok(Some(capacity.with_ties(
+                &held.tie_event_fractions(),
+                displaced,
+                gravity_m_s2,
+            )))
         });
     }
     let model = scenario.mechanisms()?;
     let structure = scenario.structure.as_parts();
     let control = control(structure, point_m)?;
     Sides::try_of(|sway| {
+        if scenario.structure.wall_behind() == Some(sway) {
+            return Ok(None);
+        }
         let displaced = |part| {
             let displaced = model.displaced(sway, part);
             displaced.expect("a structure has its first mechanism")
         };
         let (masses, control) = Bodies::of_model(&*model, sway).masses(structure, control);
         let capacity = Capacity::new(sway, displaced, &masses, control, gravity_m_s2)?;
-        Ok(capacity)
+        Ok(Some(capacity))
     })
 }
 

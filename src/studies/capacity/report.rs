@@ -20,8 +20,8 @@ pub const FILES: [&str; 3] = ["capacity.svg", "capacity.csv", "capacity.json"];
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Template)]
 #[template(path = "studies/capacity/words.txt")]
 pub struct Summary {
-    /// The curves to the right and to the left, without their points.
-    pub capacity: Sides<CapacitySide>,
+    /// The curves to the right and to the left, without their points; null to the side of a wall behind a column, towards which it cannot move.
+    pub capacity: Sides<Option<CapacitySide>>,
     /// Parts of the structure whose centres carry the masses, in words.
     pub masses: String,
     /// Warnings about unlikely numbers of the scenario.
@@ -61,6 +61,16 @@ pub struct Oscillator {
     pub secant_period_s_at_part_of_ultimate: Named<Option<f64>>,
 }
 
+impl Summary {
+    /// Returns the curves of the sides to which the structure moves.
+    fn sides(&self) -> Vec<(Sway, &CapacitySide)> {
+        let sides = self.capacity.iter();
+        sides
+            .filter_map(|(sway, side)| Some((sway, side.as_ref()?)))
+            .collect()
+    }
+}
+
 impl CapacitySide {
     fn of(side: &Capacity, gravity_m_s2: f64) -> Self {
         let (start, end) = (side.start(), side.end());
@@ -88,7 +98,7 @@ impl CapacitySide {
 /// When a value is not finite.
 pub fn report(
     scenario: &Scenario,
-    sides: &Sides<Capacity>,
+    sides: &Sides<Option<Capacity>>,
     figure: Figure,
 ) -> Result<Results, OutputError> {
     let masses = match held_row(&scenario.structure) {
@@ -96,7 +106,10 @@ pub fn report(
         _ => scenario.structure.as_parts().parts_in_words(),
     };
     let summary = Summary {
-        capacity: sides.map(|side| CapacitySide::of(side, scenario.gravity_m_s2())),
+        capacity: sides.map(|side| {
+            let side = side.as_ref();
+            side.map(|side| CapacitySide::of(side, scenario.gravity_m_s2()))
+        }),
         masses,
         warnings: scenario.unlikely(),
         scenario: scenario.to_json(),
@@ -108,22 +121,32 @@ pub fn report(
 }
 
 /// Makes the chart of acceleration against displacement of the control point, for both sides.
-fn chart(sides: &Sides<Capacity>, figure: Figure) -> Chart {
-    let curves = sides.iter().zip(CURVES).map(|((sway, side), stroke)| {
-        let points = side.curve.iter();
-        let points = points.map(|point| (point.displacement_m, point.acceleration_g));
-        Mark::curve(format!("to the {}", sway.name()), stroke, points)
-    });
+fn chart(sides: &Sides<Option<Capacity>>, figure: Figure) -> Chart {
+    let curves = sides
+        .iter()
+        .zip(CURVES)
+        .filter_map(|((sway, side), stroke)| {
+            let points = side.as_ref()?.curve.iter();
+            let points = points.map(|point| (point.displacement_m, point.acceleration_g));
+            Some(Mark::curve(
+                format!("to the {}", sway.name()),
+                stroke,
+                points,
+            ))
+        });
     let labels = ["displacement of the control point (m)", "a (g)"];
     Chart::around(figure, 330.0, labels, curves.collect())
 }
 
 /// Makes the table of the points of the curves, to the right first. The secant period is empty at the unstable equilibrium.
-fn table(sides: &Sides<Capacity>) -> Result<Vec<u8>, OutputError> {
+fn table(sides: &Sides<Option<Capacity>>) -> Result<Vec<u8>, OutputError> {
     type Row<'a> = (Sway, &'a CurvePoint);
     let rows: Vec<Row<'_>> = sides
         .iter()
-        .flat_map(|(sway, side)| side.curve.iter().map(move |point| (sway, point)))
+        .flat_map(|(sway, side)| {
+            let points = side.iter().flat_map(|side| &side.curve);
+            points.map(move |point| (sway, point))
+        })
         .collect();
     let mut columns = vec![column("sway", |row: &Row<'_>| row.0.name())];
     columns.extend(fields!(

@@ -111,6 +111,9 @@ pub fn chain_result(
     first: Sway,
     count: usize,
 ) -> Result<PrintedResult, StudyError> {
+    // A column with a wall behind it sways to one side only.
+    let wall = scenario.structure.wall_behind();
+    let first = wall.map_or(first, Sway::opposite);
     let impacts = |side| chain(model, side, count);
     let summary = Summary::new(scenario, model, (&[first], count), impacts);
     Ok(PrintedResult::of(&summary)?)

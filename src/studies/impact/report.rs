@@ -40,7 +40,7 @@ pub struct Summary {
     /// The impact of `models` and `certificate`, in words; absent unless the structure moves as four links.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub chosen: Option<String>,
-    /// Name of the impact model of the scenario.
+    /// Name of the impact model of the scenario; `back_wall` for impacts on the wall behind a column.
     pub model: Cow<'static, str>,
     /// Factor of the scenario on restitution coefficients.
     pub restitution_factor: f64,
@@ -204,7 +204,7 @@ pub struct Zone {
 
 impl SwayingMechanism {
     fn of(model: &dyn MechanismModel, first: Sway, index: usize) -> Self {
-        let sway = first.before(index);
+        let sway = model.sway_after(first, index);
         let hinges = model.hinges_after(index, sway);
         Self { sway, hinges }
     }
@@ -402,6 +402,8 @@ impl Summary {
         chain: impl Fn(Sway) -> Vec<ChainImpact>,
     ) -> Self {
         let impact = scenario.motion.impact();
+        let is_prescribed = matches!(impact.model, ImpactModel::Prescribed { .. });
+        let is_wall = scenario.structure.wall_behind().is_some() && !is_prescribed;
         let starts = sides
             .iter()
             .map(|side| SwayingMechanism::of(model, *side, 0));
@@ -414,7 +416,12 @@ impl Summary {
             starts: starts.collect(),
             count,
             chosen: None,
-            model: impact.model.name().into(),
+            model: if is_wall {
+                "back_wall"
+            } else {
+                impact.model.name()
+            }
+            .into(),
             restitution_factor: impact.restitution_factor,
         }
     }

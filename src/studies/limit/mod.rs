@@ -48,7 +48,10 @@ fn summary(scenario: &Scenario) -> Result<Summary, StudyError> {
         Some(row) => of_row(scenario, &row).map_err(StudyError::scenario)?,
         None => {
             let model = scenario.mechanisms().map_err(StudyError::scenario)?;
-            Summary::of_mechanism(&*model, scenario.gravity_m_s2())
+            Summary {
+                wall_behind: scenario.structure.wall_behind(),
+                ..Summary::of_mechanism(&*model, scenario.gravity_m_s2())
+            }
         }
     };
     if let Some(coefficient) = coefficient {

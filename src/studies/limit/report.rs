@@ -22,8 +22,8 @@ pub struct Summary {
     pub incipient_acceleration_m_s2: Sides<Option<f64>>,
     /// Hinges of the mechanism that starts, from left to right.
     pub mechanism: Sides<Vec<MechanismHinge>>,
-    /// Rotations of the bodies at the unstable equilibrium of the first mechanism to the right, in radians; absent unless the structure moves as
-    /// four links or as a column.
+    /// Rotations of the bodies at the unstable equilibrium of the first mechanism to the right, or to the only side to which it moves, in radians;
+    /// absent unless the structure moves as four links or as a column.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unstable_rotations: Option<Named<f64>>,
     /// Equivalent free-standing blocks; absent unless the structure moves as four links or as a column.
@@ -35,6 +35,9 @@ pub struct Summary {
     /// The reason why the push at collapse was not found; null if it was found, or if there is none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub capacity_not_found: Option<Sides<Option<String>>>,
+    /// Side of the wall behind a column, towards which no push moves it; absent without a wall.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wall_behind: Option<Sway>,
     /// Hinges on which a structure on moved springings stands; absent without moved springings.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hinges: Option<Vec<Pin>>,
@@ -194,7 +197,8 @@ impl Summary {
     /// Makes the summary of a structure that starts as a mechanism of one degree of freedom.
     pub(super) fn of_mechanism(model: &dyn MechanismModel, gravity_m_s2: f64) -> Self {
         let bodies = model.bodies();
-        let unstable_rad = model.critical_rotations_rad(Sway::Right);
+        let side = model.first_side();
+        let unstable_rad = model.critical_rotations_rad(side);
         let names = columns(&bodies, "rotation", "rad").into_iter();
         let hinges = |sway| {
             let hinges = model.hinges_after(0, sway);
@@ -203,7 +207,7 @@ impl Summary {
         let starts_g = Sides::of(|sway| model.incipient_acceleration_g(sway));
         Self {
             unstable_rotations: Some(Named(names.zip(unstable_rad).collect())),
-            equivalent_block: model.equivalent(Sway::Right, gravity_m_s2),
+            equivalent_block: model.equivalent(side, gravity_m_s2),
             bodies,
             ..Self::new(starts_g, Sides::of(hinges), gravity_m_s2)
         }

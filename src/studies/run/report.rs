@@ -317,7 +317,10 @@ impl Report {
         let bodies = self.scene.bodies_of_sections(hinges).into_iter();
         let points = points.into_iter().flat_map(|points| points.bodies(hinges));
         Layout {
-            pieces: self.scene.pieces(hinges).into_iter().map(drawn).collect(),
+            pieces: (self.scene.pieces(hinges).into_iter())
+                .chain(self.scene.wall())
+                .map(drawn)
+                .collect(),
             fill: self.scene.fill(hinges).into_iter().map(drawn).collect(),
             loads: loads.collect(),
             hinges: marks.collect(),

@@ -20,7 +20,7 @@ impl Scales {
             .map(|sway| incipient_g(sway).map_or(f64::INFINITY, |start_g| start_g * gravity_m_s2));
         Some(Self {
             frequency_rad_s: model
-                .equivalent(Sway::Right, gravity_m_s2)?
+                .equivalent(model.first_side(), gravity_m_s2)?
                 .at_critical?
                 .frequency_rad_s,
             incipient_m_s2,

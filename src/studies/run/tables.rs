@@ -309,7 +309,7 @@ fn by_hinge<const N: usize>(sections: usize, what: &str, parts: [&str; N]) -> Ve
 
 /// Returns the number of hinges of a mechanism that are at sections of an arch.
 fn sections(model: &dyn MechanismModel) -> usize {
-    hinge_cells(&model.hinges_after(0, Sway::Right), 0).len()
+    hinge_cells(&model.hinges_after(0, model.first_side()), 0).len()
 }
 
 /// Returns the columns with angle and edge of a number of hinges.

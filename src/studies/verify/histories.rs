@@ -172,7 +172,14 @@ pub(super) fn histories(
         )),
         error => failed(error.to_string()),
     })?;
-    // The reader rejects records if only one side is checked.
+    if mechanisms.len() < 2 {
+        let name = state.name();
+        return Err(failed(format!(
+            "the dynamic route compares both sides, and a wall behind the column holds one: leave {name}_records out, and compute the records with \
+             `archrock suite`"
+        )));
+    }
+    // The reader rejects records if the scenario chooses one side.
     let mechanisms = Sides::of(|sway| &mechanisms[&sway]);
     if let Some(why) = mechanisms.iter().find_map(|(_, one)| one.no_curve.clone()) {
         return Err(failed(why));

@@ -380,8 +380,11 @@ struct CheckInput<'a> {
 /// When there is no demand, no mechanism or no possible check, or a spectrum of points ends at too small a period.
 pub fn verify(scenario: &Scenario) -> Result<Summary, VerifyError> {
     let demand = scenario.demand.clone().ok_or(VerifyError::NoDemand)?;
-    let settings = scenario.verify.clone().unwrap_or_default();
     let structure = &scenario.structure;
+    let settings = Verify {
+        sides: checked_sides(scenario)?,
+        ..scenario.verify.clone().unwrap_or_default()
+    };
     let own_friction = scenario.motion.options.friction_coefficient();
     let (_, density_kg_m3) = structure.depth_and_density();
     let free = settings.free_standing.as_ref();
@@ -440,6 +443,30 @@ pub fn verify(scenario: &Scenario) -> Result<Summary, VerifyError> {
     };
     report::add_notes(&mut summary, scenario.unlikely());
     Ok(summary)
+}
+
+/// Returns the sides that are checked: those of the scenario to which the structure can move.
+///
+/// # Errors
+/// When the scenario chooses the side of a wall behind a column.
+fn checked_sides(scenario: &Scenario) -> Result<CheckedSides, VerifyError> {
+    let chosen = scenario.verify.as_ref();
+    let chosen = chosen.map_or(CheckedSides::Both, |verify| verify.sides);
+    let Some(wall) = scenario.structure.wall_behind() else {
+        return Ok(chosen);
+    };
+    let [held, free] = match wall {
+        Sway::Right => [CheckedSides::Right, CheckedSides::Left],
+        Sway::Left => [CheckedSides::Left, CheckedSides::Right],
+    };
+    if chosen == held {
+        let (held, free) = (held.name(), free.name());
+        let why = format!(
+            "a wall stands on the {held}, towards which it cannot move; check sides = {free:?}"
+        );
+        return Err(VerifyError::NoMechanism(why));
+    }
+    Ok(free)
 }
 
 impl CheckInput<'_> {

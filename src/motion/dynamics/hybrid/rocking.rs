@@ -95,8 +95,8 @@ pub struct Rocking<'a, C: MechanismChain> {
     /// Energy that the first mechanism needs to overturn under gravity alone, on the weaker side. Energies are in the structure's unit of mass times
     /// the square of its unit of length, per s2.
     pub barrier: f64,
-    /// Horizontal acceleration at uplift to the right and to the left, in multiples of gravity.
-    uplift_g: Sides<f64>,
+    /// Horizontal acceleration at uplift to the right and to the left, in multiples of gravity; `None` if it cannot sway to that side.
+    uplift_g: Sides<Option<f64>>,
 }
 
 impl<'a, C: MechanismChain> Rocking<'a, C> {
@@ -110,21 +110,20 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
         gravity_m_s2: f64,
         rest_energy_ratio: f64,
     ) -> Self {
-        let uplift_g = Sides::of(|side| UPLIFT_FACTOR * chain.incipient_towards_g(side));
         let mut rocking = Self {
             chain,
             ground,
             gravity_m_s2,
             rest_energy_ratio,
             barrier: f64::INFINITY,
-            uplift_g,
+            uplift_g: Sides::default(),
         };
         for side in [Sway::Right, Sway::Left] {
             if let Some(first) = chain.link_from(side, 0) {
                 rocking.barrier = rocking.barrier.min(rocking.barrier_of(first));
                 let opening_g = OPENING_FACTOR * (first.at_zero.s_y / first.at_zero.s_x);
-                let uplift_g = rocking.uplift_g.to_mut(side);
-                *uplift_g = uplift_g.max(opening_g);
+                let uplift_g = UPLIFT_FACTOR * chain.incipient_towards_g(side);
+                *rocking.uplift_g.to_mut(side) = Some(uplift_g.max(opening_g));
             }
         }
         rocking
@@ -194,7 +193,8 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
         swing: Swing<'a, C::Mechanism>,
         now: &SystemState<'a, C::Mechanism>,
     ) -> f64 {
-        let (first, motion) = (swing.sway.before(swing.impacts), self.motion(swing, now));
+        let first = self.chain.sway_across(swing.sway, swing.impacts);
+        let motion = self.motion(swing, now);
         let mechanism = &swing.link.mechanism;
         (self.chain).excess_ratio(first, swing.impacts, mechanism, &motion)
     }
@@ -387,8 +387,11 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
         let (q, rate) = (now.state[0], now.state[1]);
         match (guard, now.mode) {
             (Guard::Uplift(sway), _) => {
+                let Some(uplift_g) = *self.uplift_g.to(sway) else {
+                    return (1.0, 0.0);
+                };
                 let (acceleration, jerk) = piece.at(now.time_s);
-                let tilt = Vector2::new(sway.sign(), *self.uplift_g.to(sway));
+                let tilt = Vector2::new(sway.sign(), uplift_g);
                 let value = tilt.y * self.gravity_m_s2 + tilt.dot(&acceleration);
                 (value, tilt.dot(&jerk))
             }
@@ -432,11 +435,12 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
             (Guard::Closing, Phase::Rocking(Swing { sway, impacts, .. })) => {
                 // The closing rate is negative, except for rounding errors at the end of a very short hop.
                 let closing_rate = (-now.state[1]).max(0.0);
-                let Some(link) = self.chain.link_from(sway.before(impacts), impacts + 1) else {
+                let first = self.chain.sway_across(sway, impacts);
+                let Some(link) = self.chain.link_from(first, impacts + 1) else {
                     return (Phase::Rest, still);
                 };
                 let rate = link.rate_ratio * closing_rate;
-                let sway = sway.opposite();
+                let sway = self.chain.sway_across(sway, 1);
                 let ground_m_s2 = self.ground_m_s2(sway, now);
                 let energy = 0.5 * link.at_zero.inertia * rate * rate;
                 let held_up = self.acceleration(&link.at_zero, rate, ground_m_s2) > 0.0;

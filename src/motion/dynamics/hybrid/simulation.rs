@@ -40,7 +40,8 @@ macro_rules! models {
             }
 
             fn incipient_acceleration_g(&self, sway: Sway) -> Option<f64> {
-                Some(self.incipient_towards_g(sway))
+                let first = self.link_from(sway, 0);
+                first.map(|_| self.incipient_towards_g(sway))
             }
 
             fn simulate(
@@ -56,6 +57,10 @@ macro_rules! models {
         impl MechanismModel for $chain {
             fn restitution_from(&self, first: Sway, impacts: usize) -> Option<f64> {
                 self.link_from(first, impacts).map(|link| link.restitution)
+            }
+
+            fn sway_after(&self, first: Sway, impacts: usize) -> Sway {
+                self.sway_across(first, impacts)
             }
 
             fn hinges_after(&self, impacts: usize, sway: Sway) -> Vec<Hinge> {
@@ -299,7 +304,7 @@ impl<'a, C: MechanismChain> Closing<'a, C> {
             return None;
         };
         let impacts = before.impacts;
-        let after = chain.link_from(before.sway.before(impacts), impacts + 1);
+        let after = chain.link_from(chain.sway_across(before.sway, impacts), impacts + 1);
         let rate_before_rad_s = transition.before[1].min(0.0);
         Some(Self {
             before,
@@ -327,12 +332,13 @@ impl<'a, C: MechanismChain> Closing<'a, C> {
             seen.as_ref().to_vec()
         };
         let (sway, impacts) = (self.before.sway, self.before.impacts);
-        let (link, sway_after) = (self.before.link, sway.opposite());
+        let (link, sway_after) = (self.before.link, chain.sway_across(sway, 1));
         let after = self.after.unwrap_or(link);
         let unit_n_s = chain.mass_unit_kg() * chain.length_m() * self.rate_before_rad_s.abs();
         let impulses = chain.hinge_impulses(impacts + 1, sway_after);
         Impact {
             sway_before: sway,
+            strikes_wall: sway_after == sway,
             restitution: self.after.map_or(0.0, |link| link.restitution),
             energy_before_j: energy_before * joule,
             energy_after_j: energy_after * joule,

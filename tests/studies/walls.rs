@@ -1,0 +1,267 @@
+//! Studies of a column with a wall behind it.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+use crate::common::parsed;
+use crate::common::program::{printed, refused, scenarios};
+use crate::common::results::Table;
+use archrock::scenario::CheckedSides;
+use archrock::studies::capacity;
+use archrock::studies::verify::verify;
+use archrock::{Scenario, Sway};
+use serde_json::Value;
+
+const FACADE: &str = "[column]\nheight_m = 8\nwidth_m = 0.6\n[column.back]\nside = 'left'\n";
+const DEMAND: &str = "[demand]\nsoil = 'B'\ntopography = 'T1'\n[demand.sld]\nag_g = 0.10\nf0 = 2.40\ntc_star_s = 0.28\n\
+                      [demand.slv]\nag_g = 0.25\nf0 = 2.40\ntc_star_s = 0.35\n";
+
+fn facade(more: &str) -> String {
+    format!("{FACADE}{more}")
+}
+
+fn refusal(text: &str) -> String {
+    let errors = Scenario::parse(text, "s.toml").unwrap_err();
+    errors.to_string()
+}
+
+/// The results of a command on this text, as JSON.
+fn answer(folder: &Path, arguments: &[&str], text: &str) -> Value {
+    fs::write(folder.join("s.toml"), text).unwrap();
+    let all = [arguments, &["s.toml", "--format", "json"]].concat();
+    serde_json::from_str(&printed(folder, &all)).unwrap()
+}
+
+#[test]
+fn limit_and_capacity_have_one_side() {
+    let folder = tempfile::tempdir().unwrap();
+    let free = "[column]\nheight_m = 8\nwidth_m = 0.6\n";
+    let both = answer(folder.path(), &["limit"], free);
+    for (wall, held, away) in [("left", "left", "right"), ("right", "right", "left")] {
+        let text = FACADE.replace("'left'", &format!("'{wall}'"));
+        let one = answer(folder.path(), &["limit"], &text);
+        assert_eq!(one["wall_behind"], wall);
+        for key in ["incipient_acceleration_g", "incipient_acceleration_m_s2"] {
+            assert!(one[key][held].is_null());
+            assert_eq!(one[key][away], both[key][away]);
+        }
+        assert_eq!(one["mechanism"][held], serde_json::json!([]));
+        assert_eq!(one["mechanism"][away], both["mechanism"][away]);
+        assert_eq!(one["equivalent_block"], both["equivalent_block"]);
+        let words = printed(folder.path(), &["limit", "s.toml"]);
+        assert!(
+            words.contains(&format!("no push to the {held} moves it")),
+            "{words}"
+        );
+        let curves = capacity(&parsed(&text), None).unwrap();
+        let of_free = capacity(&parsed(free), None).unwrap();
+        let away: Sway = serde_json::from_value(away.into()).unwrap();
+        assert!(curves.to(away.opposite()).is_none());
+        assert_eq!(curves.to(away), of_free.to(away));
+    }
+    assert!(both.get("wall_behind").is_none());
+    let words = printed(folder.path(), &["capacity", "s.toml"]);
+    assert!(
+        words.contains("to the left") && !words.contains("to the right"),
+        "{words}"
+    );
+    let rows = Table::read(folder.path().join("results/s/capacity.csv")).rows;
+    assert!(rows.len() > 10 && rows.iter().all(|row| row["sway"] == "left"));
+}
+
+/// The check of a façade is that of the free column to the side away from the wall.
+#[test]
+fn verify_checks_the_side_away_from_the_wall() {
+    let held = verify(&parsed(&facade(DEMAND))).unwrap();
+    assert_eq!(held.sides, CheckedSides::Right);
+    let free =
+        format!("[column]\nheight_m = 8\nwidth_m = 0.6\n{DEMAND}[verify]\nsides = 'right'\n");
+    let free = verify(&parsed(&free)).unwrap();
+    assert_eq!((held.zeta_e, &held.states), (free.zeta_e, &free.states));
+    assert_eq!(held.mechanisms.keys().collect::<Vec<_>>(), [&Sway::Right]);
+    let wrong = format!("{}[verify]\nsides = 'left'\n", facade(DEMAND));
+    let error = verify(&parsed(&wrong)).unwrap_err().to_string();
+    assert!(error.contains("sides = \"right\""), "{error}");
+}
+
+/// Cells, samples and factors are the single histories with the same keys.
+#[test]
+fn studies_vary_the_wall() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    let pulse =
+        "[ground.one_sine]\namplitude_g = -0.25\nduration_s = 1\n[simulation]\nduration_s = 20\n";
+    let text = facade(pulse);
+    let peak = |set: &[&str]| {
+        let sets: Vec<&str> = set.iter().flat_map(|one| ["--set", *one]).collect();
+        let all = [&["run"], &sets[..]].concat();
+        let summary = answer(path, &all, &text);
+        (
+            summary["impacts"].clone(),
+            summary["largest_peak_rotation_rad"].as_f64().unwrap(),
+        )
+    };
+    let map = "[map]\n'column.back.height_m' = [6, 8]\namplitude_g = [-0.3, 0.3]\n";
+    answer(path, &["map"], &format!("{text}{map}"));
+    let cells = Table::read(path.join("results/s/map.csv")).rows;
+    assert_eq!(cells.len(), 4);
+    for cell in &cells {
+        let sets = [
+            format!("column.back.height_m={}", cell["column.back.height_m"]),
+            format!("ground.one_sine.amplitude_g={}", cell["amplitude_g"]),
+        ];
+        let (impacts, _) = peak(&[&sets[0], &sets[1]]);
+        assert_eq!(cell["impacts"], impacts.to_string());
+    }
+    // A stronger rebound takes longer to rest.
+    let impacts = |ratio: f64| {
+        peak(&[&format!("column.back.restitution={ratio}")])
+            .0
+            .as_u64()
+            .unwrap()
+    };
+    assert!(impacts(0.0) < impacts(0.3) && impacts(0.3) < impacts(0.6));
+    let (free, held) = (peak(&["column.back.height_m=0"]), peak(&[]));
+    assert!(free != held);
+    let uncertain = "[uncertain]\nsamples = 16\n'column.back.height_m' = { from = 6, to = 8 }\n\
+                     'column.back.restitution' = { from = 0.2, to = 0.6 }\n";
+    fs::write(path.join("s.toml"), format!("{text}{uncertain}")).unwrap();
+    printed(path, &["run", "s.toml"]);
+    let samples = Table::read(path.join("results/s/uncertain/samples.csv")).rows;
+    let heights: BTreeMap<String, ()> = samples
+        .iter()
+        .map(|row| (row["column.back.height_m"].clone(), ()))
+        .collect();
+    assert!(heights.len() > 10);
+    for row in &samples[1..4] {
+        let sets = ["height_m", "restitution"].map(|key| {
+            let key = format!("column.back.{key}");
+            format!("{key}={}", row[&key])
+        });
+        let (_, peak_rad) = peak(&[&sets[0], &sets[1]]);
+        assert!((row.number("peak_rotation_rad") / peak_rad - 1.0).abs() < 1e-6);
+    }
+}
+
+/// A façade under a record overturns to one side only. Its factor in a suite is that of `threshold`.
+#[test]
+fn records_overturn_it_away_from_the_wall() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    fs::copy(scenarios().join("records/wave-1.at2"), path.join("r.at2")).unwrap();
+    let text = facade("[ground.record]\nfile = 'r.at2'\n");
+    let found = answer(path, &["threshold"], &text);
+    let factor = found["models"][0]["survives_up_to_factor"]
+        .as_f64()
+        .unwrap();
+    let suite = facade(&format!(
+        "[suite]\nrecords = 'r.at2'\nboth_signs = false\nscales = [{}, {}]\n",
+        0.99 * factor,
+        1.01 * factor
+    ));
+    answer(path, &["suite"], &suite);
+    let rows = Table::read(path.join("results/s/suite.csv")).rows;
+    let sides: Vec<_> = rows
+        .iter()
+        .map(|row| row["overturning_sway"].as_str())
+        .collect();
+    assert_eq!(sides, ["", "right"]);
+}
+
+#[test]
+fn impacts_keep_the_side() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    let chain = answer(path, &["impact"], &FACADE.replace("'left'", "'right'"));
+    assert_eq!(chain["model"], "back_wall");
+    let text = chain.to_string();
+    assert!(
+        text.contains("\"left\"") && !text.contains("\"right\""),
+        "{text}"
+    );
+    let text = facade("[ground.one_sine]\namplitude_g = -0.25\nduration_s = 1\n");
+    fs::write(path.join("s.toml"), &text).unwrap();
+    printed(path, &["run", "s.toml"]);
+    let impacts = Table::read(path.join("results/s/impacts.csv")).rows;
+    assert!(impacts.len() > 5);
+    for row in &impacts {
+        assert_eq!(
+            [&row["sway_before"], &row["sway_after"]],
+            ["right", "right"]
+        );
+        let rate = |key: &str| row.number(key);
+        let ratio = -rate("rate_after_rad_s") / rate("rate_before_rad_s");
+        assert!((ratio * ratio - rate("restitution")).abs() < 1e-12);
+    }
+    // The law of `[impact]` is a ratio of energies.
+    let law = "[impact]\nmodel = 'prescribed'\nrestitution = 0.36\n";
+    let model = parsed(&format!("{FACADE}{law}")).mechanisms().unwrap();
+    assert_eq!(model.restitution_from(Sway::Right, 3), Some(0.36));
+    assert_eq!(model.restitution_from(Sway::Left, 3), None);
+    assert_eq!(model.incipient_acceleration_g(Sway::Left), None);
+}
+
+#[test]
+fn what_a_wall_cannot_have_is_refused() {
+    let low = refusal(&facade("height_m = 5\n"));
+    assert!(
+        low.contains("s.toml:6:12") && low.contains("above 5.36333"),
+        "{low}"
+    );
+    let high = refusal(&facade("height_m = 8.5\nrestitution = 0.4\n"));
+    assert!(
+        high.contains("s.toml:6:12") && high.contains("8.0 m"),
+        "{high}"
+    );
+    let elastic = refusal(&facade("restitution = 1.5\n"));
+    assert!(elastic.contains("s.toml:6:15"), "{elastic}");
+    for table in [
+        "[free_hinges]\n",
+        "[elastic_joints]\nnormal_stiffness_gpa_m = 10\n",
+    ] {
+        let blocks = refusal(&facade(table));
+        assert!(blocks.contains("single prismatic block"), "{blocks}");
+    }
+    let towards = refusal(&facade("[initial]\nsway = 'left'\nrotation_rad = 0.01\n"));
+    assert!(
+        towards.contains("s.toml:7:8") && towards.contains("other side"),
+        "{towards}"
+    );
+    let twice = refusal(&facade(
+        "restitution = 0.5\n[impact]\nrestitution_factor = 0.9\n",
+    ));
+    assert!(twice.contains("s.toml:8:22"), "{twice}");
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(
+        folder.path().join("s.toml"),
+        facade("[ground.one_sine]\namplitude_g = 0.2\nduration_s = 1\n"),
+    )
+    .unwrap();
+    let arguments = ["run", "s.toml", "--hinges", "free"];
+    refused(folder.path(), &arguments, &["leave [column.back] out"]);
+}
+
+/// The wall is drawn beside the column: in the drawing of `check` and in the data of the page.
+#[test]
+fn the_wall_is_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    let pulse = "[ground.one_sine]\namplitude_g = -0.25\nduration_s = 1\n";
+    for (height, named) in [("", 0), ("height_m = 6\n", 1)] {
+        fs::write(path.join("s.toml"), facade(&format!("{height}{pulse}"))).unwrap();
+        printed(path, &["check", "s.toml", "--plot", "s.svg"]);
+        let drawing = fs::read_to_string(path.join("s.svg")).unwrap();
+        assert_eq!(drawing.matches("wall behind 6 m").count(), named);
+        assert!(drawing.contains("#c9c9c9"));
+    }
+    let resolved = parsed(&facade(pulse)).to_toml();
+    assert!(
+        resolved.contains("[column.back]\nside = \"left\"\n"),
+        "{resolved}"
+    );
+    assert_eq!(parsed(&resolved), parsed(&facade(pulse)));
+    printed(path, &["run", "s.toml"]);
+    let page = fs::read_to_string(path.join("results/s/report.html")).unwrap();
+    assert!(page.contains("\"body\":-1"));
+}
