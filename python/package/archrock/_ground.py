@@ -15,7 +15,7 @@ from ._tables import Tables, arguments, to_toml
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-Unit = Literal["g", "m/s2", "cm/s2", "m/s", "cm/s"]
+Unit = Literal["g", "m/s2", "cm/s2", "mm/s2", "mg", "in/s2", "ft/s2", "m/s", "cm/s", "mm/s"]
 Quantity = Literal["acceleration", "velocity"]
 
 
@@ -273,7 +273,8 @@ class Record(Ground):
         time: times in s, rising by at least a microsecond, shape ``(samples,)``, 2 to 1,800,000; anything like an
             array.
         acceleration: accelerations in ``unit``, or velocities if ``quantity`` says so, shape ``(samples,)``.
-        unit: ``"g"``, ``"m/s2"`` or ``"cm/s2"``; ``"m/s"`` or ``"cm/s"`` for velocities.
+        unit: ``"g"``, ``"mg"``, ``"m/s2"``, ``"cm/s2"``, ``"mm/s2"``, ``"in/s2"`` or ``"ft/s2"``; ``"m/s"``, ``"cm/s"`` or
+            ``"mm/s"`` for velocities.
         quantity: the quantity of the samples. Between samples of ``"velocity"`` the acceleration is constant.
         remove_mean: whether the mean over the time of the record is subtracted from the accelerations.
         name: its name in results and messages.

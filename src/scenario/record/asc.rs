@@ -4,7 +4,7 @@
 
 use std::collections::HashMap;
 
-use super::samples::{Contents, LineFault, Parsed, Values, checked_step, number};
+use super::samples::{Contents, LineFault, Parsed, Values, checked_step, number, words};
 use super::unit::{RecordedQuantity, Unit};
 use crate::scenario::prelude::*;
 
@@ -37,7 +37,7 @@ pub(super) fn parse(text: &str, quantity: RecordedQuantity) -> Parsed<Contents> 
     if let Some((line, held)) = header.get("DATA_TYPE") {
         check_quantity(held, quantity).map_err(LineFault::on(*line))?;
     }
-    let values = Values::below(text, last, str::split_whitespace)?;
+    let values = Values::below(text, last, words)?;
     if let Some((line, count)) = header.get("NDATA") {
         let count = number(count).map_err(LineFault::on(*line))?;
         values.check_count((*line, count), "NDATA")?;

@@ -76,6 +76,9 @@ pub struct Layout {
     /// Number of lines before a table.
     #[serde(skip_serializing_if = "is_default")]
     pub skip_rows: usize,
+    /// Beginning of the first line of words after a table; `None` if the table ends with the file.
+    #[serde(skip_serializing_if = "is_default")]
+    pub end_marker: Option<String>,
     /// Decimal mark of the numbers of a table.
     #[serde(skip_serializing_if = "is_default")]
     pub decimal: Decimal,
@@ -121,6 +124,7 @@ impl Layout {
             acceleration_column,
             wrapped,
             skip_rows: table.or("skip_rows", &SKIPPED, 0),
+            end_marker: table.optional("end_marker", &text()),
             decimal: Decimal::read(table),
             unit: table.optional("unit", &any_unit()),
             quantity: table.or("quantity", &quantities, RecordedQuantity::Acceleration),
@@ -137,6 +141,11 @@ impl Layout {
         if let Some(unit) = layout.unit.filter(|unit| unit.quantity() != quantity) {
             table.wrong("unit", format!("is {}", unit.other_quantity()));
         }
+        let is_blank = |marker: &String| marker.trim_start().len() < marker.len().max(1);
+        let wrong =
+            "begins with a blank or is empty; must be the beginning of the line after the table";
+        let is_wrong = layout.end_marker.as_ref().is_some_and(is_blank);
+        let _ = table.refuse(is_wrong, "end_marker", wrong);
         let is_velocity = quantity == RecordedQuantity::Velocity;
         let wrong = "does not apply to a file of K-NET, which holds accelerations";
         let _ = table.refuse(is_velocity && format == Format::Knet, "quantity", wrong);
@@ -175,12 +184,13 @@ pub(super) const COLUMN_NUMBER: Count = Count(1..=10_000, "the first column");
 const SKIPPED: Count = Count(0..=10_000, "none");
 
 /// Keys for tables only.
-const TABLE_KEYS: [&str; 6] = [
+const TABLE_KEYS: [&str; 7] = [
     "time_column",
     "dt_s",
     "acceleration_column",
     "wrapped",
     "skip_rows",
+    "end_marker",
     "decimal",
 ];
 
