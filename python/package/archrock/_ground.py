@@ -369,7 +369,8 @@ class Record(Ground):
             path: the file; its contents are kept.
             vertical: a record of the vertical component, or its file, which is then read in the same way.
             keys: keys of ``[ground.record]``: for tables at least ``unit``, perhaps ``time_column`` and
-                ``acceleration_column``, or ``dt_s`` and ``wrapped``; ``format``, if it does not follow from the file extension;
+                ``acceleration_column``, or ``dt_s`` and ``wrapped``; ``format``, if it does not follow from the file; ``channel``,
+                of files with several;
                 ``quantity``, ``remove_mean``; ``scale`` or ``peak_g``, ``start_s``, ``component``.
 
         Raises:
@@ -380,7 +381,7 @@ class Record(Ground):
         files = {name: read_file(path)}
         table: Tables = {"file": name, **keys}
         if isinstance(vertical, (str, Path)):
-            own = ("scale", "peak_g", "start_s", "component", "acceleration_column")
+            own = ("scale", "peak_g", "start_s", "component", "acceleration_column", "channel")
             vertical = cls.read(vertical, **{key: value for key, value in keys.items() if key not in own})
         if not isinstance(vertical, (Record, type(None))):
             raise TypeError(f"`vertical` must be a Record or the path of its file, not {type(vertical).__name__}")

@@ -77,11 +77,10 @@ mod tests {
             let text = FILE.replace('\n', end);
             assert_eq!(
                 asc().parse(text.as_bytes()),
-                Ok(Contents {
-                    samples: vec![(0.0, 0.1), (0.005, -1.2), (0.01, 0.3)],
-                    unit: Unit::CentimetrePerS2,
-                    columns: String::new(),
-                })
+                Ok(Contents::new(
+                    vec![(0.0, 0.1), (0.005, -1.2), (0.01, 0.3)],
+                    Unit::CentimetrePerS2,
+                ))
             );
         }
         let text = FILE.replace("cm/s^2\nDATA", "g\nDATA");

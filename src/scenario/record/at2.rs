@@ -83,6 +83,13 @@ fn header(
     Err(LineFault::on(last)(message))
 }
 
+/// Returns true for a line of the header with both labels, which is no comment.
+pub(super) fn ends_header(line: &str) -> bool {
+    let words: Vec<_> = header_words(line).collect();
+    let has = |label| position(&words, label).is_some();
+    has(COUNT) && has(STEP) && !line.trim_start().starts_with(['#', '%'])
+}
+
 /// Returns true if a word of the header is a label or a number.
 fn is_item(word: &str) -> bool {
     position(&[word], COUNT).is_some()

@@ -17,6 +17,14 @@ named! {
         Asc = "asc",
         /// K-NET and KiK-net.
         Knet = "knet",
+        /// U.S. Geological Survey (SMC).
+        Smc = "smc",
+        /// California Strong Motion Instrumentation Program (V1, V2), RENADIC.
+        Csmip = "csmip",
+        /// COSMOS strong-motion format (V1, V2).
+        Cosmos = "cosmos",
+        /// GeoNet, New Zealand (V1A, V2A).
+        Geonet = "geonet",
         /// A table with a column of samples and one of times, or with samples at a constant step.
         #[default]
         Csv = "csv",
@@ -35,13 +43,13 @@ named! {
     }
 }
 
-/// A column of a table.
+/// A column of a table, or a channel of a file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[serde(untagged)]
 pub enum TableColumn {
-    /// Number of the column, from 1.
+    /// Number, from 1.
     Number(usize),
-    /// Name of the column in the first row.
+    /// Name of the column in the first row, or a part of the name of the channel in the header.
     Name(String),
 }
 
@@ -73,6 +81,9 @@ pub struct Layout {
     pub wrapped: bool,
     /// Unit of the samples; `None` for the unit in the header. An AT2 file of accelerations without a unit is in units of gravity.
     pub unit: Option<Unit>,
+    /// Channel to read; `None` for the only one.
+    #[serde(skip_serializing_if = "is_default")]
+    pub channel: Option<TableColumn>,
     /// Number of lines before a table.
     #[serde(skip_serializing_if = "is_default")]
     pub skip_rows: usize,
@@ -116,13 +127,15 @@ impl Layout {
     pub(in crate::scenario) fn read(table: &mut Table<'_>, format: Option<Format>) -> Self {
         let step_s = within(&(MIN_STEP_S..=MAX_TIME_S));
         let dt_s = table.optional("dt_s", &step_s);
-        let time_column = table.optional("time_column", &any_column());
-        let acceleration_column = table.optional("acceleration_column", &any_column());
+        let time_column = table.optional("time_column", &numbered_or_named("column"));
+        let acceleration_column =
+            table.optional("acceleration_column", &numbered_or_named("column"));
         let wrapped = table.or("wrapped", &switch(), false);
         let quantities = one_of(RecordedQuantity::ALL);
         let mut layout = Self {
             acceleration_column,
             wrapped,
+            channel: table.optional("channel", &numbered_or_named("channel")),
             skip_rows: table.or("skip_rows", &SKIPPED, 0),
             end_marker: table.optional("end_marker", &text()),
             decimal: Decimal::read(table),
@@ -153,10 +166,15 @@ impl Layout {
         let _ = table.refuse(is_velocity && layout.remove_mean, "remove_mean", wrong);
         let header = match format {
             Format::Asc => "does not apply to an ASC file, whose header has UNITS",
-            _ => "does not apply to a file of K-NET, whose header has a Scale Factor",
+            Format::Knet => "does not apply to a file of K-NET, whose header has a Scale Factor",
+            _ => "does not apply to this format, whose files have their unit",
         };
-        let has_header = matches!(format, Format::Asc | Format::Knet) && table.gives("unit");
+        let has_header = !matches!(format, Format::At2 | Format::Csv) && table.gives("unit");
         let _ = table.refuse(has_header, "unit", header);
+        let has_channels = matches!(format, Format::Csmip | Format::Cosmos | Format::Geonet);
+        let wrong =
+            "applies to formats with several channels only: \"csmip\", \"cosmos\" and \"geonet\"";
+        let _ = table.refuse(!has_channels && layout.channel.is_some(), "channel", wrong);
         if is_table {
             let wrong = "cannot be combined with `time_column`; give one of them";
             let _ = table.refuse(dt_s.is_some() && time_column.is_some(), "dt_s", wrong);
@@ -172,6 +190,11 @@ impl Layout {
             layout.unit = Some(table.needed("unit", &any_unit(), layout.unit));
         }
         layout
+    }
+
+    /// Returns true if one of the keys for tables only is given.
+    pub(in crate::scenario) fn has_table_keys(table: &Table<'_>) -> bool {
+        TABLE_KEYS.iter().any(|key| table.gives(key))
     }
 
     /// Returns true if a key of `[ground.record]` describes tables: the keys for tables only, and `unit`.
@@ -204,33 +227,28 @@ impl Format {
             "ns" | "ew" | "ud" | "ns1" | "ew1" | "ud1" | "ns2" | "ew2" | "ud2" => Ok(Self::Knet),
             "csv" | "tsv" | "txt" | "dat" => Ok(Self::Csv),
             _ => Err(
-                "has an extension that does not tell the format: give `format` as well, \"at2\", \"asc\", \"knet\" or \
-                 \"csv\"",
+                "has an extension that does not tell the format: give `format` as well, \"at2\", \"asc\", \"knet\", \"smc\", \
+                 \"csmip\", \"cosmos\", \"geonet\" or \"csv\"",
             ),
         }
-    }
-
-    /// Returns the format of a file name from its extension; `None` if the extension is not that of a record.
-    pub fn of_file(file: &Path) -> Option<Self> {
-        Self::of_ending(file.to_str()?).ok()
     }
 
     pub(in crate::scenario) fn read(table: &mut Table<'_>) -> Option<Self> {
         table.optional("format", &one_of(Self::ALL))
     }
 
-    /// Reads the format, or determines it from the file name if there is one.
+    /// Reads the format, or determines it from the file if there is one.
     pub(super) fn read_or_ending(table: &mut Table<'_>, file: &str) -> Option<Self> {
         let (format, is_key) = (Self::read(table), table.gives("file"));
         if format.is_some() || table.gives("format") || file.is_empty() && !is_key {
             return format;
         }
-        let ending = Self::of_ending(file);
+        let found = Self::find(table.files(), file, Layout::has_table_keys(table));
         let report = |wrong| match is_key {
             true => table.wrong("file", wrong),
             false => table.fault_of_table(wrong),
         };
-        ending.map_err(report).ok()
+        found.map_err(report).ok()
     }
 }
 
@@ -245,9 +263,9 @@ impl Decimal {
     }
 }
 
-/// Returns the rule for the name or number of a column.
-fn any_column() -> Custom<'static, TableColumn> {
-    let allowed = format!("the name of a column, or {}", COLUMN_NUMBER.allowed());
+/// Returns the rule for the name or number of a column or channel.
+fn numbered_or_named(what: &str) -> Custom<'static, TableColumn> {
+    let allowed = format!("the name of a {what}, or {}", COLUMN_NUMBER.allowed());
     let read = |value: &Value| match string(value) {
         Some(name) => Ok(TableColumn::Name(name.to_owned())),
         None => COLUMN_NUMBER.read(value).map(TableColumn::Number),

@@ -27,8 +27,10 @@ pub struct Contents {
     pub samples: Vec<(f64, f64)>,
     /// The unit of the samples.
     pub unit: Unit,
-    /// The columns of a table, in words that follow the unit: ` from column 2`. Empty for other files.
+    /// The columns of a table or the channel of a file, in words that follow the unit: ` from column 2`. Empty without a choice.
     pub columns: String,
+    /// A difference between header and samples, as a phrase that follows the name of the file.
+    pub difference: Option<String>,
 }
 
 impl Contents {
@@ -37,6 +39,7 @@ impl Contents {
             samples,
             unit,
             columns: String::new(),
+            difference: None,
         }
     }
 }
