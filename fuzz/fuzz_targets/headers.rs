@@ -10,16 +10,24 @@ fuzz_target!(|input: &[u8]| {
     let Some((settings, contents)) = input.split_first() else {
         return;
     };
-    const FORMATS: [Format; 4] = [Format::Smc, Format::Csmip, Format::Cosmos, Format::Geonet];
+    const FORMATS: [Format; 7] = [
+        Format::Smc,
+        Format::Csmip,
+        Format::Cosmos,
+        Format::Geonet,
+        Format::Afad,
+        Format::Cwb,
+        Format::Csmnc,
+    ];
     let quantities = RecordedQuantity::ALL;
     let layout = Layout {
-        quantity: quantities[usize::from(settings >> 2 & 1)],
-        channel: match settings >> 3 & 3 {
+        quantity: quantities[usize::from(settings >> 3 & 1)],
+        channel: match settings >> 4 & 3 {
             0 => None,
             3 => Some(TableColumn::Name("deg".to_owned())),
             number => Some(TableColumn::Number(usize::from(number))),
         },
-        ..Layout::new(FORMATS[usize::from(settings & 3)])
+        ..Layout::new(FORMATS[usize::from(settings & 7) % FORMATS.len()])
     };
     common::check(&layout, contents);
 });

@@ -83,6 +83,9 @@ fn format(series: &Series) -> String {
         Format::Csmip => "file of CSMIP",
         Format::Cosmos => "COSMOS file",
         Format::Geonet => "file of GeoNet",
+        Format::Afad => "file of AFAD",
+        Format::Cwb => "file of CWB",
+        Format::Csmnc => "file of CSMNC",
         Format::Csv if series.layout.wrapped => "table with several samples a row",
         Format::Csv => "table",
     };

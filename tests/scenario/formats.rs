@@ -1,6 +1,6 @@
 //! Formats of networks, recognised by their content: the smallest file of each (`formats/`, made up), and damaged ones.
 //!
-//! Nine of ten files hold the same ten samples, so the expected samples are written once.
+//! All files hold the same ten samples, in their unit.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -19,7 +19,7 @@ const VELOCITIES: [f64; 10] = [
 ];
 
 /// The files, their formats and units, and the value of 1 cm/s2 in the file.
-const FILES: [(&str, Format, Unit, f64); 7] = [
+const FILES: [(&str, Format, Unit, f64); 8] = [
     ("smc.smc", Format::Smc, Unit::CentimetrePerS2, 1.0),
     ("csmip.v1", Format::Csmip, Unit::Gravity, 0.001),
     ("csmip.v2", Format::Csmip, Unit::CentimetrePerS2, 1.0),
@@ -27,6 +27,13 @@ const FILES: [(&str, Format, Unit, f64); 7] = [
     ("cosmos.v2", Format::Cosmos, Unit::CentimetrePerS2, 1.0),
     ("geonet.v1a", Format::Geonet, Unit::MillimetrePerS2, 10.0),
     ("geonet.v2a", Format::Geonet, Unit::MillimetrePerS2, 10.0),
+    ("csmnc.dat", Format::Csmnc, Unit::CentimetrePerS2, 1.0),
+];
+
+/// Files with several columns, and their channel with the samples.
+const COLUMNS: [(&str, Format, &str, usize); 2] = [
+    ("afad.txt", Format::Afad, "N-S", 1),
+    ("cwb.dat", Format::Cwb, "n", 2),
 ];
 
 fn path(name: &str) -> PathBuf {
@@ -469,4 +476,135 @@ fn smc_files_without_a_rate_hold_pairs() {
     ];
     assert_eq!(contents.samples, expected);
     assert_eq!(contents.difference, None);
+}
+
+#[test]
+fn columns_of_a_text_are_channels() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, format, channel, number) in COLUMNS {
+        let text = text(name);
+        let fault = parse(&Layout::new(format), &text).unwrap_err();
+        let words = "the file has 3 channels: give `channel`";
+        assert!(fault.message.starts_with(words), "{fault:?}");
+        let choose = |channel| Layout {
+            channel: Some(channel),
+            ..Layout::new(format)
+        };
+        for channel in [
+            TableColumn::Number(number),
+            TableColumn::Name(channel.to_owned()),
+        ] {
+            let layout = choose(channel);
+            for text in [
+                text.clone(),
+                format!("\u{feff}{}", text.replace('\n', "\r\n")),
+            ] {
+                let contents = parse(&layout, &text).unwrap();
+                assert_eq!(contents.unit, Unit::CentimetrePerS2);
+                assert_eq!(contents.difference, None);
+                assert_values(&contents, &SAMPLES, 1.0);
+                assert_eq!(contents.samples[3].0, 0.03);
+            }
+        }
+        let last = parse(&choose(TableColumn::Number(3)), &text).unwrap();
+        let factor = if name == "cwb.dat" { 0.3 } else { -0.1 };
+        assert_values(&last, &SAMPLES, factor);
+        // The header shows the format, whatever the ending.
+        let file = folder.path().join("x.rec");
+        fs::write(&file, &text).unwrap();
+        assert_eq!(Format::of_file(&file), Some(format));
+        // A peak that differs.
+        let text = text
+            .replace("(N-S) 2.5", "(N-S) 3.5")
+            .replace("-2.500\n", "-3.500\n");
+        let contents = parse(&choose(TableColumn::Number(number)), &text).unwrap();
+        let difference = contents.difference.expect(name);
+        assert!(difference.contains("reaches 2.5 cm/s2, but its header states a peak of 3.5"));
+    }
+}
+
+#[test]
+fn texts_of_networks_are_compared_with_their_header() {
+    let fault = |name: &str, (old, new): (&str, &str), line: usize, words: &str| {
+        let whole = text(name);
+        assert!(whole.contains(old), "{old}");
+        let (_, format, ..) = COLUMNS.into_iter().find(|file| file.0 == name).unwrap();
+        let layout = Layout {
+            channel: Some(TableColumn::Number(1)),
+            ..Layout::new(format)
+        };
+        let fault = parse(&layout, &whole.replacen(old, new, 1)).expect_err(words);
+        assert!(fault.message.contains(words), "{fault:?}");
+        assert_eq!(fault.line, line, "{fault:?}");
+    };
+    fault(
+        "afad.txt",
+        (": 10\n", ": 11\n"),
+        20,
+        "is 10: line 6 announces 11",
+    );
+    fault(
+        "afad.txt",
+        ("INTERVAL (sec) : 0.01", "INTERVAL (sec) : 0"),
+        6,
+        "the step is 0 s",
+    );
+    fault(
+        "afad.txt",
+        ("    -0.100000\n", "\n"),
+        20,
+        "the last sample is cut",
+    );
+    fault(
+        "afad.txt",
+        ("NUMBER OF DATA", "NUMBER"),
+        10,
+        "the header has no `number of data :`",
+    );
+    fault(
+        "afad.txt",
+        ("E-W          U-D", "E-W"),
+        10,
+        "must name three components",
+    );
+    let cut = text("cwb.dat").replace("#RecordLength(sec): 0.1", "#RecordLength(sec): 2");
+    let layout = Layout {
+        channel: Some(TableColumn::Number(1)),
+        ..Layout::new(Format::Cwb)
+    };
+    let message = parse(&layout, &cut).unwrap_err().message;
+    assert!(
+        message.contains("ends after 0.1 s") && message.contains("line 7 announces 2 s"),
+        "{message}"
+    );
+    fault(
+        "cwb.dat",
+        ("gal. DC", "counts. DC"),
+        7,
+        "the unit is counts",
+    );
+    fault(
+        "cwb.dat",
+        ("     0.020", "     0.010"),
+        17,
+        "the time does not increase",
+    );
+    assert_fault(
+        "csmnc.dat",
+        ("POINTS:  10", "POINTS:  11"),
+        14,
+        "is 10: line 8 announces 11",
+    );
+    assert_fault(
+        "csmnc.dat",
+        ("UNIT: CM/SEC/SEC", "UNIT: CM"),
+        8,
+        "the unit is CM",
+    );
+    assert_fault(
+        "csmnc.dat",
+        ("CORRECTED ACCELERATION", "CORRECTED DISPLACEMENT"),
+        8,
+        "the file holds displacement",
+    );
 }

@@ -25,6 +25,12 @@ named! {
         Cosmos = "cosmos",
         /// GeoNet, New Zealand (V1A, V2A).
         Geonet = "geonet",
+        /// AFAD, Turkey.
+        Afad = "afad",
+        /// Central Weather Bureau, Taiwan.
+        Cwb = "cwb",
+        /// China Strong Motion Networks Center.
+        Csmnc = "csmnc",
         /// A table with a column of samples and one of times, or with samples at a constant step.
         #[default]
         Csv = "csv",
@@ -171,9 +177,11 @@ impl Layout {
         };
         let has_header = !matches!(format, Format::At2 | Format::Csv) && table.gives("unit");
         let _ = table.refuse(has_header, "unit", header);
-        let has_channels = matches!(format, Format::Csmip | Format::Cosmos | Format::Geonet);
-        let wrong =
-            "applies to formats with several channels only: \"csmip\", \"cosmos\" and \"geonet\"";
+        let has_channels = matches!(
+            format,
+            Format::Csmip | Format::Cosmos | Format::Geonet | Format::Afad | Format::Cwb
+        );
+        let wrong = "applies to formats with several channels only: \"csmip\", \"cosmos\", \"geonet\", \"afad\" and \"cwb\"";
         let _ = table.refuse(!has_channels && layout.channel.is_some(), "channel", wrong);
         if is_table {
             let wrong = "cannot be combined with `time_column`; give one of them";
@@ -228,7 +236,7 @@ impl Format {
             "csv" | "tsv" | "txt" | "dat" => Ok(Self::Csv),
             _ => Err(
                 "has an extension that does not tell the format: give `format` as well, \"at2\", \"asc\", \"knet\", \"smc\", \
-                 \"csmip\", \"cosmos\", \"geonet\" or \"csv\"",
+                 \"csmip\", \"cosmos\", \"geonet\", \"afad\", \"cwb\", \"csmnc\" or \"csv\"",
             ),
         }
     }

@@ -31,6 +31,7 @@ mod geonet;
 mod histories;
 mod knet;
 mod layout;
+mod networks;
 mod samples;
 mod smc;
 mod unit;
@@ -429,6 +430,9 @@ impl Layout {
             Format::Csmip => histories::read(&text, self, csmip::histories),
             Format::Cosmos => histories::read(&text, self, cosmos::histories),
             Format::Geonet => histories::read(&text, self, geonet::histories),
+            Format::Afad => histories::read(&text, self, networks::afad),
+            Format::Cwb => histories::read(&text, self, networks::cwb),
+            Format::Csmnc => histories::read(&text, self, networks::csmnc),
         }?;
         let unit = contents.unit;
         ensure(unit.quantity() == self.quantity, || {
@@ -482,6 +486,12 @@ impl Format {
             Some(Self::Geonet)
         } else if csmip::begins(first) {
             Some(Self::Csmip)
+        } else if first.starts_with("STRONG GROUND MOTION RECORDS OF") {
+            Some(Self::Afad)
+        } else if has("#AmplitudeUnit:") && has("#DataSequence: Time") {
+            Some(Self::Cwb)
+        } else if has("NO. OF POINTS:") && has("SPACED INTERVALS OF:") {
+            Some(Self::Csmnc)
         } else if first.starts_with("Origin Time") && has("Sampling Freq(Hz)") {
             Some(Self::Knet)
         } else if first.contains(':') && has("SAMPLING_INTERVAL_S:") {
@@ -596,6 +606,9 @@ mod tests {
                     Layout::new(Format::Csmip),
                     Layout::new(Format::Cosmos),
                     Layout::new(Format::Geonet),
+                    Layout::new(Format::Afad),
+                    Layout::new(Format::Cwb),
+                    Layout::new(Format::Csmnc),
                     csv_layout(),
                     blanks,
                     wrapped,
@@ -633,6 +646,9 @@ mod tests {
         "Number of points 3\n",
         "1 2 3 4 5 6 7 8 9 10\n",
         "|\n",
+        "NUMBER OF DATA : 3\nSAMPLING INTERVAL (sec) : .01\nN-S E-W U-D\n",
+        "#RecordLength(sec): 0\n#SampleRate(Hz): 100\n#AmplitudeUnit: gal.\n#DataSequence: Time U(+)\n",
+        "UNCORRECTED ACCELERATION UNIT: GAL\nNO. OF POINTS: 3 SPACED INTERVALS OF: .01 SEC\n",
         "1e308",
         "NPTS",
         "DT",
