@@ -27,7 +27,7 @@ pub(super) fn histories(lines: &[&str]) -> Parsed<Vec<History>> {
         let lower = line.to_ascii_lowercase();
         if let Some(channel) = lower.strip_prefix("sta cha") {
             name = squeezed(
-                &line[line.len() - channel.len()..].trim_start_matches(['n', 'N', ':', ' ']),
+                line[line.len() - channel.len()..].trim_start_matches(['n', 'N', ':', ' ']),
             );
         } else if let Some(count) = word_after(line, REALS) {
             let count = number(count)
