@@ -27,6 +27,7 @@ fuzz_target!(|input: &[u8]| {
         } else {
             Decimal::Comma
         },
+        end_marker: (settings & 72 == 72).then(|| "END".to_owned()),
         // A second column is not named explicitly: it is the default in a table of two.
         acceleration_column: Some(column(*settings, [2, 1, 3], "a"))
             .filter(|column| *column != TableColumn::Number(2)),

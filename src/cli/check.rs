@@ -17,7 +17,7 @@ use super::{
 
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// Scenario files (TOML; `-` for standard input), or record files (AT2, ASC, K-NET, or tables in CSV and TXT).
+    /// Scenario files (TOML; `-` for standard input), or record files (AT2, ASC, K-NET, SMC, CSMIP, COSMOS, GeoNet, AFAD, CWB, CSMNC, or tables in CSV and TXT).
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
     #[command(flatten)]

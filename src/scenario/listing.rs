@@ -23,7 +23,7 @@ struct ListedFile {
 
 impl RecordListing {
     /// Finds the files that match the patterns of the keys, and reads the keys that describe tables. `format` applies to all files; without it
-    /// the file extensions determine the formats.
+    /// the contents or the extensions of the files determine the formats.
     pub(super) fn read(
         table: &mut Table<'_>,
         keys: &[(&'static str, Vec<String>)],
@@ -86,7 +86,7 @@ pub(super) fn written(keys: &[(&str, &[Series])]) -> Map<String, Value> {
     let tables = layouts.clone().find(|layout| layout.format == Format::Csv);
     let layout_source = tables.or_else(|| layouts.clone().next());
     let mut layout = json!(layout_source);
-    // If formats differ, the file extensions determine them.
+    // If formats differ, the files determine them.
     if let Some(layout) = layout.as_object_mut()
         && layouts.any(|layout| Some(layout.format) != layout_source.map(|layout| layout.format))
     {
@@ -117,7 +117,8 @@ fn list(
         }
     }
     let listed = found.into_iter().filter_map(|(file, element)| {
-        let format = format.map_or_else(|| Format::of_ending(&file), Ok);
+        let found = || Format::find(table.files(), &file, Layout::has_table_keys(table));
+        let format = format.map_or_else(found, Ok);
         let format = format.map_err(|wrong| {
             let wrong = format!("names {}, which {wrong}", shown(&file));
             table.wrong_element(key, element, wrong)

@@ -166,6 +166,8 @@ impl Series {
             };
             unlikely.push(format!("{name} peaks at {} g: {might_be}", plain(peak_g)));
         }
+        let difference = self.difference.iter();
+        unlikely.extend(difference.map(|difference| format!("{name} {difference}")));
         let step_s = sampling.duration_s / (sampling.count - 1) as f64;
         if step_s > RECORD_STEP_S {
             let step = plain(step_s);

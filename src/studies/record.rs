@@ -79,6 +79,13 @@ fn format(series: &Series) -> String {
         Format::At2 => "AT2 file (PEER)",
         Format::Asc => "ASC file (ESM)",
         Format::Knet => "file of K-NET",
+        Format::Smc => "SMC file (USGS)",
+        Format::Csmip => "file of CSMIP",
+        Format::Cosmos => "COSMOS file",
+        Format::Geonet => "file of GeoNet",
+        Format::Afad => "file of AFAD",
+        Format::Cwb => "file of CWB",
+        Format::Csmnc => "file of CSMNC",
         Format::Csv if series.layout.wrapped => "table with several samples a row",
         Format::Csv => "table",
     };

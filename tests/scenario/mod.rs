@@ -3,6 +3,7 @@
 mod check_record;
 mod files;
 mod files_in_memory;
+mod formats;
 pub mod keys;
 mod records;
 mod set;

@@ -15,7 +15,7 @@ from ._tables import Tables, arguments, to_toml
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-Unit = Literal["g", "m/s2", "cm/s2", "m/s", "cm/s"]
+Unit = Literal["g", "m/s2", "cm/s2", "mm/s2", "mg", "in/s2", "ft/s2", "m/s", "cm/s", "mm/s"]
 Quantity = Literal["acceleration", "velocity"]
 
 
@@ -273,7 +273,8 @@ class Record(Ground):
         time: times in s, rising by at least a microsecond, shape ``(samples,)``, 2 to 1,800,000; anything like an
             array.
         acceleration: accelerations in ``unit``, or velocities if ``quantity`` says so, shape ``(samples,)``.
-        unit: ``"g"``, ``"m/s2"`` or ``"cm/s2"``; ``"m/s"`` or ``"cm/s"`` for velocities.
+        unit: ``"g"``, ``"mg"``, ``"m/s2"``, ``"cm/s2"``, ``"mm/s2"``, ``"in/s2"`` or ``"ft/s2"``; ``"m/s"``, ``"cm/s"`` or
+            ``"mm/s"`` for velocities.
         quantity: the quantity of the samples. Between samples of ``"velocity"`` the acceleration is constant.
         remove_mean: whether the mean over the time of the record is subtracted from the accelerations.
         name: its name in results and messages.
@@ -368,7 +369,8 @@ class Record(Ground):
             path: the file; its contents are kept.
             vertical: a record of the vertical component, or its file, which is then read in the same way.
             keys: keys of ``[ground.record]``: for tables at least ``unit``, perhaps ``time_column`` and
-                ``acceleration_column``, or ``dt_s`` and ``wrapped``; ``format``, if it does not follow from the file extension;
+                ``acceleration_column``, or ``dt_s`` and ``wrapped``; ``format``, if it does not follow from the file; ``channel``,
+                of files with several;
                 ``quantity``, ``remove_mean``; ``scale`` or ``peak_g``, ``start_s``, ``component``.
 
         Raises:
@@ -379,7 +381,7 @@ class Record(Ground):
         files = {name: read_file(path)}
         table: Tables = {"file": name, **keys}
         if isinstance(vertical, (str, Path)):
-            own = ("scale", "peak_g", "start_s", "component", "acceleration_column")
+            own = ("scale", "peak_g", "start_s", "component", "acceleration_column", "channel")
             vertical = cls.read(vertical, **{key: value for key, value in keys.items() if key not in own})
         if not isinstance(vertical, (Record, type(None))):
             raise TypeError(f"`vertical` must be a Record or the path of its file, not {type(vertical).__name__}")

@@ -4,7 +4,7 @@
 
 use std::collections::HashMap;
 
-use super::samples::{Contents, LineFault, Parsed, Values, checked_step, number};
+use super::samples::{Contents, LineFault, Parsed, Values, checked_step, number, words};
 use super::unit::{RecordedQuantity, Unit};
 use crate::scenario::prelude::*;
 
@@ -37,7 +37,7 @@ pub(super) fn parse(text: &str, quantity: RecordedQuantity) -> Parsed<Contents> 
     if let Some((line, held)) = header.get("DATA_TYPE") {
         check_quantity(held, quantity).map_err(LineFault::on(*line))?;
     }
-    let values = Values::below(text, last, str::split_whitespace)?;
+    let values = Values::below(text, last, words)?;
     if let Some((line, count)) = header.get("NDATA") {
         let count = number(count).map_err(LineFault::on(*line))?;
         values.check_count((*line, count), "NDATA")?;
@@ -77,11 +77,10 @@ mod tests {
             let text = FILE.replace('\n', end);
             assert_eq!(
                 asc().parse(text.as_bytes()),
-                Ok(Contents {
-                    samples: vec![(0.0, 0.1), (0.005, -1.2), (0.01, 0.3)],
-                    unit: Unit::CentimetrePerS2,
-                    columns: String::new(),
-                })
+                Ok(Contents::new(
+                    vec![(0.0, 0.1), (0.005, -1.2), (0.01, 0.3)],
+                    Unit::CentimetrePerS2,
+                ))
             );
         }
         let text = FILE.replace("cm/s^2\nDATA", "g\nDATA");

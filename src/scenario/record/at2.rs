@@ -5,7 +5,7 @@
 //! a minus sign separates two numbers.
 
 use super::samples::{
-    Contents, LineFault, MAX_SAMPLES, Parsed, Values, checked_step, header_words, number,
+    Contents, LineFault, MAX_SAMPLES, Parsed, Values, checked_step, header_words, number, words,
 };
 use super::unit::{RecordedQuantity, Unit};
 use crate::scenario::prelude::*;
@@ -26,28 +26,9 @@ pub(super) fn parse(
     let missing = "the header names no unit up to here; give `unit`: what the velocities are in";
     let unit = unit.or(named).or(gravity);
     let unit = unit.ok_or_else(|| LineFault::on(line)(missing))?;
-    let values = Values::below(text, line, words)?;
+    let values = Values::below(text, line, |line| line.split(',').flat_map(words))?;
     values.check_count((line, count), "NPTS")?;
     Ok(Contents::new(values.evenly(step_s, line, "DT")?, unit))
-}
-
-/// Returns the numbers of a line as words, even if only a sign separates them.
-fn words(line: &str) -> impl Iterator<Item = &str> {
-    // Some files end with the end-of-file character of DOS.
-    let blank = |c: char| c.is_whitespace() || c == ',' || c == '\u{1a}';
-    line.split(blank).flat_map(|mut rest| {
-        std::iter::from_fn(move || {
-            let bytes = rest.as_bytes();
-            let is_next = |&at: &usize| {
-                matches!(bytes[at], b'+' | b'-')
-                    && !matches!(bytes[at - 1], b'e' | b'E' | b'd' | b'D')
-            };
-            let end = (1..bytes.len()).find(is_next).unwrap_or(bytes.len());
-            let word;
-            (word, rest) = rest.split_at(end);
-            Some(word).filter(|word| !word.is_empty())
-        })
-    })
 }
 
 const COUNT: &str = "NPTS";
@@ -100,6 +81,13 @@ fn header(
         false => "the header has no DT (time step) up to here",
     };
     Err(LineFault::on(last)(message))
+}
+
+/// Returns true for a line of the header with both labels, which is no comment.
+pub(super) fn ends_header(line: &str) -> bool {
+    let words: Vec<_> = header_words(line).collect();
+    let has = |label| position(&words, label).is_some();
+    has(COUNT) && has(STEP) && !line.trim_start().starts_with(['#', '%'])
 }
 
 /// Returns true if a word of the header is a label or a number.
@@ -287,7 +275,7 @@ mod tests {
             1,
             "a displacement history",
         );
-        fault("A\nUNITS OF MG\nNPTS 2 DT 1\n1 2", 2, "the unit is MG;");
+        fault("A\nUNITS OF GG\nNPTS 2 DT 1\n1 2", 2, "the unit is GG;");
     }
 
     #[test]
@@ -305,13 +293,15 @@ mod tests {
             ("Units of g. Filter points", Unit::Gravity),
             ("UNITS OF CM/SEC/SEC", Unit::CentimetrePerS2),
             ("units of m/s^2,", Unit::MetrePerS2),
+            ("UNITS OF MG", Unit::MilliGravity),
+            ("UNITS OF IN/SEC/SEC", Unit::InchPerS2),
             ("no unit", Unit::Gravity),
         ] {
             assert_eq!(unit(header, None), named, "{header}");
             assert_eq!(unit(header, Some(Unit::MetrePerS2)), Unit::MetrePerS2);
         }
         assert_eq!(
-            unit("UNITS OF MG", Some(Unit::CentimetrePerS2)),
+            unit("UNITS OF GG", Some(Unit::CentimetrePerS2)),
             Unit::CentimetrePerS2
         );
     }

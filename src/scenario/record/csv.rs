@@ -12,10 +12,10 @@ use crate::scenario::prelude::*;
 
 /// Reads the samples, in the unit of the file.
 ///
-/// Blank lines and lines that begin with `#` are skipped. The first of the other lines may contain the names of the columns; names are required
+/// Blank lines and lines that begin with `#` or `%` are skipped. The first of the other lines may contain the names of the columns; names are required
 /// if a column is chosen by name. All rows have the same number of cells; only the last of rows with several samples may have fewer.
 pub(super) fn parse(text: &str, layout: &Layout) -> Parsed<Contents> {
-    let table = without_first(text, layout.skip_rows);
+    let table = table_of(text, layout)?;
     let (Some(times), Some(unit)) = (&layout.times, layout.unit) else {
         return Err(LineFault::on(1)("a table needs its times and its unit"));
     };
@@ -112,31 +112,35 @@ fn nothing(text: &str, last_line: usize) -> LineFault {
     LineFault::on(line.max(1))("there are no samples")
 }
 
-/// Replaces the first lines of a text by blank lines, so that the others keep their line numbers.
-fn without_first(text: &str, lines: usize) -> Cow<'_, str> {
-    if lines == 0 {
-        return Cow::Borrowed(text);
+/// Returns the text of the table. The lines before it and comments by `%` are blank, so that the others keep their line numbers; the text ends
+/// before the end marker.
+fn table_of<'t>(text: &'t str, layout: &Layout) -> Parsed<Cow<'t, str>> {
+    let (skipped, count) = (layout.skip_rows, text.lines().count());
+    let is_comment = |line: &str| line.trim_start().starts_with('%');
+    let end = layout.end_marker.as_deref().map(|marker| {
+        // A row of numbers never ends a table, or a marker such as `-` would cut it.
+        let is_number = |word: &str| word.is_empty() || layout.decimal.number(word).is_ok();
+        let is_row = |line: &str| line.split([' ', '\t', ';', ',']).all(is_number);
+        let ends = |line: &str| line.trim_start().starts_with(marker) && !is_row(line);
+        let mut lines = text.lines().enumerate().skip(skipped);
+        let end = lines.find(|(_, line)| ends(line)).map(|(index, _)| index);
+        end.ok_or_else(|| {
+            let marker = excerpt(marker);
+            LineFault::on(count.max(1))(format!(
+                "no line of words begins with `{marker}` up to here, the `end_marker` of the table"
+            ))
+        })
+    });
+    let end = end.transpose()?.unwrap_or(count);
+    if (skipped, end) == (0, count) && !text.lines().any(is_comment) {
+        return Ok(Cow::Borrowed(text));
     }
-    let mut ends = text.match_indices('\n').map(|(at, _)| at + 1);
-    match ends.nth(lines - 1) {
-        Some(end) => Cow::Owned("\n".repeat(lines) + &text[end..]),
-        None => Cow::Owned("\n".repeat(text.lines().count())),
-    }
-}
-
-/// Returns an error if a time is out of range, or not later than the previous time.
-fn check_time(time_s: f64, before_s: Option<f64>) -> Result<(), String> {
-    ensure(time_s.abs() <= MAX_TIME_S, || {
-        let (time, most) = (plain(time_s), short(MAX_TIME_S));
-        format!("the time {time} s is out of range; its magnitude must be at most {most} s")
-    })?;
-    let before_s = before_s.unwrap_or(f64::NEG_INFINITY);
-    ensure(time_s - before_s >= MIN_STEP_S, || {
-        let [time, before, least] = [time_s, before_s, MIN_STEP_S].map(short);
-        format!(
-            "the time does not increase: {time} s follows {before} s; allowed are steps of at least {least} s"
-        )
-    })
+    let lines = text.split_inclusive('\n').take(end).enumerate();
+    let lines = lines.map(|(index, line)| match index < skipped || is_comment(line) {
+        true => "\n",
+        false => line,
+    });
+    Ok(lines.collect::<String>().into())
 }
 
 /// The columns of times and accelerations, with indices from 0.
@@ -527,7 +531,8 @@ fn hint(
     let is_number = |word: &str| number(word).is_ok();
     if !before.values.is_empty() {
         let has_number = wrong.text.split(BETWEEN).any(is_number);
-        return "; begin the line with `#` if it is not of the table".repeat((!has_number).into());
+        let remedy = "; begin the line with `#` if it is not of the table, or give `end_marker`, its first word, if the table ends here";
+        return remedy.repeat((!has_number).into());
     }
     let is_of_numbers = |row: &Row<'_>| {
         let mut words = row.text.split(BETWEEN).filter(|word| !word.is_empty());
@@ -540,6 +545,18 @@ fn hint(
     })
 }
 
+/// Returns the numbers of a cell between blanks that touch, as in `-0.123-0.456`, or else the cell. A date such as 2009-04-06 is one cell.
+fn touching(cell: &str, by_blanks: bool) -> impl Iterator<Item = &str> {
+    let is_decimal = |word: &str| word.contains('.') && number(word).is_ok();
+    let touch = by_blanks && words(cell).nth(1).is_some() && words(cell).all(is_decimal);
+    let (whole, parts) = if touch {
+        (None, cell)
+    } else {
+        (Some(cell), "")
+    };
+    whole.into_iter().chain(words(parts))
+}
+
 impl Row<'_> {
     /// Returns the cells, without surrounding blanks. A quotation mark after a blank is not a quotation for the CSV reader, so it is removed
     /// here.
@@ -547,7 +564,8 @@ impl Row<'_> {
         let cells = self.record.iter();
         // Consecutive blanks count as one separator.
         let cells = cells.filter(|cell| !(self.by_blanks && cell.trim().is_empty()));
-        cells.map(|cell| cell.trim().trim_matches('"').trim())
+        let cells = cells.map(|cell| cell.trim().trim_matches('"').trim());
+        cells.flat_map(|cell| touching(cell, self.by_blanks))
     }
 
     /// Returns the number of cells up to the last one that is not empty.
@@ -754,6 +772,77 @@ mod tests {
         assert_fault(&text, &skipping(3), 6, "`x` is not a finite number");
         assert_fault("a\nb\n", &skipping(5), 2, "there are no samples");
         assert_fault("a\nb\n0;1\n1;2", &skipping(3), 4, "number of samples is 1");
+    }
+
+    #[test]
+    fn comments_by_percent_signs_are_skipped() {
+        let expected = Ok(vec![(0.0, 1.0), (0.5, -2.0)]);
+        for text in [
+            "% time in s, \"acc\nt,a\n0,1\n % half\n0.5,-2\n",
+            "\u{feff}% made by hand\r\n%\r\nt,a\r\n0,1\r\n0.5,-2",
+        ] {
+            assert_eq!(parse(text, &csv_layout()), expected, "{text}");
+        }
+        // Errors have the line numbers of the file.
+        assert_fault("% x\nt,a\n%\n0,x", &csv_layout(), 4, "`x`");
+    }
+
+    #[test]
+    fn a_table_ends_before_its_end_marker() {
+        let until = |marker: &str| Layout {
+            end_marker: Some(marker.to_owned()),
+            skip_rows: 1,
+            ..numbered()
+        };
+        let expected = Ok(vec![(0.0, 1.0), (0.5, -2.0)]);
+        for (text, marker) in [
+            ("END\n0 1\n0.5 -2\n END OF DATA\n9 9 9\n", "END"),
+            ("\r\n0,1\r\n0.5,-2\r\n-----\r\n3 samples", "-"),
+            ("\u{feff}x\n0 1\n0.5 -2\n-999 end", "-999"),
+        ] {
+            assert_eq!(parse(text, &until(marker)), expected, "{text}");
+        }
+        let text = "x\n0 1\n0.5 -2\n-999 -999\n";
+        assert_fault(
+            text,
+            &until("-999"),
+            4,
+            "no line of words begins with `-999`",
+        );
+        assert_fault("x\n0 1\nEND\n0.5 -2\n", &until("END"), 2, "samples is 1");
+        // The footer of a single column, and of rows of several samples whose last one is shorter.
+        let step = Layout::table(Times::Step(0.5), Unit::Gravity);
+        for wrapped in [false, true] {
+            let layout = Layout {
+                wrapped,
+                end_marker: Some("END".to_owned()),
+                ..step.clone()
+            };
+            let rows = if wrapped { "1 -2\n3\n" } else { "1\n-2\n3\n" };
+            let samples = parse(&format!("{rows}END 3\n"), &layout);
+            assert_eq!(samples, Ok(vec![(0.0, 1.0), (0.5, -2.0), (1.0, 3.0)]));
+        }
+    }
+
+    #[test]
+    fn numbers_between_blanks_may_touch() {
+        let text = " 0.123-0.456-1.E-03 7.000\n-2.000-3.000-4.000\n";
+        let samples = parse(text, &wrapped()).unwrap();
+        let values: Vec<_> = samples.iter().map(|sample| sample.1).collect();
+        assert_eq!(values, [0.123, -0.456, -0.001, 7.0, -2.0, -3.0, -4.0]);
+        let expected = Ok(vec![(0.0, -1.5), (0.5, -2.0)]);
+        assert_eq!(parse("0.000-1.500\n0.500-2.000\n", &numbered()), expected);
+        // A date is one cell.
+        let dated = Layout {
+            acceleration_column: Some(TableColumn::Number(2)),
+            ..step()
+        };
+        let samples = parse("2009-04-06 1\n2009-04-06 -2\n", &dated);
+        assert_eq!(samples, Ok(vec![(0.0, 1.0), (0.5, -2.0)]));
+    }
+
+    fn step() -> Layout {
+        Layout::table(Times::Step(0.5), Unit::Gravity)
     }
 
     #[test]

@@ -3,7 +3,7 @@
 //! The header has lines with a name of up to 18 characters and a value; its last line begins with `Memo.`. Integers follow, several per line.
 //! Multiplied by the `Scale Factor`, such as `3920(gal)/6182761`, they are accelerations in gal, including the offset of the instrument.
 
-use super::samples::{Contents, LineFault, MIN_STEP_S, Parsed, Values, number};
+use super::samples::{Contents, LineFault, MIN_STEP_S, Parsed, Values, number, words};
 use super::unit::Unit;
 use crate::scenario::prelude::*;
 
@@ -35,7 +35,7 @@ pub(super) fn parse(text: &str) -> Parsed<Contents> {
     let step_s = read_step(frequency).map_err(LineFault::on(line))?;
     let (line, scale) = find(SCALE).ok_or_else(|| missing(SCALE))?;
     let scale = read_scale(scale).map_err(LineFault::on(line))?;
-    let mut values = Values::below(text, lines, str::split_whitespace)?;
+    let mut values = Values::below(text, lines, words)?;
     values.values.iter_mut().for_each(|value| *value *= scale);
     values.check_enough()?;
     // The header gives the duration in whole seconds.

@@ -17,6 +17,20 @@ named! {
         Asc = "asc",
         /// K-NET and KiK-net.
         Knet = "knet",
+        /// U.S. Geological Survey (SMC).
+        Smc = "smc",
+        /// California Strong Motion Instrumentation Program (V1, V2), RENADIC.
+        Csmip = "csmip",
+        /// COSMOS strong-motion format (V1, V2).
+        Cosmos = "cosmos",
+        /// GeoNet, New Zealand (V1A, V2A).
+        Geonet = "geonet",
+        /// AFAD, Turkey.
+        Afad = "afad",
+        /// Central Weather Bureau, Taiwan.
+        Cwb = "cwb",
+        /// China Strong Motion Networks Center.
+        Csmnc = "csmnc",
         /// A table with a column of samples and one of times, or with samples at a constant step.
         #[default]
         Csv = "csv",
@@ -35,13 +49,13 @@ named! {
     }
 }
 
-/// A column of a table.
+/// A column of a table, or a channel of a file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[serde(untagged)]
 pub enum TableColumn {
-    /// Number of the column, from 1.
+    /// Number, from 1.
     Number(usize),
-    /// Name of the column in the first row.
+    /// Name of the column in the first row, or a part of the name of the channel in the header.
     Name(String),
 }
 
@@ -73,9 +87,15 @@ pub struct Layout {
     pub wrapped: bool,
     /// Unit of the samples; `None` for the unit in the header. An AT2 file of accelerations without a unit is in units of gravity.
     pub unit: Option<Unit>,
+    /// Channel to read; `None` for the only one.
+    #[serde(skip_serializing_if = "is_default")]
+    pub channel: Option<TableColumn>,
     /// Number of lines before a table.
     #[serde(skip_serializing_if = "is_default")]
     pub skip_rows: usize,
+    /// Beginning of the first line of words after a table; `None` if the table ends with the file.
+    #[serde(skip_serializing_if = "is_default")]
+    pub end_marker: Option<String>,
     /// Decimal mark of the numbers of a table.
     #[serde(skip_serializing_if = "is_default")]
     pub decimal: Decimal,
@@ -113,14 +133,17 @@ impl Layout {
     pub(in crate::scenario) fn read(table: &mut Table<'_>, format: Option<Format>) -> Self {
         let step_s = within(&(MIN_STEP_S..=MAX_TIME_S));
         let dt_s = table.optional("dt_s", &step_s);
-        let time_column = table.optional("time_column", &any_column());
-        let acceleration_column = table.optional("acceleration_column", &any_column());
+        let time_column = table.optional("time_column", &numbered_or_named("column"));
+        let acceleration_column =
+            table.optional("acceleration_column", &numbered_or_named("column"));
         let wrapped = table.or("wrapped", &switch(), false);
         let quantities = one_of(RecordedQuantity::ALL);
         let mut layout = Self {
             acceleration_column,
             wrapped,
+            channel: table.optional("channel", &numbered_or_named("channel")),
             skip_rows: table.or("skip_rows", &SKIPPED, 0),
+            end_marker: table.optional("end_marker", &text()),
             decimal: Decimal::read(table),
             unit: table.optional("unit", &any_unit()),
             quantity: table.or("quantity", &quantities, RecordedQuantity::Acceleration),
@@ -137,6 +160,11 @@ impl Layout {
         if let Some(unit) = layout.unit.filter(|unit| unit.quantity() != quantity) {
             table.wrong("unit", format!("is {}", unit.other_quantity()));
         }
+        let is_blank = |marker: &String| marker.trim_start().len() < marker.len().max(1);
+        let wrong =
+            "begins with a blank or is empty; must be the beginning of the line after the table";
+        let is_wrong = layout.end_marker.as_ref().is_some_and(is_blank);
+        let _ = table.refuse(is_wrong, "end_marker", wrong);
         let is_velocity = quantity == RecordedQuantity::Velocity;
         let wrong = "does not apply to a file of K-NET, which holds accelerations";
         let _ = table.refuse(is_velocity && format == Format::Knet, "quantity", wrong);
@@ -144,10 +172,17 @@ impl Layout {
         let _ = table.refuse(is_velocity && layout.remove_mean, "remove_mean", wrong);
         let header = match format {
             Format::Asc => "does not apply to an ASC file, whose header has UNITS",
-            _ => "does not apply to a file of K-NET, whose header has a Scale Factor",
+            Format::Knet => "does not apply to a file of K-NET, whose header has a Scale Factor",
+            _ => "does not apply to this format, whose files have their unit",
         };
-        let has_header = matches!(format, Format::Asc | Format::Knet) && table.gives("unit");
+        let has_header = !matches!(format, Format::At2 | Format::Csv) && table.gives("unit");
         let _ = table.refuse(has_header, "unit", header);
+        let has_channels = matches!(
+            format,
+            Format::Csmip | Format::Cosmos | Format::Geonet | Format::Afad | Format::Cwb
+        );
+        let wrong = "applies to formats with several channels only: \"csmip\", \"cosmos\", \"geonet\", \"afad\" and \"cwb\"";
+        let _ = table.refuse(!has_channels && layout.channel.is_some(), "channel", wrong);
         if is_table {
             let wrong = "cannot be combined with `time_column`; give one of them";
             let _ = table.refuse(dt_s.is_some() && time_column.is_some(), "dt_s", wrong);
@@ -165,6 +200,11 @@ impl Layout {
         layout
     }
 
+    /// Returns true if one of the keys for tables only is given.
+    pub(in crate::scenario) fn has_table_keys(table: &Table<'_>) -> bool {
+        TABLE_KEYS.iter().any(|key| table.gives(key))
+    }
+
     /// Returns true if a key of `[ground.record]` describes tables: the keys for tables only, and `unit`.
     pub fn is_of_tables(key: &str) -> bool {
         TABLE_KEYS.contains(&key) || key == "unit"
@@ -175,12 +215,13 @@ pub(super) const COLUMN_NUMBER: Count = Count(1..=10_000, "the first column");
 const SKIPPED: Count = Count(0..=10_000, "none");
 
 /// Keys for tables only.
-const TABLE_KEYS: [&str; 6] = [
+const TABLE_KEYS: [&str; 7] = [
     "time_column",
     "dt_s",
     "acceleration_column",
     "wrapped",
     "skip_rows",
+    "end_marker",
     "decimal",
 ];
 
@@ -194,33 +235,28 @@ impl Format {
             "ns" | "ew" | "ud" | "ns1" | "ew1" | "ud1" | "ns2" | "ew2" | "ud2" => Ok(Self::Knet),
             "csv" | "tsv" | "txt" | "dat" => Ok(Self::Csv),
             _ => Err(
-                "has an extension that does not tell the format: give `format` as well, \"at2\", \"asc\", \"knet\" or \
-                 \"csv\"",
+                "has an extension that does not tell the format: give `format` as well, \"at2\", \"asc\", \"knet\", \"smc\", \
+                 \"csmip\", \"cosmos\", \"geonet\", \"afad\", \"cwb\", \"csmnc\" or \"csv\"",
             ),
         }
-    }
-
-    /// Returns the format of a file name from its extension; `None` if the extension is not that of a record.
-    pub fn of_file(file: &Path) -> Option<Self> {
-        Self::of_ending(file.to_str()?).ok()
     }
 
     pub(in crate::scenario) fn read(table: &mut Table<'_>) -> Option<Self> {
         table.optional("format", &one_of(Self::ALL))
     }
 
-    /// Reads the format, or determines it from the file name if there is one.
+    /// Reads the format, or determines it from the file if there is one.
     pub(super) fn read_or_ending(table: &mut Table<'_>, file: &str) -> Option<Self> {
         let (format, is_key) = (Self::read(table), table.gives("file"));
         if format.is_some() || table.gives("format") || file.is_empty() && !is_key {
             return format;
         }
-        let ending = Self::of_ending(file);
+        let found = Self::find(table.files(), file, Layout::has_table_keys(table));
         let report = |wrong| match is_key {
             true => table.wrong("file", wrong),
             false => table.fault_of_table(wrong),
         };
-        ending.map_err(report).ok()
+        found.map_err(report).ok()
     }
 }
 
@@ -235,9 +271,9 @@ impl Decimal {
     }
 }
 
-/// Returns the rule for the name or number of a column.
-fn any_column() -> Custom<'static, TableColumn> {
-    let allowed = format!("the name of a column, or {}", COLUMN_NUMBER.allowed());
+/// Returns the rule for the name or number of a column or channel.
+fn numbered_or_named(what: &str) -> Custom<'static, TableColumn> {
+    let allowed = format!("the name of a {what}, or {}", COLUMN_NUMBER.allowed());
     let read = |value: &Value| match string(value) {
         Some(name) => Ok(TableColumn::Name(name.to_owned())),
         None => COLUMN_NUMBER.read(value).map(TableColumn::Number),

@@ -3,7 +3,8 @@
 //! ```toml
 //! [ground.record]
 //! file = "north.at2"            # relative to the scenario file
-//! format = "at2"                # or "asc", "knet" or "csv"; from the file extension when left out
+//! format = "at2"                # or another one; from the contents or the extension of the file when left out
+//! channel = 1                   # number or name of the channel, of files with several
 //! quantity = "acceleration"     # or "velocity": quantity of the samples
 //! remove_mean = false           # whether accelerations are read without their mean
 //! component = "horizontal"      # or "vertical": direction of the accelerations, positive to the
@@ -23,10 +24,16 @@
 
 mod asc;
 mod at2;
+mod cosmos;
+mod csmip;
 mod csv;
+mod geonet;
+mod histories;
 mod knet;
 mod layout;
+mod networks;
 mod samples;
+mod smc;
 mod unit;
 
 use std::borrow::Cow;
@@ -88,9 +95,12 @@ pub struct Series {
     /// Unit of the samples in the file.
     #[serde(skip)]
     pub unit: Unit,
-    /// The columns of a table, in words that follow the unit; empty for other files.
+    /// The columns of a table or the channel of a file, in words that follow the unit; empty without a choice.
     #[serde(skip)]
     pub columns: String,
+    /// A difference between header and samples, as a phrase that follows the name of the file.
+    #[serde(skip)]
+    pub difference: Option<String>,
     /// Ascending times in s, and accelerations or velocities in the unit of the file, without their mean if the layout removes it.
     #[serde(skip)]
     pub samples: Arc<[(f64, f64)]>,
@@ -228,6 +238,7 @@ impl Series {
             scaling: Scaling::Factor(1.0),
             unit: contents.unit,
             columns: contents.columns,
+            difference: contents.difference,
             samples: contents.samples.into(),
         }
     }
@@ -415,6 +426,13 @@ impl Layout {
             Format::Asc => asc::parse(&text, self.quantity),
             Format::Knet => knet::parse(&text),
             Format::Csv => csv::parse(&text, self),
+            Format::Smc => histories::read(&text, self, smc::histories),
+            Format::Csmip => histories::read(&text, self, csmip::histories),
+            Format::Cosmos => histories::read(&text, self, cosmos::histories),
+            Format::Geonet => histories::read(&text, self, geonet::histories),
+            Format::Afad => histories::read(&text, self, networks::afad),
+            Format::Cwb => histories::read(&text, self, networks::cwb),
+            Format::Csmnc => histories::read(&text, self, networks::csmnc),
         }?;
         let unit = contents.unit;
         ensure(unit.quantity() == self.quantity, || {
@@ -426,6 +444,65 @@ impl Layout {
             contents.samples.iter_mut().for_each(|s| s.1 -= mean);
         }
         Ok(contents)
+    }
+}
+
+impl Format {
+    /// Returns the format of a file from its contents, or else from its extension. The error is a phrase that follows the name.
+    ///
+    /// With the keys of tables, files with the extension of a table are tables.
+    pub(super) fn find(
+        files: &Files,
+        file: &str,
+        has_table_keys: bool,
+    ) -> Result<Self, &'static str> {
+        let by_ending = Self::of_ending(file);
+        if has_table_keys && by_ending == Ok(Self::Csv) {
+            return by_ending;
+        }
+        let contents = files.read(&files.path(file)).ok();
+        contents
+            .and_then(|bytes| Self::of_contents(&bytes))
+            .map_or(by_ending, Ok)
+    }
+
+    /// Returns the format of a file on disk from its contents, or else from its extension; `None` if they are not those of a record.
+    pub fn of_file(file: &Path) -> Option<Self> {
+        Self::find(&Files::default(), file.to_str()?, false).ok()
+    }
+
+    /// Returns the format that the header of a file shows; `None` for tables and other files.
+    fn of_contents(bytes: &[u8]) -> Option<Self> {
+        /// Number of bytes of a header that are searched.
+        const SEARCHED: usize = 4096;
+        let text = String::from_utf8_lossy(&bytes[..bytes.len().min(SEARCHED)]);
+        let lines: Vec<&str> = text.trim_start_matches('\u{feff}').lines().collect();
+        let (first, has) = (*lines.first()?, |word: &str| text.contains(word));
+        if smc::begins(first) {
+            Some(Self::Smc)
+        } else if cosmos::begins(first) {
+            Some(Self::Cosmos)
+        } else if geonet::begins(&lines) {
+            Some(Self::Geonet)
+        } else if csmip::begins(first) {
+            Some(Self::Csmip)
+        } else if first.starts_with("STRONG GROUND MOTION RECORDS OF") {
+            Some(Self::Afad)
+        } else if has("#AmplitudeUnit:") && has("#DataSequence: Time") {
+            Some(Self::Cwb)
+        } else if has("NO. OF POINTS:") && has("SPACED INTERVALS OF:") {
+            Some(Self::Csmnc)
+        } else if first.starts_with("Origin Time") && has("Sampling Freq(Hz)") {
+            Some(Self::Knet)
+        } else if first.contains(':') && has("SAMPLING_INTERVAL_S:") {
+            Some(Self::Asc)
+        } else {
+            lines
+                .iter()
+                .take(8)
+                .any(|line| at2::ends_header(line))
+                .then_some(Self::At2)
+        }
     }
 }
 
@@ -525,6 +602,13 @@ mod tests {
                     Layout::new(Format::At2),
                     Layout::new(Format::Asc),
                     Layout::new(Format::Knet),
+                    Layout::new(Format::Smc),
+                    Layout::new(Format::Csmip),
+                    Layout::new(Format::Cosmos),
+                    Layout::new(Format::Geonet),
+                    Layout::new(Format::Afad),
+                    Layout::new(Format::Cwb),
+                    Layout::new(Format::Csmnc),
                     csv_layout(),
                     blanks,
                     wrapped,
@@ -551,6 +635,20 @@ mod tests {
         "Sampling Freq(Hz) 10Hz\n",
         "Scale Factor 3920(gal)/6182761\n",
         "Memo.\n",
+        "2 CORRECTED ACCELEROGRAM\n",
+        "Corrected accelerogram\n",
+        "3 points of accel data equally spaced at .01 sec, in cm/sec2. (8f10.6)\n",
+        "NO. OF POINTS = 2\nUNITS OF UNCOR ACCEL ARE SEC AND G/10.\n",
+        "/& End of data\n",
+        "1 Real-header values follow on 8 lines, Format= (8F13.6)\n",
+        "3 acceleration pts, approx 0 secs, units=cm/sec2(04),Format=(8F10.5)\n",
+        "Site \n",
+        "Number of points 3\n",
+        "1 2 3 4 5 6 7 8 9 10\n",
+        "|\n",
+        "NUMBER OF DATA : 3\nSAMPLING INTERVAL (sec) : .01\nN-S E-W U-D\n",
+        "#RecordLength(sec): 0\n#SampleRate(Hz): 100\n#AmplitudeUnit: gal.\n#DataSequence: Time U(+)\n",
+        "UNCORRECTED ACCELERATION UNIT: GAL\nNO. OF POINTS: 3 SPACED INTERVALS OF: .01 SEC\n",
         "1e308",
         "NPTS",
         "DT",

@@ -27,8 +27,10 @@ pub struct Contents {
     pub samples: Vec<(f64, f64)>,
     /// The unit of the samples.
     pub unit: Unit,
-    /// The columns of a table, in words that follow the unit: ` from column 2`. Empty for other files.
+    /// The columns of a table or the channel of a file, in words that follow the unit: ` from column 2`. Empty without a choice.
     pub columns: String,
+    /// A difference between header and samples, as a phrase that follows the name of the file.
+    pub difference: Option<String>,
 }
 
 impl Contents {
@@ -37,6 +39,7 @@ impl Contents {
             samples,
             unit,
             columns: String::new(),
+            difference: None,
         }
     }
 }
@@ -141,6 +144,26 @@ impl Values {
     }
 }
 
+/// Returns the words of a line. Fortran writes numbers with a fixed width, so that only a sign may separate two of them: a sign begins a word,
+/// except in an exponent.
+pub(super) fn words(line: &str) -> impl Iterator<Item = &str> {
+    // Some files end with the end-of-file character of DOS.
+    let blank = |c: char| c.is_whitespace() || c == '\u{1a}';
+    line.split(blank).flat_map(|mut rest| {
+        std::iter::from_fn(move || {
+            let bytes = rest.as_bytes();
+            let is_next = |&at: &usize| {
+                matches!(bytes[at], b'+' | b'-')
+                    && !matches!(bytes[at - 1], b'e' | b'E' | b'd' | b'D')
+            };
+            let end = (1..bytes.len()).find(is_next).unwrap_or(bytes.len());
+            let word;
+            (word, rest) = rest.split_at(end);
+            Some(word).filter(|word| !word.is_empty())
+        })
+    })
+}
+
 /// Returns the words of a line of a header.
 pub(super) fn header_words(line: &str) -> impl Iterator<Item = &str> {
     line.split(|c: char| c.is_whitespace() || "=,:;()".contains(c))
@@ -153,6 +176,21 @@ pub(super) fn checked_step(key: &str, step_s: f64) -> Result<f64, String> {
         format!("{key} is {step} s; must be at least {least} s")
     })?;
     Ok(step_s)
+}
+
+/// Returns an error if a time is out of range, or not later than the previous time.
+pub(super) fn check_time(time_s: f64, before_s: Option<f64>) -> Result<(), String> {
+    ensure(time_s.abs() <= MAX_TIME_S, || {
+        let (time, most) = (plain(time_s), short(MAX_TIME_S));
+        format!("the time {time} s is out of range; its magnitude must be at most {most} s")
+    })?;
+    let before_s = before_s.unwrap_or(f64::NEG_INFINITY);
+    ensure(time_s - before_s >= MIN_STEP_S, || {
+        let [time, before, least] = [time_s, before_s, MIN_STEP_S].map(short);
+        format!(
+            "the time does not increase: {time} s follows {before} s; allowed are steps of at least {least} s"
+        )
+    })
 }
 
 /// Parses a finite number as programs write it; Fortran's `D` may begin the exponent.

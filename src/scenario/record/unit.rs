@@ -25,10 +25,20 @@ named! {
         MetrePerS2 = "m/s2",
         /// Centimetres per second squared, gal.
         CentimetrePerS2 = "cm/s2",
+        /// Millimetres per second squared.
+        MillimetrePerS2 = "mm/s2",
+        /// Thousandths of the gravity of the simulation.
+        MilliGravity = "mg",
+        /// Inches per second squared, of 0.0254 m.
+        InchPerS2 = "in/s2",
+        /// Feet per second squared, of 0.3048 m.
+        FootPerS2 = "ft/s2",
         /// Metres per second.
         MetrePerS = "m/s",
         /// Centimetres per second.
         CentimetrePerS = "cm/s",
+        /// Millimetres per second.
+        MillimetrePerS = "mm/s",
     }
 }
 
@@ -36,10 +46,10 @@ impl Unit {
     /// Returns the quantity that the unit measures.
     pub const fn quantity(self) -> RecordedQuantity {
         match self {
-            Self::Gravity | Self::MetrePerS2 | Self::CentimetrePerS2 => {
-                RecordedQuantity::Acceleration
+            Self::MetrePerS | Self::CentimetrePerS | Self::MillimetrePerS => {
+                RecordedQuantity::Velocity
             }
-            Self::MetrePerS | Self::CentimetrePerS => RecordedQuantity::Velocity,
+            _ => RecordedQuantity::Acceleration,
         }
     }
 
@@ -49,6 +59,10 @@ impl Unit {
             Self::Gravity => gravity_m_s2,
             Self::MetrePerS2 | Self::MetrePerS => 1.0,
             Self::CentimetrePerS2 | Self::CentimetrePerS => 0.01,
+            Self::MillimetrePerS2 | Self::MillimetrePerS => 0.001,
+            Self::MilliGravity => 0.001 * gravity_m_s2,
+            Self::InchPerS2 => 0.0254,
+            Self::FootPerS2 => 0.3048,
         }
     }
 
@@ -80,8 +94,6 @@ impl Unit {
 
     /// Returns an error if the name of a column contains another unit, as in `acc (g)` or `acc_gal`.
     pub(super) fn check_name(self, name: &str) -> Result<(), String> {
-        /// Units without a name in scenarios.
-        const OTHERS: [&str; 6] = ["mg", "%g", "mm/s2", "mm/s^2", "in/s2", "ft/s2"];
         let bracket = name
             .strip_suffix([')', ']'])
             .and_then(|name| name.rsplit(['(', '[']).next());
@@ -89,7 +101,8 @@ impl Unit {
         let given = bracket.or(last).unwrap_or_default();
         let is_other = match Self::written(given) {
             Some(unit) => unit != self,
-            None => OTHERS.contains(&&*given.to_ascii_lowercase()),
+            // A unit without a name in scenarios.
+            None => given.eq_ignore_ascii_case("%g"),
         };
         ensure(!is_other, || {
             let [name, given] = [name, given].map(excerpt);
@@ -107,8 +120,13 @@ impl Unit {
             "g" => Some(Self::Gravity),
             "m/s2" | "m/s/s" => Some(Self::MetrePerS2),
             "cm/s2" | "cm/s/s" | "gal" | "gals" => Some(Self::CentimetrePerS2),
+            "mm/s2" | "mm/s/s" => Some(Self::MillimetrePerS2),
+            "mg" => Some(Self::MilliGravity),
+            "in/s2" | "in/s/s" => Some(Self::InchPerS2),
+            "ft/s2" | "ft/s/s" => Some(Self::FootPerS2),
             "m/s" => Some(Self::MetrePerS),
             "cm/s" => Some(Self::CentimetrePerS),
+            "mm/s" => Some(Self::MillimetrePerS),
             _ => None,
         }
     }
@@ -147,15 +165,41 @@ mod tests {
                     "(cm/sec^2)",
                 ],
             ),
+            (
+                Unit::MillimetrePerS2,
+                &["mm/s2", "mm/s/s", "MM/SEC^2", "(mm/s^2)"],
+            ),
+            (Unit::MilliGravity, &["mg", "MG", "(mg)"]),
+            (Unit::InchPerS2, &["in/s2", "IN/SEC/SEC", "in/s^2"]),
+            (Unit::FootPerS2, &["ft/s2", "FT/SEC2", "ft/s/s"]),
             (Unit::MetrePerS, &["m/s", "M/SEC"]),
             (Unit::CentimetrePerS, &["cm/s", "CM/SEC", "(cm/s)"]),
+            (Unit::MillimetrePerS, &["mm/s", "MM/SEC"]),
         ] {
             for text in texts {
                 assert_eq!(Unit::written(text), Some(unit), "{text}");
             }
         }
-        for text in ["", "mg", "cm", "mm/s", "mm/s2", "g/10", "in/s2"] {
+        for text in ["", "cm", "mm", "in", "%g", "in/s", "g/10", "counts"] {
             assert_eq!(Unit::written(text), None, "{text}");
+        }
+    }
+
+    /// One g of 9.80665 m/s2 in every unit: 386.0886 in/s2 and 32.17405 ft/s2.
+    #[test]
+    fn a_standard_gravity_is_the_same_in_all_units() {
+        for (unit, gravity) in [
+            (Unit::Gravity, 1.0),
+            (Unit::MetrePerS2, 9.80665),
+            (Unit::CentimetrePerS2, 980.665),
+            (Unit::MillimetrePerS2, 9806.65),
+            (Unit::MilliGravity, 1000.0),
+            (Unit::InchPerS2, 386.088_583),
+            (Unit::FootPerS2, 32.174_048_6),
+        ] {
+            let gravity_m_s2 = gravity * unit.in_si(9.80665);
+            assert!((gravity_m_s2 / 9.80665 - 1.0).abs() < 2e-9, "{unit:?}");
+            assert_eq!(unit.quantity(), RecordedQuantity::Acceleration);
         }
     }
 }

@@ -1,0 +1,33 @@
+//! The readers of files whose header describes one or several histories. The first byte chooses format, quantity and channel; the contents follow.
+#![no_main]
+
+mod common;
+
+use archrock::scenario::{Format, Layout, RecordedQuantity, TableColumn};
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|input: &[u8]| {
+    let Some((settings, contents)) = input.split_first() else {
+        return;
+    };
+    const FORMATS: [Format; 7] = [
+        Format::Smc,
+        Format::Csmip,
+        Format::Cosmos,
+        Format::Geonet,
+        Format::Afad,
+        Format::Cwb,
+        Format::Csmnc,
+    ];
+    let quantities = RecordedQuantity::ALL;
+    let layout = Layout {
+        quantity: quantities[usize::from(settings >> 3 & 1)],
+        channel: match settings >> 4 & 3 {
+            0 => None,
+            3 => Some(TableColumn::Name("deg".to_owned())),
+            number => Some(TableColumn::Number(usize::from(number))),
+        },
+        ..Layout::new(FORMATS[usize::from(settings & 7) % FORMATS.len()])
+    };
+    common::check(&layout, contents);
+});

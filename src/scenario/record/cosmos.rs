@@ -1,0 +1,86 @@
+//! The COSMOS strong-motion format, version 1.20 (volumes 1 and 2).
+//!
+//! Each history has lines of text, of which the first has `(Format v01.20 with 13 text lines)`, 100 integers, 100 numbers, comments, and its samples below
+//! a line such as `7000 acceleration pts, approx 70 secs, units=cm/sec2(04),Format=(8F10.5)`. The numbers 62 and 64 are the step in ms and the peak. Source: COSMOS
+//! Strong Motion Data Format (COSMOS 2001, strongmotioncenter.org/vdc/cosmos_format_1_20.pdf), with the indices of the USGS's PRISM.
+
+use super::histories::{
+    History, count_and_step, header_fields, is_text, lines_of_numbers, squeezed, width_in,
+    word_after,
+};
+use super::samples::{LineFault, Parsed, number};
+use crate::scenario::prelude::*;
+
+const REALS: &str = "real-header values follow on ";
+/// The number for unknown ones.
+const UNKNOWN: f64 = -999.0;
+
+/// Returns true for the first line of such a file.
+pub(super) fn begins(first: &str) -> bool {
+    first.to_ascii_lowercase().contains("(format v")
+}
+
+/// Finds all histories of a file.
+pub(super) fn histories(lines: &[&str]) -> Parsed<Vec<History>> {
+    let (mut histories, mut name, mut reals) = (Vec::new(), String::new(), Vec::new());
+    for (index, line) in lines.iter().enumerate().filter(|(_, line)| is_text(line)) {
+        let lower = line.to_ascii_lowercase();
+        if let Some(channel) = lower.strip_prefix("sta cha") {
+            name = squeezed(
+                line[line.len() - channel.len()..].trim_start_matches(['n', 'N', ':', ' ']),
+            );
+        } else if let Some(count) = word_after(line, REALS) {
+            let count = number(count)
+                .map_err(LineFault::on(index + 1))?
+                .clamp(0.0, 100.0) as usize;
+            reals = header_fields(lines, index + 1..index + 1 + count, width_in(line), 64)?;
+        } else if lower.contains(" pts, approx") {
+            histories.push(history(lines, index, &name, &reals)?);
+            reals.clear();
+        }
+    }
+    let missing = "there is no line like `100 acceleration pts, approx 1 secs, units=cm/sec2`: is this a COSMOS file?";
+    histories.first().ok_or_else(|| LineFault::on(1)(missing))?;
+    Ok(histories)
+}
+
+/// Reads the line before samples. `reals` are the numbers of the header.
+fn history(lines: &[&str], index: usize, name: &str, reals: &[&str]) -> Parsed<History> {
+    let (line, fault) = (lines[index], LineFault::on::<String>(index + 1));
+    ensure(reals.len() >= 64, || {
+        fault(format!(
+            "no line with `{}` precedes these samples",
+            REALS.trim_end()
+        ))
+    })?;
+    let mut words = line.split_whitespace();
+    let [count, quantity] = [words.next(), words.next()].map(Option::unwrap_or_default);
+    let step_s = number(reals[61]).map(|step_ms| 1e-3 * step_ms);
+    let (count, step_s) = count_and_step(index + 1, count, step_s)?;
+    let lasts_s = number(word_after(line, "approx").unwrap_or_default()).map_err(fault)?;
+    // The line gives whole seconds.
+    ensure(
+        (count * step_s - lasts_s).abs() <= 1.0 + 0.01 * lasts_s,
+        || {
+            let [step_s, lasts_s, found_s] = [step_s, lasts_s, count * step_s].map(plain);
+            fault(format!(
+                "these samples last {lasts_s} s, but at the step of {step_s} s in the header they last {found_s} s"
+            ))
+        },
+    )?;
+    let unit = word_after(line, "units=").unwrap_or_default();
+    let is_known = |peak: &&str| number(peak) != Ok(UNKNOWN);
+    Ok(History {
+        name: name.to_owned(),
+        quantity: quantity.to_lowercase(),
+        line: index + 1,
+        unit: unit.split([',', '(']).next().unwrap_or_default().to_owned(),
+        factor: 1.0,
+        step_s: Some(step_s),
+        count,
+        columns: (1, 0),
+        peak: Some(reals[63]).filter(is_known).map(str::to_owned),
+        data: lines_of_numbers(lines, index + 1),
+        width: width_in(line),
+    })
+}

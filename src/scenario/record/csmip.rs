@@ -1,0 +1,137 @@
+//! The files of the California Strong Motion Instrumentation Program (volumes 1 and 2), and of RENADIC (Chile), which are like the older ones of
+//! volume 1.
+//!
+//! Each channel has lines of text, integers and numbers, then its samples. In volume 2, a line such as `7500 points of accel data equally spaced
+//! at .010 sec, in cm/sec2. (8f10.6)` begins accelerations, velocities and displacements; in volume 1, a line such as `13200 Accelerogram points at 200
+//! pts/sec in units of g . Format: (8f9.6)`. Without such a line, 27 lines of header precede pairs of times and accelerations in fields of seven characters, in the unit
+//! that the text gives as `UNITS OF UNCOR ACCEL ARE SEC AND G/10`. A line with `End of data` ends the channel. Sources: files of the USGS's
+//! tests of `gmprocess` (groups dmg and renadic), and its reader of them.
+
+use std::ops::Range;
+
+use super::histories::{
+    History, count_and_step, is_text, lines_of_numbers, squeezed, width_in, word_after,
+};
+use super::samples::{LineFault, Parsed, number};
+use super::unit::Unit;
+
+/// Lines of text, integers and numbers before the pairs of volume 1.
+const HEADER_LINES: usize = 27;
+
+/// Returns true for the first line of such a file.
+pub(super) fn begins(first: &str) -> bool {
+    let first = first.trim_start().to_ascii_lowercase();
+    first.starts_with("corrected accelerogram") || first.starts_with("uncorrected accelerogram")
+}
+
+/// Finds all histories of a file.
+pub(super) fn histories(lines: &[&str]) -> Parsed<Vec<History>> {
+    let (mut histories, mut start, mut in_channel) = (Vec::new(), 0, 0);
+    for (index, line) in lines.iter().enumerate().filter(|(_, line)| is_text(line)) {
+        let lower = line.to_ascii_lowercase();
+        let channel = start..index;
+        if lower.contains("end of data") {
+            if histories.len() == in_channel {
+                histories.extend(pairs(lines, channel)?);
+            }
+            (start, in_channel) = (index + 1, histories.len());
+        } else if let Some((_, quantity)) = BLOCKS.iter().find(|(block, _)| lower.contains(block)) {
+            histories.push(equally_spaced(lines, channel, quantity)?);
+        }
+    }
+    if histories.len() == in_channel {
+        histories.extend(pairs(lines, start..lines.len())?);
+    }
+    let missing = "there is no line like `100 points of accel data equally spaced at .01 sec` or `NO. OF POINTS`: is this a CSMIP file?";
+    histories.first().ok_or_else(|| LineFault::on(1)(missing))?;
+    Ok(histories)
+}
+
+/// Lines before samples, and their quantities.
+const BLOCKS: [(&str, &str); 4] = [
+    ("points of accel data", "acceleration"),
+    ("points of veloc data", "velocity"),
+    ("points of displ data", "displacement"),
+    ("accelerogram points at", "acceleration"),
+];
+
+/// Reads the line before samples at a constant step, which ends the header of the channel.
+fn equally_spaced(lines: &[&str], header: Range<usize>, quantity: &str) -> Parsed<History> {
+    let line = lines[header.end];
+    let step_s = match word_after(line, "points at ") {
+        Some(rate) => number(rate).map(f64::recip),
+        None => number(word_after(line, "spaced at ").unwrap_or_default()),
+    };
+    let count = line.split_whitespace().next().unwrap_or_default();
+    let (count, step_s) = count_and_step(header.end + 1, count, step_s)?;
+    let unit = ["sec, in ", "units of ", "units: "]
+        .into_iter()
+        .find_map(|phrase| word_after(line, phrase));
+    let unit = unit.unwrap_or_default().trim_end_matches('.');
+    let peak = format!("peak {quantity} = ");
+    let stated = lines[header.start..header.end].iter().find_map(|line| {
+        let line = squeezed(line);
+        let word = word_after(&line, &peak).or_else(|| word_after(&line, " max = "))?;
+        let unit_of_peak = squeezed(&line)
+            .split(word)
+            .nth(1)?
+            .split_whitespace()
+            .next()?
+            .to_owned();
+        (Unit::written(&unit_of_peak) == Unit::written(unit)).then(|| word.to_owned())
+    });
+    Ok(History {
+        name: name(lines, header.clone()),
+        quantity: quantity.to_owned(),
+        line: header.end + 1,
+        unit: unit.to_owned(),
+        factor: 1.0,
+        step_s: Some(step_s),
+        count,
+        columns: (1, 0),
+        peak: stated,
+        data: lines_of_numbers(lines, header.end + 1),
+        width: width_in(line),
+    })
+}
+
+/// Reads the header of a channel of times and accelerations; `None` without one.
+fn pairs(lines: &[&str], channel: Range<usize>) -> Parsed<Option<History>> {
+    let start = channel.start;
+    let find = |phrase: &str| {
+        let mut header = lines[channel.clone()].iter().take(HEADER_LINES).enumerate();
+        header.find_map(|(index, line)| Some((start + index, word_after(line, phrase)?)))
+    };
+    let found = [find("no. of points = "), find("are sec and ")];
+    let [Some((line, count)), Some((_, unit))] = found else {
+        return Ok(None);
+    };
+    let count = number(count).map_err(LineFault::on(line + 1))?;
+    let unit = unit.trim_end_matches('.');
+    let (unit, tenths) = unit.split_once('/').unwrap_or((unit, "1"));
+    let tenths = number(tenths).map_err(LineFault::on(line + 1))?;
+    let peak = find("max = ").or_else(|| find("max  = "));
+    Ok(Some(History {
+        name: name(lines, channel.clone()),
+        quantity: "acceleration".to_owned(),
+        line: line + 1,
+        unit: unit.to_owned(),
+        factor: tenths.recip(),
+        step_s: None,
+        count,
+        columns: (2, 1),
+        peak: peak.map(|(_, peak)| peak.to_owned()),
+        data: lines_of_numbers(lines, start + HEADER_LINES),
+        width: 7,
+    }))
+}
+
+/// Returns the name of a channel, as `360 Deg` in `Chan  1: 360 Deg`.
+fn name(lines: &[&str], mut header: Range<usize>) -> String {
+    let name = header.find_map(|index| {
+        let (label, name) = lines[index].split_once(':')?;
+        let is_name = label.trim_start().to_ascii_lowercase().starts_with("chan ");
+        is_name.then(|| squeezed(name))
+    });
+    name.unwrap_or_default()
+}

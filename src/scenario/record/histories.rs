@@ -1,0 +1,311 @@
+//! Files whose header describes one or several histories: quantity, unit, step, number of samples and peak of each.
+//!
+//! A reader of such a format only finds the histories; this module chooses one of them, reads its numbers, and compares them with the header.
+
+use std::ops::Range;
+
+use super::layout::{Layout, TableColumn};
+use super::samples::{
+    Contents, LineFault, Parsed, Values, check_time, checked_step, in_range, number, words,
+};
+use super::unit::{RecordedQuantity, Unit};
+use crate::scenario::prelude::*;
+
+/// A history of a file, as the header describes it.
+pub(super) struct History {
+    /// Name of its channel in the file; may be empty.
+    pub(super) name: String,
+    /// The quantity of the samples: the name of a [`RecordedQuantity`], or that of another one.
+    pub(super) quantity: String,
+    /// Line of the header that describes the samples, from 1.
+    pub(super) line: usize,
+    /// Unit of the samples, as files write it.
+    pub(super) unit: String,
+    /// Factor that converts the numbers of the file to samples in this unit.
+    pub(super) factor: f64,
+    /// Step between samples, in s; `None` if the first number of every row is the time in s.
+    pub(super) step_s: Option<f64>,
+    /// Number of samples.
+    pub(super) count: f64,
+    /// Number of numbers for one sample, and index of the sample among them.
+    pub(super) columns: (usize, usize),
+    /// Number in the header with the largest sample, in the unit of the samples.
+    pub(super) peak: Option<String>,
+    /// Indices of the lines with the numbers.
+    pub(super) data: Range<usize>,
+    /// Number of characters of a number, for numbers that touch; 0 if unknown.
+    pub(super) width: usize,
+}
+
+/// Reads the history that the layout chooses among those of a file.
+pub(super) fn read(
+    text: &str,
+    layout: &Layout,
+    histories: fn(&[&str]) -> Parsed<Vec<History>>,
+) -> Parsed<Contents> {
+    let lines: Vec<&str> = text.lines().collect();
+    let histories = histories(&lines)?;
+    ensure(!histories.is_empty(), || {
+        LineFault::on(1)("the header announces no samples")
+    })?;
+    let wanted = layout.quantity.name();
+    let fitting: Vec<_> = histories
+        .iter()
+        .filter(|one| one.quantity == wanted)
+        .collect();
+    let index = choose(&fitting, layout.channel.as_ref()).map_err(|wrong| {
+        let other = histories.first().filter(|_| fitting.is_empty());
+        let line = other.or(fitting.first().copied()).map_or(1, |one| one.line);
+        LineFault::on(line)(other.map_or(wrong, |_| holds(&histories, layout.quantity)))
+    })?;
+    let history = fitting[index];
+    let fault = LineFault::on::<String>(history.line);
+    let remedy = "such samples are not read; convert them";
+    let unit = Unit::of_header(&history.unit, layout.quantity, remedy).map_err(fault)?;
+    let is_factor = (1e-6..=1e6).contains(&history.factor);
+    ensure(is_factor, || {
+        fault(format!(
+            "the factor {} is not from 1e-6 to 1e6",
+            plain(history.factor)
+        ))
+    })?;
+    let (times_s, values) = history.numbers(&lines)?;
+    values.check_count((history.line, history.count), "samples")?;
+    let difference = history.difference(&values.values, unit);
+    let samples = match history.step_s {
+        Some(step_s) => values.evenly(step_s, history.line, "the step")?,
+        None => {
+            values.check_enough()?;
+            times_s.into_iter().zip(values.values).collect()
+        }
+    };
+    let (count, name) = (fitting.len(), excerpt(&history.name));
+    let columns = match (count, &*name) {
+        (1, "") => String::new(),
+        (1, name) => format!(" of channel `{name}`"),
+        (count, name) => format!(" of channel {} of {count} `{name}`", index + 1),
+    };
+    Ok(Contents {
+        columns,
+        difference,
+        ..Contents::new(samples, unit)
+    })
+}
+
+/// Returns the index of the channel that is chosen, or of the only one.
+fn choose(histories: &[&History], channel: Option<&TableColumn>) -> Result<usize, String> {
+    /// Largest number of channels in a message.
+    const LISTED: usize = 9;
+    let listed = || {
+        let names = histories.iter().zip(1..).take(LISTED);
+        let names: Vec<_> = names
+            .map(|(one, number)| format!("{number} `{}`", excerpt(&one.name)))
+            .collect();
+        let more = if histories.len() > LISTED {
+            " and others"
+        } else {
+            ""
+        };
+        names.join(", ") + more
+    };
+    let count = histories.len();
+    let mut found = match channel {
+        None => (0..count).collect::<Vec<_>>(),
+        Some(TableColumn::Number(number)) => {
+            (0..count).filter(|index| index + 1 == *number).collect()
+        }
+        Some(TableColumn::Name(name)) => {
+            let name = squeezed(name).to_lowercase();
+            let has_name = |index: &usize| histories[*index].name.to_lowercase().contains(&name);
+            (0..count).filter(has_name).collect()
+        }
+    };
+    match (found.pop(), found.len(), channel) {
+        (Some(index), 0, _) => Ok(index),
+        (_, _, None) => Err(format!(
+            "the file has {count} channels: give `channel`, the number of the one to read or a part of its name: {}",
+            listed()
+        )),
+        (found, _, Some(channel)) => {
+            let channel = match channel {
+                TableColumn::Number(number) => number.to_string(),
+                TableColumn::Name(name) => format!("`{}`", excerpt(name)),
+            };
+            let which = if found.is_some() {
+                "several channels are"
+            } else {
+                "no channel is"
+            };
+            Err(format!(
+                "{which} named {channel}; the file has {}",
+                listed()
+            ))
+        }
+    }
+}
+
+/// Returns the message that a file has no history of the wanted quantity.
+fn holds(histories: &[History], wanted: RecordedQuantity) -> String {
+    let mut held: Vec<_> = histories.iter().map(|one| excerpt(&one.quantity)).collect();
+    held.dedup();
+    held.truncate(3);
+    let other = RecordedQuantity::ALL
+        .iter()
+        .find(|other| histories.iter().any(|one| one.quantity == other.name()));
+    let remedy = match other {
+        Some(RecordedQuantity::Velocity) => ", unless you give `quantity = \"velocity\"`",
+        Some(RecordedQuantity::Acceleration) => ", unless you leave out `quantity = \"velocity\"`",
+        None => "",
+    };
+    format!(
+        "the file holds {}; must be {}{remedy}",
+        held.join(" and "),
+        wanted.name()
+    )
+}
+
+impl History {
+    /// Reads the numbers: the times, if the file has them, and the samples.
+    fn numbers(&self, lines: &[&str]) -> Parsed<(Vec<f64>, Values)> {
+        let (mut times_s, mut read) = (Vec::new(), 0);
+        let mut values = Values {
+            line: self.data.start.max(1),
+            ..Values::default()
+        };
+        for index in self.data.clone() {
+            let fault = LineFault::on::<String>(index + 1);
+            for word in fields(lines[index], self.width) {
+                let value = number(word).and_then(in_range).map_err(fault)?;
+                let column = read % self.columns.0;
+                read += 1;
+                if column == 0 && self.step_s.is_none() {
+                    check_time(value, times_s.last().copied()).map_err(fault)?;
+                    times_s.push(value);
+                }
+                if column == self.columns.1 {
+                    values.push(index + 1, value * self.factor)?;
+                }
+            }
+        }
+        ensure(read % self.columns.0 == 0, || {
+            values.fault(format!(
+                "the last sample is cut: {} numbers belong to one sample",
+                self.columns.0
+            ))
+        })?;
+        Ok((times_s, values))
+    }
+
+    /// Returns the difference between the peak in the header and the samples, if it is more than the rounding. Headers may state the peak before
+    /// an offset was subtracted, and their number of samples is checked: so this is a warning, and not an error.
+    fn difference(&self, samples: &[f64], unit: Unit) -> Option<String> {
+        const TOLERANCE: f64 = 0.01;
+        let stated = self.peak.as_ref()?;
+        let peak = number(stated).ok()?.abs();
+        let decimals = stated.split('.').nth(1).map_or(0, str::len);
+        let rounding = if stated.contains(['e', 'E', 'd', 'D']) {
+            0.0
+        } else {
+            0.5 * 0.1_f64.powi(decimals as i32)
+        };
+        let found = samples
+            .iter()
+            .fold(0.0_f64, |peak, sample| peak.max(sample.abs()));
+        let differs = (found - peak).abs() > rounding + TOLERANCE * peak.max(found);
+        differs.then(|| {
+            let ([found, peak], unit) = ([found, peak].map(plain), unit.name());
+            format!("reaches {found} {unit}, but its header states a peak of {peak} {unit}: are samples damaged?")
+        })
+    }
+}
+
+/// Returns the numbers of a line, which touch where no blank or sign separates them. `width` is the number of characters of each; 0 if unknown.
+fn fields(line: &str, width: usize) -> Vec<&str> {
+    let separate: Vec<_> = words(line).collect();
+    let is_number = |word: &&str| number(word).is_ok();
+    if width == 0 || !line.is_ascii() || separate.iter().all(is_number) {
+        return separate;
+    }
+    let line = line.trim_end();
+    let cells = (0..line.len())
+        .step_by(width)
+        .map(|at| line[at..(at + width).min(line.len())].trim());
+    cells.filter(|cell| !cell.is_empty()).collect()
+}
+
+/// Returns the numbers of lines of a header, at least `least` of them, as they are written.
+pub(super) fn header_fields<'t>(
+    lines: &[&'t str],
+    at: Range<usize>,
+    width: usize,
+    least: usize,
+) -> Parsed<Vec<&'t str>> {
+    let end = at.end.min(lines.len());
+    let fields: Vec<_> = lines[at.start.min(end)..end]
+        .iter()
+        .copied()
+        .flat_map(|line| fields(line, width))
+        .collect();
+    let fault = LineFault::on::<String>(end.max(1));
+    ensure(fields.len() >= least, || {
+        let (found, from) = (fields.len(), at.start + 1);
+        fault(format!(
+            "the header has {found} numbers from line {from} to here; must have {least}"
+        ))
+    })?;
+    fields
+        .iter()
+        .try_for_each(|field| number(field).map(drop))
+        .map_err(fault)?;
+    Ok(fields)
+}
+
+/// Returns the lines with numbers from an index on: those before the next line with words.
+pub(super) fn lines_of_numbers(lines: &[&str], from: usize) -> Range<usize> {
+    let from = from.min(lines.len());
+    let end = lines[from..].iter().position(|line| is_text(line));
+    from..end.map_or(lines.len(), |end| from + end)
+}
+
+/// Returns true for a line with letters other than those of exponents.
+pub(super) fn is_text(line: &str) -> bool {
+    line.contains(|c: char| c.is_alphabetic() && !"eEdD".contains(c))
+}
+
+/// Returns the first word after a phrase, without blanks between them.
+pub(super) fn word_after<'t>(line: &'t str, phrase: &str) -> Option<&'t str> {
+    let at = line.to_ascii_lowercase().find(phrase)? + phrase.len();
+    let word = line[at..].split_whitespace().next()?;
+    Some(word.trim_end_matches([',', ';', ')']))
+}
+
+/// Returns the width of numbers in a line with their Fortran format, as `(8F10.5)`; 0 if there is none.
+pub(super) fn width_in(line: &str) -> usize {
+    let format = line.rsplit_once('(').map_or("", |(_, format)| format);
+    let width = format.trim_start_matches(|c: char| c.is_ascii_digit());
+    let width = width.trim_start_matches(|c: char| c.is_ascii_alphabetic());
+    let end = width
+        .find(|c: char| !c.is_ascii_digit())
+        .unwrap_or(width.len());
+    width[..end]
+        .parse()
+        .ok()
+        .filter(|width| *width <= 40)
+        .unwrap_or(0)
+}
+
+/// Returns a name with single blanks between its words.
+pub(super) fn squeezed(name: &str) -> String {
+    name.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// Returns the number and the step in s that a line of a header gives as words.
+pub(super) fn count_and_step(
+    line: usize,
+    count: &str,
+    step_s: Result<f64, String>,
+) -> Parsed<(f64, f64)> {
+    let fault = LineFault::on::<String>(line);
+    let step_s = step_s.and_then(|step_s| checked_step("the step", step_s));
+    Ok((number(count).map_err(fault)?, step_s.map_err(fault)?))
+}

@@ -1,0 +1,610 @@
+//! Formats of networks, recognised by their content: the smallest file of each (`formats/`, made up), and damaged ones.
+//!
+//! All files hold the same ten samples, in their unit.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use archrock::scenario::{
+    Contents, Format, Layout, LineFault, RecordedQuantity, TableColumn, Unit,
+};
+
+use crate::common::program::{archrock, refusal, stderr, stdout};
+
+/// Accelerations of all files, in cm/s2.
+const SAMPLES: [f64; 10] = [0.5, -1.25, 2.0, -0.75, 1.5, -2.5, 0.25, 0.0, 1.0, -0.5];
+/// Velocities of the files that hold them, in cm/s.
+const VELOCITIES: [f64; 10] = [
+    0.0, -0.004, 0.004, 0.016, 0.024, 0.014, -0.009, -0.006, 0.004, 0.009,
+];
+
+/// The files, their formats and units, and the value of 1 cm/s2 in the file.
+const FILES: [(&str, Format, Unit, f64); 8] = [
+    ("smc.smc", Format::Smc, Unit::CentimetrePerS2, 1.0),
+    ("csmip.v1", Format::Csmip, Unit::Gravity, 0.001),
+    ("csmip.v2", Format::Csmip, Unit::CentimetrePerS2, 1.0),
+    ("renadic.v1", Format::Csmip, Unit::Gravity, 0.1),
+    ("cosmos.v2", Format::Cosmos, Unit::CentimetrePerS2, 1.0),
+    ("geonet.v1a", Format::Geonet, Unit::MillimetrePerS2, 10.0),
+    ("geonet.v2a", Format::Geonet, Unit::MillimetrePerS2, 10.0),
+    ("csmnc.dat", Format::Csmnc, Unit::CentimetrePerS2, 1.0),
+];
+
+/// Files with several columns, and their channel with the samples.
+const COLUMNS: [(&str, Format, &str, usize); 2] = [
+    ("afad.txt", Format::Afad, "N-S", 1),
+    ("cwb.dat", Format::Cwb, "n", 2),
+];
+
+fn path(name: &str) -> PathBuf {
+    let tests = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests");
+    tests.join("scenario/formats").join(name)
+}
+
+fn text(name: &str) -> String {
+    fs::read_to_string(path(name)).unwrap()
+}
+
+fn format(name: &str) -> Format {
+    FILES.iter().find(|file| file.0 == name).unwrap().1
+}
+
+fn parse(layout: &Layout, text: &str) -> Result<Contents, LineFault> {
+    layout.parse(text.as_bytes())
+}
+
+#[track_caller]
+fn assert_values(contents: &Contents, expected: &[f64], factor: f64) {
+    assert_eq!(contents.samples.len(), expected.len());
+    for (sample, expected) in contents.samples.iter().zip(expected) {
+        assert!((sample.1 - factor * expected).abs() < 1e-12, "{sample:?}");
+    }
+}
+
+/// A fault in the text with one part replaced.
+#[track_caller]
+fn assert_fault(name: &str, (old, new): (&str, &str), line: usize, words: &str) {
+    let whole = text(name);
+    assert!(whole.contains(old), "{old}");
+    let text = whole.replacen(old, new, 1);
+    let fault = parse(&Layout::new(format(name)), &text).expect_err(words);
+    assert!(fault.message.contains(words), "{fault:?}");
+    assert_eq!(fault.line, line, "{fault:?}");
+}
+
+#[test]
+fn the_smallest_file_of_each_format_is_read() {
+    for (name, format, unit, factor) in FILES {
+        for (mark, end) in [("", "\n"), ("", "\r\n"), ("\u{feff}", "\r\n")] {
+            let text = mark.to_owned() + &text(name).replace('\n', end);
+            let contents = parse(&Layout::new(format), &text).expect(name);
+            assert_eq!(contents.unit, unit, "{name}");
+            assert_eq!(contents.difference, None, "{name}");
+            assert_values(&contents, &SAMPLES, factor);
+            for (index, sample) in contents.samples.iter().enumerate() {
+                let uneven = name == "renadic.v1" && index == 3;
+                let time_s = if uneven { 0.035 } else { 0.01 * index as f64 };
+                assert!((sample.0 - time_s).abs() < 1e-12, "{name} {index}");
+            }
+        }
+    }
+}
+
+#[test]
+fn formats_are_recognised_by_their_content() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, format, unit, _) in FILES {
+        for ending in ["txt", "dat", "rec"] {
+            let file = folder.path().join(format!("x.{ending}"));
+            let text = text(name);
+            let marked = format!("\u{feff}{}", text.replace('\n', "\r\n"));
+            for text in [text, marked] {
+                fs::write(&file, text).unwrap();
+                assert_eq!(Format::of_file(&file), Some(format), "{name} {ending}");
+                let file = file.to_str().unwrap();
+                let said = stdout(&archrock(folder.path(), &["check", file]));
+                assert!(said.contains("10 samples every 0.01 s") || name == "renadic.v1");
+                assert!(said.contains(unit.name()), "{said}");
+            }
+        }
+    }
+    // The older formats as well, but tables with keys of tables remain tables.
+    let at2 = "A\nB\nACCELERATION IN UNITS OF G\nNPTS= 4, DT= .01 SEC\n.1 .2\n.3 .4\n";
+    fs::write(folder.path().join("peer.txt"), at2).unwrap();
+    let check = |keys: &[&str]| archrock(folder.path(), &[&["check", "peer.txt"], keys].concat());
+    assert!(stdout(&check(&[])).starts_with("peer.txt: AT2 file"));
+    let keys = ["unit=g", "dt_s=0.01", "wrapped=true", "skip_rows=4"];
+    let keys = keys.map(|key| ["--set", key]).concat();
+    assert!(stdout(&check(&keys)).starts_with("peer.txt: table with several samples a row"));
+}
+
+#[test]
+fn numbers_that_touch_are_parted() {
+    // Wide numbers fill their fields, and nothing but the width of the format parts them.
+    let wide = text("csmip.v2").replacen(
+        "   .500000 -1.250000  2.000000",
+        " 10.500000-11.250000120.000000",
+        1,
+    );
+    let contents = parse(&Layout::new(Format::Csmip), &wide).unwrap();
+    let values: Vec<_> = contents.samples[..3]
+        .iter()
+        .map(|sample| sample.1)
+        .collect();
+    assert_eq!(values, [10.5, -11.25, 120.0]);
+    // 120 cm/s2 is not the peak of the header.
+    let difference = contents.difference.unwrap();
+    assert!(
+        difference.contains("reaches 120 cm/s2, but its header states a peak of 2.5 cm/s2"),
+        "{difference}"
+    );
+    let wide = text("geonet.v1a").replacen("     5.0   -12.5", "123456.1123456.2", 1);
+    let contents = parse(&Layout::new(Format::Geonet), &wide).unwrap();
+    assert_eq!(contents.samples[0].1, 123_456.1);
+    assert_eq!(contents.samples[1].1, 123_456.2);
+}
+
+#[test]
+fn headers_are_compared_with_the_samples() {
+    // Wrong counts.
+    let announces = "the number of samples is 10: line";
+    let count = (
+        "        10    -32768    -32768    -32768    -32768",
+        "        11    -32768    -32768    -32768    -32768",
+    );
+    assert_fault("smc.smc", count, 31, announces);
+    assert_fault("csmip.v1", ("10 Accel", "11 Accel"), 30, announces);
+    assert_fault(
+        "csmip.v2",
+        ("10 points of acc", " 9 points of acc"),
+        48,
+        announces,
+    );
+    assert_fault("renadic.v1", ("=     10 ", "=     12 "), 29, announces);
+    assert_fault("cosmos.v2", ("10 acc", "11 acc"), 47, announces);
+    let wrong = (
+        "      10       0       0      10",
+        "      10       0       0      12",
+    );
+    assert_fault(
+        "geonet.v1a",
+        wrong,
+        27,
+        "the numbers of acceleration end here: line 20 announces 12",
+    );
+    let wrong = (
+        "      10       0       0      10",
+        "      10       0       0      30",
+    );
+    assert_fault("geonet.v2a", wrong, 29, "the numbers of velocity end here");
+    let wrong = (
+        "      10       0       0      10",
+        "      10       0       0       9",
+    );
+    assert_fault("geonet.v1a", wrong, 27, announces);
+    // Cut ends.
+    for (name, last) in [
+        ("smc.smc", "-5.0000E-1"),
+        ("csmip.v1", " -.000500"),
+        ("csmip.v2", " -.500000"),
+        ("renadic.v1", " -0.500"),
+        ("cosmos.v2", "-0.50000"),
+        ("geonet.v1a", " -5.0"),
+    ] {
+        let whole = text(name);
+        let cut = &whole[..whole.rfind(last).expect(name)];
+        let fault = parse(&Layout::new(format(name)), cut).expect_err(name);
+        let words = match name {
+            "renadic.v1" => "the last sample is cut",
+            _ => "the number of samples is 9: line",
+        };
+        assert!(fault.message.contains(words), "{name} {fault:?}");
+    }
+    // Peaks: a difference is a warning.
+    let folder = tempfile::tempdir().unwrap();
+    for (name, old, new) in [
+        ("smc.smc", "-0.2500000E+01", "-0.3500000E+01"),
+        ("csmip.v1", "Max  =   .003 g", "Max  =   .013 g"),
+        ("csmip.v2", "=    -2.500 ", "=    -2.600 "),
+        ("renadic.v1", "MAX  = -0.250", "MAX  = -0.350"),
+        (
+            "cosmos.v2",
+            "    -2.500000     0.05",
+            "    -2.600000     0.05",
+        ),
+        ("geonet.v1a", "\n -25.000", "\n -26.000"),
+        ("geonet.v2a", "   0.000 -25.000", "   0.000 -26.000"),
+    ] {
+        let whole = text(name);
+        assert!(whole.contains(old), "{name} {old}");
+        fs::write(folder.path().join(name), whole.replacen(old, new, 1)).unwrap();
+        let output = archrock(folder.path(), &["check", name]);
+        stdout(&output);
+        let said = stderr(&output);
+        let warning = format!("warning: {name} reaches ");
+        assert!(
+            said.contains(&warning) && said.contains("its header states a peak of"),
+            "{said}"
+        );
+    }
+}
+
+#[test]
+fn damaged_files_have_lines() {
+    assert_fault(
+        "smc.smc",
+        ("2 CORRECTED", "CORRECTED"),
+        1,
+        "is this an SMC file?",
+    );
+    assert_fault("smc.smc", ("|made up\n", ""), 29, "does not begin with `|`");
+    assert_fault(
+        "smc.smc",
+        ("0.1000000E+03", "0.0000000E+00"),
+        14,
+        "the step",
+    );
+    assert_fault(
+        "smc.smc",
+        ("2.0000E+0", "2.0x00E+0"),
+        30,
+        "`2.0x00E+0` is not a finite number",
+    );
+    assert_fault(
+        "csmip.v2",
+        ("at  .010 sec, in cm/sec2", "at 0.000 sec, in cm/sec2"),
+        46,
+        "the step is 0 s",
+    );
+    assert_fault(
+        "csmip.v2",
+        ("in cm/sec2.", "in counts. "),
+        46,
+        "the unit is counts; such samples are not read",
+    );
+    assert_fault(
+        "csmip.v1",
+        ("10 Accelerogram points", "10 numbers"),
+        27,
+        "the number of samples is 0: line 11 announces 10",
+    );
+    assert_fault(
+        "csmip.v2",
+        ("points of accel", "numbers of accel"),
+        49,
+        "the file holds velocity and displacement; must be acceleration",
+    );
+    assert_fault("renadic.v1", ("G/10", "G/0"), 11, "the factor");
+    assert_fault(
+        "renadic.v1",
+        ("0.040  1.500", "0.030  1.500"),
+        28,
+        "the time does not increase",
+    );
+    assert_fault(
+        "cosmos.v2",
+        ("   10.000000     0.1", " 1000.000000     0.1"),
+        45,
+        "last 0 s, but at the step of 1 s in the header they last 10 s",
+    );
+    assert_fault(
+        "cosmos.v2",
+        ("Real-header", "Real"),
+        45,
+        "precedes these samples",
+    );
+    assert_fault(
+        "geonet.v2a",
+        ("Site", "Sitz"),
+        1,
+        "is this a file of GeoNet?",
+    );
+    assert_fault(
+        "geonet.v2a",
+        ("   0.010   0.010", "   0.010   0.000"),
+        20,
+        "the step is 0 s",
+    );
+    let text = text("geonet.v1a");
+    let lines = text.split_inclusive('\n').take(22).collect::<String>();
+    let fault = parse(&Layout::new(Format::Geonet), &lines).unwrap_err();
+    assert!(
+        fault
+            .message
+            .contains("the header has 20 numbers from line 21"),
+        "{fault:?}"
+    );
+    for format in [Format::Smc, Format::Csmip, Format::Cosmos, Format::Geonet] {
+        let fault = parse(&Layout::new(format), "").unwrap_err();
+        assert_eq!(fault.line, 1);
+        assert!(fault.message.contains("is this a"), "{fault:?}");
+    }
+}
+
+#[test]
+fn one_of_several_channels_is_chosen() {
+    let doubled = |name: &str, old: &str, new: &str| {
+        let text = text(name);
+        assert!(text.contains(old));
+        let halved = text
+            .replace(old, new)
+            .replace(" 1.500", " 1.250")
+            .replace(".001500", ".001250")
+            .replace("    15.0", "    12.0");
+        text + &halved
+    };
+    for (name, old, new, first) in [
+        ("csmip.v1", "90 Deg", "Up", "90 Deg"),
+        ("csmip.v2", "90 Deg", "Up", "90 deg"),
+        ("renadic.v1", "EW ", "Up ", "ew (sta"),
+        ("cosmos.v2", "90 deg", "Up", "90 deg"),
+        ("geonet.v1a", "Component N28W", "Component Up", "n28w"),
+        (
+            "geonet.v2a",
+            "Component N28W",
+            "Component Up",
+            "N28W Longitudinal",
+        ),
+    ] {
+        let text = doubled(name, old, new);
+        let layout = Layout::new(format(name));
+        let fault = parse(&layout, &text).unwrap_err();
+        let words = "the file has 2 channels: give `channel`, the number of the one to read or a part of its name: 1 `";
+        assert!(fault.message.starts_with(words), "{name} {fault:?}");
+        let choose = |channel| {
+            let channel = Some(channel);
+            parse(
+                &Layout {
+                    channel,
+                    ..layout.clone()
+                },
+                &text,
+            )
+        };
+        let named = |name: &str| TableColumn::Name(name.to_owned());
+        let one = choose(TableColumn::Number(1)).unwrap();
+        let two = choose(TableColumn::Number(2)).unwrap();
+        assert_eq!(choose(named(first)), Ok(one.clone()), "{name}");
+        assert_eq!(choose(named("UP")), Ok(two.clone()), "{name}");
+        assert!(
+            one.columns.starts_with(" of channel 1 of 2 `"),
+            "{}",
+            one.columns
+        );
+        assert_ne!(one.samples, two.samples, "{name}");
+        for (wrong, words) in [
+            (TableColumn::Number(3), "no channel is named 3"),
+            (named("zz"), "no channel is named `zz`"),
+            (named(""), "several channels are named ``"),
+        ] {
+            let fault = choose(wrong).unwrap_err();
+            assert!(fault.message.contains(words), "{fault:?}");
+        }
+    }
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(
+        folder.path().join("two.v2"),
+        doubled("csmip.v2", "90 Deg", "Up"),
+    )
+    .unwrap();
+    let check = |keys: &[&str]| archrock(folder.path(), &[&["check", "two.v2"], keys].concat());
+    assert!(refusal(&check(&[])).contains("1 `90 Deg`, 2 `Up`"));
+    let said = stdout(&check(&["--set", "channel=up"]));
+    assert!(
+        said.contains("two.v2: file of CSMIP, accelerations in cm/s2 of channel 2 of 2 `Up`"),
+        "{said}"
+    );
+    let said = refusal(&archrock(
+        folder.path(),
+        &[
+            "check",
+            path("smc.smc").to_str().unwrap(),
+            "--set",
+            "channel=1",
+        ],
+    ));
+    assert!(
+        said.contains("applies to formats with several channels only"),
+        "{said}"
+    );
+}
+
+#[test]
+fn files_say_which_quantity_they_hold() {
+    let velocities = |format| Layout {
+        quantity: RecordedQuantity::Velocity,
+        ..Layout::new(format)
+    };
+    // Corrected files hold velocities as well.
+    for (name, unit, factor) in [
+        ("csmip.v2", Unit::CentimetrePerS, 1.0),
+        ("geonet.v2a", Unit::MillimetrePerS, 10.0),
+    ] {
+        let contents = parse(&velocities(format(name)), &text(name)).expect(name);
+        assert_eq!(contents.unit, unit);
+        assert_eq!(contents.difference, None, "{name}");
+        assert_values(&contents, &VELOCITIES, factor);
+    }
+    let unless = "the file holds acceleration; must be velocity, unless you leave out `quantity";
+    for name in ["smc.smc", "csmip.v1", "cosmos.v2", "geonet.v1a"] {
+        let fault = parse(&velocities(format(name)), &text(name)).unwrap_err();
+        assert!(fault.message.contains(unless), "{fault:?}");
+    }
+    let smc = |kind: &str| text("smc.smc").replace("2 CORRECTED ACCELEROGRAM", kind);
+    let unless = "holds velocity; must be acceleration, unless you give `quantity = \"velocity\"`";
+    for (kind, words) in [
+        ("3 VELOCITY", unless),
+        (
+            "4 DISPLACEMENT",
+            "the file holds displacement; must be acceleration",
+        ),
+        (
+            "5 RESPONSE SPECTRA",
+            "the file holds response spectra; must be acceleration",
+        ),
+    ] {
+        let fault = parse(&Layout::new(Format::Smc), &smc(kind)).unwrap_err();
+        assert!(
+            fault.message.ends_with(words)
+                || !words.contains("unless") && fault.message.contains(words),
+            "{fault:?}"
+        );
+    }
+    let contents = parse(&velocities(Format::Smc), &smc("3 VELOCITY")).unwrap();
+    assert_eq!(contents.unit, Unit::CentimetrePerS);
+    let cosmos = text("cosmos.v2").replace("10 acceleration pts", "10 displacement pts");
+    let fault = parse(&Layout::new(Format::Cosmos), &cosmos).unwrap_err();
+    assert!(
+        fault.message.contains("the file holds displacement"),
+        "{fault:?}"
+    );
+}
+
+/// Uncorrected SMC files without a sampling rate have the time of every sample.
+#[test]
+fn smc_files_without_a_rate_hold_pairs() {
+    let pairs = text("smc.smc").replacen("0.1000000E+03", "0.1700000E+39", 1);
+    let (header, _) = pairs.split_once(" 5.0000E-1").unwrap();
+    let rows = " 0.0000E+0-2.0000E+0 1.4000E-3 5.0000E-1 3.1000E-3 2.5000E+0 4.0000E-3-1.0000E+0\n 6.0000E-3 0.0000E+0\n";
+    let contents = parse(&Layout::new(Format::Smc), &format!("{header}{rows}")).unwrap();
+    let expected = [
+        (0.0, -2.0),
+        (0.0014, 0.5),
+        (0.0031, 2.5),
+        (0.004, -1.0),
+        (0.006, 0.0),
+    ];
+    assert_eq!(contents.samples, expected);
+    assert_eq!(contents.difference, None);
+}
+
+#[test]
+fn columns_of_a_text_are_channels() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, format, channel, number) in COLUMNS {
+        let text = text(name);
+        let fault = parse(&Layout::new(format), &text).unwrap_err();
+        let words = "the file has 3 channels: give `channel`";
+        assert!(fault.message.starts_with(words), "{fault:?}");
+        let choose = |channel| Layout {
+            channel: Some(channel),
+            ..Layout::new(format)
+        };
+        for channel in [
+            TableColumn::Number(number),
+            TableColumn::Name(channel.to_owned()),
+        ] {
+            let layout = choose(channel);
+            for text in [
+                text.clone(),
+                format!("\u{feff}{}", text.replace('\n', "\r\n")),
+            ] {
+                let contents = parse(&layout, &text).unwrap();
+                assert_eq!(contents.unit, Unit::CentimetrePerS2);
+                assert_eq!(contents.difference, None);
+                assert_values(&contents, &SAMPLES, 1.0);
+                assert_eq!(contents.samples[3].0, 0.03);
+            }
+        }
+        let last = parse(&choose(TableColumn::Number(3)), &text).unwrap();
+        let factor = if name == "cwb.dat" { 0.3 } else { -0.1 };
+        assert_values(&last, &SAMPLES, factor);
+        // The header shows the format, whatever the ending.
+        let file = folder.path().join("x.rec");
+        fs::write(&file, &text).unwrap();
+        assert_eq!(Format::of_file(&file), Some(format));
+        // A peak that differs.
+        let text = text
+            .replace("(N-S) 2.5", "(N-S) 3.5")
+            .replace("-2.500\n", "-3.500\n");
+        let contents = parse(&choose(TableColumn::Number(number)), &text).unwrap();
+        let difference = contents.difference.expect(name);
+        assert!(difference.contains("reaches 2.5 cm/s2, but its header states a peak of 3.5"));
+    }
+}
+
+#[test]
+fn texts_of_networks_are_compared_with_their_header() {
+    let fault = |name: &str, (old, new): (&str, &str), line: usize, words: &str| {
+        let whole = text(name);
+        assert!(whole.contains(old), "{old}");
+        let (_, format, ..) = COLUMNS.into_iter().find(|file| file.0 == name).unwrap();
+        let layout = Layout {
+            channel: Some(TableColumn::Number(1)),
+            ..Layout::new(format)
+        };
+        let fault = parse(&layout, &whole.replacen(old, new, 1)).expect_err(words);
+        assert!(fault.message.contains(words), "{fault:?}");
+        assert_eq!(fault.line, line, "{fault:?}");
+    };
+    fault(
+        "afad.txt",
+        (": 10\n", ": 11\n"),
+        20,
+        "is 10: line 6 announces 11",
+    );
+    fault(
+        "afad.txt",
+        ("INTERVAL (sec) : 0.01", "INTERVAL (sec) : 0"),
+        6,
+        "the step is 0 s",
+    );
+    fault(
+        "afad.txt",
+        ("    -0.100000\n", "\n"),
+        20,
+        "the last sample is cut",
+    );
+    fault(
+        "afad.txt",
+        ("NUMBER OF DATA", "NUMBER"),
+        10,
+        "the header has no `number of data :`",
+    );
+    fault(
+        "afad.txt",
+        ("E-W          U-D", "E-W"),
+        10,
+        "must name three components",
+    );
+    let cut = text("cwb.dat").replace("#RecordLength(sec): 0.1", "#RecordLength(sec): 2");
+    let layout = Layout {
+        channel: Some(TableColumn::Number(1)),
+        ..Layout::new(Format::Cwb)
+    };
+    let message = parse(&layout, &cut).unwrap_err().message;
+    assert!(
+        message.contains("ends after 0.1 s") && message.contains("line 7 announces 2 s"),
+        "{message}"
+    );
+    fault(
+        "cwb.dat",
+        ("gal. DC", "counts. DC"),
+        7,
+        "the unit is counts",
+    );
+    fault(
+        "cwb.dat",
+        ("     0.020", "     0.010"),
+        17,
+        "the time does not increase",
+    );
+    assert_fault(
+        "csmnc.dat",
+        ("POINTS:  10", "POINTS:  11"),
+        14,
+        "is 10: line 8 announces 11",
+    );
+    assert_fault(
+        "csmnc.dat",
+        ("UNIT: CM/SEC/SEC", "UNIT: CM"),
+        8,
+        "the unit is CM",
+    );
+    assert_fault(
+        "csmnc.dat",
+        ("CORRECTED ACCELERATION", "CORRECTED DISPLACEMENT"),
+        8,
+        "the file holds displacement",
+    );
+}
