@@ -1116,20 +1116,22 @@ fn faults_of_records_name_the_file() {
             &["names records/wave-1.at2, which reaches 1500 g as scaled"],
         )],
     );
+    write(folder, "nameless.rec", "0 1\n0.01 2\n");
     assert_faults(
         folder,
-        "records = 'fine.*'\nscales = [1]",
+        "records = 'nameless.*'\nscales = [1]",
         &[(
             1,
             11,
-            &["names fine.rec, which has an extension that does not tell the format"],
+            &["names nameless.rec, which has an extension that does not tell the format"],
         )],
     );
     write(
         folder,
         "s.toml",
-        &format!("{COLUMN}[suite]\nrecords = 'fine.*'\nformat = 'at2'\nscales = [1]\n"),
+        &format!("{COLUMN}[suite]\nrecords = 'fine.*'\nscales = [1]\n"),
     );
+    // The content shows the format.
     assert!(Scenario::read(&folder.join("s.toml")).is_ok());
 }
 
