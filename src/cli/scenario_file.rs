@@ -72,18 +72,18 @@ pub struct ScenarioTask {
     /// The scenario file, with the record of the suite.
     pub name: String,
     pub scenarios: Vec<Scenario>,
-    /// The folder for their results in that of the scenario file; `None` for that one.
+    /// Subfolder for the results of a record; `None` without `--suite`.
     subfolder: Option<PathBuf>,
 }
 
 impl ScenarioTask {
-    /// Returns the folder for its results, in that of its scenario file.
+    /// Returns the folder for the results of the task.
     pub fn folder(&self, root: &Folder) -> Folder {
         let subfolder = self.subfolder.as_ref();
         subfolder.map_or_else(|| root.clone(), |name| root.within(name))
     }
 
-    /// Returns its name, and the path of the folder for its results.
+    /// Returns the name of the task, and the path of the folder for its results.
     pub fn place(&self, root: &Destination) -> (String, PathBuf) {
         let path = [Some(&root.path), self.subfolder.as_ref()];
         (self.name.clone(), path.into_iter().flatten().collect())

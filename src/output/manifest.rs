@@ -80,7 +80,7 @@ impl Manifest {
         self.results.get(command).map_or(&[], |it| &it.files)
     }
 
-    /// Returns another scenario file after which the folder is named; `None` if the folder of the results is not named after theirs.
+    /// Returns another scenario file of the same name whose results are in the folder; `None` if the user chose the folder.
     pub(super) fn other_scenario_file(&self, origin: &Origin) -> Option<&str> {
         let own = origin.scenario_file.as_deref()?;
         let results = self.results.values();

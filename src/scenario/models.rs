@@ -50,7 +50,7 @@ impl MotionModel {
     /// [`ElasticJoints::for_many_cases`](crate::ElasticJoints::for_many_cases).
     ///
     /// # Errors
-    /// As [`Scenario::model`](super::Scenario::model).
+    /// If the structure cannot move by this model: see [`Scenario::model`](super::Scenario::model).
     pub fn model_for_many_cases(&self, structure: &Structure) -> AnyModel {
         self.options.model_for_many_cases(structure, &self.site)
     }

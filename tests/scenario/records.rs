@@ -412,7 +412,7 @@ fn faulty_records_are_input_errors() {
         (
             "file = 'x.rec'",
             "6:8",
-            "does not tell the format: give `format`",
+            "has an unknown extension: give `format`",
         ),
         (
             "scale = 1.0\nformat = 'at2'",

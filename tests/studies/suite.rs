@@ -1123,7 +1123,7 @@ fn faults_of_records_name_the_file() {
         &[(
             1,
             11,
-            &["names nameless.rec, which has an extension that does not tell the format"],
+            &["names nameless.rec, which has an unknown extension"],
         )],
     );
     write(

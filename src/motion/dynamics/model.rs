@@ -237,11 +237,11 @@ pub trait MechanismModel: Model {
     /// first mechanism. `None` if an earlier impact stops the structure.
     fn restitution_from(&self, first: Sway, impacts: usize) -> Option<f64>;
 
-    /// Returns the side to which the structure sways after `impacts` impacts and a first sway to a side. Every impact changes the side, unless a wall
-    /// prevents that.
+    /// Returns the side to which the structure sways after `impacts` impacts and a first sway to a side. Every impact changes the side unless a
+    /// wall stands behind the structure.
     fn sway_after(&self, first: Sway, impacts: usize) -> Sway;
 
-    /// Returns the right side if a push starts the structure to the right, and otherwise the left side, to which alone it moves.
+    /// Returns right if a push can start the structure to the right, otherwise left, the only side to which it then moves.
     fn first_side(&self) -> Sway {
         match self.incipient_acceleration_g(Sway::Right) {
             Some(_) => Sway::Right,

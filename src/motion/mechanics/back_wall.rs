@@ -13,9 +13,9 @@
 //! `m w (k^2 + (G - A).(G - B))` about `B`. An impact at `B` conserves it. With `<A, B> = k^2 + (G - A).(G - B)` the rate becomes
 //! `w <A, B> / <B, B>`, and the energy is multiplied by the squared cosine `c(A, B)^2`, where `c(A, B) = <A, B> / sqrt(<A, A> <B, B>)`.
 //!
-//! After impact 2 the foot of the wall stops the base, which moves towards the wall, and the rotation about `C` becomes a rotation about `I`. This
-//! passage conserves the energy; that is an assumption. A passage at the same rate, which is the same at the full height of a block, would add energy at a
-//! lower wall. A direct impact from `C` to `O` would not throw the column back at all. The body turns about `O` before and after, so the ratio of rates is
+//! After impact 2 the foot of the wall stops the base, which moves towards the wall, and the rotation about `C` becomes a rotation about `I`. We
+//! assume that this passage conserves the energy. At the full height of a block it then keeps the rate as well; at a lower wall, keeping the rate would
+//! add energy. A direct impact from `C` to `O` would not throw the column back at all. The body turns about `O` before and after, so the ratio of rates is
 //!
 //! `-c(O, I) c(I, C) c(I, O) = -c(O, I)^2 c(I, C)`.
 //!

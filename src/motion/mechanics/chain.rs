@@ -240,8 +240,8 @@ pub trait MechanismChain: std::fmt::Debug + Send + Sync {
     fn eccentricity_ratios_at_rest(&self, _body_force_g: Vector2<f64>) -> Vec<Option<f64>> {
         Vec::new()
     }
-    /// Returns the side of the sway a number of impacts after a sway to this side, and equally before it. Every impact changes the side, unless a wall
-    /// prevents that.
+    /// Returns the side of the sway that lies `impacts` impacts after, or before, a sway to this side. Every impact changes the side unless a wall
+    /// stands behind the structure.
     fn sway_across(&self, sway: Sway, impacts: usize) -> Sway {
         sway.before(impacts)
     }

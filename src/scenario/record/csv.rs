@@ -531,7 +531,7 @@ fn hint(
     let is_number = |word: &str| number(word).is_ok();
     if !before.values.is_empty() {
         let has_number = wrong.text.split(BETWEEN).any(is_number);
-        let remedy = "; begin the line with `#` if it is not of the table, or give `end_marker`, its first word, if the table ends here";
+        let remedy = "; begin the line with `#` to skip it, or give its first word as `end_marker` if the table ends before it";
         return remedy.repeat((!has_number).into());
     }
     let is_of_numbers = |row: &Row<'_>| {
@@ -545,7 +545,7 @@ fn hint(
     })
 }
 
-/// Returns the numbers of a cell between blanks that touch, as in `-0.123-0.456`, or else the cell. A date such as 2009-04-06 is one cell.
+/// Splits a cell into numbers that touch, as in `-0.123-0.456`. Other cells, such as the date 2009-04-06, stay whole.
 fn touching(cell: &str, by_blanks: bool) -> impl Iterator<Item = &str> {
     let is_decimal = |word: &str| word.contains('.') && number(word).is_ok();
     let touch = by_blanks && words(cell).nth(1).is_some() && words(cell).all(is_decimal);

@@ -15,7 +15,7 @@ use crate::scenario::prelude::*;
 pub(super) struct History {
     /// Name of its channel in the file; may be empty.
     pub(super) name: String,
-    /// The quantity of the samples: the name of a [`RecordedQuantity`], or that of another one.
+    /// The quantity of the samples: the name of a [`RecordedQuantity`] or of another quantity.
     pub(super) quantity: String,
     /// Line of the header that describes the samples, from 1.
     pub(super) line: usize,
@@ -29,7 +29,7 @@ pub(super) struct History {
     pub(super) count: f64,
     /// Number of numbers for one sample, and index of the sample among them.
     pub(super) columns: (usize, usize),
-    /// Number in the header with the largest sample, in the unit of the samples.
+    /// The peak that the header states, in the unit of the samples.
     pub(super) peak: Option<String>,
     /// Indices of the lines with the numbers.
     pub(super) data: Range<usize>,
@@ -196,8 +196,8 @@ impl History {
         Ok((times_s, values))
     }
 
-    /// Returns the difference between the peak in the header and the samples, if it is more than the rounding. Headers may state the peak before
-    /// an offset was subtracted, and their number of samples is checked: so this is a warning, and not an error.
+    /// Compares the peak in the header with the samples. Returns a warning if they differ by more than the rounding. It is no error: headers may
+    /// state the peak before an offset was subtracted, and the number of samples is checked.
     fn difference(&self, samples: &[f64], unit: Unit) -> Option<String> {
         const TOLERANCE: f64 = 0.01;
         let stated = self.peak.as_ref()?;
@@ -219,7 +219,7 @@ impl History {
     }
 }
 
-/// Returns the numbers of a line, which touch where no blank or sign separates them. `width` is the number of characters of each; 0 if unknown.
+/// Splits a line into numbers. Numbers that touch have `width` characters each; 0 if unknown.
 fn fields(line: &str, width: usize) -> Vec<&str> {
     let separate: Vec<_> = words(line).collect();
     let is_number = |word: &&str| number(word).is_ok();
@@ -233,7 +233,7 @@ fn fields(line: &str, width: usize) -> Vec<&str> {
     cells.filter(|cell| !cell.is_empty()).collect()
 }
 
-/// Returns the numbers of lines of a header, at least `least` of them, as they are written.
+/// Returns the numbers on lines of a header, as text. Fewer than `least` are a fault.
 pub(super) fn header_fields<'t>(
     lines: &[&'t str],
     at: Range<usize>,
@@ -299,7 +299,7 @@ pub(super) fn squeezed(name: &str) -> String {
     name.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// Returns the number and the step in s that a line of a header gives as words.
+/// Reads the number of samples and checks their step, in s.
 pub(super) fn count_and_step(
     line: usize,
     count: &str,

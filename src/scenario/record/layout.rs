@@ -227,17 +227,17 @@ const TABLE_KEYS: [&str; 7] = [
 
 impl Format {
     /// Returns the format of a file name from its extension. The error is a phrase that follows the name.
-    pub(in crate::scenario) fn of_ending(file: &str) -> Result<Self, &'static str> {
+    pub(in crate::scenario) fn of_ending(file: &str) -> Result<Self, String> {
         let ending = Path::new(file).extension().and_then(OsStr::to_str);
         match ending.unwrap_or_default().to_ascii_lowercase().as_str() {
             "at2" | "vt2" => Ok(Self::At2),
             "asc" => Ok(Self::Asc),
             "ns" | "ew" | "ud" | "ns1" | "ew1" | "ud1" | "ns2" | "ew2" | "ud2" => Ok(Self::Knet),
             "csv" | "tsv" | "txt" | "dat" => Ok(Self::Csv),
-            _ => Err(
-                "has an extension that does not tell the format: give `format` as well, \"at2\", \"asc\", \"knet\", \"smc\", \
-                 \"csmip\", \"cosmos\", \"geonet\", \"afad\", \"cwb\", \"csmnc\" or \"csv\"",
-            ),
+            _ => Err(format!(
+                "has an unknown extension: give `format` as well, {}",
+                one_of(Self::ALL).allowed()
+            )),
         }
     }
 

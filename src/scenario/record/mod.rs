@@ -450,12 +450,8 @@ impl Layout {
 impl Format {
     /// Returns the format of a file from its contents, or else from its extension. The error is a phrase that follows the name.
     ///
-    /// With the keys of tables, files with the extension of a table are tables.
-    pub(super) fn find(
-        files: &Files,
-        file: &str,
-        has_table_keys: bool,
-    ) -> Result<Self, &'static str> {
+    /// With the keys of tables, files with an extension of tables are tables.
+    pub(super) fn find(files: &Files, file: &str, has_table_keys: bool) -> Result<Self, String> {
         let by_ending = Self::of_ending(file);
         if has_table_keys && by_ending == Ok(Self::Csv) {
             return by_ending;
