@@ -12,7 +12,7 @@ use crate::scenario::prelude::*;
 
 /// Reads the samples, in the unit of the file.
 ///
-/// Blank lines and lines that begin with `#` or `%` are skipped. The first of the other lines may contain the names of the columns; names are required
+/// Blank lines and lines that begin with `#` or `%` are skipped, except `%g`. The first of the other lines may contain the names of the columns; names are required
 /// if a column is chosen by name. All rows have the same number of cells; only the last of rows with several samples may have fewer.
 pub(super) fn parse(text: &str, layout: &Layout) -> Parsed<Contents> {
     let table = table_of(text, layout)?;
@@ -116,7 +116,9 @@ fn nothing(text: &str, last_line: usize) -> LineFault {
 /// before the end marker.
 fn table_of<'t>(text: &'t str, layout: &Layout) -> Parsed<Cow<'t, str>> {
     let (skipped, count) = (layout.skip_rows, text.lines().count());
-    let is_comment = |line: &str| line.trim_start().starts_with('%');
+    // A column may be named by its unit, `%g`.
+    let is_comment =
+        |line: &str| line.trim_start().starts_with('%') && !line.trim().eq_ignore_ascii_case("%g");
     let end = layout.end_marker.as_deref().map(|marker| {
         // A row of numbers never ends a table, or a marker such as `-` would cut it.
         let is_number = |word: &str| word.is_empty() || layout.decimal.number(word).is_ok();
@@ -785,6 +787,12 @@ mod tests {
         }
         // Errors have the line numbers of the file.
         assert_fault("% x\nt,a\n%\n0,x", &csv_layout(), 4, "`x`");
+        // The unit of a column is no comment.
+        let layout = Layout::table(Times::Step(0.01), Unit::Gravity);
+        for name in ["%g", " %G "] {
+            let text = format!("{name}\n1.0\n2.0\n-3\n");
+            assert_fault(&text, &layout, 1, "the column is named `%");
+        }
     }
 
     #[test]
