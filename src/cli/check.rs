@@ -56,8 +56,9 @@ pub fn check(arguments: &Arguments) -> Result<(), Failure> {
 
 /// Returns the contents of a file, as text and as JSON.
 fn check_file(file: &Path, arguments: &Arguments) -> Result<(String, Value), Failure> {
-    if Format::of_file(file).is_some() || is_format_given(arguments) {
-        return check_record(file, arguments);
+    let format = Format::of_file(file);
+    if format.is_some() || is_format_given(arguments) {
+        return check_record(file, format, arguments);
     }
     let scenario = read(&arguments.set.open(file)?)?;
     super::warn(&scenario.unlikely());
@@ -137,14 +138,18 @@ fn is_format_given(arguments: &Arguments) -> bool {
 }
 
 /// Returns the contents of a record file, as text and as JSON.
-fn check_record(file: &Path, arguments: &Arguments) -> Result<(String, Value), Failure> {
+fn check_record(
+    file: &Path,
+    format: Option<Format>,
+    arguments: &Arguments,
+) -> Result<(String, Value), Failure> {
     // Keys of tables do not apply to files of other formats among the arguments.
-    let is_table = |file: &Path| match Format::of_file(file) {
+    let is_table = |format: Option<Format>| match format {
         Some(format) => format == Format::Csv,
         None => is_format_given(arguments),
     };
     let mut files = arguments.files.iter();
-    let has_all = is_table(file) || !files.any(|file| is_table(file));
+    let has_all = is_table(format) || !files.any(|file| is_table(Format::of_file(file)));
     let (keys, left_out): (Vec<_>, Vec<_>) = arguments
         .set
         .assignments()

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::io::Read;
+use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
@@ -31,14 +31,25 @@ impl Files {
 
     /// Reads the contents of a file of at most 64 MiB. The error is a phrase that follows the name.
     pub(super) fn read(&self, path: &Path) -> Result<Vec<u8>, String> {
+        read_at_most(self.open(path)?, 64, "record")
+    }
+
+    /// Reads up to this number of bytes from the start of a file. The error is a phrase that follows the name.
+    pub(super) fn start(&self, path: &Path, bytes: usize) -> Result<Vec<u8>, String> {
+        let mut start = Vec::new();
+        let read = self.open(path)?.take(bytes as u64).read_to_end(&mut start);
+        read.map(|_| start).map_err(unreadable)
+    }
+
+    fn open(&self, path: &Path) -> Result<Box<dyn Read + '_>, String> {
         if let Some(in_memory) = &self.in_memory {
-            let contents = in_memory.get(path).cloned();
-            return contents.ok_or_else(|| "cannot be read: no such file was given".to_owned());
+            let contents = in_memory.get(path);
+            let contents = contents.ok_or("cannot be read: no such file was given")?;
+            return Ok(Box::new(contents.as_slice()));
         }
-        let unreadable = |error| format!("cannot be read: {error}");
         let is_file = fs::metadata(path).map_err(unreadable)?.is_file();
         ensure(is_file, || "is not a file")?;
-        read_at_most(fs::File::open(path).map_err(unreadable)?, 64, "record")
+        Ok(Box::new(fs::File::open(path).map_err(unreadable)?))
     }
 
     /// Returns the one path of a file that may have several.
@@ -107,12 +118,16 @@ impl Files {
     }
 }
 
+fn unreadable(error: io::Error) -> String {
+    format!("cannot be read: {error}")
+}
+
 /// Reads the bytes of a file of at most `mib` MiB.
 pub(super) fn read_at_most(reader: impl Read, mib: u64, what: &str) -> Result<Vec<u8>, String> {
     let (most, mut bytes) = (mib << 20, Vec::new());
     // The limit applies while reading, because not every file has a known size.
     let read = reader.take(most + 1).read_to_end(&mut bytes);
-    read.map_err(|error| format!("cannot be read: {error}"))?;
+    read.map_err(unreadable)?;
     ensure(bytes.len() as u64 <= most, || {
         format!("is larger than {mib} MiB, too large for a {what}")
     })?;

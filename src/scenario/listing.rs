@@ -34,10 +34,8 @@ impl RecordListing {
             .flat_map(|(key, patterns)| list(table, (key, patterns), format))
             .collect();
         // The keys of tables are needed if and only if one of the files is a table.
-        let mut formats = files.iter().map(|listed| listed.format);
-        let format = formats.clone().next();
-        let format = formats.find(|format| *format == Format::Csv).or(format);
-        let layout = Layout::read(table, format);
+        let formats: Vec<_> = files.iter().map(|listed| listed.format).collect();
+        let layout = Layout::read(table, &formats);
         Self { files, layout }
     }
 
@@ -61,6 +59,8 @@ impl RecordListing {
                 own = Layout::new(listed.format);
                 (own.quantity, own.remove_mean) = (layout.quantity, layout.remove_mean);
             }
+            let channel = layout.channel.clone();
+            own.channel = channel.filter(|_| listed.format.has_channels());
             let series = Series::of_file(table.files(), file.clone(), own)
                 .and_then(|series| accept(&series).map(|()| (key, series)));
             if let Err(wrong) = &series {
@@ -87,6 +87,12 @@ pub(super) fn written(keys: &[(&str, &[Series])]) -> Map<String, Value> {
     let layout_source = tables.or_else(|| layouts.clone().next());
     let mut layout = json!(layout_source);
     // If formats differ, the files determine them.
+    if let (Some(layout), Some(channel)) = (
+        layout.as_object_mut(),
+        layouts.clone().find_map(|layout| layout.channel.as_ref()),
+    ) {
+        layout.insert("channel".to_owned(), json!(channel));
+    }
     if let Some(layout) = layout.as_object_mut()
         && layouts.any(|layout| Some(layout.format) != layout_source.map(|layout| layout.format))
     {

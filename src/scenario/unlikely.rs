@@ -49,12 +49,17 @@ impl Scenario {
             Some(Ground::Pulse(pulse)) => unlikely.extend(self.unlikely_pulse(pulse, model)),
             None => {}
         }
-        // A wrong unit affects all tables, so only the first record is described.
         let records = self.suite.iter().flat_map(|suite| &suite.records);
-        let mut records = records.map(of_series).filter(|faults| !faults.is_empty());
-        unlikely.extend(records.next().into_iter().flatten());
-        let others = records.count();
-        let more = format!("{others} more records of the suite are like that");
+        unlikely.extend(records.clone().filter_map(Series::different_header));
+        // A wrong unit affects all tables, so only the first record is described.
+        let values = records.map(|series| series.unlikely_values(gravity_m_s2));
+        let mut values = values.filter(|faults| !faults.is_empty());
+        unlikely.extend(values.next().into_iter().flatten());
+        let others = values.count();
+        let more = match others {
+            1 => "1 more record of the suite is like that".to_owned(),
+            _ => format!("{others} more records of the suite are like that"),
+        };
         unlikely.extend(Some(more).filter(|_| others > 0));
         unlikely.extend(self.takes_long());
         unlikely
@@ -153,6 +158,19 @@ fn long(what: &str, length_m: f64, usual_m: f64) -> Option<String> {
 impl Series {
     /// Returns sentences about unlikely values of a record, each with the probably intended value.
     pub fn unlikely(&self, gravity_m_s2: f64) -> Vec<String> {
+        let difference = self.different_header().into_iter();
+        difference
+            .chain(self.unlikely_values(gravity_m_s2))
+            .collect()
+    }
+
+    /// Returns a sentence about a difference between header and samples.
+    fn different_header(&self) -> Option<String> {
+        let difference = self.difference.as_ref()?;
+        Some(format!("{} {difference}", self.name()))
+    }
+
+    fn unlikely_values(&self, gravity_m_s2: f64) -> Vec<String> {
         let (name, peak_g) = (self.name(), self.peak_g(gravity_m_s2));
         let (unit, sampling) = (self.unit.name(), self.sampling());
         let mut unlikely = Vec::new();
@@ -166,8 +184,6 @@ impl Series {
             };
             unlikely.push(format!("{name} peaks at {} g: {might_be}", plain(peak_g)));
         }
-        let difference = self.difference.iter();
-        unlikely.extend(difference.map(|difference| format!("{name} {difference}")));
         let step_s = sampling.duration_s / (sampling.count - 1) as f64;
         if step_s > RECORD_STEP_S {
             let step = plain(step_s);

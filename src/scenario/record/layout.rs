@@ -55,7 +55,7 @@ named! {
 pub enum TableColumn {
     /// Number, from 1.
     Number(usize),
-    /// Name of the column in the first row, or a part of the name of the channel in the header.
+    /// Name of the column in the first row; or name of the channel in the header, or whole words of it.
     Name(String),
 }
 
@@ -129,8 +129,11 @@ impl Layout {
         }
     }
 
-    /// Reads the keys that describe files of this format. `None` is an unknown format, whose fault is recorded elsewhere.
-    pub(in crate::scenario) fn read(table: &mut Table<'_>, format: Option<Format>) -> Self {
+    /// Reads the keys that describe files of these formats. The layout is that of tables if one of them is a table, or else of the first. Without a
+    /// format, the fault of the unknown one is recorded elsewhere.
+    pub(in crate::scenario) fn read(table: &mut Table<'_>, formats: &[Format]) -> Self {
+        let mut tables = formats.iter().filter(|format| **format == Format::Csv);
+        let format = tables.next().or(formats.first()).copied();
         let step_s = within(&(MIN_STEP_S..=MAX_TIME_S));
         let dt_s = table.optional("dt_s", &step_s);
         let time_column = table.optional("time_column", &numbered_or_named("column"));
@@ -177,10 +180,7 @@ impl Layout {
         };
         let has_header = !matches!(format, Format::At2 | Format::Csv) && table.gives("unit");
         let _ = table.refuse(has_header, "unit", header);
-        let has_channels = matches!(
-            format,
-            Format::Csmip | Format::Cosmos | Format::Geonet | Format::Afad | Format::Cwb
-        );
+        let has_channels = formats.iter().any(|format| format.has_channels());
         let wrong = "applies to formats with several channels only: \"csmip\", \"cosmos\", \"geonet\", \"afad\" and \"cwb\"";
         let _ = table.refuse(!has_channels && layout.channel.is_some(), "channel", wrong);
         if is_table {
@@ -232,6 +232,8 @@ impl Format {
         match ending.unwrap_or_default().to_ascii_lowercase().as_str() {
             "at2" | "vt2" => Ok(Self::At2),
             "asc" => Ok(Self::Asc),
+            "smc" => Ok(Self::Smc),
+            "v1a" | "v2a" => Ok(Self::Geonet),
             "ns" | "ew" | "ud" | "ns1" | "ew1" | "ud1" | "ns2" | "ew2" | "ud2" => Ok(Self::Knet),
             "csv" | "tsv" | "txt" | "dat" => Ok(Self::Csv),
             _ => Err(format!(
@@ -239,6 +241,14 @@ impl Format {
                 one_of(Self::ALL).allowed()
             )),
         }
+    }
+
+    /// Returns true if a file of this format may have several channels.
+    pub(in crate::scenario) const fn has_channels(self) -> bool {
+        matches!(
+            self,
+            Self::Csmip | Self::Cosmos | Self::Geonet | Self::Afad | Self::Cwb
+        )
     }
 
     pub(in crate::scenario) fn read(table: &mut Table<'_>) -> Option<Self> {

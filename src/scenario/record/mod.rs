@@ -252,7 +252,7 @@ impl Series {
         let layout = table::read_text(("", &Files::default()), keys, |table| {
             table.rename("the record");
             let format = Format::read_or_ending(table, &name);
-            Ok(Layout::read(table, format))
+            Ok(Layout::read(table, format.as_slice()))
         })
         .map_err(|faults| ScenarioErrors::placed(("", &name), keys, faults).without_places())?;
         let bytes = Files::default().read(path);
@@ -383,7 +383,7 @@ impl Series {
         let peak_g = table.optional("peak_g", &PEAK_G);
         let at_most = "give at most one of them";
         let related = table.apply_relations(&[AtMostOne(&["scale", "peak_g"], at_most)]);
-        let layout = Layout::read(table, format);
+        let layout = Layout::read(table, format.as_slice());
         related.and(table.check_faultless())?;
         let mut known = known.iter();
         let series = match known.find(|known| known.file == file && known.layout == layout) {
@@ -450,13 +450,16 @@ impl Layout {
 impl Format {
     /// Returns the format of a file from its contents, or else from its extension. The error is a phrase that follows the name.
     ///
-    /// With the keys of tables, files with an extension of tables are tables.
+    /// With the keys of tables, files with an extension of tables are tables. A scenario may quote a header, so its contents show no format.
     pub(super) fn find(files: &Files, file: &str, has_table_keys: bool) -> Result<Self, String> {
+        /// Number of bytes of a header that are searched.
+        const SEARCHED: usize = 4096;
         let by_ending = Self::of_ending(file);
-        if has_table_keys && by_ending == Ok(Self::Csv) {
+        let ending = Path::new(file).extension().unwrap_or_default();
+        if has_table_keys && by_ending == Ok(Self::Csv) || ending.eq_ignore_ascii_case("toml") {
             return by_ending;
         }
-        let contents = files.read(&files.path(file)).ok();
+        let contents = files.start(&files.path(file), SEARCHED).ok();
         contents
             .and_then(|bytes| Self::of_contents(&bytes))
             .map_or(by_ending, Ok)
@@ -467,11 +470,9 @@ impl Format {
         Self::find(&Files::default(), file.to_str()?, false).ok()
     }
 
-    /// Returns the format that the header of a file shows; `None` for tables and other files.
-    fn of_contents(bytes: &[u8]) -> Option<Self> {
-        /// Number of bytes of a header that are searched.
-        const SEARCHED: usize = 4096;
-        let text = String::from_utf8_lossy(&bytes[..bytes.len().min(SEARCHED)]);
+    /// Returns the format that the first bytes of a file show; `None` for tables and other files.
+    pub fn of_contents(bytes: &[u8]) -> Option<Self> {
+        let text = String::from_utf8_lossy(bytes);
         let lines: Vec<&str> = text.trim_start_matches('\u{feff}').lines().collect();
         let (first, has) = (*lines.first()?, |word: &str| text.contains(word));
         if smc::begins(first) {
@@ -642,9 +643,9 @@ mod tests {
         "Number of points 3\n",
         "1 2 3 4 5 6 7 8 9 10\n",
         "|\n",
-        "NUMBER OF DATA : 3\nSAMPLING INTERVAL (sec) : .01\nN-S E-W U-D\n",
+        "NUMBER OF DATA : 3\nSAMPLING INTERVAL (sec) : .01\nRAW PGA VALUES (gal) : (N-S) 2\nN-S E-W U-D\n",
         "#RecordLength(sec): 0\n#SampleRate(Hz): 100\n#AmplitudeUnit: gal.\n#DataSequence: Time U(+)\n",
-        "UNCORRECTED ACCELERATION UNIT: GAL\nNO. OF POINTS: 3 SPACED INTERVALS OF: .01 SEC\n",
+        "UNCORRECTED ACCELERATION UNIT: GAL\nNO. OF POINTS: 3 SPACED INTERVALS OF: .01 SEC\nPEAK VALUE: 2\n",
         "1e308",
         "NPTS",
         "DT",
