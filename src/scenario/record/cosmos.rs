@@ -12,17 +12,18 @@ use super::samples::{LineFault, Parsed, number};
 use crate::scenario::prelude::*;
 
 const REALS: &str = "real-header values follow on ";
-/// The number for unknown ones.
+/// The number that marks unknown values.
 const UNKNOWN: f64 = -999.0;
 
-/// Returns true for the first line of such a file.
+/// Returns true for the first line of a COSMOS file, as `Corrected acceleration (Format v01.20 with 13 text lines)`.
 pub(super) fn begins(first: &str) -> bool {
-    first.to_ascii_lowercase().contains("(format v")
+    let first = first.to_ascii_lowercase();
+    first.contains("(format v0") && first.contains("text lines")
 }
 
 /// Finds all histories of a file.
 pub(super) fn histories(lines: &[&str]) -> Parsed<Vec<History>> {
-    let (mut histories, mut name, mut reals) = (Vec::new(), String::new(), Vec::new());
+    let (mut histories, mut name, mut reals) = (Vec::new(), String::new(), (1, Vec::new()));
     for (index, line) in lines.iter().enumerate().filter(|(_, line)| is_text(line)) {
         let lower = line.to_ascii_lowercase();
         if let Some(channel) = lower.strip_prefix("sta cha") {
@@ -33,10 +34,11 @@ pub(super) fn histories(lines: &[&str]) -> Parsed<Vec<History>> {
             let count = number(count)
                 .map_err(LineFault::on(index + 1))?
                 .clamp(0.0, 100.0) as usize;
-            reals = header_fields(lines, index + 1..index + 1 + count, width_in(line), 64)?;
+            let at = index + 1..index + 1 + count;
+            reals = (index + 1, header_fields(lines, at, width_in(line), 64)?);
         } else if lower.contains(" pts, approx") {
             histories.push(history(lines, index, &name, &reals)?);
-            reals.clear();
+            reals.1.clear();
         }
     }
     let missing = "there is no line like `100 acceleration pts, approx 1 secs, units=cm/sec2`: is this a COSMOS file?";
@@ -44,8 +46,13 @@ pub(super) fn histories(lines: &[&str]) -> Parsed<Vec<History>> {
     Ok(histories)
 }
 
-/// Reads the line before samples. `reals` are the numbers of the header.
-fn history(lines: &[&str], index: usize, name: &str, reals: &[&str]) -> Parsed<History> {
+/// Reads the line before samples. `reals` are the numbers of the header, below their line.
+fn history(
+    lines: &[&str],
+    index: usize,
+    name: &str,
+    (reals_line, reals): &(usize, Vec<&str>),
+) -> Parsed<History> {
     let (line, fault) = (lines[index], LineFault::on::<String>(index + 1));
     ensure(reals.len() >= 64, || {
         fault(format!(
@@ -56,7 +63,7 @@ fn history(lines: &[&str], index: usize, name: &str, reals: &[&str]) -> Parsed<H
     let mut words = line.split_whitespace();
     let [count, quantity] = [words.next(), words.next()].map(Option::unwrap_or_default);
     let step_s = number(reals[61]).map(|step_ms| 1e-3 * step_ms);
-    let (count, step_s) = count_and_step(index + 1, count, step_s)?;
+    let (count, step_s) = count_and_step((index + 1, count), (*reals_line, step_s))?;
     let lasts_s = number(word_after(line, "approx").unwrap_or_default()).map_err(fault)?;
     // The line gives whole seconds.
     ensure(
@@ -79,6 +86,7 @@ fn history(lines: &[&str], index: usize, name: &str, reals: &[&str]) -> Parsed<H
         step_s: Some(step_s),
         count,
         columns: (1, 0),
+        is_table: false,
         peak: Some(reals[63]).filter(is_known).map(str::to_owned),
         data: lines_of_numbers(lines, index + 1),
         width: width_in(line),

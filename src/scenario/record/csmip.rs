@@ -10,15 +10,17 @@
 use std::ops::Range;
 
 use super::histories::{
-    History, count_and_step, is_text, lines_of_numbers, squeezed, width_in, word_after,
+    History, count_and_step, is_text, lines_of_numbers, rest, squeezed, width_in, word_after,
 };
-use super::samples::{LineFault, Parsed, number};
+use super::samples::{LineFault, Parsed, number, step_of_rate};
 use super::unit::Unit;
 
 /// Lines of text, integers and numbers before the pairs of volume 1.
 const HEADER_LINES: usize = 27;
+/// Largest number of lines at the beginning of a channel that are searched for its name and peaks.
+const SEARCHED_LINES: usize = 64;
 
-/// Returns true for the first line of such a file.
+/// Returns true for the first line of a CSMIP file, and of its channels.
 pub(super) fn begins(first: &str) -> bool {
     let first = first.trim_start().to_ascii_lowercase();
     first.starts_with("corrected accelerogram") || first.starts_with("uncorrected accelerogram")
@@ -29,14 +31,15 @@ pub(super) fn histories(lines: &[&str]) -> Parsed<Vec<History>> {
     let (mut histories, mut start, mut in_channel) = (Vec::new(), 0, 0);
     for (index, line) in lines.iter().enumerate().filter(|(_, line)| is_text(line)) {
         let lower = line.to_ascii_lowercase();
-        let channel = start..index;
-        if lower.contains("end of data") {
+        let is_end = lower.contains("end of data");
+        if is_end || begins(line) {
             if histories.len() == in_channel {
-                histories.extend(pairs(lines, channel)?);
+                histories.extend(pairs(lines, start..index)?);
             }
-            (start, in_channel) = (index + 1, histories.len());
+            start = index + usize::from(is_end);
+            in_channel = histories.len();
         } else if let Some((_, quantity)) = BLOCKS.iter().find(|(block, _)| lower.contains(block)) {
-            histories.push(equally_spaced(lines, channel, quantity)?);
+            histories.push(equally_spaced(lines, start, index, quantity)?);
         }
     }
     if histories.len() == in_channel {
@@ -55,42 +58,40 @@ const BLOCKS: [(&str, &str); 4] = [
     ("accelerogram points at", "acceleration"),
 ];
 
-/// Reads the line before samples at a constant step, which ends the header of the channel.
-fn equally_spaced(lines: &[&str], header: Range<usize>, quantity: &str) -> Parsed<History> {
-    let line = lines[header.end];
+/// Reads the line before samples at a constant step, of the channel that begins at `start`.
+fn equally_spaced(lines: &[&str], start: usize, index: usize, quantity: &str) -> Parsed<History> {
+    let line = lines[index];
+    let header = &lines[start..index.min(start + SEARCHED_LINES)];
     let step_s = match word_after(line, "points at ") {
-        Some(rate) => number(rate).map(f64::recip),
+        Some(rate) => number(rate).and_then(|rate_hz| step_of_rate("the rate", rate_hz)),
         None => number(word_after(line, "spaced at ").unwrap_or_default()),
     };
     let count = line.split_whitespace().next().unwrap_or_default();
-    let (count, step_s) = count_and_step(header.end + 1, count, step_s)?;
+    let (count, step_s) = count_and_step((index + 1, count), (index + 1, step_s))?;
     let unit = ["sec, in ", "units of ", "units: "]
         .into_iter()
         .find_map(|phrase| word_after(line, phrase));
     let unit = unit.unwrap_or_default().trim_end_matches('.');
     let peak = format!("peak {quantity} = ");
-    let stated = lines[header.start..header.end].iter().find_map(|line| {
+    let stated = header.iter().find_map(|line| {
         let line = squeezed(line);
-        let word = word_after(&line, &peak).or_else(|| word_after(&line, " max = "))?;
-        let unit_of_peak = squeezed(&line)
-            .split(word)
-            .nth(1)?
-            .split_whitespace()
-            .next()?
-            .to_owned();
-        (Unit::written(&unit_of_peak) == Unit::written(unit)).then(|| word.to_owned())
+        let stated = rest(&line, &peak).or_else(|| rest(&line, " max = "))?;
+        let (word, rest) = stated.split_once(' ')?;
+        let unit_of_peak = rest.split(' ').next()?;
+        (Unit::written(unit_of_peak) == Unit::written(unit)).then(|| word.to_owned())
     });
     Ok(History {
-        name: name(lines, header.clone()),
+        name: name(header),
         quantity: quantity.to_owned(),
-        line: header.end + 1,
+        line: index + 1,
         unit: unit.to_owned(),
         factor: 1.0,
         step_s: Some(step_s),
         count,
         columns: (1, 0),
+        is_table: false,
         peak: stated,
-        data: lines_of_numbers(lines, header.end + 1),
+        data: lines_of_numbers(lines, index + 1),
         width: width_in(line),
     })
 }
@@ -98,21 +99,22 @@ fn equally_spaced(lines: &[&str], header: Range<usize>, quantity: &str) -> Parse
 /// Reads the header of a channel of times and accelerations; `None` without one.
 fn pairs(lines: &[&str], channel: Range<usize>) -> Parsed<Option<History>> {
     let start = channel.start;
+    let header = &lines[start..channel.end.min(start + HEADER_LINES)];
     let find = |phrase: &str| {
-        let mut header = lines[channel.clone()].iter().take(HEADER_LINES).enumerate();
-        header.find_map(|(index, line)| Some((start + index, word_after(line, phrase)?)))
+        header.iter().zip(start..).find_map(|(line, index)| {
+            Some((index, word_after(&squeezed(line), phrase)?.to_owned()))
+        })
     };
     let found = [find("no. of points = "), find("are sec and ")];
     let [Some((line, count)), Some((_, unit))] = found else {
         return Ok(None);
     };
-    let count = number(count).map_err(LineFault::on(line + 1))?;
+    let count = number(&count).map_err(LineFault::on(line + 1))?;
     let unit = unit.trim_end_matches('.');
     let (unit, tenths) = unit.split_once('/').unwrap_or((unit, "1"));
     let tenths = number(tenths).map_err(LineFault::on(line + 1))?;
-    let peak = find("max = ").or_else(|| find("max  = "));
     Ok(Some(History {
-        name: name(lines, channel.clone()),
+        name: name(header),
         quantity: "acceleration".to_owned(),
         line: line + 1,
         unit: unit.to_owned(),
@@ -120,16 +122,17 @@ fn pairs(lines: &[&str], channel: Range<usize>) -> Parsed<Option<History>> {
         step_s: None,
         count,
         columns: (2, 1),
-        peak: peak.map(|(_, peak)| peak.to_owned()),
+        is_table: false,
+        peak: find("max = ").map(|(_, peak)| peak),
         data: lines_of_numbers(lines, start + HEADER_LINES),
         width: 7,
     }))
 }
 
 /// Returns the name of a channel, as `360 Deg` in `Chan  1: 360 Deg`.
-fn name(lines: &[&str], mut header: Range<usize>) -> String {
-    let name = header.find_map(|index| {
-        let (label, name) = lines[index].split_once(':')?;
+fn name(header: &[&str]) -> String {
+    let name = header.iter().find_map(|line| {
+        let (label, name) = line.split_once(':')?;
         let is_name = label.trim_start().to_ascii_lowercase().starts_with("chan ");
         is_name.then(|| squeezed(name))
     });

@@ -4,10 +4,9 @@
 //! with ten numbers a line, in mm/s2, mm/s and mm. The integers have the number of samples of each block, the numbers step and peaks. Source: GNS Accelerogram Data File
 //! Format (GeoNet), as files of the USGS's tests of `gmprocess` follow it.
 
-use super::histories::{
-    History, count_and_step, header_fields, lines_of_numbers, squeezed, word_after,
-};
-use super::samples::{LineFault, Parsed, number};
+use super::histories::{History, header_fields, lines_of_numbers, rest, squeezed};
+use super::samples::{LineFault, Parsed, checked_step, number, words};
+use super::unit::Unit;
 use crate::scenario::prelude::*;
 
 const INTEGERS: usize = 16;
@@ -15,7 +14,7 @@ const REALS: usize = 20;
 const DATA: usize = 26;
 const COLUMNS: usize = 10;
 
-/// Returns true for the lines with which such a file begins.
+/// Returns true for the first lines of a component of a GeoNet file.
 pub(super) fn begins(lines: &[&str]) -> bool {
     let has = |index: usize, word: &str| lines.get(index).is_some_and(|line| line.contains(word));
     has(0, "orrected accelerogram") && has(1, "Site ") && has(9, "Number of points")
@@ -23,17 +22,17 @@ pub(super) fn begins(lines: &[&str]) -> bool {
 
 /// Finds all histories of a file.
 pub(super) fn histories(lines: &[&str]) -> Parsed<Vec<History>> {
-    let (mut histories, mut start) = (Vec::new(), 0);
-    while start == 0 || lines.get(start).is_some_and(|line| !line.trim().is_empty()) {
-        ensure(begins(&lines[start.min(lines.len())..]), || {
-            LineFault::on(start.max(1))(match start {
-                0 => {
-                    "the lines do not begin like `Corrected accelerogram`, `Site`: is this a file of GeoNet?"
-                }
-                _ => "no component begins below; the number of samples in the header may be wrong",
+    let filled = |from| (from..lines.len()).find(|index| words(lines[*index]).next().is_some());
+    let (mut histories, mut next) = (Vec::new(), Some(filled(0).unwrap_or(0)));
+    while let Some(start) = next {
+        ensure(begins(&lines[start..]), || {
+            LineFault::on(start + 1)(if histories.is_empty() {
+                "the lines do not begin like `Corrected accelerogram`, `Site`: is this a file of GeoNet?"
+            } else {
+                "no component begins here; the number of samples in the header may be wrong"
             })
         })?;
-        start = component(lines, start, &mut histories)?;
+        next = filled(component(lines, start, &mut histories)?);
     }
     Ok(histories)
 }
@@ -46,48 +45,68 @@ fn component(lines: &[&str], start: usize, histories: &mut Vec<History>) -> Pars
     let text = &lines[start..start + INTEGERS];
     let named = text.iter().find_map(|line| line.strip_prefix("Component"));
     // Raw readings may have another unit.
-    let raw = text
-        .iter()
-        .find(|line| line.contains("units of"))
-        .filter(|_| !is_corrected);
-    let factor = raw.and_then(|line| number(word_after(line, "units of ")?).ok());
-    let mut from = start + DATA;
-    let peaks = [if is_corrected { 35 } else { 30 }, 40, 45];
+    let mut raw = text.iter().zip(start + 1..).filter(|_| !is_corrected);
+    let raw = raw.find_map(|(line, number)| Some((number, rest(line, "units of ")?)));
+    let (factor, unit) = match raw {
+        Some((line, text)) => raw_unit(text).map_err(LineFault::on(line))?,
+        None => (1.0, "mm/s2"),
+    };
+    // The header has peaks in millimetres.
+    let has_peak = Unit::written(unit) == Some(Unit::MillimetrePerS2);
+    let (line, mut from) = (start + REALS, start + DATA);
+    let step_s = number(reals[25]).and_then(|step_s| checked_step("the step", step_s));
+    let step_s = step_s.map_err(LineFault::on(line + 3))?;
+    let peak = if is_corrected { 35 } else { 30 };
     let blocks = [
-        ("acceleration", "mm/s2"),
-        ("velocity", "mm/s"),
-        ("displacement", "mm"),
+        (
+            "acceleration",
+            unit,
+            factor,
+            Some(peak).filter(|_| has_peak),
+        ),
+        ("velocity", "mm/s", 1.0, Some(40)),
+        ("displacement", "mm", 1.0, Some(45)),
     ];
-    for (index, (quantity, unit)) in blocks.into_iter().enumerate() {
-        let line = start + REALS;
-        let (count, step_s) = count_and_step(line, integers[33 + index], number(reals[25]))?;
+    for ((quantity, unit, factor, peak), count) in blocks.into_iter().zip(&integers[33..]) {
+        let count = number(count).map_err(LineFault::on(line))?;
         if count < 1.0 {
             continue;
         }
-        let rest = lines_of_numbers(lines, from);
+        let below = lines_of_numbers(lines, from);
         let needed = (count / COLUMNS as f64).ceil();
         // A wrong number would shift all blocks below.
-        ensure(needed <= rest.len() as f64, || {
+        ensure(needed <= below.len() as f64, || {
             let announced = plain(count);
             let wrong =
                 format!("the numbers of {quantity} end here: line {line} announces {announced}");
-            LineFault::on(rest.end.max(1))(wrong)
+            LineFault::on(below.end.max(1))(wrong)
         })?;
-        let data = rest.start..rest.start + needed as usize;
+        let data = below.start..below.start + needed as usize;
         from = data.end;
         histories.push(History {
             name: squeezed(named.unwrap_or_default()),
             quantity: quantity.to_owned(),
             line,
             unit: unit.to_owned(),
-            factor: factor.unwrap_or(1.0),
+            factor,
             step_s: Some(step_s),
             count,
             columns: (1, 0),
-            peak: Some(reals[peaks[index]].to_owned()),
+            is_table: false,
+            peak: peak.map(|index: usize| reals[index].to_owned()),
             data,
             width: 8,
         });
     }
     Ok(from)
+}
+
+/// Reads factor and unit of raw readings, as `1.00 mm/s/s` or `mm/s/s`.
+fn raw_unit(text: &str) -> Result<(f64, &str), String> {
+    let mut words = text.split_whitespace();
+    let first = words.next().unwrap_or_default();
+    if first.starts_with(char::is_alphabetic) {
+        return Ok((1.0, first));
+    }
+    Ok((number(first)?, words.next().unwrap_or_default()))
 }

@@ -29,6 +29,8 @@ pub(super) struct History {
     pub(super) count: f64,
     /// Number of numbers for one sample, and index of the sample among them.
     pub(super) columns: (usize, usize),
+    /// True if every line has the numbers of one sample.
+    pub(super) is_table: bool,
     /// The peak that the header states, in the unit of the samples.
     pub(super) peak: Option<String>,
     /// Indices of the lines with the numbers.
@@ -116,8 +118,16 @@ fn choose(histories: &[&History], channel: Option<&TableColumn>) -> Result<usize
         }
         Some(TableColumn::Name(name)) => {
             let name = squeezed(name).to_lowercase();
-            let has_name = |index: &usize| histories[*index].name.to_lowercase().contains(&name);
-            (0..count).filter(has_name).collect()
+            let named = |fits: fn(&str, &str) -> bool| {
+                let fits = |index: &usize| fits(&histories[*index].name.to_lowercase(), &name);
+                (0..count).filter(fits).collect::<Vec<_>>()
+            };
+            let equal = named(|own, name| own == name);
+            if equal.is_empty() {
+                named(has_words)
+            } else {
+                equal
+            }
         }
     };
     match (found.pop(), found.len(), channel) {
@@ -127,21 +137,31 @@ fn choose(histories: &[&History], channel: Option<&TableColumn>) -> Result<usize
             listed()
         )),
         (found, _, Some(channel)) => {
-            let channel = match channel {
-                TableColumn::Number(number) => number.to_string(),
-                TableColumn::Name(name) => format!("`{}`", excerpt(name)),
+            let wrong = match (channel, found) {
+                (TableColumn::Number(number), _) => format!("there is no channel {number}"),
+                (TableColumn::Name(name), None) => {
+                    format!("no channel matches `{}`", excerpt(name))
+                }
+                (TableColumn::Name(name), _) => {
+                    format!("several channels match `{}`", excerpt(name))
+                }
             };
-            let which = if found.is_some() {
-                "several channels are"
-            } else {
-                "no channel is"
-            };
-            Err(format!(
-                "{which} named {channel}; the file has {}",
-                listed()
-            ))
+            Err(format!("{wrong}; the file has {}", listed()))
         }
     }
+}
+
+/// Returns true if a name contains a part that neither begins nor ends inside a word of the name.
+fn has_words(name: &str, part: &str) -> bool {
+    let is_inside = |left: Option<char>, right: Option<char>| {
+        let mut sides = [left, right].into_iter();
+        sides.all(|side| side.is_some_and(char::is_alphanumeric))
+    };
+    name.match_indices(part).any(|(start, _)| {
+        let (before, after) = (&name[..start], &name[start + part.len()..]);
+        !is_inside(before.chars().next_back(), part.chars().next())
+            && !is_inside(part.chars().next_back(), after.chars().next())
+    })
 }
 
 /// Returns the message that a file has no history of the wanted quantity.
@@ -167,32 +187,35 @@ fn holds(histories: &[History], wanted: RecordedQuantity) -> String {
 impl History {
     /// Reads the numbers: the times, if the file has them, and the samples.
     fn numbers(&self, lines: &[&str]) -> Parsed<(Vec<f64>, Values)> {
-        let (mut times_s, mut read) = (Vec::new(), 0);
+        let (mut times_s, (of_sample, wanted)) = (Vec::new(), self.columns);
         let mut values = Values {
             line: self.data.start.max(1),
             ..Values::default()
         };
         for index in self.data.clone() {
             let fault = LineFault::on::<String>(index + 1);
-            for word in fields(lines[index], self.width) {
+            let row = fields(lines[index], self.width);
+            let (found, is_table) = (row.len(), self.is_table);
+            let fits = found.is_multiple_of(of_sample) && (!is_table || found <= of_sample);
+            ensure(fits, || {
+                let allowed = if is_table { "" } else { "a multiple of " };
+                fault(format!(
+                    "`{}` has {found} numbers; must have {allowed}{of_sample}",
+                    excerpt(lines[index])
+                ))
+            })?;
+            for (at, word) in row.into_iter().enumerate() {
                 let value = number(word).and_then(in_range).map_err(fault)?;
-                let column = read % self.columns.0;
-                read += 1;
+                let column = at % of_sample;
                 if column == 0 && self.step_s.is_none() {
                     check_time(value, times_s.last().copied()).map_err(fault)?;
                     times_s.push(value);
                 }
-                if column == self.columns.1 {
+                if column == wanted {
                     values.push(index + 1, value * self.factor)?;
                 }
             }
         }
-        ensure(read % self.columns.0 == 0, || {
-            values.fault(format!(
-                "the last sample is cut: {} numbers belong to one sample",
-                self.columns.0
-            ))
-        })?;
         Ok((times_s, values))
     }
 
@@ -219,17 +242,18 @@ impl History {
     }
 }
 
-/// Splits a line into numbers. Numbers that touch have `width` characters each; 0 if unknown.
-fn fields(line: &str, width: usize) -> Vec<&str> {
+/// Splits a line into numbers. Numbers that touch have `width` characters each; 0 if unknown. A line that lost characters is not cut, because all
+/// numbers after them would be wrong.
+pub(super) fn fields(line: &str, width: usize) -> Vec<&str> {
     let separate: Vec<_> = words(line).collect();
     let is_number = |word: &&str| number(word).is_ok();
-    if width == 0 || !line.is_ascii() || separate.iter().all(is_number) {
+    let line = line.trim_end();
+    let is_whole = width > 0 && line.is_ascii() && line.len().is_multiple_of(width);
+    if !is_whole || separate.iter().all(is_number) {
         return separate;
     }
-    let line = line.trim_end();
-    let cells = (0..line.len())
-        .step_by(width)
-        .map(|at| line[at..(at + width).min(line.len())].trim());
+    let cells = (0..line.len()).step_by(width);
+    let cells = cells.map(|at| line[at..at + width].trim());
     cells.filter(|cell| !cell.is_empty()).collect()
 }
 
@@ -272,10 +296,15 @@ pub(super) fn is_text(line: &str) -> bool {
     line.contains(|c: char| c.is_alphabetic() && !"eEdD".contains(c))
 }
 
-/// Returns the first word after a phrase, without blanks between them.
-pub(super) fn word_after<'t>(line: &'t str, phrase: &str) -> Option<&'t str> {
+/// Returns the part of a line after a phrase in lower case.
+pub(super) fn rest<'t>(line: &'t str, phrase: &str) -> Option<&'t str> {
     let at = line.to_ascii_lowercase().find(phrase)? + phrase.len();
-    let word = line[at..].split_whitespace().next()?;
+    Some(&line[at..])
+}
+
+/// Returns the first word after a phrase in lower case.
+pub(super) fn word_after<'t>(line: &'t str, phrase: &str) -> Option<&'t str> {
+    let word = rest(line, phrase)?.split_whitespace().next()?;
     Some(word.trim_end_matches([',', ';', ')']))
 }
 
@@ -299,13 +328,21 @@ pub(super) fn squeezed(name: &str) -> String {
     name.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// Reads the number of samples and checks their step, in s.
+/// Returns the number with the largest magnitude, as text.
+pub(super) fn largest<'t>(words: impl Iterator<Item = &'t str>) -> Option<String> {
+    let numbers = words.filter_map(|word| Some((number(word).ok()?.abs(), word)));
+    let largest = numbers.max_by(|one, other| one.0.total_cmp(&other.0));
+    largest.map(|(_, word)| word.to_owned())
+}
+
+/// Reads the number of samples on a line, and their step in s on the same or another line.
 pub(super) fn count_and_step(
-    line: usize,
-    count: &str,
-    step_s: Result<f64, String>,
+    (line, count): (usize, &str),
+    (step_line, step_s): (usize, Result<f64, String>),
 ) -> Parsed<(f64, f64)> {
-    let fault = LineFault::on::<String>(line);
     let step_s = step_s.and_then(|step_s| checked_step("the step", step_s));
-    Ok((number(count).map_err(fault)?, step_s.map_err(fault)?))
+    Ok((
+        number(count).map_err(LineFault::on(line))?,
+        step_s.map_err(LineFault::on(step_line))?,
+    ))
 }

@@ -3,7 +3,7 @@
 //! The header has lines with a name of up to 18 characters and a value; its last line begins with `Memo.`. Integers follow, several per line.
 //! Multiplied by the `Scale Factor`, such as `3920(gal)/6182761`, they are accelerations in gal, including the offset of the instrument.
 
-use super::samples::{Contents, LineFault, MIN_STEP_S, Parsed, Values, number, words};
+use super::samples::{Contents, LineFault, Parsed, Values, number, step_of_rate, words};
 use super::unit::Unit;
 use crate::scenario::prelude::*;
 
@@ -57,12 +57,7 @@ pub(super) fn parse(text: &str) -> Parsed<Contents> {
 
 fn read_step(frequency: &str) -> Result<f64, String> {
     let frequency_hz = number(frequency.trim_end_matches("Hz").trim_end())?;
-    let step_s = 1.0 / frequency_hz;
-    ensure(step_s.is_finite() && step_s >= MIN_STEP_S, || {
-        let [given, most] = [plain(frequency_hz), short(1.0 / MIN_STEP_S)];
-        format!("{FREQUENCY} is {given}; must be above 0 and at most {most}")
-    })?;
-    Ok(step_s)
+    step_of_rate(FREQUENCY, frequency_hz)
 }
 
 /// Returns the factor that converts the integers to gal.

@@ -2,62 +2,76 @@
 //!
 //! Sources: files of the three networks, and their readers in the USGS's `gmprocess` (groups nsmn and cwb) and in `CSMNC2SAC`.
 
-use super::histories::{History, count_and_step, is_text, lines_of_numbers, squeezed, word_after};
-use super::samples::{LineFault, Parsed, number};
+use std::ops::Range;
+
+use super::histories::{
+    History, count_and_step, fields, is_text, largest, rest, squeezed, word_after,
+};
+use super::samples::{LineFault, Parsed, number, step_of_rate, words};
 use crate::scenario::prelude::*;
 
 /// Largest number of lines of a header.
 const MAX_HEADER_LINES: usize = 64;
 
-/// Returns the number of lines of a header, up to the last one with words.
-fn header_lines(lines: &[&str]) -> usize {
-    let header = &lines[..lines.len().min(MAX_HEADER_LINES)];
-    let last = header.iter().rposition(|line| is_text(line));
-    last.map_or(0, |last| last + 1)
-}
-
 /// Finds the line of a header with a phrase in lower case, single blanks between words. Returns its number, from 1, and the word after the phrase.
-fn find(lines: &[&str], phrase: &str) -> Parsed<(usize, String)> {
-    let end = header_lines(lines);
-    let mut header = lines[..end].iter().zip(1..);
-    let found = header.find_map(|(line, number)| {
+fn find(header: &[&str], phrase: &str) -> Parsed<(usize, String)> {
+    let mut lines = header.iter().zip(1..).take(MAX_HEADER_LINES);
+    let found = lines.find_map(|(line, number)| {
         let line = squeezed(line);
         Some((number, word_after(&line, phrase)?.to_owned()))
     });
     found.ok_or_else(|| {
         let wrong = format!("the header has no `{}` up to here", phrase.trim_end());
-        LineFault::on(end.max(1))(wrong)
+        LineFault::on(header.len().clamp(1, MAX_HEADER_LINES))(wrong)
     })
 }
 
-/// Returns the part of a line after a phrase in lower case.
-fn rest<'t>(line: &'t str, phrase: &str) -> Option<&'t str> {
-    let at = line.to_ascii_lowercase().find(phrase)? + phrase.len();
-    Some(&line[at..])
+/// Divides a file into its header, and the numbers from the first line below the one with a phrase that `is_header` refuses. Words below are a fault,
+/// or the numbers of another record would be read with this header.
+fn header_and_data<'l, 't>(
+    lines: &'l [&'t str],
+    phrase: &str,
+    is_header: fn(&str) -> bool,
+) -> Parsed<(&'l [&'t str], Range<usize>)> {
+    let (above, _) = find(lines, phrase)?;
+    let is_data = |line: &&str| words(line).next().is_some() && !is_header(line);
+    let length = lines[above..].iter().position(is_data);
+    let data = length.map_or(lines.len(), |length| above + length)..lines.len();
+    if let Some(index) = data.clone().find(|index| is_text(lines[*index])) {
+        let text = excerpt(lines[index]);
+        return Err(LineFault::on(index + 1)(format!(
+            "`{text}` is not a row of numbers; if another record begins here, give it a file of its own"
+        )));
+    }
+    Ok((&lines[..data.start], data))
 }
 
 /// Finds the three components of a file of AFAD: columns `N-S`, `E-W` and `U-D`, in gal.
 pub(super) fn afad(lines: &[&str]) -> Parsed<Vec<History>> {
-    let (line, count) = find(lines, "number of data : ")?;
-    let (_, step) = find(lines, "sampling interval (sec) : ")?;
-    let (count, step_s) = count_and_step(line, &count, number(&step))?;
-    let end = header_lines(lines);
-    let names: Vec<_> = lines[end - 1].split_whitespace().collect();
+    let (header, data) = header_and_data(lines, "raw pga values (", is_text)?;
+    let (line, count) = find(header, "number of data : ")?;
+    let (step_line, step) = find(header, "sampling interval (sec) : ")?;
+    let (count, step_s) = count_and_step((line, &count), (step_line, number(&step)))?;
+    let (peaks, unit) = find(header, "raw pga values (")?;
+    let end = header.iter().rposition(|line| is_text(line));
+    let end = end.unwrap_or_default();
+    let names: Vec<_> = header[end].split_whitespace().collect();
     ensure(names.len() == 3, || {
-        LineFault::on(end)("the line before the numbers must name three components")
+        LineFault::on(end + 1)("the line before the numbers must name three components")
     })?;
-    let peaks = find(lines, "raw pga values (gal) : ").map_or("", |(line, _)| lines[line - 1]);
     let histories = names.iter().enumerate().map(|(index, name)| History {
         name: squeezed(name),
         quantity: "acceleration".to_owned(),
         line,
-        unit: "gal".to_owned(),
+        unit: unit.clone(),
         factor: 1.0,
         step_s: Some(step_s),
         count,
         columns: (3, index),
-        peak: word_after(peaks, &format!("({}) ", name.to_lowercase())).map(str::to_owned),
-        data: lines_of_numbers(lines, end),
+        is_table: true,
+        peak: word_after(header[peaks - 1], &format!("({}) ", name.to_lowercase()))
+            .map(str::to_owned),
+        data: data.clone(),
         width: 0,
     });
     Ok(histories.collect())
@@ -65,40 +79,52 @@ pub(super) fn afad(lines: &[&str]) -> Parsed<Vec<History>> {
 
 /// Finds the components of a file of CWB: a column of times, then those that the header names.
 pub(super) fn cwb(lines: &[&str]) -> Parsed<Vec<History>> {
-    let end = header_lines(lines);
-    let (line, lasts_s) = find(lines, "#recordlength(sec):")?;
-    let (rate_line, rate) = find(lines, "#samplerate(hz):")?;
-    let (_, unit) = find(lines, "#amplitudeunit:")?;
-    let (order_line, _) = find(lines, "#datasequence: time")?;
-    let (lasts_s, step_s) = count_and_step(line, &lasts_s, number(&rate).map(f64::recip))?;
-    let data = lines_of_numbers(lines, end);
-    let count = lines[data.clone()]
-        .iter()
-        .filter(|line| !line.trim().is_empty())
-        .count() as f64;
-    // The header gives the length only.
-    ensure((count * step_s - lasts_s).abs() <= 1.0, || {
+    /// Number of characters of a number.
+    const WIDTH: usize = 10;
+    let is_header = |line: &str| line.trim_start().starts_with('#');
+    let (header, data) = header_and_data(lines, "#datasequence: time", is_header)?;
+    let (line, lasts_s) = find(header, "#recordlength(sec):")?;
+    let (rate_line, rate) = find(header, "#samplerate(hz):")?;
+    let (_, unit) = find(header, "#amplitudeunit:")?;
+    let (order_line, _) = find(header, "#datasequence: time")?;
+    let step_s = number(&rate).and_then(|rate_hz| step_of_rate("the rate", rate_hz));
+    let (lasts_s, step_s) = count_and_step((line, &lasts_s), (rate_line, step_s))?;
+    let is_row = |index: &usize| words(lines[*index]).next().is_some();
+    let rows: Vec<usize> = data.clone().filter(is_row).collect();
+    let count = rows.len() as f64;
+    let last_line = rows.last().map_or(data.end.max(1), |index| index + 1);
+    // The header gives the length only, and some files count the steps in place of the samples.
+    ensure((count * step_s - lasts_s).abs() <= 2.0 * step_s, || {
         let [found_s, lasts_s] = [count * step_s, lasts_s].map(plain);
-        LineFault::on(data.end.max(1))(format!(
+        LineFault::on(last_line)(format!(
             "the file ends after {found_s} s at the rate on line {rate_line}: line {line} announces {lasts_s} s"
         ))
     })?;
-    let names = rest(lines[order_line - 1], "time").unwrap_or_default();
+    let time_s = |row: Option<&usize>| {
+        row.map_or(Ok(0.0), |index| {
+            let row = fields(lines[*index], WIDTH);
+            let time = row.first().copied().unwrap_or_default();
+            number(time).map_err(LineFault::on(index + 1))
+        })
+    };
+    let spans_s = time_s(rows.last())? - time_s(rows.first())?;
+    ensure(
+        (spans_s - (count - 1.0) * step_s).abs() <= 0.5 * step_s,
+        || {
+            let [spans_s, step_s] = [spans_s, step_s].map(plain);
+            LineFault::on(last_line)(format!(
+                "{count} rows take {spans_s} s: line {rate_line} announces a step of {step_s} s"
+            ))
+        },
+    )?;
+    let names = rest(header[order_line - 1], "time").unwrap_or_default();
     let names: Vec<_> = names
         .split(';')
         .map(|name| squeezed(name.trim().trim_end_matches("(+)")))
         .collect();
     let histories = names.iter().enumerate().map(|(index, name)| {
         let phrase = format!("#amplitudemax. {}:", name.to_lowercase());
-        let peaks = lines[..end]
-            .iter()
-            .find_map(|line| rest(line, &phrase))
-            .unwrap_or_default();
-        let magnitude = |word: &&str| number(word).unwrap_or_default().abs();
-        let peak = peaks
-            .split('~')
-            .map(str::trim)
-            .filter(|word| number(word).is_ok());
+        let peaks = header.iter().find_map(|line| rest(line, &phrase));
         History {
             name: name.clone(),
             quantity: "acceleration".to_owned(),
@@ -108,11 +134,10 @@ pub(super) fn cwb(lines: &[&str]) -> Parsed<Vec<History>> {
             step_s: None,
             count,
             columns: (names.len() + 1, index + 1),
-            peak: peak
-                .max_by(|a, b| magnitude(a).total_cmp(&magnitude(b)))
-                .map(str::to_owned),
+            is_table: true,
+            peak: largest(peaks.unwrap_or_default().split('~').map(str::trim)),
             data: data.clone(),
-            width: 10,
+            width: WIDTH,
         }
     });
     Ok(histories.collect())
@@ -120,16 +145,17 @@ pub(super) fn cwb(lines: &[&str]) -> Parsed<Vec<History>> {
 
 /// Finds the only history of a file of CSMNC.
 pub(super) fn csmnc(lines: &[&str]) -> Parsed<Vec<History>> {
-    let (line, count) = find(lines, "no. of points:")?;
-    let (_, step) = find(lines, "spaced intervals of:")?;
-    let (unit_line, unit) = find(lines, "unit:")?;
-    let (count, step_s) = count_and_step(line, &count, number(&step))?;
-    let held = lines[unit_line - 1].to_ascii_lowercase();
+    let (header, data) = header_and_data(lines, "peak value:", is_text)?;
+    let (line, count) = find(header, "no. of points:")?;
+    let (step_line, step) = find(header, "spaced intervals of:")?;
+    let (unit_line, unit) = find(header, "unit:")?;
+    let (count, step_s) = count_and_step((line, &count), (step_line, number(&step)))?;
+    let held = header[unit_line - 1].to_ascii_lowercase();
     let quantity = ["acceleration", "velocity", "displacement"]
         .into_iter()
         .find(|one| held.contains(one));
     Ok(vec![History {
-        name: find(lines, "comp.")
+        name: find(header, "comp.")
             .map(|(_, name)| name)
             .unwrap_or_default(),
         quantity: quantity.unwrap_or("unknown samples").to_owned(),
@@ -139,8 +165,9 @@ pub(super) fn csmnc(lines: &[&str]) -> Parsed<Vec<History>> {
         step_s: Some(step_s),
         count,
         columns: (1, 0),
-        peak: find(lines, "peak value:").ok().map(|(_, peak)| peak),
-        data: lines_of_numbers(lines, header_lines(lines)),
+        is_table: false,
+        peak: find(header, "peak value:").ok().map(|(_, peak)| peak),
+        data,
         width: 0,
     }])
 }

@@ -178,6 +178,16 @@ pub(super) fn checked_step(key: &str, step_s: f64) -> Result<f64, String> {
     Ok(step_s)
 }
 
+/// Returns the step in s between samples at a rate, in Hz.
+pub(super) fn step_of_rate(key: &str, rate_hz: f64) -> Result<f64, String> {
+    let step_s = 1.0 / rate_hz;
+    ensure(step_s.is_finite() && step_s >= MIN_STEP_S, || {
+        let [given, most] = [plain(rate_hz), short(1.0 / MIN_STEP_S)];
+        format!("{key} is {given}; must be above 0 and at most {most}")
+    })?;
+    Ok(step_s)
+}
+
 /// Returns an error if a time is out of range, or not later than the previous time.
 pub(super) fn check_time(time_s: f64, before_s: Option<f64>) -> Result<(), String> {
     ensure(time_s.abs() <= MAX_TIME_S, || {

@@ -4,8 +4,8 @@
 //! fields of ten characters. If the header has no sampling rate, every sample follows its time. Source: the format description of the USGS
 //! (escweb.wr.usgs.gov/nsmp-data/smcfmt.html), as its `gmprocess` and the files of its tests follow it.
 
-use super::histories::{History, count_and_step, header_fields, squeezed};
-use super::samples::{LineFault, Parsed, number};
+use super::histories::{History, count_and_step, header_fields, largest, squeezed};
+use super::samples::{LineFault, Parsed, number, step_of_rate};
 use crate::scenario::prelude::*;
 
 const INTEGERS: usize = 11;
@@ -13,8 +13,10 @@ const REALS: usize = 17;
 const COMMENTS: usize = 27;
 /// Line of the header with the number of samples, from 1.
 const COUNT_LINE: usize = 14;
+/// Line of the header with the sampling rate, from 1.
+const RATE_LINE: usize = 18;
 
-/// Returns true for the first line of such a file, as `2 CORRECTED ACCELEROGRAM`.
+/// Returns true for the first line of an SMC file, as `2 CORRECTED ACCELEROGRAM`.
 pub(super) fn begins(first: &str) -> bool {
     const KINDS: [&str; 4] = ["ACCELEROGRAM", "VELOCITY", "DISPLACEMENT", "SPECTRA"];
     let first = first.trim();
@@ -43,14 +45,12 @@ pub(super) fn histories(lines: &[&str]) -> Parsed<Vec<History>> {
         );
         return Err(LineFault::on(index + 1)(wrong));
     }
-    // The first number stands for unknown ones.
+    // The first number marks unknown values.
     let known = |index: usize| Some(reals[index]).filter(|real| *real != reals[0]);
     let rate = known(1);
-    let step_s = rate.map_or(Ok(1.0), |rate| number(rate).map(f64::recip));
-    let (count, step_s) = count_and_step(COUNT_LINE, integers[16], step_s)?;
+    let step_s = rate.map_or(Ok(1.0), |rate| step_of_rate("the rate", number(rate)?));
+    let (count, step_s) = count_and_step((COUNT_LINE, integers[16]), (RATE_LINE, step_s))?;
     let columns = if rate.is_some() { (1, 0) } else { (2, 1) };
-    let magnitude = |word: &&str| number(word).unwrap_or_default().abs();
-    let peaks = [known(29), known(31)].into_iter().flatten();
     let kind = first.trim()[2..].trim();
     let (quantity, unit) = match kind {
         _ if kind.contains("ACCELEROGRAM") => ("acceleration", "cm/s2"),
@@ -69,9 +69,8 @@ pub(super) fn histories(lines: &[&str]) -> Parsed<Vec<History>> {
         step_s: rate.map(|_| step_s),
         count: count / columns.0 as f64,
         columns,
-        peak: peaks
-            .max_by(|a, b| magnitude(a).total_cmp(&magnitude(b)))
-            .map(str::to_owned),
+        is_table: false,
+        peak: largest([known(29), known(31)].into_iter().flatten()),
         data: data.min(lines.len())..lines.len(),
         width: 10,
     }])
