@@ -1,4 +1,5 @@
-//! The readers of files whose header describes one or several histories. The first byte chooses format, quantity and channel; the contents follow.
+//! The readers of files whose header describes one or several histories. The first byte chooses format, quantity and channel; the contents follow, whose
+//! format is also searched for in their header.
 #![no_main]
 
 mod common;
@@ -29,5 +30,6 @@ fuzz_target!(|input: &[u8]| {
         },
         ..Layout::new(FORMATS[usize::from(settings & 7) % FORMATS.len()])
     };
+    let _ = Format::of_contents(contents);
     common::check(&layout, contents);
 });

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use archrock::scenario::{
-    Contents, Format, Layout, LineFault, RecordedQuantity, TableColumn, Unit,
+    Contents, Format, Layout, LineFault, RecordedQuantity, Scenario, TableColumn, Unit,
 };
 
 use crate::common::program::{archrock, refusal, stderr, stdout};
@@ -61,6 +61,14 @@ fn assert_values(contents: &Contents, expected: &[f64], factor: f64) {
     }
 }
 
+/// The layout with this channel.
+fn choose(format: Format, channel: usize) -> Layout {
+    Layout {
+        channel: Some(TableColumn::Number(channel)),
+        ..Layout::new(format)
+    }
+}
+
 /// A fault in the text with one part replaced.
 #[track_caller]
 fn assert_fault(name: &str, (old, new): (&str, &str), line: usize, words: &str) {
@@ -93,7 +101,8 @@ fn the_smallest_file_of_each_format_is_read() {
 #[test]
 fn formats_are_recognised_by_their_content() {
     let folder = tempfile::tempdir().unwrap();
-    for (name, format, unit, _) in FILES {
+    let columns = COLUMNS.map(|(name, format, ..)| (name, format, Unit::CentimetrePerS2, 1.0));
+    for (name, format, unit, _) in FILES.into_iter().chain(columns) {
         for ending in ["txt", "dat", "rec"] {
             let file = folder.path().join(format!("x.{ending}"));
             let text = text(name);
@@ -102,7 +111,11 @@ fn formats_are_recognised_by_their_content() {
                 fs::write(&file, text).unwrap();
                 assert_eq!(Format::of_file(&file), Some(format), "{name} {ending}");
                 let file = file.to_str().unwrap();
-                let said = stdout(&archrock(folder.path(), &["check", file]));
+                let channel = ["--set", "channel=1"];
+                let has_columns = COLUMNS.iter().any(|column| column.0 == name);
+                let channel = &channel[..if has_columns { 2 } else { 0 }];
+                let said = [&["check", file], channel].concat();
+                let said = stdout(&archrock(folder.path(), &said));
                 assert!(said.contains("10 samples every 0.01 s") || name == "renadic.v1");
                 assert!(said.contains(unit.name()), "{said}");
             }
@@ -138,6 +151,69 @@ fn numbers_that_touch_are_parted() {
         difference.contains("reaches 120 cm/s2, but its header states a peak of 2.5 cm/s2"),
         "{difference}"
     );
+    // A line that lost a character cannot be divided by the width.
+    assert_fault(
+        "csmip.v2",
+        (
+            "   .500000 -1.250000  2.000000",
+            "10.500000111.250000120.000000",
+        ),
+        46 + 1,
+        "is not a finite number",
+    );
+    for (format, (name, old, new), channel, expected) in [
+        (
+            Format::Smc,
+            (
+                "smc.smc",
+                " 5.0000E-1-1.2500E+0 2.0000E+0",
+                "15.0000E-111.2500E+012.0000E+0",
+            ),
+            None,
+            [1.5, 11.25, 12.0],
+        ),
+        (
+            Format::Cosmos,
+            (
+                "cosmos.v2",
+                " 0.50000-1.25000 2.00000",
+                "10.5000011.2500012.00000",
+            ),
+            None,
+            [10.5, 11.25, 12.0],
+        ),
+        (
+            Format::Csmip,
+            (
+                "renadic.v1",
+                "  0.000  0.500  0.010 -1.250  0.020  2.000",
+                "  0.000100.500  0.010101.250  0.020102.000",
+            ),
+            None,
+            [10.05, 10.125, 10.2],
+        ),
+        (
+            Format::Cwb,
+            (
+                "cwb.dat",
+                "    -0.050     0.500     0.150\n     0.010     0.125    -1.250    -0.375\n",
+                "100000.050100000.500     0.150\n     0.010     0.125    -1.250    -0.375\n",
+            ),
+            Some(TableColumn::Number(2)),
+            [100_000.5, -1.25, 2.0],
+        ),
+    ] {
+        let text = text(name);
+        assert!(text.contains(old), "{old}");
+        let layout = Layout {
+            channel,
+            ..Layout::new(format)
+        };
+        let contents = parse(&layout, &text.replacen(old, new, 1)).expect(name);
+        for (sample, expected) in contents.samples.iter().zip(expected) {
+            assert!((sample.1 - expected).abs() < 1e-9, "{name} {sample:?}");
+        }
+    }
     let wide = text("geonet.v1a").replacen("     5.0   -12.5", "123456.1123456.2", 1);
     let contents = parse(&Layout::new(Format::Geonet), &wide).unwrap();
     assert_eq!(contents.samples[0].1, 123_456.1);
@@ -195,7 +271,7 @@ fn headers_are_compared_with_the_samples() {
         let cut = &whole[..whole.rfind(last).expect(name)];
         let fault = parse(&Layout::new(format(name)), cut).expect_err(name);
         let words = match name {
-            "renadic.v1" => "the last sample is cut",
+            "renadic.v1" => "has 9 numbers; must have a multiple of 2",
             _ => "the number of samples is 9: line",
         };
         assert!(fault.message.contains(words), "{name} {fault:?}");
@@ -241,8 +317,20 @@ fn damaged_files_have_lines() {
     assert_fault(
         "smc.smc",
         ("0.1000000E+03", "0.0000000E+00"),
-        14,
-        "the step",
+        18,
+        "the rate is 0; must be above 0",
+    );
+    assert_fault(
+        "csmip.v1",
+        ("points at 100 pts", "points at 0 pts"),
+        28,
+        "the rate is 0; must be above 0",
+    );
+    assert_fault(
+        "cosmos.v2",
+        ("   10.000000     0.1", "    0.000000     0.1"),
+        26,
+        "the step is 0 s",
     );
     assert_fault(
         "smc.smc",
@@ -302,7 +390,7 @@ fn damaged_files_have_lines() {
     assert_fault(
         "geonet.v2a",
         ("   0.010   0.010", "   0.010   0.000"),
-        20,
+        23,
         "the step is 0 s",
     );
     let text = text("geonet.v1a");
@@ -373,9 +461,12 @@ fn one_of_several_channels_is_chosen() {
         );
         assert_ne!(one.samples, two.samples, "{name}");
         for (wrong, words) in [
-            (TableColumn::Number(3), "no channel is named 3"),
-            (named("zz"), "no channel is named `zz`"),
-            (named(""), "several channels are named ``"),
+            (
+                TableColumn::Number(3),
+                "there is no channel 3; the file has",
+            ),
+            (named("zz"), "no channel matches `zz`"),
+            (named(""), "several channels match ``"),
         ] {
             let fault = choose(wrong).unwrap_err();
             assert!(fault.message.contains(words), "{fault:?}");
@@ -529,11 +620,7 @@ fn texts_of_networks_are_compared_with_their_header() {
         let whole = text(name);
         assert!(whole.contains(old), "{old}");
         let (_, format, ..) = COLUMNS.into_iter().find(|file| file.0 == name).unwrap();
-        let layout = Layout {
-            channel: Some(TableColumn::Number(1)),
-            ..Layout::new(format)
-        };
-        let fault = parse(&layout, &whole.replacen(old, new, 1)).expect_err(words);
+        let fault = parse(&choose(format, 1), &whole.replacen(old, new, 1)).expect_err(words);
         assert!(fault.message.contains(words), "{fault:?}");
         assert_eq!(fault.line, line, "{fault:?}");
     };
@@ -546,14 +633,39 @@ fn texts_of_networks_are_compared_with_their_header() {
     fault(
         "afad.txt",
         ("INTERVAL (sec) : 0.01", "INTERVAL (sec) : 0"),
-        6,
+        7,
         "the step is 0 s",
     );
     fault(
         "afad.txt",
         ("    -0.100000\n", "\n"),
-        20,
-        "the last sample is cut",
+        19,
+        "has 2 numbers; must have 3",
+    );
+    // A later row with a number too many would hide the missing one.
+    let text_of_afad = text("afad.txt");
+    let shifted = text_of_afad.replacen("    -0.050000\n", "\n", 1);
+    let shifted = shifted.replacen("     0.125000\n", "     0.125000     0.1\n", 1);
+    let message = parse(&choose(Format::Afad, 1), &shifted).unwrap_err();
+    assert_eq!(message.line, 11);
+    assert!(message.message.contains("has 2 numbers; must have 3"));
+    fault(
+        "afad.txt",
+        ("VALUES (gal)", "VALUES (counts)"),
+        6,
+        "the unit is counts",
+    );
+    fault(
+        "cwb.dat",
+        ("Rate(Hz): 100", "Rate(Hz): 0"),
+        8,
+        "the rate is 0; must be above 0",
+    );
+    fault(
+        "cwb.dat",
+        ("    -0.375\n", "    -0.375     0.100\n"),
+        16,
+        "has 5 numbers; must have 4",
     );
     fault(
         "afad.txt",
@@ -568,11 +680,7 @@ fn texts_of_networks_are_compared_with_their_header() {
         "must name three components",
     );
     let cut = text("cwb.dat").replace("#RecordLength(sec): 0.1", "#RecordLength(sec): 2");
-    let layout = Layout {
-        channel: Some(TableColumn::Number(1)),
-        ..Layout::new(Format::Cwb)
-    };
-    let message = parse(&layout, &cut).unwrap_err().message;
+    let message = parse(&choose(Format::Cwb, 1), &cut).unwrap_err().message;
     assert!(
         message.contains("ends after 0.1 s") && message.contains("line 7 announces 2 s"),
         "{message}"
@@ -607,4 +715,285 @@ fn texts_of_networks_are_compared_with_their_header() {
         8,
         "the file holds displacement",
     );
+}
+
+/// Another record in the same file is refused, or its numbers would be read with the header of the first.
+#[test]
+fn a_text_holds_one_record() {
+    let ew = text("csmnc.dat");
+    let rows = "  0.000000E0".repeat(8) + "\n";
+    let long = ew.replace("POINTS:  10", "POINTS:  810") + &rows.repeat(100);
+    for (format, first, line) in [
+        (Format::Csmnc, ew.clone(), 15),
+        (Format::Csmnc, long, 115),
+        (Format::Afad, text("afad.txt"), 21),
+        (Format::Cwb, text("cwb.dat"), 25),
+    ] {
+        let layout = match format {
+            Format::Csmnc => Layout::new(format),
+            _ => choose(format, 1),
+        };
+        parse(&layout, &first).unwrap();
+        let second = first.replace("COMP. EW", "COMP. NS");
+        let fault = parse(&layout, &(first + &second)).unwrap_err();
+        assert_eq!(fault.line, line, "{format:?} {fault:?}");
+        assert!(
+            fault.message.contains("if another record begins here"),
+            "{fault:?}"
+        );
+    }
+}
+
+/// CWB states the length of a record: ten seconds are a thousand rows, or one more or less if the file counts steps.
+#[test]
+fn the_length_of_a_record_is_that_of_the_header() {
+    let whole = text("cwb.dat").replace("#RecordLength(sec): 0.1", "#RecordLength(sec): 10");
+    let (header, _) = whole.split_once("     0.000").unwrap();
+    let record = |count: usize, step_s: f64| {
+        let row = |index: usize| {
+            let time_s = step_s * index as f64;
+            format!("{time_s:10.3}{:10.3}{:10.3}{:10.3}\n", 0.25, -2.5, 0.75)
+        };
+        (0..count).map(row).collect::<Vec<_>>()
+    };
+    let read = |rows: &[String]| {
+        let text = format!("{header}{}", rows.concat());
+        let contents = parse(&choose(Format::Cwb, 2), &text);
+        contents.map(|contents| contents.samples.len())
+    };
+    let rows = record(1000, 0.01);
+    assert_eq!(read(&rows), Ok(1000));
+    assert_eq!(read(&rows[..999]), Ok(999));
+    assert_eq!(read(&record(1001, 0.01)), Ok(1001));
+    for (rows, line, words) in [
+        (&rows[..905], 919, "the file ends after 9.05 s"),
+        (&rows[..990], 1004, "the file ends after 9.9 s"),
+        (&record(1010, 0.01), 1024, "the file ends after 10.1 s"),
+        (&record(1000, 0.02), 1014, "1000 rows take 19.98 s: line 8"),
+        (
+            &[&rows[..500], &rows[501..]].concat(),
+            1013,
+            "999 rows take 9.99 s",
+        ),
+    ] {
+        let fault = read(rows).expect_err(words);
+        assert!(fault.message.contains(words), "{fault:?}");
+        assert_eq!(fault.line, line, "{fault:?}");
+    }
+    for damaged in [0, 45, 950] {
+        let mut rows = rows.clone();
+        rows[damaged] = rows[damaged].replace("    -2.500", "       NaN");
+        let fault = read(&rows).unwrap_err();
+        assert_eq!(fault.line, 15 + damaged, "{fault:?}");
+        assert!(
+            fault.message.contains("is not a row of numbers"),
+            "{fault:?}"
+        );
+    }
+}
+
+#[test]
+fn headers_state_the_unit() {
+    for (unit, found, factor) in [
+        ("0.5 mm/s/s", Unit::MillimetrePerS2, 5.0),
+        ("1.00 cm/s/s", Unit::CentimetrePerS2, 10.0),
+        ("cm/s/s", Unit::CentimetrePerS2, 10.0),
+        ("g", Unit::Gravity, 10.0),
+    ] {
+        let text = text("geonet.v1a").replacen("1.00 mm/s/s", unit, 1);
+        let contents = parse(&Layout::new(Format::Geonet), &text).expect(unit);
+        assert_eq!(contents.unit, found, "{unit}");
+        // The header has the peak in mm/s2 alone.
+        assert_eq!(
+            contents.difference.is_some(),
+            unit == "0.5 mm/s/s",
+            "{unit}"
+        );
+        assert_values(&contents, &SAMPLES, factor);
+    }
+    for (unit, line, words) in [
+        ("1.0O mm/s/s", 11, "`1.0O` is not a finite number"),
+        ("1.00 counts", 20, "the unit is counts"),
+        ("counts", 20, "the unit is counts"),
+        ("0 mm/s/s", 20, "the factor 0"),
+    ] {
+        assert_fault("geonet.v1a", ("1.00 mm/s/s", unit), line, words);
+    }
+    let afad = text("afad.txt").replace("VALUES (gal)", "VALUES (g)");
+    let contents = parse(&choose(Format::Afad, 1), &afad).unwrap();
+    assert_eq!(contents.unit, Unit::Gravity);
+    assert_eq!(contents.difference, None);
+}
+
+#[test]
+fn blank_lines_part_components() {
+    let first = text("geonet.v1a");
+    let second = first.replace("N28W", "Up");
+    for blank in ["", "\n", "\n  \n\u{1a}\n"] {
+        let text = format!("{blank}{first}{blank}{second}{blank}");
+        let fault = parse(&Layout::new(Format::Geonet), &text).unwrap_err();
+        assert!(
+            fault.message.contains("the file has 2 channels"),
+            "{fault:?}"
+        );
+        let contents = parse(&choose(Format::Geonet, 2), &text).unwrap();
+        assert_values(&contents, &SAMPLES, 10.0);
+    }
+    let more = first + "\n     1.0     2.0\n";
+    let fault = parse(&Layout::new(Format::Geonet), &more).unwrap_err();
+    assert_eq!(fault.line, 29);
+    assert!(
+        fault.message.contains("no component begins here"),
+        "{fault:?}"
+    );
+}
+
+#[test]
+fn scenarios_and_tables_are_no_records_of_networks() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    let scenario = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n";
+    for first in [
+        "# NPTS= 4000, DT= .01 SEC",
+        "# my column (format v1)",
+        "title = 'NPTS= 4000, DT= .01 SEC'",
+        "# Corrected acceleration (Format v01.20 with 13 text lines)",
+    ] {
+        fs::write(path("s.toml"), format!("{first}\n{scenario}")).unwrap();
+        assert_eq!(Format::of_file(&path("s.toml")), None, "{first}");
+        let said = stdout(&archrock(folder.path(), &["check", "s.toml"]));
+        assert!(said.contains("height_m = 4.0"), "{said}");
+    }
+    fs::write(path("x.csv"), "# exported (format v2)\n0,1\n1,2\n").unwrap();
+    assert_eq!(Format::of_file(&path("x.csv")), Some(Format::Csv));
+    // Without a header, the ending decides.
+    for (name, format) in [
+        ("x.smc", Some(Format::Smc)),
+        ("x.V1A", Some(Format::Geonet)),
+        ("x.v2a", Some(Format::Geonet)),
+        ("x.v1", None),
+    ] {
+        fs::write(path(name), "damaged\n").unwrap();
+        assert_eq!(Format::of_file(&path(name)), format, "{name}");
+    }
+}
+
+#[test]
+fn channels_match_by_whole_words() {
+    let named = |name: &str| TableColumn::Name(name.to_owned());
+    let two = |first: &str, second: &str| {
+        let text = text("csmip.v2");
+        text.replace("90 Deg", first) + &text.replace("90 Deg", second).replace(" 1.500", " 1.250")
+    };
+    // A channel also begins at its first line, without an end of the data above.
+    let parts: Vec<_> = ["360 Deg", "Up"]
+        .map(|name| text("csmip.v2").replace("90 Deg", name))
+        .map(|text| text.split("/&").next().unwrap().to_owned())
+        .into();
+    for (text, channel, found) in [
+        (two("360 Deg", "Up"), "60", Err("no channel matches `60`")),
+        (two("360 Deg", "Up"), "360", Ok("channel 1 of 2 `360 Deg`")),
+        (two("Up 2", "Up"), "up", Ok("channel 2 of 2 `Up`")),
+        (
+            two("Up 2", "Up 3"),
+            "up",
+            Err("several channels match `up`"),
+        ),
+        (two("Up 2", "Up 3"), "p 3", Err("no channel matches `p 3`")),
+        (parts.concat(), "up", Ok("channel 2 of 2 `Up`")),
+    ] {
+        let layout = Layout {
+            channel: Some(named(channel)),
+            ..Layout::new(Format::Csmip)
+        };
+        match (parse(&layout, &text), found) {
+            (Ok(contents), Ok(words)) => {
+                assert!(contents.columns.contains(words), "{}", contents.columns);
+            }
+            (Err(fault), Err(words)) => assert!(fault.message.contains(words), "{fault:?}"),
+            (read, found) => panic!("{channel} {read:?} {found:?}"),
+        }
+    }
+    let pairs = text("renadic.v1").split("/&").next().unwrap().to_owned();
+    let pairs = pairs.clone() + &pairs.replace("EW ", "Up ");
+    let contents = parse(&choose(Format::Csmip, 2), &pairs).unwrap();
+    assert!(contents.columns.contains("channel 2 of 2 `Up"));
+}
+
+/// The time to read a file grows with its length, not with its square: thousands of blocks take less than a second.
+#[test]
+fn many_blocks_are_read_in_time() {
+    let block =
+        "2 points of accel data equally spaced at .01 sec, in cm/sec2. (8f10.6)\n 1.0 2.0\n";
+    let text = format!("Corrected accelerogram\n{}", block.repeat(10_000));
+    let begun = std::time::Instant::now();
+    let contents = parse(&choose(Format::Csmip, 10_000), &text).unwrap();
+    assert_eq!(contents.samples, [(0.0, 1.0), (0.01, 2.0)]);
+    assert!(begun.elapsed().as_secs() < 20, "{:?}", begun.elapsed());
+}
+
+#[test]
+fn suites_choose_a_channel() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let first = text("csmip.v2");
+    let second = first.replace("90 Deg", "Up").replace(" 1.500", " 1.250");
+    fs::write(folder.join("b.v2"), first + &second).unwrap();
+    let at2 = "A\nB\nACCELERATION IN UNITS OF G\nNPTS= 4, DT= .01 SEC\n.1 .2\n.3 .4\n";
+    fs::write(folder.join("a.at2"), at2).unwrap();
+    fs::write(folder.join("c.csv"), "0,1\n0.01,2\n").unwrap();
+    let column = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n";
+    let suite = |keys: &str| {
+        let text = format!("{column}[suite]\nscales = [1]\n{keys}\n");
+        fs::write(folder.join("s.toml"), text).unwrap();
+        Scenario::read(&folder.join("s.toml"))
+    };
+    for keys in [
+        "records = ['a.at2', 'b.v2']\nchannel = 'up'",
+        "records = ['b.v2', 'c.csv']\nchannel = 2\nunit = 'g'",
+        "records = ['b.v2']\nchannel = 2",
+    ] {
+        let scenario = suite(keys).expect(keys);
+        let records = &scenario.suite.as_ref().unwrap().records;
+        for series in records {
+            let is_csmip = series.layout.format == Format::Csmip;
+            assert_eq!(series.layout.channel.is_some(), is_csmip, "{keys}");
+            assert_eq!(series.columns == " of channel 2 of 2 `Up`", is_csmip);
+        }
+        fs::write(folder.join("t.toml"), scenario.to_toml()).unwrap();
+        assert_eq!(
+            Scenario::read(&folder.join("t.toml")),
+            Ok(scenario),
+            "{keys}"
+        );
+    }
+    let wrong = suite("records = ['a.at2']\nchannel = 2").unwrap_err();
+    let words = "applies to formats with several channels only";
+    assert!(wrong.to_string().contains(words), "{wrong}");
+}
+
+/// Each difference between header and samples is a warning of its own; other warnings name the first record.
+#[test]
+fn suites_list_all_differences() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let smc = text("smc.smc");
+    for (name, peak) in [("a.smc", "-0.3500000E+01"), ("b.smc", "-0.4500000E+01")] {
+        let text = smc.replacen("-0.2500000E+01", peak, 1);
+        fs::write(folder.join(name), text).unwrap();
+    }
+    fs::write(folder.join("c.smc"), smc).unwrap();
+    let text =
+        "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[suite]\nscales = [1]\nrecords = '*.smc'\n";
+    fs::write(folder.join("s.toml"), text).unwrap();
+    let said = stderr(&archrock(folder, &["check", "s.toml"]));
+    for words in [
+        "a.smc reaches 2.5 cm/s2, but its header states a peak of 3.5 cm/s2",
+        "b.smc reaches 2.5 cm/s2, but its header states a peak of 4.5 cm/s2",
+        "a.smc peaks at 0.00254842 g",
+        "2 more records of the suite are like that",
+    ] {
+        assert!(said.contains(words), "{words}: {said}");
+    }
+    assert_eq!(said.matches("states a peak").count(), 2, "{said}");
 }
