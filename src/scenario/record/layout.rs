@@ -232,8 +232,6 @@ impl Format {
         match ending.unwrap_or_default().to_ascii_lowercase().as_str() {
             "at2" | "vt2" => Ok(Self::At2),
             "asc" => Ok(Self::Asc),
-            "smc" => Ok(Self::Smc),
-            "v1a" | "v2a" => Ok(Self::Geonet),
             "ns" | "ew" | "ud" | "ns1" | "ew1" | "ud1" | "ns2" | "ew2" | "ud2" => Ok(Self::Knet),
             "csv" | "tsv" | "txt" | "dat" => Ok(Self::Csv),
             _ => Err(format!(

@@ -46,7 +46,7 @@ fn header_and_data<'l, 't>(
     Ok((&lines[..data.start], data))
 }
 
-/// Finds the three components of a file of AFAD: columns `N-S`, `E-W` and `U-D`, in gal.
+/// Finds the three components of a file of AFAD: columns `N-S`, `E-W` and `U-D`, in the unit of the peaks.
 pub(super) fn afad(lines: &[&str]) -> Parsed<Vec<History>> {
     let (header, data) = header_and_data(lines, "raw pga values (", is_text)?;
     let (line, count) = find(header, "number of data : ")?;
@@ -93,8 +93,8 @@ pub(super) fn cwb(lines: &[&str]) -> Parsed<Vec<History>> {
     let rows: Vec<usize> = data.clone().filter(is_row).collect();
     let count = rows.len() as f64;
     let last_line = rows.last().map_or(data.end.max(1), |index| index + 1);
-    // The header gives the length only, and some files count the steps in place of the samples.
-    ensure((count * step_s - lasts_s).abs() <= 2.0 * step_s, || {
+    // The header gives the length only, of the samples or of the steps between them.
+    ensure((count * step_s - lasts_s).abs() <= 1.5 * step_s, || {
         let [found_s, lasts_s] = [count * step_s, lasts_s].map(plain);
         LineFault::on(last_line)(format!(
             "the file ends after {found_s} s at the rate on line {rate_line}: line {line} announces {lasts_s} s"
