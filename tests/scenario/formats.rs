@@ -962,6 +962,19 @@ fn suites_choose_a_channel() {
     assert!(wrong.to_string().contains(words), "{wrong}");
 }
 
+/// The format follows from the start of a file, so even one that is too large to read has a format.
+#[test]
+fn formats_are_recognised_by_the_start_of_a_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let large = folder.path().join("large.rec");
+    fs::write(&large, text("smc.smc")).unwrap();
+    let file = fs::OpenOptions::new().write(true).open(&large).unwrap();
+    file.set_len((64 << 20) + 1).unwrap();
+    assert_eq!(Format::of_file(&large), Some(Format::Smc));
+    let said = refusal(&archrock(folder.path(), &["check", "large.rec"]));
+    assert!(said.contains("is larger than 64 MiB"), "{said}");
+}
+
 /// Each difference between header and samples is a warning of its own; other warnings name the first record.
 #[test]
 fn suites_list_all_differences() {
