@@ -54,7 +54,7 @@ impl<'a> LinkImpact<'a> {
 
     /// Returns the side to which the structure sways after the impact.
     pub const fn sway(&self) -> Sway {
-        self.first.before(self.index)
+        self.first.after(self.index)
     }
 
     /// Returns the profile in the frame in which the sway after the impact is to the right.
