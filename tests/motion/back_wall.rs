@@ -313,8 +313,8 @@ fn a_lower_wall_has_the_ratio_of_its_three_impacts() {
         let about = |one: f64, other: f64, side: f64| square + one * other + side * 0.09;
         let at_base = about(4.0, 4.0, -1.0) / about(4.0, 4.0, 1.0);
         let above_m = 4.0 - height_m;
-        let at_wall = about(4.0, above_m, 1.0)
-            / (about(4.0, 4.0, 1.0) * about(above_m, above_m, 1.0)).sqrt();
+        let at_wall =
+            about(4.0, above_m, 1.0) / (about(4.0, 4.0, 1.0) * about(above_m, above_m, 1.0)).sqrt();
         assert!((found + at_base * at_base * at_wall).abs() < 1e-14);
         assert!((found - printed).abs() < 5e-4, "{height_m}: {found}");
     }
