@@ -251,6 +251,12 @@ impl Scenario {
                 "`sway = {sway:?}` is not one of \"right\" and \"left\""
             ))
         })?;
+        if self.inner.structure.wall_behind() == Some(first) {
+            let away = first.opposite().name();
+            return Err(refused(format!(
+                "`sway = {sway:?}` points to the wall behind the column; choose {away:?}"
+            )));
+        }
         let impacts = self.of_mechanisms(py, |model| impact_chain(model, first, count))?;
         Ok(json!(impacts).to_string())
     }

@@ -64,6 +64,10 @@ def test_a_column_moves_away_from_the_wall_behind_it() -> None:
     assert free.rotations.max() > 0.0
     with pytest.raises(ValueError, match="Housner's model"):
         Column(8.0, 0.6, drums=4, back={"side": "left"})
+    with pytest.raises(ValueError, match="choose \"left\""):
+        Column(8.0, 0.6, back={"side": "right"}).chain()
+    no_wall = Column(8.0, 0.6, drums=4, back={"side": "left", "height_m": 0.0})
+    assert no_wall.limit() == Column(8.0, 0.6, drums=4).limit()
 
 
 def test_free_hinges_and_columns_of_drums(pulse: Pulse) -> None:

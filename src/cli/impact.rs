@@ -67,7 +67,7 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
     let model = limit::four_links(&scenario, options);
     let impact = LinkImpact {
         model: &model.map_err(|wrong| input.with_file_name(wrong))?,
-        first,
+        first: first.unwrap_or_default(),
         index: arguments.link.into(),
     };
     let index = impact.index;

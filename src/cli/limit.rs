@@ -37,7 +37,7 @@ pub fn limit(arguments: &LimitArguments) -> Result<(), Failure> {
     }
     warn(&scenario.unlikely());
     if let Some(plot) = &arguments.plot {
-        let first = arguments.first.sway;
+        let first = arguments.first.sway.unwrap_or_default();
         let model =
             four_links(&scenario, "--plot is").map_err(|wrong| input.with_file_name(wrong))?;
         let (figure, scene) = (arguments.figure.get()?, Scene::new(&scenario.structure));

@@ -9,9 +9,10 @@ use nalgebra::Vector2;
 /// The option of commands that describe one chain of mechanisms: an asymmetric structure has two.
 #[derive(clap::Args, Clone, Copy)]
 pub struct FirstOption {
-    /// The side to which the structure sways first, for results and pictures that show one side only.
-    #[arg(long = "first", value_name = "SIDE", default_value = "right", value_parser = side(["right", "left"]))]
-    pub sway: Sway,
+    /// The side to which the structure sways first, for results and pictures that show one side only [default: right, or away from a wall behind a
+    /// column].
+    #[arg(long = "first", value_name = "SIDE", value_parser = side(["right", "left"]))]
+    pub sway: Option<Sway>,
 }
 
 /// Parses a side. `names` are both names in the order of the help.

@@ -109,15 +109,22 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
             root,
             finished_parts: Vec::new(),
         };
+        for task in &tasks {
+            let folder = job.root.as_ref().map(|root| task.folder(root));
+            job.check_results([RUN, UNCERTAIN], &task.scenarios, folder.as_ref())?;
+        }
         for (index, task) in tasks.iter().enumerate() {
             let scenarios = &task.scenarios;
             super::warn(&scenarios[0].unlikely());
             let folder = job.root.as_ref().map(|root| task.folder(root));
+            let earlier_parts = job.finished_parts.len();
             let found = job.compute_with_samples([RUN, UNCERTAIN], scenarios, folder.as_ref());
             let found = match found {
                 // The other scenarios are still run.
                 Err(Failure::Work(message)) if count > 1 => {
                     folder.iter().for_each(Folder::abandon);
+                    // They keep the samples of the failed scenario, for --resume.
+                    job.finished_parts.truncate(earlier_parts);
                     failures.push(format!("{}: {message}", task.name));
                     None
                 }
@@ -219,7 +226,10 @@ impl Arguments {
             let mut known = all.iter_mut();
             let shared =
                 known.find(|(root, _)| path.is_some() && root.as_ref().map(Folder::path) == path);
-            if let Some((_, tasks)) = shared {
+            if let Some((root, tasks)) = shared {
+                if let Some(root) = root {
+                    root.protect(&file.origin)?;
+                }
                 tasks.extend(file.tasks);
                 continue;
             }

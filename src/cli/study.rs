@@ -12,8 +12,9 @@ use archrock::output::{Folder, Origin, PictureFormat};
 use archrock::scenario::{ModelKind, Scenario};
 use archrock::studies::run::Sinks;
 use archrock::studies::{
-    Computation, Options, PartError, PartErrorKind, PartFile, Progress, Results, RowSource, Runner,
-    RunnerError, Shard, StudyError, StudyKind, Style, Task, peak_results, rows_in,
+    Computation, Options, PEAKS_FILES, PartError, PartErrorKind, PartFile, Progress, Results,
+    RowSource, Runner, RunnerError, Shard, StudyError, StudyKind, Style, Task, peak_results,
+    rows_in,
 };
 
 use serde::Serialize;
@@ -248,6 +249,33 @@ impl StudyJob<'_> {
         Ok(folder.map_or(Ok(()), |folder| folder.check(&kind.files[first..]))?)
     }
 
+    /// Returns an error if results of scenarios that differ in their models of motion, of their samples, or of the comparison of the models cannot be
+    /// written.
+    pub fn check_results(
+        &self,
+        [kind, samples]: [StudyKind; 2],
+        scenarios: &[Scenario],
+        folder: Option<&Folder>,
+    ) -> Result<(), Failure> {
+        let Some(folder) = folder else { return Ok(()) };
+        let several = scenarios.len() > 1;
+        for scenario in scenarios {
+            let model = scenario.motion.kind;
+            let own = folder.of_model(model, several && kind.is_history);
+            self.check_names(kind, Some(&own))?;
+            if scenario.uncertain.is_some() {
+                let samples_folder = folder.of_model(model, several).within(samples.name);
+                self.check_names(samples, Some(&samples_folder))?;
+            }
+        }
+        let are_compared =
+            several && (!kind.is_history || scenarios.iter().any(|one| one.uncertain.is_some()));
+        if are_compared && !self.work.is_part() {
+            comparison_folder(folder, kind).check(&PEAKS_FILES)?;
+        }
+        Ok(())
+    }
+
     /// Computes a study, and prepares its results in the folder, if there is one. Of a part, reports the file and returns `None`.
     pub fn compute(
         &mut self,
@@ -367,11 +395,7 @@ impl StudyJob<'_> {
             warn_of_rows(folder, samples);
         }
         // Samples may take long, so the names of other results are checked before them.
-        for scenario in scenarios {
-            let several = several && kind.is_history;
-            let folder = folder.map(|folder| folder.of_model(scenario.motion.kind, several));
-            self.check_names(kind, folder.as_ref())?;
-        }
+        self.check_results([kind, samples], scenarios, folder)?;
         let (mut models, mut of_samples) = (Vec::new(), Vec::new());
         let with_samples = scenarios.iter().filter(|one| one.uncertain.is_some());
         for (scenario, folder) in with_samples.flat_map(|one| Some(one).zip(folder)) {
@@ -428,13 +452,17 @@ impl StudyJob<'_> {
         let title = title.unwrap_or("Largest rotations of several models");
         let results = peak_results(title, &models, self.style.figure);
         let results = results.map_err(StudyError::from)?;
-        let mut beside = folder.within("models");
-        if beside.check(&results.names()).is_err() {
-            // Another command has compared models here.
-            beside = folder.within(format!("models_{}", kind.name));
-        }
-        results.write(&beside)?;
+        results.write(&comparison_folder(folder, kind))?;
         Ok(Some(results))
+    }
+}
+
+/// Returns the folder for the comparison of models of motion: `models`, or another one if another command has compared models there.
+fn comparison_folder(folder: &Folder, kind: StudyKind) -> Folder {
+    let models = folder.within("models");
+    match models.is_of_other_command(PEAKS_FILES[0]) {
+        true => folder.within(format!("models_{}", kind.name)),
+        false => models,
     }
 }
 

@@ -88,8 +88,7 @@ impl Folder {
             let other = other.to_owned();
             return Err(OutputError::OfOtherScenario(path.to_owned(), other));
         }
-        let mut last = locked.last().iter();
-        last.try_for_each(|name| locked.check(&path.join(name)))?;
+        locked.check_last()?;
         Ok(Self {
             path: path.to_owned(),
             pictures: None,
@@ -129,6 +128,23 @@ impl Folder {
         let locked = self.locked.borrow();
         let mut paths = names.iter().map(|name| self.path.join(name));
         paths.try_for_each(|path| locked.check(&path))
+    }
+
+    /// Protects the inputs of a further scenario whose results go into the locked folder.
+    ///
+    /// # Errors
+    /// When an earlier result of the command is one of these inputs.
+    pub fn protect(&self, origin: &Origin) -> Result<(), OutputError> {
+        let mut locked = self.locked.borrow_mut();
+        locked.origin.protect(origin);
+        locked.check_last()
+    }
+
+    /// Returns true if another command has a result with this name here.
+    pub fn is_of_other_command(&self, name: &str) -> bool {
+        let locked = self.locked.borrow();
+        let file = locked.relative(&self.path.join(name));
+        locked.manifest.is_of_other(&locked.command, &file)
     }
 
     /// Returns warnings about results of other commands in the locked folder that come from another scenario.
@@ -280,6 +296,12 @@ impl LockedFolder {
     /// The results of the last run of the command.
     fn last(&self) -> &[String] {
         self.manifest.files(&self.command)
+    }
+
+    /// Returns an error if one of these results is now an input of the scenario.
+    fn check_last(&self) -> Result<(), OutputError> {
+        let mut last = self.last().iter();
+        last.try_for_each(|name| self.check(&self.path.join(name)))
     }
 
     /// Returns the name of a path in the folder, relative to it.

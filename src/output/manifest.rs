@@ -88,6 +88,12 @@ impl Manifest {
         files.find(|file| *file != own)
     }
 
+    /// Returns true if the results of another command contain this file.
+    pub(super) fn is_of_other(&self, command: &str, file: &str) -> bool {
+        let mut others = self.results.iter().filter(|(name, _)| *name != command);
+        others.any(|(_, results)| results.files.iter().any(|name| name == file))
+    }
+
     /// Sets the results of a command.
     pub(super) fn set(
         &mut self,
@@ -169,6 +175,11 @@ impl Origin {
                 .collect(),
             ..Self::default()
         }
+    }
+
+    /// Adds the inputs of another scenario to those that results must not replace.
+    pub(super) fn protect(&mut self, other: &Self) {
+        self.inputs.extend_from_slice(&other.inputs);
     }
 
     /// Returns true if results at this path would replace an input file.

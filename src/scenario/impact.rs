@@ -65,7 +65,7 @@ impl ModelOptions for ImpactLaw {
         Ok(structure.model(*self)?)
     }
 
-    /// Rejects an impact law beside the restitution of a wall behind a column.
+    /// Rejects an impact law beside the ratio of rates of a wall behind a column, and a wall that needs one of them.
     fn check(
         &self,
         table: &mut Table<'_>,
@@ -73,13 +73,24 @@ impl ModelOptions for ImpactLaw {
         _: &Site,
         _: Option<f64>,
     ) -> ReadResult<()> {
-        let back = match structure {
-            Structure::Column(column) => column.wall(),
-            _ => None,
+        let Structure::Column(column) = structure else {
+            return Ok(());
         };
-        let is_given = back.is_some_and(|(wall, _)| wall.restitution.is_some());
-        let is_own = self.is_theory() && !matches!(self.model, ImpactModel::Prescribed { .. });
-        let wrong = "is the energy ratio of the impact on the wall, which `restitution` of [column.back] gives as a ratio of rates; leave one out";
+        let is_prescribed = matches!(self.model, ImpactModel::Prescribed { .. });
+        if !is_prescribed {
+            column.wall_rate_ratio().map_err(|error| {
+                let path = match error.argument {
+                    "width_m" => &["column"][..],
+                    _ => &["column", "back"],
+                };
+                let wrong = format!("does not fit: it must be {}", error.allowed);
+                table.wrong_in(path, error.argument, wrong)
+            })?;
+        }
+        let is_given = (column.wall()).is_some_and(|(wall, _)| wall.rate_ratio.is_some());
+        let is_own = self.is_theory() && !is_prescribed;
+        let wrong = "changes the ratio of energies of the impact on the wall, and `restitution` of [column.back], a ratio of rates, gives it as well; \
+                     leave one out";
         ensure(!is_given || is_own, || {
             let key = if self.is_theory() {
                 "restitution"

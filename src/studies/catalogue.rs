@@ -185,7 +185,7 @@ pub const VERIFY: StudyKind =
         scenario.check_as_built().map_err(StudyError::Scenario)?;
         if scenario.right_foot.is_some() {
             let message =
-                "the histories of a check shake both feet alike: leave [ground.right] out";
+                "`verify` applies one ground motion to both feet: leave [ground.right] out";
             return Err(StudyError::scenario(message));
         }
         let check = verify::verify(scenario).map_err(StudyError::scenario)?;
@@ -311,7 +311,8 @@ pub fn merge(
     let header = parts.first().map(|part| part::read_header(part));
     let header = header.transpose()?;
     let study = header.as_ref().map_or("", |header| &header.study);
-    let (Some(kind), Some(header)) = (StudyKind::of_name(study), &header) else {
+    let kind = StudyKind::of_name(study).filter(|kind| kind.has_parts);
+    let (Some(kind), Some(header)) = (kind, &header) else {
         return Err(StudyError::Scenario(format!(
             "unknown study {study:?}: merge with the version of archrock that wrote the parts"
         )));

@@ -53,7 +53,7 @@ pub use limit::{Summary as LimitSummary, limit};
 pub use part::{
     Header, PartError, PartErrorKind, PartFile, Shard, merge as merge_parts, read_header, rows_in,
 };
-pub use peaks::{SUMMARY as PEAKS_SUMMARY, Summary as PeaksSummary, results as peak_results};
+pub use peaks::{FILES as PEAKS_FILES, Summary as PeaksSummary, results as peak_results};
 pub use pictures::{impact as draw_impact, limit as draw_limit};
 pub use quotable::{ModelAnswer, in_words as quoted_in_words};
 pub use record::record;

@@ -55,9 +55,7 @@ pub fn distance(one: ModelPeaks<'_>, other: ModelPeaks<'_>) -> Option<Distance> 
 }
 
 /// Names of the files, the seal last.
-const FILES: [&str; 3] = ["peaks.svg", "peaks.csv", SUMMARY];
-/// The numbers of a comparison.
-pub const SUMMARY: &str = "peaks.json";
+pub const FILES: [&str; 3] = ["peaks.svg", "peaks.csv", "peaks.json"];
 
 /// Comparison of models of motion by the distributions of their largest rotations in the same cases.
 #[derive(Serialize, Deserialize, Template)]

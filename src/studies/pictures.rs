@@ -52,7 +52,7 @@ impl<'a> FourLinkStructure<'a> {
     /// Returns the mechanism after this number of impacts, opened for a picture; `None` if an impact before it stops the structure.
     fn drawn_mechanism(&self, impacts: usize) -> Option<DrawnMechanism<'a>> {
         let link = self.model.chain_from(self.first).link(impacts)?;
-        let sway = self.first.before(impacts);
+        let sway = self.first.after(impacts);
         let (mut poses, mut places_m) = (Vec::new(), Vec::new());
         let at = (DRAWN_PART * link.link.limit_rad, sway);
         let mechanism = &link.link.mechanism;

@@ -65,7 +65,7 @@ fn circular_voussoirs_as_a_row_are_those_of_the_ring() {
                 );
                 assert!((own.restitution - exact.restitution).abs() < 1e-12);
                 assert!((own.critical_rad / exact.critical_rad - 1.0).abs() < 1e-11);
-                let sway = first.before(impacts);
+                let sway = first.after(impacts);
                 let at: Vec<f64> = joints(&model, impacts, sway)
                     .into_iter()
                     .map(|joint| sections[joint])
@@ -214,7 +214,7 @@ fn mirror_images_of_uneven_rows() {
                     there.link_from(first.opposite(), impacts),
                 );
                 assert_eq!(a.map(|l| l.restitution), b.map(|l| l.restitution));
-                let sway = first.before(impacts);
+                let sway = first.after(impacts);
                 let mut hinges = joints(&own, impacts, sway);
                 hinges.reverse();
                 let hinges: Vec<usize> = hinges.into_iter().map(|joint| last - joint).collect();

@@ -29,11 +29,11 @@ fn column(r: f64, alpha: f64, back: BackWall) -> Result<Column, ArgumentError> {
     column.with_back(back)
 }
 
-fn wall(side: Sway, restitution: Option<f64>) -> BackWall {
+fn wall(side: Sway, rate_ratio: Option<f64>) -> BackWall {
     BackWall {
         side,
         height_m: None,
-        restitution,
+        rate_ratio,
     }
 }
 
@@ -64,7 +64,7 @@ fn integral(integrand: impl Fn(f64) -> f64) -> f64 {
 /// of `d theta / theta'` with `theta'^2 = 2 p^2 (cos(alpha - peak) - cos(alpha - theta))` up to the peak, `theta = peak (1 - u^2)`.
 #[test]
 fn a_released_facade_strikes_by_the_closed_form() {
-    for (alpha, part, restitution) in [
+    for (alpha, part, given) in [
         (0.075_f64, 0.6, None),
         (0.3, 0.9, None),
         (0.2, 0.5, Some(0.9)),
@@ -72,11 +72,12 @@ fn a_released_facade_strikes_by_the_closed_form() {
         (0.1, 0.4, Some(1.0)),
     ] {
         let r = 4.0;
-        let column = column(r, alpha, wall(Sway::Left, restitution)).unwrap();
+        let column = column(r, alpha, wall(Sway::Left, given)).unwrap();
         let published =
             (1.0 - 1.5 * alpha.sin().powi(2)).powi(2) * (1.5 * alpha.cos().powi(2) - 1.0);
-        let ratio = restitution.unwrap_or(published);
-        assert!((column.wall_restitution().unwrap() - ratio).abs() < 1e-14);
+        let ratio = given.unwrap_or(published);
+        let found = column.wall_rate_ratio().unwrap();
+        assert!((found.unwrap() - ratio).abs() < 1e-14);
         let history = released(&model(&column), Sway::Right, part * alpha);
         let p = (0.75 * GRAVITY_M_S2 / r).sqrt();
         let peak_of = |rate: f64| alpha - (alpha.cos() + rate * rate / (2.0 * p * p)).acos();
@@ -221,7 +222,7 @@ fn a_wall_of_height_zero_changes_no_bit() {
     let back = BackWall {
         side: Sway::Left,
         height_m: Some(0.0),
-        restitution: None,
+        rate_ratio: None,
     };
     let [held, free] = [free.clone().with_back(back).unwrap(), free].map(|column| model(&column));
     for amplitude_g in [-0.2, 0.25] {
@@ -235,31 +236,88 @@ fn a_wall_of_height_zero_changes_no_bit() {
 /// The height at which three impacts stop throwing the façade back is that of its centre of percussion, `2 (H^2 + W^2) / (3 H)`.
 #[test]
 fn low_walls_have_no_default() {
-    let of = |height_m: f64, restitution: Option<f64>| {
+    let of = |height_m: f64, rate_ratio: Option<f64>| {
         let back = BackWall {
             side: Sway::Left,
             height_m: Some(height_m),
-            restitution,
+            rate_ratio,
         };
         Column::new(8.0, 0.6).unwrap().with_back(back)
     };
+    let is_modelled =
+        |column: &Column| RockingColumn::new(column, ImpactModel::MaxRestitution).is_ok();
     let lowest_m = 2.0 * (64.0 + 0.36) / (3.0 * 8.0);
-    assert!(of(lowest_m + 1e-6, None).is_ok());
-    let error = of(lowest_m - 1e-6, None).unwrap_err();
+    assert!(is_modelled(&of(lowest_m + 1e-6, None).unwrap()));
+    let low = of(lowest_m - 1e-6, None).unwrap();
+    let error = low.wall_rate_ratio().unwrap_err();
     assert!(
         error.argument == "height_m" && error.allowed.starts_with("above 5.36333"),
         "{error}"
     );
-    assert!(
-        of(2.0, Some(0.4)).is_ok() && of(8.1, Some(0.4)).is_err() && of(8.0, Some(1.1)).is_err()
-    );
+    assert!(!is_modelled(&low));
+    // A prescribed restitution needs no default.
+    let law = ImpactModel::Prescribed { restitution: 0.2 };
+    assert!(RockingColumn::new(&low, law).is_ok());
+    assert!(of(8.1, Some(0.4)).is_err() && of(8.0, Some(1.1)).is_err());
     // Wider than 0.7 of its height, no wall is high enough.
     let wide = |width_m: f64| {
-        Column::new(1.0, width_m)
-            .unwrap()
-            .with_back(wall(Sway::Left, None))
+        let column = Column::new(1.0, width_m).unwrap();
+        column.with_back(wall(Sway::Left, None)).unwrap()
     };
-    assert!(wide(0.5_f64.sqrt() - 1e-9).is_ok() && wide(0.5_f64.sqrt() + 1e-9).is_err());
+    assert!(is_modelled(&wide(0.5_f64.sqrt() - 1e-9)));
+    let error = wide(0.5_f64.sqrt() + 1e-9).wall_rate_ratio().unwrap_err();
+    assert!(
+        error.argument == "width_m" && error.allowed.contains("no wall is high enough"),
+        "{error}"
+    );
+}
+
+/// Below the centre of gravity, at half the height, a push turns the column over the wall, whatever its restitution.
+#[test]
+fn a_wall_below_the_centre_of_gravity_is_refused() {
+    let of = |height_m: f64, rate_ratio: Option<f64>| {
+        let back = BackWall {
+            side: Sway::Left,
+            height_m: Some(height_m),
+            rate_ratio,
+        };
+        Column::new(8.0, 0.6).unwrap().with_back(back)
+    };
+    for height_m in [0.01, 2.0, 4.0 - 1e-9] {
+        for rate_ratio in [None, Some(0.0), Some(0.48)] {
+            let error = of(height_m, rate_ratio).unwrap_err();
+            assert!(
+                error.argument == "height_m" && error.allowed.contains("at least 4.0 m"),
+                "{error}"
+            );
+        }
+    }
+    for height_m in [4.0, 5.0, 8.0] {
+        assert!(of(height_m, Some(0.48)).is_ok());
+    }
+    assert!(of(0.0, Some(0.48)).unwrap().wall().is_none());
+}
+
+/// The ratios of rates in the table of docs/walls.md, from `k^2 + (G - A).(G - B)` written out for a block.
+#[test]
+fn a_lower_wall_has_the_ratio_of_its_three_impacts() {
+    for (height_m, printed) in [(8.0, 0.483), (7.0, 0.366), (6.0, 0.176)] {
+        let back = BackWall {
+            side: Sway::Left,
+            height_m: Some(height_m),
+            rate_ratio: None,
+        };
+        let column = Column::new(8.0, 0.6).unwrap().with_back(back).unwrap();
+        let found = column.wall_rate_ratio().unwrap().unwrap();
+        let square = (64.0 + 0.36) / 12.0;
+        let about = |one: f64, other: f64, side: f64| square + one * other + side * 0.09;
+        let at_base = about(4.0, 4.0, -1.0) / about(4.0, 4.0, 1.0);
+        let above_m = 4.0 - height_m;
+        let at_wall =
+            about(4.0, above_m, 1.0) / (about(4.0, 4.0, 1.0) * about(above_m, above_m, 1.0)).sqrt();
+        assert!((found + at_base * at_base * at_wall).abs() < 1e-14);
+        assert!((found - printed).abs() < 5e-4, "{height_m}: {found}");
+    }
 }
 
 /// A façade that leaves the wall to the right, by the classical Runge-Kutta method with small steps and bisected impacts.

@@ -232,6 +232,78 @@ fn scenario_files_of_one_name_share_a_folder() {
     assert_eq!(result_names(&at.join("o/x")), ["a.csv", "b.csv"]);
 }
 
+/// The inputs of all scenarios that share a folder are safe.
+#[test]
+fn no_scenario_of_a_shared_folder_loses_its_record() {
+    let root = tempfile::tempdir().unwrap();
+    let at = root.path();
+    let scenario = |name: &str, record: &str| {
+        fs::create_dir_all(at.join(name)).unwrap();
+        let text = format!(
+            "[column]\nheight_m = 4\nwidth_m = 0.8\n[simulation]\nduration_s = 1\n\
+             [suite]\nrecords = ['{record}']\nunit = 'm/s2'\npeaks_g = [0.1]\ntime_column = 1\nacceleration_column = 2\n"
+        );
+        fs::write(at.join(name).join("x.toml"), text).unwrap();
+    };
+    for name in ["a", "b"] {
+        scenario(name, &format!("{name}.csv"));
+        let record = at.join(name).join(format!("{name}.csv"));
+        fs::write(record, "0.0,0.0\n0.2,1.0\n0.4,-1.0\n0.6,0.0\n").unwrap();
+    }
+    let both = [
+        "run", "a/x.toml", "b/x.toml", "--suite", "--out", "o", "--quiet",
+    ];
+    succeeds(at, &both);
+    let result = at.join("o/x/a.csv/rotations.csv");
+    let before = fs::read(&result).unwrap();
+    // The second scenario now reads a result of the first one.
+    scenario("b", "../o/x/a.csv/rotations.csv");
+    refused(
+        at,
+        &both,
+        &["o/x/a.csv/rotations.csv is an input of the scenario"],
+    );
+    assert_eq!(fs::read(&result).unwrap(), before);
+}
+
+/// Samples are computed for long: they stay when the history of their scenario fails, and another scenario succeeds.
+#[test]
+fn samples_of_a_failed_scenario_are_kept() {
+    let root = tempfile::tempdir().unwrap();
+    let at = root.path();
+    let long = column(0.3, 16).replace(
+        "duration_s = 2.0",
+        "duration_s = 2.0\noutput_step_s = 0.0001",
+    );
+    fs::write(at.join("long.toml"), long).unwrap();
+    fs::write(at.join("short.toml"), column(0.3, 16)).unwrap();
+    // The rotations of the first scenario are longer than the largest file.
+    let limited =
+        "trap '' XFSZ; ulimit -f 512; exec \"$0\" run long.toml short.toml --no-report --out o";
+    let output = std::process::Command::new("sh")
+        .current_dir(at)
+        .args(["-c", limited, env!("CARGO_BIN_EXE_archrock")])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    assert!(at.join("o/short/summary.json").exists());
+    assert!(at.join("o/long/uncertain/uncertain.part").exists());
+    assert!(!at.join("o/short/uncertain/uncertain.part").exists());
+}
+
+/// A file that no command wrote is in the way of a comparison before anything is computed.
+#[test]
+fn a_foreign_file_in_the_folder_of_a_comparison_is_refused() {
+    let root = tempfile::tempdir().unwrap();
+    let at = root.path();
+    fs::write(at.join("s.toml"), column(0.3, 8)).unwrap();
+    fs::create_dir_all(at.join("o/models")).unwrap();
+    fs::write(at.join("o/models/peaks.svg"), "mine").unwrap();
+    let models = ["run", "s.toml", "--hinges", "four,free", "--out", "o"];
+    refused(at, &models, &["o/models/peaks.svg is there"]);
+    assert_eq!(names(&at.join("o")), ["models"]);
+}
+
 #[test]
 fn a_part_without_a_folder_is_refused() {
     let root = tempfile::tempdir().unwrap();

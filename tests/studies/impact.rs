@@ -286,7 +286,7 @@ fn impulses_of_the_ground_are_the_momentum_that_blocks_gain() {
                 .iter()
                 .sum()
         };
-        let sign = first.before(1).sign();
+        let sign = first.after(1).sign();
         let reported = Vector2::new(sign * total("x_n_s_per_m"), total("y_n_s_per_m")) * depth_m;
         assert!(
             (reported - gained).norm() < 1e-10 * gained.norm(),
@@ -338,7 +338,7 @@ fn the_certificate_is_the_full_closure_of_free_hinges() {
         };
         for opening in opened {
             let from_left = usize::try_from(opening["joint"].as_u64().unwrap()).unwrap();
-            let joint = match first.before(1) {
+            let joint = match first.after(1) {
                 Sway::Right => from_left,
                 Sway::Left => joints - 1 - from_left,
             };

@@ -29,14 +29,16 @@ fn rendered_again(folder: &Path, scenario: &str, options: &[&str]) -> String {
     again
 }
 
+/// An arch whose outcome depends on the steps.
+const UNCERTAIN_ARCH: &str = "[arch]\nmean_radius_m = 4.609197050803642\nthickness_ratio = 0.13306427265472975\nembrace_deg = 157.5\nvoussoirs = 5\n\
+         [free_hinges]\nfriction_coefficient = 0.5969922684006939\n\
+         [ground.one_sine]\namplitude_g = 0.808543\nduration_s = 0.46925101434657324\n[simulation]\noutput_step_s = 0.05\n";
+
 #[test]
 fn words_of_a_run_are_rendered_again_from_its_json() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
-    let uncertain = "[arch]\nmean_radius_m = 4.609197050803642\nthickness_ratio = 0.13306427265472975\nembrace_deg = 157.5\nvoussoirs = 5\n\
-         [free_hinges]\nfriction_coefficient = 0.5969922684006939\n\
-         [ground.one_sine]\namplitude_g = 0.808543\nduration_s = 0.46925101434657324\n[simulation]\noutput_step_s = 0.05";
-    fs::write(at.join("uncertain.toml"), uncertain).unwrap();
+    fs::write(at.join("uncertain.toml"), UNCERTAIN_ARCH).unwrap();
     let varied = "[column]\nheight_m = 3.0\nwidth_m = 0.6\ndrums = 3\n[elastic_joints]\nnormal_stiffness_gpa_m = 20.0\ncompressive_strength_mpa = 10.0\n\
          [ground.half_sine]\namplitude_g = 0.3\nduration_s = 0.4\n";
     fs::write(at.join("varied.toml"), varied).unwrap();
@@ -144,35 +146,56 @@ fn between<'p>(page: &'p str, before: &str, after: &str) -> &'p str {
 #[test]
 fn the_page_of_a_map_is_rendered_again_from_its_data() {
     let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let uncertain = UNCERTAIN_ARCH.to_owned()
+        + "[map]\nduration_s = [0.46925101434657324, 0.5]\namplitude_g = [0.6, 0.808543]\n";
+    fs::write(at.join("uncertain.toml"), uncertain).unwrap();
+    let semicircle = scenarios().join("semicircle-map.toml");
+    let semicircle = semicircle.to_str().unwrap();
     let samples = "uncertain={ samples = 3, \"arch.thickness_ratio\" = { deviation = 0.005 } }";
-    let free = ["--hinges", "free", "--set", "arch.voussoirs=8"];
-    for (options, page) in [
-        (&[][..], "map.html"),
-        (&["--color", "peak", "--dimensionless"], "map.html"),
+    let few = [
+        "--set",
+        "map.duration_s.count=4",
+        "--set",
+        "map.amplitude_g.count=4",
+    ];
+    for (scenario, options, page, shown) in [
+        (semicircle, &[][..], "map.html", "\"outside\":[1,"),
         (
-            &[&free[..], &["--set", "map.repeat=true"]].concat(),
+            semicircle,
+            &["--color", "peak", "--dimensionless"],
             "map.html",
+            "\"outside\":[1,",
         ),
-        (&["--set", samples], "uncertain_map/map.html"),
+        (
+            semicircle,
+            &["--set", samples],
+            "uncertain_map/map.html",
+            "\"kinds\"",
+        ),
+        (
+            "uncertain.toml",
+            &["--set", "map.repeat=true"],
+            "map.html",
+            "\"doubts\":{\"1\":\"overturns in 1 of 7 repetitions\"}",
+        ),
     ] {
-        let scenario = scenarios().join("semicircle-map.toml");
-        let few = ["duration_s", "amplitude_g"].map(|axis| format!("map.{axis}.count=4"));
-        let arguments = ["map", scenario.to_str().unwrap(), "--out", "o"];
-        let arguments = [
-            &arguments,
-            &["--set", &few[0], "--set", &few[1]][..],
-            options,
-        ]
-        .concat();
-        printed(folder.path(), &arguments);
-        let page = fs::read_to_string(folder.path().join("o").join(page)).unwrap();
+        let few = if scenario == semicircle {
+            &few[..]
+        } else {
+            &[]
+        };
+        let arguments = [&["map", scenario, "--out", "o"], few, options].concat();
+        printed(at, &arguments);
+        let page = fs::read_to_string(at.join("o").join(page)).unwrap();
         let picture = between(
             &page,
             "aria-describedby=\"numbers\">\n",
             "<div id=\"cell\">",
         );
         let data = between(&page, "id=\"data\">", "</script>");
+        assert!(data.contains(shown), "{options:?}: {data}");
         assert!(map::page_of(picture, data).unwrap() == page, "{options:?}");
-        fs::remove_dir_all(folder.path().join("o")).unwrap();
+        fs::remove_dir_all(at.join("o")).unwrap();
     }
 }

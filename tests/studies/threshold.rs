@@ -8,15 +8,16 @@ use std::path::Path;
 use std::thread;
 use std::time::Duration;
 
-use crate::common::program::{archrock, printed, refused, stderr, stdout};
+use crate::common::program::{archrock, printed, refused, scenarios, stderr, stdout};
 use crate::common::prose::{golden, shows, skeleton};
 use crate::common::pulse;
 use crate::common::results::{Row, Table, named};
 use crate::common::{GRAVITY, pairs, request, semicircle, seven_voussoirs};
 use archrock::dynamics::{Cost, Details, MechanismSummary, Repetition};
 use archrock::output::Figure;
+use archrock::scenario::{MODELS, ReadOptions, Source};
 use archrock::studies::threshold::{
-    EDGE_WIDTH, FactorRange, Factors, RangeEnd, Threshold, draw, threshold,
+    EDGE_WIDTH, FactorRange, Factors, RangeEnd, Threshold, draw, results, threshold,
 };
 use archrock::studies::{Progress, Runner, RunnerError, StudyError, Verdict, outcome_name};
 use archrock::{
@@ -400,6 +401,38 @@ fn bands_and_gaps_of_any_models_side_by_side() {
         found[1].gaps().is_empty() && found[2].gaps().is_empty() && found[2].bands().is_empty()
     );
     assert_eq!(found[2].lowest_factor(), None);
+}
+
+/// A model that cannot be built is an error before the search with another one, which may take hours.
+#[test]
+fn models_are_built_before_any_search() {
+    let source = Source::of_file(&scenarios().join("tie.toml")).unwrap();
+    let [four_links, _, elastic_joints] = MODELS;
+    let scenarios = [elastic_joints, four_links].map(|model| {
+        let options = ReadOptions {
+            model: Some(model),
+            ..ReadOptions::default()
+        };
+        Scenario::of(&source, &options).unwrap()
+    });
+    let mut cases = 0;
+    let error = results(
+        &scenarios,
+        &factors(0.5, 1.0, 0.5),
+        Figure::SCREEN,
+        &Runner::default(),
+        &mut |_| {
+            cases += 1;
+            ControlFlow::Continue(())
+        },
+    );
+    assert!(
+        error
+            .unwrap_err()
+            .to_string()
+            .contains("four links take no ties")
+    );
+    assert_eq!(cases, 0);
 }
 
 #[test]

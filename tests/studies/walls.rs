@@ -1,18 +1,20 @@
 //! Studies of a column with a wall behind it.
 
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
 use crate::common::parsed;
 use crate::common::program::{printed, refused, scenarios};
 use crate::common::results::Table;
+use archrock::output::Scene;
 use archrock::scenario::CheckedSides;
 use archrock::studies::capacity;
-use archrock::studies::verify::verify;
+use archrock::studies::verify::{Summary, verify, words};
 use archrock::{Scenario, Sway};
 use serde_json::Value;
 
+const FREE: &str = "[column]\nheight_m = 8\nwidth_m = 0.6\n";
 const FACADE: &str = "[column]\nheight_m = 8\nwidth_m = 0.6\n[column.back]\nside = 'left'\n";
 const DEMAND: &str = "[demand]\nsoil = 'B'\ntopography = 'T1'\n[demand.sld]\nag_g = 0.10\nf0 = 2.40\ntc_star_s = 0.28\n\
                       [demand.slv]\nag_g = 0.25\nf0 = 2.40\ntc_star_s = 0.35\n";
@@ -36,8 +38,7 @@ fn answer(folder: &Path, arguments: &[&str], text: &str) -> Value {
 #[test]
 fn limit_and_capacity_have_one_side() {
     let folder = tempfile::tempdir().unwrap();
-    let free = "[column]\nheight_m = 8\nwidth_m = 0.6\n";
-    let both = answer(folder.path(), &["limit"], free);
+    let both = answer(folder.path(), &["limit"], FREE);
     for (wall, held, away) in [("left", "left", "right"), ("right", "right", "left")] {
         let text = FACADE.replace("'left'", &format!("'{wall}'"));
         let one = answer(folder.path(), &["limit"], &text);
@@ -55,7 +56,7 @@ fn limit_and_capacity_have_one_side() {
             "{words}"
         );
         let curves = capacity(&parsed(&text), None).unwrap();
-        let of_free = capacity(&parsed(free), None).unwrap();
+        let of_free = capacity(&parsed(FREE), None).unwrap();
         let away: Sway = serde_json::from_value(away.into()).unwrap();
         assert!(curves.to(away.opposite()).is_none());
         assert_eq!(curves.to(away), of_free.to(away));
@@ -75,11 +76,26 @@ fn limit_and_capacity_have_one_side() {
 fn verify_checks_the_side_away_from_the_wall() {
     let held = verify(&parsed(&facade(DEMAND))).unwrap();
     assert_eq!(held.sides, CheckedSides::Right);
-    let free =
-        format!("[column]\nheight_m = 8\nwidth_m = 0.6\n{DEMAND}[verify]\nsides = 'right'\n");
+    let free = format!("{FREE}{DEMAND}[verify]\nsides = 'right'\n");
     let free = verify(&parsed(&free)).unwrap();
     assert_eq!((held.zeta_e, &held.states), (free.zeta_e, &free.states));
     assert_eq!(held.mechanisms.keys().collect::<Vec<_>>(), [&Sway::Right]);
+    assert_eq!(
+        (held.wall_behind, free.wall_behind),
+        (Some(Sway::Left), None)
+    );
+    let words = words(&held);
+    assert!(
+        words.contains("To the right, away from the wall behind it, the structure"),
+        "{words}"
+    );
+    let why = |check: &Summary| {
+        check
+            .decisions
+            .iter()
+            .any(|one| one.text.contains("the wall prevents sway to the left"))
+    };
+    assert!(why(&held) && !why(&free));
     let wrong = format!("{}[verify]\nsides = 'left'\n", facade(DEMAND));
     let error = verify(&parsed(&wrong)).unwrap_err().to_string();
     assert!(error.contains("sides = \"right\""), "{error}");
@@ -93,14 +109,12 @@ fn studies_vary_the_wall() {
     let pulse =
         "[ground.one_sine]\namplitude_g = -0.25\nduration_s = 1\n[simulation]\nduration_s = 20\n";
     let text = facade(pulse);
-    let peak = |set: &[&str]| {
+    let run = |set: &[&str]| {
         let sets: Vec<&str> = set.iter().flat_map(|one| ["--set", *one]).collect();
         let all = [&["run"], &sets[..]].concat();
         let summary = answer(path, &all, &text);
-        (
-            summary["impacts"].clone(),
-            summary["largest_peak_rotation_rad"].as_f64().unwrap(),
-        )
+        let number = |key: &str| summary[key].as_f64().unwrap();
+        ["impacts", "outcome_time_s", "largest_peak_rotation_rad"].map(number)
     };
     let map = "[map]\n'column.back.height_m' = [6, 8]\namplitude_g = [-0.3, 0.3]\n";
     answer(path, &["map"], &format!("{text}{map}"));
@@ -111,37 +125,36 @@ fn studies_vary_the_wall() {
             format!("column.back.height_m={}", cell["column.back.height_m"]),
             format!("ground.one_sine.amplitude_g={}", cell["amplitude_g"]),
         ];
-        let (impacts, _) = peak(&[&sets[0], &sets[1]]);
+        let [impacts, ..] = run(&[&sets[0], &sets[1]]);
         assert_eq!(cell["impacts"], impacts.to_string());
     }
     // A stronger rebound takes longer to rest.
-    let impacts = |ratio: f64| {
-        peak(&[&format!("column.back.restitution={ratio}")])
-            .0
-            .as_u64()
-            .unwrap()
-    };
+    let impacts = |ratio: f64| run(&[&format!("column.back.restitution={ratio}")])[0];
     assert!(impacts(0.0) < impacts(0.3) && impacts(0.3) < impacts(0.6));
-    let (free, held) = (peak(&["column.back.height_m=0"]), peak(&[]));
-    assert!(free != held);
-    let uncertain = "[uncertain]\nsamples = 16\n'column.back.height_m' = { from = 6, to = 8 }\n\
-                     'column.back.restitution' = { from = 0.2, to = 0.6 }\n";
-    fs::write(path.join("s.toml"), format!("{text}{uncertain}")).unwrap();
-    printed(path, &["run", "s.toml"]);
-    let samples = Table::read(path.join("results/s/uncertain/samples.csv")).rows;
-    let heights: BTreeMap<String, ()> = samples
-        .iter()
-        .map(|row| (row["column.back.height_m"].clone(), ()))
-        .collect();
-    assert!(heights.len() > 10);
-    for row in &samples[1..4] {
-        let sets = ["height_m", "restitution"].map(|key| {
-            let key = format!("column.back.{key}");
-            format!("{key}={}", row[&key])
-        });
-        let (_, peak_rad) = peak(&[&sets[0], &sets[1]]);
-        assert!((row.number("peak_rotation_rad") / peak_rad - 1.0).abs() < 1e-6);
+    assert!(run(&["column.back.height_m=0"]) != run(&[]));
+    // With a given restitution the height has no effect, so the samples vary one of them.
+    for (key, from, to) in [("height_m", 6.0, 8.0), ("restitution", 0.2, 0.6)] {
+        let key = format!("column.back.{key}");
+        let uncertain =
+            format!("[uncertain]\nsamples = 16\n'{key}' = {{ from = {from}, to = {to} }}\n");
+        fs::write(path.join("s.toml"), format!("{text}{uncertain}")).unwrap();
+        printed(path, &["run", "s.toml"]);
+        let samples = Table::read(path.join("results/s/uncertain/samples.csv")).rows;
+        let mut times_s = BTreeSet::new();
+        for row in &samples[1..] {
+            let [impacts, time_s, peak_rad] = run(&[&format!("{key}={}", row[&key])]);
+            assert_eq!(row.number("impacts"), impacts);
+            assert!((row.number("outcome_time_s") / time_s - 1.0).abs() < 1e-6);
+            assert!((row.number("peak_rotation_rad") / peak_rad - 1.0).abs() < 1e-6);
+            times_s.insert(row["outcome_time_s"].clone());
+        }
+        assert!(times_s.len() > 10);
     }
+    let of_height = |height: &str| run(&["column.back.restitution=0.4", height]);
+    assert_eq!(
+        of_height("column.back.height_m=4"),
+        of_height("column.back.height_m=8")
+    );
 }
 
 /// A façade under a record overturns to one side only. Its factor in a suite is that of `threshold`.
@@ -173,7 +186,11 @@ fn records_overturn_it_away_from_the_wall() {
 fn impacts_keep_the_side() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
-    let chain = answer(path, &["impact"], &FACADE.replace("'left'", "'right'"));
+    let right = FACADE.replace("'left'", "'right'");
+    let chain = answer(path, &["impact"], &right);
+    assert_eq!(chain, answer(path, &["impact", "--first", "left"], &right));
+    let towards = ["impact", "s.toml", "--first", "right"];
+    refused(path, &towards, &["where a wall stands", "choose left"]);
     assert_eq!(chain["model"], "back_wall");
     let text = chain.to_string();
     assert!(
@@ -206,9 +223,28 @@ fn impacts_keep_the_side() {
 fn what_a_wall_cannot_have_is_refused() {
     let low = refusal(&facade("height_m = 5\n"));
     assert!(
-        low.contains("s.toml:6:12") && low.contains("above 5.36333"),
+        low.contains("s.toml:6:12")
+            && low.contains("above 5.36333 m")
+            && low.contains("ratio of rates"),
         "{low}"
     );
+    parsed(&facade(
+        "height_m = 5\n[impact]\nmodel = 'prescribed'\nrestitution = 0.2\n",
+    ));
+    let overturns = refusal(&facade("height_m = 0.01\nrestitution = 0.48\n"));
+    assert!(
+        overturns.contains("s.toml:6:12") && overturns.contains("at least 4.0 m"),
+        "{overturns}"
+    );
+    let wide = FREE.replace("0.6", "6") + "[column.back]\nside = 'left'\n";
+    for height in ["", "height_m = 8\n"] {
+        let no_default = refusal(&format!("{wide}{height}"));
+        assert!(
+            no_default.contains("s.toml:3:11") && no_default.contains("no wall is high enough"),
+            "{no_default}"
+        );
+    }
+    parsed(&format!("{wide}restitution = 0.3\n"));
     let high = refusal(&facade("height_m = 8.5\nrestitution = 0.4\n"));
     assert!(
         high.contains("s.toml:6:12") && high.contains("8.0 m"),
@@ -231,7 +267,10 @@ fn what_a_wall_cannot_have_is_refused() {
     let twice = refusal(&facade(
         "restitution = 0.5\n[impact]\nrestitution_factor = 0.9\n",
     ));
-    assert!(twice.contains("s.toml:8:22"), "{twice}");
+    assert!(
+        twice.contains("s.toml:8:22") && twice.contains("ratio of energies"),
+        "{twice}"
+    );
     let folder = tempfile::tempdir().unwrap();
     fs::write(
         folder.path().join("s.toml"),
@@ -240,6 +279,86 @@ fn what_a_wall_cannot_have_is_refused() {
     .unwrap();
     let arguments = ["run", "s.toml", "--hinges", "free"];
     refused(folder.path(), &arguments, &["leave [column.back] out"]);
+    for record in ["slv-1.at2", "slv-2.at2", "slv-3.at2"] {
+        let from = scenarios().join("records").join(record);
+        fs::copy(from, folder.path().join(record)).unwrap();
+    }
+    let records = "[verify]\nslv_records = ['slv-1.at2', 'slv-2.at2', 'slv-3.at2']\n";
+    let text = format!("{}{records}", facade(DEMAND));
+    fs::write(folder.path().join("s.toml"), text).unwrap();
+    let why = ["a wall prevents sway to one side", "archrock suite"];
+    refused(folder.path(), &["verify", "s.toml"], &why);
+}
+
+/// A wall of height 0 is no wall, in all studies and models.
+#[test]
+fn a_wall_of_height_zero_is_no_wall() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    let pulse = "[ground.one_sine]\namplitude_g = -0.25\nduration_s = 1\n";
+    let zero = "[column.back]\nside = 'left'\nheight_m = 0\n";
+    let own = |mut answer: Value| {
+        for key in [
+            "scenario",
+            "scenario_sha256",
+            "files",
+            "longest_step_us",
+            "results",
+        ] {
+            answer.as_object_mut().unwrap().remove(key);
+        }
+        answer
+    };
+    for (command, more) in [
+        (&["limit"][..], ""),
+        (&["capacity"], ""),
+        (&["impact"], ""),
+        (&["verify"], DEMAND),
+        (&["run"], pulse),
+        (&["run", "--hinges", "free"], pulse),
+        (&["limit"], "[free_hinges]\n"),
+    ] {
+        let [free, held] =
+            ["", zero].map(|back| own(answer(path, command, &format!("{FREE}{back}{more}"))));
+        assert_eq!(free, held, "{command:?}");
+    }
+    let drums = |back: &str| parsed(&format!("{FREE}drums = 4\n{back}[free_hinges]\n"));
+    let starts_g = |text: &str| {
+        drums(text)
+            .model()
+            .unwrap()
+            .incipient_acceleration_g(Sway::Left)
+    };
+    assert_eq!(starts_g(zero), starts_g(""));
+}
+
+/// The words of a run: the wall carries a push towards it, and `[impact]` may replace the restitution of the wall.
+#[test]
+fn words_name_the_wall() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    let towards = "[ground.rectangular]\namplitude_g = 2\nduration_s = 1\n";
+    fs::write(path.join("s.toml"), facade(towards)).unwrap();
+    let words = printed(path, &["run", "s.toml"]);
+    for part in [
+        "never moves: the wall carries pushes to the left, and the ground is too weak to start it to the right",
+        "none to the left, where a wall carries the push",
+        "pushes to the left with 2.0000 g, towards the wall",
+    ] {
+        assert!(words.contains(part), "{words}");
+    }
+    assert_eq!(
+        answer(path, &["run"], &facade(towards))["wall_behind"],
+        "left"
+    );
+    let law = "[impact]\nmodel = 'prescribed'\nrestitution = 0.36\n";
+    for more in ["", law] {
+        let words = parsed(&facade(more)).structure.described();
+        assert!(
+            words.contains("against a wall of 8 m on its left;") && !words.contains("restitution"),
+            "{words}"
+        );
+    }
 }
 
 /// The wall is drawn beside the column: in the drawing of `check` and in the data of the page.
@@ -254,6 +373,15 @@ fn the_wall_is_drawn() {
         let drawing = fs::read_to_string(path.join("s.svg")).unwrap();
         assert_eq!(drawing.matches("wall behind 6 m").count(), named);
         assert!(drawing.contains("#c9c9c9"));
+    }
+    for (side, sign) in [("left", -1.0), ("right", 1.0)] {
+        let scenario = parsed(&FACADE.replace("left", side));
+        let corners_m = scenario.structure.wall_outline_m().unwrap();
+        let reach_m = corners_m.map(|corner_m| sign * corner_m.x);
+        assert!(reach_m.into_iter().all(|x_m| (0.3..=0.9001).contains(&x_m)));
+        assert_eq!(corners_m.map(|corner_m| corner_m.y), [0.0, 8.0, 8.0, 0.0]);
+        let wall = Scene::new(&scenario.structure).wall().unwrap();
+        assert_eq!(wall.outline_m, corners_m);
     }
     let resolved = parsed(&facade(pulse)).to_toml();
     assert!(

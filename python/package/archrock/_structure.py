@@ -61,9 +61,10 @@ class Structure(Described):
         whole = set(tables) == {"arch"} and isinstance(arch, dict)
         # If hinges may open anywhere, there are no blocks.
         four = whole and isinstance(arch, dict) and not {"voussoirs", "joints_deg"} & set(arch)
-        # A wall behind a column goes with Housner's model.
+        # A wall behind a column applies to Housner's model; at height zero there is no wall.
         column = tables.get("column")
-        held = isinstance(column, dict) and "back" in column
+        back = column.get("back") if isinstance(column, dict) else None
+        held = isinstance(back, dict) and back.get("height_m") != 0
         self._model = "four_links" if four or held else "free_hinges"
         self._native = NativeScenario(to_toml(tables), None, files, self._model, ())
         self._bases = {}
@@ -96,7 +97,8 @@ class Structure(Described):
         one of them stops the structure.
 
         Raises:
-            ValueError: when it does not rock as a mechanism of one degree of freedom at a time.
+            ValueError: when it does not rock as a mechanism of one degree of freedom at a time, or a wall stands on
+                this side.
         """
         if not 0 <= count <= 65535:
             raise ValueError(f"`count = {count}` is not allowed: it must be from 0 to 65535")
@@ -171,7 +173,8 @@ class Column(Structure):
         depth_m: length out of plane; ``None``: the default, 1.
         density_kg_m3: density; ``None``: the default, 2000.
         back: table ``[column.back]``: a wall behind the column, from which it can only move away, such as
-            ``{"side": "left"}``, perhaps with ``height_m`` and ``restitution``; not with drums. ``None``: it stands free.
+            ``{"side": "left"}``, perhaps with ``height_m`` and ``restitution`` (ratio of rates); not with drums.
+            ``None``: it stands free.
 
     Raises:
         ValueError: when a number is not allowed, with the library's explanation.

@@ -27,6 +27,13 @@
 //!
 //! If `c(I, C)` is not negative, the rotation does not reverse: the column would turn over the top of the wall. This is so if `C` is not above the
 //! centre of percussion of the rotation about `I`. Then there is no default.
+//!
+//! # Lowest wall
+//!
+//! A push of `a` times gravity towards a wall of height `c` acts at `G`, at the height `h` and the distance `b` from the wall. A rotation towards the
+//! wall enters neither wall nor ground if its pole is at `C`, or higher or further behind. In a virtual rotation `d` about `C` the push does the work
+//! `m a g (h - c) d` and the weight `-m g b d`; about the other poles both do less. So without friction at the base the push turns the column over if
+//! `a (h - c) > b`. If `c >= h`, no push does. Walls below `G` are refused.
 
 use nalgebra::Vector2;
 use serde::Serialize;
@@ -38,12 +45,13 @@ use crate::mechanics::{MassMoments, Sway, Twist};
 pub struct BackWall {
     /// Side of the column on which the wall stands.
     pub side: Sway,
-    /// Height of the wall, in metres; `None` for the height of the column. A wall of height zero has no effect.
+    /// Height of the wall, in metres; `None` for the height of the column. At height zero there is no wall.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub height_m: Option<f64>,
-    /// Rate after the column has struck the wall over the rate before, from 0 to 1; `None` for three impacts in turn.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub restitution: Option<f64>,
+    /// Rate after the column has struck the wall over the rate before, from 0 to 1, the key `restitution` of scenarios; `None` for three impacts in
+    /// turn. Its square is the restitution coefficient of [`Link`](crate::mechanics::Link) and `[impact]`, a ratio of energies.
+    #[serde(rename = "restitution", skip_serializing_if = "Option::is_none")]
+    pub rate_ratio: Option<f64>,
 }
 
 /// Returns the rate about `to`, for a unit rate about `from`, after an impact at `to`. The motion before is projected in the kinetic-energy metric onto

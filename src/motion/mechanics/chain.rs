@@ -240,10 +240,10 @@ pub trait MechanismChain: std::fmt::Debug + Send + Sync {
     fn eccentricity_ratios_at_rest(&self, _body_force_g: Vector2<f64>) -> Vec<Option<f64>> {
         Vec::new()
     }
-    /// Returns the side of the sway that lies `impacts` impacts after, or before, a sway to this side. Every impact changes the side unless a wall
-    /// stands behind the structure.
-    fn sway_across(&self, sway: Sway, impacts: usize) -> Sway {
-        sway.before(impacts)
+    /// Returns the side of the sway `impacts` impacts later or earlier than a sway to this side. Every impact changes the side, unless a wall stands
+    /// behind the structure.
+    fn sway_after(&self, sway: Sway, impacts: usize) -> Sway {
+        sway.after(impacts)
     }
     /// Returns the mechanism after a number of impacts and a first sway to this side; `None` if it cannot sway to that side, or if an earlier impact
     /// stops the structure.

@@ -249,26 +249,23 @@ impl Column {
     /// Returns this column with a wall behind it.
     ///
     /// # Errors
-    /// If the wall is higher than the column, the restitution is not in 0 to 1, or it has no default because the wall is too low.
+    /// If the wall is higher than the column, or below its centre of gravity, or the ratio of rates is not in 0 to 1.
     pub fn with_back(mut self, back: BackWall) -> Result<Self, ArgumentError> {
         let height_m = back.height_m.unwrap_or(self.height_m);
         let allowed = format_args!("from 0 to the height of the column, {:?} m", self.height_m);
         let fits = (0.0..=self.height_m).contains(&height_m);
         allow(fits, "height_m", height_m, allowed)?;
-        if let Some(restitution) = back.restitution {
-            within("restitution", restitution, 0.0..=1.0)?;
+        let centre_m = 0.5 * self.height_m;
+        let allowed = format_args!(
+            "0 for no wall, or at least {centre_m:?} m, the height of the centre of gravity: a push turns the column over the top of a lower wall, which \
+             the model does not compute"
+        );
+        let fits = height_m == 0.0 || height_m >= centre_m;
+        allow(fits, "height_m", height_m, allowed)?;
+        if let Some(rate_ratio) = back.rate_ratio {
+            within("restitution", rate_ratio, 0.0..=1.0)?;
         }
         self.back = Some(back);
-        if let Some((wall, contact_m)) = self.wall() {
-            let ([_, inner], moments) = self.toes_and_moments();
-            let lowest_m = plain(percussion_height(&moments, inner) * self.half_diagonal_m());
-            let allowed = format_args!(
-                "above {lowest_m}, the height of the centre of percussion in metres: a lower wall does not throw the column back; or give \
-                 `restitution`"
-            );
-            let is_known = wall.restitution.is_some() || self.three_impacts(contact_m).is_some();
-            allow(is_known, "height_m", contact_m, allowed)?;
-        }
         Ok(self)
     }
 
@@ -279,29 +276,42 @@ impl Column {
         (height_m > 0.0).then_some((back, height_m))
     }
 
-    /// Returns the only side to which the column can move, away from the wall behind it; `None` if it can move to both sides.
-    pub fn away_from_wall(&self) -> Option<Sway> {
-        self.wall().map(|(wall, _)| wall.side.opposite())
-    }
-
     /// Returns the ratio of the rates after and before an impact on the wall behind the column; `None` without a wall.
-    pub fn wall_restitution(&self) -> Option<f64> {
-        let (wall, height_m) = self.wall()?;
-        wall.restitution.or_else(|| self.three_impacts(height_m))
-    }
-
-    /// Returns the ratio of rates of three impacts in turn; `None` if they do not throw the column back.
-    fn three_impacts(&self, contact_m: f64) -> Option<f64> {
-        let ([outer, inner], moments) = self.toes_and_moments();
-        let contact = inner + Vector2::new(0.0, contact_m / self.half_diagonal_m());
-        three_impacts(&moments, [outer, inner, contact])
-    }
-
-    /// Returns the right and the left toe in half diagonals, and the mass moments about the middle of the base for unit mass.
-    fn toes_and_moments(&self) -> ([Vector2<f64>; 2], MassMoments) {
-        let diagonal_m = self.height_m.hypot(self.width_m);
-        let toe = Vector2::new(self.width_m / diagonal_m, 0.0);
-        ([toe, -toe], unit_moments(self.height_m / diagonal_m))
+    ///
+    /// # Errors
+    /// If the ratio is not given, and three impacts in turn do not throw the column back.
+    pub fn wall_rate_ratio(&self) -> Result<Option<f64>, ArgumentError> {
+        let Some((wall, height_m)) = self.wall() else {
+            return Ok(None);
+        };
+        // Lengths in half diagonals.
+        let half_m = self.half_diagonal_m();
+        let outer = Vector2::new(0.5 * self.width_m / half_m, 0.0);
+        let contact = Vector2::new(0.0, height_m / half_m) - outer;
+        let moments = unit_moments(0.5 * self.height_m / half_m);
+        let default = || three_impacts(&moments, [outer, -outer, contact]);
+        if let Some(rate_ratio) = wall.rate_ratio.or_else(default) {
+            return Ok(Some(rate_ratio));
+        }
+        let lowest_m = percussion_height(&moments, -outer) * half_m;
+        let (argument, value, allowed) = match lowest_m < self.height_m {
+            true => (
+                "height_m",
+                height_m,
+                format!(
+                    "above {} m, the height of the centre of percussion",
+                    plain(lowest_m)
+                ),
+            ),
+            false => (
+                "width_m",
+                self.width_m,
+                "below 0.7071 of the height: no wall is high enough for a wider column".into(),
+            ),
+        };
+        let measured = "three impacts in turn do not throw the column back, so give `restitution` of [column.back], a measured ratio of rates";
+        let allowed = format!("{allowed}; otherwise {measured}");
+        Err(ArgumentError::new(argument, value, allowed))
     }
 
     /// Returns half the diagonal of its outline, in metres, for a top as wide as the base.
@@ -382,8 +392,8 @@ pub struct RockingColumn {
     first: Link<Tilting>,
     /// Link after one or more impacts; `None` if the first impact stops the column.
     next: Option<Link<Tilting>>,
-    /// The only side to which it sways, away from a wall behind it; `None` if it sways to both sides.
-    away: Option<Sway>,
+    /// Side of the wall behind it, towards which it cannot sway.
+    wall: Option<Sway>,
 }
 
 impl RockingColumn {
@@ -391,7 +401,8 @@ impl RockingColumn {
     /// wall behind the column.
     ///
     /// # Errors
-    /// If a prescribed restitution coefficient is not in 0 to 1, or the column is not one prismatic block.
+    /// If a prescribed restitution coefficient is not in 0 to 1, or the column is not one prismatic block, or the wall behind it needs a ratio of rates
+    /// that is neither given nor prescribed.
     pub fn new(column: &Column, law: impl Into<ImpactLaw>) -> Result<Self, ArgumentError> {
         let law = law.into();
         law.check()?;
@@ -415,7 +426,7 @@ impl RockingColumn {
         let (rate_ratio, restitution) = match law.model {
             ImpactModel::Prescribed { restitution } => (restitution.sqrt(), restitution),
             ImpactModel::MaxRestitution | ImpactModel::SameSections | ImpactModel::Mirrored => {
-                let rate_ratio = column.wall_restitution();
+                let rate_ratio = column.wall_rate_ratio()?;
                 let rate_ratio = rate_ratio.unwrap_or_else(|| base_rate_ratio(sin, cos));
                 (rate_ratio, rate_ratio * rate_ratio)
             }
@@ -427,14 +438,14 @@ impl RockingColumn {
             incipient_g: sin / cos,
             first: link(1.0, 1.0),
             next: (rate_ratio > 0.0).then(|| link(rate_ratio, restitution)),
-            away: column.away_from_wall(),
+            wall: column.wall().map(|(wall, _)| wall.side),
         })
     }
 
     /// Returns the force per unit mass that the base carries at rest: the wall behind the column carries a push towards it.
     fn on_base(&self, body_force_g: Vector2<f64>) -> Vector2<f64> {
-        let is_held = |away: Sway| away.sign() * body_force_g.x < 0.0;
-        match self.away.is_some_and(is_held) {
+        let is_held = |wall: Sway| wall.sign() * body_force_g.x > 0.0;
+        match self.wall.is_some_and(is_held) {
             true => Vector2::new(0.0, body_force_g.y),
             false => body_force_g,
         }
@@ -535,27 +546,22 @@ impl MechanismChain for RockingColumn {
         self.first.mechanism.eccentricity_ratios(&load)
     }
 
-    fn sway_across(&self, sway: Sway, impacts: usize) -> Sway {
-        self.away.unwrap_or_else(|| sway.before(impacts))
-    }
-
-    fn link(&self, impacts: usize) -> Option<&Link<Tilting>> {
-        self.link_from(self.away.unwrap_or_default(), impacts)
+    fn sway_after(&self, sway: Sway, impacts: usize) -> Sway {
+        let away = self.wall.map(Sway::opposite);
+        away.unwrap_or_else(|| sway.after(impacts))
     }
 
     fn link_from(&self, first: Sway, impacts: usize) -> Option<&Link<Tilting>> {
-        if self.away.is_some_and(|away| away != first) {
-            return None;
-        }
         match impacts {
+            _ if self.wall == Some(first) => None,
             0 => Some(&self.first),
             _ => self.next.as_ref(),
         }
     }
 
     fn hinges(&self, impacts: usize, sway: Sway) -> Vec<Hinge> {
-        let is_possible = self.away.is_none_or(|away| away == sway);
-        let link = self.link(impacts).filter(|_| is_possible);
+        // Either side has the same links, except the side of a wall, which has none.
+        let link = self.link_from(sway, impacts);
         link.map_or(Vec::new(), |_| vec![Hinge::Toe(sway)])
     }
 

@@ -253,7 +253,7 @@ impl MechanismChain for FourLinks {
     }
 
     fn hinges(&self, impacts: usize, sway: Sway) -> Vec<Hinge> {
-        let chain = self.chain_from(sway.before(impacts));
+        let chain = self.chain_from(sway.after(impacts));
         chain.link(impacts).map_or(Vec::new(), |link| {
             let profile = chain.profile(impacts);
             let hinges = link.mechanism.named_hinges_from_left(profile, sway);
@@ -262,7 +262,7 @@ impl MechanismChain for FourLinks {
     }
 
     fn hinge_impulses(&self, impacts: usize, sway: Sway) -> Vec<Vector2<f64>> {
-        let link = self.chain_from(sway.before(impacts)).link(impacts);
+        let link = self.chain_from(sway.after(impacts)).link(impacts);
         let line = link.and_then(|link| link.impulse_line.as_ref());
         line.map_or(Vec::new(), |line| {
             line.hinge_impulses_from_left(sway).to_vec()

@@ -23,8 +23,8 @@ impl Sway {
         }
     }
 
-    /// Returns the side of the sway `impacts` impacts earlier. Every impact changes the side.
-    pub const fn before(self, impacts: usize) -> Self {
+    /// Returns the side of the sway `impacts` impacts later or earlier. Every impact changes the side, unless a wall stands behind the structure.
+    pub const fn after(self, impacts: usize) -> Self {
         if impacts.is_multiple_of(2) {
             self
         } else {

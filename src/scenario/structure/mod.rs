@@ -74,7 +74,7 @@ impl Structure {
         let structure = match read {
             StructureTable::Arch(arch) => Self::Arch(arch),
             StructureTable::Column(column) if beside.is_ties_at_most() => {
-                let is_held = column.back.is_some() && !ties.is_empty();
+                let is_held = column.wall().is_some() && !ties.is_empty();
                 table.refuse(is_held, "tie", NO_TIES)?;
                 Self::Column(tie::tied_column(table, &ties, column, gravity_m_s2)?)
             }
@@ -141,7 +141,7 @@ impl Structure {
     /// Returns the side of the wall behind a column, towards which it cannot move; `None` without a wall.
     pub fn wall_behind(&self) -> Option<Sway> {
         match self {
-            Self::Column(column) => column.away_from_wall().map(Sway::opposite),
+            Self::Column(column) => column.wall().map(|(wall, _)| wall.side),
             Self::Arch(_) | Self::Masonry(_) => None,
         }
     }
@@ -165,8 +165,8 @@ impl Structure {
     }
 
     /// Returns true for shapes that are symmetric for all dimensions.
-    pub fn is_symmetric(&self) -> bool {
-        !matches!(self, Self::Masonry(_)) && self.wall_behind().is_none()
+    pub const fn is_symmetric(&self) -> bool {
+        !matches!(self, Self::Masonry(_))
     }
 
     /// Returns the circular arch; `None` for other structures, and for an arch with piers, fill, loads or ties.
@@ -326,7 +326,7 @@ fn why_not(arch: &Arch, error: LimitError) -> String {
 const NO_TIES: &str = "cannot be combined with [column.back]: a column with ties moves as a row of blocks, without contact with a wall behind it; leave \
                        one out";
 /// Message about a wall behind a row of blocks.
-const NO_BLOCKS: &str = "goes with Housner's model only, a single prismatic block: rows of blocks (drums, a taper, free hinges, elastic joints) have no \
+const NO_BLOCKS: &str = "applies to Housner's model only, a single prismatic block: rows of blocks (drums, a taper, free hinges, elastic joints) have no \
                          contact with a wall behind them; leave these out, or leave [column.back] out";
 
 /// Reads `[column.back]`.
@@ -334,7 +334,7 @@ fn read_back(table: &mut Table<'_>) -> ReadResult<BackWall> {
     let back = BackWall {
         side: table.required("side", &one_of(Sway::ALL)),
         height_m: table.optional("height_m", &within(&(0.0..=1e12))),
-        restitution: table.optional("restitution", &within(&(0.0..=1.0))),
+        rate_ratio: table.optional("restitution", &within(&(0.0..=1.0))),
     };
     table.check_faultless()?;
     Ok(back)
@@ -361,8 +361,7 @@ fn read_column(table: &mut Table<'_>, free_hinges: bool) -> ReadResult<Column> {
         table.wrong(key, wrong);
     }
     table.check_relations(&[AtMostOne(&["drums", "drum_heights_m"], GIVE_ONE)])?;
-    table.refuse(back.is_some() && free_hinges, "back", NO_BLOCKS)?;
-    let column = Column::new(height_m, width_m)
+    let mut column = Column::new(height_m, width_m)
         .and_then(|column| column.with_depth_m(depth_m))
         .and_then(|column| column.with_density_kg_m3(density_kg_m3))
         .and_then(|column| match drums {
@@ -375,17 +374,17 @@ fn read_column(table: &mut Table<'_>, free_hinges: bool) -> ReadResult<Column> {
         })
         .expect("the ranges of the keys are within those of a column")
         .on_pedestal(pedestal);
-    if let Some(back) = back {
-        let column = column.with_back(back);
-        return column.map_err(|error| {
-            let wrong = format!("does not fit: `height_m` must be {}", error.allowed);
-            table.wrong_in(&["back"], error.argument, wrong)
-        });
+    if let Some(heights_m) = drum_heights_m {
+        let drums = column.with_drum_heights_m(heights_m);
+        let drums = drums.map_err(|error| format!("does not fit: {error}"));
+        column = table.accept("drum_heights_m", drums)?;
     }
-    let Some(heights_m) = drum_heights_m else {
-        return Ok(column);
-    };
-    let column = column.with_drum_heights_m(heights_m);
-    let column = column.map_err(|error| format!("does not fit: {error}"));
-    table.accept("drum_heights_m", column)
+    if let Some(back) = back {
+        column = column.with_back(back).map_err(|error| {
+            let wrong = format!("does not fit: it must be {}", error.allowed);
+            table.wrong_in(&["back"], error.argument, wrong)
+        })?;
+    }
+    table.refuse(column.wall().is_some() && free_hinges, "back", NO_BLOCKS)?;
+    Ok(column)
 }

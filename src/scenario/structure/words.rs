@@ -89,15 +89,7 @@ fn of_column(column: &Column) -> String {
         return "column".to_owned();
     };
     let (side, height) = (wall.side.name(), metres(height_m));
-    let ratio = column.wall_restitution().map_or(0.0, rounded);
-    format!(
-        "column against a wall of {height} m on its {side}, restitution (ratio of rates) {ratio}"
-    )
-}
-
-/// Returns a number rounded to four decimals.
-fn rounded(x: f64) -> f64 {
-    (x * 1e4).round() / 1e4
+    format!("column against a wall of {height} m on its {side}")
 }
 
 fn of_masonry(masonry: &Masonry) -> Vec<String> {

@@ -31,8 +31,9 @@ pub enum CapacityCurveError {
     Control(#[from] CapacityError),
 }
 
-/// Computes the capacity curves to the right and to the left; `None` for the side of a wall behind a column. The control point `point_m` is in metres: x from the middle to the right; y from
-/// the centre of a circular arch, otherwise from the springings or the base, upwards. `None` chooses the crown, or the top of a column.
+/// Computes the capacity curves to the right and to the left; `None` for the side of a wall behind a column. The control point `point_m` is in metres: x
+/// from the middle to the right; y from the centre of a circular arch, otherwise from the springings or the base, upwards. `None` chooses the crown, or
+/// the top of a column.
 ///
 /// # Errors
 /// When there is no mechanism of one degree of freedom, or the control point is outside the structure or does not move.

@@ -54,7 +54,7 @@ impl<'a> LinkImpact<'a> {
 
     /// Returns the side to which the structure sways after the impact.
     pub const fn sway(&self) -> Sway {
-        self.first.before(self.index)
+        self.first.after(self.index)
     }
 
     /// Returns the profile in the frame in which the sway after the impact is to the right.
@@ -101,19 +101,23 @@ pub struct ImpactOptions {
     pub joints: Option<usize>,
 }
 
-/// Computes the chain of mechanisms of a structure after a first sway to this side.
+/// Computes the chain of mechanisms of a structure after a first sway to this side; `None` chooses right, or the side away from a wall behind a column.
 ///
 /// # Errors
-/// When a number is not finite.
+/// When the wall is on this side, or a number is not finite.
 pub fn chain_result(
     scenario: &Scenario,
     model: &dyn MechanismModel,
-    first: Sway,
+    first: Option<Sway>,
     count: usize,
 ) -> Result<PrintedResult, StudyError> {
-    // A column with a wall behind it sways to one side only.
-    let wall = scenario.structure.wall_behind();
-    let first = wall.map_or(first, Sway::opposite);
+    let first = first.unwrap_or_else(|| model.first_side());
+    if scenario.structure.wall_behind() == Some(first) {
+        let (wall, away) = (first.name(), first.opposite().name());
+        return Err(StudyError::Scenario(format!(
+            "the column cannot sway to the {wall}, where a wall stands; leave `--first` out, or choose {away}"
+        )));
+    }
     let impacts = |side| chain(model, side, count);
     let summary = Summary::new(scenario, model, (&[first], count), impacts);
     Ok(PrintedResult::of(&summary)?)

@@ -72,6 +72,9 @@ pub struct Summary {
     pub largest_peak_rotation_rad: f64,
     /// The push that starts the structure to each side, in units of gravity; null if no push starts it.
     pub incipient_acceleration_g: Sides<Option<f64>>,
+    /// Side of the wall behind a column, which carries pushes towards it; absent without a wall.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wall_behind: Option<Sway>,
     /// The ground, in units of gravity.
     pub ground: GroundSummary,
     /// Largest error of the energy balance. Reference of four links and columns: the barrier of the first mechanism. Reference of a row of
@@ -365,6 +368,7 @@ impl Summary {
             peak_rotations_rad: Named(names.into_iter().zip(peaks_rad).collect()),
             largest_peak_rotation_rad: history.largest_rotation_rad(),
             incipient_acceleration_g: Sides::of(|sway| model.incipient_acceleration_g(sway)),
+            wall_behind: scenario.structure.wall_behind(),
             ground: GroundSummary::of(scenario, history),
             energy_defect_ratio: history.energy_defect_ratio,
             friction: history.thrust.as_ref().map(|thrust| FrictionDemand {

@@ -62,10 +62,10 @@ named! {
     }
 }
 
-/// A range of factors with one verdict, or without histories. The histories at both ends were computed and have that verdict.
+/// A range of factors with one verdict, which the histories at both ends have, or a range without histories.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FactorRange {
-    /// The verdict; `None` without histories.
+    /// The verdict; `None` without histories, and in a range that was read from JSON.
     #[serde(skip)]
     pub verdict: Option<Verdict>,
     /// Smallest factor of the range.
@@ -275,10 +275,14 @@ pub fn results(
     let scenario = &scenarios[0];
     check(scenario).map_err(StudyError::Scenario)?;
     let (ground, request) = (scenario.ground_motion(), scenario.request());
+    // A model that cannot be built must not cost the search of another one.
+    let models = scenarios.iter().map(Scenario::model);
+    let models: Vec<_> = models
+        .collect::<Result<_, _>>()
+        .map_err(StudyError::scenario)?;
     let mut found = Vec::new();
-    for scenario in scenarios {
-        let model = scenario.model().map_err(StudyError::scenario)?;
-        let model = (scenario.model_name(), &*model);
+    for (scenario, model) in scenarios.iter().zip(&models) {
+        let model = (scenario.model_name(), &**model);
         let mut threshold = threshold(model, ground, &request, factors, runner, &mut *watch)?;
         threshold.check_known()?;
         if threshold.lowest_factor().is_some() {

@@ -175,7 +175,7 @@ pub(super) fn histories(
     if mechanisms.len() < 2 {
         let name = state.name();
         return Err(failed(format!(
-            "the dynamic route compares both sides, and a wall behind the column holds one: leave {name}_records out, and compute the records with \
+            "the dynamic route compares both sides, and a wall prevents sway to one side: leave {name}_records out, and compute the records with \
              `archrock suite`"
         )));
     }

@@ -330,6 +330,9 @@ pub struct Summary {
     pub behaviour_factor: f64,
     /// The sides that are checked.
     pub sides: CheckedSides,
+    /// Side of the wall behind a column, towards which it cannot move; absent without a wall.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wall_behind: Option<Sway>,
     /// Period of the elastic vibration before motion, in seconds; `None` if walls hold the structure up to the mechanism.
     pub t0_s: Option<f64>,
     /// Gravity, in m/s2.
@@ -424,6 +427,7 @@ pub fn verify(scenario: &Scenario) -> Result<Summary, VerifyError> {
         confidence_factor: input.settings.confidence_factor,
         behaviour_factor: input.settings.behaviour_factor,
         sides: input.settings.sides,
+        wall_behind: structure.wall_behind(),
         t0_s: input.t0_s,
         gravity_m_s2: input.gravity_m_s2,
         allowed_friction: input.allowed_friction,

@@ -193,7 +193,7 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
         swing: Swing<'a, C::Mechanism>,
         now: &SystemState<'a, C::Mechanism>,
     ) -> f64 {
-        let first = self.chain.sway_across(swing.sway, swing.impacts);
+        let first = self.chain.sway_after(swing.sway, swing.impacts);
         let motion = self.motion(swing, now);
         let mechanism = &swing.link.mechanism;
         (self.chain).excess_ratio(first, swing.impacts, mechanism, &motion)
@@ -435,12 +435,12 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
             (Guard::Closing, Phase::Rocking(Swing { sway, impacts, .. })) => {
                 // The closing rate is negative, except for rounding errors at the end of a very short hop.
                 let closing_rate = (-now.state[1]).max(0.0);
-                let first = self.chain.sway_across(sway, impacts);
+                let first = self.chain.sway_after(sway, impacts);
                 let Some(link) = self.chain.link_from(first, impacts + 1) else {
                     return (Phase::Rest, still);
                 };
                 let rate = link.rate_ratio * closing_rate;
-                let sway = self.chain.sway_across(sway, 1);
+                let sway = self.chain.sway_after(sway, 1);
                 let ground_m_s2 = self.ground_m_s2(sway, now);
                 let energy = 0.5 * link.at_zero.inertia * rate * rate;
                 let held_up = self.acceleration(&link.at_zero, rate, ground_m_s2) > 0.0;

@@ -60,7 +60,7 @@ macro_rules! models {
             }
 
             fn sway_after(&self, first: Sway, impacts: usize) -> Sway {
-                self.sway_across(first, impacts)
+                MechanismChain::sway_after(self, first, impacts)
             }
 
             fn hinges_after(&self, impacts: usize, sway: Sway) -> Vec<Hinge> {
@@ -304,7 +304,7 @@ impl<'a, C: MechanismChain> Closing<'a, C> {
             return None;
         };
         let impacts = before.impacts;
-        let after = chain.link_from(chain.sway_across(before.sway, impacts), impacts + 1);
+        let after = chain.link_from(chain.sway_after(before.sway, impacts), impacts + 1);
         let rate_before_rad_s = transition.before[1].min(0.0);
         Some(Self {
             before,
@@ -332,7 +332,7 @@ impl<'a, C: MechanismChain> Closing<'a, C> {
             seen.as_ref().to_vec()
         };
         let (sway, impacts) = (self.before.sway, self.before.impacts);
-        let (link, sway_after) = (self.before.link, chain.sway_across(sway, 1));
+        let (link, sway_after) = (self.before.link, chain.sway_after(sway, 1));
         let after = self.after.unwrap_or(link);
         let unit_n_s = chain.mass_unit_kg() * chain.length_m() * self.rate_before_rad_s.abs();
         let impulses = chain.hinge_impulses(impacts + 1, sway_after);
