@@ -221,7 +221,8 @@ impl Scenario {
         let structure = serde_json::to_value(&self.inner.structure).map_err(refused)?;
         let mut all = self.inner.to_json();
         if let Some(all) = all.as_object_mut() {
-            all.retain(|table, _| table == "tie" || structure.get(table).is_some());
+            let is_beside = |table: &str| ["load", "tie"].contains(&table);
+            all.retain(|table, _| is_beside(table) || structure.get(table).is_some());
         }
         Ok(all.to_string())
     }

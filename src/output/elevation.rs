@@ -3,12 +3,12 @@
 use nalgebra::Vector2;
 
 use super::figure::Figure;
-use super::scene::{Piece, Scene};
+use super::scene::{LoadArrow, Piece, Scene};
 use super::sheet::{PartHeight, Sheet};
 use super::svg::{Anchor, Drawing, Frame, Stroke, color};
 use super::text::{TEXT_PX, Text, text_px};
 use crate::mechanics::BodyPoint;
-use crate::scenario::{Dimension, DimensionSide, metres};
+use crate::scenario::{Dimension, DimensionSide};
 use crate::{OpenHinge, Pose};
 
 /// Colour of blocks.
@@ -74,7 +74,7 @@ pub fn draw(figure: Figure, title: &str, scene: &Scene, text: &str) -> String {
     let room = |side: DimensionSide| room_px(scene, side).max(24.0);
     let [low_m, high_m] = scene.frame_m();
     let size_m = high_m - low_m;
-    let has_none = scene.loads(&[]).is_empty();
+    let has_none = scene.load_arrows(&[]).is_empty();
     let above_px = if has_none { 6.0 } else { ARROW_PX + 26.0 };
     // Supports extend a little beyond the structure.
     let left_px = room(DimensionSide::Left) + 10.0;
@@ -155,11 +155,11 @@ impl<'a> View<'a> {
         }
     }
 
-    /// Draws fill and loads; `has_masses` adds the masses of loads.
-    pub(crate) fn draw_carried(&self, drawing: &mut Drawing, has_masses: bool) {
+    /// Draws fill and loads; `has_labels` adds the labels of loads.
+    pub(crate) fn draw_carried(&self, drawing: &mut Drawing, has_labels: bool) {
         self.draw_wall(drawing);
         self.draw_fill(drawing);
-        self.draw_loads(drawing, None, has_masses);
+        self.draw_loads(drawing, None, has_labels);
     }
 
     /// Draws the wall behind the structure.
@@ -199,13 +199,17 @@ impl<'a> View<'a> {
         }
     }
 
-    /// Draws arrows for loads, from the height `from` if it is given, with their masses if there is space.
-    fn draw_loads(&self, drawing: &mut Drawing, from: Option<f64>, has_masses: bool) {
+    /// Draws arrows for loads, from the height `from` if it is given, with their labels if there is space.
+    fn draw_loads(&self, drawing: &mut Drawing, from: Option<f64>, has_labels: bool) {
         let mut farthest = f64::NEG_INFINITY;
-        let mut loads = self.scene.loads(self.hinges);
-        loads.sort_by(|a, b| a.0.at_m.x.total_cmp(&b.0.at_m.x));
-        for (point, load) in loads {
-            let foot = self.px(&point);
+        let mut loads = self.scene.load_arrows(self.hinges);
+        loads.sort_by(|a, b| a.at.at_m.x.total_cmp(&b.at.at_m.x));
+        for load in loads {
+            let foot = self.px(&load.at);
+            if load.sideways != 0.0 {
+                self.draw_thrust(drawing, foot, &load, has_labels);
+                continue;
+            }
             let tail = from.map_or(foot.y - 20.0, |top| top - 8.0);
             let tail = Vector2::new(foot.x, tail);
             drawing.curve("load", [tail, foot], LOAD);
@@ -213,21 +217,44 @@ impl<'a> View<'a> {
             drawing.polygon("", [foot, barb(-1.0), barb(1.0)], LOAD.color, LOAD);
             if load.width_m > 0.0 {
                 let edge = |side: f64| {
-                    let at_m = point.at_m + Vector2::new(0.5 * side * load.width_m, 0.0);
-                    Vector2::new(self.px(&BodyPoint { at_m, ..point }).x, tail.y)
+                    let at_m = load.at.at_m + Vector2::new(0.5 * side * load.width_m, 0.0);
+                    Vector2::new(self.px(&BodyPoint { at_m, ..load.at }).x, tail.y)
                 };
                 drawing.curve("load width", [edge(-1.0), edge(1.0)], LOAD);
             }
-            if has_masses {
-                let text = Text::from(format!("{} kg", metres(load.mass_kg)));
+            if has_labels {
+                let text = Text::from(load.label);
                 let half = 0.5 * text.px();
-                // Masses without space are omitted here; the text below the drawing lists all.
+                // Labels without space are omitted here; the text below the drawing lists all loads.
                 if foot.x - half > farthest {
                     farthest = foot.x + half + 8.0;
                     let at = tail - Vector2::new(0.0, 6.0);
                     drawing.label(at, Anchor::Middle, 0.0, text);
                 }
             }
+        }
+    }
+
+    /// Draws a horizontal arrow that ends at a point of the sheet.
+    fn draw_thrust(
+        &self,
+        drawing: &mut Drawing,
+        foot: Vector2<f64>,
+        load: &LoadArrow,
+        has_label: bool,
+    ) {
+        let back = |by: f64| foot - Vector2::new(load.sideways * by, 0.0);
+        drawing.curve("load", [back(ARROW_PX), foot], LOAD);
+        let barb = |side: f64| back(7.0) + Vector2::new(0.0, 4.0 * side);
+        drawing.polygon("", [foot, barb(-1.0), barb(1.0)], LOAD.color, LOAD);
+        if has_label {
+            let at = back(ARROW_PX + 4.0) + Vector2::new(0.0, 4.5);
+            let anchor = if load.sideways > 0.0 {
+                Anchor::End
+            } else {
+                Anchor::Start
+            };
+            drawing.label(at, anchor, 0.0, load.label.as_str());
         }
     }
 }

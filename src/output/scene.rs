@@ -6,7 +6,7 @@ use nalgebra::Vector2;
 use crate::mechanics::masonry::FillColumn;
 use crate::mechanics::{Anchor, BodyPoint, Edge, Parts, PlacedLoad, Tie};
 use crate::mechanics::{Outline, Section};
-use crate::scenario::{Dimension, Structure, metres};
+use crate::scenario::{Dimension, Structure, forces_in_words, load_in_words};
 use crate::{Hinge, OpenHinge, Pose, Row, Sample, Sway};
 
 /// A structure to be drawn, undeformed.
@@ -41,6 +41,19 @@ pub struct CompressedJoint {
     pub stresses_pa: [f64; 2],
     /// Unit normal of the undeformed joint, towards the block after it.
     pub across: Vector2<f64>,
+}
+
+/// Arrow that shows weight or thrust of a load.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoadArrow {
+    /// Point of the load; for a patch, its middle.
+    pub at: BodyPoint,
+    /// Direction of the arrow: 0 downwards, 1 to the right, -1 to the left.
+    pub sideways: f64,
+    /// Width of the patch, in metres; zero for a point.
+    pub width_m: f64,
+    /// The force in words.
+    pub label: String,
 }
 
 impl CompressedJoint {
@@ -84,15 +97,12 @@ impl Scene {
 
     /// Makes the scene of a structure that moves as the blocks of this row.
     pub fn of_row(row: &Row, structure: &Structure) -> Self {
-        Self::of(structure, row, false, &row.ties)
+        Self::of(structure, row, false, row.bars())
     }
 
     fn of(structure: &Structure, parts: &dyn Parts, linked: bool, ties: &[Tie]) -> Self {
-        let carries = structure.fill_and_loads();
-        let loads = carries.into_iter().flat_map(|(carried, loads)| {
-            let places_m = carried.loads_m.iter().copied();
-            places_m.zip(loads.iter().copied())
-        });
+        let (carried, loads) = structure.fill_and_loads();
+        let loads = carried.loads_m.into_iter().zip(loads.iter().copied());
         Self {
             outline: parts.outline(),
             linked,
@@ -100,7 +110,7 @@ impl Scene {
             supports: [Pose::UNDEFORMED; 2],
             stands: (Vec::new(), Vec::new()),
             ties: ties.to_vec(),
-            fill_m: carries.map_or_else(Vec::new, |(carried, _)| carried.fill_m.clone()),
+            fill_m: carried.fill_m,
             loads: loads.collect(),
             wall_m: structure.wall_outline_m(),
             dimensions: structure.dimensions(),
@@ -190,11 +200,17 @@ impl Scene {
         }
     }
 
-    /// Returns the loads while these hinges are open, each with the position of its middle.
-    pub fn loads(&self, hinges: &[OpenHinge]) -> Vec<(BodyPoint, &PlacedLoad)> {
-        let loads = self.loads.iter().map(|((block, at_m), load)| {
+    /// Returns the arrows of the loads while these hinges are open.
+    pub fn load_arrows(&self, hinges: &[OpenHinge]) -> Vec<LoadArrow> {
+        let loads = self.loads.iter().flat_map(|((block, at_m), load)| {
             let (body, at_m) = (self.body_of(*block, hinges), *at_m);
-            (BodyPoint { body, at_m }, load)
+            let forces = forces_in_words(load).into_iter();
+            forces.map(move |(sideways, label)| LoadArrow {
+                at: BodyPoint { body, at_m },
+                sideways,
+                width_m: load.width_m,
+                label,
+            })
         });
         loads.collect()
     }
@@ -204,7 +220,7 @@ impl Scene {
         let lengths = self.dimensions.iter();
         let lengths = lengths.map(|dimension| dimension.words.clone());
         let loads = self.loads.iter();
-        let loads = loads.map(|(_, load)| format!("load {} kg", metres(load.mass_kg)));
+        let loads = loads.map(|(_, load)| format!("load {}", load_in_words(load)));
         lengths.chain(loads).collect::<Vec<_>>().join(", ")
     }
 

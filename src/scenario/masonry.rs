@@ -14,6 +14,7 @@ use nalgebra::Vector2;
 
 use super::LineFault;
 use super::files::Files;
+use super::load::LoadTable;
 use super::prelude::*;
 use super::record::{Decimal, faulty, read_numbers};
 use super::tie::{self, PULLS_OVER, TieTable};
@@ -25,7 +26,7 @@ use crate::mechanics::masonry::{
 };
 use crate::mechanics::stability::collapse_mechanism;
 use crate::mechanics::{DENSITY_KG_M3, DEPTH_M, MAX_BLOCKS};
-use crate::mechanics::{Joint, MeasuredAt, PlacedLoad, RowError, Shape, Supports};
+use crate::mechanics::{Joint, MeasuredAt, RowError, Shape, Supports};
 
 const PIER_BLOCKS: Count = Count(1..=MAX_BLOCKS, "a pier of one piece");
 
@@ -209,7 +210,7 @@ type Outlines = Vec<(usize, Vec<Vector2<f64>>)>;
 pub(super) struct Additions {
     piers: Piers,
     fill: Option<Fill>,
-    loads: Vec<PlacedLoad>,
+    pub loads: Vec<LoadTable>,
     pub ties: Vec<TieTable>,
 }
 
@@ -219,18 +220,18 @@ impl Additions {
         let read = Self {
             piers: table.table("piers", read_piers).unwrap_or_default(),
             fill: table.table("fill", read_fill),
-            loads: table.tables("load", read_load),
+            loads: table.tables("load", LoadTable::read),
             ties: TieTable::read_all(table),
         };
         ensure(table.faults() == before, || FaultRecorded).map(|()| read)
     }
 
     pub fn is_empty(&self) -> bool {
-        self.is_ties_at_most() && self.ties.is_empty()
+        self.fits_column() && self.loads.is_empty() && self.ties.is_empty()
     }
 
-    pub fn is_ties_at_most(&self) -> bool {
-        self.piers.are_none() && self.fill.is_none() && self.loads.is_empty()
+    pub fn fits_column(&self) -> bool {
+        self.piers.are_none() && self.fill.is_none()
     }
 
     /// Records that the additions do not fit a structure of this kind.
@@ -251,7 +252,12 @@ impl Additions {
         gravity_m_s2: f64,
     ) -> ReadResult<Masonry> {
         let key = shape.name();
-        let masonry = Masonry::new(shape, self.piers, self.fill, self.loads.clone());
+        let loads = self.loads.iter().enumerate().map(|(index, load)| {
+            let placed = load.on_arch();
+            placed.map_err(|wrong| table.wrong_element("load", index, wrong))
+        });
+        let loads = loads.collect::<ReadResult<_>>()?;
+        let masonry = Masonry::new(shape, self.piers, self.fill, loads);
         let masonry = masonry.map_err(|error| self.wrong(table, key, &error))?;
         let on = (&masonry.row, masonry.springing_joints());
         let ties = tie::placed(table, &self.ties, on)?;
@@ -371,14 +377,6 @@ fn read_fill(table: &mut Table<'_>) -> ReadResult<Fill> {
             .or(above_crown_m.map(FillLevel::AboveCrown))
             .ok_or(FaultRecorded)?,
         density_kg_m3,
-    })
-}
-
-fn read_load(table: &mut Table<'_>) -> ReadResult<PlacedLoad> {
-    Ok(PlacedLoad {
-        mass_kg: table.required("mass_kg", &within(&(1e-6..=1e15))),
-        x_m: table.required("x_m", &within(&(-1e6..=1e6))),
-        width_m: table.optional("width_m", &MAGNITUDE).unwrap_or(0.0),
     })
 }
 

@@ -37,6 +37,7 @@ mod impact;
 mod initial;
 mod input_file;
 mod listing;
+mod load;
 mod map;
 mod masonry;
 mod model_kind;
@@ -95,6 +96,7 @@ pub use simulation::Simulation;
 pub use source::Source;
 use span::Circular;
 pub use structure::{Dimension, DimensionSide, ModelError, Structure, metres};
+pub(crate) use structure::{forces_in_words, load_in_words};
 pub use suite::{Measure, Spectral, Suite};
 pub use tie::{TieEnds, TieTable};
 pub(crate) use toml_text::toml_text;
@@ -558,6 +560,11 @@ impl Scenario {
             ground.insert("right".to_owned(), json!(right));
         }
         let ties = Some(&self.ties).filter(|ties| !ties.is_empty());
+        let loads = match &self.structure {
+            Structure::Column(column) => Some(&column.loads).filter(|loads| !loads.is_empty()),
+            // Masonry contains its loads.
+            Structure::Arch(_) | Structure::Masonry(_) => None,
+        };
         let mut tables = vec![
             ("tie", json!(ties)),
             ("supports", json!(self.motion.supports())),
@@ -577,6 +584,7 @@ impl Scenario {
         let structure = json!(self.structure);
         let mut all = Entries::from_iter([("title".to_owned(), json!(self.title))]);
         all.extend(structure.as_object().cloned().unwrap_or_default());
+        all.extend(loads.map(|loads| ("load".to_owned(), json!(loads))));
         let tables = tables.into_iter();
         all.extend(tables.map(|(key, table)| (key.to_owned(), table)));
         for (key, table) in all.iter_mut().filter(|(_, table)| !table.is_null()) {

@@ -383,6 +383,7 @@ pub fn random_masonry(random: &mut Random) -> Option<Masonry> {
             mass_kg: random.within(100.0, 4000.0),
             x_m: random.within(-3.0, 3.0),
             width_m: 0.5,
+            ..PlacedLoad::default()
         }]
     } else {
         Vec::new()

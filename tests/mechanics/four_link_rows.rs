@@ -253,11 +253,7 @@ fn the_certificate_bounds_the_impact_of_a_row() {
         voussoirs: 14,
         material: Material::default(),
     };
-    let load = PlacedLoad {
-        mass_kg: 2500.0,
-        x_m: 1.5,
-        width_m: 0.0,
-    };
+    let load = PlacedLoad::mass(2500.0, 1.5);
     let shape = Shape::PointedArch(dimensions);
     let masonry = Masonry::new(shape, Piers::default(), None, vec![load]).unwrap();
     let model = rocking(&masonry.row);

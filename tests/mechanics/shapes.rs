@@ -160,16 +160,13 @@ fn loads_act_at_their_given_position() {
         let first: Vector2<f64> = row.blocks.iter().map(|b| b.centre_m * b.mass_kg).sum();
         (first, row.mass_kg())
     };
-    let (bare, mass) = with(PlacedLoad {
-        mass_kg: 1e-6,
-        x_m: 0.0,
-        width_m: 0.0,
-    });
+    let (bare, mass) = with(PlacedLoad::mass(1e-6, 0.0));
     for width_m in [0.0, 3.0] {
         let (first, loaded) = with(PlacedLoad {
             mass_kg: 700.0,
             x_m: 1.25,
             width_m,
+            ..PlacedLoad::default()
         });
         assert!((loaded - mass - 700.0).abs() < 1e-5);
         assert!(((first - bare).x / 700.0 - 1.25).abs() < 1e-6);

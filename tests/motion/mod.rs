@@ -11,6 +11,7 @@ mod ground;
 mod history;
 mod integration;
 mod landings;
+mod loads;
 mod model;
 mod outcomes;
 mod random_histories;

@@ -6,6 +6,7 @@ mod fragility;
 mod free_hinges;
 mod impact;
 mod limit;
+mod loads;
 mod map;
 mod map_accuracy;
 mod map_axes;

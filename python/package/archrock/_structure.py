@@ -175,6 +175,8 @@ class Column(Structure):
         back: table ``[column.back]``: a wall behind the column, from which it can only move away, such as
             ``{"side": "left"}``, perhaps with ``height_m`` and ``restitution`` (ratio of rates); not with drums.
             ``None``: it stands free.
+        load: tables ``[[load]]``: roofs, floors and thrusts, such as ``[{"mass_kg": 1500.0, "x_m": -0.15}]``, perhaps with
+            ``height_m``, ``moves`` and ``thrust_n``.
 
     Raises:
         ValueError: when a number is not allowed, with the library's explanation.
@@ -194,20 +196,21 @@ class Column(Structure):
         depth_m: float | None = None,
         density_kg_m3: float | None = None,
         back: Mapping[str, Any] | None = None,
+        load: Sequence[Mapping[str, Any]] | None = None,
     ) -> None:
-        super().__init__(
-            column={
-                "height_m": height_m,
-                "width_m": width_m,
-                "drums": drums,
-                "drum_heights_m": drum_heights_m,
-                "top_width_m": top_width_m,
-                "pedestal": pedestal,
-                "depth_m": depth_m,
-                "density_kg_m3": density_kg_m3,
-                "back": back,
-            }
-        )
+        column = {
+            "height_m": height_m,
+            "width_m": width_m,
+            "drums": drums,
+            "drum_heights_m": drum_heights_m,
+            "top_width_m": top_width_m,
+            "pedestal": pedestal,
+            "depth_m": depth_m,
+            "density_kg_m3": density_kg_m3,
+            "back": back,
+        }
+        super().__init__(column=column, **({"load": load} if load else {}))
 
     def __repr__(self) -> str:
-        return f"{type(self).__name__}({arguments(self._tables['column'])})"
+        beside = {table: keys for table, keys in self._tables.items() if table != "column"}
+        return f"{type(self).__name__}({arguments({**self._tables['column'], **beside})})"

@@ -14,7 +14,7 @@ use crate::argument::{ArgumentError, plain};
 use crate::dynamics::{
     GroundMotion, OpenHinge, Outcome, RowMotionError, State, Summary, TieSample,
 };
-use crate::mechanics::{Demand, Displaced, Equivalent, Hinge, MovingBody, Row, Sway};
+use crate::mechanics::{Demand, Displaced, Equivalent, Hinge, MovingBody, MovingForce, Row, Sway};
 
 /// Structure under ground motion, as a model of its motion.
 ///
@@ -270,6 +270,9 @@ pub trait MechanismModel: Model {
 
     /// Returns the rigid bodies of the first mechanism to a side; `None` without such a mechanism.
     fn moving_bodies(&self, sway: Sway) -> Option<Vec<MovingBody>>;
+
+    /// Returns the constant forces on these bodies; `None` without such a mechanism.
+    fn moving_forces(&self, sway: Sway) -> Option<Vec<MovingForce>>;
 
     /// Returns the side to which moving ground overturns the structure from rest before its first impact; `None` if it does not.
     ///

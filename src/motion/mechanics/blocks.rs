@@ -121,7 +121,7 @@ pub struct Row {
     pub handedness: f64,
     /// Flags of the left and the right support: true if the support extends beyond its joint.
     pub supports_extend: [bool; 2],
-    /// Ties of the row.
+    /// Ties of the row, or constant forces on its blocks, which are ties of zero stiffness.
     pub ties: Vec<Tie>,
     /// Gravity for which the ties were given, in m/s2.
     pub gravity_m_s2: f64,
@@ -206,6 +206,36 @@ impl Row {
         self.ties = ties;
         self.gravity_m_s2 = gravity_m_s2;
         Ok(self)
+    }
+
+    /// Returns this row with constant forces in place of its ties: index of the block, point in metres, and force in N, under this gravity.
+    #[must_use]
+    pub fn with_constant_forces(
+        mut self,
+        forces: impl IntoIterator<Item = (usize, Vector2<f64>, Vector2<f64>)>,
+        gravity_m_s2: f64,
+    ) -> Self {
+        let forces = forces.into_iter();
+        let forces = forces.filter(|(block, _, force_n)| {
+            *block < self.blocks.len() && *force_n != Vector2::zeros()
+        });
+        let forces = forces.map(|(block, at_m, force_n)| Tie::constant_force(block, at_m, force_n));
+        self.ties = forces.collect();
+        self.gravity_m_s2 = gravity_m_s2;
+        self
+    }
+
+    /// Returns the ties of the row; empty if it carries constant forces.
+    pub fn bars(&self) -> &[Tie] {
+        match self.ties.iter().any(Tie::is_constant_force) {
+            true => &[],
+            false => &self.ties,
+        }
+    }
+
+    /// Returns the constant forces on the blocks of the row.
+    pub fn constant_forces(&self) -> impl Iterator<Item = &Tie> {
+        self.ties.iter().filter(|tie| tie.is_constant_force())
     }
 
     /// Returns this row without ties.

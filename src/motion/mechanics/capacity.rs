@@ -1,7 +1,7 @@
 //! Quasi-static capacity of a mechanism at finite displacements, and its equivalent oscillator.
 //!
-//! At the rotation `q`, the first mechanism is in equilibrium under gravity and the horizontal acceleration `a(q) = S_y(q) / S_x(q)` (in multiples of
-//! gravity). This follows from virtual power. At the onset, `a(0) = A_L`. The acceleration decreases to zero at the unstable equilibrium. The
+//! At the rotation `q`, the first mechanism is in equilibrium under gravity, constant forces and the horizontal acceleration
+//! `a(q) = (S_y(q) + S_f(q)) / S_x(q)` (in multiples of gravity). This follows from virtual power. At the onset, `a(0) = A_L`. The acceleration decreases to zero at the unstable equilibrium. The
 //! capacity curve is `a` against the horizontal displacement `d` of a control point. The value of `d` at its end is the ultimate displacement.
 //!
 //! The equivalent oscillator is that of the kinematic approach to masonry (reviewed by Casapulla, Giresini and Lourenço, Rocking and kinematic
@@ -21,7 +21,9 @@ use thiserror::Error;
 
 use super::chain::MechanismState;
 use super::virtual_work::Participation;
-use crate::mechanics::{BodyPoint, Mechanism as _, MechanismChain, MovingBody, Pose, Sway, Twist};
+use crate::mechanics::{
+    BodyPoint, Mechanism as _, MechanismChain, MovingBody, MovingForce, Pose, Sway, Twist,
+};
 
 /// Structure displaced along its first mechanism, in equilibrium with a horizontal acceleration.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,7 +45,7 @@ pub fn displaced<C: MechanismChain>(structure: &C, sway: Sway, part: f64) -> Opt
     let link = structure.link_from(sway, 0)?;
     let q_rad = part * link.critical_rad;
     let coefficients = link.mechanism.coefficients(q_rad);
-    let acceleration_g = coefficients.s_y / coefficients.s_x;
+    let acceleration_g = coefficients.potential_slope() / coefficients.s_x;
     let held = MechanismState {
         q_rad,
         rate: 0.0,
@@ -87,6 +89,23 @@ pub fn moving_bodies<C: MechanismChain>(structure: &C, sway: Sway) -> Option<Vec
         moving.reverse();
     }
     Some(moving)
+}
+
+/// Returns the constant forces on the first body of the first mechanism to a side, with their virtual displacements per radian of its coordinate, in
+/// metres. `None` without such a mechanism.
+pub fn moving_forces<C: MechanismChain>(structure: &C, sway: Sway) -> Option<Vec<MovingForce>> {
+    let mechanism = &structure.link_from(sway, 0)?.mechanism;
+    let (mut poses, mut hinges) = (Vec::new(), Vec::new());
+    mechanism.place(0.0, &mut poses, &mut hinges);
+    let rates = mechanism.rotation_rates(0.0);
+    let twist = Twist::rotation(hinges[0], rates.as_ref()[0]);
+    let forces = mechanism.constant_forces().into_iter();
+    let forces = forces.map(|(at, force)| MovingForce {
+        at_m: Vector2::new(sway.sign() * at.x, at.y) * structure.length_m(),
+        force_kg: force * structure.mass_unit_kg(),
+        displacement: twist.at(at) * structure.length_m(),
+    });
+    Some(forces.collect())
 }
 
 impl BodyPoint {

@@ -11,7 +11,8 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use crate::bisection::{Width, bisect, middle};
 use crate::mechanics::{Edge, MassMoments, Pose, Sway};
 
-/// Coefficients of the equation of motion of a system with one degree of freedom at a given `q`, `M q'' + M'/2 q'^2 + g S_y + a_g S_x = 0`.
+/// Coefficients of the equation of motion of a system with one degree of freedom at a given `q`,
+/// `M q'' + M'/2 q'^2 + (g + a_y) S_y + a_x S_x + g S_f = 0`, under gravity `g` and ground accelerations `a_x` and `a_y`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coefficients {
     /// `M`: generalised mass.
@@ -22,6 +23,15 @@ pub struct Coefficients {
     pub s_x: f64,
     /// `S_y`: sum of the masses times the derivatives of their vertical positions.
     pub s_y: f64,
+    /// `S_f`: minus the sum of the constant forces, over gravity, times the derivatives of the positions of their points.
+    pub s_f: f64,
+}
+
+impl Coefficients {
+    /// Returns the derivative of the potential energy of weights and constant forces with respect to `q`, over gravity.
+    pub const fn potential_slope(&self) -> f64 {
+        self.s_y + self.s_f
+    }
 }
 
 /// State of a mechanism, in its own frame, with the length of the structure and gravity as units.
@@ -64,6 +74,14 @@ pub trait Mechanism {
     fn coefficients(&self, q_rad: f64) -> Coefficients;
     /// Mass times displacement of the centre of gravity at `q`.
     fn displacement(&self, q_rad: f64) -> Vector2<f64>;
+    /// Returns the potential energy of weights and constant forces at `q` over gravity, zero at `q = 0`.
+    fn potential(&self, q_rad: f64) -> f64 {
+        self.displacement(q_rad).y
+    }
+    /// Returns the constant forces over gravity, each with the position of its point at `q = 0`. They act on the first body.
+    fn constant_forces(&self) -> Vec<(Vector2<f64>, Vector2<f64>)> {
+        Vec::new()
+    }
     /// Returns the rotations of the bodies at `q`.
     fn rotations(&self, q_rad: f64) -> Self::Rotations;
     /// Returns the rotation rates of the bodies at `q` for `q' = 1`.
@@ -83,7 +101,7 @@ pub struct Link<M> {
     pub critical_rad: f64,
     /// Largest possible `q` of the mechanism.
     pub limit_rad: f64,
-    /// Energy barrier: work against unit gravity from `q = 0` to the unstable equilibrium, in the units of
+    /// Energy barrier: work against unit gravity and constant forces from `q = 0` to the unstable equilibrium, in the units of
     /// mass and length.
     pub barrier: f64,
     /// Rate of this mechanism for a unit closing rate of the one before; 1 for the first.
@@ -150,7 +168,7 @@ impl<M: Mechanism> Link<M> {
     ) -> Self {
         Self {
             at_zero: mechanism.coefficients(0.0),
-            barrier: mechanism.displacement(critical_rad).y,
+            barrier: mechanism.potential(critical_rad),
             mechanism,
             critical_rad,
             limit_rad,
@@ -260,10 +278,10 @@ pub trait MechanismChain: std::fmt::Debug + Send + Sync {
     fn hinge_impulses(&self, impacts: usize, sway: Sway) -> Vec<Vector2<f64>>;
 }
 
-/// Returns the unstable equilibrium under gravity: the first `q` in `(0, limit_rad)` at which `S_y`, the slope of the potential energy, becomes zero.
+/// Returns the unstable equilibrium under gravity: the first `q` in `(0, limit_rad)` at which the slope of the potential energy becomes zero.
 /// Returns the limit if there is none.
 pub fn critical_rad(mechanism: &impl Mechanism, limit_rad: f64) -> f64 {
-    let rise = |q| mechanism.coefficients(q).s_y;
+    let rise = |q| mechanism.coefficients(q).potential_slope();
     // The potential energy has one maximum before the limit; the scan only brackets it.
     let steps = 64;
     let at = |step: i32| limit_rad * f64::from(step) / f64::from(steps);

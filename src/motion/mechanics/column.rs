@@ -15,119 +15,29 @@
 //! [`ImpactModel::Mirrored`]) all reduce to Housner's.
 //!
 //! With a wall behind it (see [`BackWall`]) it turns about one toe only, and every impact leads to the same mechanism.
+//!
+//! With loads it is a general rigid body, under constant forces; see [`Tilting`].
 
 use std::f64::consts::FRAC_PI_2;
 use std::ops::RangeInclusive;
 
-use nalgebra::{Rotation2, Vector2};
+use nalgebra::Vector2;
 use serde::Serialize;
+use thiserror::Error;
 
 use super::arch::{DENSITY_KG_M3, DEPTH_M};
-use super::back_wall::{percussion_height, rate_passed, three_impacts};
+use super::back_wall::{percussion_height, three_impacts};
 use super::blocks::{GRAVITY_M_S2, MAX_BLOCKS};
-use super::chain::{Coefficients, MechanismState};
+use super::chain::MechanismState;
 use super::tie::TieError;
+use super::tilting::{Tilting, thrust_section_parts};
 use crate::argument::{ArgumentError, allow, plain, within};
 use crate::mechanics::four_link::resultant::SectionResultant;
-use crate::mechanics::four_link::thrust::Load;
+use crate::mechanics::masonry::LoadOutlines;
 use crate::mechanics::{
-    BackWall, Demand, Hinge, ImpactLaw, ImpactModel, Link, MassMoments, Mechanism, MechanismChain,
-    Pose, Row, RowError, Sway, Tie,
+    BackWall, Block, Demand, Hinge, ImpactLaw, ImpactModel, Link, MechanismChain, PlacedLoad, Row,
+    RowError, Sides, Sway, Tie,
 };
-
-/// Column that rotates about its right toe; lengths in half diagonals, unit density and depth.
-#[derive(Clone, Copy, Debug)]
-pub struct Tilting {
-    /// Sine and cosine of the slenderness, computed from the sides: the angle of a flat column would lose the height in rounding errors.
-    sin: f64,
-    cos: f64,
-    mass: f64,
-}
-
-impl Tilting {
-    /// Returns sine and cosine of `alpha - angle_rad`.
-    fn sin_cos_from(&self, angle_rad: f64) -> (f64, f64) {
-        let (sin, cos) = angle_rad.sin_cos();
-        (
-            self.sin * cos - self.cos * sin,
-            self.cos * cos + self.sin * sin,
-        )
-    }
-
-    /// Returns the crossings of the thrust line with sections normal to the axis, from the base up: the distance to the right over the width, for the
-    /// resultant of the load on the part above. `None` if the section would be in tension.
-    ///
-    /// There is no part above the top section. Its value is the limit for a thin slice, which includes the inertia of the slice's rotation.
-    fn eccentricity_ratios(&self, load: &Load) -> Vec<Option<f64>> {
-        let (width, height) = (2.0 * self.sin, 2.0 * self.cos);
-        let crossing = |part: f64| {
-            let section = Vector2::new(0.0, part * height);
-            let above = height * (1.0 - part);
-            let centre = section + Vector2::new(0.0, 0.5 * above);
-            // Values per mass, which cancels.
-            let resultant = load.resultant(&MassMoments {
-                mass: 1.0,
-                first: centre,
-                polar: (width * width + above * above) / 12.0 + centre.norm_squared(),
-            });
-            let normal = -resultant.linear.y;
-            let eccentricity_ratio = -resultant.about(section) / (normal * width);
-            (normal > 0.0).then_some(eccentricity_ratio)
-        };
-        thrust_section_parts().map(crossing).collect()
-    }
-}
-
-impl Mechanism for Tilting {
-    /// Rotation of the column.
-    type Rotations = [f64; 1];
-    const BODIES: &'static [&'static str] = &[""];
-
-    fn moments(&self) -> Vec<MassMoments> {
-        let first = Vector2::new(0.0, self.cos) * self.mass;
-        // The half diagonal is the unit of length.
-        let polar = self.mass * (1.0 / 3.0 + self.cos * self.cos);
-        vec![MassMoments {
-            mass: self.mass,
-            first,
-            polar,
-        }]
-    }
-
-    fn coefficients(&self, q_rad: f64) -> Coefficients {
-        let (sin, cos) = self.sin_cos_from(q_rad);
-        Coefficients {
-            inertia: 4.0 / 3.0 * self.mass,
-            inertia_slope: 0.0,
-            s_x: self.mass * cos,
-            s_y: self.mass * sin,
-        }
-    }
-
-    /// Differences of sines and cosines are written as products, to avoid cancellation at small rotations.
-    fn displacement(&self, q_rad: f64) -> Vector2<f64> {
-        let chord = 2.0 * self.mass * (0.5 * q_rad).sin();
-        let (sin, cos) = self.sin_cos_from(0.5 * q_rad);
-        Vector2::new(chord * cos, chord * sin)
-    }
-
-    fn rotations(&self, q_rad: f64) -> [f64; 1] {
-        [-q_rad]
-    }
-
-    fn rotation_rates(&self, _: f64) -> [f64; 1] {
-        [-1.0]
-    }
-
-    /// Positions are relative to the middle of the base, the origin.
-    fn place(&self, q_rad: f64, poses: &mut Vec<Pose>, hinges: &mut Vec<Vector2<f64>>) {
-        let toe = Vector2::new(self.sin, 0.0);
-        poses.clear();
-        hinges.clear();
-        poses.push(Pose::about(toe, toe, -q_rad));
-        hinges.push(toe);
-    }
-}
 
 /// Range of sizes in metres and of densities in kg/m3; their products stay in the range of an `f64`.
 const MAGNITUDE: RangeInclusive<f64> = 1e-9..=1e12;
@@ -160,9 +70,27 @@ pub struct Column {
     /// Ties of the column.
     #[serde(skip)]
     pub ties: Vec<Tie>,
-    /// Gravity for which the ties were given, in m/s2.
+    /// Loads of the column.
     #[serde(skip)]
-    gravity_m_s2: f64,
+    pub loads: Vec<PlacedLoad>,
+    /// Gravity for which ties and loads were given, in m/s2.
+    #[serde(skip)]
+    pub(super) gravity_m_s2: f64,
+}
+
+/// Reason why a column cannot carry its loads.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum ColumnLoadError {
+    /// A number of the load with this index is not allowed.
+    #[error("load {number}: {1}", number = .0 + 1)]
+    Load(usize, ArgumentError),
+    /// The wall behind the column is too low for its loads.
+    #[error("the wall behind it is too low: {0}")]
+    Wall(ArgumentError),
+    /// The column overturns to this side under its own weight and its loads.
+    #[error("it overturns to the {side} under its own weight and its loads, without ground motion", side = .0.name())]
+    Overturns(Sway),
 }
 
 impl Column {
@@ -181,6 +109,7 @@ impl Column {
             pedestal: false,
             back: None,
             ties: Vec::new(),
+            loads: Vec::new(),
             gravity_m_s2: GRAVITY_M_S2,
         })
     }
@@ -255,18 +184,137 @@ impl Column {
         let allowed = format_args!("from 0 to the height of the column, {:?} m", self.height_m);
         let fits = (0.0..=self.height_m).contains(&height_m);
         allow(fits, "height_m", height_m, allowed)?;
-        let centre_m = 0.5 * self.height_m;
-        let allowed = format_args!(
-            "0 for no wall, or at least {centre_m:?} m, the height of the centre of gravity: a push turns the column over the top of a lower wall, which \
-             the model does not compute"
-        );
-        let fits = height_m == 0.0 || height_m >= centre_m;
-        allow(fits, "height_m", height_m, allowed)?;
         if let Some(rate_ratio) = back.rate_ratio {
             within("restitution", rate_ratio, 0.0..=1.0)?;
         }
         self.back = Some(back);
+        self.check_wall_height()?;
         Ok(self)
+    }
+
+    /// Checks that no push turns the column over the top of the wall behind it.
+    fn check_wall_height(&self) -> Result<(), ArgumentError> {
+        let Some((_, height_m)) = self.wall() else {
+            return Ok(());
+        };
+        let centre_m = self.body().centre_m.y;
+        let allowed = format_args!(
+            "0 for no wall, or at least {centre_m:?} m, the height of the centre of gravity: a push turns the column over the top of a lower wall, which \
+             the model does not compute"
+        );
+        allow(height_m >= centre_m, "height_m", height_m, allowed).map(|_| ())
+    }
+
+    /// Returns this column with these loads, under this gravity. The column carries its loads as a rigid block, or as drums: each load is on the drum
+    /// at its height, on the lower one at a joint.
+    ///
+    /// # Errors
+    /// If a number is not allowed, the wall behind the column is too low, or the column, one prism, overturns at rest.
+    pub fn with_loads(
+        self,
+        loads: Vec<PlacedLoad>,
+        gravity_m_s2: f64,
+    ) -> Result<Self, ColumnLoadError> {
+        for (index, load) in loads.iter().enumerate() {
+            let fits = load.check_on_column(self.height_m);
+            fits.map_err(|error| ColumnLoadError::Load(index, error))?;
+        }
+        let loaded = Self {
+            loads,
+            gravity_m_s2,
+            ..self
+        };
+        let fits = loaded.check_wall_height();
+        fits.map_err(ColumnLoadError::Wall)?;
+        match loaded.overturns_to().filter(|_| loaded.is_one_prism()) {
+            Some(sway) => Err(ColumnLoadError::Overturns(sway)),
+            None => Ok(loaded),
+        }
+    }
+
+    /// Returns the side to which the column, as one block, overturns under its own weight and its loads; `None` if it stands.
+    fn overturns_to(&self) -> Option<Sway> {
+        let wall = self.wall().map(|(wall, _)| wall.side);
+        let mut sides = Sway::ALL.iter().copied();
+        sides.find(|sway| match wall == Some(*sway) {
+            true => !self.leans_safely(),
+            false => Tilting::new(self, *sway).incipient_g() <= 0.0,
+        })
+    }
+
+    /// Returns whether its weight and its loads do not turn the column over the top of the wall behind it: in a virtual rotation about that point,
+    /// towards the wall, they do no positive work.
+    fn leans_safely(&self) -> bool {
+        let Some((wall, height_m)) = self.wall() else {
+            return true;
+        };
+        let top_m = Vector2::new(0.5 * self.width_m * wall.side.sign(), height_m);
+        let body = self.body();
+        let weight = (
+            body.centre_m,
+            Vector2::new(0.0, -body.mass_kg * self.gravity_m_s2),
+        );
+        let forces = self.constant_forces().chain([weight]);
+        let moments = forces.map(|(at_m, force_n)| (at_m - top_m).perp(&force_n));
+        // Clockwise moments turn it to the right.
+        wall.side.sign() * moments.sum::<f64>() >= 0.0
+    }
+
+    /// Returns its loads, each with its point, in metres from the middle of the base.
+    pub fn placed_loads(&self) -> impl Iterator<Item = (&PlacedLoad, Vector2<f64>)> {
+        self.loads.iter().map(|load| {
+            let height_m = load.height_m.unwrap_or(self.height_m);
+            (load, Vector2::new(load.x_m, height_m))
+        })
+    }
+
+    /// Returns its loads for drawings, each with the drum that carries it.
+    pub fn load_outlines(&self) -> LoadOutlines {
+        let loads = self.placed_loads();
+        LoadOutlines {
+            fill_m: Vec::new(),
+            loads_m: loads
+                .map(|(_, at_m)| (self.drum_at(at_m.y), at_m))
+                .collect(),
+        }
+    }
+
+    /// Returns the index of the drum at a height; at a joint, of the lower one.
+    fn drum_at(&self, height_m: f64) -> usize {
+        let heights_m = self.drum_heights_m();
+        let tops_m = heights_m.iter().scan(0.0, |top_m, height_m| {
+            *top_m += height_m;
+            Some(*top_m)
+        });
+        let above = |top_m: &f64| *top_m >= height_m * (1.0 - 1e-9);
+        let drum = tops_m.into_iter().position(|top_m| above(&top_m));
+        drum.unwrap_or(heights_m.len() - 1)
+    }
+
+    /// Returns the constant forces of its loads in N, each after its point in metres.
+    pub fn constant_forces(&self) -> impl Iterator<Item = (Vector2<f64>, Vector2<f64>)> {
+        let loads = self.placed_loads();
+        let forces = loads.map(|(load, at_m)| (at_m, load.constant_force_n(self.gravity_m_s2)));
+        forces.filter(|(_, force_n)| *force_n != Vector2::zeros())
+    }
+
+    /// Returns the mass of a prism of its base, its height and its depth, in kg.
+    pub(super) fn prism_kg(&self) -> f64 {
+        self.density_kg_m3 * self.depth_m * self.height_m * self.width_m
+    }
+
+    /// Returns the column and its moving loads as one rigid body; its drums and its taper are neglected.
+    pub fn body(&self) -> Block {
+        let mass_kg = self.prism_kg();
+        let diagonal_m = self.height_m.hypot(self.width_m);
+        let own = Block {
+            mass_kg,
+            centre_m: Vector2::new(0.0, 0.5 * self.height_m),
+            inertia_kg_m2: mass_kg * diagonal_m * diagonal_m / 12.0,
+        };
+        let loads = self.placed_loads();
+        let loads = loads.filter_map(|(load, at_m)| load.moving_body(at_m));
+        loads.fold(own, |body, load| body.with(&load))
     }
 
     /// Returns the wall behind the column with its height in metres; `None` without a wall, or if its height is zero.
@@ -288,12 +336,13 @@ impl Column {
         let half_m = self.half_diagonal_m();
         let outer = Vector2::new(0.5 * self.width_m / half_m, 0.0);
         let contact = Vector2::new(0.0, height_m / half_m) - outer;
-        let moments = unit_moments(0.5 * self.height_m / half_m);
-        let default = || three_impacts(&moments, [outer, -outer, contact]);
+        let tilting = Tilting::new(self, wall.side.opposite());
+        let moments = tilting.body();
+        let default = || three_impacts(moments, [outer, -outer, contact]);
         if let Some(rate_ratio) = wall.rate_ratio.or_else(default) {
             return Ok(Some(rate_ratio));
         }
-        let lowest_m = percussion_height(&moments, -outer) * half_m;
+        let lowest_m = percussion_height(moments, -outer) * half_m;
         let (argument, value, allowed) = match lowest_m < self.height_m {
             true => (
                 "height_m",
@@ -331,7 +380,17 @@ impl Column {
             self.depth_m,
             self.density_kg_m3,
         )?;
+        let loads = self.placed_loads();
+        let loads = loads.filter_map(|(load, at_m)| Some((at_m, load.moving_body(at_m)?)));
+        let row = loads.fold(row, |row, (at_m, load)| {
+            row.with_body(self.drum_at(at_m.y), &load)
+        });
         let row = row.with_supports_that_extend([!self.pedestal, false]);
+        if self.ties.is_empty() {
+            let forces = self.constant_forces();
+            let forces = forces.map(|(at_m, force_n)| (self.drum_at(at_m.y), at_m, force_n));
+            return Ok(row.with_constant_forces(forces, self.gravity_m_s2));
+        }
         let tied = row.with_ties(self.ties.clone(), self.gravity_m_s2);
         Ok(tied.expect("the ties were checked with the same blocks"))
     }
@@ -388,10 +447,9 @@ impl Column {
 pub struct RockingColumn {
     half_diagonal_m: f64,
     mass_unit_kg: f64,
-    incipient_g: f64,
-    first: Link<Tilting>,
-    /// Link after one or more impacts; `None` if the first impact stops the column.
-    next: Option<Link<Tilting>>,
+    first: Sides<Link<Tilting>>,
+    /// Links after one or more impacts; `None` if the impact stops the column.
+    next: Sides<Option<Link<Tilting>>>,
     /// Side of the wall behind it, towards which it cannot sway.
     wall: Option<Sway>,
 }
@@ -411,75 +469,54 @@ impl RockingColumn {
         allow(drums <= 1, "drums", drums as f64, one)?;
         let width = "the width in Housner's model: a taper needs free hinges";
         allow(top_m == column.width_m, "top_width_m", top_m, width)?;
-        let diagonal_m = column.height_m.hypot(column.width_m);
-        let half_diagonal_m = 0.5 * diagonal_m;
-        let (sin, cos) = (column.width_m / diagonal_m, column.height_m / diagonal_m);
-        let tilting = Tilting {
-            sin,
-            cos,
-            mass: 4.0 * sin * cos,
-        };
+        let half_diagonal_m = column.half_diagonal_m();
+        let tilting = Sides::of(|sway| Tilting::new(column, sway));
         let slenderness_rad = column.slenderness_rad();
-        let link = |rate_ratio, restitution| {
-            Link::new(tilting, slenderness_rad, FRAC_PI_2, rate_ratio, restitution)
+        let link = |sway: Sway, rate_ratio, restitution| {
+            let tilting = tilting.to(sway).clone();
+            let critical_rad = tilting.critical_rad(slenderness_rad);
+            Link::new(tilting, critical_rad, FRAC_PI_2, rate_ratio, restitution)
         };
-        let (rate_ratio, restitution) = match law.model {
-            ImpactModel::Prescribed { restitution } => (restitution.sqrt(), restitution),
+        let wall = column.wall().map(|(wall, _)| wall.side);
+        let of_wall = match law.model {
+            ImpactModel::Prescribed { .. } => None,
             ImpactModel::MaxRestitution | ImpactModel::SameSections | ImpactModel::Mirrored => {
-                let rate_ratio = column.wall_rate_ratio()?;
-                let rate_ratio = rate_ratio.unwrap_or_else(|| base_rate_ratio(sin, cos));
-                (rate_ratio, rate_ratio * rate_ratio)
+                column.wall_rate_ratio()?
             }
         };
-        let (rate_ratio, restitution) = law.measured(rate_ratio, restitution);
+        // The impact that starts a sway to this side.
+        let next = |sway: Sway| {
+            let (before, after) = match wall {
+                Some(_) => (sway, sway),
+                None => (sway.opposite(), sway),
+            };
+            let [before, after] = [before, after].map(|sway| tilting.to(sway));
+            let inertia_ratio = after.unit_inertia() / before.unit_inertia();
+            let (rate_ratio, restitution) = match law.model {
+                ImpactModel::Prescribed { restitution } => {
+                    ((restitution / inertia_ratio).sqrt(), restitution)
+                }
+                _ => {
+                    let rate_ratio = of_wall.unwrap_or_else(|| after.base_rate_ratio());
+                    (rate_ratio, rate_ratio * rate_ratio * inertia_ratio)
+                }
+            };
+            let (rate_ratio, restitution) = law.measured(rate_ratio, restitution);
+            (rate_ratio > 0.0).then(|| link(sway, rate_ratio, restitution))
+        };
         Ok(Self {
             half_diagonal_m,
             mass_unit_kg: column.density_kg_m3 * column.depth_m * half_diagonal_m * half_diagonal_m,
-            incipient_g: sin / cos,
-            first: link(1.0, 1.0),
-            next: (rate_ratio > 0.0).then(|| link(rate_ratio, restitution)),
-            wall: column.wall().map(|(wall, _)| wall.side),
+            first: Sides::of(|sway| link(sway, 1.0, 1.0)),
+            next: Sides::of(next),
+            wall,
         })
     }
-
-    /// Returns the force per unit mass that the base carries at rest: the wall behind the column carries a push towards it.
-    fn on_base(&self, body_force_g: Vector2<f64>) -> Vector2<f64> {
-        let is_held = |wall: Sway| wall.sign() * body_force_g.x > 0.0;
-        match self.wall.is_some_and(is_held) {
-            true => Vector2::new(0.0, body_force_g.y),
-            false => body_force_g,
-        }
-    }
-}
-
-/// Returns the rate after an impact for a unit rate before it, from sine and cosine of the slenderness. The closing motion, a rotation about one toe,
-/// is projected in the kinetic-energy metric onto the rotation about the other toe. This conserves angular momentum about the new toe, and gives
-/// `1 - 3/2 sin^2(alpha)`.
-///
-/// The rate is not positive from `sin^2(alpha) = 2/3` on, a width of `sqrt(2)` heights: the old toe of such a flat column would move into the ground.
-/// The column stops instead.
-fn base_rate_ratio(sin: f64, cos: f64) -> f64 {
-    let toe = Vector2::new(sin, 0.0);
-    rate_passed(&unit_moments(cos), toe, Vector2::new(-sin, 0.0))
-}
-
-/// Returns the mass moments of a block of unit mass and half diagonal about the middle of its base, from the cosine of the slenderness.
-fn unit_moments(cos: f64) -> MassMoments {
-    MassMoments {
-        mass: 1.0,
-        first: Vector2::new(0.0, cos),
-        polar: 1.0 / 3.0 + cos * cos,
-    }
-}
-
-/// Returns the sections at which the thrust line is reported, as fractions of the height.
-fn thrust_section_parts() -> impl Iterator<Item = f64> {
-    (0..=20_u8).map(|section| f64::from(section) / 20.0)
 }
 
 /// Returns the demand at the base for a ground reaction per unit weight and its moment about the middle of the base.
-fn base_demand(mechanism: &Tilting, reaction: Vector2<f64>, moment: f64) -> Demand {
-    let width = 2.0 * mechanism.sin;
+fn base_demand(mechanism: &Tilting, (reaction, moment): (Vector2<f64>, f64)) -> Demand {
+    let width = 2.0 * mechanism.toe().x;
     let base = SectionResultant {
         normal: reaction.y,
         tangential: reaction.x,
@@ -501,27 +538,24 @@ impl MechanismChain for RockingColumn {
         self.mass_unit_kg
     }
 
-    fn incipient_towards_g(&self, _: Sway) -> f64 {
-        self.incipient_g
+    fn incipient_towards_g(&self, sway: Sway) -> f64 {
+        self.first.to(sway).mechanism.incipient_g()
     }
 
     const THRUSTS: bool = false;
 
     /// The only section of the column is the base, where the ground's reaction acts at the toe. The excess is zero unless the reaction is tensile.
     fn demand(&self, mechanism: &Tilting, motion: &MechanismState) -> Demand {
-        // Acceleration of the centre of gravity, on its circle about the toe.
-        let (sin, cos) = mechanism.sin_cos_from(motion.q_rad);
-        let along = Vector2::new(cos, sin) * motion.acceleration;
-        let inward = Vector2::new(sin, -cos) * (motion.rate * motion.rate);
-        let reaction = along + inward - motion.body_force_g;
-        base_demand(mechanism, reaction, reaction.y * mechanism.sin)
+        let reaction = mechanism.reaction(motion);
+        base_demand(mechanism, (reaction, reaction.y * mechanism.toe().x))
     }
 
     fn demand_at_rest(&self, body_force_g: Vector2<f64>) -> Demand {
-        let body_force_g = self.on_base(body_force_g);
-        let mechanism = &self.first.mechanism;
-        let moment = body_force_g.x * mechanism.cos;
-        base_demand(mechanism, -body_force_g, moment)
+        let mechanism = &self.first.right.mechanism;
+        base_demand(
+            mechanism,
+            mechanism.reaction_at_rest(body_force_g, self.wall),
+        )
     }
 
     fn eccentricity_ratios(
@@ -529,11 +563,7 @@ impl MechanismChain for RockingColumn {
         mechanism: &Tilting,
         motion: &MechanismState,
     ) -> Vec<Option<f64>> {
-        let toe = Vector2::new(mechanism.sin, 0.0);
-        // In the frame of the block, which has turned clockwise.
-        let body_force_g = Rotation2::new(motion.q_rad) * motion.body_force_g;
-        let turning = (-motion.acceleration, motion.rate * motion.rate);
-        mechanism.eccentricity_ratios(&Load::of_body(toe, body_force_g, turning))
+        mechanism.eccentricity_ratios(motion)
     }
 
     fn mirrored(&self, eccentricity_ratios: Vec<Option<f64>>) -> Vec<Option<f64>> {
@@ -542,8 +572,8 @@ impl MechanismChain for RockingColumn {
     }
 
     fn eccentricity_ratios_at_rest(&self, body_force_g: Vector2<f64>) -> Vec<Option<f64>> {
-        let load = Load::uniform(self.on_base(body_force_g));
-        self.first.mechanism.eccentricity_ratios(&load)
+        let mechanism = &self.first.right.mechanism;
+        mechanism.eccentricity_ratios_at_rest(body_force_g, self.wall)
     }
 
     fn sway_after(&self, sway: Sway, impacts: usize) -> Sway {
@@ -554,8 +584,8 @@ impl MechanismChain for RockingColumn {
     fn link_from(&self, first: Sway, impacts: usize) -> Option<&Link<Tilting>> {
         match impacts {
             _ if self.wall == Some(first) => None,
-            0 => Some(&self.first),
-            _ => self.next.as_ref(),
+            0 => Some(self.first.to(first)),
+            _ => self.next.to(self.sway_after(first, impacts)).as_ref(),
         }
     }
 
@@ -574,6 +604,7 @@ impl MechanismChain for RockingColumn {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mechanics::{Coefficients, Mechanism};
     use proptest::prelude::*;
 
     fn column(slenderness_rad: f64, model: ImpactModel) -> RockingColumn {
@@ -596,7 +627,7 @@ mod tests {
         /// whose errors are `h^2` and `1e-16 / h`.
         #[test]
         fn coefficients_are_derivatives(slenderness_rad in 0.01_f64..1.5, q in 0.0_f64..FRAC_PI_2) {
-            let tilting = column(slenderness_rad, ImpactModel::Mirrored).first.mechanism;
+            let tilting = column(slenderness_rad, ImpactModel::Mirrored).first.right.mechanism;
             let mass = 2.0 * (2.0 * slenderness_rad).sin();
             let gravity_center = |q: f64| {
                 let angle = slenderness_rad - q;
@@ -616,11 +647,11 @@ mod tests {
         let column = Column::new(4.0, 0.8).unwrap().with_depth_m(0.5).unwrap();
         let column = column.with_density_kg_m3(2200.0).unwrap();
         let column = RockingColumn::new(&column, ImpactModel::MaxRestitution).unwrap();
-        let kg = column.mass_unit_kg() * column.first.mechanism.mass;
+        let kg = column.mass_unit_kg() * column.first.right.mechanism.moments()[0].mass;
         assert!((kg - 4.0 * 0.8 * 0.5 * 2200.0).abs() < 1e-9);
         assert!((column.length_m() - 2.0 * 1.04_f64.sqrt()).abs() < 1e-15);
         // Moment of inertia about the toe, m (H^2 + W^2) / 3.
-        let inertia = column.first.mechanism.coefficients(0.0).inertia;
+        let inertia = column.first.right.mechanism.coefficients(0.0).inertia;
         let kg_m2 = inertia * column.mass_unit_kg() * column.length_m() * column.length_m();
         assert!((kg_m2 / (kg * (16.0 + 0.64) / 3.0) - 1.0).abs() < 1e-14);
     }
@@ -639,7 +670,7 @@ mod tests {
                 acceleration: -0.75 * sin,
                 body_force_g: Vector2::new(0.0, -1.0),
             };
-            let demand = column.demand(&column.first.mechanism, &motion);
+            let demand = column.demand(&column.first.right.mechanism, &motion);
             let friction = 0.75 * (sin * cos).abs() / (1.0 - 0.75 * sin * sin);
             assert!((demand.friction - friction).abs() < 1e-15 && demand.excess_ratio == 0.0);
         }
@@ -654,7 +685,12 @@ mod tests {
             acceleration: 0.0,
             body_force_g: Vector2::new(0.0, -1.0),
         };
-        assert!(column.demand(&column.first.mechanism, &fast).excess_ratio > 0.0);
+        assert!(
+            column
+                .demand(&column.first.right.mechanism, &fast)
+                .excess_ratio
+                > 0.0
+        );
     }
 
     proptest! {
@@ -669,7 +705,7 @@ mod tests {
             lift_g in -0.3_f64..0.3,
         ) {
             let column = column(slenderness_rad, ImpactModel::MaxRestitution);
-            let mechanism = column.first.mechanism;
+            let mechanism = column.first.right.mechanism.clone();
             let (half, height) = (slenderness_rad.sin(), 2.0 * slenderness_rad.cos());
             let q_rad = part * slenderness_rad;
             let body_force_g = Vector2::new(push_g, -1.0 + lift_g);

@@ -65,7 +65,7 @@ pub fn equivalent_towards<C: MechanismChain>(
 
 /// Returns `n^2` for unit gravity and length.
 fn growth_squared<M: Mechanism>(link: &Link<M>, q_rad: f64) -> f64 {
-    let rise = |q| link.mechanism.coefficients(q).s_y;
+    let rise = |q| link.mechanism.coefficients(q).potential_slope();
     // Five-point central difference. The step is a thousandth of the way to q_c: its relative error is of the order of the fourth power of that, as
     // is the rounding error.
     let step = 1e-3 * link.critical_rad;
@@ -73,7 +73,7 @@ fn growth_squared<M: Mechanism>(link: &Link<M>, q_rad: f64) -> f64 {
     let far = rise(q_rad + 2.0 * step) - rise(q_rad - 2.0 * step);
     let stiffness = (8.0 * near - far) / (12.0 * step);
     let here = link.mechanism.coefficients(q_rad);
-    (0.5 * here.s_y * here.inertia_slope / here.inertia - stiffness) / here.inertia
+    (0.5 * here.potential_slope() * here.inertia_slope / here.inertia - stiffness) / here.inertia
 }
 
 #[cfg(test)]

@@ -18,6 +18,7 @@ pub mod friction;
 pub(crate) mod geometry;
 pub(crate) mod joints;
 pub(crate) mod lanes;
+mod load;
 pub mod masonry;
 pub(crate) mod parts;
 pub(crate) mod row_state;
@@ -27,6 +28,7 @@ pub(crate) mod slip;
 pub mod stability;
 pub(crate) mod sway;
 pub(crate) mod tie;
+mod tilting;
 pub(crate) mod virtual_work;
 
 pub use self::arch::{
@@ -41,7 +43,7 @@ pub use self::capacity::{
 pub use self::chain::{
     Coefficients, Demand, Hinge, Link, Mechanism, MechanismChain, MechanismState, critical_rad,
 };
-pub use self::column::{Column, RockingColumn};
+pub use self::column::{Column, ColumnLoadError, RockingColumn};
 pub(crate) use self::contact::Corners;
 pub use self::elastic_joint::{ElasticStructure, Equilibrium};
 pub use self::equivalent::{Equivalent, equivalent_towards};
@@ -56,7 +58,8 @@ pub use self::geometry::profile::Profile;
 pub use self::geometry::ring::{Edge, MassMoments, Ring};
 pub(crate) use self::joints::Placement;
 pub(crate) use self::lanes::{Lanes, Real};
-pub use self::masonry::{Masonry, PlacedLoad, Shape};
+pub use self::load::{LARGEST_THRUST_N, PlacedLoad};
+pub use self::masonry::{Masonry, Shape};
 pub use self::parts::{Outline, Parts, Section};
 pub(crate) use self::row_state::RowState;
 pub use self::settling::{Follower, Movements, SettlingError};
@@ -65,5 +68,5 @@ pub use self::stability::{RowOnset, StabilityError};
 pub use self::sway::Sway;
 pub use self::tie::{Anchor, Tie, TieError, TieLine, TieMemory};
 pub use self::virtual_work::{
-    MovingBody, MovingTie, Participation, load_multiplier, per_displacement_of_centre,
+    MovingBody, MovingForce, MovingTie, Participation, load_multiplier, per_displacement_of_centre,
 };

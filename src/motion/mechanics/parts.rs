@@ -131,10 +131,11 @@ impl Parts for Arch {
 
 impl Parts for Column {
     fn parts(&self) -> Vec<Part> {
+        let body = self.body();
         vec![Part {
             place: 0.5,
-            mass_kg: self.density_kg_m3 * self.depth_m * self.height_m * self.width_m,
-            centre_m: Vector2::new(0.0, 0.5 * self.height_m),
+            mass_kg: body.mass_kg,
+            centre_m: body.centre_m,
         }]
     }
 
@@ -184,7 +185,7 @@ impl Parts for Column {
 impl Column {
     /// Returns its blocks; `None` without ties.
     fn tied_row(&self) -> Option<Row> {
-        self.row().ok().filter(|row| !row.ties.is_empty())
+        self.row().ok().filter(|row| !row.bars().is_empty())
     }
 }
 

@@ -2,6 +2,9 @@
 //!
 //! The force of a tie is its stiffness times its stretch beyond the unstressed length, up to the yield force. Plastic elongation reduces the stretch.
 //! Beyond its strain limit the tie breaks permanently.
+//!
+//! A constant force is a tie of zero stiffness whose second end is infinitely far away: its force and its direction do not change, and its stretch is
+//! the displacement of its first end against the force. All computations with ties then hold for constant forces as well.
 
 use nalgebra::Vector2;
 use thiserror::Error;
@@ -33,7 +36,7 @@ impl Anchor {
 pub struct Tie {
     /// Both ends.
     pub ends: [Anchor; 2],
-    /// Stiffness: force in N per metre of stretch.
+    /// Stiffness: force in N per metre of stretch; zero for a constant force.
     pub stiffness_n_m: f64,
     /// Force in the undeformed structure, in N.
     pub prestress_n: f64,
@@ -67,6 +70,29 @@ pub enum TieError {
 const NOT_NEGATIVE: &str = "a number that is not negative: a tie does not push";
 
 impl Tie {
+    /// Returns a constant force on a block, in N, at a point in metres.
+    pub(super) fn constant_force(block: usize, at_m: Vector2<f64>, force_n: Vector2<f64>) -> Self {
+        let force = force_n.norm();
+        let ends = [(Some(block), at_m), (None, at_m + force_n / force)];
+        Self {
+            ends: ends.map(|(block, at_m)| Anchor { block, at_m }),
+            stiffness_n_m: 0.0,
+            prestress_n: force,
+            yield_force_n: force,
+            breaks_at_strain: f64::INFINITY,
+        }
+    }
+
+    /// Returns whether it is a constant force.
+    pub const fn is_constant_force(&self) -> bool {
+        self.stiffness_n_m == 0.0
+    }
+
+    /// Returns the constant force in N, or the force of the tie in the undeformed structure, on the block at its first end.
+    pub fn force_at_rest_n(&self) -> Vector2<f64> {
+        self.along() * self.prestress_n
+    }
+
     /// Checks the numbers of the tie, and that it connects two of `blocks` blocks, or a block and a support. `size_m` is the size of the structure.
     ///
     /// # Errors
@@ -171,6 +197,14 @@ impl Tie {
     pub fn span<R: Real>(&self, moved_m: [[R; 2]; 2]) -> TieSpan<R> {
         let apart = self.ends[1].at_m - self.ends[0].at_m;
         let length_m = self.length_m();
+        if self.is_constant_force() {
+            let along = self.along();
+            let by = moved_m[0];
+            return TieSpan {
+                stretch_m: -(by[0] * R::of(along.x) + by[1] * R::of(along.y)),
+                along: both!(i: R::of(along[i])),
+            };
+        }
         let by = both!(i: moved_m[1][i] - moved_m[0][i]);
         let now = both!(i: by[i] + R::of(apart[i]));
         let length = (now[0] * now[0] + now[1] * now[1]).sqrt();
@@ -183,8 +217,19 @@ impl Tie {
         }
     }
 
+    /// Returns the force in N for a stretch beyond the unstressed length, in m, if the tie could push and did not yield.
+    pub(crate) fn linear_pull_n<R: Real>(&self, stretch_m: R) -> R {
+        if self.is_constant_force() {
+            return R::of(self.prestress_n);
+        }
+        stretch_m * self.stiffness_n_m
+    }
+
     /// Returns the force in N for a plastic elongation and a stretch beyond the unstressed length, both in m. The tie does not break here.
     pub(crate) fn pull_n<R: Real>(&self, yielded_m: f64, stretch_m: R) -> R {
+        if self.is_constant_force() {
+            return R::of(self.prestress_n);
+        }
         let elastic_n = (stretch_m - R::of(yielded_m)) * self.stiffness_n_m;
         elastic_n.max(R::of(0.0)).min(R::of(self.yield_force_n))
     }
@@ -356,6 +401,12 @@ impl<R: Real> TieMemory<R> {
     /// trapezoidal rule, except in steps in which the tie begins to yield or becomes slack.
     #[inline(always)]
     pub fn stretch(&mut self, tie: &Tie, stretch_m: R) {
+        if tie.is_constant_force() {
+            self.stretch_m = stretch_m;
+            self.force_n = R::of(tie.prestress_n);
+            self.peak_n = self.force_n;
+            return;
+        }
         let zero = R::of(0.0);
         let pulls_n = ((stretch_m - self.yielded_m) * tie.stiffness_n_m).max(zero);
         let force_n = pulls_n.min(R::of(tie.yield_force_n));
@@ -381,12 +432,19 @@ impl<R: Real> TieMemory<R> {
 
     /// Returns the state of a tie in the undeformed structure.
     pub fn undeformed(tie: &Tie) -> Self {
-        Self::stretched(tie, 0.0, R::of(tie.prestress_n / tie.stiffness_n_m))
+        let stretch_m = match tie.is_constant_force() {
+            true => 0.0,
+            false => tie.prestress_n / tie.stiffness_n_m,
+        };
+        Self::stretched(tie, 0.0, R::of(stretch_m))
     }
 
-    /// Returns the elastic energy, in J.
+    /// Returns the elastic energy, or the potential energy of a constant force above that in the undeformed structure, in J.
     #[inline(always)]
     pub fn energy_j(&self, tie: &Tie) -> R {
+        if tie.is_constant_force() {
+            return self.force_n * self.stretch_m;
+        }
         self.force_n * self.force_n * (0.5 / tie.stiffness_n_m)
     }
 }

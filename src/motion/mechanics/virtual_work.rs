@@ -27,15 +27,29 @@ pub struct MovingTie {
     pub lengthening: f64,
 }
 
+/// Constant force on a body of a mechanism.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MovingForce {
+    /// Point of the force in the undeformed structure, in metres.
+    pub at_m: Vector2<f64>,
+    /// Force over gravity, in kg: x in the direction of the sway, y upwards.
+    pub force_kg: Vector2<f64>,
+    /// Virtual displacement of its point: x in the direction of the sway, y upwards.
+    pub displacement: Vector2<f64>,
+}
+
 /// Returns the load multiplier `alpha0`: the horizontal acceleration, in multiples of gravity, at which the work of the inertia forces equals the
-/// work against weights and ties, `(sum P delta_y + sum F delta_l) / sum P delta_x`.
-pub fn load_multiplier(bodies: &[MovingBody], ties: &[MovingTie]) -> f64 {
+/// work against weights, ties and constant forces, `(sum P delta_y + sum T delta_l - sum F . delta_F) / sum P delta_x`.
+pub fn load_multiplier(bodies: &[MovingBody], ties: &[MovingTie], forces: &[MovingForce]) -> f64 {
     let work = |component: fn(&MovingBody) -> f64| -> f64 {
         let each = bodies.iter().map(|body| body.mass_kg * component(body));
         each.sum()
     };
     let held = ties.iter().map(|tie| tie.force_kg * tie.lengthening);
-    (work(|body| body.displacement.y) + held.sum::<f64>()) / work(|body| body.displacement.x)
+    let pushing = forces.iter();
+    let pushing = pushing.map(|force| force.force_kg.dot(&force.displacement));
+    let held = held.sum::<f64>() - pushing.sum::<f64>();
+    (work(|body| body.displacement.y) + held) / work(|body| body.displacement.x)
 }
 
 /// Participation of masses in a motion with given horizontal virtual displacements.

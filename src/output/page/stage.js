@@ -173,8 +173,17 @@ function createStage(canvas, motion) {
 
     // The loads on their blocks.
     pen.textAlign = "center";
-    for (const [body, x, y, over, text] of layout.loads) {
+    for (const [body, x, y, over, text, sideways] of layout.loads) {
       const [px, py] = onScreen(point([body, x, y]));
+      if (sideways !== 0) {
+        const back = (by) => px - sideways * by;
+        trace({ stroke: "--mark", width: 2 }, [[back(30), py], [back(2), py]], [[back(8), py - 4], [back(1), py], [back(8), py + 4]]);
+        pen.fillStyle = css("--mark");
+        pen.textAlign = sideways > 0 ? "right" : "left";
+        pen.fillText(text, back(34), py + 4);
+        pen.textAlign = "center";
+        continue;
+      }
       const half = 0.5 * scale * over;
       const barbs = [[px - 4, py - 8], [px, py - 1], [px + 4, py - 8]];
       trace({ stroke: "--mark", width: 2 }, [[px, py - 22], [px, py - 2]], barbs, [[px - half, py - 22], [px + half, py - 22]]);

@@ -5,11 +5,13 @@ mod words;
 
 pub(super) use dimensions::bounds_m;
 pub use dimensions::{Dimension, DimensionSide, metres};
+pub use words::{forces_in_words, load_in_words};
 
 use std::f64::consts::FRAC_PI_2;
 
 use thiserror::Error;
 
+use super::load::loaded_column;
 use super::masonry::{self, Additions};
 use super::prelude::*;
 use super::span::Circular;
@@ -73,7 +75,12 @@ impl Structure {
         let ties = beside.ties.clone();
         let structure = match read {
             StructureTable::Arch(arch) => Self::Arch(arch),
-            StructureTable::Column(column) if beside.is_ties_at_most() => {
+            StructureTable::Column(column) if beside.fits_column() => {
+                let has_joints = free_hinges || !ties.is_empty();
+                let by = (has_joints, gravity_m_s2);
+                let column = loaded_column(table, &beside.loads, column, by)?;
+                let is_pushed = !ties.is_empty() && column.constant_forces().count() > 0;
+                table.refuse(is_pushed, "tie", NO_CONSTANT_FORCES)?;
                 let is_held = column.wall().is_some() && !ties.is_empty();
                 table.refuse(is_held, "tie", NO_TIES)?;
                 Self::Column(tie::tied_column(table, &ties, column, gravity_m_s2)?)
@@ -94,7 +101,7 @@ impl Structure {
         match self {
             Self::Arch(_) => &[],
             Self::Column(column) => &column.ties,
-            Self::Masonry(masonry) => &masonry.row.ties,
+            Self::Masonry(masonry) => masonry.row.bars(),
         }
     }
 
@@ -146,11 +153,12 @@ impl Structure {
         }
     }
 
-    /// Returns fill and loads for drawings; `None` if the structure cannot carry any.
-    pub fn fill_and_loads(&self) -> Option<(&LoadOutlines, &[PlacedLoad])> {
+    /// Returns fill and loads for drawings.
+    pub fn fill_and_loads(&self) -> (LoadOutlines, &[PlacedLoad]) {
         match self {
-            Self::Arch(_) | Self::Column(_) => None,
-            Self::Masonry(masonry) => Some((&masonry.load_outlines, &masonry.loads)),
+            Self::Arch(_) => (LoadOutlines::default(), &[]),
+            Self::Column(column) => (column.load_outlines(), &column.loads),
+            Self::Masonry(masonry) => (masonry.load_outlines.clone(), &masonry.loads),
         }
     }
 
@@ -165,8 +173,12 @@ impl Structure {
     }
 
     /// Returns true for shapes that are symmetric for all dimensions.
-    pub const fn is_symmetric(&self) -> bool {
-        !matches!(self, Self::Masonry(_))
+    pub fn is_symmetric(&self) -> bool {
+        match self {
+            Self::Arch(_) => true,
+            Self::Column(column) => column.loads.is_empty(),
+            Self::Masonry(_) => false,
+        }
     }
 
     /// Returns the circular arch; `None` for other structures, and for an arch with piers, fill, loads or ties.
@@ -325,6 +337,9 @@ fn why_not(arch: &Arch, error: LimitError) -> String {
 /// Message about ties of a column with a wall behind it.
 const NO_TIES: &str = "cannot be combined with [column.back]: a column with ties moves as a row of blocks, without contact with a wall behind it; leave \
                        one out";
+/// Message about ties of a column with constant forces.
+const NO_CONSTANT_FORCES: &str = "cannot be combined with a [[load]] that has `thrust_n`, or `moves = false`: the model computes ties or constant \
+                                  forces; leave one out";
 /// Message about a wall behind a row of blocks.
 const NO_BLOCKS: &str = "applies to Housner's model only, a single prismatic block: rows of blocks (drums, a taper, free hinges, elastic joints) have no \
                          contact with a wall behind them; leave these out, or leave [column.back] out";

@@ -3,7 +3,7 @@
 use super::Structure;
 use super::dimensions::{circular, metres};
 use crate::mechanics::masonry::FillLevel;
-use crate::mechanics::{MeasuredAt, Shape, Tie};
+use crate::mechanics::{MeasuredAt, PlacedLoad, Shape, Tie};
 use crate::{Arch, Column, Masonry};
 
 impl Structure {
@@ -21,7 +21,7 @@ impl Structure {
                 parts.extend(arch.voussoirs.map(|count| format!("{count} voussoirs")));
                 parts.extend(measured(arch));
             }
-            Self::Column(column) => parts.push(of_column(column)),
+            Self::Column(column) => parts.extend(of_column(column)),
             Self::Masonry(masonry) => parts.extend(of_masonry(masonry)),
         }
         let [depth, density] = [depth_m, density_kg_m3].map(metres);
@@ -84,12 +84,47 @@ fn measured(arch: &Arch) -> Option<String> {
     Some(format!("span and rise {}", line.in_words()))
 }
 
-fn of_column(column: &Column) -> String {
-    let Some((wall, height_m)) = column.wall() else {
-        return "column".to_owned();
+fn of_column(column: &Column) -> Vec<String> {
+    let wall = column.wall().map(|(wall, height_m)| {
+        let (side, height) = (wall.side.name(), metres(height_m));
+        format!(" against a wall of {height} m on its {side}")
+    });
+    let mut parts = vec![format!("column{}", wall.unwrap_or_default())];
+    parts.extend(column.placed_loads().map(|(load, at_m)| {
+        let [x, y] = [at_m.x, at_m.y].map(metres);
+        let load = load_in_words(load);
+        format!("load at ({x}, {y}) m: {load}")
+    }));
+    parts
+}
+
+/// Returns the forces of a load, weight and thrust, each as its direction and in words: 0 downwards, 1 to the right, -1 to the left. A mass that does
+/// not move with its block is a constant weight.
+pub fn forces_in_words(load: &PlacedLoad) -> Vec<(f64, String)> {
+    let constant = if load.moves {
+        ""
+    } else {
+        " as constant weight"
     };
-    let (side, height) = (wall.side.name(), metres(height_m));
-    format!("column against a wall of {height} m on its {side}")
+    let weight = (0.0, format!("{} kg{constant}", metres(load.mass_kg)));
+    let side = if load.thrust_n > 0.0 { "right" } else { "left" };
+    let thrust_kn = metres(load.thrust_n.abs() / 1e3);
+    let thrust = format!("thrust of {thrust_kn} kN to the {side}");
+    let thrust = (load.thrust_n.signum(), thrust);
+    match (load.mass_kg > 0.0, load.thrust_n != 0.0) {
+        (true, true) => vec![weight, thrust],
+        (false, true) => vec![thrust],
+        (_, false) => vec![weight],
+    }
+}
+
+/// Returns a load in words.
+pub fn load_in_words(load: &PlacedLoad) -> String {
+    let forces = forces_in_words(load).into_iter();
+    forces
+        .map(|(_, words)| words)
+        .collect::<Vec<_>>()
+        .join(", ")
 }
 
 fn of_masonry(masonry: &Masonry) -> Vec<String> {

@@ -67,7 +67,7 @@ fn of_row(scenario: &Scenario, row: &Row) -> Result<Summary, StabilityError> {
     let starts_g = onsets.map(|onset| onset.as_ref().map(|onset| onset.acceleration_g));
     let mechanism = onsets.map(|onset| open_joints(row, onset.as_ref()));
     let mut summary = Summary::new(starts_g, mechanism, gravity_m_s2);
-    if !row.ties.is_empty() {
+    if !row.bars().is_empty() {
         summary.ties = Some(ties(row)?);
         summary.tie_places = scenario.structure.tie_places();
     }
@@ -168,7 +168,7 @@ fn of_moved_row(
         Some(capacity.map(|found| found.as_ref().err().map(ToString::to_string)));
     let hinges = follower.hinges.as_ref().map(|pins| pins.hinges.clone());
     summary.hinges = Some(hinges.unwrap_or_default());
-    if !row.ties.is_empty() {
+    if !row.bars().is_empty() {
         summary.tie_places = scenario.structure.tie_places();
         summary.ties = Some(Ties {
             forces_at_rest_n: stance.forces_n().collect(),

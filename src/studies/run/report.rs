@@ -25,7 +25,7 @@ use crate::output::page::{
 };
 use crate::output::scene::FARTHEST;
 use crate::output::{Envelope, Piece, Scene, filters, render};
-use crate::scenario::{DimensionSide, metres};
+use crate::scenario::DimensionSide;
 use crate::{
     GroundMotion, Hinge, Model, OpenHinge, Pose, Sample, Scenario, State, Summary as History, Sway,
 };
@@ -112,8 +112,8 @@ struct Size {
 struct Layout {
     pieces: Vec<DrawnPiece>,
     fill: Vec<DrawnPiece>,
-    /// Point, width in metres, and label.
-    loads: Vec<(i64, f64, f64, f64, String)>,
+    /// Point, width in metres, label, and direction: 0 downwards, 1 to the right, -1 to the left.
+    loads: Vec<(i64, f64, f64, f64, String, f64)>,
     hinges: Vec<(i64, f64, f64, u8)>,
     section_bodies: Vec<i64>,
     point_bodies: Vec<i64>,
@@ -299,9 +299,9 @@ impl Report {
     /// Returns the outlines and hinges of a layout.
     fn layout(&self, hinges: &[OpenHinge], points: Option<&ObservedPoints>, unit_m: f64) -> Layout {
         let drawn = |piece: Piece| drawn_piece(&piece, unit_m);
-        let loads = self.scene.loads(hinges).into_iter().map(|(at, load)| {
-            let ((body, x_m, y_m), text) = (point(at), format!("{} kg", metres(load.mass_kg)));
-            (body, x_m, y_m, load.width_m, text)
+        let loads = self.scene.load_arrows(hinges).into_iter().map(|arrow| {
+            let (body, x_m, y_m) = point(arrow.at);
+            (body, x_m, y_m, arrow.width_m, arrow.label, arrow.sideways)
         });
         let marks = self.scene.hinges(hinges).into_iter().zip(hinges);
         let marks = marks.map(|(at, open)| {

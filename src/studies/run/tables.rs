@@ -105,7 +105,7 @@ pub(super) fn poses(bodies: &[String]) -> Vec<Column<'static, Sample>> {
 pub(super) fn joints(model: &dyn Model) -> Vec<Column<'static, Sample>> {
     let (joints, ties) = model
         .row()
-        .map_or((0, 0), |row| (row.joints.len(), row.ties.len()));
+        .map_or((0, 0), |row| (row.joints.len(), row.bars().len()));
     let joints_if = |reported: bool| 0..if reported { joints } else { 0 };
     let gaps = (0..joints)
         .flat_map(|joint| ["intrados", "extrados"].map(|edge| format!("gap_{joint}_{edge}_m")));
@@ -171,7 +171,7 @@ pub(super) fn events(model: &dyn Model) -> Vec<Column<'static, Event>> {
         column("mechanism", |event: &Event| event.mechanism),
     ];
     let energy = column("energy_j", |event: &Event| event.energy_j);
-    if model.row().is_some_and(|row| !row.ties.is_empty()) {
+    if model.row().is_some_and(|row| !row.bars().is_empty()) {
         all.push(column("tie", |event: &Event| event.tie.map(|tie| tie + 1)));
     }
     match model.as_mechanisms() {

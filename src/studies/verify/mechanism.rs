@@ -9,8 +9,9 @@ use super::{CheckInput, VerifyError};
 use crate::mechanics::settling::Held;
 use crate::mechanics::stability::onset;
 use crate::mechanics::{
-    BodyPoint, Capacity, Control, Displaced, Edge, FrictionError, MovingBody, MovingTie,
-    Participation, Parts as _, RowOnset, friction, load_multiplier, per_displacement_of_centre,
+    BodyPoint, Capacity, Control, Displaced, Edge, FrictionError, MovingBody, MovingForce,
+    MovingTie, Participation, Parts as _, RowOnset, friction, load_multiplier,
+    per_displacement_of_centre,
 };
 use crate::scenario::{CheckedSides, Structure};
 use crate::studies::capacity::Bodies;
@@ -56,6 +57,23 @@ pub struct HeldTie {
     pub delta_l: f64,
 }
 
+/// A constant force on a mechanism: a thrust, or a weight without inertia.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ConstantForce {
+    /// Horizontal position of its point in the undeformed structure, in metres.
+    pub x_m: f64,
+    /// Vertical position of its point in the undeformed structure, in metres.
+    pub y_m: f64,
+    /// Horizontal force in the direction of the sway, in kN.
+    pub force_x_kn: f64,
+    /// Vertical force upwards, in kN.
+    pub force_y_kn: f64,
+    /// Virtual displacement of its point in the direction of the sway.
+    pub delta_x: f64,
+    /// Virtual displacement of its point upwards.
+    pub delta_y: f64,
+}
+
 /// The mechanism that starts to one side.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Mechanism {
@@ -65,7 +83,10 @@ pub struct Mechanism {
     pub bodies: Vec<Body>,
     /// Ties, with their elongation for that displacement.
     pub ties: Vec<HeldTie>,
-    /// Sum of the tie forces at rest times their elongation, in kN.
+    /// Constant forces, with the displacements of their points; absent without such forces.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub forces: Vec<ConstantForce>,
+    /// Sum of the tie forces at rest times their elongation, minus the work of the constant forces, in kN.
     pub sum_f_delta_l_kn: f64,
     /// Sum of the weights, in kN.
     pub sum_p_kn: f64,
@@ -117,6 +138,7 @@ struct VirtualMechanism {
     hinges: Vec<(Hinge, Vector2<f64>)>,
     bodies: Vec<MovingBody>,
     ties: Vec<MovingTie>,
+    forces: Vec<MovingForce>,
     body_of_block: Vec<Option<usize>>,
     curves: Result<CapacityCurves, String>,
 }
@@ -166,7 +188,7 @@ impl CapacityCurves {
 impl Mechanism {
     fn new(found: VirtualMechanism, input: &CheckInput<'_>) -> Self {
         let weight_kn = |mass_kg: f64| mass_kg * input.gravity_m_s2 / 1000.0;
-        let alpha0 = load_multiplier(&found.bodies, &found.ties);
+        let alpha0 = load_multiplier(&found.bodies, &found.ties, &found.forces);
         let participation = Participation::of_bodies(&found.bodies);
         let scale = per_displacement_of_centre(&found.bodies);
         let bodies = found.bodies.iter().map(|body| Body {
@@ -187,6 +209,9 @@ impl Mechanism {
         let ties = found.ties.iter();
         let held_kg = ties.clone();
         let held_kg = held_kg.map(|tie| tie.force_kg * (tie.lengthening * scale));
+        let forces = found.forces.iter();
+        let pushing_kg = forces.clone();
+        let pushing_kg = pushing_kg.map(|force| force.force_kg.dot(&force.displacement) * scale);
         let curves = found.curves.as_ref().ok();
         let crown = curves
             .and_then(|curves| curves.crown.as_ref())
@@ -210,7 +235,8 @@ impl Mechanism {
         });
         Self {
             hinges: hinges.collect(),
-            sum_f_delta_l_kn: held_kg.sum::<f64>() * input.gravity_m_s2 / 1000.0,
+            sum_f_delta_l_kn: (held_kg.sum::<f64>() - pushing_kg.sum::<f64>()) * input.gravity_m_s2
+                / 1000.0,
             sum_p_kn: sum(|_| 1.0),
             sum_p_delta_x_kn: sum(|body| body.delta_x),
             sum_p_delta_x2_kn: sum(|body| body.delta_x * body.delta_x),
@@ -220,6 +246,16 @@ impl Mechanism {
                 .map(|tie| HeldTie {
                     force_kn: weight_kn(tie.force_kg),
                     delta_l: tie.lengthening * scale,
+                })
+                .collect(),
+            forces: forces
+                .map(|force| ConstantForce {
+                    x_m: force.at_m.x + 0.0,
+                    y_m: force.at_m.y + 0.0,
+                    force_x_kn: weight_kn(force.force_kg.x),
+                    force_y_kn: weight_kn(force.force_kg.y),
+                    delta_x: force.displacement.x * scale,
+                    delta_y: force.displacement.y * scale,
                 })
                 .collect(),
             alpha0,
@@ -264,6 +300,7 @@ impl VirtualMechanism {
             curves,
             bodies,
             ties: Vec::new(),
+            forces: model.moving_forces(sway)?,
             body_of_block: Vec::new(),
         })
     }
@@ -314,13 +351,24 @@ impl VirtualMechanism {
             let at_m = row.joints[joint].corner_m(edge.unwrap_or(Edge::Intrados));
             (Hinge::Joint { joint, edge }, at_m)
         });
-        let ties = row.ties.iter().zip(&onset.lengthening);
+        let forces = row.constant_forces().map(|force| {
+            let (at_m, force_n) = (force.ends[0].at_m, force.force_at_rest_n());
+            let block = force.ends[0].block.unwrap_or(0);
+            let velocity = onset.velocities[block].at(at_m);
+            let towards = |v: Vector2<f64>| Vector2::new(sway.sign() * v.x, v.y);
+            MovingForce {
+                at_m,
+                force_kg: towards(force_n) / row.gravity_m_s2,
+                displacement: towards(velocity),
+            }
+        });
+        let ties = row.bars().iter().zip(&onset.lengthening);
         let ties = ties.map(|(tie, lengthening)| MovingTie {
             force_kg: tie.prestress_n / row.gravity_m_s2,
             lengthening: *lengthening,
         });
         let curves = || {
-            if !row.ties.is_empty() {
+            if !row.bars().is_empty() {
                 return Err("the forces of ties change as the structure moves; this check does not follow them, quasi-static \
                      capacity does"
                     .to_owned());
@@ -333,6 +381,7 @@ impl VirtualMechanism {
         Self {
             hinges: hinges.collect(),
             ties: ties.collect(),
+            forces: forces.collect(),
             curves: curves(),
             bodies,
             body_of_block,

@@ -625,6 +625,7 @@ impl<'a> Stepper<'a> for Group<'a, 1> {
         }
         sample.demand.friction = self.friction_demand();
         let ties = self.structure.ties.iter().zip(&motion.ties);
+        let ties = ties.filter(|(bound, _)| !bound.tie.is_constant_force());
         let ties = ties.map(|(bound, memory)| TieSample::of(&bound.tie, memory));
         sample.ties.extend(ties);
         if let Some(sliding) = &self.observer().row_summary.sliding {

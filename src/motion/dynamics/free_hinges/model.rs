@@ -259,7 +259,7 @@ impl Model for FreeHinges {
     ) -> Result<Summary, SimulationError> {
         check(ground, request)?;
         let settings = self.settings(request);
-        if self.options.longest_step_s.is_none() && !self.row().ties.is_empty() {
+        if self.options.longest_step_s.is_none() && !self.row().bars().is_empty() {
             let step_s = settings.longest_step_s;
             let remedy = format!(
                 "the ties are too stiff; give them a smaller stiffness_n_m, combine ties that are close to each other, or give \

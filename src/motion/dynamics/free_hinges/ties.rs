@@ -90,7 +90,7 @@ impl<'a> Ties<'a> {
     }
 
     pub fn samples(&self) -> impl Iterator<Item = TieSample> {
-        self.memories()
-            .map(|(tie, memory)| TieSample::of(tie, &memory))
+        let ties = self.memories().filter(|(tie, _)| !tie.is_constant_force());
+        ties.map(|(tie, memory)| TieSample::of(tie, &memory))
     }
 }

@@ -61,7 +61,7 @@ impl<S: Copy> Phase<S> {
 /// Guards of a rocking structure: each fires when its value falls below zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Guard {
-    /// Uplift at rest, with the value `A_L (g + a_v) - push`; the ground pushes the structure to this side.
+    /// Uplift at rest, with the value `A_L (g + a_v) - push`, in which `a_v` does not act on constant forces; the ground pushes the structure to this side.
     Uplift(Sway),
     /// Closing of all hinges in rocking, with the value `q`.
     Closing,
@@ -121,7 +121,8 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
         for side in [Sway::Right, Sway::Left] {
             if let Some(first) = chain.link_from(side, 0) {
                 rocking.barrier = rocking.barrier.min(rocking.barrier_of(first));
-                let opening_g = OPENING_FACTOR * (first.at_zero.s_y / first.at_zero.s_x);
+                let opening_g =
+                    OPENING_FACTOR * (first.at_zero.potential_slope() / first.at_zero.s_x);
                 let uplift_g = UPLIFT_FACTOR * chain.incipient_towards_g(side);
                 *rocking.uplift_g.to_mut(side) = Some(uplift_g.max(opening_g));
             }
@@ -137,7 +138,7 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
     /// Returns the sum of kinetic and potential energy of a mechanism.
     pub fn energy(&self, link: &Link<C::Mechanism>, state: &RockingState) -> f64 {
         let kinetic = 0.5 * link.mechanism.coefficients(state[0]).inertia * state[1] * state[1];
-        let rise = link.mechanism.displacement(state[0]).y;
+        let rise = link.mechanism.potential(state[0]);
         kinetic + self.gravity_m_s2 / self.chain.length_m() * rise
     }
 
@@ -171,7 +172,8 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
         ground_m_s2: Vector2<f64>,
     ) -> f64 {
         let force = (self.gravity_m_s2 + ground_m_s2.y) * coefficients.s_y
-            + ground_m_s2.x * coefficients.s_x;
+            + ground_m_s2.x * coefficients.s_x
+            + self.gravity_m_s2 * coefficients.s_f;
         let length_m = self.chain.length_m();
         let inertial = 0.5 * coefficients.inertia_slope * rate * rate;
         -(force + length_m * inertial) / (length_m * coefficients.inertia)
@@ -251,14 +253,14 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
         }
     }
 
-    /// Returns the time scale of a fall from `q = 0`: `1/p`, `p^2 = g S_y / (L M q_c)` with the coefficients at zero.
+    /// Returns the time scale of a fall from `q = 0`: `1/p`, `p^2 = g (S_y + S_f) / (L M q_c)` with the coefficients at zero.
     pub(super) fn fall_s(&self, link: &Link<C::Mechanism>) -> f64 {
         (link.at_zero.inertia * link.critical_rad / self.potential_slope(link)).sqrt()
     }
 
     /// Returns the slope of the potential energy at `q = 0`.
     fn potential_slope(&self, link: &Link<C::Mechanism>) -> f64 {
-        self.gravity_m_s2 * link.at_zero.s_y / self.chain.length_m()
+        self.gravity_m_s2 * link.at_zero.potential_slope() / self.chain.length_m()
     }
 
     /// Returns the largest `q` and rate that the energy of `state` can reach, as orders of magnitude: with the inertia of `q = 0` and the parabola of
@@ -391,8 +393,11 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
                     return (1.0, 0.0);
                 };
                 let (acceleration, jerk) = piece.at(now.time_s);
-                let tilt = Vector2::new(sway.sign(), uplift_g);
-                let value = tilt.y * self.gravity_m_s2 + tilt.dot(&acceleration);
+                // A vertical acceleration acts on masses, not on constant forces.
+                let first = self.chain.link_from(sway, 0);
+                let of_forces = first.map_or(0.0, |it| it.at_zero.s_f / it.at_zero.s_x);
+                let tilt = Vector2::new(sway.sign(), uplift_g - of_forces);
+                let value = uplift_g * self.gravity_m_s2 + tilt.dot(&acceleration);
                 (value, tilt.dot(&jerk))
             }
             (Guard::Closing, _) => (q, rate),

@@ -17,11 +17,12 @@ use crate::dynamics::{
     Details, Event, EventKind, GroundMotion, MechanismModel, Model, Outcome, Request,
     SimulationError, Summary,
 };
-use crate::mechanics::capacity::{displaced, moving_bodies};
+use crate::mechanics::capacity::{displaced, moving_bodies, moving_forces};
 use crate::mechanics::column::RockingColumn;
 use crate::mechanics::equivalent::equivalent_towards;
 use crate::mechanics::{
-    Displaced, Equivalent, FourLinks, Hinge, Link, Mechanism, MechanismChain, MovingBody, Sway,
+    Displaced, Equivalent, FourLinks, Hinge, Link, Mechanism, MechanismChain, MovingBody,
+    MovingForce, Sway,
 };
 
 /// Maximum number of transitions of a history; more would be chatter.
@@ -95,6 +96,10 @@ macro_rules! models {
 
             fn moving_bodies(&self, sway: Sway) -> Option<Vec<MovingBody>> {
                 moving_bodies(self, sway)
+            }
+
+            fn moving_forces(&self, sway: Sway) -> Option<Vec<MovingForce>> {
+                moving_forces(self, sway)
             }
 
             fn overturns_without_impact(

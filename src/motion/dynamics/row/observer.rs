@@ -426,6 +426,7 @@ impl<'a> MotionObserver<'a> {
         ties: impl Iterator<Item = (&'t Tie, TieMemory<Lanes<1>>)>,
     ) -> Vec<(usize, EventKind)> {
         let mut happened = Vec::new();
+        let ties = ties.filter(|(tie, _)| !tie.is_constant_force());
         for (index, (tie, memory)) in ties.enumerate() {
             if let Some(known) = self.row_summary.ties.get_mut(index) {
                 let kinds = known.note(tie, &memory, self.time).into_iter().flatten();

@@ -476,7 +476,7 @@ impl<'a> Search<'a> {
             let [first, second] = [0, 1].map(|end| place(pair[end], end));
             let span = bound.span([&first, &second]);
             let force_n = match bonded {
-                true => span.stretch_m * bound.tie.stiffness_n_m,
+                true => bound.tie.linear_pull_n(span.stretch_m),
                 false => bound.tie.pull_n(*yielded_m, span.stretch_m),
             };
             between(pair, &bound.action([&first, &second], &span, force_n));

@@ -278,6 +278,7 @@ impl Mechanism for Linkage {
                     - coupling_slope * middle_rate),
             s_x: path.x,
             s_y: path.y,
+            s_f: 0.0,
         }
     }
 

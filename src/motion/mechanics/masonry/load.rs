@@ -1,28 +1,10 @@
 //! Masses on an arch, which move with the voussoirs below.
 
 use nalgebra::Vector2;
-use serde::Serialize;
 
 use super::cut::CutArch;
-use crate::argument::{ArgumentError, allow, within};
-use crate::mechanics::arch::MAGNITUDE;
-use crate::mechanics::{Block, MassMoments};
-
-/// Mass on the extrados, at a point or distributed uniformly over a width.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct PlacedLoad {
-    /// The mass in kg.
-    pub mass_kg: f64,
-    /// Distance to the right of the middle of the span, in metres; for a patch, of its middle.
-    pub x_m: f64,
-    /// Width of the patch, in metres; zero for a point.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub width_m: f64,
-}
-
-fn is_zero(x: &f64) -> bool {
-    *x == 0.0
-}
+use crate::argument::{ArgumentError, allow};
+use crate::mechanics::{Block, MassMoments, PlacedLoad};
 
 impl PlacedLoad {
     pub(super) fn add_to(
@@ -30,11 +12,7 @@ impl PlacedLoad {
         extra: &mut [Option<Block>],
         arch: &CutArch,
     ) -> Result<(), ArgumentError> {
-        within("mass_kg", self.mass_kg, 1e-6..=1e15)?;
-        within("x_m", self.x_m, -1e6..=1e6)?;
-        if self.width_m != 0.0 {
-            within("width_m", self.width_m, MAGNITUDE)?;
-        }
+        self.check_on_arch()?;
         let (from_x, to_x) = (self.x_m - 0.5 * self.width_m, self.x_m + 0.5 * self.width_m);
         let mut placed_kg = 0.0;
         for (voussoir, extra) in extra.iter_mut().enumerate() {

@@ -18,6 +18,7 @@ use thiserror::Error;
 
 use super::arch::{DENSITY_KG_M3, DEPTH_M, MAGNITUDE, VOUSSOIRS};
 use super::blocks::MAX_BLOCKS;
+pub use super::load::PlacedLoad;
 use super::stability::collapse_mechanism;
 use super::tie::TieError;
 use crate::argument::{ArgumentError, allow, counted, within};
@@ -26,7 +27,6 @@ use crate::mechanics::{Joint, Row, RowError, Supports, Sway, Tie};
 use cut::CutArch;
 pub use fill::{Fill, FillColumn, FillLevel};
 pub use given::{GivenBlocks, OutlineError};
-pub use load::PlacedLoad;
 use middle_line::cut_elliptic;
 pub use middle_line::{BasketArch, CircularArch};
 use pier::Courses;

@@ -75,7 +75,7 @@ impl<'a> Held<'a> {
                 return Ok(held);
             }
         }
-        Err(HeldError(match row.ties.is_empty() {
+        Err(HeldError(match row.bars().is_empty() {
             true => CapacityError::Locks(sway).to_string(),
             false => format!(
                 "the mechanism that sways to the {side} reaches its limit position before its strength is zero, because the ties still \
@@ -120,7 +120,7 @@ impl<'a> Held<'a> {
 
     /// Returns the fractions of the ultimate rotation at which each tie yields and breaks. Yielding after the break does not count.
     pub fn tie_event_fractions(&self) -> Vec<TieEventFractions> {
-        let ties = self.row.ties.iter().enumerate().map(|(index, tie)| {
+        let ties = self.row.bars().iter().enumerate().map(|(index, tie)| {
             let yields_m = tie.yield_force_n / tie.stiffness_n_m;
             let yields = self.first(index, |memory| {
                 memory.yielded_m.0[0] > 0.0 || memory.stretch_m.0[0] >= yields_m

@@ -1,0 +1,133 @@
+//! Loads: `[[load]]`, on the extrados of an arch or at points of a column.
+
+use super::prelude::*;
+use crate::argument::ArgumentError;
+use crate::mechanics::stability::collapse_mechanism;
+use crate::mechanics::{ColumnLoadError, LARGEST_THRUST_N, PlacedLoad};
+use crate::{Column, Sway};
+
+/// The keys of `[[load]]`.
+#[derive(Clone, Debug)]
+pub(super) struct LoadTable {
+    mass_kg: Option<f64>,
+    x_m: Option<f64>,
+    width_m: Option<f64>,
+    height_m: Option<f64>,
+    moves: bool,
+    thrust_n: f64,
+}
+
+impl LoadTable {
+    pub(super) fn read(table: &mut Table<'_>) -> ReadResult<Self> {
+        let thrust = within(&(-LARGEST_THRUST_N..=LARGEST_THRUST_N));
+        let read = Self {
+            mass_kg: table.optional("mass_kg", &within(&(0.0..=1e15))),
+            x_m: table.optional("x_m", &within(&(-1e6..=1e6))),
+            width_m: table.optional("width_m", &MAGNITUDE),
+            height_m: table.optional("height_m", &within(&(0.0..=1e12))),
+            moves: table.or("moves", &switch(), true),
+            thrust_n: table.or("thrust_n", &thrust, 0.0),
+        };
+        table.apply_relations(&[AnyOf(&["mass_kg", "thrust_n"])])?;
+        Ok(read)
+    }
+
+    /// Returns the load for an arch.
+    ///
+    /// # Errors
+    /// A key that is missing, or that applies to columns only.
+    pub(super) fn on_arch(&self) -> Result<PlacedLoad, String> {
+        let of_column = [
+            ("height_m", self.height_m.is_some()),
+            ("moves", !self.moves),
+            ("thrust_n", self.thrust_n != 0.0),
+        ];
+        if let Some((key, _)) = of_column.into_iter().find(|(_, is_given)| *is_given) {
+            return Err(format!(
+                "has `{key}`, which applies to loads of a [column]: masses on an arch are on its extrados and move with it; leave it out"
+            ));
+        }
+        let lacks = |key| format!("lacks `{key}`: a load of an arch has a mass and a position");
+        Ok(PlacedLoad {
+            width_m: self.width_m.unwrap_or(0.0),
+            ..PlacedLoad::mass(
+                self.mass_kg.ok_or_else(|| lacks("mass_kg"))?,
+                self.x_m.ok_or_else(|| lacks("x_m"))?,
+            )
+        })
+    }
+
+    /// Returns the load for a column.
+    fn on_column(&self) -> Result<PlacedLoad, String> {
+        let wrong = "has `width_m`, which applies to arches: a load on a column acts at a point; leave it out";
+        ensure(self.width_m.is_none(), || wrong.to_owned())?;
+        Ok(PlacedLoad {
+            mass_kg: self.mass_kg.unwrap_or(0.0),
+            x_m: self.x_m.unwrap_or(0.0),
+            width_m: 0.0,
+            height_m: self.height_m,
+            moves: self.moves,
+            thrust_n: self.thrust_n,
+        })
+    }
+}
+
+/// Adds loads to a column. With `has_joints` it moves as a row of blocks.
+pub(super) fn loaded_column(
+    table: &mut Table<'_>,
+    loads: &[LoadTable],
+    column: Column,
+    (has_joints, gravity_m_s2): (bool, f64),
+) -> ReadResult<Column> {
+    if loads.is_empty() {
+        return Ok(column);
+    }
+    let placed = loads.iter().enumerate().map(|(index, load)| {
+        let placed = load.on_column();
+        placed.map_err(|wrong| table.wrong_element("load", index, wrong))
+    });
+    let placed: Vec<PlacedLoad> = placed.collect::<ReadResult<_>>()?;
+    let column = column.with_loads(placed, gravity_m_s2);
+    let column = column.map_err(|error| why_not(table, &error))?;
+    if has_joints {
+        let row = column.row().map_err(|error| error.to_string());
+        let falls = row.and_then(|row| collapse_mechanism(&row).map_err(|error| error.to_string()));
+        let falls = falls.map_err(|wrong| format!("cannot be checked to stand: {wrong}"));
+        let falls = table.accept("load", falls)?.is_some();
+        let wrong = "opens joints of the column under its own weight and its loads, without ground motion; give less load, or less eccentricity";
+        table.refuse(falls, "load", wrong)?;
+    }
+    Ok(column)
+}
+
+fn why_not(table: &mut Table<'_>, error: &ColumnLoadError) -> FaultRecorded {
+    match error {
+        ColumnLoadError::Load(index, error) => {
+            let ArgumentError {
+                argument,
+                value,
+                allowed,
+            } = error;
+            let wrong =
+                format!("has `{argument} = {value:?}`, which is not allowed; must be {allowed}");
+            table.wrong_element("load", *index, wrong)
+        }
+        ColumnLoadError::Wall(error) => {
+            let wrong = format!("does not fit: it must be {}", error.allowed);
+            table.wrong_in(&["column", "back"], error.argument, wrong)
+        }
+        ColumnLoadError::Overturns(side) => {
+            let other = match side {
+                Sway::Right => "left",
+                Sway::Left => "right",
+            };
+            let wrong = format!(
+                "overturns the column to the {}, without ground motion; give less thrust or eccentricity to that side, or a wider column, or a load \
+                 further to the {other}",
+                side.name()
+            );
+            table.wrong("load", wrong)
+        }
+        error => table.wrong("load", error),
+    }
+}

@@ -1,0 +1,234 @@
+//! Studies of columns with loads: statics, the check by the Circolare, motion by all models, pictures and words.
+
+use std::fs;
+use std::path::Path;
+
+use crate::common::parsed;
+use crate::common::program::{printed, scenarios};
+use archrock::studies::verify::verify;
+use archrock::{Scenario, Sway};
+use roxmltree::Document;
+use serde_json::Value;
+
+const WALL: &str = "[column]\nheight_m = 8\nwidth_m = 0.6\n";
+const ROOF: &str = "[[load]]\nmass_kg = 1500\nx_m = -0.15\n";
+const VAULT: &str =
+    "[[load]]\nmass_kg = 2000\nmoves = false\nthrust_n = 1500\nx_m = -0.1\nheight_m = 5\n";
+const DEMAND: &str = "[demand]\nsoil = 'B'\ntopography = 'T1'\n[demand.sld]\nag_g = 0.10\nf0 = 2.40\ntc_star_s = 0.28\n\
+                      [demand.slv]\nag_g = 0.25\nf0 = 2.40\ntc_star_s = 0.35\n";
+const SINE: &str = "[ground.one_sine]\namplitude_g = 0.16\nduration_s = 0.9\n";
+const GRAVITY_M_S2: f64 = 9.81;
+const BLOCK_KG: f64 = 9600.0;
+
+fn refusal(text: &str) -> String {
+    Scenario::parse(text, "s.toml").unwrap_err().to_string()
+}
+
+/// The results of a command on this text, as JSON.
+fn answer(folder: &Path, arguments: &[&str], text: &str) -> Value {
+    fs::write(folder.join("s.toml"), text).unwrap();
+    let all = [arguments, &["s.toml", "--format", "json"]].concat();
+    serde_json::from_str(&printed(folder, &all)).unwrap()
+}
+
+/// Push in g that starts a sway, and the displacement of the top at the unstable equilibrium, by the moments about the toe.
+fn by_hand(sway: Sway) -> [f64; 2] {
+    let sign = sway.sign();
+    let thrust_kg = sign * 1500.0 / GRAVITY_M_S2;
+    // Distances from the toe against the sway.
+    let [block, roof, vault] = [0.3, 0.3 + sign * 0.15, 0.3 + sign * 0.1];
+    let held = BLOCK_KG * block + 1500.0 * roof + 2000.0 * vault - thrust_kg * 5.0;
+    let tall = BLOCK_KG * 4.0 + 1500.0 * 8.0;
+    let falls = tall + 2000.0 * 5.0 + thrust_kg * vault;
+    let q = (held / falls).atan();
+    // The middle of the top turns about the toe.
+    let shift_m = 0.3 + 8.0 * q.sin() - 0.3 * q.cos();
+    [held / tall, shift_m]
+}
+
+#[test]
+fn limit_and_capacity_are_those_of_the_moments() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = format!("{WALL}{ROOF}{VAULT}");
+    let limit = answer(folder.path(), &["limit"], &text);
+    let capacity = answer(folder.path(), &["capacity"], &text);
+    // The limit of drums at their lowest joint, and of elastic joints, which are rigid in limit analysis.
+    let free = answer(folder.path(), &["limit"], &format!("{text}[free_hinges]\n"));
+    for sway in Sway::ALL {
+        let [due_g, due_m] = by_hand(*sway);
+        for limit in [&limit, &free] {
+            let own_g = limit["incipient_acceleration_g"][sway.name()]
+                .as_f64()
+                .unwrap();
+            assert!((own_g / due_g - 1.0).abs() < 1e-9, "{own_g} {due_g}");
+        }
+        let own_m = capacity["capacity"][sway.name()]["ultimate_displacement_m"].as_f64();
+        let own_m = own_m.unwrap();
+        assert!((own_m / due_m - 1.0).abs() < 1e-9, "{own_m} {due_m}");
+    }
+    // A stack of one drum with free hinges has the same curve.
+    let text = format!("{text}[free_hinges]\n");
+    let stack = text.replace("width_m = 0.6", "width_m = 0.6\ndrums = 2");
+    let stack = answer(folder.path(), &["capacity"], &stack);
+    for sway in Sway::ALL {
+        let own_m = stack["capacity"][sway.name()]["ultimate_displacement_m"]
+            .as_f64()
+            .unwrap();
+        assert!((own_m / by_hand(*sway)[1] - 1.0).abs() < 1e-9);
+    }
+}
+
+/// The table of the page is enough to compute alpha0 by hand: weights of the body, and constant forces F_k.
+#[test]
+fn verify_has_constant_forces_as_external_forces() {
+    for joints in ["", "[free_hinges]\n"] {
+        let check = verify(&parsed(&format!("{WALL}{ROOF}{VAULT}{DEMAND}{joints}"))).unwrap();
+        for (sway, own) in &check.mechanisms {
+            let [due_g, due_m] = by_hand(*sway);
+            assert!((own.alpha0 / due_g - 1.0).abs() < 1e-9, "{joints}");
+            let [body] = &own.bodies[..] else {
+                panic!("one body")
+            };
+            assert!((body.mass_kg - 11100.0).abs() < 1e-6);
+            let [force] = &own.forces[..] else {
+                panic!("one force")
+            };
+            assert!((force.force_x_kn - sway.sign() * 1.5).abs() < 1e-9);
+            assert!((force.force_y_kn + 19.62).abs() < 1e-9);
+            assert_eq!([force.x_m, force.y_m], [-0.1, 5.0]);
+            let work = force.force_x_kn * force.delta_x + force.force_y_kn * force.delta_y;
+            let alpha0 = (body.weight_kn * body.delta_y - work) / (body.weight_kn * body.delta_x);
+            assert!((alpha0 / own.alpha0 - 1.0).abs() < 1e-12);
+            assert!((own.e_star - 1.0).abs() < 1e-12);
+            assert!((own.d_c0_crown_m.unwrap() / due_m - 1.0).abs() < 1e-9);
+        }
+    }
+    let bare = verify(&parsed(&format!("{WALL}{ROOF}{DEMAND}"))).unwrap();
+    assert!(bare.mechanisms.values().all(|own| own.forces.is_empty()));
+}
+
+#[test]
+fn the_page_of_verify_lists_the_forces() {
+    let folder = tempfile::tempdir().unwrap();
+    answer(
+        folder.path(),
+        &["verify"],
+        &format!("{WALL}{ROOF}{VAULT}{DEMAND}"),
+    );
+    let page = fs::read_to_string(folder.path().join("results/s/verify.html")).unwrap();
+    assert!(page.contains("∑Fδ<sub>F</sub>) / ∑Pδ<sub>x</sub>") && page.contains("-19.620"));
+    assert!(page.contains("act up to collapse"));
+}
+
+/// A history by all models: their peaks agree before the motion depends on details of impacts.
+#[test]
+fn all_models_move_with_loads() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = format!("{WALL}{ROOF}{VAULT}{SINE}[simulation]\nduration_s = 1.5\n");
+    let peak = |options: &[&str]| {
+        let run = answer(folder.path(), &[&["run"], options].concat(), &text);
+        assert!(run.get("ties").is_none());
+        run["largest_peak_rotation_rad"].as_f64().unwrap()
+    };
+    let rigid = peak(&[]);
+    assert!(rigid > 0.005, "{rigid}");
+    let free = peak(&["--hinges", "free"]);
+    assert!((free / rigid - 1.0).abs() < 1e-3, "{free} {rigid}");
+    let lighter = text.replace("thrust_n = 1500", "thrust_n = 0");
+    fs::write(folder.path().join("l.toml"), lighter).unwrap();
+    let shown = printed(folder.path(), &["run", "l.toml", "--format", "json"]);
+    let lighter: Value = serde_json::from_str(&shown).unwrap();
+    assert!(lighter["largest_peak_rotation_rad"].as_f64().unwrap() != rigid);
+}
+
+#[test]
+fn pictures_and_words_have_the_loads() {
+    let folder = tempfile::tempdir().unwrap();
+    let scenario = scenarios().join("facade-with-roof.toml");
+    let scenario = scenario.to_str().unwrap();
+    printed(folder.path(), &["check", scenario, "--plot", "facade.svg"]);
+    let text = fs::read_to_string(folder.path().join("facade.svg")).unwrap();
+    let svg = Document::parse(&text).unwrap();
+    let words: Vec<&str> = svg.descendants().filter_map(|node| node.text()).collect();
+    let words = words.join("\n");
+    for shown in [
+        "1500 kg",
+        "2000 kg as constant weight",
+        "thrust of 1.5 kN to the right",
+    ] {
+        assert!(words.contains(shown), "{words}");
+    }
+    let described = parsed(&format!("{WALL}{ROOF}{VAULT}"))
+        .structure
+        .described();
+    assert!(
+        described.contains("load at (-0.15, 8) m: 1500 kg;"),
+        "{described}"
+    );
+    assert!(
+        described.contains(
+            "load at (-0.1, 5) m: 2000 kg as constant weight, thrust of 1.5 kN to the right;"
+        ),
+        "{described}"
+    );
+    let run = answer(
+        folder.path(),
+        &["run"],
+        &fs::read_to_string(scenario).unwrap(),
+    );
+    assert_eq!(run["outcome"], "rest", "{run}");
+}
+
+/// Loads can be set, varied and drawn at random; the resolved scenario gives the same structure again.
+#[test]
+fn keys_of_loads_can_vary() {
+    let uncertain = "[uncertain]\nsamples = 4\n\"load.1.mass_kg\" = { from = 1000, to = 2000 }\n";
+    let text = format!("{WALL}{ROOF}{VAULT}{SINE}");
+    assert!(Scenario::parse(&format!("{text}{uncertain}"), "s.toml").is_ok());
+    let scenario = parsed(&text);
+    assert_eq!(parsed(&scenario.to_toml()), scenario);
+    let json = scenario.to_json();
+    assert_eq!(
+        json["load"][0],
+        serde_json::json!({"mass_kg": 1500.0, "x_m": -0.15})
+    );
+    assert_eq!(json["load"][1]["moves"], false);
+}
+
+#[test]
+fn wrong_loads_are_refused() {
+    let load = |keys: &str| refusal(&format!("{WALL}[[load]]\n{keys}\n"));
+    assert!(load("x_m = 0.1").contains("needs one of the keys mass_kg, thrust_n"));
+    assert!(load("mass_kg = 10\nwidth_m = 1").contains("has `width_m`, which applies to arches"));
+    assert!(
+        load("mass_kg = 10\nheight_m = 9")
+            .contains("must be from 0 to the height of the column, 8.0 m")
+    );
+    let falls = load("thrust_n = -9000");
+    assert!(
+        falls.contains("overturns the column to the left, without ground motion"),
+        "{falls}"
+    );
+    let drums = refusal(&format!(
+        "{WALL}drums = 4\n[[load]]\nmass_kg = 9000\nx_m = 0.4\n[free_hinges]\n"
+    ));
+    assert!(drums.contains("opens joints of the column"), "{drums}");
+    let arch = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.15\nembrace_deg = 180\nvoussoirs = 20\n[[load]]\nmass_kg = 500\nx_m = 0\n";
+    for key in ["thrust_n = 10", "moves = false", "height_m = 2"] {
+        let wrong = refusal(&format!("{arch}{key}\n"));
+        assert!(wrong.contains("applies to loads of a [column]"), "{wrong}");
+    }
+    let lacking = refusal(&arch.replace("\nx_m = 0", ""));
+    assert!(lacking.contains("lacks `x_m`"), "{lacking}");
+    let tie = "[[tie]]\nfrom_m = [-3, 7]\nfrom_block = 0\nto_m = [-0.3, 7]\nstiffness_n_m = 1e6\n";
+    let tied = refusal(&format!("{WALL}{VAULT}{tie}[free_hinges]\n"));
+    assert!(
+        tied.contains("the model computes ties or constant forces"),
+        "{tied}"
+    );
+    assert!(Scenario::parse(&format!("{WALL}{ROOF}{tie}[free_hinges]\n"), "s.toml").is_ok());
+    let low = refusal(&format!(
+        "{WALL}[column.back]\nside = 'left'\nheight_m = 4.2\nrestitution = 0.4\n{ROOF}"
+    ));
+    assert!(low.contains("the height of the centre of gravity"), "{low}");
+}
