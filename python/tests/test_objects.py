@@ -70,6 +70,25 @@ def test_a_column_moves_away_from_the_wall_behind_it() -> None:
     assert no_wall.limit() == Column(8.0, 0.6, drums=4).limit()
 
 
+def test_a_column_carries_loads() -> None:
+    roof = {"mass_kg": 1500.0, "x_m": -0.15}
+    vault = {"thrust_n": 1500.0, "height_m": 5.0}
+    column = Column(8.0, 0.6, load=[roof, vault])
+    # Moments about the right and the left toe, over the moment of the masses.
+    tall = 9600.0 * 4.0 + 1500.0 * 8.0
+    thrust = 1500.0 / 9.81 * 5.0
+    right = (9600.0 * 0.3 + 1500.0 * 0.45 - thrust) / tall
+    left = (9600.0 * 0.3 + 1500.0 * 0.15 + thrust) / tall
+    assert column.limit().right.acceleration_g == pytest.approx(right, rel=1e-9)
+    assert column.limit().left.acceleration_g == pytest.approx(left, rel=1e-9)
+    assert eval(repr(column), {"Column": Column}) == column
+    sine = Pulse.one_sine(amplitude_g=-0.25, duration_s=1.0)
+    loaded, bare = (simulate(one, sine, duration_s=4.0) for one in (column, Column(8.0, 0.6)))
+    assert abs(loaded.rotations).max() != abs(bare.rotations).max()
+    with pytest.raises(ValueError, match="overturns the column to the right"):
+        Column(8.0, 0.6, load=[{"thrust_n": 9000.0}])
+
+
 def test_free_hinges_and_columns_of_drums(pulse: Pulse) -> None:
     arch = Arch(5.0, 0.15, 180.0, voussoirs=12)
     history = simulate(arch, pulse, model="free_hinges", duration_s=0.5)

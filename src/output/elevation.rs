@@ -210,6 +210,7 @@ impl<'a> View<'a> {
                 self.draw_thrust(drawing, foot, &load, has_labels);
                 continue;
             }
+            let from = from.filter(|_| !load.is_beside);
             let tail = from.map_or(foot.y - 20.0, |top| top - 8.0);
             let tail = Vector2::new(foot.x, tail);
             drawing.curve("load", [tail, foot], LOAD);
@@ -226,8 +227,10 @@ impl<'a> View<'a> {
                 let text = Text::from(load.label);
                 let half = 0.5 * text.px();
                 // Labels without space are omitted here; the text below the drawing lists all loads.
-                if foot.x - half > farthest {
-                    farthest = foot.x + half + 8.0;
+                if load.is_beside || foot.x - half > farthest {
+                    if !load.is_beside {
+                        farthest = foot.x + half + 8.0;
+                    }
                     let at = tail - Vector2::new(0.0, 6.0);
                     drawing.label(at, Anchor::Middle, 0.0, text);
                 }

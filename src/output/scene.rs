@@ -52,6 +52,8 @@ pub struct LoadArrow {
     pub sideways: f64,
     /// Width of the patch, in metres; zero for a point.
     pub width_m: f64,
+    /// True for a load on the side of a column or pier, false for one on top.
+    pub is_beside: bool,
     /// The force in words.
     pub label: String,
 }
@@ -209,6 +211,7 @@ impl Scene {
                 at: BodyPoint { body, at_m },
                 sideways,
                 width_m: load.width_m,
+                is_beside: load.height_m.is_some(),
                 label,
             })
         });

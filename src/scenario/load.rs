@@ -12,6 +12,7 @@ pub(super) struct LoadTable {
     mass_kg: Option<f64>,
     x_m: Option<f64>,
     width_m: Option<f64>,
+    pier: Option<Sway>,
     height_m: Option<f64>,
     moves: bool,
     thrust_n: f64,
@@ -24,6 +25,7 @@ impl LoadTable {
             mass_kg: table.optional("mass_kg", &within(&(0.0..=1e15))),
             x_m: table.optional("x_m", &within(&(-1e6..=1e6))),
             width_m: table.optional("width_m", &MAGNITUDE),
+            pier: table.optional("pier", &one_of(Sway::ALL)),
             height_m: table.optional("height_m", &within(&(0.0..=1e12))),
             moves: table.or("moves", &switch(), true),
             thrust_n: table.or("thrust_n", &thrust, 0.0),
@@ -32,43 +34,45 @@ impl LoadTable {
         Ok(read)
     }
 
-    /// Returns the load for an arch.
+    /// Returns the load for an arch or one of its piers.
     ///
     /// # Errors
-    /// A key that is missing, or that applies to columns only.
+    /// A key that is missing, or that applies to piers and columns only.
     pub(super) fn on_arch(&self) -> Result<PlacedLoad, String> {
-        let of_column = [
-            ("height_m", self.height_m.is_some()),
-            ("moves", !self.moves),
-            ("thrust_n", self.thrust_n != 0.0),
-        ];
-        if let Some((key, _)) = of_column.into_iter().find(|(_, is_given)| *is_given) {
-            return Err(format!(
-                "has `{key}`, which applies to loads of a [column]: masses on an arch are on its extrados and move with it; leave it out"
-            ));
+        if self.pier.is_none() {
+            let wrong = "has `height_m`, which applies to columns and piers: loads of an arch are on its extrados; leave it out, or give `pier`";
+            ensure(self.height_m.is_none(), || wrong.to_owned())?;
+            let lacks = "lacks `x_m`: a load on the extrados has a position; give it, or `pier`";
+            ensure(self.x_m.is_some(), || lacks.to_owned())?;
         }
-        let lacks = |key| format!("lacks `{key}`: a load of an arch has a mass and a position");
-        Ok(PlacedLoad {
+        Ok(self.placed())
+    }
+
+    /// Returns the load with the given keys and the defaults of the others.
+    fn placed(&self) -> PlacedLoad {
+        PlacedLoad {
+            mass_kg: self.mass_kg.unwrap_or(0.0),
+            x_m: self.x_m.unwrap_or(0.0),
             width_m: self.width_m.unwrap_or(0.0),
-            ..PlacedLoad::mass(
-                self.mass_kg.ok_or_else(|| lacks("mass_kg"))?,
-                self.x_m.ok_or_else(|| lacks("x_m"))?,
-            )
-        })
+            pier: self.pier,
+            height_m: self.height_m,
+            moves: self.moves,
+            thrust_n: self.thrust_n,
+        }
     }
 
     /// Returns the load for a column.
     fn on_column(&self) -> Result<PlacedLoad, String> {
-        let wrong = "has `width_m`, which applies to arches: a load on a column acts at a point; leave it out";
-        ensure(self.width_m.is_none(), || wrong.to_owned())?;
-        Ok(PlacedLoad {
-            mass_kg: self.mass_kg.unwrap_or(0.0),
-            x_m: self.x_m.unwrap_or(0.0),
-            width_m: 0.0,
-            height_m: self.height_m,
-            moves: self.moves,
-            thrust_n: self.thrust_n,
-        })
+        let of_arch = [
+            ("width_m", self.width_m.is_some()),
+            ("pier", self.pier.is_some()),
+        ];
+        if let Some((key, _)) = of_arch.into_iter().find(|(_, is_given)| *is_given) {
+            return Err(format!(
+                "has `{key}`, which applies to arches: a load on a column acts at a point; leave it out"
+            ));
+        }
+        Ok(self.placed())
     }
 }
 
@@ -99,6 +103,10 @@ pub(super) fn loaded_column(
     }
     Ok(column)
 }
+
+/// Message about ties of a structure with constant forces.
+pub(super) const NO_CONSTANT_FORCES: &str = "cannot be combined with a [[load]] that has `thrust_n`, or `moves = false`: the model computes ties or \
+                                             constant forces; leave one out";
 
 fn why_not(table: &mut Table<'_>, error: &ColumnLoadError) -> FaultRecorded {
     match error {

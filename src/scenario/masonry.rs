@@ -14,7 +14,7 @@ use nalgebra::Vector2;
 
 use super::LineFault;
 use super::files::Files;
-use super::load::LoadTable;
+use super::load::{LoadTable, NO_CONSTANT_FORCES};
 use super::prelude::*;
 use super::record::{Decimal, faulty, read_numbers};
 use super::tie::{self, PULLS_OVER, TieTable};
@@ -26,7 +26,7 @@ use crate::mechanics::masonry::{
 };
 use crate::mechanics::stability::collapse_mechanism;
 use crate::mechanics::{DENSITY_KG_M3, DEPTH_M, MAX_BLOCKS};
-use crate::mechanics::{Joint, MeasuredAt, RowError, Shape, Supports};
+use crate::mechanics::{Joint, MeasuredAt, PlacedLoad, RowError, Shape, Supports};
 
 const PIER_BLOCKS: Count = Count(1..=MAX_BLOCKS, "a pier of one piece");
 
@@ -261,8 +261,16 @@ impl Additions {
         let masonry = masonry.map_err(|error| self.wrong(table, key, &error))?;
         let on = (&masonry.row, masonry.springing_joints());
         let ties = tie::placed(table, &self.ties, on)?;
+        let is_tied = !ties.is_empty();
         let tied = masonry.with_ties(ties, gravity_m_s2);
-        let masonry = tied.map_err(|(index, error)| table.wrong_element("tie", index, error))?;
+        let mut masonry =
+            tied.map_err(|(index, error)| table.wrong_element("tie", index, error))?;
+        if !is_tied {
+            masonry = masonry.with_constant_forces(gravity_m_s2);
+        }
+        let constant = |load: &PlacedLoad| load.constant_force_n(gravity_m_s2) != Vector2::zeros();
+        let is_pushed = masonry.loads.iter().any(constant);
+        table.refuse(is_tied && is_pushed, "tie", NO_CONSTANT_FORCES)?;
         match collapse_mechanism(&masonry.row) {
             Ok(None) => Ok(masonry),
             Ok(Some(_)) if stands_without_ties(&masonry) => Err(table.wrong("tie", PULLS_OVER)),
@@ -295,6 +303,11 @@ impl Additions {
                 let wrong = format!("has `{} = {:?}`, which {}", error.argument, error.value, allowed(error));
                 table.wrong_element("load", *index, wrong)
             }
+            MasonryError::NoPier(index, side) => {
+                let side = side.name();
+                let wrong = format!("is on the {side} pier, and the arch has none; give [piers], or leave `pier` out");
+                table.wrong_element("load", *index, wrong)
+            }
             MasonryError::Blocks => self.refused(
                 table,
                 "goes with arches that are given by their dimensions: give piers and fill of [blocks] as blocks",
@@ -311,7 +324,7 @@ impl Additions {
 
 fn stands_without_ties(masonry: &Masonry) -> bool {
     let row = &masonry.row;
-    !row.ties.is_empty() && matches!(collapse_mechanism(&row.clone().without_ties()), Ok(None))
+    !row.bars().is_empty() && matches!(collapse_mechanism(&row.clone().without_ties()), Ok(None))
 }
 
 /// Reads `[piers]`. Its keys hold for both piers; `[piers.left]` and `[piers.right]` may override them.

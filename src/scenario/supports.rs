@@ -3,7 +3,7 @@
 use super::prelude::*;
 use super::structure::Structure;
 use crate::mechanics::settling::Movement;
-use crate::mechanics::{Follower, Movements, Supports};
+use crate::mechanics::{Follower, Movements, SettlingError, Supports};
 
 /// Range of movements; no structure stands on springings that have moved farther.
 const MOVEMENT_M: Number = within(&(-1e3..=1e3));
@@ -47,6 +47,8 @@ pub(super) fn check(
         short(apart_m)
     );
     table.refuse(closer_m >= apart_m, "supports", wrong)?;
+    let is_pushed = row.constant_forces().next().is_some();
+    table.refuse(is_pushed, "supports", SettlingError::ConstantForces)?;
     let Ok(mut follower) = Follower::new(&row) else {
         return Ok(());
     };

@@ -5,8 +5,10 @@ use std::path::Path;
 
 use crate::common::parsed;
 use crate::common::program::{printed, scenarios};
+use archrock::mechanics::stability::onset;
+use archrock::studies::capacity;
 use archrock::studies::verify::verify;
-use archrock::{Scenario, Sway};
+use archrock::{ImpactModel, Scenario, Sway};
 use roxmltree::Document;
 use serde_json::Value;
 
@@ -214,10 +216,39 @@ fn wrong_loads_are_refused() {
     ));
     assert!(drums.contains("opens joints of the column"), "{drums}");
     let arch = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.15\nembrace_deg = 180\nvoussoirs = 20\n[[load]]\nmass_kg = 500\nx_m = 0\n";
-    for key in ["thrust_n = 10", "moves = false", "height_m = 2"] {
-        let wrong = refusal(&format!("{arch}{key}\n"));
-        assert!(wrong.contains("applies to loads of a [column]"), "{wrong}");
-    }
+    let high = refusal(&format!("{arch}height_m = 2\n"));
+    assert!(high.contains("applies to columns and piers"), "{high}");
+    let pier = refusal(&format!("{arch}pier = 'left'\n"));
+    assert!(
+        pier.contains("is on the left pier, and the arch has none"),
+        "{pier}"
+    );
+    let on_column = load("mass_kg = 10\npier = 'left'");
+    assert!(
+        on_column.contains("has `pier`, which applies to arches"),
+        "{on_column}"
+    );
+    let spread = refusal(&format!("{arch}thrust_n = 10\nwidth_m = 0.5\n"));
+    assert!(spread.contains("other loads act at a point"), "{spread}");
+    let supports = "[free_hinges]\n[supports]\nright = { spread_m = 0.01 }\n";
+    let moved = refusal(&format!("{arch}thrust_n = 10\n{supports}"));
+    assert!(moved.contains("without constant forces"), "{moved}");
+    let tied = "[[tie]]\nheight_m = 2\nstiffness_n_m = 1e6\n[free_hinges]\n";
+    let tied = refusal(&format!("{arch}moves = false\n{tied}"));
+    assert!(
+        tied.contains("the model computes ties or constant forces"),
+        "{tied}"
+    );
+    let four = parsed(&format!("{arch}thrust_n = 10\n"));
+    let four = four
+        .structure
+        .model(ImpactModel::MaxRestitution)
+        .unwrap_err();
+    assert!(
+        four.to_string()
+            .contains("four links take no constant forces"),
+        "{four}"
+    );
     let lacking = refusal(&arch.replace("\nx_m = 0", ""));
     assert!(lacking.contains("lacks `x_m`"), "{lacking}");
     let tie = "[[tie]]\nfrom_m = [-3, 7]\nfrom_block = 0\nto_m = [-0.3, 7]\nstiffness_n_m = 1e6\n";
@@ -231,4 +262,109 @@ fn wrong_loads_are_refused() {
         "{WALL}[column.back]\nside = 'left'\nheight_m = 4.2\nrestitution = 0.4\n{ROOF}"
     ));
     assert!(low.contains("the height of the centre of gravity"), "{low}");
+}
+
+const PIERS: &str = "[pointed_arch]\nspan_m = 4\nrise_m = 3\nthickness_m = 0.6\nvoussoirs = 10\n[piers]\nheight_m = 3\nwidth_m = 1.5\nblocks = 3\n";
+
+/// Pushes of an arch on piers in g that start it to the right and to the left.
+fn onsets_g(more: &str) -> [f64; 2] {
+    onsets_g_of(&format!("{PIERS}{more}"))
+}
+
+fn onsets_g_of(text: &str) -> [f64; 2] {
+    let scenario = parsed(text);
+    let row = scenario.structure.row().unwrap();
+    [Sway::Right, Sway::Left].map(|sway| onset(&row, sway).unwrap().unwrap().acceleration_g)
+}
+
+/// A thrust on a pier, compared with the pull of a very long, soft tie with the same force, which hardly changes in motion.
+#[test]
+fn a_thrust_on_a_pier_is_the_pull_of_a_very_long_tie() {
+    let thrust = "[[load]]\npier = 'left'\nheight_m = 2.5\nthrust_n = -4000\n";
+    // The axis of the left pier is 2.45 m left of the middle: half of the clear span of 3.4 m and half of the width.
+    let tie = "[[tie]]\nfrom_m = [-2.45, -0.5]\nto_m = [-200002.45, -0.5]\nto_block = 0\nstiffness_n_m = 0.0400001\nprestress_n = 4000\n";
+    let motion = "[ground.one_sine]\namplitude_g = 0.45\nduration_s = 0.8\n[simulation]\nduration_s = 1.2\n[free_hinges]\n";
+    let [bare, pushed, tied] = ["", thrust, tie].map(onsets_g);
+    for side in 0..2 {
+        let error = pushed[side] / tied[side] - 1.0;
+        assert!(error.abs() < 1e-9, "{pushed:?} {tied:?}");
+    }
+    // The left pier turns about its outer toe if the arch sways to the left.
+    assert!(pushed[1] < 0.95 * bare[1], "{pushed:?} {bare:?}");
+    let peaks = [thrust, tie].map(|more| {
+        let scenario = parsed(&format!("{PIERS}{more}{motion}"));
+        let model = scenario.model().unwrap();
+        let summary = model
+            .simulate(scenario.ground_motion(), &scenario.request(), None)
+            .unwrap();
+        assert!(
+            summary.energy_defect_ratio < 1e-2,
+            "{}",
+            summary.energy_defect_ratio
+        );
+        summary
+            .peak_rotations_rad
+            .iter()
+            .copied()
+            .fold(0.0, f64::max)
+    });
+    assert!(
+        peaks[0] > 0.005 && (peaks[0] / peaks[1] - 1.0).abs() < 1e-3,
+        "{peaks:?}"
+    );
+    // At the foot a thrust does no work in any mechanism.
+    let foot = onsets_g(&thrust.replace("2.5", "0"));
+    assert!((0..2).all(|side| (foot[side] / bare[side] - 1.0).abs() < 1e-9));
+}
+
+/// The load multiplier from virtual displacements, with constant forces as external forces, is the onset; the mirror image has the other side's.
+#[test]
+fn verify_of_an_arch_on_piers_has_the_forces() {
+    let loads = |side: &str, sign: f64| {
+        format!(
+            "[[load]]\npier = '{side}'\nheight_m = 2.5\nthrust_n = {}\nmass_kg = 800\nmoves = false\nx_m = {}\n\
+             [[load]]\nmass_kg = 500\nmoves = false\nx_m = {}\n[[load]]\npier = '{side}'\nmass_kg = 700\nheight_m = 1\n",
+            sign * 3000.0,
+            sign * 0.2,
+            sign * 0.5
+        )
+    };
+    let left = loads("left", -1.0);
+    let fill = "[fill]\nheight_m = 1.5\ndensity_kg_m3 = 1600\n";
+    let onset_g = onsets_g(&format!("{fill}{left}"));
+    // To the right its joints slide first.
+    let text = format!("{PIERS}{fill}{left}{DEMAND}[verify]\nsides = 'left'\n");
+    let check = verify(&parsed(&text.replace("width_m = 1.5", "width_m = 1.2"))).unwrap();
+    let narrow = onsets_g_of(&text.replace("width_m = 1.5", "width_m = 1.2"));
+    let own = &check.mechanisms[&Sway::Left];
+    assert!((own.alpha0 / narrow[1] - 1.0).abs() < 1e-9);
+    assert_eq!(own.forces.len(), 2);
+    let works = own.forces.iter();
+    let works = works.map(|it| it.force_x_kn * it.delta_x + it.force_y_kn * it.delta_y);
+    let works: f64 = works.sum();
+    assert!(
+        works > 0.01 * own.sum_p_delta_x_kn,
+        "the pier turns outwards"
+    );
+    let alpha0 = (own.sum_p_delta_y_kn - works) / own.sum_p_delta_x_kn;
+    assert!((alpha0 / own.alpha0 - 1.0).abs() < 1e-9);
+    let right = loads("right", 1.0);
+    let mirrored = onsets_g(&format!("{fill}{right}"));
+    assert!((mirrored[0] / onset_g[1] - 1.0).abs() < 1e-9);
+    assert!((mirrored[1] / onset_g[0] - 1.0).abs() < 1e-9);
+    let words = parsed(&format!("{PIERS}{left}")).structure.described();
+    assert!(words.contains("load on the left pier 2.5 m above its foot: 800 kg as constant weight, thrust of 3 kN to the left"), "{words}");
+}
+
+/// The capacity curve of a pushed arch begins at its onset, and decreases to zero.
+#[test]
+fn an_arch_on_piers_has_a_capacity_with_constant_forces() {
+    let thrust = "[[load]]\npier = 'left'\nheight_m = 2.5\nthrust_n = -4000\n";
+    let onset_g = onsets_g(thrust);
+    let curves = capacity(&parsed(&format!("{PIERS}{thrust}")), None).unwrap();
+    for (side, sway) in [Sway::Right, Sway::Left].into_iter().enumerate() {
+        let curve = &curves.to(sway).as_ref().unwrap().curve;
+        assert!((curve[0].acceleration_g / onset_g[side] - 1.0).abs() < 1e-9);
+        assert!(curve.last().unwrap().acceleration_g.abs() < 1e-9);
+    }
 }

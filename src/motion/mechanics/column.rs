@@ -75,7 +75,7 @@ pub struct Column {
     pub loads: Vec<PlacedLoad>,
     /// Gravity for which ties and loads were given, in m/s2.
     #[serde(skip)]
-    pub(super) gravity_m_s2: f64,
+    gravity_m_s2: f64,
 }
 
 /// Reason why a column cannot carry its loads.
@@ -238,8 +238,15 @@ impl Column {
         let mut sides = Sway::ALL.iter().copied();
         sides.find(|sway| match wall == Some(*sway) {
             true => !self.leans_safely(),
-            false => Tilting::new(self, *sway).incipient_g() <= 0.0,
+            false => self.tilting(*sway).incipient_g() <= 0.0,
         })
+    }
+
+    /// Returns the column as one block that sways to this side.
+    fn tilting(&self, sway: Sway) -> Tilting {
+        let size_m = [self.height_m, self.width_m];
+        let loads = self.placed_loads();
+        Tilting::new(size_m, self.prism_kg(), loads, self.gravity_m_s2, sway)
     }
 
     /// Returns whether its weight and its loads do not turn the column over the top of the wall behind it: in a virtual rotation about that point,
@@ -299,7 +306,7 @@ impl Column {
     }
 
     /// Returns the mass of a prism of its base, its height and its depth, in kg.
-    pub(super) fn prism_kg(&self) -> f64 {
+    fn prism_kg(&self) -> f64 {
         self.density_kg_m3 * self.depth_m * self.height_m * self.width_m
     }
 
@@ -336,7 +343,7 @@ impl Column {
         let half_m = self.half_diagonal_m();
         let outer = Vector2::new(0.5 * self.width_m / half_m, 0.0);
         let contact = Vector2::new(0.0, height_m / half_m) - outer;
-        let tilting = Tilting::new(self, wall.side.opposite());
+        let tilting = self.tilting(wall.side.opposite());
         let moments = tilting.body();
         let default = || three_impacts(moments, [outer, -outer, contact]);
         if let Some(rate_ratio) = wall.rate_ratio.or_else(default) {
@@ -470,7 +477,7 @@ impl RockingColumn {
         let width = "the width in Housner's model: a taper needs free hinges";
         allow(top_m == column.width_m, "top_width_m", top_m, width)?;
         let half_diagonal_m = column.half_diagonal_m();
-        let tilting = Sides::of(|sway| Tilting::new(column, sway));
+        let tilting = Sides::of(|sway| column.tilting(sway));
         let slenderness_rad = column.slenderness_rad();
         let link = |sway: Sway, rate_ratio, restitution| {
             let tilting = tilting.to(sway).clone();

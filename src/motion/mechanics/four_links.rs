@@ -68,6 +68,12 @@ pub enum FourLinkError {
          weights alone; give [free_hinges] or [elastic_joints]"
     )]
     Ties,
+    /// The structure has constant forces.
+    #[error(
+        "four links take no constant forces (`thrust_n`, or `moves = false`, of [[load]]): the mechanisms after impacts are found from \
+         moving masses alone; give [free_hinges] or [elastic_joints]"
+    )]
+    ConstantForces,
     /// A row of blocks does not start as four links to this side.
     #[error(
         "to the {side} four links do not describe this row of blocks ({1}); give [free_hinges] or \
@@ -113,11 +119,14 @@ impl FourLinks {
     /// Returns the four-link model of a row of blocks, with a depth of 1 m.
     ///
     /// # Errors
-    /// If the row is a stack, has ties, falls under its own weight, starts as another mechanism to either side, or if a number of the law is not
+    /// If the row is a stack, has ties or constant forces, falls under its own weight, starts as another mechanism to either side, or if a number of the law is not
     /// allowed.
     pub fn of_row(row: &Row, law: impl Into<ImpactLaw>) -> Result<Self, FourLinkError> {
         let law = law.into();
         law.check()?;
+        if row.constant_forces().next().is_some() {
+            return Err(FourLinkError::ConstantForces);
+        }
         if !row.ties.is_empty() {
             return Err(FourLinkError::Ties);
         }

@@ -9,18 +9,22 @@ use serde::Serialize;
 use super::arch::MAGNITUDE;
 use super::block::Block;
 use crate::argument::{ArgumentError, allow, within};
+use crate::mechanics::Sway;
 
 /// Load at a point, or a mass distributed uniformly over a width of an arch.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PlacedLoad {
     /// The mass in kg; zero for a thrust alone.
     pub mass_kg: f64,
-    /// Distance to the right of the middle of the span, or of the axis of a column, in metres; for a patch, of its middle.
+    /// Distance to the right of the middle of the span, or of the axis of a column or pier, in metres; for a patch, of its middle.
     pub x_m: f64,
     /// Width of the patch, in metres; zero for a point.
     #[serde(skip_serializing_if = "is_zero")]
     pub width_m: f64,
-    /// Height above the base of a column, in metres; `None` for its top. Loads of an arch are on the extrados.
+    /// Pier that carries the load; `None` for a column, or the extrados of an arch.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pier: Option<Sway>,
+    /// Height above the base of a column or pier, in metres; `None` for its top, and on the extrados.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub height_m: Option<f64>,
     /// True if the mass moves with the block that carries it; false if its weight is a constant force, without inertia.
@@ -46,6 +50,7 @@ impl Default for PlacedLoad {
             mass_kg: 0.0,
             x_m: 0.0,
             width_m: 0.0,
+            pier: None,
             height_m: None,
             moves: true,
             thrust_n: 0.0,
@@ -85,10 +90,20 @@ impl PlacedLoad {
 
     /// Checks the numbers of a load on an arch.
     pub(super) fn check_on_arch(&self) -> Result<(), ArgumentError> {
-        within("mass_kg", self.mass_kg, 1e-6..=1e15)?;
+        let least_kg = if self.thrust_n == 0.0 { 1e-6 } else { 0.0 };
+        within("mass_kg", self.mass_kg, least_kg..=1e15)?;
         within("x_m", self.x_m, -1e6..=1e6)?;
+        within(
+            "thrust_n",
+            self.thrust_n,
+            -LARGEST_THRUST_N..=LARGEST_THRUST_N,
+        )?;
         if self.width_m != 0.0 {
             within("width_m", self.width_m, MAGNITUDE)?;
+            let is_spread = self.moves && self.thrust_n == 0.0 && self.pier.is_none();
+            let at_a_point =
+                "0: only masses on the extrados that move are spread; other loads act at a point";
+            allow(is_spread, "width_m", self.width_m, at_a_point)?;
         }
         Ok(())
     }

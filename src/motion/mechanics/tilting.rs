@@ -16,7 +16,7 @@ use super::back_wall::rate_passed;
 use super::chain::{Coefficients, MechanismState};
 use super::geometry::rigid::mirrored;
 use crate::mechanics::four_link::thrust::Load;
-use crate::mechanics::{Column, MassMoments, Mechanism, Momentum, Pose, Sway};
+use crate::mechanics::{MassMoments, Mechanism, Momentum, PlacedLoad, Pose, Sway};
 
 /// Load of a block, in the frame in which it sways right.
 #[derive(Clone, Copy, Debug)]
@@ -51,20 +51,25 @@ pub struct Tilting {
 }
 
 impl Tilting {
-    /// Returns a column of one prismatic block that sways to this side.
-    pub(super) fn new(column: &Column, sway: Sway) -> Self {
-        let diagonal_m = column.height_m.hypot(column.width_m);
-        let (sin, cos) = (column.width_m / diagonal_m, column.height_m / diagonal_m);
-        let block_kg = column.prism_kg();
+    /// Returns a prismatic block, given by height and width in metres and by its mass, with loads at points in metres from the middle of its base. It
+    /// sways to this side.
+    pub(super) fn new<'l>(
+        [height_m, width_m]: [f64; 2],
+        block_kg: f64,
+        loads: impl Iterator<Item = (&'l PlacedLoad, Vector2<f64>)>,
+        gravity_m_s2: f64,
+        sway: Sway,
+    ) -> Self {
+        let diagonal_m = height_m.hypot(width_m);
+        let (sin, cos) = (width_m / diagonal_m, height_m / diagonal_m);
         let towards = |v: Vector2<f64>| match sway {
             Sway::Right => v,
             Sway::Left => mirrored(v),
         };
-        let loads = column.placed_loads().map(|(load, at_m)| CarriedLoad {
+        let loads = loads.map(|(load, at_m)| CarriedLoad {
             at: towards(at_m) / (0.5 * diagonal_m),
             mass: load.moving_mass_kg() / block_kg,
-            force: towards(load.constant_force_n(column.gravity_m_s2))
-                / (block_kg * column.gravity_m_s2),
+            force: towards(load.constant_force_n(gravity_m_s2)) / (block_kg * gravity_m_s2),
         });
         // A load of zero must not change any bit.
         let loads = loads.filter(|load| load.mass > 0.0 || load.force != Vector2::zeros());

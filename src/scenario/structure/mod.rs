@@ -11,7 +11,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use thiserror::Error;
 
-use super::load::loaded_column;
+use super::load::{NO_CONSTANT_FORCES, loaded_column};
 use super::masonry::{self, Additions};
 use super::prelude::*;
 use super::span::Circular;
@@ -337,9 +337,6 @@ fn why_not(arch: &Arch, error: LimitError) -> String {
 /// Message about ties of a column with a wall behind it.
 const NO_TIES: &str = "cannot be combined with [column.back]: a column with ties moves as a row of blocks, without contact with a wall behind it; leave \
                        one out";
-/// Message about ties of a column with constant forces.
-const NO_CONSTANT_FORCES: &str = "cannot be combined with a [[load]] that has `thrust_n`, or `moves = false`: the model computes ties or constant \
-                                  forces; leave one out";
 /// Message about a wall behind a row of blocks.
 const NO_BLOCKS: &str = "applies to Housner's model only, a single prismatic block: rows of blocks (drums, a taper, free hinges, elastic joints) have no \
                          contact with a wall behind them; leave these out, or leave [column.back] out";

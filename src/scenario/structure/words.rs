@@ -156,7 +156,18 @@ fn of_masonry(masonry: &Masonry) -> Vec<String> {
             0.0 => String::new(),
             _ => format!(" over {width} m"),
         };
-        format!("load of {mass} kg{over} at x = {x} m")
+        match (load.pier, load.moves && load.thrust_n == 0.0) {
+            (None, true) => format!("load of {mass} kg{over} at x = {x} m"),
+            (None, false) => format!("load at x = {x} m: {}", load_in_words(load)),
+            (Some(side), _) => {
+                let height_m = load.height_m.map(metres);
+                let at = height_m.map_or("at its top".to_owned(), |height| {
+                    format!("{height} m above its foot")
+                });
+                let (side, load) = (side.name(), load_in_words(load));
+                format!("load on the {side} pier {at}: {load}")
+            }
+        }
     }));
     parts
 }

@@ -74,6 +74,21 @@ pub struct ConstantForce {
     pub delta_y: f64,
 }
 
+impl ConstantForce {
+    /// Returns a force with the displacement of its point, multiplied by `scale`.
+    fn new(force: &MovingForce, scale: f64, gravity_m_s2: f64) -> Self {
+        let force_kn = force.force_kg * (gravity_m_s2 / 1000.0);
+        Self {
+            x_m: force.at_m.x + 0.0,
+            y_m: force.at_m.y + 0.0,
+            force_x_kn: force_kn.x + 0.0,
+            force_y_kn: force_kn.y + 0.0,
+            delta_x: force.displacement.x * scale,
+            delta_y: force.displacement.y * scale,
+        }
+    }
+}
+
 /// The mechanism that starts to one side.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Mechanism {
@@ -206,12 +221,11 @@ impl Mechanism {
             let terms = bodies.iter().map(|body| body.weight_kn * term(body));
             terms.sum()
         };
-        let ties = found.ties.iter();
-        let held_kg = ties.clone();
-        let held_kg = held_kg.map(|tie| tie.force_kg * (tie.lengthening * scale));
-        let forces = found.forces.iter();
-        let pushing_kg = forces.clone();
-        let pushing_kg = pushing_kg.map(|force| force.force_kg.dot(&force.displacement) * scale);
+        let (ties, forces) = (found.ties.iter(), found.forces.iter());
+        let held_kg = (ties.clone()).map(|tie| tie.force_kg * (tie.lengthening * scale));
+        let pushing_kg =
+            (forces.clone()).map(|force| force.force_kg.dot(&force.displacement) * scale);
+        let held_kg = held_kg.sum::<f64>() - pushing_kg.sum::<f64>();
         let curves = found.curves.as_ref().ok();
         let crown = curves
             .and_then(|curves| curves.crown.as_ref())
@@ -235,8 +249,7 @@ impl Mechanism {
         });
         Self {
             hinges: hinges.collect(),
-            sum_f_delta_l_kn: (held_kg.sum::<f64>() - pushing_kg.sum::<f64>()) * input.gravity_m_s2
-                / 1000.0,
+            sum_f_delta_l_kn: held_kg * input.gravity_m_s2 / 1000.0,
             sum_p_kn: sum(|_| 1.0),
             sum_p_delta_x_kn: sum(|body| body.delta_x),
             sum_p_delta_x2_kn: sum(|body| body.delta_x * body.delta_x),
@@ -249,14 +262,7 @@ impl Mechanism {
                 })
                 .collect(),
             forces: forces
-                .map(|force| ConstantForce {
-                    x_m: force.at_m.x + 0.0,
-                    y_m: force.at_m.y + 0.0,
-                    force_x_kn: weight_kn(force.force_kg.x),
-                    force_y_kn: weight_kn(force.force_kg.y),
-                    delta_x: force.displacement.x * scale,
-                    delta_y: force.displacement.y * scale,
-                })
+                .map(|force| ConstantForce::new(force, scale, input.gravity_m_s2))
                 .collect(),
             alpha0,
             moving_mass_kg: participation.moving_mass_kg,

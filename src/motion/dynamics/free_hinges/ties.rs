@@ -40,6 +40,7 @@ impl<'a> Ties<'a> {
     pub fn right_support_force_n(&self) -> Vector2<f64> {
         let feet_m = self.row.feet_m();
         let ends = self.memories().zip(&self.lines);
+        let ends = ends.filter(|((tie, _), _)| !tie.is_constant_force());
         let ends = ends.flat_map(|((tie, memory), line)| {
             let force = line.along * memory.force_n.0[0];
             tie.ends.into_iter().zip([force, -force])

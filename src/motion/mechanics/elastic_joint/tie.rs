@@ -26,7 +26,11 @@ impl BoundTie {
             match anchor.block {
                 Some(block) => (block, blocks[block].centre_m),
                 None => {
-                    let support = anchor.support(feet_m);
+                    // The second end of a constant force is at no support: the left one receives no force in any result.
+                    let support = match tie.is_constant_force() {
+                        true => 0,
+                        false => anchor.support(feet_m),
+                    };
                     (blocks.len() + support, feet_m[support])
                 }
             }

@@ -1,10 +1,11 @@
-//! Masses on an arch, which move with the voussoirs below.
+//! Loads on an arch and its piers.
 
 use nalgebra::Vector2;
 
+use super::Piers;
 use super::cut::CutArch;
 use crate::argument::{ArgumentError, allow};
-use crate::mechanics::{Block, MassMoments, PlacedLoad};
+use crate::mechanics::{Block, MassMoments, PlacedLoad, Row, Sway};
 
 impl PlacedLoad {
     pub(super) fn add_to(
@@ -12,7 +13,11 @@ impl PlacedLoad {
         extra: &mut [Option<Block>],
         arch: &CutArch,
     ) -> Result<(), ArgumentError> {
-        self.check_on_arch()?;
+        if self.moving_mass_kg() == 0.0 {
+            // A constant force needs a point of the extrados, as a mass does.
+            let mass = Self::mass(1.0, self.x_m);
+            return mass.add_to(&mut vec![None; extra.len()], arch);
+        }
         let (from_x, to_x) = (self.x_m - 0.5 * self.width_m, self.x_m + 0.5 * self.width_m);
         let mut placed_kg = 0.0;
         for (voussoir, extra) in extra.iter_mut().enumerate() {
@@ -66,6 +71,34 @@ impl PlacedLoad {
             false => "on the extrados, which is no upper side here: give the load as a part of a block, by its density or outline".to_owned(),
         };
         allow(all_stands, "x_m", self.x_m, allowed).map(|_| ())
+    }
+
+    /// Returns the block of the pier that carries it, at a joint the lower one, and its point in metres; `None` without that pier.
+    pub(super) fn place_on_pier_m(
+        &self,
+        side: Sway,
+        piers: &Piers,
+        row: &Row,
+    ) -> Option<Result<(usize, Vector2<f64>), ArgumentError>> {
+        let last = [row.blocks.len() - 1, row.joints.len() - 1];
+        let (pier, foot) = match side {
+            Sway::Left => (piers.left?, &row.joints[0]),
+            Sway::Right => (piers.right?, &row.joints[last[1]]),
+        };
+        let height_m = self.height_m.unwrap_or(pier.height_m);
+        let allowed = format_args!("from 0 to the height of the pier, {:?} m", pier.height_m);
+        let fits = (0.0..=pier.height_m).contains(&height_m);
+        if let Err(error) = allow(fits, "height_m", height_m, allowed) {
+            return Some(Err(error));
+        }
+        let courses = height_m / pier.height_m * pier.blocks as f64;
+        let course = ((courses * (1.0 - 1e-9)).ceil() as usize).saturating_sub(1);
+        let block = match side {
+            Sway::Left => course,
+            Sway::Right => last[0] - course,
+        };
+        let foot_m = foot.middle_m();
+        Some(Ok((block, foot_m + Vector2::new(self.x_m, height_m))))
     }
 
     /// Returns the voussoir under its middle, and the point on its extrados, in metres.

@@ -179,7 +179,7 @@ pub struct Masonry {
     pub piers: Piers,
     /// Fill above the arch.
     pub fill: Option<Fill>,
-    /// Masses on its extrados.
+    /// Loads on its extrados and on its piers.
     #[serde(rename = "load", skip_serializing_if = "Vec::is_empty")]
     pub loads: Vec<PlacedLoad>,
     /// Blocks and joints.
@@ -199,6 +199,33 @@ pub struct LoadOutlines {
     pub loads_m: Vec<(usize, Vector2<f64>)>,
 }
 
+/// Places loads on an arch and its piers; `first` is the index of the first voussoir. Returns the row with the moving masses on its piers, and the loads
+/// for pictures.
+fn place_loads(
+    loads: &[PlacedLoad],
+    arch: &CutArch,
+    (piers, first): (&Piers, usize),
+    mut row: Row,
+) -> Result<(Row, LoadOutlines), MasonryError> {
+    let mut placed = LoadOutlines::default();
+    let loads_m = &mut placed.loads_m;
+    for (index, load) in loads.iter().enumerate() {
+        let Some(side) = load.pier else {
+            let place = load.place_m(arch);
+            loads_m.extend(place.map(|(voussoir, at_m)| (first + voussoir, at_m)));
+            continue;
+        };
+        let place = load.place_on_pier_m(side, piers, &row);
+        let place = place.ok_or(MasonryError::NoPier(index, side))?;
+        let (block, at_m) = place.map_err(|error| MasonryError::Load(index, error))?;
+        if let Some(body) = load.moving_body(at_m) {
+            row = row.with_body(block, &body);
+        }
+        loads_m.push((block, at_m));
+    }
+    Ok((row, placed))
+}
+
 /// Reason why masonry is not valid.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
@@ -215,6 +242,9 @@ pub enum MasonryError {
     /// A number of the load of this index, from 0, is out of range.
     #[error("load {number}: {1}", number = .0 + 1)]
     Load(usize, ArgumentError),
+    /// The load with this index is on a pier that the arch does not have.
+    #[error("load {number} is on the {side} pier, and there is none", number = .0 + 1, side = .1.name())]
+    NoPier(usize, Sway),
     /// The order of the joints or the outline of a block is not valid.
     #[error(transparent)]
     Outline(#[from] OutlineError),
@@ -255,8 +285,11 @@ impl Masonry {
                 .map_err(MasonryError::Fill)?;
         }
         for (index, load) in loads.iter().enumerate() {
-            load.add_to(&mut extra, &arch)
-                .map_err(|error| MasonryError::Load(index, error))?;
+            let fits = load.check_on_arch().and_then(|()| match load.pier {
+                None => load.add_to(&mut extra, &arch),
+                Some(_) => Ok(()),
+            });
+            fits.map_err(|error| MasonryError::Load(index, error))?;
         }
         let (blocks, outlines_m) = match given {
             Some(given) => (given.blocks(), given.outlines_m()),
@@ -291,20 +324,10 @@ impl Masonry {
             }
         }
         let fill_m = fill.map_or(Ok(Vec::new()), |fill| fill.outlines_for_drawing(&arch));
-        let loads_m = loads.iter().filter_map(|load| load.place_m(&arch));
-        let mut load_outlines = LoadOutlines {
-            fill_m: fill_m.map_err(MasonryError::Fill)?,
-            loads_m: loads_m.collect(),
-        };
-        let voussoirs = load_outlines
-            .fill_m
-            .iter_mut()
-            .map(|(voussoir, _)| voussoir);
-        let loaded = load_outlines
-            .loads_m
-            .iter_mut()
-            .map(|(voussoir, _)| voussoir);
-        voussoirs.chain(loaded).for_each(|block| *block += first);
+        let (row, mut load_outlines) = place_loads(&loads, &arch, (&piers, first), row)?;
+        load_outlines.fill_m = fill_m.map_err(MasonryError::Fill)?;
+        let voussoirs = load_outlines.fill_m.iter_mut();
+        voussoirs.for_each(|(voussoir, _)| *voussoir += first);
         Ok(Self {
             shape,
             piers,
@@ -337,6 +360,17 @@ impl Masonry {
         let courses =
             [self.piers.left, self.piers.right].map(|pier| pier.map_or(0, |pier| pier.blocks));
         Some([courses[0], self.row.joints.len() - 1 - courses[1]])
+    }
+
+    /// Returns this masonry with the constant forces of its loads in place of ties, under this gravity.
+    #[must_use]
+    pub fn with_constant_forces(mut self, gravity_m_s2: f64) -> Self {
+        let loads = self.loads.iter().zip(&self.load_outlines.loads_m);
+        let forces =
+            loads.map(|(load, (block, at_m))| (*block, *at_m, load.constant_force_n(gravity_m_s2)));
+        let forces: Vec<_> = forces.collect();
+        self.row = self.row.with_constant_forces(forces, gravity_m_s2);
+        self
     }
 
     /// Returns this masonry with these ties in place of its own, under this gravity.

@@ -36,8 +36,12 @@ impl Masonry {
     }
 
     fn is_stable_with(&self, shape: Shape, piers: Piers) -> Option<bool> {
-        let masonry = Self::new(shape, piers, self.fill, self.loads.clone()).ok()?;
-        masonry.stands().ok()
+        // Loads on piers are neglected for an arch on rigid ground.
+        let loads = self.loads.iter().copied();
+        let loads = loads.filter(|load| load.pier.is_none() || !piers.are_none());
+        let masonry = Self::new(shape, piers, self.fill, loads.collect()).ok()?;
+        let gravity_m_s2 = self.row.gravity_m_s2;
+        masonry.with_constant_forces(gravity_m_s2).stands().ok()
     }
 }
 

@@ -152,6 +152,11 @@ pub enum SettlingError {
     /// The row is a stack, with one support only.
     #[error("the row stands on one support alone, and nothing moves against it")]
     OneSupport,
+    /// The row carries constant forces.
+    #[error(
+        "moving supports are followed without constant forces (`thrust_n`, or `moves = false`, of [[load]]); leave these out"
+    )]
+    ConstantForces,
     /// The undeformed row is not stable.
     #[error(transparent)]
     Stability(#[from] StabilityError),
@@ -183,7 +188,11 @@ impl SettlingError {
     pub const fn at(&self) -> Option<f64> {
         match self {
             Self::NoEquilibrium(at) | Self::Parted { at, .. } => Some(*at),
-            Self::OneSupport | Self::Stability(_) | Self::Contact(_) | Self::Ties => None,
+            Self::OneSupport
+            | Self::ConstantForces
+            | Self::Stability(_)
+            | Self::Contact(_)
+            | Self::Ties => None,
         }
     }
 }
@@ -210,10 +219,13 @@ impl<'a> Follower<'a> {
     /// Returns a follower of the undeformed row.
     ///
     /// # Errors
-    /// If the row is a stack, or is not stable.
+    /// If the row is a stack, carries constant forces, or is not stable.
     pub fn new(row: &'a Row) -> Result<Self, SettlingError> {
         if row.supports == Supports::Left {
             return Err(SettlingError::OneSupport);
+        }
+        if row.constant_forces().next().is_some() {
+            return Err(SettlingError::ConstantForces);
         }
         if let Some(openings) = super::stability::collapse_mechanism(row)? {
             return Err(StabilityError::CannotStand(openings).into());
