@@ -381,15 +381,15 @@ impl Scenario {
         right.with_left_foot(left, apart_m, self.simulation.gravity_m_s2)
     }
 
-    /// Returns one scenario for each record of the suite, with the unscaled record as ground motion and without other studies. Empty without a
-    /// suite.
+    /// Returns one scenario for each record of the suite, by its name, with the record at level 1 as ground motion and without other studies.
+    /// Empty without a suite.
     pub fn by_record(&self) -> Vec<(String, Self)> {
         let records = self.suite.iter().flat_map(|suite| &suite.records);
         records
             .map(|series| {
                 let record = suite::scaled_record(series, Scaling::Factor(1.0));
                 let scenario = self.with_ground(Some(Ground::Record(Box::new(record))));
-                (series.file.clone(), scenario)
+                (series.name.clone(), scenario)
             })
             .collect()
     }

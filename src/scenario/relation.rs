@@ -9,6 +9,8 @@ use super::table::{FaultRecorded, ReadResult, Table};
 pub(super) enum Relation<'a> {
     /// Exactly one of these keys. The text replaces the message for a missing key.
     OneOf(&'a [&'a str], Option<&'a str>),
+    /// At least one of these keys. The text is the message if none is given.
+    SomeOf(&'a [&'a str], &'a str),
     /// At most one of these keys. The text is the remedy if two are given.
     AtMostOne(&'a [&'a str], &'a str),
     /// All of these keys or none.
@@ -19,7 +21,7 @@ pub(super) enum Relation<'a> {
     Excludes(&'a str, &'a str, &'a str),
 }
 
-use Relation::{AtMostOne, Excludes, OneOf, Requires, Together};
+use Relation::{AtMostOne, Excludes, OneOf, Requires, SomeOf, Together};
 
 impl Relation<'_> {
     /// Returns the relation as a JSON schema.
@@ -27,6 +29,7 @@ impl Relation<'_> {
         let given = |key: &&str| json!({ "required": [key] });
         match self {
             OneOf(keys, _) => json!({ "oneOf": keys.iter().map(given).collect::<Vec<_>>() }),
+            SomeOf(keys, _) => json!({ "anyOf": keys.iter().map(given).collect::<Vec<_>>() }),
             AtMostOne(keys, _) => {
                 let pairs = keys.iter().enumerate().flat_map(|(index, one)| {
                     let others = keys[..index].iter();
@@ -53,6 +56,11 @@ impl Relation<'_> {
                 if !exclude(table, keys, &format!("give {rule}")) && !table.may_give(keys) {
                     let needs = format!("needs {rule}");
                     table.fault_of_table(message.unwrap_or(&needs));
+                }
+            }
+            SomeOf(keys, message) => {
+                if !table.may_give(keys) {
+                    table.fault_of_table(message);
                 }
             }
             AtMostOne(keys, remedy) => {

@@ -8,3 +8,4 @@ pub mod keys;
 mod records;
 mod set;
 mod span;
+mod suite_records;

@@ -1,6 +1,7 @@
 //! Layout of a record file: its format, and, for tables, the columns of times and accelerations.
 
 use std::ffi::OsStr;
+use std::fmt;
 use std::path::Path;
 
 use super::samples::{MAX_TIME_S, MIN_STEP_S};
@@ -57,6 +58,16 @@ pub enum TableColumn {
     Number(usize),
     /// Name of the column in the first row; or name of the channel in the header, or whole words of it.
     Name(String),
+}
+
+/// Name or number in the name of a record; `/` would begin a folder.
+impl fmt::Display for TableColumn {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => write!(f, "{number}"),
+            Self::Name(name) => f.write_str(&shown(name).replace(['/', '\\'], "_")),
+        }
+    }
 }
 
 /// The times of the samples of a table.
@@ -200,6 +211,27 @@ impl Layout {
         layout
     }
 
+    /// Takes the keys of the outer table that apply to files of these formats as defaults: keys of tables, and `unit`, only if one of them is a
+    /// table, and none that the given keys exclude.
+    pub(in crate::scenario) fn inherit(table: &mut Table<'_>, formats: &[Format]) {
+        let has_tables = formats.contains(&Format::Csv);
+        let has_channels = formats.iter().any(|format| format.has_channels());
+        let excluded = |key: &str| {
+            let mut pairs = EXCLUSIVE.into_iter();
+            pairs.any(|[one, other]| {
+                key == one && table.gives(other) || key == other && table.gives(one)
+            })
+        };
+        let of_tables = TABLE_KEYS.into_iter().chain(["unit"]);
+        let keys: Vec<_> = of_tables
+            .filter(|_| has_tables)
+            .chain(["channel"].into_iter().filter(|_| has_channels))
+            .chain(["quantity", "remove_mean"])
+            .filter(|key| !excluded(key))
+            .collect();
+        table.inherit(keys.into_iter());
+    }
+
     /// Returns true if one of the keys for tables only is given.
     pub(in crate::scenario) fn has_table_keys(table: &Table<'_>) -> bool {
         TABLE_KEYS.iter().any(|key| table.gives(key))
@@ -223,6 +255,13 @@ const TABLE_KEYS: [&str; 7] = [
     "skip_rows",
     "end_marker",
     "decimal",
+];
+
+/// Keys of which an entry takes no default if it gives the other key.
+const EXCLUSIVE: [[&str; 2]; 3] = [
+    ["time_column", "dt_s"],
+    ["time_column", "wrapped"],
+    ["acceleration_column", "wrapped"],
 ];
 
 impl Format {

@@ -81,11 +81,34 @@ pub enum Scaling {
     PeakG(f64),
 }
 
+impl Scaling {
+    /// Reads the keys of a scaling; the default is the factor 1.
+    pub(super) fn read(table: &mut Table<'_>) -> ReadResult<Self> {
+        let scale = table.optional("scale", &SCALE);
+        let peak_g = table.optional("peak_g", &PEAK_G);
+        let at_most = "give at most one of them";
+        table.apply_relations(&[AtMostOne(&["scale", "peak_g"], at_most)])?;
+        Ok(peak_g.map_or(Self::Factor(scale.unwrap_or(1.0)), Self::PeakG))
+    }
+
+    /// Returns this scaling after another one, which a peak replaces.
+    pub(super) fn after(self, first: Self) -> Self {
+        match (self, first) {
+            (Self::Factor(factor), Self::Factor(first)) => Self::Factor(factor * first),
+            (Self::Factor(factor), Self::PeakG(peak_g)) => Self::PeakG(factor * peak_g),
+            (Self::PeakG(_), _) => self,
+        }
+    }
+}
+
 /// A motion in one direction, from a file.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Series {
     /// Name of the file, relative to the scenario file.
     pub file: String,
+    /// Name of the record in results: its file, in suites also its channel or column if several records are from this file.
+    #[serde(skip)]
+    pub name: String,
     /// Layout of the file.
     #[serde(flatten)]
     pub layout: Layout,
@@ -233,6 +256,7 @@ impl Series {
 
     fn new(file: String, layout: Layout, contents: Contents) -> Self {
         Self {
+            name: file.clone(),
             file,
             layout,
             scaling: Scaling::Factor(1.0),
@@ -263,9 +287,9 @@ impl Series {
         Ok(Self::new(name, layout, contents))
     }
 
-    /// Returns the name of the file, with hidden characters escaped.
+    /// Returns the name of the record, with hidden characters escaped.
     pub fn name(&self) -> String {
-        shown(&self.file)
+        shown(&self.name)
     }
 
     /// Returns this record with another scaling.
@@ -379,19 +403,16 @@ impl Series {
         let (known, gravity_m_s2, _) = known;
         let file = table.required("file", &text());
         let format = Format::read_or_ending(table, &file);
-        let scale = table.optional("scale", &SCALE);
-        let peak_g = table.optional("peak_g", &PEAK_G);
-        let at_most = "give at most one of them";
-        let related = table.apply_relations(&[AtMostOne(&["scale", "peak_g"], at_most)]);
+        let scaling = Scaling::read(table);
         let layout = Layout::read(table, format.as_slice());
-        related.and(table.check_faultless())?;
+        let scaling = scaling?;
+        table.check_faultless()?;
         let mut known = known.iter();
         let series = match known.find(|known| known.file == file && known.layout == layout) {
             Some(known) => known.clone(),
             None => Self::of_file(table.files(), file, layout)
                 .map_err(|wrong| table.wrong_file("file", wrong))?,
         };
-        let scaling = peak_g.map_or(Scaling::Factor(scale.unwrap_or(1.0)), Scaling::PeakG);
         let series = series.scaled(scaling);
         series.check(table, start_s, gravity_m_s2.ok_or(FaultRecorded)?)?;
         Ok(series)
