@@ -11,7 +11,7 @@ fuzz_target!(|input: &[u8]| {
     let Some((settings, contents)) = input.split_first() else {
         return;
     };
-    const FORMATS: [Format; 7] = [
+    const FORMATS: [Format; 8] = [
         Format::Smc,
         Format::Csmip,
         Format::Cosmos,
@@ -19,6 +19,7 @@ fuzz_target!(|input: &[u8]| {
         Format::Afad,
         Format::Cwb,
         Format::Csmnc,
+        Format::Unam,
     ];
     let quantities = RecordedQuantity::ALL;
     let layout = Layout {

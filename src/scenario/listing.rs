@@ -87,7 +87,8 @@ impl RecordListing {
             let mut own = layout.clone();
             if listed.format != layout.format {
                 own = Layout::new(listed.format);
-                (own.quantity, own.remove_mean) = (layout.quantity, layout.remove_mean);
+                own.quantity = layout.quantity;
+                (own.baseline, own.high_pass_hz) = (layout.baseline, layout.high_pass_hz);
             }
             let channel = layout.channel.clone();
             own.channel = channel.filter(|_| listed.format.has_channels());

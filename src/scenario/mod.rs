@@ -85,8 +85,8 @@ pub use models::{MODELS, MotionModel};
 use prelude::*;
 use record::KnownRecords;
 pub use record::{
-    Component, Contents, Decimal, Format, Layout, LineFault, Record, RecordedQuantity, Sampling,
-    Scaling, Series, TableColumn, Times, Unit,
+    Baseline, Component, Contents, Decimal, Format, Layout, LineFault, Record, RecordedQuantity,
+    Sampling, Scaling, Series, TableColumn, Times, Unit,
 };
 pub use right_foot::RightFoot;
 pub use sequence::{Sequence, Spacing};
@@ -328,7 +328,10 @@ impl Scenario {
             verify,
             uncertain: None,
             as_given: Entries::new(),
-            files: InputFiles::default(),
+            files: InputFiles {
+                place: table.files().clone(),
+                ..InputFiles::default()
+            },
             given_shape,
             ground_motion: Arc::new(GroundMotion::still()),
         };

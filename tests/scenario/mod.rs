@@ -1,6 +1,7 @@
 //! Scenario files and records: their contents and errors.
 
 mod check_record;
+mod corrections;
 mod files;
 mod files_in_memory;
 mod formats;

@@ -67,6 +67,7 @@ fn assert_samples(series: &Series, factor: f64) {
 /// The rest of a folder is read with `records`, and only the files that need more keys have entries.
 const ALL: &str = "records = 'all/*'\npeaks_g = [0.5, 3.0]\n\
     [[suite.record]]\nfile = 'all/[ac][fw][ab]*.*'\nchannel = 'n'\n\
+    [[suite.record]]\nfile = 'all/unam.*'\nchannel = 'N00E;+'\n\
     [[suite.record]]\nfile = 'all/timed.csv'\nunit = 'm/s2'\nacceleration_column = 'north'\n\
     [[suite.record]]\nfile = 'even.dat'\nunit = 'g'\ndt_s = 0.01\nskip_rows = 1\n";
 
@@ -84,6 +85,7 @@ fn a_folder_may_mix_formats() {
         "all/smc.smc",
         "all/afad.txt",
         "all/cwb.dat",
+        "all/unam.asa",
         "all/timed.csv",
         "even.dat",
     ];
@@ -103,7 +105,7 @@ fn a_folder_may_mix_formats() {
         .map(|series| series.layout.format)
         .collect();
     formats.dedup();
-    assert_eq!(formats.len(), 8, "{formats:?}");
+    assert_eq!(formats.len(), 9, "{formats:?}");
 }
 
 /// The samples of all files are equal, so all records have the same results; parts of the suite and the whole as well.
@@ -114,7 +116,7 @@ fn results_do_not_depend_on_the_format_of_a_record() {
     read(folder, ALL).unwrap();
     done(folder, &["suite", "s.toml", "--out", "whole"]);
     let table = Table::read(folder.join("whole/suite.csv"));
-    assert_eq!(table.rows.len(), 44);
+    assert_eq!(table.rows.len(), 48);
     for rows in table.rows.chunks(4) {
         for (row, first) in rows.iter().zip(&table.rows) {
             assert_eq!(row["outcome"], first["outcome"]);
