@@ -3,7 +3,9 @@
 use std::fs;
 use std::path::Path;
 
-use archrock::scenario::{Format, Scaling, Scenario, Series, Suite, TableColumn, Unit};
+use archrock::scenario::{
+    Baseline, Format, Scaling, Scenario, Series, Suite, TableColumn, Times, Unit,
+};
 
 use crate::common::program::{done, printed, refused};
 use crate::common::results::Table;
@@ -266,6 +268,55 @@ fn parts_belong_to_their_factors() {
     done(folder, &shard);
     write(3.0);
     refused(folder, &shard, &["another"]);
+}
+
+/// Corrections of `[suite]` are no defaults of velocities, and a key of an entry excludes its alternative.
+#[test]
+fn defaults_give_way_to_other_keys() {
+    let folder = folder();
+    let found = suite(
+        folder.path(),
+        "scales = [1]\nunit = 'cm/s2'\nbaseline = 'linear'\nhigh_pass_hz = 1\ndt_s = 0.01\nwrapped = true\n\
+         [[suite.record]]\nfile = 'all/csmip.v2'\nquantity = 'velocity'\n\
+         [[suite.record]]\nfile = 'all/timed.csv'\nremove_mean = true\ntime_column = 't'\nacceleration_column = 2\n\
+         [[suite.record]]\nfile = 'even.dat'\nskip_rows = 1\n",
+    );
+    let [velocities, timed, even] = &found.records[..] else {
+        panic!("{:?}", names(&found));
+    };
+    let corrections = |series: &Series| (series.layout.baseline, series.layout.high_pass_hz);
+    assert_eq!(corrections(velocities), (None, None));
+    assert_eq!(corrections(timed), (Some(Baseline::Mean), Some(1.0)));
+    assert_eq!(corrections(even), (Some(Baseline::Linear), Some(1.0)));
+    assert_eq!((timed.layout.wrapped, even.layout.wrapped), (false, true));
+    assert_eq!(even.layout.times, Some(Times::Step(0.01)));
+}
+
+/// Samples of an uncertain structure shake under each record, by its name.
+#[test]
+fn records_with_entries_shake_samples() {
+    let folder = folder();
+    let folder = folder.path();
+    read(
+        folder,
+        "scales = [500.0, 5000.0]\nunit = 'm/s2'\n\
+         [[suite.record]]\nfile = 'all/timed.csv'\nacceleration_column = 'up'\nscale = 5\n\
+         [[suite.record]]\nfile = 'all/timed.csv'\nacceleration_column = 'north'\nscale = 5\n\
+         [uncertain]\nsamples = 3\n\"column.width_m\" = { from = 0.07, to = 0.09 }\n",
+    )
+    .unwrap();
+    done(folder, &["suite", "s.toml", "--out", "results"]);
+    let table = Table::read(folder.join("results/uncertain_suite/capacities.csv"));
+    // With the scenario itself, and mirrored.
+    assert_eq!(table.rows.len(), 4 * 2 * 2);
+    for rows in table.rows.chunks(4) {
+        let records: Vec<_> = rows.iter().map(|row| row["record"].as_str()).collect();
+        let [up, north] = ["all/timed.csv up", "all/timed.csv north"];
+        assert_eq!(records, [up, up, north, north]);
+        // The samples of one column are three times those of the other.
+        let [up, north] = [0, 2].map(|row| rows[row].number("intensity"));
+        assert!((north / up - 3.0).abs() < 0.01, "{north} {up}");
+    }
 }
 
 #[test]

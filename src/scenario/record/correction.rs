@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, SQRT_2};
 
-use super::samples::{LineFault, MAX_SAMPLES, Parsed, Samples};
+use super::samples::{LineFault, MAX_SAMPLES, Parsed, Samples, check_time};
 use super::{Sampling, mean};
 use crate::scenario::prelude::*;
 
@@ -117,6 +117,9 @@ pub(super) fn high_pass(samples: &[(f64, f64)], corner_hz: f64) -> Parsed<Sample
         ))
     })?;
     let (pad, first_s, last_s) = (pad as usize, samples[0].0, samples[samples.len() - 1].0);
+    for time_s in [first_s - pad as f64 * step_s, last_s + pad as f64 * step_s] {
+        check_time(time_s, None).map_err(fault)?;
+    }
     let zeros = || std::iter::repeat_n(0.0, pad);
     let values = samples.iter().map(|sample| sample.1);
     let mut values: Vec<f64> = zeros().chain(values).chain(zeros()).collect();
@@ -124,7 +127,7 @@ pub(super) fn high_pass(samples: &[(f64, f64)], corner_hz: f64) -> Parsed<Sample
     filter.apply(values.iter_mut());
     filter.apply(values.iter_mut().rev());
     // Rounded, because a message names the first time.
-    let at = |from_s: f64, steps: f64| ((from_s + steps * step_s) * 1e9).round() / 1e9;
+    let at = |from_s: f64, steps: f64| ((from_s + steps * step_s) * 1e10).round() / 1e10;
     let before = (1..=pad).rev().map(|index| at(first_s, -(index as f64)));
     let after = (1..=pad).map(|index| at(last_s, index as f64));
     let times = before

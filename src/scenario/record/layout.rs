@@ -221,7 +221,7 @@ impl Layout {
     }
 
     /// Takes the keys of the outer table that apply to files of these formats as defaults: keys of tables, and `unit`, only if one of them is a
-    /// table, and none that the given keys exclude.
+    /// table, corrections only if the samples are accelerations, and none that the given keys exclude.
     pub(in crate::scenario) fn inherit(table: &mut Table<'_>, formats: &[Format]) {
         let has_tables = formats.contains(&Format::Csv);
         let has_channels = formats.iter().any(|format| format.has_channels());
@@ -231,11 +231,14 @@ impl Layout {
                 key == one && table.gives(other) || key == other && table.gives(one)
             })
         };
+        let is_velocity = table.as_given("quantity") == Some(json!(RecordedQuantity::Velocity));
+        let of_accelerations = ["baseline", "high_pass_hz", "remove_mean"];
         let of_tables = TABLE_KEYS.into_iter().chain(["unit"]);
         let keys: Vec<_> = of_tables
             .filter(|_| has_tables)
             .chain(["channel"].into_iter().filter(|_| has_channels))
-            .chain(["quantity", "baseline", "high_pass_hz", "remove_mean"])
+            .chain(["quantity"])
+            .chain(of_accelerations.into_iter().filter(|_| !is_velocity))
             .filter(|key| !excluded(key))
             .collect();
         table.inherit(keys.into_iter());
