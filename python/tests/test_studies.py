@@ -170,6 +170,19 @@ def test_a_suite_is_that_of_the_program(program: Program, tmp_path: Path) -> Non
             suite(column, some, peaks_g=levels)
 
 
+def test_records_are_corrected() -> None:
+    times = np.arange(1001) * 0.01
+    values = np.sin(3.0 * times) + 0.3
+    mean = Record(times, values, unit="m/s2", baseline="mean")
+    ends = np.sum(0.5 * (mean.acceleration[1:] + mean.acceleration[:-1]) * 0.01)
+    assert abs(ends) < 1e-12
+    assert mean == Record(times, values, unit="m/s2", remove_mean=True)
+    filtered = Record(times, values, unit="m/s2", baseline="linear", high_pass_hz=1.0, start_s=3.0)
+    assert (len(filtered.time), filtered.time[0]) == (1601, -3.0)
+    with pytest.raises(ValueError, match="`start_s` of at least 3"):
+        Record(times, values, unit="m/s2", high_pass_hz=1.0)
+
+
 def test_records_of_a_suite_may_have_their_own_unit_and_scale() -> None:
     column = Column(4.0, 0.8)
     plain = [Record.read(path) for path in sorted(RECORDS.glob("wave-*.at2"))[:2]]

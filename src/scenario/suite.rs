@@ -18,6 +18,8 @@
 //! Every record acts on the structure at every level: multiplied by each factor of `scales`, or scaled to each peak of `peaks_g`. `[ground]` is
 //! not used.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use super::listing::{RecordListing, written};
 use super::prelude::*;
 use super::record::{self, Component, Format, Record, Scaling, Series};
@@ -160,18 +162,14 @@ impl Suite {
             "has {cases} cases, {files} records at {count} levels; at most {MAX_CASES} are allowed"
         );
         table.refuse_all(cases > MAX_CASES, wrong)?;
+        table.refuse_all(files == 0, "has no records")?;
         let has_entries = !entries.is_empty();
         let listed = listing.series(table, accept)?.into_iter();
         let mut records: Vec<_> = listed.map(|(_, series)| series).chain(entries).collect();
-        name_apart(&mut records);
-        let mut names: Vec<_> = records.iter().map(|series| &*series.name).collect();
-        names.sort_unstable();
-        let twice = names.windows(2).find(|pair| pair[0] == pair[1]);
-        let wrong = twice.map_or(String::new(), |pair| {
-            let name = shown(pair[0]);
+        let twice = name_apart(&mut records).map_or(String::new(), |name| {
             format!("reads {name} twice; leave an entry out, or give each its `channel` or `acceleration_column`")
         });
-        table.refuse_all(!wrong.is_empty(), wrong)?;
+        table.refuse_all(!twice.is_empty(), twice)?;
         Ok(Self {
             records,
             has_entries,
@@ -245,22 +243,23 @@ fn read_entry(
     Ok(records.map(|(_, series)| series.scaled(scaling)).collect())
 }
 
-/// Adds channel or column to the names of records that share their file.
-fn name_apart(records: &mut [Series]) {
-    let files: Vec<_> = records.iter().map(|series| series.file.clone()).collect();
-    for series in records {
-        let same = files.iter().filter(|file| **file == series.file);
-        let layout = &series.layout;
-        if let (true, Some(column)) = (
-            same.count() > 1,
-            layout
-                .channel
-                .as_ref()
-                .or(layout.acceleration_column.as_ref()),
-        ) {
+/// Adds channel or column to the names of records that share their file. Returns a name that two records have even so.
+fn name_apart(records: &mut [Series]) -> Option<String> {
+    let mut shares: BTreeMap<String, usize> = BTreeMap::new();
+    for series in &*records {
+        *shares.entry(series.file.clone()).or_default() += 1;
+    }
+    let mut names = BTreeSet::new();
+    for series in records.iter_mut().filter(|series| shares[&series.file] > 1) {
+        let (channel, column) = (&series.layout.channel, &series.layout.acceleration_column);
+        if let Some(column) = channel.as_ref().or(column.as_ref()) {
             series.name = format!("{} {column}", series.file);
         }
+        if !names.insert(&series.name) {
+            return Some(series.name());
+        }
     }
+    None
 }
 
 /// Checks that a record can be used at the strongest level; the error is the reason if not.

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use archrock::scenario::{Baseline, Format, Ground, Record, Scenario, Series};
+use archrock::scenario::{Baseline, Format, Ground, LimitState, Record, Scenario, Series};
 
 use crate::common::program::{archrock, done, printed, refusal, stdout};
 use crate::common::results::json;
@@ -169,6 +169,35 @@ fn suites_correct_all_formats() {
         );
         assert!(end_velocity(series).abs() < 1e-6, "{}", series.file);
     }
+}
+
+#[test]
+fn checks_correct_their_records() {
+    let folder = folder();
+    let folder = folder.path();
+    for name in ["x-1.csv", "x-2.csv", "x-3.csv"] {
+        fs::copy(folder.join("a.csv"), folder.join(name)).unwrap();
+    }
+    let demand = "[demand]\nsoil = 'B'\ntopography = 'T1'\n[demand.slv]\nag_g = 0.25\nf0 = 2.4\ntc_star_s = 0.35\n";
+    let keys = "[verify]\nslv_records = 'x-*.csv'\nunit = 'm/s2'\nbaseline = 'linear'\nhigh_pass_hz = 0.5\n";
+    let scenario = read(folder, &format!("{demand}{keys}")).unwrap();
+    fs::write(folder.join("again.toml"), scenario.to_toml()).unwrap();
+    assert_eq!(
+        Scenario::read(&folder.join("again.toml")).as_ref(),
+        Ok(&scenario)
+    );
+    let verify = scenario.verify.as_ref().unwrap();
+    let records = verify.records.of(LimitState::Slv);
+    assert_eq!(records.len(), 3);
+    for series in records {
+        assert_eq!(
+            (series.samples.len(), series.layout.high_pass_hz),
+            (1201 + 1200, Some(0.5))
+        );
+        assert!(end_velocity(series).abs() < 1e-4);
+    }
+    let words = printed(folder, &["verify", "s.toml", "--out", "v"]);
+    assert!(words.contains("SLV"), "{words}");
 }
 
 #[test]

@@ -324,12 +324,21 @@ fn faulty_entries_are_refused() {
     let folder = folder();
     let folder = folder.path();
     let entry = |keys: &str| format!("scales = [1]\n[[suite.record]]\n{keys}\n");
+    fs::write(folder.join("zero.csv"), "0,0\n1,0\n").unwrap();
     let smc = "file = 'all/smc.smc'\n";
     let timed = "file = 'all/timed.csv'\nunit = 'm/s2'\nacceleration_column = 2";
     let cases = [
         (
             "scales = [1]\n".to_owned(),
             "[suite] lacks `records`: give a string or an array of at least one, or entries [[suite.record]]",
+        ),
+        (
+            "scales = [1]\nrecord = []\n".to_owned(),
+            "[suite] has no records",
+        ),
+        (
+            entry("file = 'zero.csv'\nunit = 'g'\npeak_g = 1"),
+            "is zero throughout",
         ),
         (entry(""), "lacks `file`"),
         (entry("file = 'none.smc'"), "does not exist"),

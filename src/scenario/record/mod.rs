@@ -361,7 +361,7 @@ impl Series {
 
     /// Returns an error for a record without accelerations.
     pub(super) fn check_not_zero(&self, gravity_m_s2: f64) -> Result<(), String> {
-        let is_zero = self.peak_g(gravity_m_s2) == 0.0;
+        let is_zero = self.peak() == 0.0 || self.peak_g(gravity_m_s2) == 0.0;
         ensure(!is_zero, || "is zero throughout".to_owned())
     }
 
