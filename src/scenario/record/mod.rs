@@ -664,7 +664,12 @@ mod tests {
                     blanks,
                     wrapped,
                 ];
-                for layout in layouts {
+                let corrected = layouts.clone().map(|layout| Layout {
+                    baseline: Some(Baseline::Linear),
+                    high_pass_hz: Some(1.0),
+                    ..layout
+                });
+                for layout in layouts.into_iter().chain(corrected) {
                     match parse(text, &layout) {
                         Ok(samples) => {
                             prop_assert!(samples.len() >= 2);
