@@ -1,17 +1,17 @@
-//! The readers of files whose header describes one or several histories. The first byte chooses format, quantity and channel; the contents follow, whose
+//! The readers of files whose header describes one or several histories. The first byte chooses format, quantity, channel and corrections; the contents follow, whose
 //! format is also searched for in their header.
 #![no_main]
 
 mod common;
 
-use archrock::scenario::{Format, Layout, RecordedQuantity, TableColumn};
+use archrock::scenario::{Baseline, Format, Layout, RecordedQuantity, TableColumn};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|input: &[u8]| {
     let Some((settings, contents)) = input.split_first() else {
         return;
     };
-    const FORMATS: [Format; 7] = [
+    const FORMATS: [Format; 8] = [
         Format::Smc,
         Format::Csmip,
         Format::Cosmos,
@@ -19,6 +19,7 @@ fuzz_target!(|input: &[u8]| {
         Format::Afad,
         Format::Cwb,
         Format::Csmnc,
+        Format::Unam,
     ];
     let quantities = RecordedQuantity::ALL;
     let layout = Layout {
@@ -28,6 +29,8 @@ fuzz_target!(|input: &[u8]| {
             3 => Some(TableColumn::Name("deg".to_owned())),
             number => Some(TableColumn::Number(usize::from(number))),
         },
+        baseline: (settings >> 6 & 1 == 1).then_some(Baseline::Linear),
+        high_pass_hz: (settings >> 7 == 1).then_some(1.0),
         ..Layout::new(FORMATS[usize::from(settings & 7) % FORMATS.len()])
     };
     let _ = Format::of_contents(contents);

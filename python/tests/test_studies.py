@@ -161,14 +161,39 @@ def test_a_suite_is_that_of_the_program(program: Program, tmp_path: Path) -> Non
 
     given = Record.read(RECORDS / records[0].name, peak_g=1.0)
     wrong: list[tuple[Any, str]] = [
-        ([given], "is scaled: leave"),
+        ([given], "has no effect beside `peaks_g`"),
         ([records[0], records[0]], "the name of two records"),
-        ([records[0], Record([0.0, 1.0], [0.0, 1.0], unit="m/s2")], "in one unit"),
         ([], "records"),
     ]
     for some, words in wrong:
         with pytest.raises(ValueError, match=words):
             suite(column, some, peaks_g=levels)
+
+
+def test_records_are_corrected() -> None:
+    times = np.arange(1001) * 0.01
+    values = np.sin(3.0 * times) + 0.3
+    mean = Record(times, values, unit="m/s2", baseline="mean")
+    ends = np.sum(0.5 * (mean.acceleration[1:] + mean.acceleration[:-1]) * 0.01)
+    assert abs(ends) < 1e-12
+    assert mean == Record(times, values, unit="m/s2", remove_mean=True)
+    filtered = Record(times, values, unit="m/s2", baseline="linear", high_pass_hz=1.0, start_s=3.0)
+    assert (len(filtered.time), filtered.time[0]) == (1601, -3.0)
+    with pytest.raises(ValueError, match="`start_s` of at least 3"):
+        Record(times, values, unit="m/s2", high_pass_hz=1.0)
+
+
+def test_records_of_a_suite_may_have_their_own_unit_and_scale() -> None:
+    column = Column(4.0, 0.8)
+    plain = [Record.read(path) for path in sorted(RECORDS.glob("wave-*.at2"))[:2]]
+    times, values = plain[1].time, plain[1].acceleration
+    other = Record(times, values * (9.81 / 2.0), unit="m/s2", scale=2.0, name=plain[1].name)
+    levels = [0.5, 1.0, 2.0]
+    found = suite(column, [other, plain[0]], scales=levels, duration_s=30.0).columns()
+    expected = suite(column, plain, scales=levels, duration_s=30.0).columns()
+    assert list(found["record"]) == list(expected["record"])
+    assert list(found["outcome"]) == list(expected["outcome"])
+    assert np.allclose(found["peak_g"], expected["peak_g"], rtol=1e-12)
 
 
 def test_a_threshold_is_that_of_the_program(program: Program, tmp_path: Path) -> None:

@@ -66,6 +66,10 @@ impl ScenarioErrors {
     pub(super) fn placed(source: (&str, &str), set: &[Assignment], mut faults: Vec<Fault>) -> Self {
         let (text, name) = source;
         faults.sort_by_key(|fault| (fault.text, fault.offset));
+        // Several tables may have the same default.
+        faults.dedup_by(|one, other| {
+            (one.text, one.offset, &one.message) == (other.text, other.offset, &other.message)
+        });
         // A single pass over the text for all faults: a malicious file can have very many.
         let mut chars = text.char_indices().peekable();
         let mut place = TextPosition { line: 1, column: 1 };

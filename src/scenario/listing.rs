@@ -1,6 +1,7 @@
 //! Records that a table names by files or patterns of file names, with the keys that describe the files.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::PathBuf;
 
 use super::prelude::*;
 use super::record::{Format, Layout, Series};
@@ -29,12 +30,41 @@ impl RecordListing {
         keys: &[(&'static str, Vec<String>)],
         format: Option<Format>,
     ) -> Self {
+        Self::without(&[], table, keys, format)
+    }
+
+    /// Finds files and reads keys as [`read`](Self::read), without files that other records name.
+    pub(super) fn without(
+        others: &[Series],
+        table: &mut Table<'_>,
+        keys: &[(&'static str, Vec<String>)],
+        format: Option<Format>,
+    ) -> Self {
+        let identity = |file: &str| table.files().identity(table.files().path(file));
+        let others: BTreeSet<_> = others.iter().map(|other| identity(&other.file)).collect();
         let keys = keys.iter();
         let files: Vec<_> = keys
-            .flat_map(|(key, patterns)| list(table, (key, patterns), format))
+            .flat_map(|(key, patterns)| list(table, (key, patterns), format, others.clone()))
             .collect();
-        // The keys of tables are needed if and only if one of the files is a table.
-        let formats: Vec<_> = files.iter().map(|listed| listed.format).collect();
+        let mut formats = formats(&files);
+        if !others.is_empty() && !formats.contains(&Format::Csv) {
+            // Keys of tables are then those of the other records.
+            formats.clear();
+        }
+        let layout = Layout::read(table, &formats);
+        Self { files, layout }
+    }
+
+    /// Finds the files that the key `file` of an entry matches, and reads the keys that describe them. Keys of the outer table are defaults, if
+    /// they apply to such files; `format` is the default of the format.
+    pub(super) fn of_entry(table: &mut Table<'_>, format: Option<Format>) -> Self {
+        let pattern = table.required(FILE, &text());
+        let format = Format::read(table).or(format);
+        let given = Some(pattern).filter(|pattern| !pattern.is_empty() || table.gives(FILE));
+        let patterns: Vec<_> = given.into_iter().collect();
+        let files = list(table, (FILE, &patterns), format, BTreeSet::new());
+        let formats = formats(&files);
+        Layout::inherit(table, &formats);
         let layout = Layout::read(table, &formats);
         Self { files, layout }
     }
@@ -57,7 +87,8 @@ impl RecordListing {
             let mut own = layout.clone();
             if listed.format != layout.format {
                 own = Layout::new(listed.format);
-                (own.quantity, own.remove_mean) = (layout.quantity, layout.remove_mean);
+                own.quantity = layout.quantity;
+                (own.baseline, own.high_pass_hz) = (layout.baseline, layout.high_pass_hz);
             }
             let channel = layout.channel.clone();
             own.channel = channel.filter(|_| listed.format.has_channels());
@@ -73,6 +104,9 @@ impl RecordListing {
         table.check_faultless().map(|()| records)
     }
 }
+
+/// The key of the file of an entry.
+const FILE: &str = "file";
 
 /// Returns records as entries of a table: the files of each key, and the keys of their layout.
 pub(super) fn written(keys: &[(&str, &[Series])]) -> Map<String, Value> {
@@ -102,15 +136,20 @@ pub(super) fn written(keys: &[(&str, &[Series])]) -> Map<String, Value> {
     files.chain(layout).collect()
 }
 
-/// Returns all files that match the patterns, sorted by name, without duplicates.
+/// Returns the formats of files: the keys of tables are needed if and only if one of them is a table.
+fn formats(files: &[ListedFile]) -> Vec<Format> {
+    files.iter().map(|listed| listed.format).collect()
+}
+
+/// Returns all files that match the patterns, sorted by name, without duplicates. Paths in `seen` are left out.
 fn list(
     table: &mut Table<'_>,
     (key, patterns): (&'static str, &[String]),
     format: Option<Format>,
+    mut seen: BTreeSet<PathBuf>,
 ) -> Vec<ListedFile> {
-    let mut found = BTreeMap::new();
     // A file with several names counts once.
-    let mut seen = BTreeSet::new();
+    let mut found = BTreeMap::new();
     for (element, pattern) in patterns.iter().enumerate() {
         let files = table.files().find(pattern).map_err(|wrong| {
             table.wrong_element(key, element, wrong);

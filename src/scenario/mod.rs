@@ -86,8 +86,8 @@ pub use models::{MODELS, MotionModel};
 use prelude::*;
 use record::KnownRecords;
 pub use record::{
-    Component, Contents, Decimal, Format, Layout, LineFault, Record, RecordedQuantity, Sampling,
-    Scaling, Series, TableColumn, Times, Unit,
+    Baseline, Component, Contents, Decimal, Format, Layout, LineFault, Record, RecordedQuantity,
+    Sampling, Scaling, Series, TableColumn, Times, Unit,
 };
 pub use right_foot::RightFoot;
 pub use sequence::{Sequence, Spacing};
@@ -330,7 +330,10 @@ impl Scenario {
             verify,
             uncertain: None,
             as_given: Entries::new(),
-            files: InputFiles::default(),
+            files: InputFiles {
+                place: table.files().clone(),
+                ..InputFiles::default()
+            },
             given_shape,
             ground_motion: Arc::new(GroundMotion::still()),
         };
@@ -383,15 +386,15 @@ impl Scenario {
         right.with_left_foot(left, apart_m, self.simulation.gravity_m_s2)
     }
 
-    /// Returns one scenario for each record of the suite, with the unscaled record as ground motion and without other studies. Empty without a
-    /// suite.
+    /// Returns one scenario for each record of the suite, by its name, with the record at level 1 as ground motion and without other studies.
+    /// Empty without a suite.
     pub fn by_record(&self) -> Vec<(String, Self)> {
         let records = self.suite.iter().flat_map(|suite| &suite.records);
         records
             .map(|series| {
                 let record = suite::scaled_record(series, Scaling::Factor(1.0));
                 let scenario = self.with_ground(Some(Ground::Record(Box::new(record))));
-                (series.file.clone(), scenario)
+                (series.name.clone(), scenario)
             })
             .collect()
     }

@@ -8,10 +8,17 @@
 //! time_column = 1                            # of the CSV files, as in [ground.record]
 //! acceleration_column = 2
 //! unit = "cm/s2"
+//!
+//! [[suite.record]]                           # files with keys of their own; those above are their defaults
+//! file = "east.csv"                          # a file or a pattern
+//! unit = "g"
+//! scale = 2.0                                # or peak_g
 //! ```
 //!
 //! Every record acts on the structure at every level: multiplied by each factor of `scales`, or scaled to each peak of `peaks_g`. `[ground]` is
 //! not used.
+
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::listing::{RecordListing, written};
 use super::prelude::*;
@@ -69,8 +76,10 @@ impl Measure {
 /// The records of a suite and the levels to which they are scaled.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Suite {
-    /// Unscaled records, sorted by file name; at least one.
+    /// Records with their own scaling: those of `records`, sorted by file name, then those of the entries; at least one.
     pub records: Vec<Series>,
+    /// True if some of the records have entries `[[suite.record]]`.
+    pub has_entries: bool,
     /// Intensity measure of the levels.
     pub measure: Measure,
     /// The levels to which each record is scaled, above 0.
@@ -117,7 +126,7 @@ const MAX_CASES: usize = 1_000_000;
 impl Suite {
     /// Reads `[suite]` with its records. `simulation` is `None` if `[simulation]` is faulty.
     pub(super) fn read(table: &mut Table<'_>, simulation: Option<&Simulation>) -> ReadResult<Self> {
-        let patterns = table.required(RECORDS, &one_or_more(&text()));
+        let patterns = table.optional(RECORDS, &one_or_more(&text()));
         let format = Format::read(table);
         let levels = Measure::ALL.iter().filter_map(|&measure| {
             let levels = Sequence::read(table, measure.key(), measure.range())?;
@@ -126,26 +135,44 @@ impl Suite {
         let levels: Vec<_> = levels.collect();
         let both_signs = table.or("both_signs", &switch(), true);
         let spectral = Spectral::read(table);
-        let related = table.apply_relations(&[OneOf(&["scales", "peaks_g"], None)]);
-        let listing = RecordListing::read(table, &[(RECORDS, patterns)], format);
+        let strongest = levels.first().and_then(|(measure, levels)| {
+            let level = levels.values().last().copied();
+            level.map(|level| measure.scaling(level))
+        });
+        let accept = |series: &Series| match strongest.zip(simulation) {
+            Some((strongest, simulation)) => check_record(series, strongest, simulation),
+            None => Ok(()),
+        };
+        let entry = |entry: &mut Table<'_>| read_entry(entry, format, strongest, accept);
+        let entries = table.tables(ENTRIES, entry).concat();
+        let related = table.apply_relations(&[
+            SomeOf(
+                &[RECORDS, ENTRIES],
+                "lacks `records`: give a string or an array of at least one, or entries [[suite.record]]",
+            ),
+            OneOf(&["scales", "peaks_g"], None),
+        ]);
+        let patterns: Vec<_> = patterns.map(|found| (RECORDS, found)).into_iter().collect();
+        let listing = RecordListing::without(&entries, table, &patterns, format);
         related.and(table.check_faultless())?;
         let (measure, levels) = levels.into_iter().next().ok_or(FaultRecorded)?;
-        let (values, files) = (levels.values(), listing.len());
-        let cases = files * (1 + usize::from(both_signs)) * values.len();
+        let (count, files) = (levels.values().len(), listing.len() + entries.len());
+        let cases = files * (1 + usize::from(both_signs)) * count;
         let wrong = format!(
-            "has {cases} cases, {files} records at {} levels; at most {MAX_CASES} are allowed",
-            values.len()
+            "has {cases} cases, {files} records at {count} levels; at most {MAX_CASES} are allowed"
         );
         table.refuse_all(cases > MAX_CASES, wrong)?;
-        let strongest = measure.scaling(values[values.len() - 1]);
-        let accept = |series: &Series| {
-            simulation.map_or(Ok(()), |simulation| {
-                check_record(series, strongest, simulation)
-            })
-        };
-        let records = listing.series(table, accept)?.into_iter();
+        table.refuse_all(files == 0, "has no records")?;
+        let has_entries = !entries.is_empty();
+        let listed = listing.series(table, accept)?.into_iter();
+        let mut records: Vec<_> = listed.map(|(_, series)| series).chain(entries).collect();
+        let twice = name_apart(&mut records).map_or(String::new(), |name| {
+            format!("reads {name} twice; leave an entry out, or give each its `channel` or `acceleration_column`")
+        });
+        table.refuse_all(!twice.is_empty(), twice)?;
         Ok(Self {
-            records: records.map(|(_, series)| series).collect(),
+            records,
+            has_entries,
             measure,
             levels,
             both_signs,
@@ -167,7 +194,10 @@ impl Suite {
 
 impl Serialize for Suite {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let records = written(&[(RECORDS, &self.records)]);
+        let records = match self.has_entries {
+            true => Map::from_iter([(ENTRIES.to_owned(), json!(self.records))]),
+            false => written(&[(RECORDS, &self.records)]),
+        };
         let own = [
             (self.measure.key(), json!(self.levels)),
             ("both_signs", json!(self.both_signs)),
@@ -183,6 +213,54 @@ impl Serialize for Suite {
 }
 
 const RECORDS: &str = "records";
+const ENTRIES: &str = "record";
+
+/// Reads the records of an entry `[[suite.record]]`.
+fn read_entry(
+    table: &mut Table<'_>,
+    format: Option<Format>,
+    strongest: Option<Scaling>,
+    accept: impl Fn(&Series) -> Result<(), String>,
+) -> ReadResult<Vec<Series>> {
+    let listing = RecordListing::of_entry(table, format);
+    let scaling = Scaling::read(table)?;
+    if let (Some(Scaling::PeakG(_)), false) = (strongest, scaling == Scaling::Factor(1.0)) {
+        let key = if table.gives("scale") {
+            "scale"
+        } else {
+            "peak_g"
+        };
+        return Err(table.wrong(
+            key,
+            "has no effect beside `peaks_g`, which replaces the peak; leave it out",
+        ));
+    }
+    let wrong = "scales all accelerations to zero; must be another number";
+    table.refuse(scaling == Scaling::Factor(0.0), "scale", wrong)?;
+    table.check_faultless()?;
+    let scaled = |series: &Series| accept(&series.scaled(scaling));
+    let records = listing.series(table, scaled)?.into_iter();
+    Ok(records.map(|(_, series)| series.scaled(scaling)).collect())
+}
+
+/// Adds channel or column to the names of records that share their file. Returns a name that two records have even so.
+fn name_apart(records: &mut [Series]) -> Option<String> {
+    let mut shares: BTreeMap<String, usize> = BTreeMap::new();
+    for series in &*records {
+        *shares.entry(series.file.clone()).or_default() += 1;
+    }
+    let mut names = BTreeSet::new();
+    for series in records.iter_mut().filter(|series| shares[&series.file] > 1) {
+        let (channel, column) = (&series.layout.channel, &series.layout.acceleration_column);
+        if let Some(column) = channel.as_ref().or(column.as_ref()) {
+            series.name = format!("{} {column}", series.file);
+        }
+        if !names.insert(&series.name) {
+            return Some(series.name());
+        }
+    }
+    None
+}
 
 /// Checks that a record can be used at the strongest level; the error is the reason if not.
 fn check_record(
@@ -200,7 +278,7 @@ fn check_record(
             )
         })?;
     }
-    let strongest = series.scaled(strongest);
+    let strongest = series.scaled(strongest.after(series.scaling));
     strongest.check_strength(simulation.gravity_m_s2)?;
     let lasts_s = start_s(series) + series.last_s();
     simulation.check_covers(lasts_s, |lasts| format!("lasts {lasts} s"))
@@ -210,7 +288,7 @@ fn check_record(
 pub(super) fn scaled_record(series: &Series, scaling: Scaling) -> Record {
     Record {
         component: Component::Horizontal,
-        main: series.scaled(scaling),
+        main: series.scaled(scaling.after(series.scaling)),
         vertical: None,
         start_s: start_s(series),
     }

@@ -82,6 +82,9 @@ pub struct Table<'a> {
     /// Path of the table in the document.
     path: String,
     entries: &'a Entries,
+    /// Path and entries of the outer table, and the keys whose values there are defaults of this table.
+    outer: Option<(String, &'a Entries)>,
+    inherited: Vec<&'static str>,
     document: &'a Document<'a>,
     /// The keys that were read, and true for keys of tables.
     known: Vec<(String, bool)>,
@@ -101,6 +104,8 @@ impl<'a> Table<'a> {
             place: (0, 0),
             path: String::new(),
             entries,
+            outer: None,
+            inherited: Vec::new(),
             document,
             known: Vec::new(),
             faults: Vec::new(),
@@ -262,9 +267,21 @@ impl<'a> Table<'a> {
         self.entries.get(key).is_some_and(Value::is_object)
     }
 
-    /// Returns true if the file has this key.
+    /// Returns true if the file has this key, here or as a default in the outer table.
     pub(super) fn gives(&self, key: &str) -> bool {
-        self.entries.contains_key(key)
+        self.entries.contains_key(key) || self.default_of(key).is_some()
+    }
+
+    /// Takes values that the outer table gives for these keys as defaults.
+    pub(super) fn inherit(&mut self, keys: impl Iterator<Item = &'static str>) {
+        self.inherited.extend(keys);
+    }
+
+    /// Returns path and value of a default in the outer table.
+    fn default_of(&self, key: &str) -> Option<(String, &'a Value)> {
+        let (path, entries) = self.outer.as_ref()?;
+        let value = entries.get(key).filter(|_| self.inherited.contains(&key))?;
+        Some((format!("{path}/{key}"), value))
     }
 
     /// Returns true if a table inside this one has the key.
@@ -401,6 +418,7 @@ impl<'a> Table<'a> {
         let mut searched = around.iter().skip(path.len().min(1)).rev();
         let found =
             searched.find_map(|(path, entries)| Some((format!("{path}/{key}"), entries.get(key)?)));
+        let found = found.or_else(|| self.default_of(key));
         let Some((path, value)) = found else {
             let place = innermost.unwrap_or(self.place);
             return self.fault(place, format!("`{key}` {message}"));
@@ -453,7 +471,8 @@ impl<'a> Table<'a> {
         if !self.known.iter().any(|(known, _)| known == key) {
             self.known.push((key.to_owned(), is_table));
         }
-        let entry = self.entries.get(key);
+        let own = self.entries.get(key);
+        let entry = own.or_else(|| self.default_of(key).map(|(_, value)| value));
         self.is_partial |= entry.is_none() && self.may_give(&[key]);
         entry
     }
@@ -474,6 +493,7 @@ impl<'a> Table<'a> {
         let mut table = Table {
             place: self.place_of(&path).unwrap_or(self.place),
             path,
+            outer: Some((self.path.clone(), self.entries)),
             description: self.description.as_ref().map(|_| an_object()),
             ..Table::new(name, entries, self.document)
         };

@@ -195,7 +195,7 @@ impl Series {
         if self.layout.format == Format::Knet && mean_g.abs() > OFFSET * peak_g {
             let mean = plain(mean_g);
             unlikely.push(format!(
-                "{name} has a mean of {mean} g, the offset of the instrument: give `remove_mean = true` to take it off"
+                "{name} has a mean of {mean} g, the offset of the instrument: give `baseline = \"mean\"` to take it off"
             ));
         }
         unlikely

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::results::PrintedResult;
 use crate::dynamics::Intensity;
 use crate::output::{OutputError, filters};
-use crate::scenario::{Format, RecordedQuantity, Series};
+use crate::scenario::{Baseline, Format, RecordedQuantity, Series};
 
 /// Report on a record. Velocity and displacement are integrated from zero.
 #[derive(Serialize, Deserialize, Template)]
@@ -26,8 +26,14 @@ pub struct Summary {
     peak_acceleration_time_s: f64,
     /// Mean acceleration, in units of gravity.
     mean_acceleration_g: f64,
-    /// True if the mean was removed.
+    /// True if the mean was removed, alone or with a line.
     mean_removed: bool,
+    /// Baseline that was subtracted: `mean` or `linear`; null without one.
+    baseline: Option<Baseline>,
+    /// Corner of the high-pass filter in Hz; null without a filter.
+    high_pass_hz: Option<f64>,
+    /// The corrections in words; empty without one.
+    corrections: String,
     /// Peak velocity, in m/s.
     peak_velocity_m_s: f64,
     /// Time of the peak velocity, in seconds.
@@ -62,7 +68,10 @@ pub fn record(
         peak_acceleration_m_s2: intensity.acceleration_m_s2.value,
         peak_acceleration_time_s: intensity.acceleration_m_s2.time_s,
         mean_acceleration_g: series.mean_g(gravity_m_s2),
-        mean_removed: series.layout.remove_mean,
+        mean_removed: series.layout.baseline.is_some(),
+        baseline: series.layout.baseline,
+        high_pass_hz: series.layout.high_pass_hz,
+        corrections: series.corrections(),
         peak_velocity_m_s: intensity.velocity_m_s.value,
         peak_velocity_time_s: intensity.velocity_m_s.time_s,
         peak_displacement_m: intensity.displacement_m.value,
@@ -86,6 +95,7 @@ fn format(series: &Series) -> String {
         Format::Afad => "file of AFAD",
         Format::Cwb => "file of CWB",
         Format::Csmnc => "file of CSMNC",
+        Format::Unam => "file of UNAM",
         Format::Csv if series.layout.wrapped => "table with several samples a row",
         Format::Csv => "table",
     };

@@ -363,7 +363,7 @@ fn unlikely_input_is_pointed_out() {
         (
             format!("{ARCH}[ground.record]\nfile = 'offset.NS'\n"),
             Some(
-                "offset.NS has a mean of 0.00523252 g, the offset of the instrument: give `remove_mean = true`",
+                "offset.NS has a mean of 0.00523252 g, the offset of the instrument: give `baseline = \"mean\"`",
             ),
         ),
         // The default longest step is 3.4e-4 times the square root of size over gravity.

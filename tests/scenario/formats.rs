@@ -31,9 +31,10 @@ const FILES: [(&str, Format, Unit, f64); 8] = [
 ];
 
 /// Files with several columns, and their channel with the samples.
-const COLUMNS: [(&str, Format, &str, usize); 2] = [
+const COLUMNS: [(&str, Format, &str, usize); 3] = [
     ("afad.txt", Format::Afad, "N-S", 1),
     ("cwb.dat", Format::Cwb, "n", 2),
+    ("unam.asa", Format::Unam, "n00e", 1),
 ];
 
 fn path(name: &str) -> PathBuf {
@@ -607,7 +608,8 @@ fn columns_of_a_text_are_channels() {
         // A peak that differs.
         let text = text
             .replace("(N-S) 2.5", "(N-S) 3.5")
-            .replace("-2.500\n", "-3.500\n");
+            .replace("-2.500\n", "-3.500\n")
+            .replace(": /-2.5/", ": /-3.5/");
         let contents = parse(&choose(TableColumn::Number(number)), &text).unwrap();
         let difference = contents.difference.expect(name);
         assert!(difference.contains("reaches 2.5 cm/s2, but its header states a peak of 3.5"));
@@ -697,6 +699,43 @@ fn texts_of_networks_are_compared_with_their_header() {
         17,
         "the time does not increase",
     );
+    for (old, new, line, words) in [
+        ("/10/10/10", "/11/11/11", 44, "is 10: line 24 announces 11"),
+        ("/.01/.01/.01", "/.01/0/.01", 18, "the step is 0 s"),
+        (
+            "/.01/.01/.01",
+            "/.01/.01",
+            18,
+            "has values of 2 channels: line 24 has 3",
+        ),
+        ("/N00E;+/N90E;+/V;+", "/V;+", 16, "has values of 1 channels"),
+        (
+            "UNIDADES DE",
+            "UNIDAD",
+            34,
+            "the header has no `unidades de los datos` up to here",
+        ),
+        ("cm/s^2 (Gal)", "cuentas", 24, "the unit is cuentas"),
+        ("      0.0750\n", "\n", 38, "has 2 numbers; must have 3"),
+    ] {
+        let whole = text("unam.asa");
+        assert!(whole.contains(old), "{old}");
+        let fault = parse(&choose(Format::Unam, 1), &whole.replacen(old, new, 1)).expect_err(words);
+        assert!(fault.message.contains(words), "{fault:?}");
+        assert_eq!(fault.line, line, "{fault:?}");
+    }
+    // As many readers find the unit: in brackets, or alone.
+    let alone = text("unam.asa")
+        .replacen("cm/s^2 (Gal)", "cm/s2", 1)
+        .replacen(": /-2.5/", ": /-2.6/", 1);
+    let contents = parse(&choose(Format::Unam, 1), &alone).unwrap();
+    assert_values(&contents, &SAMPLES, 1.0);
+    assert!(
+        contents
+            .difference
+            .unwrap()
+            .contains("states a peak of 2.6 cm/s2")
+    );
     assert_fault(
         "csmnc.dat",
         ("POINTS:  10", "POINTS:  11"),
@@ -728,6 +767,7 @@ fn a_text_holds_one_record() {
         (Format::Csmnc, long, 115),
         (Format::Afad, text("afad.txt"), 21),
         (Format::Cwb, text("cwb.dat"), 25),
+        (Format::Unam, text("unam.asa"), 46),
     ] {
         let layout = match format {
             Format::Csmnc => Layout::new(format),

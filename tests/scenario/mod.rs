@@ -1,6 +1,7 @@
 //! Scenario files and records: their contents and errors.
 
 mod check_record;
+mod corrections;
 mod files;
 mod files_in_memory;
 mod formats;
@@ -8,3 +9,4 @@ pub mod keys;
 mod records;
 mod set;
 mod span;
+mod suite_records;

@@ -53,6 +53,7 @@ fn limit_and_capacity_are_those_of_the_moments() {
     let folder = tempfile::tempdir().unwrap();
     let text = format!("{WALL}{ROOF}{VAULT}");
     let limit = answer(folder.path(), &["limit"], &text);
+    let words = printed(folder.path(), &["limit", "s.toml"]);
     let capacity = answer(folder.path(), &["capacity"], &text);
     // The limit of drums at their lowest joint, and of elastic joints, which are rigid in limit analysis.
     let free = answer(folder.path(), &["limit"], &format!("{text}[free_hinges]\n"));
@@ -68,7 +69,25 @@ fn limit_and_capacity_are_those_of_the_moments() {
         let own_m = own_m.unwrap();
         assert!((own_m / due_m - 1.0).abs() < 1e-9, "{own_m} {due_m}");
     }
-    // A stack of one drum with free hinges has the same curve.
+    // The words have both sides, and columns without loads have one.
+    assert!(
+        words.contains("A_L to the left") && words.contains("swaying left"),
+        "{words}"
+    );
+    let left = &limit["to_the_left"];
+    let rotation_rad = left["unstable_equilibrium_rad"][0].as_f64().unwrap();
+    let slenderness_rad = left["equivalent_block"]["slenderness_rad"]
+        .as_f64()
+        .unwrap();
+    assert!(
+        rotation_rad > 0.0 && (slenderness_rad.tan() / by_hand(Sway::Left)[0] - 1.0).abs() < 1e-9
+    );
+    assert!(
+        answer(folder.path(), &["limit"], WALL)
+            .get("to_the_left")
+            .is_none()
+    );
+    // A stack of drums that starts as one block has the same curve.
     let text = format!("{text}[free_hinges]\n");
     let stack = text.replace("width_m = 0.6", "width_m = 0.6\ndrums = 2");
     let stack = answer(folder.path(), &["capacity"], &stack);

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 Unit = Literal["g", "m/s2", "cm/s2", "mm/s2", "mg", "in/s2", "ft/s2", "m/s", "cm/s", "mm/s"]
 Quantity = Literal["acceleration", "velocity"]
+Baseline = Literal["mean", "linear"]
 
 
 class Ground(Described):
@@ -276,7 +277,10 @@ class Record(Ground):
         unit: ``"g"``, ``"mg"``, ``"m/s2"``, ``"cm/s2"``, ``"mm/s2"``, ``"in/s2"`` or ``"ft/s2"``; ``"m/s"``, ``"cm/s"`` or
             ``"mm/s"`` for velocities.
         quantity: the quantity of the samples. Between samples of ``"velocity"`` the acceleration is constant.
-        remove_mean: whether the mean over the time of the record is subtracted from the accelerations.
+        baseline: subtracted from the accelerations: their ``"mean"`` over time, or the ``"linear"`` line of least squares.
+        high_pass_hz: corner of a high-pass filter of the accelerations; the record then begins before its time zero, so it
+            needs ``start_s``.
+        remove_mean: the older name of ``baseline="mean"``.
         name: its name in results and messages.
         scale: factor on the accelerations; or give ``peak_g``.
         peak_g: peak acceleration to which to scale, in units of gravity.
@@ -299,6 +303,8 @@ class Record(Ground):
         *,
         unit: Unit,
         quantity: Quantity | None = None,
+        baseline: Baseline | None = None,
+        high_pass_hz: float | None = None,
         remove_mean: bool | None = None,
         name: str = "record",
         scale: float | None = None,
@@ -316,6 +322,8 @@ class Record(Ground):
             "format": "csv",
             "unit": unit,
             "quantity": quantity,
+            "baseline": baseline,
+            "high_pass_hz": high_pass_hz,
             "remove_mean": remove_mean,
             "scale": scale,
             "peak_g": peak_g,
@@ -371,7 +379,7 @@ class Record(Ground):
             keys: keys of ``[ground.record]``: for tables at least ``unit``, perhaps ``time_column`` and
                 ``acceleration_column``, or ``dt_s`` and ``wrapped``; ``format``, if it does not follow from the file; ``channel``,
                 of files with several;
-                ``quantity``, ``remove_mean``; ``scale`` or ``peak_g``, ``start_s``, ``component``.
+                ``quantity``, ``baseline``, ``high_pass_hz``; ``scale`` or ``peak_g``, ``start_s``, ``component``.
 
         Raises:
             OSError: when the file cannot be read.

@@ -259,7 +259,8 @@ def _names(tables: Tables) -> list[str]:
     names = [of.get("file") for of in (record, right)]
     names += [of.get("vertical", {}).get("file") for of in (record, right)]
     names += [blocks.get("joints"), blocks.get("outlines")]
-    names += tables.get("suite", {}).get("records", [])
+    suite = tables.get("suite", {})
+    names += suite.get("records", []) + [entry.get("file") for entry in suite.get("record", [])]
     states = tables.get("demand", {}).values()
     names += [state.get("spectrum") for state in states if isinstance(state, dict)]
     check = tables.get("verify", {})

@@ -617,10 +617,11 @@ def suite_scenario(
     Raises:
         ValueError: as for :func:`suite`.
     """
-    layout, files = _record_files(records)
+    entries, files = _record_files(records)
+    layout = _one_layout(entries)
+    own = {"record": entries} if layout is None else {"records": sorted(files), **layout}
     table = {
-        "records": sorted(files),
-        **layout,
+        **own,
         "peaks_g": peaks_g,
         "scales": scales,
         "both_signs": both_signs,
@@ -643,8 +644,9 @@ def suite(
 
     Args:
         of: the structure, or a scenario with a table ``[suite]``, which gives everything else.
-        records: the records, all in one unit, each with its own name.
-        peaks_g: increasing peak accelerations to which each record is scaled; or give ``scales``.
+        records: the records, each with its own name.
+        peaks_g: increasing peak accelerations to which each record is scaled; or give ``scales``, which multiply the
+            scaling of the records.
         scales: increasing factors on each record.
         both_signs: whether every record is also run mirrored; ``None``: yes.
         threads: as for :func:`overturning_map`.
@@ -813,7 +815,10 @@ def verify(
     # The same record may be used at both limit states.
     given = {id(record): record for some in records.values() for record in some or ()}
     if given:
-        keys, held = _record_files(list(given.values()))
+        entries, held = _record_files(list(given.values()))
+        keys = _one_layout(entries)
+        if keys is None:
+            raise ValueError("the records must be in one unit, and not scaled: leave `scale` and `peak_g` out")
         named = {key: [one.name for one in some] for key, some in records.items() if some}
         how = {**how, **keys, **named}
         files.update(held)
@@ -843,32 +848,31 @@ def _with_points(demand: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, b
     return table, files
 
 
-def _record_files(records: Sequence[Record]) -> tuple[dict[str, Any], dict[str, bytes]]:
-    """How to read the files of records, and their contents by name."""
+def _record_files(records: Sequence[Record]) -> tuple[list[dict[str, Any]], dict[str, bytes]]:
+    """An entry for each record, by its name, and the contents of their files by name."""
+    files: dict[str, bytes] = {}
+    entries: list[dict[str, Any]] = []
     for record in records:
         if not isinstance(record, Record):
             raise TypeError(f"`records` are Records, not {type(record).__name__}")
-    units = {record.unit for record in records}
-    if len(units) > 1:
-        raise ValueError(f"the records must be in one unit, not in {sorted(units)}")
-    files: dict[str, bytes] = {}
-    for record in records:
         table = record._tables["record"]
         if "vertical" in table or table.get("component") == "vertical":
             raise ValueError(f"{record.name!r}: the records must be horizontal")
-        if table.get("scale") != 1.0:
-            raise ValueError(
-                f"{record.name!r} is scaled: leave its `scale` and `peak_g` out"
-            )
         if record.name in files:
             raise ValueError(f"{record.name!r} is the name of two records: give each its own")
         files[record.name] = _csv(*record._samples())
-    layout = {
-        "format": "csv",
-        "unit": next(iter(units), "g"),
-        "quantity": next((record.quantity for record in records), None),
-    }
-    return layout, files
+        keys = {"file": record.name, "format": "csv", "unit": record.unit, "quantity": record.quantity}
+        entries.append({**keys, **{key: table[key] for key in ("scale", "peak_g") if key in table}})
+    return sorted(entries, key=lambda entry: entry["file"]), files
+
+
+def _one_layout(entries: Sequence[Mapping[str, Any]]) -> dict[str, Any] | None:
+    """The keys that all entries share; ``None`` if they differ, or some are scaled."""
+    layouts = [{"format": "csv", "unit": one["unit"], "quantity": one["quantity"]} for one in entries]
+    scaled = any(one.get("scale") != 1.0 for one in entries)
+    if scaled or any(layout != layouts[0] for layout in layouts):
+        return None
+    return layouts[0] if layouts else {"format": "csv", "unit": "g"}
 
 
 def capacity(of: Structure | Scenario) -> Capacity:

@@ -78,7 +78,7 @@ fn read_scale(scale: &str) -> Result<f64, String> {
 #[cfg(test)]
 mod tests {
     use crate::scenario::record::tests::assert_fault;
-    use crate::scenario::record::{Format, Layout, Unit};
+    use crate::scenario::record::{Baseline, Format, Layout, Unit};
 
     const FILE: &str = "Origin Time       2024/01/02 03:04:05\nLat.              37.0\nStation Code      XXX001\n\
                         Record Time       2024/01/02 03:04:06\nSampling Freq(Hz) 4Hz\nDuration Time(s)  3\n\
@@ -108,7 +108,7 @@ mod tests {
     #[test]
     fn the_offset_goes_only_where_that_is_asked_for() {
         let layout = Layout {
-            remove_mean: true,
+            baseline: Some(Baseline::Mean),
             ..knet()
         };
         let gained = |layout: &Layout| {

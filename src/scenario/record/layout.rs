@@ -1,8 +1,10 @@
 //! Layout of a record file: its format, and, for tables, the columns of times and accelerations.
 
 use std::ffi::OsStr;
+use std::fmt;
 use std::path::Path;
 
+use super::correction::{self, Baseline};
 use super::samples::{MAX_TIME_S, MIN_STEP_S};
 use super::unit::{RecordedQuantity, Unit, any_unit};
 use crate::scenario::prelude::*;
@@ -31,6 +33,8 @@ named! {
         Cwb = "cwb",
         /// China Strong Motion Networks Center.
         Csmnc = "csmnc",
+        /// Institute of Engineering of UNAM, Mexico (ASA).
+        Unam = "unam",
         /// A table with a column of samples and one of times, or with samples at a constant step.
         #[default]
         Csv = "csv",
@@ -57,6 +61,16 @@ pub enum TableColumn {
     Number(usize),
     /// Name of the column in the first row; or name of the channel in the header, or whole words of it.
     Name(String),
+}
+
+/// Name or number in the name of a record; `/` would begin a folder.
+impl fmt::Display for TableColumn {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => write!(f, "{number}"),
+            Self::Name(name) => f.write_str(&shown(name).replace(['/', '\\'], "_")),
+        }
+    }
 }
 
 /// The times of the samples of a table.
@@ -102,9 +116,12 @@ pub struct Layout {
     /// The quantity that the samples measure.
     #[serde(skip_serializing_if = "is_default")]
     pub quantity: RecordedQuantity,
-    /// True to subtract the mean over time from the accelerations.
+    /// Baseline to subtract from the accelerations; `None` for none.
     #[serde(skip_serializing_if = "is_default")]
-    pub remove_mean: bool,
+    pub baseline: Option<Baseline>,
+    /// Corner of the high-pass filter of the accelerations, in Hz; `None` without a filter.
+    #[serde(skip_serializing_if = "is_default")]
+    pub high_pass_hz: Option<f64>,
 }
 
 fn is_default<T: Default + PartialEq>(value: &T) -> bool {
@@ -141,16 +158,18 @@ impl Layout {
             table.optional("acceleration_column", &numbered_or_named("column"));
         let wrapped = table.or("wrapped", &switch(), false);
         let quantities = one_of(RecordedQuantity::ALL);
+        let (baseline, high_pass_hz) = correction::read(table);
         let mut layout = Self {
             acceleration_column,
             wrapped,
+            baseline,
+            high_pass_hz,
             channel: table.optional("channel", &numbered_or_named("channel")),
             skip_rows: table.or("skip_rows", &SKIPPED, 0),
             end_marker: table.optional("end_marker", &text()),
             decimal: Decimal::read(table),
             unit: table.optional("unit", &any_unit()),
             quantity: table.or("quantity", &quantities, RecordedQuantity::Acceleration),
-            remove_mean: table.or("remove_mean", &switch(), false),
             ..Self::new(format.unwrap_or_default())
         };
         let (Some(format), quantity) = (format, layout.quantity) else {
@@ -171,8 +190,9 @@ impl Layout {
         let is_velocity = quantity == RecordedQuantity::Velocity;
         let wrong = "does not apply to a file of K-NET, which holds accelerations";
         let _ = table.refuse(is_velocity && format == Format::Knet, "quantity", wrong);
-        let wrong = "applies to accelerations: a uniform velocity shakes nothing; leave it out";
-        let _ = table.refuse(is_velocity && layout.remove_mean, "remove_mean", wrong);
+        if is_velocity {
+            correction::refuse(table, (layout.baseline, layout.high_pass_hz));
+        }
         let header = match format {
             Format::Asc => "does not apply to an ASC file, whose header has UNITS",
             Format::Knet => "does not apply to a file of K-NET, whose header has a Scale Factor",
@@ -181,7 +201,7 @@ impl Layout {
         let has_header = !matches!(format, Format::At2 | Format::Csv) && table.gives("unit");
         let _ = table.refuse(has_header, "unit", header);
         let has_channels = formats.iter().any(|format| format.has_channels());
-        let wrong = "applies to formats with several channels only: \"csmip\", \"cosmos\", \"geonet\", \"afad\" and \"cwb\"";
+        let wrong = "applies to formats with several channels only: \"csmip\", \"cosmos\", \"geonet\", \"afad\", \"cwb\" and \"unam\"";
         let _ = table.refuse(!has_channels && layout.channel.is_some(), "channel", wrong);
         if is_table {
             let wrong = "cannot be combined with `time_column`; give one of them";
@@ -198,6 +218,30 @@ impl Layout {
             layout.unit = Some(table.needed("unit", &any_unit(), layout.unit));
         }
         layout
+    }
+
+    /// Takes the keys of the outer table that apply to files of these formats as defaults: keys of tables, and `unit`, only if one of them is a
+    /// table, corrections only if the samples are accelerations, and none that the given keys exclude.
+    pub(in crate::scenario) fn inherit(table: &mut Table<'_>, formats: &[Format]) {
+        let has_tables = formats.contains(&Format::Csv);
+        let has_channels = formats.iter().any(|format| format.has_channels());
+        let excluded = |key: &str| {
+            let mut pairs = EXCLUSIVE.into_iter();
+            pairs.any(|[one, other]| {
+                key == one && table.gives(other) || key == other && table.gives(one)
+            })
+        };
+        let is_velocity = table.as_given("quantity") == Some(json!(RecordedQuantity::Velocity));
+        let of_accelerations = ["baseline", "high_pass_hz", "remove_mean"];
+        let of_tables = TABLE_KEYS.into_iter().chain(["unit"]);
+        let keys: Vec<_> = of_tables
+            .filter(|_| has_tables)
+            .chain(["channel"].into_iter().filter(|_| has_channels))
+            .chain(["quantity"])
+            .chain(of_accelerations.into_iter().filter(|_| !is_velocity))
+            .filter(|key| !excluded(key))
+            .collect();
+        table.inherit(keys.into_iter());
     }
 
     /// Returns true if one of the keys for tables only is given.
@@ -225,6 +269,14 @@ const TABLE_KEYS: [&str; 7] = [
     "decimal",
 ];
 
+/// Keys of which an entry takes no default if it gives the other key.
+const EXCLUSIVE: [[&str; 2]; 4] = [
+    ["time_column", "dt_s"],
+    ["time_column", "wrapped"],
+    ["acceleration_column", "wrapped"],
+    ["baseline", "remove_mean"],
+];
+
 impl Format {
     /// Returns the format of a file name from its extension. The error is a phrase that follows the name.
     pub(in crate::scenario) fn of_ending(file: &str) -> Result<Self, String> {
@@ -245,7 +297,7 @@ impl Format {
     pub(in crate::scenario) const fn has_channels(self) -> bool {
         matches!(
             self,
-            Self::Csmip | Self::Cosmos | Self::Geonet | Self::Afad | Self::Cwb
+            Self::Csmip | Self::Cosmos | Self::Geonet | Self::Afad | Self::Cwb | Self::Unam
         )
     }
 

@@ -6,7 +6,8 @@
 //! format = "at2"                # or another one; from the contents or the extension of the file when left out
 //! channel = 1                   # number or name of the channel, of files with several
 //! quantity = "acceleration"     # or "velocity": quantity of the samples
-//! remove_mean = false           # whether accelerations are read without their mean
+//! baseline = "mean"             # or "linear": baseline that is subtracted from accelerations; none when left out
+//! high_pass_hz = 0.1            # corner of a high-pass filter; none when left out
 //! component = "horizontal"      # or "vertical": direction of the accelerations, positive to the
 //!                               # right or upwards
 //! scale = 1.0                   # or peak_g = 0.5, the peak to scale to
@@ -24,6 +25,7 @@
 
 mod asc;
 mod at2;
+mod correction;
 mod cosmos;
 mod csmip;
 mod csv;
@@ -41,6 +43,7 @@ use std::fmt;
 use std::path::Path;
 use std::sync::Arc;
 
+pub use correction::Baseline;
 pub use layout::{Decimal, Format, Layout, TableColumn, Times};
 use samples::MAX_TIME_S;
 pub use samples::{Contents, LineFault};
@@ -81,11 +84,34 @@ pub enum Scaling {
     PeakG(f64),
 }
 
+impl Scaling {
+    /// Reads the keys of a scaling; the default is the factor 1.
+    pub(super) fn read(table: &mut Table<'_>) -> ReadResult<Self> {
+        let scale = table.optional("scale", &SCALE);
+        let peak_g = table.optional("peak_g", &PEAK_G);
+        let at_most = "give at most one of them";
+        table.apply_relations(&[AtMostOne(&["scale", "peak_g"], at_most)])?;
+        Ok(peak_g.map_or(Self::Factor(scale.unwrap_or(1.0)), Self::PeakG))
+    }
+
+    /// Returns this scaling after another one, which a peak replaces.
+    pub(super) fn after(self, first: Self) -> Self {
+        match (self, first) {
+            (Self::Factor(factor), Self::Factor(first)) => Self::Factor(factor * first),
+            (Self::Factor(factor), Self::PeakG(peak_g)) => Self::PeakG(factor * peak_g),
+            (Self::PeakG(_), _) => self,
+        }
+    }
+}
+
 /// A motion in one direction, from a file.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Series {
     /// Name of the file, relative to the scenario file.
     pub file: String,
+    /// Name of the record in results: its file, in suites also its channel or column if several records are from this file.
+    #[serde(skip)]
+    pub name: String,
     /// Layout of the file.
     #[serde(flatten)]
     pub layout: Layout,
@@ -101,7 +127,7 @@ pub struct Series {
     /// A difference between header and samples, as a phrase that follows the name of the file.
     #[serde(skip)]
     pub difference: Option<String>,
-    /// Ascending times in s, and accelerations or velocities in the unit of the file, without their mean if the layout removes it.
+    /// Ascending times in s, and accelerations or velocities in the unit of the file, corrected as the layout demands.
     #[serde(skip)]
     pub samples: Arc<[(f64, f64)]>,
 }
@@ -117,6 +143,26 @@ pub struct Sampling {
     pub least_step_s: f64,
     /// Time from the first to the last sample, in s.
     pub duration_s: f64,
+}
+
+impl Sampling {
+    /// Returns number and spacing of at least two samples.
+    fn of(samples: &[(f64, f64)]) -> Self {
+        /// Relative tolerance for a constant step, because times in files are rounded.
+        const EVEN: f64 = 1e-3;
+        let steps = || samples.windows(2).map(|pair| pair[1].0 - pair[0].0);
+        let [first_s, last_s] = [samples.first(), samples.last()].map(|s| s.map_or(0.0, |s| s.0));
+        let duration_s = last_s - first_s;
+        let mean_s = duration_s / (samples.len() - 1) as f64;
+        Self {
+            count: samples.len(),
+            step_s: steps()
+                .all(|step_s| (step_s - mean_s).abs() <= EVEN * mean_s)
+                .then_some(mean_s),
+            least_step_s: steps().fold(f64::INFINITY, f64::min),
+            duration_s,
+        }
+    }
 }
 
 /// Number, spacing and duration of the samples.
@@ -233,6 +279,7 @@ impl Series {
 
     fn new(file: String, layout: Layout, contents: Contents) -> Self {
         Self {
+            name: file.clone(),
             file,
             layout,
             scaling: Scaling::Factor(1.0),
@@ -263,9 +310,9 @@ impl Series {
         Ok(Self::new(name, layout, contents))
     }
 
-    /// Returns the name of the file, with hidden characters escaped.
+    /// Returns the name of the record, with hidden characters escaped.
     pub fn name(&self) -> String {
-        shown(&self.file)
+        shown(&self.name)
     }
 
     /// Returns this record with another scaling.
@@ -274,6 +321,22 @@ impl Series {
             scaling,
             ..self.clone()
         }
+    }
+
+    /// Returns the corrections of the samples in words that follow others; empty without a correction.
+    pub fn corrections(&self) -> String {
+        let baseline = self.layout.baseline.map(|baseline| match baseline {
+            Baseline::Mean => "mean subtracted".to_owned(),
+            Baseline::Linear => "line of least squares subtracted".to_owned(),
+        });
+        let filter = self
+            .layout
+            .high_pass_hz
+            .map(|corner_hz| format!("high-pass filter at {} Hz", plain(corner_hz)));
+        let corrections = baseline.into_iter().chain(filter);
+        corrections
+            .map(|correction| format!(", {correction}"))
+            .collect()
     }
 
     /// Computes a checksum of the samples. Files with the same samples in different formats have the same checksum.
@@ -288,19 +351,7 @@ impl Series {
 
     /// Returns number and spacing of the samples.
     pub fn sampling(&self) -> Sampling {
-        /// Relative tolerance for a constant step, because times in files are rounded.
-        const EVEN: f64 = 1e-3;
-        let steps = || self.samples.windows(2).map(|pair| pair[1].0 - pair[0].0);
-        let duration_s = self.last_s() - self.first_s();
-        let mean_s = duration_s / (self.samples.len() - 1) as f64;
-        Sampling {
-            count: self.samples.len(),
-            step_s: steps()
-                .all(|step_s| (step_s - mean_s).abs() <= EVEN * mean_s)
-                .then_some(mean_s),
-            least_step_s: steps().fold(f64::INFINITY, f64::min),
-            duration_s,
-        }
+        Sampling::of(&self.samples)
     }
 
     /// Returns the largest magnitude after scaling, in units of gravity.
@@ -310,7 +361,7 @@ impl Series {
 
     /// Returns an error for a record without accelerations.
     pub(super) fn check_not_zero(&self, gravity_m_s2: f64) -> Result<(), String> {
-        let is_zero = self.peak_g(gravity_m_s2) == 0.0;
+        let is_zero = self.peak() == 0.0 || self.peak_g(gravity_m_s2) == 0.0;
         ensure(!is_zero, || "is zero throughout".to_owned())
     }
 
@@ -379,19 +430,16 @@ impl Series {
         let (known, gravity_m_s2, _) = known;
         let file = table.required("file", &text());
         let format = Format::read_or_ending(table, &file);
-        let scale = table.optional("scale", &SCALE);
-        let peak_g = table.optional("peak_g", &PEAK_G);
-        let at_most = "give at most one of them";
-        let related = table.apply_relations(&[AtMostOne(&["scale", "peak_g"], at_most)]);
+        let scaling = Scaling::read(table);
         let layout = Layout::read(table, format.as_slice());
-        related.and(table.check_faultless())?;
+        let scaling = scaling?;
+        table.check_faultless()?;
         let mut known = known.iter();
         let series = match known.find(|known| known.file == file && known.layout == layout) {
             Some(known) => known.clone(),
             None => Self::of_file(table.files(), file, layout)
                 .map_err(|wrong| table.wrong_file("file", wrong))?,
         };
-        let scaling = peak_g.map_or(Scaling::Factor(scale.unwrap_or(1.0)), Scaling::PeakG);
         let series = series.scaled(scaling);
         series.check(table, start_s, gravity_m_s2.ok_or(FaultRecorded)?)?;
         Ok(series)
@@ -433,15 +481,18 @@ impl Layout {
             Format::Afad => histories::read(&text, self, networks::afad),
             Format::Cwb => histories::read(&text, self, networks::cwb),
             Format::Csmnc => histories::read(&text, self, networks::csmnc),
+            Format::Unam => histories::read(&text, self, networks::unam),
         }?;
         let unit = contents.unit;
         ensure(unit.quantity() == self.quantity, || {
             let (unit, other) = (unit.name(), unit.other_quantity());
             LineFault::on(1)(format!("the unit is {unit:?}, {other}"))
         })?;
-        if self.remove_mean {
-            let mean = mean(&contents.samples);
-            contents.samples.iter_mut().for_each(|s| s.1 -= mean);
+        if let Some(baseline) = self.baseline {
+            baseline.subtract(&mut contents.samples);
+        }
+        if let Some(corner_hz) = self.high_pass_hz {
+            contents.samples = correction::high_pass(&contents.samples, corner_hz)?;
         }
         Ok(contents)
     }
@@ -489,6 +540,8 @@ impl Format {
             Some(Self::Cwb)
         } else if has("NO. OF POINTS:") && has("SPACED INTERVALS OF:") {
             Some(Self::Csmnc)
+        } else if has("ARCHIVO ESTANDAR DE ACELERACION") {
+            Some(Self::Unam)
         } else if first.starts_with("Origin Time") && has("Sampling Freq(Hz)") {
             Some(Self::Knet)
         } else if first.contains(':') && has("SAMPLING_INTERVAL_S:") {
@@ -606,11 +659,17 @@ mod tests {
                     Layout::new(Format::Afad),
                     Layout::new(Format::Cwb),
                     Layout::new(Format::Csmnc),
+                    Layout::new(Format::Unam),
                     csv_layout(),
                     blanks,
                     wrapped,
                 ];
-                for layout in layouts {
+                let corrected = layouts.clone().map(|layout| Layout {
+                    baseline: Some(Baseline::Linear),
+                    high_pass_hz: Some(1.0),
+                    ..layout
+                });
+                for layout in layouts.into_iter().chain(corrected) {
                     match parse(text, &layout) {
                         Ok(samples) => {
                             prop_assert!(samples.len() >= 2);
@@ -645,6 +704,7 @@ mod tests {
         "|\n",
         "NUMBER OF DATA : 3\nSAMPLING INTERVAL (sec) : .01\nRAW PGA VALUES (gal) : (N-S) 2\nN-S E-W U-D\n",
         "#RecordLength(sec): 0\n#SampleRate(Hz): 100\n#AmplitudeUnit: gal.\n#DataSequence: Time U(+)\n",
+        "ORIENTACION C1: /V/N\nINTERVALO DE MUESTREO, C1: /.01/.01\nNUM. TOTAL DE MUESTRAS, C1: /2/2\nUNIDADES DE LOS DATOS: (Gal)\n----\n",
         "UNCORRECTED ACCELERATION UNIT: GAL\nNO. OF POINTS: 3 SPACED INTERVALS OF: .01 SEC\nPEAK VALUE: 2\n",
         "1e308",
         "NPTS",

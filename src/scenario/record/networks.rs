@@ -1,6 +1,8 @@
-//! Texts of national networks, with a header in words: AFAD (Turkey), CWB (Taiwan) and CSMNC (China).
+//! Texts of national networks, with a header in words: AFAD (Turkey), CWB (Taiwan), CSMNC (China) and UNAM (Mexico).
 //!
-//! Sources: files of the three networks, and their readers in the USGS's `gmprocess` (groups nsmn and cwb) and in `CSMNC2SAC`.
+//! Sources: files of the first three networks, and their readers in the USGS's `gmprocess` (groups nsmn and cwb) and in `CSMNC2SAC`. The standard
+//! format of UNAM, version 2.0, follows the readers in `gmprocess` (group unam), in OpenQuake's `smtk` (ASA), and of the Institute of Engineering,
+//! which agree; no original description was at hand.
 
 use std::ops::Range;
 
@@ -37,13 +39,19 @@ fn header_and_data<'l, 't>(
     let is_data = |line: &&str| words(line).next().is_some() && !is_header(line);
     let length = lines[above..].iter().position(is_data);
     let data = length.map_or(lines.len(), |length| above + length)..lines.len();
-    if let Some(index) = data.clone().find(|index| is_text(lines[*index])) {
+    refuse_words(lines, data.clone())?;
+    Ok((&lines[..data.start], data))
+}
+
+/// Returns a fault if there are words among the numbers.
+fn refuse_words(lines: &[&str], mut data: Range<usize>) -> Parsed<()> {
+    if let Some(index) = data.find(|index| is_text(lines[*index])) {
         let text = excerpt(lines[index]);
         return Err(LineFault::on(index + 1)(format!(
             "`{text}` is not a row of numbers; if another record begins here, give it a file of its own"
         )));
     }
-    Ok((&lines[..data.start], data))
+    Ok(())
 }
 
 /// Finds the three components of a file of AFAD: columns `N-S`, `E-W` and `U-D`, in the unit of the peaks.
@@ -141,6 +149,72 @@ pub(super) fn cwb(lines: &[&str]) -> Parsed<Vec<History>> {
         }
     });
     Ok(histories.collect())
+}
+
+/// Finds the channels of a file of UNAM. In its header a line has a name, a colon and the values of the channels, each after a slash. The numbers are
+/// below the first line of dashes before a number.
+pub(super) fn unam(lines: &[&str]) -> Parsed<Vec<History>> {
+    /// Largest number of lines of a header; 109 is usual.
+    const MAX_LINES: usize = 256;
+    let most = lines.len().min(MAX_LINES);
+    let is_last = |index: &usize| {
+        let below = lines[index + 1..]
+            .iter()
+            .find(|line| !line.trim().is_empty());
+        lines[*index].contains("----")
+            && below.is_some_and(|line| !is_text(line) && !line.contains("----"))
+    };
+    let end = (0..most).find(is_last).map_or(most, |index| index + 1);
+    refuse_words(lines, end..lines.len())?;
+    let entry = |name: &str| {
+        let found = lines[..end].iter().zip(1..).find_map(|(line, number)| {
+            let value = rest(line, name)?.split_once(':')?.1;
+            Some((number, value.trim()))
+        });
+        let wrong = || format!("the header has no `{name}` up to here");
+        found.ok_or_else(|| LineFault::on(end.max(1))(wrong()))
+    };
+    let of_channels = |name: &str| {
+        let (line, values) = entry(name)?;
+        let values = values.split('/').map(str::trim);
+        Ok((line, values.filter(|value| !value.is_empty()).collect()))
+    };
+    let (line, counts): (usize, Vec<&str>) = of_channels("num. total de muestras, c1")?;
+    let (step_line, steps) = of_channels("intervalo de muestreo, c1")?;
+    let (name_line, names) = of_channels("orientacion c1")?;
+    for (other_line, other) in [(step_line, &steps), (name_line, &names)] {
+        let [found, channels] = [other.len(), counts.len()];
+        ensure(found == channels, || {
+            LineFault::on(other_line)(format!(
+                "has values of {found} channels: line {line} has {channels}"
+            ))
+        })?;
+    }
+    let (_, unit) = entry("unidades de los datos")?;
+    let in_brackets = unit
+        .split_once('(')
+        .and_then(|(_, unit)| unit.split_once(')'));
+    let unit = in_brackets.map_or(unit, |(unit, _)| unit.trim());
+    let peaks = of_channels("acel. max.(gal), c1").map_or_else(|_| Vec::new(), |(_, peaks)| peaks);
+    let channels = counts.iter().zip(&steps).zip(&names).enumerate();
+    let histories = channels.map(|(index, ((count, step), name))| {
+        let (count, step_s) = count_and_step((line, count), (step_line, number(step)))?;
+        Ok(History {
+            name: squeezed(name),
+            quantity: "acceleration".to_owned(),
+            line,
+            unit: unit.to_owned(),
+            factor: 1.0,
+            step_s: Some(step_s),
+            count,
+            columns: (counts.len(), index),
+            is_table: true,
+            peak: peaks.get(index).map(|peak| (*peak).to_owned()),
+            data: end..lines.len(),
+            width: 0,
+        })
+    });
+    histories.collect()
 }
 
 /// Finds the only history of a file of CSMNC.

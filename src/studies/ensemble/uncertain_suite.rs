@@ -33,11 +33,11 @@ pub struct Capacities {
 type Edges = Vec<FirstEdge>;
 
 impl Capacities {
-    /// Returns the file and the sign of each record, in the order of the answers.
+    /// Returns the name and the sign of each record, in the order of the answers.
     fn shakes(&self) -> impl Iterator<Item = (&str, &'static str)> {
         let signs = &["1", "-1"][..self.suite.signs()];
         let records = self.suite.records.iter();
-        records.flat_map(move |series| signs.iter().map(|sign| (series.file.as_str(), *sign)))
+        records.flat_map(move |series| signs.iter().map(|sign| (series.name.as_str(), *sign)))
     }
 
     /// Makes the table of all edges.

@@ -29,6 +29,9 @@ pub struct Summary {
     /// Equivalent free-standing blocks; absent unless the structure moves as four links or as a column.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub equivalent_block: Option<Equivalent>,
+    /// The first mechanism to the left, if loads make it differ from that to the right; absent otherwise.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub to_the_left: Option<FourLinkSide>,
     /// The push at which a structure on moved springings collapses, in units of gravity; absent without moved springings.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub capacity_g: Option<Sides<Option<f64>>>,
@@ -127,7 +130,7 @@ pub enum FourLinks {
     Sides(Sides<FourLinkSide>),
 }
 
-/// The first mechanism of four links to one side.
+/// The first mechanism of four links, or of a column, to one side.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FourLinkSide {
     /// Hinges from left to right.
@@ -205,7 +208,14 @@ impl Summary {
             hinges.into_iter().map(MechanismHinge::Link).collect()
         };
         let starts_g = Sides::of(|sway| model.incipient_acceleration_g(sway));
+        let differs = side == Sway::Right && starts_g.left != starts_g.right;
+        let to_the_left = || FourLinkSide {
+            hinges: model.hinges_after(0, Sway::Left),
+            unstable_equilibrium_rad: model.critical_rotations_rad(Sway::Left),
+            equivalent_block: model.equivalent(Sway::Left, gravity_m_s2),
+        };
         Self {
+            to_the_left: (differs && starts_g.left.is_some()).then(to_the_left),
             unstable_rotations: Some(Named(names.zip(unstable_rad).collect())),
             equivalent_block: model.equivalent(side, gravity_m_s2),
             bodies,

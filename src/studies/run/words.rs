@@ -34,7 +34,8 @@ pub fn heading(scenarios: &[Scenario]) -> String {
     text.extend(scenario.series().map(|series: &Series| {
         let (file, sampling) = (series.name(), series.sampling());
         let peak_g = series.peak_g(scenario.gravity_m_s2());
-        format!("  {file}: {sampling}, peak {peak_g:.4} g as scaled\n")
+        let corrections = series.corrections();
+        format!("  {file}: {sampling}, peak {peak_g:.4} g as scaled{corrections}\n")
     }));
     let ignored = scenarios.iter().find_map(Scenario::ignored);
     text.extend(ignored.map(|ignored| format!("  {ignored}\n")));

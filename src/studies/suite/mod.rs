@@ -190,7 +190,7 @@ impl Study for RecordSuite<'_> {
                 Measure::PeakG => (level / own_g, level),
             };
             CaseRow {
-                record: series.file.clone(),
+                record: series.name.clone(),
                 mirrored,
                 scale,
                 peak_g,
