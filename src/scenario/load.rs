@@ -30,7 +30,7 @@ impl LoadTable {
             moves: table.or("moves", &switch(), true),
             thrust_n: table.or("thrust_n", &thrust, 0.0),
         };
-        table.apply_relations(&[AnyOf(&["mass_kg", "thrust_n"])])?;
+        table.apply_relations(&[SomeOf(&["mass_kg", "thrust_n"], None)])?;
         Ok(read)
     }
 

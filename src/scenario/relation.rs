@@ -9,13 +9,8 @@ use super::table::{FaultRecorded, ReadResult, Table};
 pub(super) enum Relation<'a> {
     /// Exactly one of these keys. The text replaces the message for a missing key.
     OneOf(&'a [&'a str], Option<&'a str>),
-<<<<<<< HEAD
-    /// At least one of these keys.
-    AnyOf(&'a [&'a str]),
-=======
-    /// At least one of these keys. The text is the message if none is given.
-    SomeOf(&'a [&'a str], &'a str),
->>>>>>> main
+    /// At least one of these keys. The text replaces the message if none is given.
+    SomeOf(&'a [&'a str], Option<&'a str>),
     /// At most one of these keys. The text is the remedy if two are given.
     AtMostOne(&'a [&'a str], &'a str),
     /// All of these keys or none.
@@ -26,11 +21,7 @@ pub(super) enum Relation<'a> {
     Excludes(&'a str, &'a str, &'a str),
 }
 
-<<<<<<< HEAD
-use Relation::{AnyOf, AtMostOne, Excludes, OneOf, Requires, Together};
-=======
 use Relation::{AtMostOne, Excludes, OneOf, Requires, SomeOf, Together};
->>>>>>> main
 
 impl Relation<'_> {
     /// Returns the relation as a JSON schema.
@@ -38,11 +29,7 @@ impl Relation<'_> {
         let given = |key: &&str| json!({ "required": [key] });
         match self {
             OneOf(keys, _) => json!({ "oneOf": keys.iter().map(given).collect::<Vec<_>>() }),
-<<<<<<< HEAD
-            AnyOf(keys) => json!({ "anyOf": keys.iter().map(given).collect::<Vec<_>>() }),
-=======
             SomeOf(keys, _) => json!({ "anyOf": keys.iter().map(given).collect::<Vec<_>>() }),
->>>>>>> main
             AtMostOne(keys, _) => {
                 let pairs = keys.iter().enumerate().flat_map(|(index, one)| {
                     let others = keys[..index].iter();
@@ -71,18 +58,12 @@ impl Relation<'_> {
                     table.fault_of_table(message.unwrap_or(&needs));
                 }
             }
-<<<<<<< HEAD
-            AnyOf(keys) if !table.may_give(keys) => {
-                table.fault_of_table(format!("needs one of the keys {}", keys.join(", ")));
-            }
-            AnyOf(_) => {}
-=======
             SomeOf(keys, message) => {
                 if !table.may_give(keys) {
-                    table.fault_of_table(message);
+                    let needs = format!("needs one of the keys {}", keys.join(", "));
+                    table.fault_of_table(message.unwrap_or(&needs));
                 }
             }
->>>>>>> main
             AtMostOne(keys, remedy) => {
                 exclude(table, keys, remedy);
             }

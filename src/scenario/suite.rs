@@ -148,7 +148,7 @@ impl Suite {
         let related = table.apply_relations(&[
             SomeOf(
                 &[RECORDS, ENTRIES],
-                "lacks `records`: give a string or an array of at least one, or entries [[suite.record]]",
+                Some("lacks `records`: give a string or an array of at least one, or entries [[suite.record]]"),
             ),
             OneOf(&["scales", "peaks_g"], None),
         ]);
