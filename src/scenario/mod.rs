@@ -76,6 +76,7 @@ pub use error::{ScenarioError, ScenarioErrors, TextPosition};
 pub use free_hinges::FREE_HINGES;
 pub use ground::{Ground, PulseGround};
 pub use impact::FOUR_LINKS;
+use initial::Blow;
 pub use input_file::InputFile;
 use input_file::InputFiles;
 pub(crate) use input_file::sha256;
@@ -143,6 +144,8 @@ pub struct Scenario {
     pub right_foot: Option<RightFoot>,
     /// Initial state of the motion; `None` at rest.
     pub initial: Option<Initial>,
+    /// Blow from which the initial rate follows; `None` if the rate is given.
+    blow: Option<Blow>,
     /// Settings of the computation.
     pub simulation: Simulation,
     /// The quantities that vary over an overturning map; `None` without `[map]`.
@@ -311,6 +314,7 @@ impl Scenario {
         motion.check(table, &structure, end_s)?;
         initial::check_structure(table, !ties.is_empty(), motion.supports().is_some())?;
         let (given_shape, ground) = (Circular::given(table), ground?);
+        let (initial, blow) = initial?.unzip();
         let mut certain = Self {
             title: title.map(|title| shown(&title)),
             structure,
@@ -320,7 +324,8 @@ impl Scenario {
             ground: ground.ground,
             unread_ground: ground.unread,
             right_foot: ground.right_foot,
-            initial: initial?,
+            initial,
+            blow: blow.flatten(),
             simulation: simulation?,
             map: map?,
             suite: suite?,
@@ -558,11 +563,14 @@ impl Scenario {
             ground.insert("right".to_owned(), json!(right));
         }
         let ties = Some(&self.ties).filter(|ties| !ties.is_empty());
+        let initial = self
+            .blow
+            .map_or_else(|| json!(self.initial), |blow| json!(blow));
         let mut tables = vec![
             ("tie", json!(ties)),
             ("supports", json!(self.motion.supports())),
             ("ground", ground.take()),
-            ("initial", json!(self.initial)),
+            ("initial", initial),
             ("simulation", json!(self.simulation)),
             ("map", json!(self.map)),
             ("suite", json!(self.suite)),

@@ -9,6 +9,7 @@ mod equivalent_block;
 mod free_hinges;
 mod ground;
 mod history;
+mod initial_rate;
 mod integration;
 mod landings;
 mod model;

@@ -4,6 +4,7 @@ mod check_record;
 mod files;
 mod files_in_memory;
 mod formats;
+mod initial;
 pub mod keys;
 mod records;
 mod set;

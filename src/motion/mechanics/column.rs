@@ -314,6 +314,17 @@ impl Column {
         Err(ArgumentError::new(argument, value, allowed))
     }
 
+    /// Returns the rate about the toe, in rad/s, of a column of one block at rest just after a short horizontal blow: the angular impulse about the
+    /// toe over the moment of inertia about it. The base does not slip in the blow. `None` for several drums, which do not start as one.
+    pub fn rate_of_blow_rad_s(&self, impulse_n_s: f64, height_m: f64) -> Option<f64> {
+        let [block] = &self.row().ok()?.blocks[..] else {
+            return None;
+        };
+        let arm_m = block.centre_m - Vector2::new(0.5 * self.width_m, 0.0);
+        let inertia_kg_m2 = block.inertia_kg_m2 + block.mass_kg * arm_m.norm_squared();
+        Some(impulse_n_s * height_m / inertia_kg_m2)
+    }
+
     /// Returns half the diagonal of its outline, in metres, for a top as wide as the base.
     pub fn half_diagonal_m(&self) -> f64 {
         0.5 * self.height_m.hypot(self.width_m)

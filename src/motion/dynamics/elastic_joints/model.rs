@@ -3,9 +3,11 @@
 use std::ops::RangeInclusive;
 use std::sync::{Arc, OnceLock};
 
+use nalgebra::Vector3;
+
 use super::stepper::Group;
-use crate::argument::{ArgumentError, short, within};
-use crate::dynamics::model::{Case, Job, Jobs, Recorder, check, one_by_one};
+use crate::argument::{ArgumentError, allow, short, within};
+use crate::dynamics::model::{Case, Initial, Job, Jobs, Recorder, check, one_by_one};
 use crate::dynamics::row::observer::{LARGEST_ENERGY_ERROR, balanced};
 use crate::dynamics::row::standing::RigidRow;
 use crate::dynamics::row::stepper;
@@ -242,17 +244,15 @@ impl ElasticJoints {
         Self::standing(self.rigid.clone(), properties, structure, self.rest.0)
     }
 
+    /// Returns the input of a motion, and the initial velocities of the blocks; empty at rest.
     fn input<'a>(
         &'a self,
         ground: &'a GroundMotion,
         request: &Request,
-    ) -> Result<MotionInput<'a>, SimulationError> {
+    ) -> Result<(MotionInput<'a>, Vec<Vector3<f64>>), SimulationError> {
         check(ground, request)?;
-        if let Some(initial) = request.initial {
-            let allowed =
-                "left out: elastic joints start from rest under the weight of the structure";
-            return Err(ArgumentError::new("rotation_rad", initial.rotation_rad, allowed).into());
-        }
+        let velocities = request.initial.map(|initial| self.velocities(initial));
+        let velocities = velocities.transpose()?.unwrap_or_default();
         let (step_s, longest_s) = (self.longest_step_s(), self.structure.stable_step_s());
         if step_s > longest_s {
             let why = format!(
@@ -271,7 +271,24 @@ impl ElasticJoints {
             ..Settings::default()
         };
         let settings = settings.within(Self::MOST_STEPS, TOO_LONG)?;
-        Ok(self.rigid.input(ground, request.gravity_m_s2, settings))
+        let input = self.rigid.input(ground, request.gravity_m_s2, settings);
+        Ok((input, velocities))
+    }
+
+    /// Returns the velocities (m/s) and rotation rates of the blocks if the row starts with a rate in the first mechanism of rigid joints.
+    ///
+    /// # Errors
+    /// If the row is rotated: elastic joints have no hinges about which blocks turn.
+    fn velocities(&self, initial: Initial) -> Result<Vec<Vector3<f64>>, ArgumentError> {
+        let rotation_rad = initial.rotation_rad;
+        let allowed = "0 with elastic joints, which have no hinges to rotate about: they start under the weight of the structure";
+        allow(rotation_rad == 0.0, "rotation_rad", rotation_rad, allowed)?;
+        let release = self.rigid.released(initial)?;
+        Ok(self
+            .rigid
+            .standing
+            .placement
+            .velocities(&release.rates_rad_s))
     }
 
     fn simulate_one(
@@ -282,14 +299,14 @@ impl ElasticJoints {
         until: EndCondition,
     ) -> Result<Summary, SimulationError> {
         let gravity_m_s2 = request.gravity_m_s2;
-        let input = self.input(ground, request)?;
+        let (input, velocities) = self.input(ground, request)?;
         let rest = self.rest(gravity_m_s2)?;
         let barrier_j = || self.elastic_barrier_j(gravity_m_s2);
         // The cast shortens the lifetime of the recorder to that of the input.
         let recorder = recorder.map(|recorder| recorder as _);
         let start = (&self.structure, &rest);
-        let mut group = Group::<1>::new(input.row, start, gravity_m_s2, &barrier_j);
-        group.begin(0, input, until, recorder);
+        let mut group = Group::<1>::new(self.row(), start, gravity_m_s2, &barrier_j);
+        group.begin(0, (input, &velocities), until, recorder);
         self.checked_summary(stepper::run(group)?, &rest, gravity_m_s2)
     }
 
@@ -325,8 +342,8 @@ impl ElasticJoints {
                 {
                     let (ground, request) = &cases[job.case];
                     match model_of(job).input(ground, request) {
-                        Ok(input) => {
-                            group.begin(lane, input, job.until, None);
+                        Ok((input, velocities)) => {
+                            group.begin(lane, (input, &velocities), job.until, None);
                             *running = Some(job);
                             group.continue_lane(lane);
                         }

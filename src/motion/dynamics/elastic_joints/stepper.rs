@@ -2,7 +2,7 @@
 
 use std::cell::OnceCell;
 
-use nalgebra::Vector2;
+use nalgebra::{Vector2, Vector3};
 
 use super::motion::{
     ElasticMotion, GroundActivity, Observation, SlidingSupport, Step, joint_bodies,
@@ -71,8 +71,8 @@ struct Lane<'a> {
 /// Observations of a motion up to now.
 #[derive(Default)]
 struct MotionMonitor {
-    /// Potential and elastic energy at rest, in J; `None` before the first observation.
-    rest_j: Option<f64>,
+    /// Potential and elastic energy at the start, and kinetic energy, in J; `None` before the first observation.
+    start_j: Option<(f64, f64)>,
     rest_sway_kg_m: f64,
     /// Gaps above which a joint counts as open, at intrados and extrados, in m; empty before the first observation, at rest.
     opening_m: Vec<[f64; 2]>,
@@ -334,15 +334,16 @@ impl<'a, const L: usize> Group<'a, L> {
         }
     }
 
-    /// Starts a motion in a lane.
+    /// Starts a motion in a lane, at rest or with velocities of the blocks.
     pub fn begin(
         &mut self,
         lane: usize,
-        input: MotionInput<'a>,
+        (input, velocities): (MotionInput<'a>, &[Vector3<f64>]),
         until: EndCondition,
         recorder: Option<&'a mut dyn Recorder>,
     ) {
         self.motion.start(lane, self.rest);
+        self.motion.set_velocities(lane, velocities);
         let mut begun = Lane::new(input, until, recorder);
         let weighted = self
             .row
@@ -425,12 +426,12 @@ impl<'a, const L: usize> Group<'a, L> {
             )));
             return;
         }
-        let rest_j = *lane.monitor.rest_j.get_or_insert_with(|| {
+        let (rest_j, start_j) = *lane.monitor.start_j.get_or_insert_with(|| {
             lane.monitor.vibration_j = (REST_ENERGY_RATIO * observer.energy_unit)
                 .max(VIBRATION_STRAIN_RATIO * elastic)
                 .max(VIBRATION_BARRIER_RATIO * lane.barrier_j.unwrap_or(0.0));
             lane.monitor.rest_sway_kg_m = of(observation.sway_kg_m);
-            stored
+            (stored, kinetic)
         });
         let energies = &observation.energies;
         observer.elastic.elastic_j = elastic;
@@ -452,8 +453,8 @@ impl<'a, const L: usize> Group<'a, L> {
         (row_summary.ground_j, row_summary.right_foot_j) =
             (of(energies.ground_j), of(energies.feet_j));
         let potential = stored - rest_j;
-        let due = row_summary.ground_j + row_summary.right_foot_j - dissipated_j;
-        observer.note_defect((kinetic + potential - due).abs());
+        let work_j = row_summary.ground_j + row_summary.right_foot_j;
+        observer.note_defect((kinetic + potential - (work_j - dissipated_j) - start_j).abs());
         if of(observation.largest_stress[0]) > observer.elastic.largest_stress.stress_pa {
             observer.elastic.largest_stress = Stress {
                 stress_pa: of(observation.largest_stress[0]),
