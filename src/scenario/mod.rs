@@ -288,7 +288,8 @@ impl Scenario {
         let simulation = table.table_or_defaults("simulation", Simulation::read);
         let simulated = simulation.as_ref().ok();
         let gravity_m_s2 = simulated.map(|it| it.gravity_m_s2);
-        let built = Structure::read(table, kind.has_joints, gravity_m_s2);
+        let lands = kind.has_joints && kind.is_rigid && !options.statics;
+        let built = Structure::read(table, (kind.has_joints, lands), gravity_m_s2);
         let structure = built.as_ref().ok().map(|(structure, _)| structure);
         let known = (known, gravity_m_s2, options.statics);
         let ground = GroundInput::read(table, known, options.statics);

@@ -1,6 +1,7 @@
 //! Motions: engines and histories, against closed forms and other programs.
 
 mod back_wall;
+mod back_wall_elastic;
 mod between_impacts;
 mod column;
 mod elastic_joints;

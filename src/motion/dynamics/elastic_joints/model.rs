@@ -18,7 +18,7 @@ use crate::dynamics::{
 };
 use crate::mechanics::blocks::GRAVITY_M_S2;
 use crate::mechanics::elastic_joint::{Contact, ElasticProperties, JointStiffness, Stiffness};
-use crate::mechanics::{ElasticStructure, Equilibrium, Movements, Row, Sway};
+use crate::mechanics::{Column, ElasticStructure, Equilibrium, Movements, Row, Sway};
 
 /// Row of rigid blocks, as an arch or a stack, whose joints carry no tension, deform elastically, slip and crush.
 ///
@@ -34,6 +34,8 @@ pub struct ElasticJoints {
     given_step_s: Option<f64>,
     /// Bodies and joints.
     pub structure: ElasticStructure,
+    /// Side and height in metres of a wall behind a column.
+    wall: Option<(Sway, f64)>,
     /// Gravity, and the equilibrium under it.
     rest: (f64, Equilibrium),
     /// Gravity, and the energy barrier under it, computed at the first request.
@@ -49,6 +51,8 @@ pub struct ElasticJoints {
 const STEP_RATIO: [f64; 2] = [0.25, 0.5];
 /// Damping ratio of the fastest vibration at which the longer steps are sufficient.
 const DAMPED: f64 = 0.3;
+/// Ratio of the steps with a wall to those without: column and wall are parallel, so their whole contact closes in one step.
+const WALL_STEP_RATIO: f64 = 0.25;
 /// Ratio of the steps in studies of many cases to those of a single run.
 const MANY_CASES_STEP_RATIO: f64 = 1.6;
 /// Steps of the repetitions, over those of the motion; none is longer, as steps may already be close to the largest stable one.
@@ -97,6 +101,29 @@ impl ElasticJoints {
         Self::standing(rigid, properties, structure, gravity_m_s2)
     }
 
+    /// Returns the model of a column under this gravity, in m/s2, with the wall behind it. Contacts with the wall push, without friction; their stiffness
+    /// per area and their damping are those of the joints.
+    ///
+    /// # Errors
+    /// As [`ElasticJoints::new`] and [`Column::wall_behind_drums`].
+    pub fn of_column(
+        gravity_m_s2: f64,
+        column: &Column,
+        properties: ElasticProperties,
+    ) -> Result<Self, RowModelError> {
+        let row = column.row()?;
+        let Some(wall) = column.wall_behind_drums()? else {
+            return Self::under(gravity_m_s2, row, properties);
+        };
+        let structure = ElasticStructure::of_row(&row, &properties)?;
+        let structure = structure.with_wall(&row, wall, &properties)?;
+        let rigid = RigidRow::new(row)?.with_friction(properties.friction_coefficient)?;
+        Ok(Self {
+            wall: Some(wall),
+            ..Self::standing(rigid, properties, structure, gravity_m_s2)?
+        })
+    }
+
     fn standing(
         rigid: RigidRow,
         properties: ElasticProperties,
@@ -109,6 +136,7 @@ impl ElasticJoints {
             properties,
             given_step_s: None,
             structure,
+            wall: None,
             rest: (gravity_m_s2, rest),
             barrier_j: Arc::default(),
             many_cases: false,
@@ -129,6 +157,7 @@ impl ElasticJoints {
         let settled = Self::standing(rigid, self.properties, structure, self.rest.0)?;
         Ok(Self {
             given_step_s: self.given_step_s,
+            wall: self.wall,
             ..settled
         })
     }
@@ -186,7 +215,10 @@ impl ElasticJoints {
         let frequency = structure.frequency_bound_rad_s();
         let damped = 0.5 * structure.damping_time_s * frequency / DAMPED;
         let [undamped, enough] = STEP_RATIO;
-        let ratio = undamped + (enough - undamped) * damped.min(1.0);
+        let mut ratio = undamped + (enough - undamped) * damped.min(1.0);
+        if structure.has_wall() {
+            ratio *= WALL_STEP_RATIO;
+        }
         ratio * structure.stable_step_s()
     }
 
@@ -240,8 +272,15 @@ impl ElasticJoints {
 
     fn varied(&self, properties: ElasticProperties) -> Result<Self, RowModelError> {
         let structure = ElasticStructure::of_row(self.row(), &properties)?;
-        let structure = structure.on_supports(self.structure.supports);
-        Self::standing(self.rigid.clone(), properties, structure, self.rest.0)
+        let mut structure = structure.on_supports(self.structure.supports);
+        if let Some(wall) = self.wall {
+            structure = structure.with_wall(self.row(), wall, &properties)?;
+        }
+        let standing = Self::standing(self.rigid.clone(), properties, structure, self.rest.0)?;
+        Ok(Self {
+            wall: self.wall,
+            ..standing
+        })
     }
 
     /// Returns the input of a motion, and the initial velocities of the blocks; empty at rest.
@@ -410,8 +449,12 @@ impl Model for ElasticJoints {
         Some(&self.rigid.row)
     }
 
+    /// A wall carries every push towards it.
     fn incipient_acceleration_g(&self, sway: Sway) -> Option<f64> {
-        self.rigid.incipient_acceleration_g(sway)
+        let is_held = self.wall.is_some_and(|(side, _)| side == sway);
+        self.rigid
+            .incipient_acceleration_g(sway)
+            .filter(|_| !is_held)
     }
 
     fn simulate(

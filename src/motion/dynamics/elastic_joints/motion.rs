@@ -418,6 +418,9 @@ impl<'a, const L: usize> ElasticMotion<'a, L> {
         for (index, (joint, memory)) in structure.joints.iter().zip(&self.memories).enumerate() {
             let fibres = &self.fibres[index * each..(index + 1) * each];
             observation.elastic_j += structure.energy_j(joint, memory, fibres);
+            if index >= structure.row_joints().len() {
+                continue;
+            }
             let deepest = memory.penetrations_m[0].max(memory.penetrations_m[1]);
             let stress = deepest.min(Lanes([joint.crushing_penetration_m; L]))
                 * (joint.normal_n_m / joint.area_m2);

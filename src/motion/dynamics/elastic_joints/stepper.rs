@@ -215,6 +215,7 @@ impl<'a> Lane<'a> {
     ) -> f64 {
         if self.observer.has_rocked != Some(true) {
             let edges = motion.memories.iter().map(|edges| edges.penetrations_m);
+            let edges = edges.take(motion.structure.row_joints().len());
             let is_open = self.is_open(edges.map(|ends| ends.map(|end| end.0[index])));
             let slips =
                 self.observer.elastic.friction_j > REST_ENERGY_RATIO * self.observer.energy_unit;
@@ -222,7 +223,7 @@ impl<'a> Lane<'a> {
         }
         let observer = &mut self.observer;
         let mut slid = 0.0;
-        for (joint, with_joint) in motion.structure.joints.iter().enumerate() {
+        for (joint, with_joint) in motion.structure.row_joints().iter().enumerate() {
             let permanent_slip_m = motion.memories[joint].permanent_slip_m.0[index];
             if let Some(sliding) = &mut observer.row_summary.sliding {
                 sliding.friction_j = observer.elastic.friction_j;
@@ -352,7 +353,7 @@ impl<'a, const L: usize> Group<'a, L> {
             .zip(&self.rest.self_weight_displacements);
         let moved = weighted.map(|(block, moved)| block.mass_kg * moved[0].hypot(moved[1]));
         let moved_kg_m: f64 = moved.sum();
-        let none = || Sliding::none(self.structure.joints.len());
+        let none = || Sliding::none(self.structure.row_joints().len());
         begun.observer.row_summary.sliding = self.structure.slips().then(none);
         begun.observer.least_sway_kg_m =
             begun.observer.least_sway_kg_m.max(SIDE_RATIO * moved_kg_m);
@@ -539,7 +540,7 @@ impl<'a> Group<'a, 1> {
     /// Returns the friction coefficient without which joints would slide at this instant.
     fn friction_demand(&self) -> f64 {
         let least_n = self.observer().least_load_n();
-        let pressures = (0..self.structure.joints.len()).map(|joint| self.pressure(joint));
+        let pressures = (0..self.structure.row_joints().len()).map(|joint| self.pressure(joint));
         let loaded = pressures.filter(|pressure| pressure.normal_n >= least_n);
         let needed = loaded.map(|pressure| pressure.shear_n.abs() / pressure.normal_n);
         needed.fold(0.0, f64::max)
@@ -619,7 +620,7 @@ impl<'a> Stepper<'a> for Group<'a, 1> {
         }
         sample.feet_apart_m = self.lane().feet_apart_m;
         let observation = motion.observe(&half, &self.supports);
-        for joint in 0..self.structure.joints.len() {
+        for joint in 0..self.structure.row_joints().len() {
             let pressure = self.pressure(joint);
             sample.eccentricity_ratios.push(pressure.eccentricity_ratio);
             sample.pressures.push(pressure);
