@@ -3,8 +3,9 @@
 use archrock::dynamics::Details;
 use archrock::mechanics::{MechanismChain as _, Ring, Row};
 use archrock::{
-    Column, ElasticJoints, ElasticProperties, FourLinks, FreeHinges, GroundMotion, History,
-    ImpactModel, Initial, Model, Outcome, Request, RockingColumn, RowOptions, Sample, Sway,
+    BackWall, Column, ElasticJoints, ElasticProperties, FourLinks, FreeHinges, GroundMotion,
+    History, ImpactModel, Initial, Model, Outcome, Request, RockingColumn, RowOptions, Sample,
+    Sway,
 };
 
 use crate::common::{GRAVITY, run, run_sampled, sampled};
@@ -244,6 +245,13 @@ fn an_arch_starts_with_the_energy_of_its_mechanism() {
                 );
             }
         }
+        let elastic =
+            ElasticJoints::new(row.clone(), ElasticProperties::of_stiffness(1e10)).unwrap();
+        let energy_j = |model: &dyn Model| {
+            let request = started(1e-3, sway, 0.0, rate_rad_s);
+            sample(&history(model, &request), true).energy_j
+        };
+        assert!((energy_j(&elastic) / energy_j(&links) - 1.0).abs() < 1e-9);
         // `1/2 M w^2 = g` times the rise to the unstable equilibrium.
         let link = links.link_from(sway, 0).unwrap();
         let barrier = 2.0 * GRAVITY * link.barrier / links.length_m();
@@ -255,6 +263,30 @@ fn an_arch_starts_with_the_energy_of_its_mechanism() {
         assert_eq!(outcome(1.0 + 1e-9), Outcome::Overturned(sway));
         assert!(!matches!(outcome(1.0 - 1e-9), Outcome::Overturned(_)));
     }
+}
+
+/// A rate back to the wall behind a column strikes it as the free column strikes its base, and leaves to the same side.
+#[test]
+fn a_rate_back_to_the_wall_strikes_it_first() {
+    let free = column(0.2);
+    let held = free.clone().with_back(BackWall {
+        side: Sway::Left,
+        height_m: None,
+        rate_ratio: Some(0.5),
+    });
+    let [held, free] = [held.unwrap(), free].map(|column| {
+        let model = RockingColumn::new(&column, ImpactModel::MaxRestitution).unwrap();
+        let history = history(&model, &started(1.5, Sway::Right, 0.1, -0.3));
+        history
+            .impacts()
+            .next()
+            .map(|(time_s, impact)| (time_s, impact.clone()))
+    });
+    let ((held_s, held), (free_s, free)) = (held.unwrap(), free.unwrap());
+    assert_eq!(held_s, free_s);
+    assert_eq!(held.rates_before_rad_s, free.rates_before_rad_s);
+    assert!((held.rates_after_rad_s[0] + 0.5 * held.rates_before_rad_s[0]).abs() < 1e-12);
+    assert!(held.strikes_wall && !free.strikes_wall);
 }
 
 /// Elastic joints start with the velocities of rigid ones. The stiffer the joints, the closer is the rate that overturns.
