@@ -389,12 +389,13 @@ fn read_column(table: &mut Table<'_>, has_joints: bool, lands: bool) -> ReadResu
         column = column
             .with_back(back)
             .map_err(|error| wrong(table, error))?;
+        let held = match has_joints {
+            true => column.wall_behind_drums().map(drop),
+            false => Ok(()),
+        };
+        let held = held.map_err(|error| wrong(table, error));
         table.refuse(lands && column.wall().is_some(), "back", NO_RIGID_BLOCKS)?;
-        if has_joints {
-            column
-                .wall_behind_drums()
-                .map_err(|error| wrong(table, error))?;
-        }
+        held?;
     }
     Ok(column)
 }
