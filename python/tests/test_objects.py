@@ -62,8 +62,15 @@ def test_a_column_moves_away_from_the_wall_behind_it() -> None:
     assert all(event.impact.restitution == pytest.approx(rate_ratio**2, rel=1e-9) for event in impacts)
     free = simulate(Column(8.0, 0.6), sine, duration_s=20.0)
     assert free.rotations.max() > 0.0
-    with pytest.raises(ValueError, match="Housner's model"):
-        Column(8.0, 0.6, drums=4, back={"side": "left"})
+    drums = Column(8.0, 0.6, drums=4, back={"side": "left"})
+    free_limit = Column(8.0, 0.6, drums=4).limit()
+    assert drums.limit().right == free_limit.right and drums.limit().left.acceleration_g is None
+    with pytest.raises(ValueError, match="lose all energy"):
+        simulate(drums, sine, model="free_hinges")
+    elastic = simulate(drums, sine, model="elastic_joints", normal_stiffness_gpa_m=10.0, friction_coefficient=0.7, duration_s=1.0)
+    assert elastic.rotations.max() < 0.01 < -elastic.rotations.min()
+    with pytest.raises(ValueError, match="top drum"):
+        Column(8.0, 0.6, drums=4, back={"side": "left", "height_m": 6.0})
     with pytest.raises(ValueError, match="choose \"left\""):
         Column(8.0, 0.6, back={"side": "right"}).chain()
     no_wall = Column(8.0, 0.6, drums=4, back={"side": "left", "height_m": 0.0})
@@ -102,6 +109,21 @@ def test_free_hinges_and_columns_of_drums(pulse: Pulse) -> None:
     assert slips.offsets.shape == (len(slips), 3) and slips.offsets.any()
     released = simulate(arch, model="free_hinges", initial_sway="left", initial_rotation_rad=0.01, duration_s=0.1)
     assert released.rotations[0].any()
+
+
+def test_structures_may_start_with_a_rate_or_a_blow() -> None:
+    block = Column(4.0, 1.0)
+    inertia_kg_m2 = 2000.0 * 4.0 * (4.0**2 + 1.0**2) / 3.0
+    blow = simulate(block, initial_sway="left", initial_impulse_n_s=4000.0, initial_height_m=3.0, duration_s=3.0)
+    rate = simulate(block, initial_sway="left", initial_rate_rad_s=4000.0 * 3.0 / inertia_kg_m2, duration_s=3.0)
+    assert blow.rotations.max() == pytest.approx(rate.rotations.max(), rel=1e-12)
+    assert 0.0 < blow.rotations.max() < np.arctan(0.25)
+    back = simulate(block, initial_sway="left", initial_rotation_rad=0.05, initial_rate_rad_s=-0.1, duration_s=3.0)
+    assert back.rotations.max() == back.rotations[0, 0] == 0.05
+    elastic = simulate(block, model="elastic_joints", normal_stiffness_gpa_m=10.0, initial_sway="left", initial_rate_rad_s=0.2, duration_s=1.0)
+    assert elastic.rotations.max() > 0.01
+    with pytest.raises(ValueError, match="one block"):
+        simulate(Column(4.0, 1.0, drums=2), model="free_hinges", initial_sway="left", initial_impulse_n_s=1.0, initial_height_m=3.0)
 
 
 def test_other_shapes_by_their_tables(tmp_path: Path) -> None:

@@ -28,6 +28,7 @@ pub mod internals {
         use crate::dynamics::free_hinges::motion::motion;
         use crate::dynamics::model::Recorder;
         pub use crate::dynamics::row::clock::Settings;
+        use crate::dynamics::row::standing::Release;
         use crate::dynamics::{GroundMotion, MotionInput, RowMotionError, Summary};
         use crate::mechanics::{Row, RowState};
 
@@ -44,7 +45,12 @@ pub mod internals {
             recorder: Option<&mut dyn Recorder>,
         ) -> Result<Summary, RowMotionError> {
             let input = MotionInput::new(row, ground, gravity_m_s2, *settings);
-            motion(input, &RowState::undeformed(row), initial_rad, recorder)
+            let release = initial_rad.map(|rotations_rad| Release {
+                rotations_rad: rotations_rad.to_vec(),
+                rates_rad_s: vec![0.0; rotations_rad.len()],
+            });
+            let standing = RowState::undeformed(row);
+            motion(input, &standing, release.as_ref(), recorder)
         }
     }
     pub mod hybrid {

@@ -139,8 +139,16 @@ impl ElasticTable {
     /// Returns the joints of a structure, an error if their stiffness is out of range; `None` if the structure is not a row of blocks.
     fn joints(&self, structure: &Structure) -> Option<Result<ElasticStructure, ArgumentError>> {
         let (depth_m, _) = structure.depth_and_density();
-        let row = structure.row().ok()?;
-        Some(ElasticStructure::of_row(&row, &self.properties(depth_m)))
+        let (row, properties) = (structure.row().ok()?, self.properties(depth_m));
+        let wall = match structure {
+            Structure::Column(column) => column.wall_behind_drums(),
+            Structure::Arch(_) | Structure::Masonry(_) => Ok(None),
+        };
+        let joints = ElasticStructure::of_row(&row, &properties).and_then(|joints| match wall? {
+            Some(wall) => joints.with_wall(&row, wall, &properties),
+            None => Ok(joints),
+        });
+        Some(joints)
     }
 
     /// Rejects time steps that are too long, or too many until the end.
@@ -175,9 +183,16 @@ impl ElasticTable {
 
     /// Makes the model of a structure. An error if the structure has no joints, or cannot stand on these joints.
     fn elastic(&self, structure: &Structure, site: &Site) -> Result<ElasticJoints, ModelError> {
-        let row = structure.row().map_err(RowModelError::from)?;
         let (depth_m, _) = structure.depth_and_density();
-        ElasticJoints::under(site.gravity_m_s2, row, self.properties(depth_m))
+        let (gravity_m_s2, properties) = (site.gravity_m_s2, self.properties(depth_m));
+        let model = match structure {
+            Structure::Column(column) => ElasticJoints::of_column(gravity_m_s2, column, properties),
+            Structure::Arch(_) | Structure::Masonry(_) => {
+                let row = structure.row().map_err(RowModelError::from)?;
+                ElasticJoints::under(gravity_m_s2, row, properties)
+            }
+        };
+        model
             .and_then(|model| model.on_supports(site.supports))
             .and_then(|model| match self.longest_step_s {
                 Some(step_s) => Ok(model.with_longest_step_s(step_s)?),
@@ -200,9 +215,12 @@ impl ModelOptions for ElasticTable {
         Ok(Box::new(self.elastic(structure, site)?.for_many_cases()))
     }
 
-    /// Makes models with other stiffness and contact, and one with rigid joints.
+    /// Makes models with other stiffness and contact, and one with rigid joints, unless a wall stands behind the structure.
     fn variations(&self, structure: &Structure, site: &Site) -> Result<Vec<Variation>, ModelError> {
         let mut variations = self.elastic(structure, site)?.variations();
+        if structure.wall_behind().is_some() {
+            return Ok(variations);
+        }
         let rigid = RowOptions {
             friction_coefficient: self.friction_coefficient,
             ..RowOptions::default()

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::model_kind::{AnyModel, ModelKind, ModelOptions, Site};
 use super::prelude::*;
 use super::structure::Structure;
-use crate::argument::rounded_up;
+use crate::argument::{ArgumentError, rounded_up};
 use crate::mechanics::{FrictionError, friction};
 use crate::{FreeHinges, Request, RowModelError, RowOptions};
 
@@ -29,6 +29,12 @@ pub(super) fn model(
     structure: &Structure,
     site: &Site,
 ) -> Result<FreeHinges, RowModelError> {
+    if let Structure::Column(column) = structure
+        && let Some((_, height_m)) = column.wall()
+    {
+        let allowed = "0 with free hinges, which have no contact with a wall behind a column";
+        return Err(ArgumentError::new("height_m", height_m, allowed).into());
+    }
     let mut undeformed = options;
     undeformed.friction_coefficient = None;
     let built = structure.free_hinges(undeformed)?;

@@ -94,6 +94,8 @@ pub(super) fn loaded_column(
     let column = column.with_loads(placed, gravity_m_s2);
     let column = column.map_err(|error| why_not(table, &error))?;
     if has_joints {
+        let held = column.wall_behind_drums().map(drop);
+        held.map_err(|error| why_not(table, &ColumnLoadError::Wall(error)))?;
         let row = column.row().map_err(|error| error.to_string());
         let falls = row.and_then(|row| collapse_mechanism(&row).map_err(|error| error.to_string()));
         let falls = falls.map_err(|wrong| format!("cannot be checked to stand: {wrong}"));

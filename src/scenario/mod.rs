@@ -77,6 +77,7 @@ pub use error::{ScenarioError, ScenarioErrors, TextPosition};
 pub use free_hinges::FREE_HINGES;
 pub use ground::{Ground, PulseGround};
 pub use impact::FOUR_LINKS;
+use initial::Blow;
 pub use input_file::InputFile;
 use input_file::InputFiles;
 pub(crate) use input_file::sha256;
@@ -145,6 +146,8 @@ pub struct Scenario {
     pub right_foot: Option<RightFoot>,
     /// Initial state of the motion; `None` at rest.
     pub initial: Option<Initial>,
+    /// Blow from which the initial rate follows; `None` if the rate is given.
+    blow: Option<Blow>,
     /// Settings of the computation.
     pub simulation: Simulation,
     /// The quantities that vary over an overturning map; `None` without `[map]`.
@@ -287,7 +290,8 @@ impl Scenario {
         let simulation = table.table_or_defaults("simulation", Simulation::read);
         let simulated = simulation.as_ref().ok();
         let gravity_m_s2 = simulated.map(|it| it.gravity_m_s2);
-        let built = Structure::read(table, kind.has_joints, gravity_m_s2);
+        let lands = kind.has_joints && kind.is_rigid && !options.statics;
+        let built = Structure::read(table, (kind.has_joints, lands), gravity_m_s2);
         let structure = built.as_ref().ok().map(|(structure, _)| structure);
         let known = (known, gravity_m_s2, options.statics);
         let ground = GroundInput::read(table, known, options.statics);
@@ -313,6 +317,7 @@ impl Scenario {
         motion.check(table, &structure, end_s)?;
         initial::check_structure(table, !ties.is_empty(), motion.supports().is_some())?;
         let (given_shape, ground) = (Circular::given(table), ground?);
+        let (initial, blow) = initial?.unzip();
         let mut certain = Self {
             title: title.map(|title| shown(&title)),
             structure,
@@ -322,7 +327,8 @@ impl Scenario {
             ground: ground.ground,
             unread_ground: ground.unread,
             right_foot: ground.right_foot,
-            initial: initial?,
+            initial,
+            blow: blow.flatten(),
             simulation: simulation?,
             map: map?,
             suite: suite?,
@@ -568,11 +574,14 @@ impl Scenario {
             // Masonry contains its loads.
             Structure::Arch(_) | Structure::Masonry(_) => None,
         };
+        let initial = self
+            .blow
+            .map_or_else(|| json!(self.initial), |blow| json!(blow));
         let mut tables = vec![
             ("tie", json!(ties)),
             ("supports", json!(self.motion.supports())),
             ("ground", ground.take()),
-            ("initial", json!(self.initial)),
+            ("initial", initial),
             ("simulation", json!(self.simulation)),
             ("map", json!(self.map)),
             ("suite", json!(self.suite)),

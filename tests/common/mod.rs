@@ -104,7 +104,11 @@ pub fn sampled(end_s: f64, output_step_s: f64) -> Request {
 
 pub fn released(end_s: f64, sway: Sway, rotation_rad: f64) -> Request {
     Request {
-        initial: Some(Initial { sway, rotation_rad }),
+        initial: Some(Initial {
+            sway,
+            rotation_rad,
+            rate_rad_s: 0.0,
+        }),
         ..request(end_s)
     }
 }

@@ -341,7 +341,11 @@ fn a_row_with_free_hinges_is_released_as_its_four_links() {
         assert!((barrier_j / (joules * least[0].min(least[1])) - 1.0).abs() < 1e-12);
         let rotation_rad = 0.4 * first.critical_rad;
         let request = Request {
-            initial: Some(Initial { sway, rotation_rad }),
+            initial: Some(Initial {
+                sway,
+                rotation_rad,
+                rate_rad_s: 0.0,
+            }),
             output_step_s: 0.005,
             end_s: 1.0,
             ..Request::default()
@@ -408,6 +412,7 @@ fn an_uneven_row_is_released_and_overturns_by_side() {
                 initial: Some(Initial {
                     sway,
                     rotation_rad: part * critical_rad,
+                    rate_rad_s: 0.0,
                 }),
                 ..Request::default()
             };

@@ -43,7 +43,11 @@ fn model(column: &Column) -> RockingColumn {
 
 fn released(model: &RockingColumn, sway: Sway, rotation_rad: f64) -> History {
     let request = Request {
-        initial: Some(Initial { sway, rotation_rad }),
+        initial: Some(Initial {
+            sway,
+            rotation_rad,
+            rate_rad_s: 0.0,
+        }),
         ..REQUEST
     };
     model.history(&GroundMotion::still(), &request).unwrap()

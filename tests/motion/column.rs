@@ -42,7 +42,11 @@ const REQUEST: Request = Request {
 
 fn released(sway: Sway, rotation_rad: f64) -> Request {
     Request {
-        initial: Some(Initial { sway, rotation_rad }),
+        initial: Some(Initial {
+            sway,
+            rotation_rad,
+            rate_rad_s: 0.0,
+        }),
         ..REQUEST
     }
 }

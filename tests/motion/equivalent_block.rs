@@ -33,6 +33,7 @@ fn an_arch_leaves_its_unstable_equilibrium_at_the_rate_of_the_block() {
             initial: Some(Initial {
                 sway: Sway::Right,
                 rotation_rad: critical_rad * (1.0 - distance),
+                rate_rad_s: 0.0,
             }),
             output_step_s: 0.1 / p_c,
             ..Request::default()
@@ -65,6 +66,7 @@ fn small_hops_last_as_long_as_those_of_the_block() {
                 initial: Some(Initial {
                     sway: Sway::Left,
                     rotation_rad: part * link.critical_rad,
+                    rate_rad_s: 0.0,
                 }),
                 ..Request::default()
             };

@@ -514,6 +514,7 @@ fn energies_contain_the_work_of_constant_forces() {
             initial: Some(Initial {
                 sway,
                 rotation_rad: 0.15 * critical,
+                rate_rad_s: 0.0,
             }),
             ..REQUEST
         };

@@ -1,6 +1,7 @@
 //! Motions: engines and histories, against closed forms and other programs.
 
 mod back_wall;
+mod back_wall_elastic;
 mod between_impacts;
 mod column;
 mod elastic_joints;
@@ -9,6 +10,7 @@ mod equivalent_block;
 mod free_hinges;
 mod ground;
 mod history;
+mod initial_rate;
 mod integration;
 mod landings;
 mod loads;

@@ -270,6 +270,7 @@ fn energies_are_over_the_barrier_of_the_link_that_moves<C: MechanismChain + Mech
             initial: Some(Initial {
                 sway,
                 rotation_rad: critical_rad,
+                rate_rad_s: 0.0,
             }),
             ..sampled(0.01, 0.01)
         };
@@ -456,7 +457,7 @@ proptest! {
             end_s,
             outcome_by_s: None,
             output_step_s,
-            initial: rotation_rad.map(|rotation_rad| Initial { sway, rotation_rad }),
+            initial: rotation_rad.map(|rotation_rad| Initial { sway, rotation_rad, rate_rad_s: 0.0 }),
             relative_tolerance,
             rest_energy_ratio,
         };

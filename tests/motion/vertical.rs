@@ -19,6 +19,7 @@ fn release(rotation_rad: f64) -> Option<Initial> {
     Some(Initial {
         sway: Sway::Right,
         rotation_rad,
+        rate_rad_s: 0.0,
     })
 }
 

@@ -5,6 +5,7 @@ mod corrections;
 mod files;
 mod files_in_memory;
 mod formats;
+mod initial;
 pub mod keys;
 mod records;
 mod set;

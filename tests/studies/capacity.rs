@@ -114,6 +114,7 @@ fn the_work_along_the_curve_is_the_potential_of_the_simulation() {
                 initial: Some(Initial {
                     sway,
                     rotation_rad: q_rad,
+                    rate_rad_s: 0.0,
                 }),
                 end_s: 0.01,
                 ..Request::default()

@@ -290,7 +290,11 @@ fn a_released_arch_has_the_potential_ratio_of_its_four_links() {
         let rotation_rad = part * link.critical_rad;
         let request = Request {
             end_s: 0.5,
-            initial: Some(Initial { sway, rotation_rad }),
+            initial: Some(Initial {
+                sway,
+                rotation_rad,
+                rate_rad_s: 0.0,
+            }),
             ..Request::default()
         };
         let summary = free

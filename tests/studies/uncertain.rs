@@ -1090,7 +1090,8 @@ fn all_numbers_may_be_uncertain() {
             "{ARCH}voussoirs = 9\n[elastic_joints]\nnormal_stiffness_gpa_m = 10.0\n[ground.right.record]\nfile = 'scenarios/synthetic.at2'\n\
              scale = 0.5\nstart_s = 0.1\n"
         ),
-        format!("{ARCH}[initial]\nsway = 'right'\nrotation_rad = 0.01\n[impact]\nrestitution_factor = 0.9\n"),
+        "[column]\nheight_m = 4\nwidth_m = 1\n[initial]\nsway = 'left'\nimpulse_n_s = 100\nheight_m = 2\n".to_owned(),
+        format!("{ARCH}[initial]\nsway = 'right'\nrotation_rad = 0.01\nrate_rad_s = 0.02\n[impact]\nrestitution_factor = 0.9\n"),
         format!("[pointed_arch]\nspan_m = 4.0\nrise_m = 3.0\n{voussoirs}[free_hinges]\n"),
         format!("[elliptic_arch]\nspan_m = 6.0\nrise_m = 2.5\n{voussoirs}[free_hinges]\n"),
         format!("[basket_arch]\nspan_m = 6.0\nrise_m = 2.5\n{voussoirs}[free_hinges]\n"),

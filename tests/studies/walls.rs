@@ -16,6 +16,7 @@ use serde_json::Value;
 
 const FREE: &str = "[column]\nheight_m = 8\nwidth_m = 0.6\n";
 const FACADE: &str = "[column]\nheight_m = 8\nwidth_m = 0.6\n[column.back]\nside = 'left'\n";
+const ELASTIC: &str = "[elastic_joints]\nnormal_stiffness_gpa_m = 10\nfriction_coefficient = 0.7\n";
 const DEMAND: &str = "[demand]\nsoil = 'B'\ntopography = 'T1'\n[demand.sld]\nag_g = 0.10\nf0 = 2.40\ntc_star_s = 0.28\n\
                       [demand.slv]\nag_g = 0.25\nf0 = 2.40\ntc_star_s = 0.35\n";
 
@@ -182,6 +183,74 @@ fn records_overturn_it_away_from_the_wall() {
     assert_eq!(sides, ["", "right"]);
 }
 
+/// Drums with elastic joints: the statics of free drums to the side away from the wall, in all studies.
+#[test]
+fn drums_with_elastic_joints_have_one_side() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    let drums = |back: &str| format!("{FREE}drums = 4\n{back}{ELASTIC}");
+    let back = "[column.back]\nside = 'left'\nheight_m = 7.5\n";
+    let [free, held] = ["", back].map(|back| answer(path, &["limit"], &drums(back)));
+    let words = printed(path, &["limit", "s.toml"]);
+    assert!(
+        words.contains("no push to the left moves it: a wall stands behind it"),
+        "{words}"
+    );
+    for key in ["incipient_acceleration_g", "mechanism"] {
+        assert_eq!(free[key]["right"], held[key]["right"]);
+        assert_ne!(free[key]["left"], held[key]["left"]);
+    }
+    assert!(held["incipient_acceleration_g"]["left"].is_null());
+    assert!(held["friction"]["left"]["incipient_acceleration_g"].is_null());
+    assert_eq!(held["friction"]["right"], free["friction"]["right"]);
+    assert_eq!(
+        (&held["wall_behind"], free.get("wall_behind")),
+        (&Value::from("left"), None)
+    );
+    let curves = capacity(&parsed(&drums(back)), None).unwrap();
+    let of_free = capacity(&parsed(&drums("")), None).unwrap();
+    assert_eq!((curves.left, curves.right), (None, of_free.right));
+    let push = |amplitude_g: f64| {
+        let pulse = format!(
+            "[ground.one_sine]\namplitude_g = {amplitude_g}\nduration_s = 0.4\n[simulation]\nduration_s = 2\n"
+        );
+        answer(path, &["run"], &format!("{}{pulse}", drums(back)))
+    };
+    let run = push(0.3);
+    assert_eq!(run["wall_behind"], "left");
+    assert!(run["incipient_acceleration_g"]["left"].is_null());
+    let scenario = parsed(&drums(back));
+    assert_eq!(parsed(&scenario.to_toml()), scenario);
+    let names = |scenario: &Scenario| -> Vec<String> {
+        let variations = scenario.variations().unwrap();
+        variations
+            .into_iter()
+            .map(|variation| variation.name)
+            .collect()
+    };
+    // Free hinges have no contact with the wall.
+    let alone = parsed(&drums(""));
+    assert_eq!(names(&scenario)[..], names(&alone)[..3]);
+    assert!(names(&alone)[3].contains("free hinges"));
+    // Static analysis needs no table of a model.
+    let statics = format!("{FREE}drums = 4\n{back}");
+    let limit = answer(path, &["limit"], &statics);
+    assert_eq!(
+        limit["incipient_acceleration_g"],
+        held["incipient_acceleration_g"]
+    );
+    refused(
+        path,
+        &["limit", "s.toml", "--set", "column.back.height_m=6.9"],
+        &["top drum"],
+    );
+    refused(
+        path,
+        &["run", "s.toml", "--hinges", "free"],
+        &["lose all energy"],
+    );
+}
+
 #[test]
 fn impacts_keep_the_side() {
     let folder = tempfile::tempdir().unwrap();
@@ -252,12 +321,22 @@ fn what_a_wall_cannot_have_is_refused() {
     );
     let elastic = refusal(&facade("restitution = 1.5\n"));
     assert!(elastic.contains("s.toml:6:15"), "{elastic}");
-    for table in [
-        "[free_hinges]\n",
-        "[elastic_joints]\nnormal_stiffness_gpa_m = 10\n",
+    let rigid = refusal(&facade("[free_hinges]\n"));
+    assert!(
+        rigid.contains("s.toml:4:1") && rigid.contains("lose all energy"),
+        "{rigid}"
+    );
+    for (keys, place, why) in [
+        ("top_width_m = 0.5\n", "s.toml:4:15", "at its foot only"),
+        (
+            "drums = 4\n",
+            "s.toml:7:12",
+            "7 m, the centre of the top drum",
+        ),
     ] {
-        let blocks = refusal(&facade(table));
-        assert!(blocks.contains("single prismatic block"), "{blocks}");
+        let column = format!("{FREE}{keys}[column.back]\nside = 'left'\nheight_m = 6.9\n{ELASTIC}");
+        let wrong = refusal(&column);
+        assert!(wrong.contains(place) && wrong.contains(why), "{wrong}");
     }
     let towards = refusal(&facade("[initial]\nsway = 'left'\nrotation_rad = 0.01\n"));
     assert!(

@@ -314,6 +314,9 @@ def simulate(
     restitution: float | None = None,
     initial_sway: Literal["right", "left"] | None = None,
     initial_rotation_rad: float | None = None,
+    initial_rate_rad_s: float | None = None,
+    initial_impulse_n_s: float | None = None,
+    initial_height_m: float | None = None,
     longest_step_s: float | None = None,
     shortest_step_s: float | None = None,
     friction_coefficient: float | None = None,
@@ -341,7 +344,7 @@ def simulate(
 
     Args:
         structure: the structure.
-        ground: the ground motion; ``None`` for a release from a rotated position.
+        ground: the ground motion; ``None`` for a release from a rotated position, or a start with a rate.
         right: ground motion under the right foot, as for :meth:`Scenario.of`, for models with joints.
         supports: movement of the springings before time 0, as for :meth:`Scenario.of`, for models with joints. With this or ``right``
             the structure caches nothing from call to call.
@@ -350,8 +353,11 @@ def simulate(
         impact: impact model of four links: ``"max_restitution"``, ``"same_sections"``, ``"mirrored"`` or
             ``"prescribed"``.
         restitution: energy after over before an impact, with ``"prescribed"``.
-        initial_sway: side to which it is released from a rotated position, ``"right"`` or ``"left"``.
+        initial_sway: side to which it is rotated or starts with a rate, ``"right"`` or ``"left"``.
         initial_rotation_rad: magnitude of that rotation, for the body whose rotation is the coordinate.
+        initial_rate_rad_s: rate of that rotation, positive away from the position at rest.
+        initial_impulse_n_s: impulse of a blow on a column of one block at rest, instead of the rate, with ``initial_height_m``.
+        initial_height_m: height of that blow above the base.
         longest_step_s: longest step, with free hinges and elastic joints.
         shortest_step_s: after more than 50 impacts within this time the next landings count as one, with free hinges.
         friction_coefficient: Coulomb's coefficient at every joint, with free hinges and elastic joints; ``None``: joints do not
@@ -388,6 +394,9 @@ def simulate(
         restitution,
         initial_sway,
         initial_rotation_rad,
+        initial_rate_rad_s,
+        initial_impulse_n_s,
+        initial_height_m,
         longest_step_s,
         shortest_step_s,
         friction_coefficient,

@@ -26,6 +26,9 @@ class Settings(NamedTuple):
     restitution: float | None = None
     initial_sway: str | None = None
     initial_rotation_rad: float | None = None
+    initial_rate_rad_s: float | None = None
+    initial_impulse_n_s: float | None = None
+    initial_height_m: float | None = None
     longest_step_s: float | None = None
     shortest_step_s: float | None = None
     friction_coefficient: float | None = None
@@ -57,10 +60,15 @@ class Settings(NamedTuple):
         }
         if self.impact != "max_restitution" or self.restitution is not None:
             tables["impact"] = _given(model=self.impact, restitution=self.restitution)
-        if self.initial_sway is not None or self.initial_rotation_rad is not None:
-            tables["initial"] = _given(
-                sway=self.initial_sway, rotation_rad=self.initial_rotation_rad
-            )
+        initial = _given(
+            sway=self.initial_sway,
+            rotation_rad=self.initial_rotation_rad,
+            rate_rad_s=self.initial_rate_rad_s,
+            impulse_n_s=self.initial_impulse_n_s,
+            height_m=self.initial_height_m,
+        )
+        if initial:
+            tables["initial"] = initial
         of_blocks = _given(
             longest_step_s=self.longest_step_s,
             friction_coefficient=self.friction_coefficient,

@@ -61,10 +61,12 @@ class Structure(Described):
         whole = set(tables) == {"arch"} and isinstance(arch, dict)
         # If hinges may open anywhere, there are no blocks.
         four = whole and isinstance(arch, dict) and not {"voussoirs", "joints_deg"} & set(arch)
-        # A wall behind a column applies to Housner's model; at height zero there is no wall.
+        # A wall behind one block applies to Housner's model; at height zero there is no wall. Drums are read for statics.
         column = tables.get("column")
-        back = column.get("back") if isinstance(column, dict) else None
-        held = isinstance(back, dict) and back.get("height_m") != 0
+        keys = column if isinstance(column, dict) else {}
+        back = keys.get("back")
+        one_block = keys.get("drums") is None and keys.get("drum_heights_m") is None
+        held = isinstance(back, dict) and back.get("height_m") != 0 and one_block
         self._model = "four_links" if four or held else "free_hinges"
         self._native = NativeScenario(to_toml(tables), None, files, self._model, ())
         self._bases = {}
@@ -173,7 +175,7 @@ class Column(Structure):
         depth_m: length out of plane; ``None``: the default, 1.
         density_kg_m3: density; ``None``: the default, 2000.
         back: table ``[column.back]``: a wall behind the column, from which it can only move away, such as
-            ``{"side": "left"}``, perhaps with ``height_m`` and ``restitution`` (ratio of rates); not with drums.
+            ``{"side": "left"}``, perhaps with ``height_m`` and ``restitution`` (ratio of rates); drums then need elastic joints.
             ``None``: it stands free.
         load: tables ``[[load]]``: roofs, floors and thrusts, such as ``[{"mass_kg": 1500.0, "x_m": -0.15}]``, perhaps with
             ``height_m``, ``moves`` and ``thrust_n``.

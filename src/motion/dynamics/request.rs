@@ -21,7 +21,7 @@ pub struct Request {
     pub outcome_by_s: Option<f64>,
     /// Interval of the samples in seconds, from 1e-6 to 1e6, for at most 1e7 samples. Some models end their steps at samples.
     pub output_step_s: f64,
-    /// Initial position; `None` starts from rest.
+    /// Initial position and rate; `None` starts from rest.
     pub initial: Option<Initial>,
     /// Error tolerance of the integrator in a step, relative to the state, from 1e-13 to 1e-3.
     pub relative_tolerance: f64,
@@ -39,19 +39,34 @@ pub(super) fn later_end_s(
     later_s.filter(|later_s| *later_s > end_s)
 }
 
-/// Rotated position from which a structure is released at zero velocity.
+/// Rotated position from which a structure is released, or rate with which it starts, in the motion of its first mechanism.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Initial {
     /// Side of the sway.
     pub sway: Sway,
     /// Rotation, without sign, of the body that carries the coordinate, in radians: the end body on the side from which the structure sways (the left
-    /// one in a sway to the right), or the column.
+    /// one in a sway to the right), or the column. Zero if the structure starts from its position at rest.
     pub rotation_rad: f64,
+    /// Rate of this rotation in rad/s, negative towards the position at rest; positive if the structure starts from there.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub rate_rad_s: f64,
+}
+
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 impl Initial {
     /// Smallest initial rotation in radians: rounding errors may exceed the energy of a smaller one.
     pub const MIN_ROTATION_RAD: f64 = 1e-100;
+    /// Range of initial rates, in rad/s. The largest rate overturns every column with a half diagonal above 1.5 mm.
+    pub const RATE_RAD_S: RangeInclusive<f64> = -1e2..=1e2;
+
+    /// Returns whether the structure moves after the start: it is rotated, or has a rate away from its position at rest.
+    pub fn moves(self) -> bool {
+        self.rotation_rad >= Self::MIN_ROTATION_RAD
+            || (self.rotation_rad == 0.0 && self.rate_rad_s >= Self::MIN_ROTATION_RAD)
+    }
 
     /// Checks that the rotation is below the limit position of the first mechanism.
     ///
@@ -120,8 +135,11 @@ impl Request {
         ] {
             within(argument, value, range)?;
         }
-        if let Some(Initial { rotation_rad, .. }) = self.initial {
-            within("rotation_rad", rotation_rad, Initial::MIN_ROTATION_RAD..=PI)?;
+        if let Some(initial) = self.initial {
+            let rotation_rad = within("rotation_rad", initial.rotation_rad, 0.0..=PI)?;
+            within("rate_rad_s", initial.rate_rad_s, Initial::RATE_RAD_S)?;
+            let allowed = "at least 1e-100, or 0 with a positive `rate_rad_s`";
+            allow(initial.moves(), "rotation_rad", rotation_rad, allowed)?;
         }
         let lasts_s = self.lasts_s(ground);
         let (step_s, least_s) = (self.output_step_s, lasts_s / Self::MOST_SAMPLES);

@@ -64,7 +64,7 @@ pub struct Column {
     top_width_m: Option<f64>,
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pedestal: bool,
-    /// Wall behind the column; `None` if it stands free. Rows of its drums ignore the wall.
+    /// Wall behind the column; `None` if it stands free. [`Column::row`] has no wall.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub back: Option<BackWall>,
     /// Ties of the column.
@@ -368,6 +368,47 @@ impl Column {
         let measured = "three impacts in turn do not throw the column back, so give `restitution` of [column.back], a measured ratio of rates";
         let allowed = format!("{allowed}; otherwise {measured}");
         Err(ArgumentError::new(argument, value, allowed))
+    }
+
+    /// Returns the rate about the toe to this side, in rad/s, of a column of one block at rest just after a short horizontal blow: the angular impulse
+    /// about the toe over the moment of inertia about it. The base does not slip in the blow. `None` for several drums, which do not start as one.
+    pub fn rate_of_blow_rad_s(&self, sway: Sway, impulse_n_s: f64, height_m: f64) -> Option<f64> {
+        let [block] = &self.row().ok()?.blocks[..] else {
+            return None;
+        };
+        let arm_m = block.centre_m - Vector2::new(0.5 * sway.sign() * self.width_m, 0.0);
+        let inertia_kg_m2 = block.inertia_kg_m2 + block.mass_kg * arm_m.norm_squared();
+        Some(impulse_n_s * height_m / inertia_kg_m2)
+    }
+
+    /// Returns side and height in metres of a wall behind drums with elastic joints; `None` without a wall. Each drum is held at its centre or above, so
+    /// the wall carries every push towards it.
+    ///
+    /// # Errors
+    /// If the column tapers or has ties, or the wall is below the centre of a drum. A column of one block also needs a ratio of rates, because its
+    /// statics are those of Housner's column.
+    pub fn wall_behind_drums(&self) -> Result<Option<(Sway, f64)>, ArgumentError> {
+        let Some((wall, height_m)) = self.wall() else {
+            return Ok(None);
+        };
+        let top_m = self.drum_heights_m().last().copied().unwrap_or(0.0);
+        // Loads may raise the centre of the top drum.
+        let row = self.row().ok().filter(|_| !self.loads.is_empty());
+        let loaded_m = row.and_then(|row| Some(row.blocks.last()?.centre_m.y));
+        let least_m = (self.height_m - 0.5 * top_m).max(loaded_m.unwrap_or(0.0));
+        let tapers = self.top_width_m() != self.width_m;
+        let foot_only = "that of the base with a wall behind the column, which a tapered face touches at its foot only";
+        allow(!tapers, "top_width_m", self.top_width_m(), foot_only)?;
+        allow(self.ties.is_empty(), "height_m", height_m, "0 with ties")?;
+        let allowed = format_args!(
+            "0 for no wall, or at least {} m, the centre of the top drum: a push turns a drum over the top of a lower wall, and its onset is not computed",
+            plain(least_m)
+        );
+        allow(height_m >= least_m, "height_m", height_m, allowed)?;
+        if self.is_one_prism() {
+            self.wall_rate_ratio()?;
+        }
+        Ok(Some((wall.side, height_m)))
     }
 
     /// Returns half the diagonal of its outline, in metres, for a top as wide as the base.

@@ -9,11 +9,11 @@
 //! that joint closes the row. The remaining gap between its two faces, due to rounding errors, is the [`Placement::closure_error`]. Supports are in
 //! their original or a moved position.
 
-use nalgebra::Vector2;
+use nalgebra::{Vector2, Vector3};
 
 use crate::mechanics::geometry::field::turned;
 use crate::mechanics::geometry::pose::{product, unit};
-use crate::mechanics::{Edge, Joint, Pose, Row, Supports};
+use crate::mechanics::{Edge, Joint, Pose, Row, Supports, Twist};
 
 /// Gap, over the thickness, below which a corner of a joint counts as closed.
 pub const SHUT_RATIO: f64 = 1e-12;
@@ -179,6 +179,49 @@ impl Placement {
             self.gaps_m[joint] = hinge_gaps_m(opening * self.faces[joint].thickness, 0.0);
         }
         self.place();
+    }
+
+    /// Returns the edge about which a joint turns that opens at this rate, in rad/s: the edge in contact; of a closed joint, the edge that does not open.
+    fn pivot(&self, joint: usize, opening_rad_s: f64) -> Edge {
+        let [intrados, extrados] = self.gaps_m[joint];
+        let open = if intrados == extrados {
+            opening_rad_s
+        } else {
+            extrados - intrados
+        };
+        if open > 0.0 {
+            Edge::Intrados
+        } else {
+            Edge::Extrados
+        }
+    }
+
+    /// Returns the motions of the blocks for given rotation rates in rad/s, and the edge about which each joint turns; `None` for joints that do not
+    /// turn.
+    pub fn motions(&self, rates_rad_s: &[f64]) -> (Vec<Twist>, Vec<Option<Edge>>) {
+        let mut motions = Vec::with_capacity(self.poses.len());
+        let mut left = Twist::ZERO;
+        let pivot = |joint: usize| {
+            let rate_rad_s = rates_rad_s.get(joint).unwrap_or(&0.0) - left.rate;
+            let edge = self.pivot(joint, self.handedness * rate_rad_s);
+            if joint < self.poses.len() {
+                let corner_m = self.frames[joint].corner_m(edge);
+                left = left + Twist::rotation(corner_m, rate_rad_s);
+                motions.push(left);
+            }
+            (rate_rad_s != 0.0).then_some(edge)
+        };
+        let pivots = (0..self.faces.len()).map(pivot).collect();
+        (motions, pivots)
+    }
+
+    /// Returns the velocities of the centres, in m/s, and the rotation rates of the blocks for given rotation rates in rad/s.
+    pub fn velocities(&self, rates_rad_s: &[f64]) -> Vec<Vector3<f64>> {
+        let (motions, _) = self.motions(rates_rad_s);
+        let moving = motions.iter().zip(&self.centres_m);
+        let velocity =
+            |(motion, centre_m): (&Twist, &Vector2<f64>)| motion.at(*centre_m).push(motion.rate);
+        moving.map(velocity).collect()
     }
 
     /// Adds changes to the gaps, closes those below [`SHUT_RATIO`], and updates the positions.

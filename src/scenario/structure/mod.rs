@@ -16,7 +16,7 @@ use super::masonry::{self, Additions};
 use super::prelude::*;
 use super::span::Circular;
 use super::tie::{self, TieTable};
-use crate::argument::rounded_up;
+use crate::argument::{ArgumentError, rounded_up};
 use crate::mechanics::four_link::least_thickness_ratio;
 use crate::mechanics::masonry::{CircularArch, LoadOutlines};
 use crate::mechanics::{DENSITY_KG_M3, DEPTH_M, MAX_BLOCKS};
@@ -55,16 +55,16 @@ pub enum ModelError {
 }
 
 impl Structure {
-    /// Reads the structure with its ties, for a model of motion with joints (`free_hinges`) or without.
+    /// Reads the structure with its ties, for a model of motion with joints or without. `lands` is true for joints whose blocks move and land as rigid ones.
     pub(super) fn read(
         table: &mut Table<'_>,
-        free_hinges: bool,
+        (has_joints, lands): (bool, bool),
         gravity_m_s2: Option<f64>,
     ) -> ReadResult<(Self, Vec<TieTable>)> {
         let beside = Additions::read(table);
         let alone = beside.as_ref().is_ok_and(Additions::is_empty);
-        let arch = table.table("arch", |table| read_arch(table, free_hinges, alone));
-        let column = table.table("column", |table| read_column(table, free_hinges));
+        let arch = table.table("arch", |table| read_arch(table, has_joints, alone));
+        let column = table.table("column", |table| read_column(table, has_joints, lands));
         let shape = masonry::read_shapes(table).map(StructureTable::Shape);
         let [pointed, elliptic, basket, blocks] = masonry::SHAPES;
         let tables = ["arch", "column", pointed, elliptic, basket, blocks];
@@ -76,7 +76,7 @@ impl Structure {
         let structure = match read {
             StructureTable::Arch(arch) => Self::Arch(arch),
             StructureTable::Column(column) if beside.fits_column() => {
-                let has_joints = free_hinges || !ties.is_empty();
+                let has_joints = has_joints || !ties.is_empty();
                 let by = (has_joints, gravity_m_s2);
                 let column = loaded_column(table, &beside.loads, column, by)?;
                 let is_pushed = !ties.is_empty() && column.constant_forces().count() > 0;
@@ -335,11 +335,10 @@ fn why_not(arch: &Arch, error: LimitError) -> String {
 }
 
 /// Message about ties of a column with a wall behind it.
-const NO_TIES: &str = "cannot be combined with [column.back]: a column with ties moves as a row of blocks, without contact with a wall behind it; leave \
-                       one out";
-/// Message about a wall behind a row of blocks.
-const NO_BLOCKS: &str = "applies to Housner's model only, a single prismatic block: rows of blocks (drums, a taper, free hinges, elastic joints) have no \
-                         contact with a wall behind them; leave these out, or leave [column.back] out";
+const NO_TIES: &str = "cannot be combined with [column.back]: a tie may pull the column against the wall, which no model computes; leave one out";
+/// Message about a wall behind a row of rigid blocks.
+const NO_RIGID_BLOCKS: &str = "cannot be combined with free hinges: their impacts lose all energy of the contacts that close, so base and wall together \
+                               would stop the column; give [elastic_joints], or Housner's column, or leave [column.back] out";
 
 /// Reads `[column.back]`.
 fn read_back(table: &mut Table<'_>) -> ReadResult<BackWall> {
@@ -358,7 +357,7 @@ const DRUMS: Count = Count(1..=MAX_BLOCKS, "each is a block");
 pub(super) const DRUM_KEYS: [&str; 3] = ["drums", "drum_heights_m", "top_width_m"];
 
 /// Reads `[column]`. Drums and a taper need a model with joints.
-fn read_column(table: &mut Table<'_>, free_hinges: bool) -> ReadResult<Column> {
+fn read_column(table: &mut Table<'_>, has_joints: bool, lands: bool) -> ReadResult<Column> {
     let height_m = table.required("height_m", &MAGNITUDE);
     let width_m = table.required("width_m", &MAGNITUDE);
     let drums = table.optional("drums", &DRUMS);
@@ -368,7 +367,7 @@ fn read_column(table: &mut Table<'_>, free_hinges: bool) -> ReadResult<Column> {
     let density_kg_m3 = table.or("density_kg_m3", &MAGNITUDE, DENSITY_KG_M3);
     let pedestal = table.or("pedestal", &switch(), false);
     let back = table.table("back", read_back);
-    if !free_hinges && let Some(key) = DRUM_KEYS.into_iter().find(|key| table.gives(key)) {
+    if !has_joints && let Some(key) = DRUM_KEYS.into_iter().find(|key| table.gives(key)) {
         let wrong = "needs a table [free_hinges] or [elastic_joints]: Housner's model is a single prismatic block";
         table.wrong(key, wrong);
     }
@@ -392,11 +391,23 @@ fn read_column(table: &mut Table<'_>, free_hinges: bool) -> ReadResult<Column> {
         column = table.accept("drum_heights_m", drums)?;
     }
     if let Some(back) = back {
-        column = column.with_back(back).map_err(|error| {
+        let wrong = |table: &mut Table<'_>, error: ArgumentError| {
             let wrong = format!("does not fit: it must be {}", error.allowed);
-            table.wrong_in(&["back"], error.argument, wrong)
-        })?;
+            match error.argument {
+                "width_m" | "top_width_m" => table.wrong(error.argument, wrong),
+                _ => table.wrong_in(&["back"], error.argument, wrong),
+            }
+        };
+        column = column
+            .with_back(back)
+            .map_err(|error| wrong(table, error))?;
+        let held = match has_joints {
+            true => column.wall_behind_drums().map(drop),
+            false => Ok(()),
+        };
+        let held = held.map_err(|error| wrong(table, error));
+        table.refuse(lands && column.wall().is_some(), "back", NO_RIGID_BLOCKS)?;
+        held?;
     }
-    table.refuse(column.wall().is_some() && free_hinges, "back", NO_BLOCKS)?;
     Ok(column)
 }

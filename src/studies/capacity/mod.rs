@@ -45,6 +45,9 @@ pub fn capacity(
     if let Some(row) = held_row(&scenario.structure)? {
         let control = control(&row, point_m)?;
         return Sides::try_of(|sway| {
+            if scenario.structure.wall_behind() == Some(sway) {
+                return Ok(None);
+            }
             let held = Held::new(&row, sway)?;
             let displaced = |part| held.displaced(part);
             let (masses, control) = Bodies::of_row(&held).masses(&row, control);

@@ -55,7 +55,7 @@ fn summary(scenario: &Scenario) -> Result<Summary, StudyError> {
         }
     };
     if let Some(coefficient) = coefficient {
-        summary.friction = Some(with_friction(&row()?, coefficient)?);
+        summary.friction = Some(with_friction(&row()?, coefficient, summary.wall_behind)?);
     }
     Ok(summary)
 }
@@ -63,10 +63,17 @@ fn summary(scenario: &Scenario) -> Result<Summary, StudyError> {
 /// Computes the onset of an undeformed row by the static theorem of limit analysis.
 fn of_row(scenario: &Scenario, row: &Row) -> Result<Summary, StabilityError> {
     let gravity_m_s2 = scenario.gravity_m_s2();
-    let onsets = Sides::try_of(|sway| onset(row, sway))?;
+    let wall_behind = scenario.structure.wall_behind();
+    let onsets = Sides::try_of(|sway| match wall_behind == Some(sway) {
+        true => Ok(None),
+        false => onset(row, sway),
+    })?;
     let starts_g = onsets.map(|onset| onset.as_ref().map(|onset| onset.acceleration_g));
     let mechanism = onsets.map(|onset| open_joints(row, onset.as_ref()));
-    let mut summary = Summary::new(starts_g, mechanism, gravity_m_s2);
+    let mut summary = Summary {
+        wall_behind,
+        ..Summary::new(starts_g, mechanism, gravity_m_s2)
+    };
     if !row.bars().is_empty() {
         summary.ties = Some(ties(row)?);
         summary.tie_places = scenario.structure.tie_places();
@@ -125,9 +132,16 @@ fn ties(row: &Row) -> Result<Ties, StabilityError> {
 }
 
 /// Computes the onset of motion of an undeformed row whose joints slip.
-fn with_friction(row: &Row, coefficient: f64) -> Result<Friction, FrictionError> {
+fn with_friction(
+    row: &Row,
+    coefficient: f64,
+    wall_behind: Option<Sway>,
+) -> Result<Friction, FrictionError> {
     let sides = Sides::try_of(|sway| {
-        let onset = friction::onset(row, coefficient, sway)?;
+        let onset = match wall_behind == Some(sway) {
+            true => None,
+            false => friction::onset(row, coefficient, sway)?,
+        };
         Ok::<_, FrictionError>(FrictionSide {
             incipient_acceleration_g: onset.as_ref().map(|onset| onset.acceleration_g),
             sliding_governs: onset.as_ref().is_some_and(FrictionOnset::sliding_governs),

@@ -3,9 +3,11 @@
 use std::ops::RangeInclusive;
 use std::sync::{Arc, OnceLock};
 
+use nalgebra::Vector3;
+
 use super::stepper::Group;
-use crate::argument::{ArgumentError, short, within};
-use crate::dynamics::model::{Case, Job, Jobs, Recorder, check, one_by_one};
+use crate::argument::{ArgumentError, allow, short, within};
+use crate::dynamics::model::{Case, Initial, Job, Jobs, Recorder, check, one_by_one};
 use crate::dynamics::row::observer::{LARGEST_ENERGY_ERROR, balanced};
 use crate::dynamics::row::standing::RigidRow;
 use crate::dynamics::row::stepper;
@@ -16,7 +18,7 @@ use crate::dynamics::{
 };
 use crate::mechanics::blocks::GRAVITY_M_S2;
 use crate::mechanics::elastic_joint::{Contact, ElasticProperties, JointStiffness, Stiffness};
-use crate::mechanics::{ElasticStructure, Equilibrium, Movements, Row, Sway};
+use crate::mechanics::{Column, ElasticStructure, Equilibrium, Movements, Row, Sway};
 
 /// Row of rigid blocks, as an arch or a stack, whose joints carry no tension, deform elastically, slip and crush.
 ///
@@ -32,6 +34,8 @@ pub struct ElasticJoints {
     given_step_s: Option<f64>,
     /// Bodies and joints.
     pub structure: ElasticStructure,
+    /// Side and height in metres of a wall behind a column.
+    wall: Option<(Sway, f64)>,
     /// Gravity, and the equilibrium under it.
     rest: (f64, Equilibrium),
     /// Gravity, and the energy barrier under it, computed at the first request.
@@ -47,6 +51,8 @@ pub struct ElasticJoints {
 const STEP_RATIO: [f64; 2] = [0.25, 0.5];
 /// Damping ratio of the fastest vibration at which the longer steps are sufficient.
 const DAMPED: f64 = 0.3;
+/// Ratio of the steps with a wall to those without: column and wall are parallel, so their whole contact closes in one step.
+const WALL_STEP_RATIO: f64 = 0.25;
 /// Ratio of the steps in studies of many cases to those of a single run.
 const MANY_CASES_STEP_RATIO: f64 = 1.6;
 /// Steps of the repetitions, over those of the motion; none is longer, as steps may already be close to the largest stable one.
@@ -95,6 +101,29 @@ impl ElasticJoints {
         Self::standing(rigid, properties, structure, gravity_m_s2)
     }
 
+    /// Returns the model of a column under this gravity, in m/s2, with the wall behind it. Contacts with the wall push, without friction; their stiffness
+    /// per area and their damping are those of the joints.
+    ///
+    /// # Errors
+    /// As [`ElasticJoints::new`] and [`Column::wall_behind_drums`].
+    pub fn of_column(
+        gravity_m_s2: f64,
+        column: &Column,
+        properties: ElasticProperties,
+    ) -> Result<Self, RowModelError> {
+        let row = column.row()?;
+        let Some(wall) = column.wall_behind_drums()? else {
+            return Self::under(gravity_m_s2, row, properties);
+        };
+        let structure = ElasticStructure::of_row(&row, &properties)?;
+        let structure = structure.with_wall(&row, wall, &properties)?;
+        let rigid = RigidRow::new(row)?.with_friction(properties.friction_coefficient)?;
+        Ok(Self {
+            wall: Some(wall),
+            ..Self::standing(rigid, properties, structure, gravity_m_s2)?
+        })
+    }
+
     fn standing(
         rigid: RigidRow,
         properties: ElasticProperties,
@@ -107,6 +136,7 @@ impl ElasticJoints {
             properties,
             given_step_s: None,
             structure,
+            wall: None,
             rest: (gravity_m_s2, rest),
             barrier_j: Arc::default(),
             many_cases: false,
@@ -127,6 +157,7 @@ impl ElasticJoints {
         let settled = Self::standing(rigid, self.properties, structure, self.rest.0)?;
         Ok(Self {
             given_step_s: self.given_step_s,
+            wall: self.wall,
             ..settled
         })
     }
@@ -184,7 +215,10 @@ impl ElasticJoints {
         let frequency = structure.frequency_bound_rad_s();
         let damped = 0.5 * structure.damping_time_s * frequency / DAMPED;
         let [undamped, enough] = STEP_RATIO;
-        let ratio = undamped + (enough - undamped) * damped.min(1.0);
+        let mut ratio = undamped + (enough - undamped) * damped.min(1.0);
+        if structure.has_wall() {
+            ratio *= WALL_STEP_RATIO;
+        }
         ratio * structure.stable_step_s()
     }
 
@@ -238,21 +272,26 @@ impl ElasticJoints {
 
     fn varied(&self, properties: ElasticProperties) -> Result<Self, RowModelError> {
         let structure = ElasticStructure::of_row(self.row(), &properties)?;
-        let structure = structure.on_supports(self.structure.supports);
-        Self::standing(self.rigid.clone(), properties, structure, self.rest.0)
+        let mut structure = structure.on_supports(self.structure.supports);
+        if let Some(wall) = self.wall {
+            structure = structure.with_wall(self.row(), wall, &properties)?;
+        }
+        let standing = Self::standing(self.rigid.clone(), properties, structure, self.rest.0)?;
+        Ok(Self {
+            wall: self.wall,
+            ..standing
+        })
     }
 
+    /// Returns the input of a motion, and the initial velocities of the blocks; empty at rest.
     fn input<'a>(
         &'a self,
         ground: &'a GroundMotion,
         request: &Request,
-    ) -> Result<MotionInput<'a>, SimulationError> {
+    ) -> Result<(MotionInput<'a>, Vec<Vector3<f64>>), SimulationError> {
         check(ground, request)?;
-        if let Some(initial) = request.initial {
-            let allowed =
-                "left out: elastic joints start from rest under the weight of the structure";
-            return Err(ArgumentError::new("rotation_rad", initial.rotation_rad, allowed).into());
-        }
+        let velocities = request.initial.map(|initial| self.velocities(initial));
+        let velocities = velocities.transpose()?.unwrap_or_default();
         let (step_s, longest_s) = (self.longest_step_s(), self.structure.stable_step_s());
         if step_s > longest_s {
             let why = format!(
@@ -271,7 +310,24 @@ impl ElasticJoints {
             ..Settings::default()
         };
         let settings = settings.within(Self::MOST_STEPS, TOO_LONG)?;
-        Ok(self.rigid.input(ground, request.gravity_m_s2, settings))
+        let input = self.rigid.input(ground, request.gravity_m_s2, settings);
+        Ok((input, velocities))
+    }
+
+    /// Returns the velocities (m/s) and rotation rates of the blocks if the row starts with a rate in the first mechanism of rigid joints.
+    ///
+    /// # Errors
+    /// If the row is rotated: elastic joints have no hinges about which blocks turn.
+    fn velocities(&self, initial: Initial) -> Result<Vec<Vector3<f64>>, ArgumentError> {
+        let rotation_rad = initial.rotation_rad;
+        let allowed = "0 with elastic joints, which have no hinges to rotate about: they start under the weight of the structure";
+        allow(rotation_rad == 0.0, "rotation_rad", rotation_rad, allowed)?;
+        let release = self.rigid.released(initial)?;
+        Ok(self
+            .rigid
+            .standing
+            .placement
+            .velocities(&release.rates_rad_s))
     }
 
     fn simulate_one(
@@ -282,14 +338,14 @@ impl ElasticJoints {
         until: EndCondition,
     ) -> Result<Summary, SimulationError> {
         let gravity_m_s2 = request.gravity_m_s2;
-        let input = self.input(ground, request)?;
+        let (input, velocities) = self.input(ground, request)?;
         let rest = self.rest(gravity_m_s2)?;
         let barrier_j = || self.elastic_barrier_j(gravity_m_s2);
         // The cast shortens the lifetime of the recorder to that of the input.
         let recorder = recorder.map(|recorder| recorder as _);
         let start = (&self.structure, &rest);
-        let mut group = Group::<1>::new(input.row, start, gravity_m_s2, &barrier_j);
-        group.begin(0, input, until, recorder);
+        let mut group = Group::<1>::new(self.row(), start, gravity_m_s2, &barrier_j);
+        group.begin(0, (input, &velocities), until, recorder);
         self.checked_summary(stepper::run(group)?, &rest, gravity_m_s2)
     }
 
@@ -325,8 +381,8 @@ impl ElasticJoints {
                 {
                     let (ground, request) = &cases[job.case];
                     match model_of(job).input(ground, request) {
-                        Ok(input) => {
-                            group.begin(lane, input, job.until, None);
+                        Ok((input, velocities)) => {
+                            group.begin(lane, (input, &velocities), job.until, None);
                             *running = Some(job);
                             group.continue_lane(lane);
                         }
@@ -393,8 +449,12 @@ impl Model for ElasticJoints {
         Some(&self.rigid.row)
     }
 
+    /// A wall carries every push towards it.
     fn incipient_acceleration_g(&self, sway: Sway) -> Option<f64> {
-        self.rigid.incipient_acceleration_g(sway)
+        let is_held = self.wall.is_some_and(|(side, _)| side == sway);
+        self.rigid
+            .incipient_acceleration_g(sway)
+            .filter(|_| !is_held)
     }
 
     fn simulate(

@@ -1,5 +1,6 @@
 //! Motion of bodies with elastic joints, several motions in parallel, by the leapfrog method.
 
+use nalgebra::Vector3;
 use pulp::{Arch, Simd, WithSimd};
 
 use crate::mechanics::elastic_joint::{BodyPosition, ElasticJoint, Fibre, Gap, Memory};
@@ -197,6 +198,15 @@ impl<'a, const L: usize> ElasticMotion<'a, L> {
             tie.set(lane, alone);
         }
         self.energies.set(lane, &EnergyTerms::none());
+    }
+
+    /// Gives the bodies of a lane velocities (m/s) and rotation rates, at the time of their positions.
+    pub fn set_velocities(&mut self, lane: usize, velocities: &[Vector3<f64>]) {
+        for (body, velocity) in self.bodies.iter_mut().zip(velocities) {
+            body.velocity_m_s[0].0[lane] = velocity.x;
+            body.velocity_m_s[1].0[lane] = velocity.y;
+            body.rate_rad_s.0[lane] = velocity.z;
+        }
     }
 
     /// Takes one step of all lanes, with the widest vectors of the processor. The vector width does not change the results.
@@ -408,6 +418,9 @@ impl<'a, const L: usize> ElasticMotion<'a, L> {
         for (index, (joint, memory)) in structure.joints.iter().zip(&self.memories).enumerate() {
             let fibres = &self.fibres[index * each..(index + 1) * each];
             observation.elastic_j += structure.energy_j(joint, memory, fibres);
+            if index >= structure.row_joints().len() {
+                continue;
+            }
             let deepest = memory.penetrations_m[0].max(memory.penetrations_m[1]);
             let stress = deepest.min(Lanes([joint.crushing_penetration_m; L]))
                 * (joint.normal_n_m / joint.area_m2);

@@ -2,7 +2,7 @@
 
 use std::cell::OnceCell;
 
-use nalgebra::Vector2;
+use nalgebra::{Vector2, Vector3};
 
 use super::motion::{
     ElasticMotion, GroundActivity, Observation, SlidingSupport, Step, joint_bodies,
@@ -71,8 +71,8 @@ struct Lane<'a> {
 /// Observations of a motion up to now.
 #[derive(Default)]
 struct MotionMonitor {
-    /// Potential and elastic energy at rest, in J; `None` before the first observation.
-    rest_j: Option<f64>,
+    /// Potential and elastic energy at the start, and kinetic energy, in J; `None` before the first observation.
+    start_j: Option<(f64, f64)>,
     rest_sway_kg_m: f64,
     /// Gaps above which a joint counts as open, at intrados and extrados, in m; empty before the first observation, at rest.
     opening_m: Vec<[f64; 2]>,
@@ -215,6 +215,7 @@ impl<'a> Lane<'a> {
     ) -> f64 {
         if self.observer.has_rocked != Some(true) {
             let edges = motion.memories.iter().map(|edges| edges.penetrations_m);
+            let edges = edges.take(motion.structure.row_joints().len());
             let is_open = self.is_open(edges.map(|ends| ends.map(|end| end.0[index])));
             let slips =
                 self.observer.elastic.friction_j > REST_ENERGY_RATIO * self.observer.energy_unit;
@@ -222,7 +223,7 @@ impl<'a> Lane<'a> {
         }
         let observer = &mut self.observer;
         let mut slid = 0.0;
-        for (joint, with_joint) in motion.structure.joints.iter().enumerate() {
+        for (joint, with_joint) in motion.structure.row_joints().iter().enumerate() {
             let permanent_slip_m = motion.memories[joint].permanent_slip_m.0[index];
             if let Some(sliding) = &mut observer.row_summary.sliding {
                 sliding.friction_j = observer.elastic.friction_j;
@@ -334,15 +335,16 @@ impl<'a, const L: usize> Group<'a, L> {
         }
     }
 
-    /// Starts a motion in a lane.
+    /// Starts a motion in a lane, at rest or with velocities of the blocks.
     pub fn begin(
         &mut self,
         lane: usize,
-        input: MotionInput<'a>,
+        (input, velocities): (MotionInput<'a>, &[Vector3<f64>]),
         until: EndCondition,
         recorder: Option<&'a mut dyn Recorder>,
     ) {
         self.motion.start(lane, self.rest);
+        self.motion.set_velocities(lane, velocities);
         let mut begun = Lane::new(input, until, recorder);
         let weighted = self
             .row
@@ -351,7 +353,7 @@ impl<'a, const L: usize> Group<'a, L> {
             .zip(&self.rest.self_weight_displacements);
         let moved = weighted.map(|(block, moved)| block.mass_kg * moved[0].hypot(moved[1]));
         let moved_kg_m: f64 = moved.sum();
-        let none = || Sliding::none(self.structure.joints.len());
+        let none = || Sliding::none(self.structure.row_joints().len());
         begun.observer.row_summary.sliding = self.structure.slips().then(none);
         begun.observer.least_sway_kg_m =
             begun.observer.least_sway_kg_m.max(SIDE_RATIO * moved_kg_m);
@@ -425,12 +427,12 @@ impl<'a, const L: usize> Group<'a, L> {
             )));
             return;
         }
-        let rest_j = *lane.monitor.rest_j.get_or_insert_with(|| {
+        let (rest_j, start_j) = *lane.monitor.start_j.get_or_insert_with(|| {
             lane.monitor.vibration_j = (REST_ENERGY_RATIO * observer.energy_unit)
                 .max(VIBRATION_STRAIN_RATIO * elastic)
                 .max(VIBRATION_BARRIER_RATIO * lane.barrier_j.unwrap_or(0.0));
             lane.monitor.rest_sway_kg_m = of(observation.sway_kg_m);
-            stored
+            (stored, kinetic)
         });
         let energies = &observation.energies;
         observer.elastic.elastic_j = elastic;
@@ -452,8 +454,8 @@ impl<'a, const L: usize> Group<'a, L> {
         (row_summary.ground_j, row_summary.right_foot_j) =
             (of(energies.ground_j), of(energies.feet_j));
         let potential = stored - rest_j;
-        let due = row_summary.ground_j + row_summary.right_foot_j - dissipated_j;
-        observer.note_defect((kinetic + potential - due).abs());
+        let work_j = row_summary.ground_j + row_summary.right_foot_j;
+        observer.note_defect((kinetic + potential - (work_j - dissipated_j) - start_j).abs());
         if of(observation.largest_stress[0]) > observer.elastic.largest_stress.stress_pa {
             observer.elastic.largest_stress = Stress {
                 stress_pa: of(observation.largest_stress[0]),
@@ -538,7 +540,7 @@ impl<'a> Group<'a, 1> {
     /// Returns the friction coefficient without which joints would slide at this instant.
     fn friction_demand(&self) -> f64 {
         let least_n = self.observer().least_load_n();
-        let pressures = (0..self.structure.joints.len()).map(|joint| self.pressure(joint));
+        let pressures = (0..self.structure.row_joints().len()).map(|joint| self.pressure(joint));
         let loaded = pressures.filter(|pressure| pressure.normal_n >= least_n);
         let needed = loaded.map(|pressure| pressure.shear_n.abs() / pressure.normal_n);
         needed.fold(0.0, f64::max)
@@ -618,7 +620,7 @@ impl<'a> Stepper<'a> for Group<'a, 1> {
         }
         sample.feet_apart_m = self.lane().feet_apart_m;
         let observation = motion.observe(&half, &self.supports);
-        for joint in 0..self.structure.joints.len() {
+        for joint in 0..self.structure.row_joints().len() {
             let pressure = self.pressure(joint);
             sample.eccentricity_ratios.push(pressure.eccentricity_ratio);
             sample.pressures.push(pressure);

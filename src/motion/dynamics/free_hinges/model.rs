@@ -268,11 +268,11 @@ impl Model for FreeHinges {
             let parts = self.row().ties.len() + self.row().joints.len();
             settings.within(MOST_TIE_WORK / parts as f64, &remedy)?;
         }
-        let initial = request.initial.map(|initial| self.rigid.released(initial));
+        let release = request.initial.map(|initial| self.rigid.released(initial));
         let input = self.rigid.input(ground, request.gravity_m_s2, settings);
-        let initial_rad = initial.transpose()?;
+        let release = release.transpose()?;
         let standing = &self.rigid.standing;
-        let summary = motion(input, standing, initial_rad.as_deref(), recorder)?;
+        let summary = motion(input, standing, release.as_ref(), recorder)?;
         let halvings = summary.row().map_or(0, |row| row.halvings);
         let step_s = SHORTER * (settings.longest_step_s * 0.5_f64.powf(halvings.into()));
         Ok(balanced(summary, "free_hinges", step_s)?)

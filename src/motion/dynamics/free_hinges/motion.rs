@@ -3,6 +3,7 @@
 use super::landing::LandingStepper;
 use super::sliding::SlidingStepper;
 use crate::dynamics::recorder::Recorder;
+use crate::dynamics::row::standing::Release;
 use crate::dynamics::row::stepper;
 use crate::dynamics::{MotionInput, RowMotionError, Summary};
 use crate::mechanics::RowState;
@@ -14,18 +15,19 @@ const MOST_STEPS: f64 = 1e12;
 pub fn motion(
     input: MotionInput<'_>,
     standing: &RowState,
-    initial_rad: Option<&[f64]>,
+    release: Option<&Release>,
     recorder: Option<&mut dyn Recorder>,
 ) -> Result<Summary, RowMotionError> {
     let remedy = "give a longer `longest_step_s` in [free_hinges]";
     input.settings.within(MOST_STEPS, remedy)?;
     // The cast shortens the lifetime of the recorder to that of the input.
     let recorder = recorder.map(|recorder| recorder as _);
-    let released = |recorder| LandingStepper::new(input, standing, initial_rad, recorder);
+    let released = |recorder| LandingStepper::new(input, standing, release, recorder);
     let Some(coefficient) = input.settings.friction_coefficient else {
         return stepper::run(released(recorder)?);
     };
     let placement = released(None)?.placement;
-    let stepper = SlidingStepper::new(standing, &placement, input, coefficient, recorder);
+    let start = (standing, &placement, release.filter(|one| one.has_rate()));
+    let stepper = SlidingStepper::new(start, input, coefficient, recorder);
     stepper::run(stepper)
 }

@@ -125,8 +125,8 @@ fn history_of<C: MechanismChain + MechanismModel>(
     let rocking = checked(chain, ground, request)?;
     let mode = |initial: Initial| rocking.released(initial.sway);
     let mode = request.initial.map_or(Phase::Rest, mode);
-    let q_rad = request.initial.map_or(0.0, |initial| initial.rotation_rad);
-    let state = RockingState::new(q_rad, 0.0, 0.0);
+    let start = |initial: Initial| RockingState::new(initial.rotation_rad, initial.rate_rad_s, 0.0);
+    let state = request.initial.map_or_else(RockingState::zeros, start);
     let mut settings = EngineSettings {
         end_s: request.end_s,
         relative_tolerance: request.relative_tolerance,

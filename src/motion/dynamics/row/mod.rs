@@ -8,5 +8,5 @@ pub(crate) mod clock;
 pub(crate) mod error;
 pub(super) mod input;
 pub(super) mod observer;
-pub(super) mod standing;
+pub(crate) mod standing;
 pub(super) mod stepper;

@@ -332,16 +332,18 @@ impl<'a> MotionObserver<'a> {
         self.recorder.is_some()
     }
 
-    /// Records a release at rest, with rotations of the blocks, potential energy, and displacement of the centre of gravity times the mass.
+    /// Records a release, with rotations of the blocks, potential and kinetic energy, and displacement of the centre of gravity times the mass.
     pub fn released(
         &mut self,
         rotations_rad: impl Iterator<Item = f64>,
-        potential: f64,
+        [potential, kinetic]: [f64; 2],
         sway: f64,
         moved: bool,
     ) {
         self.note_peaks(rotations_rad);
         self.potential = potential;
+        self.kinetic = kinetic;
+        self.row_summary.largest_kinetic_j = kinetic;
         self.sway = sway;
         self.row_summary.largest_potential_j = potential.max(0.0);
         self.moved = moved;

@@ -151,18 +151,21 @@ impl RigidRow {
         }
     }
 
-    /// Returns the rotations of the blocks at a given opening of the first mechanism.
+    /// Returns rotations and rates of the blocks at a given opening of the first mechanism.
     ///
     /// # Errors
     /// If the rotation is too large, or the row does not start with a mechanism of one degree of freedom.
-    pub fn released(&self, initial: Initial) -> Result<Vec<f64>, ArgumentError> {
+    pub fn released(&self, initial: Initial) -> Result<Release, ArgumentError> {
         let blocks = self.row.blocks.len();
         // The mechanism is described in the frame in which it sways right; a sway to the left is reflected.
         let side = initial.sway.sign();
         let row = match &self.first {
             Some(row) if !self.is_on_hinges() => row,
             None if self.row.supports == Supports::Left => {
-                return Ok(vec![-side * initial.rotation_rad; blocks]);
+                return Ok(Release {
+                    rotations_rad: vec![-side * initial.rotation_rad; blocks],
+                    rates_rad_s: vec![-side * initial.rate_rad_s; blocks],
+                });
             }
             _ => {
                 let allowed = "left out: this row does not start as a mechanism from which it could be released";
@@ -173,17 +176,37 @@ impl RigidRow {
         let first = row.link_from(initial.sway, 0);
         let link = first.expect("a row that starts as four links has its first mechanism");
         initial.check(link.limit_rad)?;
-        let mut bodies_rad = link.mechanism.rotations(initial.rotation_rad);
-        if initial.sway == Sway::Left {
-            bodies_rad.reverse();
-        }
         let hinges = row.hinges(0, initial.sway);
-        let rotation_rad = |block: usize| {
-            let before =
-                |hinge: &&Hinge| matches!(hinge, Hinge::Joint { joint, .. } if *joint <= block);
-            let body = hinges.iter().filter(before).count().checked_sub(1);
-            side * body.and_then(|body| bodies_rad.get(body)).unwrap_or(&0.0)
+        let of_blocks = |mut bodies: [f64; 3]| {
+            if initial.sway == Sway::Left {
+                bodies.reverse();
+            }
+            let of_block = |block: usize| {
+                let before =
+                    |hinge: &&Hinge| matches!(hinge, Hinge::Joint { joint, .. } if *joint <= block);
+                let body = hinges.iter().filter(before).count().checked_sub(1);
+                side * body.and_then(|body| bodies.get(body)).unwrap_or(&0.0)
+            };
+            (0..blocks).map(of_block).collect()
         };
-        Ok((0..blocks).map(rotation_rad).collect())
+        let unit_rates = link.mechanism.rotation_rates(initial.rotation_rad);
+        Ok(Release {
+            rotations_rad: of_blocks(link.mechanism.rotations(initial.rotation_rad)),
+            rates_rad_s: of_blocks(unit_rates.map(|rate| rate * initial.rate_rad_s)),
+        })
+    }
+}
+
+/// Rotations of the blocks from which a row is released, in radians, and their rates in rad/s, anticlockwise.
+#[derive(Clone, Debug)]
+pub struct Release {
+    pub rotations_rad: Vec<f64>,
+    pub rates_rad_s: Vec<f64>,
+}
+
+impl Release {
+    /// Returns whether blocks have a rate.
+    pub fn has_rate(&self) -> bool {
+        self.rates_rad_s.iter().any(|rate| *rate != 0.0)
     }
 }

@@ -167,7 +167,7 @@ pub struct ElasticJoint {
     pub geometry: JointGeometry,
     /// Normal stiffness of the closed joint, in N/m.
     pub normal_n_m: f64,
-    /// Shear stiffness of the closed joint, in N/m.
+    /// Shear stiffness of the closed joint, in N/m; zero for a contact without friction.
     pub shear_n_m: f64,
     /// Penetration at which the joint crushes, in m; infinite without crushing.
     pub crushing_penetration_m: f64,
@@ -247,6 +247,15 @@ impl ContactLaw {
         edges_n: [R; 2],
         memory: &mut Memory<R>,
     ) -> ShearForce<R> {
+        let zero = R::of(0.0);
+        if joint.shear_n_m == 0.0 {
+            return ShearForce {
+                shear_n: zero,
+                damped_j: zero,
+                friction_j: zero,
+                balance_j: zero,
+            };
+        }
         let [coefficient, lock] = self.friction;
         let bound = (edges_n[0] + edges_n[1]) * coefficient + R::of(lock);
         let kt = joint.shear_n_m;
@@ -257,7 +266,7 @@ impl ContactLaw {
         let balance_j = (memory.shear_n + elastic) * slipped * 0.5;
         let [before, after] = [memory.shear_n * slipped, elastic * slipped];
         let friction_j = before.positive(balance_j, after);
-        let (mut shear_n, mut damped_j) = (elastic, R::of(0.0));
+        let (mut shear_n, mut damped_j) = (elastic, zero);
         if let Some(damping) = damping {
             shear_n = clamped(elastic + slid * damping * kt, bound);
             let viscous = shear_n - elastic;

@@ -96,7 +96,7 @@ impl Equilibrium {
     pub(crate) fn largest_eccentricity(&self, structure: &ElasticStructure) -> (usize, f64) {
         let each = structure.fibres();
         let moved = |body: usize| self.moved.get(body).unwrap_or(structure.support(body));
-        let joints = structure.joints.iter().enumerate();
+        let joints = structure.row_joints().iter().enumerate();
         let eccentricities = joints.map(|(index, joint)| {
             let [first, second] = joint
                 .geometry
@@ -242,8 +242,8 @@ impl ElasticStructure {
     /// continuous contact then gives a lower bound: their energy is lower in every shape, because a sum over points, as the trapezoidal rule,
     /// overestimates a convex function.
     pub fn barrier_j(&self, rest: &Equilibrium, gravity_m_s2: f64) -> Option<f64> {
-        // Ties are not supported.
-        if !self.ties.is_empty() {
+        // Ties and walls are not supported.
+        if !self.ties.is_empty() || self.has_wall() {
             return None;
         }
         let load_m_s2 = [0.0, -gravity_m_s2];

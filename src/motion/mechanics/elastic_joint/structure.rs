@@ -11,7 +11,7 @@ use super::kinematics::{Action, BodyPosition, JointGeometry};
 use super::tie::BoundTie;
 use crate::argument::{ArgumentError, allow, within};
 use crate::mechanics::tie::square_frequency;
-use crate::mechanics::{Block, Joint, Lanes, Real, Row, Supports};
+use crate::mechanics::{Block, Joint, Lanes, Real, Row, Supports, Sway};
 
 /// Stiffness of an interface per area, in Pa/m.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -158,8 +158,10 @@ pub struct ElasticStructure {
     pub bodies: Vec<Block>,
     /// Displacements (m) and rotations (rad) of the supports.
     pub supports: [[f64; 3]; 2],
-    /// Elastic joints.
+    /// Elastic joints; contacts with a wall behind a column are the last ones, between the support and the block.
     pub joints: Vec<ElasticJoint>,
+    /// Number of contacts with a wall.
+    wall_contacts: usize,
     /// Ties between bodies, or between a body and the ground.
     pub ties: Vec<BoundTie>,
     /// Upper bound of the contribution of ties to the square of the highest angular frequency, in rad2/s2.
@@ -223,6 +225,60 @@ impl ElasticStructure {
         })
     }
 
+    /// Returns this structure of a column with a wall behind it, up to this height in metres above the base. Each drum touches the wall with its face,
+    /// without friction. The contact has the stiffness per area of a joint; between the centre of a drum and its face is half the width of stone.
+    ///
+    /// # Errors
+    /// If the stiffness is out of range.
+    pub fn with_wall(
+        mut self,
+        row: &Row,
+        (side, height_m): (Sway, f64),
+        properties: &ElasticProperties,
+    ) -> Result<Self, ArgumentError> {
+        let foot_m = row.feet_m()[0];
+        for (index, (block, base)) in row.blocks.iter().zip(&row.joints).enumerate() {
+            let (bottom_m, width_m) = (base.middle_m().y, base.thickness_m());
+            let corners = row.outlines_m[index].iter().map(|corner| corner.y);
+            let top_m = corners.fold(bottom_m, f64::max).min(height_m);
+            let length_m = top_m - bottom_m;
+            if length_m <= 0.0 {
+                break;
+            }
+            let stiffness_pa_m = match properties.stiffness {
+                Stiffness::Uniform(stiffness) => stiffness,
+                Stiffness::Materials(materials) => in_series(&materials, 0.5 * width_m),
+            };
+            check_stiffness(stiffness_pa_m)?;
+            let normal_pa_m = stiffness_pa_m.normal_pa_m;
+            let middle_m = Vector2::new(0.5 * side.sign() * width_m, 0.5 * (bottom_m + top_m));
+            let arms_m = [foot_m, block.centre_m].map(|centre_m| (middle_m - centre_m).into());
+            let pair = [row.blocks.len(), index];
+            let along = [0.0, side.sign()];
+            let area_m2 = properties.depth_m * length_m;
+            let strength_pa = properties.compressive_strength_pa;
+            self.joints.push(ElasticJoint {
+                geometry: JointGeometry::new(pair, arms_m, along, 1.0, length_m),
+                normal_n_m: normal_pa_m * area_m2,
+                shear_n_m: 0.0,
+                crushing_penetration_m: strength_pa.map_or(f64::INFINITY, |pa| pa / normal_pa_m),
+                area_m2,
+            });
+            self.wall_contacts += 1;
+        }
+        Ok(self)
+    }
+
+    /// Returns the joints between the blocks, and between blocks and supports, without contacts with a wall.
+    pub fn row_joints(&self) -> &[ElasticJoint] {
+        &self.joints[..self.joints.len() - self.wall_contacts]
+    }
+
+    /// Returns whether a wall stands behind the structure.
+    pub const fn has_wall(&self) -> bool {
+        self.wall_contacts > 0
+    }
+
     /// Returns a structure of given bodies and joints, without ties.
     pub fn new(
         bodies: Vec<Block>,
@@ -238,6 +294,7 @@ impl ElasticStructure {
             bodies,
             supports: [[0.0; 3]; 2],
             joints,
+            wall_contacts: 0,
             ties: Vec::new(),
             ties_square_frequency: 0.0,
             law: ContactLaw {
@@ -373,7 +430,11 @@ impl ElasticStructure {
         fibres: &[Fibre<R>],
     ) -> R {
         let pressing = self.law.section.energy(memory.penetrations_m, fibres);
-        pressing * joint.normal_n_m + memory.shear_n * memory.shear_n * (0.5 / joint.shear_n_m)
+        let pressing_j = pressing * joint.normal_n_m;
+        if joint.shear_n_m == 0.0 {
+            return pressing_j;
+        }
+        pressing_j + memory.shear_n * memory.shear_n * (0.5 / joint.shear_n_m)
     }
 
     /// Returns an upper bound of the highest angular frequency, in rad/s, for any set of closed joints.

@@ -24,11 +24,12 @@ use super::rest::{InitialPosition, touching};
 use super::right_support::RightSupport;
 use super::ties::Ties;
 use crate::dynamics::recorder::Recorder;
+use crate::dynamics::row::standing::Release;
 use crate::dynamics::{GroundVelocity, MotionInput, MotionObserver, RowMotionError, Stepper as _};
 use crate::mechanics::contact::closing::ClosureSolver;
 use crate::mechanics::contact::{ContactProgram, Load};
 use crate::mechanics::geometry::field::turned;
-use crate::mechanics::{Corners, Edge, Placement, Pose, Row, RowState, Supports, Twist};
+use crate::mechanics::{Block, Corners, Edge, Placement, Pose, Row, RowState, Supports, Twist};
 
 /// Largest closure error of an arch, over the thickness of the thinnest joint; a larger one is an error.
 const LARGEST_CLOSURE_RATIO: f64 = 1e-6;
@@ -128,14 +129,14 @@ pub struct LandingStepper<'a> {
 }
 
 impl<'a> LandingStepper<'a> {
-    /// Returns a stepper that starts from a state of the row in equilibrium, or released at rest with initial rotations.
+    /// Returns a stepper that starts from a state of the row in equilibrium, or released with initial rotations and rates.
     ///
     /// # Errors
     /// If the initial rotations leave a closure error.
     pub fn new(
         input: MotionInput<'a>,
         standing: &RowState,
-        initial_rad: Option<&[f64]>,
+        release: Option<&Release>,
         recorder: Option<&'a mut dyn Recorder>,
     ) -> Result<Self, RowMotionError> {
         let (row, ground, gravity) = (input.row, input.ground, input.gravity_m_s2);
@@ -189,18 +190,18 @@ impl<'a> LandingStepper<'a> {
         stepper.update_piece_centres();
         stepper.observer.note_ties(stepper.ties.memories());
         stepper.observer.save_results_before_fall();
-        if let Some(rotations_rad) = initial_rad {
-            stepper.release(rotations_rad)?;
+        if let Some(release) = release {
+            stepper.release(release)?;
         }
         Ok(stepper)
     }
 
-    /// Sets the initial rotations, at rest.
+    /// Sets the initial rotations and rates.
     ///
     /// # Errors
     /// If they leave a closure error.
-    fn release(&mut self, rotations_rad: &[f64]) -> Result<(), RowMotionError> {
-        self.placement.turn(rotations_rad);
+    fn release(&mut self, release: &Release) -> Result<(), RowMotionError> {
+        self.placement.turn(&release.rotations_rad);
         let error_m = self.placement.closure_error();
         if error_m > LARGEST_CLOSURE_RATIO * self.thinnest {
             return Err(RowMotionError::Failed(format!(
@@ -209,7 +210,10 @@ impl<'a> LandingStepper<'a> {
             )));
         }
         self.closure_solver.close(&mut self.placement);
-        let active: Vec<Corners> = touching(&self.placement.gaps_m).collect();
+        let mut active: Vec<Corners> = touching(&self.placement.gaps_m).collect();
+        if release.has_rate() {
+            self.set_motions(&release.rates_rad_s, &mut active);
+        }
         let is_open = |corners: &&Corners| **corners != [true; 2];
         let open = active.iter().filter(is_open).count();
         // With fewer than three hinges an arch does not move, so keep the initial active set.
@@ -221,11 +225,37 @@ impl<'a> LandingStepper<'a> {
         let poses = &self.placement.poses;
         self.ties.stretch(|block| poses[block]);
         let (energy, sway) = (self.energy(), self.sway_kg_m());
-        self.start_energy = energy;
+        let kinetic = kinetic(&self.pieces);
+        self.start_energy = energy + kinetic;
         self.stands = open == 0;
         let rotations = self.placement.poses.iter().map(Pose::rotation_rad);
-        self.observer.released(rotations, energy, sway, open > 0);
+        self.observer
+            .released(rotations, [energy, kinetic], sway, open > 0);
         Ok(())
+    }
+
+    /// Sets the rates of the blocks, which then are pieces of their own, and the corners about which joints turn.
+    fn set_motions(&mut self, rates_rad_s: &[f64], active: &mut [Corners]) {
+        let (motions, pivots) = self.placement.motions(rates_rad_s);
+        let blocks = self.row.blocks.iter().zip(&self.placement.centres_m);
+        let piece =
+            |(first, (motion, (block, centre))): (usize, (&Twist, (&Block, &Vector2<f64>)))| {
+                Piece {
+                    first,
+                    mass: block.mass_kg,
+                    inertia: block.inertia_kg_m2,
+                    centre: *centre,
+                    velocity: motion.at(*centre),
+                    rate: motion.rate,
+                }
+            };
+        self.pieces = motions.iter().zip(blocks).enumerate().map(piece).collect();
+        for (active, pivot) in active.iter_mut().zip(&pivots) {
+            if let Some(edge) = pivot {
+                *active = [Edge::Intrados, Edge::Extrados].map(|other| other == *edge);
+            }
+        }
+        self.turning = pivots;
     }
 
     /// Returns whether the last step ended at an impact after too many impacts within the shortest step, so that the next landings are merged.

@@ -15,11 +15,12 @@ use std::mem;
 use nalgebra::{Vector2, Vector3};
 
 use self::impact::{Dissipation, Landing};
-use super::rest::InitialPosition;
+use super::rest::{InitialPosition, touching};
 use super::right_support::RightSupport;
 use super::ties::Ties;
 use crate::dynamics::recorder::Recorder;
 use crate::dynamics::row::observer::{LastMaximum, REST_ENERGY_RATIO, SWAY_RATIO};
+use crate::dynamics::row::standing::Release;
 use crate::dynamics::row::stepper::{eccentricity_ratio, equal_step};
 use crate::dynamics::{
     EventKind, GroundVelocity, MotionInput, MotionObserver, RowMotionError, Sample, Sliding,
@@ -27,7 +28,7 @@ use crate::dynamics::{
 };
 use crate::mechanics::coulomb::{Mode, SlipProgram, TangentialMode};
 use crate::mechanics::slip::{FaceContact, Faces, Position};
-use crate::mechanics::{Edge, Hinge, Placement, Pose, Row, RowState, Supports};
+use crate::mechanics::{Corners, Edge, Hinge, Placement, Pose, Row, RowState, Supports};
 
 /// Tolerance of rates, relative to the fastest motion plus the effect of gravity in a step.
 const RATE_TOLERANCE: f64 = 1e-9;
@@ -85,10 +86,9 @@ pub struct SlidingStepper<'a> {
 }
 
 impl<'a> SlidingStepper<'a> {
-    /// Returns a stepper for a row that starts from a state in equilibrium, or is released at rest at a placement.
+    /// Returns a stepper for a row that starts from a state in equilibrium, or is released at a placement, at rest or with rates.
     pub fn new(
-        standing: &RowState,
-        placement: &Placement,
+        (standing, placement, with_rates): (&RowState, &Placement, Option<&Release>),
         input: MotionInput<'a>,
         coefficient: f64,
         recorder: Option<&'a mut dyn Recorder>,
@@ -111,7 +111,10 @@ impl<'a> SlidingStepper<'a> {
         let (positions, contacts) = contacts_at(placement);
         let (_, stood) = contacts_at(&rest.placement);
         let mut program = SlipProgram::new(row, coefficient);
-        program.touch(&rest.touching);
+        program.touch(&match with_rates {
+            Some(_) => touching(&placement.gaps_m).collect::<Vec<Corners>>(),
+            None => rest.touching.clone(),
+        });
         let ties = Ties::new(row, standing);
         let mut observer = MotionObserver::new(input, None, recorder);
         observer.row_summary.sliding = Some(Sliding::none(joints));
@@ -120,19 +123,22 @@ impl<'a> SlidingStepper<'a> {
         let start_energy = gravity * rest.mass_displacement_kg_m(&placement.centres_m).y;
         // Heights include the energy dissipated by friction: friction may hold the row up to its highest position.
         observer.last_maximum = LastMaximum::new(start_energy, ground.start_s());
-        let stands = rest.has_contacts(&placement.gaps_m);
+        let velocities = with_rates.map(|release| placement.velocities(&release.rates_rad_s));
+        let velocities = velocities.unwrap_or_else(|| vec![Vector3::zeros(); blocks]);
+        let stands = with_rates.is_none() && rest.has_contacts(&placement.gaps_m);
         if !stands {
             let rotations = positions.iter().map(|position| position.rotation_rad);
             let rotations = rest.relative_rotations_rad(rotations);
             let sway = rest.mass_displacement_kg_m(&placement.centres_m).x;
-            observer.released(rotations, start_energy, sway, true);
+            let energies = [start_energy, kinetic_j(row, &velocities)];
+            observer.released(rotations, energies, sway, true);
         }
         Self {
             row,
             velocity: GroundVelocity::new(ground),
             gravity,
             observer,
-            velocities: vec![Vector3::zeros(); blocks],
+            velocities,
             stick_offsets_m: contacts.iter().map(|c| c.coordinates_m.z).collect(),
             position_errors: vec![Vector3::zeros(); joints],
             rates_before: vec![Vector3::zeros(); joints],
@@ -456,6 +462,15 @@ impl<'a> SlidingStepper<'a> {
         let least = SWAY_RATIO * mass * self.row.size_m;
         if sway.abs() > least { sway } else { 0.0 }
     }
+}
+
+/// Returns the kinetic energy of blocks with these velocities (x, y) and rotation rates, in J.
+fn kinetic_j(row: &Row, velocities: &[Vector3<f64>]) -> f64 {
+    let twice =
+        row.blocks.iter().zip(velocities).map(|(block, v)| {
+            block.mass_kg * v.xy().norm_squared() + block.inertia_kg_m2 * v.z * v.z
+        });
+    0.5 * twice.sum::<f64>()
 }
 
 /// Returns the joint with this index at given positions of supports and blocks.
