@@ -203,7 +203,7 @@ fn c8_7_1_2_1_9_peaks_of_a_column_are_those_of_housners_equation() {
     }
     assert!(compared >= 8 && overturned >= 1, "{compared} {overturned}");
     let restitution = (1.0 - 1.5 * alpha.sin().powi(2)).powi(2);
-    assert!((found.sides.right.restitution.unwrap() / restitution - 1.0).abs() < 1e-12);
+    assert!((found.sides[&Sway::Right].restitution.unwrap() / restitution - 1.0).abs() < 1e-12);
 }
 
 /// Sector of the ring between two angles from the left springing: mass per metre of depth and unit density, and centroid.
@@ -299,7 +299,7 @@ fn c8_7_1_2_1_9_displacements_of_an_arch_after_impacts_are_those_of_its_bodies()
 fn peaks(records: &[RecordPeaks], side: Sway) -> Vec<f64> {
     records
         .iter()
-        .map(|record| record.peaks.to(side).displacement_m)
+        .map(|record| record.peaks[&side].displacement_m)
         .collect()
 }
 
@@ -313,8 +313,8 @@ fn passes_of(histories: &Histories) -> [Option<bool>; 2] {
 fn c8_7_1_2_1_9_and_7_3_5_the_mean_of_seven_or_the_largest_of_fewer() {
     let seven = &*SEVEN;
     assert!(seven.demand == ComparedPeak::Mean && passes_of(seven) == [Some(true); 2]);
-    for (side, own) in seven.sides.iter() {
-        let peaks_m = peaks(&seven.records, side);
+    for (side, own) in &seven.sides {
+        let peaks_m = peaks(&seven.records, *side);
         let mean_m = peaks_m.iter().sum::<f64>() / 7.0;
         assert!((own.demand_m.unwrap() / mean_m - 1.0).abs() < 1e-12);
         // The mean scatters as the peaks do, over the root of their number; a bootstrap takes their own standard deviation.
@@ -335,7 +335,7 @@ fn c8_7_1_2_1_9_and_7_3_5_the_mean_of_seven_or_the_largest_of_fewer() {
         );
         // The worst of them exceeds the capacity, but the mean does not.
         assert!(
-            peaks(&seven.records, side)
+            peaks(&seven.records, *side)
                 .iter()
                 .any(|peak_m| *peak_m > own.capacity_m)
         );
@@ -349,7 +349,7 @@ fn c8_7_1_2_1_9_and_7_3_5_the_mean_of_seven_or_the_largest_of_fewer() {
         ),
     ] {
         let few = of_slv(SEMICIRCLE, records);
-        let own = few.sides.right;
+        let own = few.sides[&Sway::Right];
         let largest_m = peaks(&few.records, Sway::Right)
             .into_iter()
             .fold(0.0, f64::max);
@@ -369,7 +369,7 @@ fn c8_7_1_2_1_9_and_7_3_5_the_mean_of_seven_or_the_largest_of_fewer() {
 #[test]
 fn c8_7_1_2_1_9_d0_is_exceeded_in_no_record() {
     let beyond = of_slv(SEMICIRCLE, "['slv-*.at2', 'wave-6.at2']");
-    let own = beyond.sides.right;
+    let own = beyond.sides[&Sway::Right];
     let over = |limit_m: f64| {
         peaks(&beyond.records, Sway::Right)
             .into_iter()
@@ -378,9 +378,9 @@ fn c8_7_1_2_1_9_d0_is_exceeded_in_no_record() {
     };
     assert_eq!(own.records_beyond_d0, over(own.d0_m));
     assert_eq!(own.records_beyond_d0_over_fc, over(own.d0_m / 1.35));
-    assert!(own.records_beyond_d0 == 1 && !beyond.records[7].peaks.right.overturned);
+    assert!(own.records_beyond_d0 == 1 && !beyond.records[7].peaks[&Sway::Right].overturned);
     assert_eq!(passes_of(&beyond), [Some(false); 2]);
-    let slv = of_slv(COLUMN, "['slv-*.at2', 'wave-6.at2']").sides.right;
+    let slv = of_slv(COLUMN, "['slv-*.at2', 'wave-6.at2']").sides[&Sway::Right];
     assert!(slv.demand_m.is_some());
     // With more of the small ones the mean is allowed, but the check still does not pass.
     let many: Vec<String> = (0..30).map(|i| format!("'small-{i}.csv'")).collect();
@@ -398,13 +398,13 @@ fn c8_7_1_2_1_9_d0_is_exceeded_in_no_record() {
     }
     let check = check(folder.path());
     let histories = check.states[&LimitState::Slv].histories.as_ref();
-    let own = histories.unwrap().sides.right;
+    let own = histories.unwrap().sides[&Sway::Right];
     assert!(own.demand_m.unwrap() < own.capacity_over_fc_m);
     assert_eq!([own.passed, own.passed_over_fc], [Some(false); 2]);
     let overturns = of_slv(SEMICIRCLE, "['slv-2.at2', 'slv-4.at2', 'wave-1.at2']");
-    assert_eq!(overturns.sides.right.demand_m, None);
+    assert_eq!(overturns.sides[&Sway::Right].demand_m, None);
     assert_eq!(passes_of(&overturns), [Some(false); 2]);
-    assert!(overturns.sides.right.records_beyond_d0 >= 1);
+    assert!(overturns.sides[&Sway::Right].records_beyond_d0 >= 1);
 }
 
 /// The load makes the sides differ; in the mirror image they are exchanged.
@@ -419,7 +419,7 @@ fn c8_7_1_2_1_9_both_sides_of_an_uneven_arch() {
     let mut moved = 0;
     for (a, b) in own.records.iter().zip(&image.records) {
         for (side, a) in a.peaks.iter() {
-            let b = b.peaks.to(side.opposite());
+            let b = &b.peaks[&side.opposite()];
             assert_eq!(a.overturned, b.overturned);
             assert!(
                 a.overturned || near(a.displacement_m, b.displacement_m),
@@ -430,8 +430,8 @@ fn c8_7_1_2_1_9_both_sides_of_an_uneven_arch() {
     }
     assert!(moved >= 2);
     assert!(
-        near(own.sides.right.d0_m, image.sides.left.d0_m)
-            && !near(own.sides.right.d0_m, own.sides.left.d0_m)
+        near(own.sides[&Sway::Right].d0_m, image.sides[&Sway::Left].d0_m)
+            && !near(own.sides[&Sway::Right].d0_m, own.sides[&Sway::Left].d0_m)
     );
 }
 

@@ -358,15 +358,52 @@ fn what_a_wall_cannot_have_is_refused() {
     .unwrap();
     let arguments = ["run", "s.toml", "--hinges", "free"];
     refused(folder.path(), &arguments, &["leave [column.back] out"]);
-    for record in ["slv-1.at2", "slv-2.at2", "slv-3.at2"] {
+}
+
+/// The peaks of the dynamic route are those of `run` in both directions of the record: `u = b (1 - cos q) + h sin q` of the centre, with half the
+/// width `b` and half the height `h`, since `M*` of one block is its mass.
+#[test]
+fn histories_of_verify_move_away_from_the_wall_only() {
+    let folder = tempfile::tempdir().unwrap();
+    let records = ["slv-1.at2", "slv-2.at2", "slv-3.at2"];
+    for record in records {
         let from = scenarios().join("records").join(record);
         fs::copy(from, folder.path().join(record)).unwrap();
     }
-    let records = "[verify]\nslv_records = ['slv-1.at2', 'slv-2.at2', 'slv-3.at2']\n";
-    let text = format!("{}{records}", facade(DEMAND));
+    let text = format!("{}[verify]\nslv_records = 'slv-*.at2'\n", facade(DEMAND));
     fs::write(folder.path().join("s.toml"), text).unwrap();
-    let why = ["a wall prevents sway to one side", "archrock suite"];
-    refused(folder.path(), &["verify", "s.toml"], &why);
+    let arguments = ["verify", "s.toml", "--out", "out", "--format", "json"];
+    let answer: Value = serde_json::from_str(&printed(folder.path(), &arguments)).unwrap();
+    let slv = &answer["states"]["slv"]["histories"];
+    assert!(
+        slv["left"].is_null() && slv["records"][0]["left"].is_null(),
+        "{slv}"
+    );
+    assert!((slv["right"]["restitution"].as_f64().unwrap() - 0.483_f64.powi(2)).abs() < 1e-3);
+    let mut largest_m = 0.0_f64;
+    for (record, found) in records.into_iter().zip(slv["records"].as_array().unwrap()) {
+        let peaks_m = [1.0, -1.0_f64].map(|scale| -> f64 {
+            let ground = format!(
+                "[ground.record]\nfile = '{record}'\nscale = {scale}\n[simulation]\nduration_s = 60\noutput_step_s = 0.002\n"
+            );
+            fs::write(folder.path().join("r.toml"), facade(&ground)).unwrap();
+            let rotations = printed(folder.path(), &["run", "r.toml", "--rotations", "-"]);
+            let table = Table::parse(&rotations);
+            let turned = table.numbers("rotation_rad").into_iter();
+            let turned = turned.fold(0.0, |most: f64, rotation: f64| most.max(-rotation));
+            0.3 * (1.0 - turned.cos()) + 4.0 * turned.sin()
+        });
+        let peak_m = peaks_m[0].max(peaks_m[1]);
+        let found_m = found["right"]["peak_m"].as_f64().unwrap();
+        assert!(
+            peak_m > 0.0 && (found_m / peak_m - 1.0).abs() < 1e-4,
+            "{found_m} {peak_m}"
+        );
+        largest_m = largest_m.max(found_m);
+    }
+    assert_eq!(slv["right"]["demand_m"].as_f64().unwrap(), largest_m);
+    let page = fs::read_to_string(folder.path().join("out/verify.html")).unwrap();
+    assert!(page.contains("<th>peak d to the right (m)</th></tr>"));
 }
 
 /// A wall of height 0 is no wall, in all studies and models.

@@ -59,9 +59,9 @@ pub struct RecordPeaks {
     pub crc32: String,
     /// Peak acceleration of the record, in g.
     pub peak_g: f64,
-    /// Peaks to the right and to the left.
+    /// Peaks to each checked side.
     #[serde(flatten)]
-    pub peaks: Sides<Peak>,
+    pub peaks: BTreeMap<Sway, Peak>,
     /// Largest excess of the thrust line of four links up to the largest rotation, over the thickness; `None` for a column.
     pub thrust_excess_ratio: Option<f64>,
 }
@@ -136,16 +136,22 @@ pub struct Histories {
     pub records: Vec<RecordPeaks>,
     /// Comparison of the spectra.
     pub mean_spectrum: MeanSpectrum,
-    /// The results to each side.
+    /// The results to each checked side.
     #[serde(flatten)]
-    pub sides: Sides<HistorySide>,
+    pub sides: BTreeMap<Sway, HistorySide>,
 }
 
-/// Returns true if both sides pass. A failed side decides even if the other has no verdict.
-fn both_pass(sides: &Sides<HistorySide>, passed: fn(&HistorySide) -> Option<bool>) -> Option<bool> {
-    match [passed(&sides.right), passed(&sides.left)] {
-        [Some(false), _] | [_, Some(false)] => Some(false),
-        [right, left] => right.and(left),
+/// Returns true if all sides pass. A failed side decides even if another has no verdict.
+fn all_pass(
+    sides: &BTreeMap<Sway, HistorySide>,
+    passed: fn(&HistorySide) -> Option<bool>,
+) -> Option<bool> {
+    match sides.values().any(|side| passed(side) == Some(false)) {
+        true => Some(false),
+        false => sides
+            .values()
+            .all(|side| passed(side).is_some())
+            .then_some(true),
     }
 }
 
@@ -172,34 +178,26 @@ pub(super) fn histories(
         )),
         error => failed(error.to_string()),
     })?;
-    if mechanisms.len() < 2 {
-        let name = state.name();
-        return Err(failed(format!(
-            "the dynamic route compares both sides, and a wall prevents sway to one side: leave {name}_records out, and compute the records with \
-             `archrock suite`"
-        )));
-    }
-    // The reader rejects records if the scenario chooses one side.
-    let mechanisms = Sides::of(|sway| &mechanisms[&sway]);
-    if let Some(why) = mechanisms.iter().find_map(|(_, one)| one.no_curve.clone()) {
+    if let Some(why) = mechanisms.values().find_map(|one| one.no_curve.clone()) {
         return Err(failed(why));
     }
-    let participating_kg = mechanisms.map(|one| one.m_star_kg);
     let found: Result<Vec<RecordPeaks>, SimulationError> = records
         .into_par_iter()
-        .map(|series| record_peaks(input, &*model, series, participating_kg))
+        .map(|series| record_peaks(input, &*model, series, mechanisms))
         .collect();
     let series = records;
     let records = found.map_err(|error| failed(error.to_string()))?;
-    let results = Sides::of(|sway| {
-        let peaks: Vec<Peak> = records.iter().map(|one| *one.peaks.to(sway)).collect();
-        let d0_m = mechanisms.to(sway).d0_m.unwrap_or_default();
+    let results = mechanisms.iter().map(|(sway, mechanism)| {
+        let peaks: Vec<Peak> = records.iter().map(|one| one.peaks[sway]).collect();
+        let d0_m = mechanism.d0_m.unwrap_or_default();
         let capacity_m = rule.part_of_d0 * d0_m / rule.divide_displacement;
-        HistorySide {
-            restitution: model.restitution_from(sway, 1),
+        let side = HistorySide {
+            restitution: model.restitution_from(*sway, 1),
             ..history_side(&peaks, [capacity_m, d0_m], input.settings.confidence_factor)
-        }
+        };
+        (*sway, side)
     });
+    let results = results.collect();
     let reached = sides.values().filter_map(|side| side.displacement);
     let to_s = reached.map(|reached| reached.period_s);
     let [from_s, to_s] = [FROM_S, to_s.fold(2.0 * FROM_S, f64::max)];
@@ -208,15 +206,14 @@ pub(super) fn histories(
     let samples: Vec<_> = samples.collect();
     let ratios = spectrum_ratios(&samples, spectrum, [from_s, to_s], gravity_m_s2);
     let [least, largest] = SPECTRUM_MARGIN;
-    let is_incomplete =
-        |one: &&RecordPeaks| one.peaks.right.incomplete || one.peaks.left.incomplete;
+    let is_incomplete = |one: &&RecordPeaks| one.peaks.values().any(|peak| peak.incomplete);
     Ok(Some(Histories {
         demand: match records.len() >= FOR_THE_MEAN {
             true => ComparedPeak::Mean,
             false => ComparedPeak::Largest,
         },
-        passed: both_pass(&results, |side| side.passed),
-        passed_over_fc: both_pass(&results, |side| side.passed_over_fc),
+        passed: all_pass(&results, |side| side.passed),
+        passed_over_fc: all_pass(&results, |side| side.passed_over_fc),
         incomplete: records.iter().filter(is_incomplete).count(),
         model: ModelCheck::of(records.iter().map(|one| one.thrust_excess_ratio)),
         records,
@@ -231,12 +228,12 @@ pub(super) fn histories(
     }))
 }
 
-/// Computes the larger peaks to the right and to the left of a record that acts in both directions in turn.
+/// Computes the larger peaks to each checked side of a record that acts in both directions in turn.
 fn record_peaks(
     input: &CheckInput<'_>,
     model: &dyn MechanismModel,
     series: &Series,
-    participating_kg: Sides<f64>,
+    mechanisms: &BTreeMap<Sway, Mechanism>,
 ) -> Result<RecordPeaks, SimulationError> {
     let scenario = input.scenario;
     let both = [1.0, -1.0].into_par_iter().map(|sign| {
@@ -247,10 +244,10 @@ fn record_peaks(
             output_step_s: STEP_S,
             ..request
         };
-        peaks(model, &ground, &request, participating_kg)
+        peaks(model, &ground, &request, mechanisms)
     });
     let both = both.collect::<Result<Vec<(Sides<Peak>, Option<f64>)>, _>>()?;
-    let larger = |sway| {
+    let larger = |sway: Sway| {
         let (one, other) = (both[0].0.to(sway), both[1].0.to(sway));
         let overturned = one.overturned || other.overturned;
         let incomplete = one.incomplete || other.incomplete;
@@ -266,7 +263,10 @@ fn record_peaks(
         file: series.file.clone(),
         crc32: format!("{:08x}", series.checksum()),
         peak_g: series.peak_g(input.gravity_m_s2),
-        peaks: Sides::of(larger),
+        peaks: mechanisms
+            .keys()
+            .map(|sway| (*sway, larger(*sway)))
+            .collect(),
         thrust_excess_ratio: both[0].1.zip(both[1].1).map(|(one, other)| one.max(other)),
     })
 }
@@ -318,7 +318,7 @@ fn peaks(
     model: &dyn MechanismModel,
     ground: &GroundMotion,
     request: &Request,
-    participating_kg: Sides<f64>,
+    mechanisms: &BTreeMap<Sway, Mechanism>,
 ) -> Result<(Sides<Peak>, Option<f64>), SimulationError> {
     let history = model.history(ground, request)?;
     // The chain of mechanisms starts with the side of the latest uplift.
@@ -335,6 +335,9 @@ fn peaks(
         let State::Rocking(sway) = sample.state else {
             continue;
         };
+        let Some(mechanism) = mechanisms.get(&sway) else {
+            continue;
+        };
         let shift = || {
             let (first, impacts) = (*links.get(sample.phase.checked_sub(1)?)?)?;
             let rotation_rad = match sway {
@@ -343,7 +346,7 @@ fn peaks(
             };
             model.shift_kg_m(first, impacts, rotation_rad.abs())
         };
-        let displacement_m = shift().unwrap_or_default() / participating_kg.to(sway);
+        let displacement_m = shift().unwrap_or_default() / mechanism.m_star_kg;
         let peak = peaks.to_mut(sway);
         peak.displacement_m = peak.displacement_m.max(displacement_m);
     }

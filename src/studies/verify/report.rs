@@ -231,7 +231,7 @@ pub(super) fn are_mirrored(
     let states = states.values().all(|one| {
         let histories = one.histories.as_ref().map(|all| &all.sides);
         are_alike(&one.sides[&Sway::Right], &one.sides[&Sway::Left])
-            && histories.is_none_or(|sides| are_alike(&sides.right, &sides.left))
+            && histories.is_none_or(|sides| are_alike(&sides[&Sway::Right], &sides[&Sway::Left]))
     });
     states && are_alike(&own, &mirrored)
 }
