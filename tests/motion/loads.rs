@@ -8,7 +8,7 @@ use archrock::mechanics::{ColumnLoadError, MechanismChain as _, MechanismState, 
 use archrock::{
     BackWall, Column, ElasticJoints, ElasticProperties, FreeHinges, GroundMotion, History,
     ImpactModel, Initial, MechanismModel as _, Model, Outcome, Pulse, Recorder, Request,
-    RockingColumn, Sample, Sway,
+    RockingColumn, RowOptions, Sample, Sway,
 };
 use nalgebra::Vector2;
 
@@ -817,4 +817,53 @@ fn stiff_joints_carry_loads() {
         (peak(&stiff) / rigid - 1.0).abs()
     });
     assert!(errors[1] < 0.6 * errors[0] && errors[1] < 0.1, "{errors:?}");
+}
+
+/// A façade with a thrust falls to the weak side after a swing to the strong one, whose barrier is twenty times higher. Until the impact the outcome
+/// is open, and the time of overturning is that of the weak side in all models.
+#[test]
+fn the_weaker_side_decides_the_outcome() {
+    let one = column([8.0, 0.6], &[load(0.0, [0.0, 6.0], true, 3e3)]);
+    let request = Request {
+        initial: Some(Initial {
+            sway: Sway::Left,
+            rotation_rad: 0.0,
+            rate_rad_s: 0.0742,
+        }),
+        ..REQUEST
+    };
+    let early = Request {
+        end_s: 0.2,
+        ..request.clone()
+    };
+    let still = GroundMotion::still();
+    let rigid = model(&one);
+    let barriers = [Sway::Right, Sway::Left].map(|sway| rigid.link_from(sway, 0).unwrap().barrier);
+    assert!(barriers[1] > 10.0 * barriers[0], "{barriers:?}");
+    let outcome = rigid.simulate(&still, &early, None).unwrap().outcome;
+    assert_eq!(outcome, Outcome::Incomplete);
+    let due = rigid.simulate(&still, &request, None).unwrap();
+    assert_eq!(due.outcome, Outcome::Overturned(Sway::Right));
+    let slipping = FreeHinges::new(one.row().unwrap()).unwrap();
+    let options = RowOptions {
+        friction_coefficient: Some(0.7),
+        ..RowOptions::default()
+    };
+    let slipping = slipping.with_options(options).unwrap();
+    let properties = ElasticProperties {
+        friction_coefficient: Some(0.7),
+        ..ElasticProperties::of_stiffness(1e12)
+    };
+    let elastic = ElasticJoints::new(one.row().unwrap(), properties).unwrap();
+    let models: [(&dyn Model, f64); 2] = [(&slipping, 0.01), (&elastic, 0.05)];
+    for (model, tolerance) in models {
+        let own = model.simulate(&still, &request, None).unwrap();
+        assert_eq!(own.outcome, due.outcome);
+        assert!(
+            (own.outcome_time_s / due.outcome_time_s - 1.0).abs() < tolerance,
+            "{} {}",
+            own.outcome_time_s,
+            due.outcome_time_s
+        );
+    }
 }

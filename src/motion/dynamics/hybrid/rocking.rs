@@ -135,6 +135,14 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
         self.gravity_m_s2 / self.chain.length_m() * link.barrier
     }
 
+    /// Returns the smaller of the energies that this mechanism and the one after its impact need to overturn under gravity alone.
+    pub fn barrier_ahead(&self, swing: Swing<'a, C::Mechanism>) -> f64 {
+        let first = self.chain.sway_after(swing.sway, swing.impacts);
+        let next = self.chain.link_from(first, swing.impacts + 1);
+        let next = next.map_or(f64::INFINITY, |link| self.barrier_of(link));
+        self.barrier_of(swing.link).min(next)
+    }
+
     /// Returns the sum of kinetic and potential energy of a mechanism.
     pub fn energy(&self, link: &Link<C::Mechanism>, state: &RockingState) -> f64 {
         let kinetic = 0.5 * link.mechanism.coefficients(state[0]).inertia * state[1] * state[1];

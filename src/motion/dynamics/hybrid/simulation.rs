@@ -149,7 +149,7 @@ fn history_of<C: MechanismChain + MechanismModel>(
     collector.note_start(mode, state);
     let may_overturn = |now: &StructureState<'_, C>| match now.mode {
         Phase::Rocking(swing) => {
-            rocking.energy(swing.link, &now.state) > SAFE * rocking.barrier_of(swing.link)
+            rocking.energy(swing.link, &now.state) > SAFE * rocking.barrier_ahead(swing)
         }
         Phase::Rest | Phase::Overturned(_) => false,
     };
