@@ -80,15 +80,10 @@ fn history(
     Ok(History {
         name: name.to_owned(),
         quantity: quantity.to_lowercase(),
-        line: index + 1,
         unit: unit.split([',', '(']).next().unwrap_or_default().to_owned(),
-        factor: 1.0,
-        step_s: Some(step_s),
-        count,
-        columns: (1, 0),
-        is_table: false,
         peak: Some(reals[63]).filter(is_known).map(str::to_owned),
         data: lines_of_numbers(lines, index + 1),
         width: width_in(line),
+        ..History::new(index + 1, count, Some(step_s))
     })
 }

@@ -86,16 +86,12 @@ fn component(lines: &[&str], start: usize, histories: &mut Vec<History>) -> Pars
         histories.push(History {
             name: squeezed(named.unwrap_or_default()),
             quantity: quantity.to_owned(),
-            line,
             unit: unit.to_owned(),
             factor,
-            step_s: Some(step_s),
-            count,
-            columns: (1, 0),
-            is_table: false,
             peak: peak.map(|index: usize| reals[index].to_owned()),
             data,
             width: 8,
+            ..History::new(line, count, Some(step_s))
         });
     }
     Ok(from)

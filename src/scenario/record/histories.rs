@@ -98,57 +98,53 @@ pub(super) fn read(
 fn choose(histories: &[&History], channel: Option<&TableColumn>) -> Result<usize, String> {
     /// Largest number of channels in a message.
     const LISTED: usize = 9;
-    let listed = || {
-        let names = histories.iter().zip(1..).take(LISTED);
-        let names: Vec<_> = names
-            .map(|(one, number)| format!("{number} `{}`", excerpt(&one.name)))
-            .collect();
-        let more = if histories.len() > LISTED {
-            " and others"
-        } else {
-            ""
-        };
-        names.join(", ") + more
+    let named = |fits: &dyn Fn(&str) -> bool| {
+        let names = histories.iter().map(|one| one.name.to_lowercase());
+        let fitting = names.enumerate().filter(|(_, name)| fits(name));
+        fitting.map(|(index, _)| index).collect::<Vec<_>>()
     };
-    let count = histories.len();
-    let mut found = match channel {
-        None => (0..count).collect::<Vec<_>>(),
+    let found = match channel {
+        None => (0..histories.len()).collect(),
         Some(TableColumn::Number(number)) => {
-            (0..count).filter(|index| index + 1 == *number).collect()
+            let indices = 0..histories.len();
+            indices.filter(|index| index + 1 == *number).collect()
         }
         Some(TableColumn::Name(name)) => {
             let name = squeezed(name).to_lowercase();
-            let named = |fits: fn(&str, &str) -> bool| {
-                let fits = |index: &usize| fits(&histories[*index].name.to_lowercase(), &name);
-                (0..count).filter(fits).collect::<Vec<_>>()
-            };
-            let equal = named(|own, name| own == name);
+            let equal = named(&|own| own == name);
             if equal.is_empty() {
-                named(has_words)
+                named(&|own| has_words(own, &name))
             } else {
                 equal
             }
         }
     };
-    match (found.pop(), found.len(), channel) {
-        (Some(index), 0, _) => Ok(index),
-        (_, _, None) => Err(format!(
-            "the file has {count} channels: give `channel`, the number of the one to read or a part of its name: {}",
-            listed()
-        )),
-        (found, _, Some(channel)) => {
-            let wrong = match (channel, found) {
-                (TableColumn::Number(number), _) => format!("there is no channel {number}"),
-                (TableColumn::Name(name), None) => {
-                    format!("no channel matches `{}`", excerpt(name))
-                }
-                (TableColumn::Name(name), _) => {
-                    format!("several channels match `{}`", excerpt(name))
-                }
-            };
-            Err(format!("{wrong}; the file has {}", listed()))
-        }
+    if let [index] = found[..] {
+        return Ok(index);
     }
+    let names = histories.iter().zip(1..).take(LISTED);
+    let names = names.map(|(one, number)| format!("{number} `{}`", excerpt(&one.name)));
+    let mut listed = names.collect::<Vec<_>>().join(", ");
+    if histories.len() > LISTED {
+        listed += " and others";
+    }
+    Err(match channel {
+        None => format!(
+            "the file has {} channels: give `channel`, the number of the one to read or a part of its name: {listed}",
+            histories.len()
+        ),
+        Some(TableColumn::Number(number)) => {
+            format!("there is no channel {number}; the file has {listed}")
+        }
+        Some(TableColumn::Name(name)) => {
+            let matches = if found.is_empty() {
+                "no channel matches"
+            } else {
+                "several channels match"
+            };
+            format!("{matches} `{}`; the file has {listed}", excerpt(name))
+        }
+    })
 }
 
 /// Returns true if a name contains a part that neither begins nor ends inside a word of the name.
@@ -185,6 +181,24 @@ fn holds(histories: &[History], wanted: RecordedQuantity) -> String {
 }
 
 impl History {
+    /// Returns accelerations with one number each, which this line of the header describes, as yet without name, unit, peak and numbers.
+    pub(super) fn new(line: usize, count: f64, step_s: Option<f64>) -> Self {
+        Self {
+            name: String::new(),
+            quantity: RecordedQuantity::Acceleration.name().to_owned(),
+            line,
+            unit: String::new(),
+            factor: 1.0,
+            step_s,
+            count,
+            columns: (1, 0),
+            is_table: false,
+            peak: None,
+            data: 0..0,
+            width: 0,
+        }
+    }
+
     /// Reads the numbers: the times, if the file has them, and the samples.
     fn numbers(&self, lines: &[&str]) -> Parsed<(Vec<f64>, Values)> {
         let (mut times_s, (of_sample, wanted)) = (Vec::new(), self.columns);

@@ -69,18 +69,13 @@ pub(super) fn afad(lines: &[&str]) -> Parsed<Vec<History>> {
     })?;
     let histories = names.iter().enumerate().map(|(index, name)| History {
         name: squeezed(name),
-        quantity: "acceleration".to_owned(),
-        line,
         unit: unit.clone(),
-        factor: 1.0,
-        step_s: Some(step_s),
-        count,
         columns: (3, index),
         is_table: true,
         peak: word_after(header[peaks - 1], &format!("({}) ", name.to_lowercase()))
             .map(str::to_owned),
         data: data.clone(),
-        width: 0,
+        ..History::new(line, count, Some(step_s))
     });
     Ok(histories.collect())
 }
@@ -135,17 +130,13 @@ pub(super) fn cwb(lines: &[&str]) -> Parsed<Vec<History>> {
         let peaks = header.iter().find_map(|line| rest(line, &phrase));
         History {
             name: name.clone(),
-            quantity: "acceleration".to_owned(),
-            line,
             unit: unit.trim_end_matches('.').to_owned(),
-            factor: 1.0,
-            step_s: None,
-            count,
             columns: (names.len() + 1, index + 1),
             is_table: true,
             peak: largest(peaks.unwrap_or_default().split('~').map(str::trim)),
             data: data.clone(),
             width: WIDTH,
+            ..History::new(line, count, None)
         }
     });
     Ok(histories.collect())
@@ -201,17 +192,12 @@ pub(super) fn unam(lines: &[&str]) -> Parsed<Vec<History>> {
         let (count, step_s) = count_and_step((line, count), (step_line, number(step)))?;
         Ok(History {
             name: squeezed(name),
-            quantity: "acceleration".to_owned(),
-            line,
             unit: unit.to_owned(),
-            factor: 1.0,
-            step_s: Some(step_s),
-            count,
             columns: (counts.len(), index),
             is_table: true,
             peak: peaks.get(index).map(|peak| (*peak).to_owned()),
             data: end..lines.len(),
-            width: 0,
+            ..History::new(line, count, Some(step_s))
         })
     });
     histories.collect()
@@ -233,15 +219,9 @@ pub(super) fn csmnc(lines: &[&str]) -> Parsed<Vec<History>> {
             .map(|(_, name)| name)
             .unwrap_or_default(),
         quantity: quantity.unwrap_or("unknown samples").to_owned(),
-        line,
         unit,
-        factor: 1.0,
-        step_s: Some(step_s),
-        count,
-        columns: (1, 0),
-        is_table: false,
         peak: find(header, "peak value:").ok().map(|(_, peak)| peak),
         data,
-        width: 0,
+        ..History::new(line, count, Some(step_s))
     }])
 }
