@@ -66,10 +66,8 @@ pub(super) fn read(
     let unit = Unit::of_header(&history.unit, layout.quantity, remedy).map_err(fault)?;
     let is_factor = (1e-6..=1e6).contains(&history.factor);
     ensure(is_factor, || {
-        fault(format!(
-            "the factor {} is not from 1e-6 to 1e6",
-            plain(history.factor)
-        ))
+        let factor = plain(history.factor);
+        fault(format!("the factor {factor} is not from 1e-6 to 1e6"))
     })?;
     let (times_s, values) = history.numbers(&lines)?;
     values.check_count((history.line, history.count), "samples")?;
@@ -327,14 +325,9 @@ pub(super) fn width_in(line: &str) -> usize {
     let format = line.rsplit_once('(').map_or("", |(_, format)| format);
     let width = format.trim_start_matches(|c: char| c.is_ascii_digit());
     let width = width.trim_start_matches(|c: char| c.is_ascii_alphabetic());
-    let end = width
-        .find(|c: char| !c.is_ascii_digit())
-        .unwrap_or(width.len());
-    width[..end]
-        .parse()
-        .ok()
-        .filter(|width| *width <= 40)
-        .unwrap_or(0)
+    let digits = width.split(|c: char| !c.is_ascii_digit()).next();
+    let width = digits.and_then(|digits| digits.parse().ok());
+    width.filter(|width| *width <= 40).unwrap_or(0)
 }
 
 /// Returns a name with single blanks between its words.

@@ -111,19 +111,17 @@ pub(super) fn cwb(lines: &[&str]) -> Parsed<Vec<History>> {
         })
     };
     let spans_s = time_s(rows.last())? - time_s(rows.first())?;
-    ensure(
-        (spans_s - (count - 1.0) * step_s).abs() <= 0.5 * step_s,
-        || {
-            let [spans_s, step_s] = [spans_s, step_s].map(plain);
-            LineFault::on(last_line)(format!(
-                "{count} rows take {spans_s} s: line {rate_line} announces a step of {step_s} s"
-            ))
-        },
-    )?;
+    let has_step = (spans_s - (count - 1.0) * step_s).abs() <= 0.5 * step_s;
+    ensure(has_step, || {
+        let [spans_s, step_s] = [spans_s, step_s].map(plain);
+        LineFault::on(last_line)(format!(
+            "{count} rows take {spans_s} s: line {rate_line} announces a step of {step_s} s"
+        ))
+    })?;
     let names = rest(header[order_line - 1], "time").unwrap_or_default();
+    let names = names.split(';').map(str::trim);
     let names: Vec<_> = names
-        .split(';')
-        .map(|name| squeezed(name.trim().trim_end_matches("(+)")))
+        .map(|name| squeezed(name.trim_end_matches("(+)")))
         .collect();
     let histories = names.iter().enumerate().map(|(index, name)| {
         let phrase = format!("#amplitudemax. {}:", name.to_lowercase());

@@ -53,11 +53,8 @@ pub fn capacity(
             let (masses, control) = Bodies::of_row(&held).masses(&row, control);
             let capacity = Capacity::new(sway, displaced, &masses, control, gravity_m_s2)?;
             // Ties change the push that the first mechanism of a row resists.
-            Ok(Some(capacity.with_ties(
-                &held.tie_event_fractions(),
-                displaced,
-                gravity_m_s2,
-            )))
+            let events = held.tie_event_fractions();
+            Ok(Some(capacity.with_ties(&events, displaced, gravity_m_s2)))
         });
     }
     let model = scenario.mechanisms()?;

@@ -315,11 +315,8 @@ impl ElasticJoints {
         let allowed = "0 with elastic joints, which have no hinges to rotate about: they start under the weight of the structure";
         allow(rotation_rad == 0.0, "rotation_rad", rotation_rad, allowed)?;
         let release = self.rigid.released(initial)?;
-        Ok(self
-            .rigid
-            .standing
-            .placement
-            .velocities(&release.rates_rad_s))
+        let placement = &self.rigid.standing.placement;
+        Ok(placement.velocities(&release.rates_rad_s))
     }
 
     fn simulate_one(
