@@ -180,9 +180,9 @@ impl ElasticTable {
     fn elastic(&self, structure: &Structure, site: &Site) -> Result<ElasticJoints, ModelError> {
         let (depth_m, _) = structure.depth_and_density();
         let (gravity_m_s2, properties) = (site.gravity_m_s2, self.properties(depth_m));
-        let model = match structure {
-            Structure::Column(column) => ElasticJoints::of_column(gravity_m_s2, column, properties),
-            Structure::Arch(_) | Structure::Masonry(_) => {
+        let model = match structure.column() {
+            Some(column) => ElasticJoints::of_column(gravity_m_s2, column, properties),
+            None => {
                 let row = structure.row().map_err(RowModelError::from)?;
                 ElasticJoints::under(gravity_m_s2, row, properties)
             }

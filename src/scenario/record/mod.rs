@@ -325,18 +325,14 @@ impl Series {
 
     /// Returns the corrections of the samples in words that follow others; empty without a correction.
     pub fn corrections(&self) -> String {
-        let baseline = self.layout.baseline.map(|baseline| match baseline {
-            Baseline::Mean => "mean subtracted".to_owned(),
-            Baseline::Linear => "line of least squares subtracted".to_owned(),
-        });
-        let filter = self
-            .layout
-            .high_pass_hz
-            .map(|corner_hz| format!("high-pass filter at {} Hz", plain(corner_hz)));
-        let corrections = baseline.into_iter().chain(filter);
-        corrections
-            .map(|correction| format!(", {correction}"))
-            .collect()
+        let baseline = match self.layout.baseline {
+            Some(Baseline::Mean) => ", mean subtracted",
+            Some(Baseline::Linear) => ", line of least squares subtracted",
+            None => "",
+        };
+        let filter = self.layout.high_pass_hz.map(plain);
+        let filter = filter.map(|corner| format!(", high-pass filter at {corner} Hz"));
+        baseline.to_owned() + &filter.unwrap_or_default()
     }
 
     /// Computes a checksum of the samples. Files with the same samples in different formats have the same checksum.

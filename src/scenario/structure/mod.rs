@@ -188,7 +188,7 @@ impl Structure {
     }
 
     /// Returns the column; `None` for other structures.
-    pub const fn column(&self) -> Option<&Column> {
+    pub(crate) const fn column(&self) -> Option<&Column> {
         match self {
             Self::Column(column) => Some(column),
             Self::Arch(_) | Self::Masonry(_) => None,

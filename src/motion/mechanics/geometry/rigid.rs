@@ -147,7 +147,7 @@ pub struct MassMoments {
 
 impl MassMoments {
     /// Returns the moments of a body from its mass, its centre of gravity and its polar moment about that centre (Steiner).
-    pub fn of_body(mass: f64, centre: Vector2<f64>, central_polar: f64) -> Self {
+    pub(crate) fn of_body(mass: f64, centre: Vector2<f64>, central_polar: f64) -> Self {
         Self {
             mass,
             first: centre * mass,
