@@ -71,10 +71,9 @@ pub(super) fn read(table: &mut Table<'_>) -> Corrections {
 /// Records faults of corrections of velocities.
 pub(super) fn refuse(table: &mut Table<'_>, (baseline, corner_hz): Corrections) {
     let wrong = "applies to accelerations: a uniform velocity shakes nothing; leave it out";
-    let given = if table.gives(BASELINE) {
-        BASELINE
-    } else {
-        REMOVE_MEAN
+    let given = match table.gives(BASELINE) {
+        true => BASELINE,
+        false => REMOVE_MEAN,
     };
     let _ = table.refuse(baseline.is_some(), given, wrong);
     let wrong = "applies to accelerations: filter the velocities before, or leave it out";

@@ -51,10 +51,8 @@ pub(super) fn read(
         LineFault::on(1)("the header announces no samples")
     })?;
     let wanted = layout.quantity.name();
-    let fitting: Vec<_> = histories
-        .iter()
-        .filter(|one| one.quantity == wanted)
-        .collect();
+    let fits = |one: &&History| one.quantity == wanted;
+    let fitting: Vec<_> = histories.iter().filter(fits).collect();
     let index = choose(&fitting, layout.channel.as_ref()).map_err(|wrong| {
         let other = histories.first().filter(|_| fitting.is_empty());
         let line = other.or(fitting.first().copied()).map_or(1, |one| one.line);
@@ -110,10 +108,9 @@ fn choose(histories: &[&History], channel: Option<&TableColumn>) -> Result<usize
         Some(TableColumn::Name(name)) => {
             let name = squeezed(name).to_lowercase();
             let equal = named(&|own| own == name);
-            if equal.is_empty() {
-                named(&|own| has_words(own, &name))
-            } else {
-                equal
+            match equal.is_empty() {
+                true => named(&|own| has_words(own, &name)),
+                false => equal,
             }
         }
     };
@@ -135,10 +132,9 @@ fn choose(histories: &[&History], channel: Option<&TableColumn>) -> Result<usize
             format!("there is no channel {number}; the file has {listed}")
         }
         Some(TableColumn::Name(name)) => {
-            let matches = if found.is_empty() {
-                "no channel matches"
-            } else {
-                "several channels match"
+            let matches = match found.is_empty() {
+                true => "no channel matches",
+                false => "several channels match",
             };
             format!("{matches} `{}`; the file has {listed}", excerpt(name))
         }
@@ -238,14 +234,12 @@ impl History {
         let stated = self.peak.as_ref()?;
         let peak = number(stated).ok()?.abs();
         let decimals = stated.split('.').nth(1).map_or(0, str::len);
-        let rounding = if stated.contains(['e', 'E', 'd', 'D']) {
-            0.0
-        } else {
-            0.5 * 0.1_f64.powi(decimals as i32)
+        let rounding = match stated.contains(['e', 'E', 'd', 'D']) {
+            true => 0.0,
+            false => 0.5 * 0.1_f64.powi(decimals as i32),
         };
-        let found = samples
-            .iter()
-            .fold(0.0_f64, |peak, sample| peak.max(sample.abs()));
+        let magnitudes = samples.iter().map(|sample| sample.abs());
+        let found = magnitudes.fold(0.0, f64::max);
         let differs = (found - peak).abs() > rounding + TOLERANCE * peak.max(found);
         differs.then(|| {
             let ([found, peak], unit) = ([found, peak].map(plain), unit.name());
@@ -277,11 +271,8 @@ pub(super) fn header_fields<'t>(
     least: usize,
 ) -> Parsed<Vec<&'t str>> {
     let end = at.end.min(lines.len());
-    let fields: Vec<_> = lines[at.start.min(end)..end]
-        .iter()
-        .copied()
-        .flat_map(|line| fields(line, width))
-        .collect();
+    let rows = lines[at.start.min(end)..end].iter();
+    let fields: Vec<_> = rows.flat_map(|line| fields(line, width)).collect();
     let fault = LineFault::on::<String>(end.max(1));
     ensure(fields.len() >= least, || {
         let (found, from) = (fields.len(), at.start + 1);
@@ -289,10 +280,9 @@ pub(super) fn header_fields<'t>(
             "the header has {found} numbers from line {from} to here; must have {least}"
         ))
     })?;
-    fields
-        .iter()
-        .try_for_each(|field| number(field).map(drop))
-        .map_err(fault)?;
+    for field in &fields {
+        number(field).map_err(fault)?;
+    }
     Ok(fields)
 }
 

@@ -212,10 +212,9 @@ pub(super) fn csmnc(lines: &[&str]) -> Parsed<Vec<History>> {
     let quantity = ["acceleration", "velocity", "displacement"]
         .into_iter()
         .find(|one| held.contains(one));
+    let (_, name) = find(header, "comp.").unwrap_or_default();
     Ok(vec![History {
-        name: find(header, "comp.")
-            .map(|(_, name)| name)
-            .unwrap_or_default(),
+        name,
         quantity: quantity.unwrap_or("unknown samples").to_owned(),
         unit,
         peak: find(header, "peak value:").ok().map(|(_, peak)| peak),

@@ -441,9 +441,8 @@ impl Model for ElasticJoints {
     /// A wall carries every push towards it.
     fn incipient_acceleration_g(&self, sway: Sway) -> Option<f64> {
         let is_held = self.structure.wall.is_some_and(|(side, _)| side == sway);
-        self.rigid
-            .incipient_acceleration_g(sway)
-            .filter(|_| !is_held)
+        let start_g = self.rigid.incipient_acceleration_g(sway);
+        start_g.filter(|_| !is_held)
     }
 
     fn simulate(
