@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 
 use super::figure::Figure;
-use super::scene::{LoadArrow, Piece, Scene};
+use super::scene::{Piece, Scene};
 use super::sheet::{PartHeight, Sheet};
 use super::svg::{Anchor, Drawing, Frame, Stroke, color};
 use super::text::{TEXT_PX, Text, text_px};
@@ -205,17 +205,24 @@ impl<'a> View<'a> {
         let mut loads = self.scene.load_arrows(self.hinges);
         loads.sort_by(|a, b| a.at.at_m.x.total_cmp(&b.at.at_m.x));
         for load in loads {
-            let foot = self.px(&load.at);
+            let tip = self.px(&load.at);
             if load.sideways != 0.0 {
-                self.draw_thrust(drawing, foot, &load, has_labels);
+                let tail = tip - Vector2::new(load.sideways * ARROW_PX, 0.0);
+                draw_arrow(drawing, [tail, tip]);
+                if has_labels {
+                    let at = tip + Vector2::new(-(ARROW_PX + 4.0) * load.sideways, 4.5);
+                    let anchor = match load.sideways > 0.0 {
+                        true => Anchor::End,
+                        false => Anchor::Start,
+                    };
+                    drawing.label(at, anchor, 0.0, load.label);
+                }
                 continue;
             }
             let from = from.filter(|_| !load.is_beside);
-            let tail = from.map_or(foot.y - 20.0, |top| top - 8.0);
-            let tail = Vector2::new(foot.x, tail);
-            drawing.curve("load", [tail, foot], LOAD);
-            let barb = |side: f64| foot + Vector2::new(4.0 * side, -7.0);
-            drawing.polygon("", [foot, barb(-1.0), barb(1.0)], LOAD.color, LOAD);
+            let tail = from.map_or(tip.y - 20.0, |top| top - 8.0);
+            let tail = Vector2::new(tip.x, tail);
+            draw_arrow(drawing, [tail, tip]);
             if load.width_m > 0.0 {
                 let edge = |side: f64| {
                     let at_m = load.at.at_m + Vector2::new(0.5 * side * load.width_m, 0.0);
@@ -227,9 +234,9 @@ impl<'a> View<'a> {
                 let text = Text::from(load.label);
                 let half = 0.5 * text.px();
                 // Labels without space are omitted here; the text below the drawing lists all loads.
-                if load.is_beside || foot.x - half > farthest {
+                if load.is_beside || tip.x - half > farthest {
                     if !load.is_beside {
-                        farthest = foot.x + half + 8.0;
+                        farthest = tip.x + half + 8.0;
                     }
                     let at = tail - Vector2::new(0.0, 6.0);
                     drawing.label(at, Anchor::Middle, 0.0, text);
@@ -237,29 +244,14 @@ impl<'a> View<'a> {
             }
         }
     }
+}
 
-    /// Draws a horizontal arrow that ends at a point of the sheet.
-    fn draw_thrust(
-        &self,
-        drawing: &mut Drawing,
-        foot: Vector2<f64>,
-        load: &LoadArrow,
-        has_label: bool,
-    ) {
-        let back = |by: f64| foot - Vector2::new(load.sideways * by, 0.0);
-        drawing.curve("load", [back(ARROW_PX), foot], LOAD);
-        let barb = |side: f64| back(7.0) + Vector2::new(0.0, 4.0 * side);
-        drawing.polygon("", [foot, barb(-1.0), barb(1.0)], LOAD.color, LOAD);
-        if has_label {
-            let at = back(ARROW_PX + 4.0) + Vector2::new(0.0, 4.5);
-            let anchor = if load.sideways > 0.0 {
-                Anchor::End
-            } else {
-                Anchor::Start
-            };
-            drawing.label(at, anchor, 0.0, load.label.as_str());
-        }
-    }
+/// Draws the horizontal or vertical arrow of a load.
+fn draw_arrow(drawing: &mut Drawing, [tail, tip]: [Vector2<f64>; 2]) {
+    drawing.curve("load", [tail, tip], LOAD);
+    let along = (tip - tail).normalize();
+    let barb = |side: f64| tip - along * 7.0 + along.yx().abs() * (4.0 * side);
+    drawing.polygon("", [tip, barb(-1.0), barb(1.0)], LOAD.color, LOAD);
 }
 
 /// Returns the space that the dimensions on a side of a structure need, in pixels.

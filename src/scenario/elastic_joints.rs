@@ -14,7 +14,7 @@ use crate::mechanics::ElasticStructure;
 use crate::mechanics::elastic_joint::{
     Contact, ElasticProperties, JointStiffness, Materials, RestError, Stiffness,
 };
-use crate::{ElasticJoints, Request, RowModelError, RowOptions};
+use crate::{Column, ElasticJoints, Request, RowModelError, RowOptions};
 
 /// Converts a stiffness in GPa/m to Pa/m, and a modulus in GPa to Pa.
 const GPA: f64 = 1e9;
@@ -140,15 +140,10 @@ impl ElasticTable {
     fn joints(&self, structure: &Structure) -> Option<Result<ElasticStructure, ArgumentError>> {
         let (depth_m, _) = structure.depth_and_density();
         let (row, properties) = (structure.row().ok()?, self.properties(depth_m));
-        let wall = match structure {
-            Structure::Column(column) => column.wall_behind_drums(),
-            Structure::Arch(_) | Structure::Masonry(_) => Ok(None),
-        };
-        let joints = ElasticStructure::of_row(&row, &properties).and_then(|joints| match wall? {
-            Some(wall) => joints.with_wall(&row, wall, &properties),
-            None => Ok(joints),
-        });
-        Some(joints)
+        let wall = structure.column().map(Column::wall_behind_drums);
+        let wall = wall.transpose().map(Option::flatten);
+        let joints = ElasticStructure::of_row(&row, &properties);
+        Some(joints.and_then(|joints| joints.with_wall(&row, wall?, &properties)))
     }
 
     /// Rejects time steps that are too long, or too many until the end.
@@ -185,9 +180,9 @@ impl ElasticTable {
     fn elastic(&self, structure: &Structure, site: &Site) -> Result<ElasticJoints, ModelError> {
         let (depth_m, _) = structure.depth_and_density();
         let (gravity_m_s2, properties) = (site.gravity_m_s2, self.properties(depth_m));
-        let model = match structure {
-            Structure::Column(column) => ElasticJoints::of_column(gravity_m_s2, column, properties),
-            Structure::Arch(_) | Structure::Masonry(_) => {
+        let model = match structure.column() {
+            Some(column) => ElasticJoints::of_column(gravity_m_s2, column, properties),
+            None => {
                 let row = structure.row().map_err(RowModelError::from)?;
                 ElasticJoints::under(gravity_m_s2, row, properties)
             }

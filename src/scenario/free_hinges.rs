@@ -7,7 +7,7 @@ use super::prelude::*;
 use super::structure::Structure;
 use crate::argument::{ArgumentError, rounded_up};
 use crate::mechanics::{FrictionError, friction};
-use crate::{FreeHinges, Request, RowModelError, RowOptions};
+use crate::{Column, FreeHinges, Request, RowModelError, RowOptions};
 
 /// A row of rigid blocks whose joints open and close anywhere.
 pub static FREE_HINGES: ModelKind = ModelKind {
@@ -29,9 +29,7 @@ pub(super) fn model(
     structure: &Structure,
     site: &Site,
 ) -> Result<FreeHinges, RowModelError> {
-    if let Structure::Column(column) = structure
-        && let Some((_, height_m)) = column.wall()
-    {
+    if let Some((_, height_m)) = structure.column().and_then(Column::wall) {
         let allowed = "0 with free hinges, which have no contact with a wall behind a column";
         return Err(ArgumentError::new("height_m", height_m, allowed).into());
     }

@@ -73,18 +73,14 @@ impl ModelOptions for ImpactLaw {
         _: &Site,
         _: Option<f64>,
     ) -> ReadResult<()> {
-        let Structure::Column(column) = structure else {
+        let Some(column) = structure.column() else {
             return Ok(());
         };
         let is_prescribed = matches!(self.model, ImpactModel::Prescribed { .. });
         if !is_prescribed {
             column.wall_rate_ratio().map_err(|error| {
-                let path = match error.argument {
-                    "width_m" => &["column"][..],
-                    _ => &["column", "back"],
-                };
                 let wrong = format!("does not fit: it must be {}", error.allowed);
-                table.wrong_in(path, error.argument, wrong)
+                table.wrong_in(&["column", "back"], error.argument, wrong)
             })?;
         }
         let is_given = (column.wall()).is_some_and(|(wall, _)| wall.rate_ratio.is_some());
@@ -92,10 +88,9 @@ impl ModelOptions for ImpactLaw {
         let wrong = "changes the ratio of energies of the impact on the wall, and `restitution` of [column.back], a ratio of rates, gives it as well; \
                      leave one out";
         ensure(!is_given || is_own, || {
-            let key = if self.is_theory() {
-                "restitution"
-            } else {
-                "restitution_factor"
+            let key = match self.is_theory() {
+                true => "restitution",
+                false => "restitution_factor",
             };
             table.wrong_in(&["impact"], key, wrong)
         })

@@ -41,20 +41,18 @@ pub(super) fn read(
         AtMostOne(&["rate_rad_s", "impulse_n_s"], GIVE_ONE),
         AtMostOne(&["rotation_rad", "impulse_n_s"], at_rest),
     ])?;
+    let sway = initial.sway;
     let blow = impulse_n_s.zip(height_m);
     let blow = blow.map(|(impulse_n_s, height_m)| Blow {
-        sway: initial.sway,
+        sway,
         impulse_n_s,
         height_m,
     });
     let lacks = "starts at rest: give `rotation_rad`, a positive `rate_rad_s`, or `impulse_n_s` with `height_m`";
     table.refuse_all(blow.is_none() && !initial.moves(), lacks)?;
     let wrong = "releases rigid blocks about a hinge, and elastic joints have none: they start under the weight; give `rate_rad_s` alone, or leave [initial] out";
-    table.refuse(
-        !kind.is_rigid && initial.rotation_rad > 0.0,
-        "rotation_rad",
-        wrong,
-    )?;
+    let is_rotated = initial.rotation_rad > 0.0;
+    table.refuse(!kind.is_rigid && is_rotated, "rotation_rad", wrong)?;
     if let Some(structure) = structure {
         check_first_mechanism(table, structure, &initial)?;
         if let Some(blow) = blow {
@@ -87,20 +85,13 @@ fn check_first_mechanism(
 
 /// Returns the rate of the column just after a blow, in rad/s.
 fn rate_of_blow(table: &mut Table<'_>, structure: &Structure, blow: &Blow) -> ReadResult<f64> {
-    let column = match structure {
-        Structure::Column(column) => Some(column),
-        Structure::Arch(_) | Structure::Masonry(_) => None,
-    };
-    let rate_rad_s = column.and_then(|column| {
-        let top_m = column.height_m;
-        Some((
-            column.rate_of_blow_rad_s(blow.sway, blow.impulse_n_s, blow.height_m)?,
-            top_m,
-        ))
+    let started = structure.column().and_then(|column| {
+        let rate_rad_s = column.rate_of_blow_rad_s(blow.sway, blow.impulse_n_s, blow.height_m);
+        rate_rad_s.zip(Some(column.height_m))
     });
     let wrong = "is computed for a column of one block: a blow on one block of several starts another motion; give `rate_rad_s`";
-    table.refuse(rate_rad_s.is_none(), "impulse_n_s", wrong)?;
-    let (rate_rad_s, top_m) = rate_rad_s.ok_or(FaultRecorded)?;
+    table.refuse(started.is_none(), "impulse_n_s", wrong)?;
+    let (rate_rad_s, top_m) = started.ok_or(FaultRecorded)?;
     let wrong = format!("is above the column; must be at most {}", short(top_m));
     table.refuse(blow.height_m > top_m, "height_m", wrong)?;
     let most_rad_s = *Initial::RATE_RAD_S.end();

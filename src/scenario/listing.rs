@@ -23,22 +23,13 @@ struct ListedFile {
 }
 
 impl RecordListing {
-    /// Finds the files that match the patterns of the keys, and reads the keys that describe tables. `format` applies to all files; without it
-    /// the contents or the extensions of the files determine the formats.
+    /// Finds the files that match the patterns of the keys, without those of other records, and reads the keys that describe tables. `format`
+    /// applies to all files; without it the contents or the extensions of the files determine the formats.
     pub(super) fn read(
         table: &mut Table<'_>,
         keys: &[(&'static str, Vec<String>)],
         format: Option<Format>,
-    ) -> Self {
-        Self::without(&[], table, keys, format)
-    }
-
-    /// Finds files and reads keys as [`read`](Self::read), without files that other records name.
-    pub(super) fn without(
         others: &[Series],
-        table: &mut Table<'_>,
-        keys: &[(&'static str, Vec<String>)],
-        format: Option<Format>,
     ) -> Self {
         let identity = |file: &str| table.files().identity(table.files().path(file));
         let others: BTreeSet<_> = others.iter().map(|other| identity(&other.file)).collect();
@@ -119,21 +110,16 @@ pub(super) fn written(keys: &[(&str, &[Series])]) -> Map<String, Value> {
     // All CSV tables share the same keys; without CSV tables, AT2 files may share a unit.
     let tables = layouts.clone().find(|layout| layout.format == Format::Csv);
     let layout_source = tables.or_else(|| layouts.clone().next());
-    let mut layout = json!(layout_source);
+    let layout = json!(layout_source);
+    let mut keys = layout.as_object().cloned().unwrap_or_default();
+    if let Some(channel) = layouts.clone().find_map(|layout| layout.channel.as_ref()) {
+        keys.insert("channel".to_owned(), json!(channel));
+    }
     // If formats differ, the files determine them.
-    if let (Some(layout), Some(channel)) = (
-        layout.as_object_mut(),
-        layouts.clone().find_map(|layout| layout.channel.as_ref()),
-    ) {
-        layout.insert("channel".to_owned(), json!(channel));
+    if layouts.any(|layout| Some(layout.format) != layout_source.map(|layout| layout.format)) {
+        keys.shift_remove("format");
     }
-    if let Some(layout) = layout.as_object_mut()
-        && layouts.any(|layout| Some(layout.format) != layout_source.map(|layout| layout.format))
-    {
-        layout.shift_remove("format");
-    }
-    let layout = layout.as_object().cloned().into_iter().flatten();
-    files.chain(layout).collect()
+    files.chain(keys).collect()
 }
 
 /// Returns the formats of files: the keys of tables are needed if and only if one of them is a table.

@@ -1,37 +1,39 @@
 //! Loads: `[[load]]`, on the extrados of an arch or at points of a column.
 
 use super::prelude::*;
-use crate::argument::ArgumentError;
 use crate::mechanics::stability::collapse_mechanism;
 use crate::mechanics::{ColumnLoadError, LARGEST_THRUST_N, PlacedLoad};
 use crate::{Column, Sway};
 
-/// The keys of `[[load]]`.
+/// A `[[load]]`.
 #[derive(Clone, Debug)]
 pub(super) struct LoadTable {
-    mass_kg: Option<f64>,
-    x_m: Option<f64>,
-    width_m: Option<f64>,
-    pier: Option<Sway>,
-    height_m: Option<f64>,
-    moves: bool,
-    thrust_n: f64,
+    /// The load with the given keys and the defaults of the others.
+    load: PlacedLoad,
+    /// True if `x_m` is given.
+    has_position: bool,
 }
 
 impl LoadTable {
     pub(super) fn read(table: &mut Table<'_>) -> ReadResult<Self> {
         let thrust = within(&(-LARGEST_THRUST_N..=LARGEST_THRUST_N));
-        let read = Self {
-            mass_kg: table.optional("mass_kg", &within(&(0.0..=1e15))),
-            x_m: table.optional("x_m", &within(&(-1e6..=1e6))),
-            width_m: table.optional("width_m", &MAGNITUDE),
+        let mass_kg = table.optional("mass_kg", &within(&(0.0..=1e15)));
+        let x_m = table.optional("x_m", &within(&(-1e6..=1e6)));
+        let width_m = table.optional("width_m", &MAGNITUDE);
+        let load = PlacedLoad {
+            mass_kg: mass_kg.unwrap_or(0.0),
+            x_m: x_m.unwrap_or(0.0),
+            width_m: width_m.unwrap_or(0.0),
             pier: table.optional("pier", &one_of(Sway::ALL)),
             height_m: table.optional("height_m", &within(&(0.0..=1e12))),
             moves: table.or("moves", &switch(), true),
             thrust_n: table.or("thrust_n", &thrust, 0.0),
         };
         table.apply_relations(&[SomeOf(&["mass_kg", "thrust_n"], None)])?;
-        Ok(read)
+        Ok(Self {
+            load,
+            has_position: x_m.is_some(),
+        })
     }
 
     /// Returns the load for an arch or one of its piers.
@@ -39,40 +41,24 @@ impl LoadTable {
     /// # Errors
     /// A key that is missing, or that applies to piers and columns only.
     pub(super) fn on_arch(&self) -> Result<PlacedLoad, String> {
-        if self.pier.is_none() {
+        if self.load.pier.is_none() {
             let wrong = "has `height_m`, which applies to columns and piers: loads of an arch are on its extrados; leave it out, or give `pier`";
-            ensure(self.height_m.is_none(), || wrong.to_owned())?;
+            ensure(self.load.height_m.is_none(), || wrong.to_owned())?;
             let lacks = "lacks `x_m`: a load on the extrados has a position; give it, or `pier`";
-            ensure(self.x_m.is_some(), || lacks.to_owned())?;
+            ensure(self.has_position, || lacks.to_owned())?;
         }
-        Ok(self.placed())
-    }
-
-    /// Returns the load with the given keys and the defaults of the others.
-    fn placed(&self) -> PlacedLoad {
-        PlacedLoad {
-            mass_kg: self.mass_kg.unwrap_or(0.0),
-            x_m: self.x_m.unwrap_or(0.0),
-            width_m: self.width_m.unwrap_or(0.0),
-            pier: self.pier,
-            height_m: self.height_m,
-            moves: self.moves,
-            thrust_n: self.thrust_n,
-        }
+        Ok(self.load)
     }
 
     /// Returns the load for a column.
     fn on_column(&self) -> Result<PlacedLoad, String> {
-        let of_arch = [
-            ("width_m", self.width_m.is_some()),
-            ("pier", self.pier.is_some()),
-        ];
-        if let Some((key, _)) = of_arch.into_iter().find(|(_, is_given)| *is_given) {
-            return Err(format!(
+        let width = (self.load.width_m > 0.0).then_some("width_m");
+        let key_of_arch = width.or(self.load.pier.map(|_| "pier"));
+        key_of_arch.map_or(Ok(self.load), |key| {
+            Err(format!(
                 "has `{key}`, which applies to arches: a load on a column acts at a point; leave it out"
-            ));
-        }
-        Ok(self.placed())
+            ))
+        })
     }
 }
 
@@ -113,13 +99,11 @@ pub(super) const NO_CONSTANT_FORCES: &str = "cannot be combined with a [[load]] 
 fn why_not(table: &mut Table<'_>, error: &ColumnLoadError) -> FaultRecorded {
     match error {
         ColumnLoadError::Load(index, error) => {
-            let ArgumentError {
-                argument,
-                value,
-                allowed,
-            } = error;
-            let wrong =
-                format!("has `{argument} = {value:?}`, which is not allowed; must be {allowed}");
+            let (argument, value) = (error.argument, error.value);
+            let wrong = format!(
+                "has `{argument} = {value:?}`, which is not allowed; must be {}",
+                error.allowed
+            );
             table.wrong_element("load", *index, wrong)
         }
         ColumnLoadError::Wall(error) => {
@@ -127,14 +111,10 @@ fn why_not(table: &mut Table<'_>, error: &ColumnLoadError) -> FaultRecorded {
             table.wrong_in(&["column", "back"], error.argument, wrong)
         }
         ColumnLoadError::Overturns(side) => {
-            let other = match side {
-                Sway::Right => "left",
-                Sway::Left => "right",
-            };
+            let (side, other) = (side.name(), side.opposite().name());
             let wrong = format!(
-                "overturns the column to the {}, without ground motion; give less thrust or eccentricity to that side, or a wider column, or a load \
-                 further to the {other}",
-                side.name()
+                "overturns the column to the {side}, without ground motion; give less thrust or eccentricity to that side, or a wider column, or a \
+                 load further to the {other}"
             );
             table.wrong("load", wrong)
         }

@@ -569,11 +569,9 @@ impl Scenario {
             ground.insert("right".to_owned(), json!(right));
         }
         let ties = Some(&self.ties).filter(|ties| !ties.is_empty());
-        let loads = match &self.structure {
-            Structure::Column(column) => Some(&column.loads).filter(|loads| !loads.is_empty()),
-            // Masonry contains its loads.
-            Structure::Arch(_) | Structure::Masonry(_) => None,
-        };
+        // Masonry contains its loads.
+        let loads = self.structure.column().map(|column| &column.loads);
+        let loads = loads.filter(|loads| !loads.is_empty());
         let initial = self
             .blow
             .map_or_else(|| json!(self.initial), |blow| json!(blow));

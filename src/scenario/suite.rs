@@ -153,7 +153,7 @@ impl Suite {
             OneOf(&["scales", "peaks_g"], None),
         ]);
         let patterns: Vec<_> = patterns.map(|found| (RECORDS, found)).into_iter().collect();
-        let listing = RecordListing::without(&entries, table, &patterns, format);
+        let listing = RecordListing::read(table, &patterns, format, &entries);
         related.and(table.check_faultless())?;
         let (measure, levels) = levels.into_iter().next().ok_or(FaultRecorded)?;
         let (count, files) = (levels.values().len(), listing.len() + entries.len());
@@ -224,17 +224,13 @@ fn read_entry(
 ) -> ReadResult<Vec<Series>> {
     let listing = RecordListing::of_entry(table, format);
     let scaling = Scaling::read(table)?;
-    if let (Some(Scaling::PeakG(_)), false) = (strongest, scaling == Scaling::Factor(1.0)) {
-        let key = if table.gives("scale") {
-            "scale"
-        } else {
-            "peak_g"
-        };
-        return Err(table.wrong(
-            key,
-            "has no effect beside `peaks_g`, which replaces the peak; leave it out",
-        ));
-    }
+    let is_replaced = matches!(strongest, Some(Scaling::PeakG(_)));
+    let key = match table.gives("scale") {
+        true => "scale",
+        false => "peak_g",
+    };
+    let wrong = "has no effect beside `peaks_g`, which replaces the peak; leave it out";
+    table.refuse(is_replaced && scaling != Scaling::Factor(1.0), key, wrong)?;
     let wrong = "scales all accelerations to zero; must be another number";
     table.refuse(scaling == Scaling::Factor(0.0), "scale", wrong)?;
     table.check_faultless()?;

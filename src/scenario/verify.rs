@@ -166,7 +166,7 @@ impl Records {
             return Ok(Self::default());
         }
         let format = Format::read(table);
-        let listing = RecordListing::read(table, &given, format);
+        let listing = RecordListing::read(table, &given, format, &[]);
         table.check_faultless()?;
         let gravity_m_s2 = gravity_m_s2.ok_or(FaultRecorded)?;
         let accept = |series: &Series| {

@@ -57,16 +57,17 @@ pub struct BackWall {
 /// Returns the rate about `to`, for a unit rate about `from`, after an impact at `to`. The motion before is projected in the kinetic-energy metric onto
 /// the motion after, which conserves the angular momentum about `to`.
 pub(super) fn rate_passed(moments: &MassMoments, from: Vector2<f64>, to: Vector2<f64>) -> f64 {
-    let closing = Twist::rotation(from, 1.0).momentum(moments);
-    let opening = Twist::rotation(to, 1.0);
-    opening.power(&closing) / opening.power(&opening.momentum(moments))
+    product(moments, to, from) / product(moments, to, to)
+}
+
+/// Returns the product of the rotations about two points in the kinetic-energy metric, `m <A, B>` above.
+fn product(moments: &MassMoments, a: Vector2<f64>, b: Vector2<f64>) -> f64 {
+    Twist::rotation(a, 1.0).power(&Twist::rotation(b, 1.0).momentum(moments))
 }
 
 /// Returns the cosine between the rotations about two points in the kinetic-energy metric, `c(A, B)` above.
 fn cosine(moments: &MassMoments, [a, b]: [Vector2<f64>; 2]) -> f64 {
-    let [a, b] = [a, b].map(|pole| Twist::rotation(pole, 1.0));
-    let product = |one: &Twist, other: &Twist| one.power(&other.momentum(moments));
-    product(&a, &b) / (product(&a, &a) * product(&b, &b)).sqrt()
+    product(moments, a, b) / (product(moments, a, a) * product(moments, b, b)).sqrt()
 }
 
 /// Returns the ratio of rates after and before three impacts in turn of a rigid body, from its outer and inner toe and the contact at the top of the
@@ -83,9 +84,7 @@ pub fn three_impacts(
 /// Returns the height of the centre of percussion of the rotation about the inner toe, above that toe: three impacts throw the body back from higher
 /// walls only.
 pub fn percussion_height(moments: &MassMoments, inner: Vector2<f64>) -> f64 {
-    let turning = Twist::rotation(inner, 1.0);
-    let inertia = turning.power(&turning.momentum(moments));
-    inertia / (moments.first.y - moments.mass * inner.y)
+    product(moments, inner, inner) / (moments.first.y - moments.mass * inner.y)
 }
 
 #[cfg(test)]

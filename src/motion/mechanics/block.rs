@@ -67,11 +67,7 @@ impl Block {
 
     /// Returns mass, first and polar moment about the origin, for a centre of gravity at `centre_m`.
     pub fn moments_at(&self, centre_m: Vector2<f64>) -> MassMoments {
-        MassMoments {
-            mass: self.mass_kg,
-            first: centre_m * self.mass_kg,
-            polar: self.inertia_kg_m2 + self.mass_kg * centre_m.norm_squared(),
-        }
+        MassMoments::of_body(self.mass_kg, centre_m, self.inertia_kg_m2)
     }
 }
 

@@ -257,10 +257,8 @@ impl Column {
         };
         let top_m = Vector2::new(0.5 * self.width_m * wall.side.sign(), height_m);
         let body = self.body();
-        let weight = (
-            body.centre_m,
-            Vector2::new(0.0, -body.mass_kg * self.gravity_m_s2),
-        );
+        let weight_n = Vector2::new(0.0, -body.mass_kg * self.gravity_m_s2);
+        let weight = (body.centre_m, weight_n);
         let forces = self.constant_forces().chain([weight]);
         let moments = forces.map(|(at_m, force_n)| (at_m - top_m).perp(&force_n));
         // Clockwise moments turn it to the right.
@@ -277,24 +275,22 @@ impl Column {
 
     /// Returns its loads for drawings, each with the drum that carries it.
     pub fn load_outlines(&self) -> LoadOutlines {
-        let loads = self.placed_loads();
+        let loads_m = self.placed_loads();
+        let loads_m = loads_m.map(|(_, at_m)| (self.drum_at(at_m.y), at_m));
         LoadOutlines {
             fill_m: Vec::new(),
-            loads_m: loads
-                .map(|(_, at_m)| (self.drum_at(at_m.y), at_m))
-                .collect(),
+            loads_m: loads_m.collect(),
         }
     }
 
     /// Returns the index of the drum at a height; at a joint, of the lower one.
     fn drum_at(&self, height_m: f64) -> usize {
         let heights_m = self.drum_heights_m();
-        let tops_m = heights_m.iter().scan(0.0, |top_m, height_m| {
-            *top_m += height_m;
-            Some(*top_m)
+        let mut top_m = 0.0;
+        let drum = heights_m.iter().position(|drum_m| {
+            top_m += drum_m;
+            top_m >= height_m * (1.0 - 1e-9)
         });
-        let above = |top_m: &f64| *top_m >= height_m * (1.0 - 1e-9);
-        let drum = tops_m.into_iter().position(|top_m| above(&top_m));
         drum.unwrap_or(heights_m.len() - 1)
     }
 
@@ -350,24 +346,16 @@ impl Column {
             return Ok(Some(rate_ratio));
         }
         let lowest_m = percussion_height(moments, -outer) * half_m;
-        let (argument, value, allowed) = match lowest_m < self.height_m {
-            true => (
-                "height_m",
-                height_m,
-                format!(
-                    "above {} m, the height of the centre of percussion",
-                    plain(lowest_m)
-                ),
-            ),
-            false => (
-                "width_m",
-                self.width_m,
-                "below 0.7071 of the height: no wall is high enough for a wider column".into(),
-            ),
-        };
-        let measured = "three impacts in turn do not throw the column back, so give `restitution` of [column.back], a measured ratio of rates";
-        let allowed = format!("{allowed}; otherwise {measured}");
-        Err(ArgumentError::new(argument, value, allowed))
+        let measured = "otherwise three impacts in turn do not throw the column back, so give `restitution` of [column.back], a measured ratio of rates";
+        if lowest_m >= self.height_m {
+            let wide = "below 0.7071 of the height: no wall is high enough for a wider column";
+            let allowed = format!("{wide}; {measured}");
+            return Err(ArgumentError::new("width_m", self.width_m, allowed));
+        }
+        let lowest = plain(lowest_m);
+        let allowed =
+            format!("above {lowest} m, the height of the centre of percussion; {measured}");
+        Err(ArgumentError::new("height_m", height_m, allowed))
     }
 
     /// Returns the rate about the toe to this side, in rad/s, of a column of one block at rest just after a short horizontal blow: the angular impulse
@@ -528,17 +516,12 @@ impl RockingColumn {
         let wall = column.wall().map(|(wall, _)| wall.side);
         let of_wall = match law.model {
             ImpactModel::Prescribed { .. } => None,
-            ImpactModel::MaxRestitution | ImpactModel::SameSections | ImpactModel::Mirrored => {
-                column.wall_rate_ratio()?
-            }
+            _ => column.wall_rate_ratio()?,
         };
         // The impact that starts a sway to this side.
         let next = |sway: Sway| {
-            let (before, after) = match wall {
-                Some(_) => (sway, sway),
-                None => (sway.opposite(), sway),
-            };
-            let [before, after] = [before, after].map(|sway| tilting.to(sway));
+            let before = wall.map_or(sway.opposite(), |_| sway);
+            let [before, after] = [before, sway].map(|sway| tilting.to(sway));
             let inertia_ratio = after.unit_inertia() / before.unit_inertia();
             let (rate_ratio, restitution) = match law.model {
                 ImpactModel::Prescribed { restitution } => {

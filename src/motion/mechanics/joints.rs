@@ -184,15 +184,13 @@ impl Placement {
     /// Returns the edge about which a joint turns that opens at this rate, in rad/s: the edge in contact; of a closed joint, the edge that does not open.
     fn pivot(&self, joint: usize, opening_rad_s: f64) -> Edge {
         let [intrados, extrados] = self.gaps_m[joint];
-        let open = if intrados == extrados {
-            opening_rad_s
-        } else {
-            extrados - intrados
+        let open = match intrados == extrados {
+            true => opening_rad_s,
+            false => extrados - intrados,
         };
-        if open > 0.0 {
-            Edge::Intrados
-        } else {
-            Edge::Extrados
+        match open > 0.0 {
+            true => Edge::Intrados,
+            false => Edge::Extrados,
         }
     }
 
@@ -219,9 +217,8 @@ impl Placement {
     pub fn velocities(&self, rates_rad_s: &[f64]) -> Vec<Vector3<f64>> {
         let (motions, _) = self.motions(rates_rad_s);
         let moving = motions.iter().zip(&self.centres_m);
-        let velocity =
-            |(motion, centre_m): (&Twist, &Vector2<f64>)| motion.at(*centre_m).push(motion.rate);
-        moving.map(velocity).collect()
+        let velocities = moving.map(|(motion, centre_m)| motion.at(*centre_m).push(motion.rate));
+        velocities.collect()
     }
 
     /// Adds changes to the gaps, closes those below [`SHUT_RATIO`], and updates the positions.

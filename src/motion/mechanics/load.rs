@@ -71,15 +71,16 @@ impl PlacedLoad {
         }
     }
 
+    fn check_numbers(&self, least_kg: f64) -> Result<(), ArgumentError> {
+        let thrusts_n = -LARGEST_THRUST_N..=LARGEST_THRUST_N;
+        within("mass_kg", self.mass_kg, least_kg..=1e15)?;
+        within("x_m", self.x_m, -1e6..=1e6)?;
+        within("thrust_n", self.thrust_n, thrusts_n).map(drop)
+    }
+
     /// Checks the numbers of a load on a column of this height.
     pub(super) fn check_on_column(&self, column_height_m: f64) -> Result<(), ArgumentError> {
-        within("mass_kg", self.mass_kg, 0.0..=1e15)?;
-        within("x_m", self.x_m, -1e6..=1e6)?;
-        within(
-            "thrust_n",
-            self.thrust_n,
-            -LARGEST_THRUST_N..=LARGEST_THRUST_N,
-        )?;
+        self.check_numbers(0.0)?;
         let at_a_point = "0: a load on a column acts at a point";
         allow(self.width_m == 0.0, "width_m", self.width_m, at_a_point)?;
         let height_m = self.height_m.unwrap_or(0.0);
@@ -91,13 +92,7 @@ impl PlacedLoad {
     /// Checks the numbers of a load on an arch.
     pub(super) fn check_on_arch(&self) -> Result<(), ArgumentError> {
         let least_kg = if self.thrust_n == 0.0 { 1e-6 } else { 0.0 };
-        within("mass_kg", self.mass_kg, least_kg..=1e15)?;
-        within("x_m", self.x_m, -1e6..=1e6)?;
-        within(
-            "thrust_n",
-            self.thrust_n,
-            -LARGEST_THRUST_N..=LARGEST_THRUST_N,
-        )?;
+        self.check_numbers(least_kg)?;
         if self.width_m != 0.0 {
             within("width_m", self.width_m, MAGNITUDE)?;
             let is_spread = self.moves && self.thrust_n == 0.0 && self.pier.is_none();

@@ -74,8 +74,9 @@ impl Tilting {
         // A load of zero must not change any bit.
         let loads = loads.filter(|load| load.mass > 0.0 || load.force != Vector2::zeros());
         let loads: Vec<CarriedLoad> = loads.collect();
-        // Housner's block has an inertia of 4/3 about its toe.
-        let (mut body, mut inertia) = (unit_moments(cos), 4.0 / 3.0);
+        // Housner's block has an inertia of 1/3 about its centre, and of 4/3 about its toe.
+        let mut body = MassMoments::of_body(1.0, Vector2::new(0.0, cos), 1.0 / 3.0);
+        let mut inertia = 4.0 / 3.0;
         let (mut moment, mut virial) = (0.0, 0.0);
         let toe = Vector2::new(sin, 0.0);
         for load in &loads {
@@ -120,10 +121,8 @@ impl Tilting {
             return slenderness_rad;
         }
         let mass = self.body.mass;
-        let (rise, fall) = (
-            mass * self.arm.x - self.moment,
-            mass * self.arm.y - self.virial,
-        );
+        let rise = mass * self.arm.x - self.moment;
+        let fall = mass * self.arm.y - self.virial;
         rise.atan2(fall).min(FRAC_PI_2)
     }
 
@@ -169,10 +168,8 @@ impl Tilting {
         wall: Option<Sway>,
     ) -> (Vector2<f64>, f64) {
         let onto_base = self.pressing(body_force_g, wall);
-        let (reaction, centre) = (
-            -onto_base(body_force_g + self.constant_force()),
-            self.body.centroid(),
-        );
+        let reaction = -onto_base(body_force_g + self.constant_force());
+        let centre = self.body.centroid();
         let own = onto_base(body_force_g);
         let each = self.loads.iter().map(|load| {
             let force = onto_base(load.force) / self.body.mass;
@@ -245,11 +242,8 @@ impl Tilting {
             let loads = || self.loads.iter().filter(carried);
             // Without loads the mass of the part cancels.
             let mass = loads().next().map_or(1.0, |_| 1.0 - part);
-            let own = MassMoments {
-                mass: 1.0,
-                first: centre,
-                polar: (width * width + above * above) / 12.0 + centre.norm_squared(),
-            };
+            let central = (width * width + above * above) / 12.0;
+            let own = MassMoments::of_body(1.0, centre, central);
             let moments = loads().fold(own * mass, |sum, load| sum + load.moments());
             let resultant = loads().fold(load.resultant(&moments), |sum, load| {
                 sum + Momentum::applied_at(load.at, force(load.force))
@@ -265,20 +259,7 @@ impl Tilting {
 impl CarriedLoad {
     /// Returns the moments of the moving mass about the middle of the base, in masses of the block.
     fn moments(&self) -> MassMoments {
-        MassMoments {
-            mass: self.mass,
-            first: self.at * self.mass,
-            polar: self.mass * self.at.norm_squared(),
-        }
-    }
-}
-
-/// Returns the mass moments of a block of unit mass and half diagonal about the middle of its base, from the cosine of the slenderness.
-fn unit_moments(cos: f64) -> MassMoments {
-    MassMoments {
-        mass: 1.0,
-        first: Vector2::new(0.0, cos),
-        polar: 1.0 / 3.0 + cos * cos,
+        MassMoments::of_body(self.mass, self.at, 0.0)
     }
 }
 
@@ -331,13 +312,10 @@ impl Mechanism for Tilting {
 
     /// Returns the forces as momenta, in the unit of mass, with gravity as unit.
     fn constant_forces(&self) -> Vec<(Vector2<f64>, Vector2<f64>)> {
-        let loads = self
-            .loads
-            .iter()
-            .filter(|load| load.force != Vector2::zeros());
-        loads
-            .map(|load| (load.at, load.force * self.block))
-            .collect()
+        let acts = |load: &&CarriedLoad| load.force != Vector2::zeros();
+        let loads = self.loads.iter().filter(acts);
+        let forces = loads.map(|load| (load.at, load.force * self.block));
+        forces.collect()
     }
 
     /// Positions are relative to the middle of the base, the origin.

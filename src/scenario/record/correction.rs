@@ -19,18 +19,19 @@ named! {
 impl Baseline {
     /// Subtracts the baseline from accelerations that straight lines join.
     pub(super) fn subtract(self, samples: &mut [(f64, f64)]) {
+        let [(first_s, _), .., (last_s, _)] = *samples else {
+            return;
+        };
+        let (middle_s, duration_s) = (0.5 * (first_s + last_s), last_s - first_s);
         let mean = mean(samples);
         let slope = match self {
             Self::Mean => 0.0,
-            Self::Linear => slope(samples),
+            Self::Linear => slope(samples, middle_s, duration_s),
         };
-        if let [first, .., last] = samples {
-            let (middle_s, duration_s) = (0.5 * (first.0 + last.0), last.0 - first.0);
-            for (time_s, acceleration) in samples {
-                *acceleration -= mean;
-                if slope != 0.0 {
-                    *acceleration -= slope * (*time_s - middle_s) / duration_s;
-                }
+        for (time_s, acceleration) in samples {
+            *acceleration -= mean;
+            if slope != 0.0 {
+                *acceleration -= slope * (*time_s - middle_s) / duration_s;
             }
         }
     }
@@ -38,11 +39,7 @@ impl Baseline {
 
 /// Computes the slope of the line of least squares, per duration of the samples. If the residual is orthogonal to 1 and to the time, its first
 /// and second integrals end at zero.
-fn slope(samples: &[(f64, f64)]) -> f64 {
-    let [Some(first), Some(last)] = [samples.first(), samples.last()] else {
-        return 0.0;
-    };
-    let (middle_s, duration_s) = (0.5 * (first.0 + last.0), last.0 - first.0);
+fn slope(samples: &[(f64, f64)], middle_s: f64, duration_s: f64) -> f64 {
     let moments = samples.windows(2).map(|pair| {
         let [(t0, a0), (t1, a1)] = [pair[0], pair[1]];
         let [x0, x1] = [t0, t1].map(|time_s| (time_s - middle_s) / duration_s);
@@ -53,6 +50,7 @@ fn slope(samples: &[(f64, f64)]) -> f64 {
 }
 
 /// Keys of the baseline and of the filter, and an older key of the mean.
+pub(super) const KEYS: [&str; 3] = [BASELINE, FILTER, REMOVE_MEAN];
 const BASELINE: &str = "baseline";
 const FILTER: &str = "high_pass_hz";
 const REMOVE_MEAN: &str = "remove_mean";
@@ -73,10 +71,9 @@ pub(super) fn read(table: &mut Table<'_>) -> Corrections {
 /// Records faults of corrections of velocities.
 pub(super) fn refuse(table: &mut Table<'_>, (baseline, corner_hz): Corrections) {
     let wrong = "applies to accelerations: a uniform velocity shakes nothing; leave it out";
-    let given = if table.gives(BASELINE) {
-        BASELINE
-    } else {
-        REMOVE_MEAN
+    let given = match table.gives(BASELINE) {
+        true => BASELINE,
+        false => REMOVE_MEAN,
     };
     let _ = table.refuse(baseline.is_some(), given, wrong);
     let wrong = "applies to accelerations: filter the velocities before, or leave it out";

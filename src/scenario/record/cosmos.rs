@@ -27,14 +27,11 @@ pub(super) fn histories(lines: &[&str]) -> Parsed<Vec<History>> {
     for (index, line) in lines.iter().enumerate().filter(|(_, line)| is_text(line)) {
         let lower = line.to_ascii_lowercase();
         if let Some(channel) = lower.strip_prefix("sta cha") {
-            name = squeezed(
-                line[line.len() - channel.len()..].trim_start_matches(['n', 'N', ':', ' ']),
-            );
+            let channel = &line[line.len() - channel.len()..];
+            name = squeezed(channel.trim_start_matches(['n', 'N', ':', ' ']));
         } else if let Some(count) = word_after(line, REALS) {
-            let count = number(count)
-                .map_err(LineFault::on(index + 1))?
-                .clamp(0.0, 100.0) as usize;
-            let at = index + 1..index + 1 + count;
+            let count = number(count).map_err(LineFault::on(index + 1))?;
+            let at = index + 1..index + 1 + count.clamp(0.0, 100.0) as usize;
             reals = (index + 1, header_fields(lines, at, width_in(line), 64)?);
         } else if lower.contains(" pts, approx") {
             histories.push(history(lines, index, &name, &reals)?);
@@ -65,30 +62,24 @@ fn history(
     let step_s = number(reals[61]).map(|step_ms| 1e-3 * step_ms);
     let (count, step_s) = count_and_step((index + 1, count), (*reals_line, step_s))?;
     let lasts_s = number(word_after(line, "approx").unwrap_or_default()).map_err(fault)?;
+    let found_s = count * step_s;
     // The line gives whole seconds.
-    ensure(
-        (count * step_s - lasts_s).abs() <= 1.0 + 0.01 * lasts_s,
-        || {
-            let [step_s, lasts_s, found_s] = [step_s, lasts_s, count * step_s].map(plain);
-            fault(format!(
-                "these samples last {lasts_s} s, but at the step of {step_s} s in the header they last {found_s} s"
-            ))
-        },
-    )?;
+    let agrees = (found_s - lasts_s).abs() <= 1.0 + 0.01 * lasts_s;
+    ensure(agrees, || {
+        let [step_s, lasts_s, found_s] = [step_s, lasts_s, found_s].map(plain);
+        fault(format!(
+            "these samples last {lasts_s} s, but at the step of {step_s} s in the header they last {found_s} s"
+        ))
+    })?;
     let unit = word_after(line, "units=").unwrap_or_default();
     let is_known = |peak: &&str| number(peak) != Ok(UNKNOWN);
     Ok(History {
         name: name.to_owned(),
         quantity: quantity.to_lowercase(),
-        line: index + 1,
         unit: unit.split([',', '(']).next().unwrap_or_default().to_owned(),
-        factor: 1.0,
-        step_s: Some(step_s),
-        count,
-        columns: (1, 0),
-        is_table: false,
         peak: Some(reals[63]).filter(is_known).map(str::to_owned),
         data: lines_of_numbers(lines, index + 1),
         width: width_in(line),
+        ..History::new(index + 1, count, Some(step_s))
     })
 }

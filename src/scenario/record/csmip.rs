@@ -83,16 +83,11 @@ fn equally_spaced(lines: &[&str], start: usize, index: usize, quantity: &str) ->
     Ok(History {
         name: name(header),
         quantity: quantity.to_owned(),
-        line: index + 1,
         unit: unit.to_owned(),
-        factor: 1.0,
-        step_s: Some(step_s),
-        count,
-        columns: (1, 0),
-        is_table: false,
         peak: stated,
         data: lines_of_numbers(lines, index + 1),
         width: width_in(line),
+        ..History::new(index + 1, count, Some(step_s))
     })
 }
 
@@ -115,17 +110,13 @@ fn pairs(lines: &[&str], channel: Range<usize>) -> Parsed<Option<History>> {
     let tenths = number(tenths).map_err(LineFault::on(line + 1))?;
     Ok(Some(History {
         name: name(header),
-        quantity: "acceleration".to_owned(),
-        line: line + 1,
         unit: unit.to_owned(),
         factor: tenths.recip(),
-        step_s: None,
-        count,
         columns: (2, 1),
-        is_table: false,
         peak: find("max = ").map(|(_, peak)| peak),
         data: lines_of_numbers(lines, start + HEADER_LINES),
         width: 7,
+        ..History::new(line + 1, count, None)
     }))
 }
 

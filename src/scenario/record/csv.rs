@@ -551,10 +551,9 @@ fn hint(
 fn touching(cell: &str, by_blanks: bool) -> impl Iterator<Item = &str> {
     let is_decimal = |word: &str| word.contains('.') && number(word).is_ok();
     let touch = by_blanks && words(cell).nth(1).is_some() && words(cell).all(is_decimal);
-    let (whole, parts) = if touch {
-        (None, cell)
-    } else {
-        (Some(cell), "")
+    let (whole, parts) = match touch {
+        true => (None, cell),
+        false => (Some(cell), ""),
     };
     whole.into_iter().chain(words(parts))
 }

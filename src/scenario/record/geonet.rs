@@ -53,17 +53,12 @@ fn component(lines: &[&str], start: usize, histories: &mut Vec<History>) -> Pars
     };
     // The header has peaks in millimetres.
     let has_peak = Unit::written(unit) == Some(Unit::MillimetrePerS2);
+    let peak = has_peak.then_some(if is_corrected { 35 } else { 30 });
     let (line, mut from) = (start + REALS, start + DATA);
     let step_s = number(reals[25]).and_then(|step_s| checked_step("the step", step_s));
     let step_s = step_s.map_err(LineFault::on(line + 3))?;
-    let peak = if is_corrected { 35 } else { 30 };
     let blocks = [
-        (
-            "acceleration",
-            unit,
-            factor,
-            Some(peak).filter(|_| has_peak),
-        ),
+        ("acceleration", unit, factor, peak),
         ("velocity", "mm/s", 1.0, Some(40)),
         ("displacement", "mm", 1.0, Some(45)),
     ];
@@ -86,16 +81,12 @@ fn component(lines: &[&str], start: usize, histories: &mut Vec<History>) -> Pars
         histories.push(History {
             name: squeezed(named.unwrap_or_default()),
             quantity: quantity.to_owned(),
-            line,
             unit: unit.to_owned(),
             factor,
-            step_s: Some(step_s),
-            count,
-            columns: (1, 0),
-            is_table: false,
             peak: peak.map(|index: usize| reals[index].to_owned()),
             data,
             width: 8,
+            ..History::new(line, count, Some(step_s))
         });
     }
     Ok(from)

@@ -51,10 +51,8 @@ pub(super) fn read(
         LineFault::on(1)("the header announces no samples")
     })?;
     let wanted = layout.quantity.name();
-    let fitting: Vec<_> = histories
-        .iter()
-        .filter(|one| one.quantity == wanted)
-        .collect();
+    let fits = |one: &&History| one.quantity == wanted;
+    let fitting: Vec<_> = histories.iter().filter(fits).collect();
     let index = choose(&fitting, layout.channel.as_ref()).map_err(|wrong| {
         let other = histories.first().filter(|_| fitting.is_empty());
         let line = other.or(fitting.first().copied()).map_or(1, |one| one.line);
@@ -66,10 +64,8 @@ pub(super) fn read(
     let unit = Unit::of_header(&history.unit, layout.quantity, remedy).map_err(fault)?;
     let is_factor = (1e-6..=1e6).contains(&history.factor);
     ensure(is_factor, || {
-        fault(format!(
-            "the factor {} is not from 1e-6 to 1e6",
-            plain(history.factor)
-        ))
+        let factor = plain(history.factor);
+        fault(format!("the factor {factor} is not from 1e-6 to 1e6"))
     })?;
     let (times_s, values) = history.numbers(&lines)?;
     values.check_count((history.line, history.count), "samples")?;
@@ -98,57 +94,51 @@ pub(super) fn read(
 fn choose(histories: &[&History], channel: Option<&TableColumn>) -> Result<usize, String> {
     /// Largest number of channels in a message.
     const LISTED: usize = 9;
-    let listed = || {
-        let names = histories.iter().zip(1..).take(LISTED);
-        let names: Vec<_> = names
-            .map(|(one, number)| format!("{number} `{}`", excerpt(&one.name)))
-            .collect();
-        let more = if histories.len() > LISTED {
-            " and others"
-        } else {
-            ""
-        };
-        names.join(", ") + more
+    let named = |fits: &dyn Fn(&str) -> bool| {
+        let names = histories.iter().map(|one| one.name.to_lowercase());
+        let fitting = names.enumerate().filter(|(_, name)| fits(name));
+        fitting.map(|(index, _)| index).collect::<Vec<_>>()
     };
-    let count = histories.len();
-    let mut found = match channel {
-        None => (0..count).collect::<Vec<_>>(),
+    let found = match channel {
+        None => (0..histories.len()).collect(),
         Some(TableColumn::Number(number)) => {
-            (0..count).filter(|index| index + 1 == *number).collect()
+            let indices = 0..histories.len();
+            indices.filter(|index| index + 1 == *number).collect()
         }
         Some(TableColumn::Name(name)) => {
             let name = squeezed(name).to_lowercase();
-            let named = |fits: fn(&str, &str) -> bool| {
-                let fits = |index: &usize| fits(&histories[*index].name.to_lowercase(), &name);
-                (0..count).filter(fits).collect::<Vec<_>>()
-            };
-            let equal = named(|own, name| own == name);
-            if equal.is_empty() {
-                named(has_words)
-            } else {
-                equal
+            let equal = named(&|own| own == name);
+            match equal.is_empty() {
+                true => named(&|own| has_words(own, &name)),
+                false => equal,
             }
         }
     };
-    match (found.pop(), found.len(), channel) {
-        (Some(index), 0, _) => Ok(index),
-        (_, _, None) => Err(format!(
-            "the file has {count} channels: give `channel`, the number of the one to read or a part of its name: {}",
-            listed()
-        )),
-        (found, _, Some(channel)) => {
-            let wrong = match (channel, found) {
-                (TableColumn::Number(number), _) => format!("there is no channel {number}"),
-                (TableColumn::Name(name), None) => {
-                    format!("no channel matches `{}`", excerpt(name))
-                }
-                (TableColumn::Name(name), _) => {
-                    format!("several channels match `{}`", excerpt(name))
-                }
-            };
-            Err(format!("{wrong}; the file has {}", listed()))
-        }
+    if let [index] = found[..] {
+        return Ok(index);
     }
+    let names = histories.iter().zip(1..).take(LISTED);
+    let names = names.map(|(one, number)| format!("{number} `{}`", excerpt(&one.name)));
+    let mut listed = names.collect::<Vec<_>>().join(", ");
+    if histories.len() > LISTED {
+        listed += " and others";
+    }
+    Err(match channel {
+        None => format!(
+            "the file has {} channels: give `channel`, the number of the one to read or a part of its name: {listed}",
+            histories.len()
+        ),
+        Some(TableColumn::Number(number)) => {
+            format!("there is no channel {number}; the file has {listed}")
+        }
+        Some(TableColumn::Name(name)) => {
+            let matches = match found.is_empty() {
+                true => "no channel matches",
+                false => "several channels match",
+            };
+            format!("{matches} `{}`; the file has {listed}", excerpt(name))
+        }
+    })
 }
 
 /// Returns true if a name contains a part that neither begins nor ends inside a word of the name.
@@ -185,6 +175,24 @@ fn holds(histories: &[History], wanted: RecordedQuantity) -> String {
 }
 
 impl History {
+    /// Returns accelerations with one number each, which this line of the header describes, as yet without name, unit, peak and numbers.
+    pub(super) fn new(line: usize, count: f64, step_s: Option<f64>) -> Self {
+        Self {
+            name: String::new(),
+            quantity: RecordedQuantity::Acceleration.name().to_owned(),
+            line,
+            unit: String::new(),
+            factor: 1.0,
+            step_s,
+            count,
+            columns: (1, 0),
+            is_table: false,
+            peak: None,
+            data: 0..0,
+            width: 0,
+        }
+    }
+
     /// Reads the numbers: the times, if the file has them, and the samples.
     fn numbers(&self, lines: &[&str]) -> Parsed<(Vec<f64>, Values)> {
         let (mut times_s, (of_sample, wanted)) = (Vec::new(), self.columns);
@@ -226,14 +234,12 @@ impl History {
         let stated = self.peak.as_ref()?;
         let peak = number(stated).ok()?.abs();
         let decimals = stated.split('.').nth(1).map_or(0, str::len);
-        let rounding = if stated.contains(['e', 'E', 'd', 'D']) {
-            0.0
-        } else {
-            0.5 * 0.1_f64.powi(decimals as i32)
+        let rounding = match stated.contains(['e', 'E', 'd', 'D']) {
+            true => 0.0,
+            false => 0.5 * 0.1_f64.powi(decimals as i32),
         };
-        let found = samples
-            .iter()
-            .fold(0.0_f64, |peak, sample| peak.max(sample.abs()));
+        let magnitudes = samples.iter().map(|sample| sample.abs());
+        let found = magnitudes.fold(0.0, f64::max);
         let differs = (found - peak).abs() > rounding + TOLERANCE * peak.max(found);
         differs.then(|| {
             let ([found, peak], unit) = ([found, peak].map(plain), unit.name());
@@ -265,11 +271,8 @@ pub(super) fn header_fields<'t>(
     least: usize,
 ) -> Parsed<Vec<&'t str>> {
     let end = at.end.min(lines.len());
-    let fields: Vec<_> = lines[at.start.min(end)..end]
-        .iter()
-        .copied()
-        .flat_map(|line| fields(line, width))
-        .collect();
+    let rows = lines[at.start.min(end)..end].iter();
+    let fields: Vec<_> = rows.flat_map(|line| fields(line, width)).collect();
     let fault = LineFault::on::<String>(end.max(1));
     ensure(fields.len() >= least, || {
         let (found, from) = (fields.len(), at.start + 1);
@@ -277,10 +280,9 @@ pub(super) fn header_fields<'t>(
             "the header has {found} numbers from line {from} to here; must have {least}"
         ))
     })?;
-    fields
-        .iter()
-        .try_for_each(|field| number(field).map(drop))
-        .map_err(fault)?;
+    for field in &fields {
+        number(field).map_err(fault)?;
+    }
     Ok(fields)
 }
 
@@ -313,14 +315,9 @@ pub(super) fn width_in(line: &str) -> usize {
     let format = line.rsplit_once('(').map_or("", |(_, format)| format);
     let width = format.trim_start_matches(|c: char| c.is_ascii_digit());
     let width = width.trim_start_matches(|c: char| c.is_ascii_alphabetic());
-    let end = width
-        .find(|c: char| !c.is_ascii_digit())
-        .unwrap_or(width.len());
-    width[..end]
-        .parse()
-        .ok()
-        .filter(|width| *width <= 40)
-        .unwrap_or(0)
+    let digits = width.split(|c: char| !c.is_ascii_digit()).next();
+    let width = digits.and_then(|digits| digits.parse().ok());
+    width.filter(|width| *width <= 40).unwrap_or(0)
 }
 
 /// Returns a name with single blanks between its words.

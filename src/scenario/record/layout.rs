@@ -225,22 +225,21 @@ impl Layout {
     pub(in crate::scenario) fn inherit(table: &mut Table<'_>, formats: &[Format]) {
         let has_tables = formats.contains(&Format::Csv);
         let has_channels = formats.iter().any(|format| format.has_channels());
-        let excluded = |key: &str| {
-            let mut pairs = EXCLUSIVE.into_iter();
-            pairs.any(|[one, other]| {
-                key == one && table.gives(other) || key == other && table.gives(one)
-            })
-        };
         let is_velocity = table.as_given("quantity") == Some(json!(RecordedQuantity::Velocity));
-        let of_accelerations = ["baseline", "high_pass_hz", "remove_mean"];
-        let of_tables = TABLE_KEYS.into_iter().chain(["unit"]);
-        let keys: Vec<_> = of_tables
-            .filter(|_| has_tables)
-            .chain(["channel"].into_iter().filter(|_| has_channels))
-            .chain(["quantity"])
-            .chain(of_accelerations.into_iter().filter(|_| !is_velocity))
-            .filter(|key| !excluded(key))
-            .collect();
+        let groups = [
+            (&TABLE_KEYS[..], has_tables),
+            (&["unit"], has_tables),
+            (&["channel"], has_channels),
+            (&["quantity"], true),
+            (&correction::KEYS, !is_velocity),
+        ];
+        let applying = groups.into_iter().filter(|(_, applies)| *applies);
+        let is_excluded = |key: &&str| {
+            let mut pairs = EXCLUSIVE.iter().filter(|pair| pair.contains(key));
+            pairs.any(|pair| pair.iter().any(|other| other != key && table.gives(other)))
+        };
+        let keys = applying.flat_map(|(keys, _)| keys.iter().copied());
+        let keys: Vec<_> = keys.filter(|key| !is_excluded(key)).collect();
         table.inherit(keys.into_iter());
     }
 

@@ -325,18 +325,14 @@ impl Series {
 
     /// Returns the corrections of the samples in words that follow others; empty without a correction.
     pub fn corrections(&self) -> String {
-        let baseline = self.layout.baseline.map(|baseline| match baseline {
-            Baseline::Mean => "mean subtracted".to_owned(),
-            Baseline::Linear => "line of least squares subtracted".to_owned(),
-        });
-        let filter = self
-            .layout
-            .high_pass_hz
-            .map(|corner_hz| format!("high-pass filter at {} Hz", plain(corner_hz)));
-        let corrections = baseline.into_iter().chain(filter);
-        corrections
-            .map(|correction| format!(", {correction}"))
-            .collect()
+        let baseline = match self.layout.baseline {
+            Some(Baseline::Mean) => ", mean subtracted",
+            Some(Baseline::Linear) => ", line of least squares subtracted",
+            None => "",
+        };
+        let filter = self.layout.high_pass_hz.map(plain);
+        let filter = filter.map(|corner| format!(", high-pass filter at {corner} Hz"));
+        baseline.to_owned() + &filter.unwrap_or_default()
     }
 
     /// Computes a checksum of the samples. Files with the same samples in different formats have the same checksum.
@@ -526,33 +522,28 @@ impl Format {
         let text = String::from_utf8_lossy(bytes);
         let lines: Vec<&str> = text.trim_start_matches('\u{feff}').lines().collect();
         let (first, has) = (*lines.first()?, |word: &str| text.contains(word));
-        if smc::begins(first) {
-            Some(Self::Smc)
-        } else if cosmos::begins(first) {
-            Some(Self::Cosmos)
-        } else if geonet::begins(&lines) {
-            Some(Self::Geonet)
-        } else if csmip::begins(first) {
-            Some(Self::Csmip)
-        } else if first.starts_with("STRONG GROUND MOTION RECORDS OF") {
-            Some(Self::Afad)
-        } else if has("#AmplitudeUnit:") && has("#DataSequence: Time") {
-            Some(Self::Cwb)
-        } else if has("NO. OF POINTS:") && has("SPACED INTERVALS OF:") {
-            Some(Self::Csmnc)
-        } else if has("ARCHIVO ESTANDAR DE ACELERACION") {
-            Some(Self::Unam)
-        } else if first.starts_with("Origin Time") && has("Sampling Freq(Hz)") {
-            Some(Self::Knet)
-        } else if first.contains(':') && has("SAMPLING_INTERVAL_S:") {
-            Some(Self::Asc)
-        } else {
-            lines
-                .iter()
-                .take(8)
-                .any(|line| at2::ends_header(line))
-                .then_some(Self::At2)
-        }
+        let is_afad = first.starts_with("STRONG GROUND MOTION RECORDS OF");
+        let is_cwb = has("#AmplitudeUnit:") && has("#DataSequence: Time");
+        let is_csmnc = has("NO. OF POINTS:") && has("SPACED INTERVALS OF:");
+        let is_unam = has("ARCHIVO ESTANDAR DE ACELERACION");
+        let is_knet = first.starts_with("Origin Time") && has("Sampling Freq(Hz)");
+        let is_asc = first.contains(':') && has("SAMPLING_INTERVAL_S:");
+        let is_at2 = lines.iter().take(8).any(|line| at2::ends_header(line));
+        let shown = [
+            (Self::Smc, smc::begins(first)),
+            (Self::Cosmos, cosmos::begins(first)),
+            (Self::Geonet, geonet::begins(&lines)),
+            (Self::Csmip, csmip::begins(first)),
+            (Self::Afad, is_afad),
+            (Self::Cwb, is_cwb),
+            (Self::Csmnc, is_csmnc),
+            (Self::Unam, is_unam),
+            (Self::Knet, is_knet),
+            (Self::Asc, is_asc),
+            (Self::At2, is_at2),
+        ];
+        let mut formats = shown.into_iter().filter(|(_, is_shown)| *is_shown);
+        formats.next().map(|(format, _)| format)
     }
 }
 

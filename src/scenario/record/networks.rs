@@ -69,18 +69,13 @@ pub(super) fn afad(lines: &[&str]) -> Parsed<Vec<History>> {
     })?;
     let histories = names.iter().enumerate().map(|(index, name)| History {
         name: squeezed(name),
-        quantity: "acceleration".to_owned(),
-        line,
         unit: unit.clone(),
-        factor: 1.0,
-        step_s: Some(step_s),
-        count,
         columns: (3, index),
         is_table: true,
         peak: word_after(header[peaks - 1], &format!("({}) ", name.to_lowercase()))
             .map(str::to_owned),
         data: data.clone(),
-        width: 0,
+        ..History::new(line, count, Some(step_s))
     });
     Ok(histories.collect())
 }
@@ -116,36 +111,30 @@ pub(super) fn cwb(lines: &[&str]) -> Parsed<Vec<History>> {
         })
     };
     let spans_s = time_s(rows.last())? - time_s(rows.first())?;
-    ensure(
-        (spans_s - (count - 1.0) * step_s).abs() <= 0.5 * step_s,
-        || {
-            let [spans_s, step_s] = [spans_s, step_s].map(plain);
-            LineFault::on(last_line)(format!(
-                "{count} rows take {spans_s} s: line {rate_line} announces a step of {step_s} s"
-            ))
-        },
-    )?;
+    let has_step = (spans_s - (count - 1.0) * step_s).abs() <= 0.5 * step_s;
+    ensure(has_step, || {
+        let [spans_s, step_s] = [spans_s, step_s].map(plain);
+        LineFault::on(last_line)(format!(
+            "{count} rows take {spans_s} s: line {rate_line} announces a step of {step_s} s"
+        ))
+    })?;
     let names = rest(header[order_line - 1], "time").unwrap_or_default();
+    let names = names.split(';').map(str::trim);
     let names: Vec<_> = names
-        .split(';')
-        .map(|name| squeezed(name.trim().trim_end_matches("(+)")))
+        .map(|name| squeezed(name.trim_end_matches("(+)")))
         .collect();
     let histories = names.iter().enumerate().map(|(index, name)| {
         let phrase = format!("#amplitudemax. {}:", name.to_lowercase());
         let peaks = header.iter().find_map(|line| rest(line, &phrase));
         History {
             name: name.clone(),
-            quantity: "acceleration".to_owned(),
-            line,
             unit: unit.trim_end_matches('.').to_owned(),
-            factor: 1.0,
-            step_s: None,
-            count,
             columns: (names.len() + 1, index + 1),
             is_table: true,
             peak: largest(peaks.unwrap_or_default().split('~').map(str::trim)),
             data: data.clone(),
             width: WIDTH,
+            ..History::new(line, count, None)
         }
     });
     Ok(histories.collect())
@@ -201,17 +190,12 @@ pub(super) fn unam(lines: &[&str]) -> Parsed<Vec<History>> {
         let (count, step_s) = count_and_step((line, count), (step_line, number(step)))?;
         Ok(History {
             name: squeezed(name),
-            quantity: "acceleration".to_owned(),
-            line,
             unit: unit.to_owned(),
-            factor: 1.0,
-            step_s: Some(step_s),
-            count,
             columns: (counts.len(), index),
             is_table: true,
             peak: peaks.get(index).map(|peak| (*peak).to_owned()),
             data: end..lines.len(),
-            width: 0,
+            ..History::new(line, count, Some(step_s))
         })
     });
     histories.collect()
@@ -228,20 +212,13 @@ pub(super) fn csmnc(lines: &[&str]) -> Parsed<Vec<History>> {
     let quantity = ["acceleration", "velocity", "displacement"]
         .into_iter()
         .find(|one| held.contains(one));
+    let (_, name) = find(header, "comp.").unwrap_or_default();
     Ok(vec![History {
-        name: find(header, "comp.")
-            .map(|(_, name)| name)
-            .unwrap_or_default(),
+        name,
         quantity: quantity.unwrap_or("unknown samples").to_owned(),
-        line,
         unit,
-        factor: 1.0,
-        step_s: Some(step_s),
-        count,
-        columns: (1, 0),
-        is_table: false,
         peak: find(header, "peak value:").ok().map(|(_, peak)| peak),
         data,
-        width: 0,
+        ..History::new(line, count, Some(step_s))
     }])
 }

@@ -50,7 +50,10 @@ pub(super) fn histories(lines: &[&str]) -> Parsed<Vec<History>> {
     let rate = known(1);
     let step_s = rate.map_or(Ok(1.0), |rate| step_of_rate("the rate", number(rate)?));
     let (count, step_s) = count_and_step((COUNT_LINE, integers[16]), (RATE_LINE, step_s))?;
-    let columns = if rate.is_some() { (1, 0) } else { (2, 1) };
+    let (columns, count, step_s) = match rate {
+        Some(_) => ((1, 0), count, Some(step_s)),
+        None => ((2, 1), 0.5 * count, None),
+    };
     let kind = first.trim()[2..].trim();
     let (quantity, unit) = match kind {
         _ if kind.contains("ACCELEROGRAM") => ("acceleration", "cm/s2"),
@@ -63,15 +66,11 @@ pub(super) fn histories(lines: &[&str]) -> Parsed<Vec<History>> {
     Ok(vec![History {
         name: squeezed(name),
         quantity: quantity.to_lowercase(),
-        line: COUNT_LINE,
         unit: unit.to_owned(),
-        factor: 1.0,
-        step_s: rate.map(|_| step_s),
-        count: count / columns.0 as f64,
         columns,
-        is_table: false,
         peak: largest([known(29), known(31)].into_iter().flatten()),
         data: data.min(lines.len())..lines.len(),
         width: 10,
+        ..History::new(COUNT_LINE, count, step_s)
     }])
 }

@@ -90,18 +90,15 @@ impl Structure {
 impl Structure {
     /// Returns the outline of the wall behind a column for drawings, in metres, as thick as the column; `None` without a wall.
     pub fn wall_outline_m(&self) -> Option<[Vector2<f64>; 4]> {
-        let Self::Column(column) = self else {
-            return None;
-        };
+        let column = self.column()?;
         let (wall, height_m) = column.wall()?;
         let [near_m, far_m] = [0.5, 1.5].map(|part| part * column.width_m * wall.side.sign());
-        let corners_m = [
-            (near_m, 0.0),
-            (near_m, height_m),
-            (far_m, height_m),
-            (far_m, 0.0),
-        ];
-        Some(corners_m.map(|(x_m, y_m)| Vector2::new(x_m, y_m)))
+        Some([
+            Vector2::new(near_m, 0.0),
+            Vector2::new(near_m, height_m),
+            Vector2::new(far_m, height_m),
+            Vector2::new(far_m, 0.0),
+        ])
     }
 }
 

@@ -147,10 +147,8 @@ impl Structure {
 
     /// Returns the side of the wall behind a column, towards which it cannot move; `None` without a wall.
     pub fn wall_behind(&self) -> Option<Sway> {
-        match self {
-            Self::Column(column) => column.wall().map(|(wall, _)| wall.side),
-            Self::Arch(_) | Self::Masonry(_) => None,
-        }
+        let (wall, _) = self.column()?.wall()?;
+        Some(wall.side)
     }
 
     /// Returns fill and loads for drawings.
@@ -186,6 +184,14 @@ impl Structure {
         match self {
             Self::Arch(arch) => Some(arch),
             Self::Column(_) | Self::Masonry(_) => None,
+        }
+    }
+
+    /// Returns the column; `None` for other structures.
+    pub(crate) const fn column(&self) -> Option<&Column> {
+        match self {
+            Self::Column(column) => Some(column),
+            Self::Arch(_) | Self::Masonry(_) => None,
         }
     }
 
@@ -391,23 +397,22 @@ fn read_column(table: &mut Table<'_>, has_joints: bool, lands: bool) -> ReadResu
         column = table.accept("drum_heights_m", drums)?;
     }
     if let Some(back) = back {
-        let wrong = |table: &mut Table<'_>, error: ArgumentError| {
+        let misfit = |table: &mut Table<'_>, error: ArgumentError| {
             let wrong = format!("does not fit: it must be {}", error.allowed);
             match error.argument {
                 "width_m" | "top_width_m" => table.wrong(error.argument, wrong),
                 _ => table.wrong_in(&["back"], error.argument, wrong),
             }
         };
-        column = column
-            .with_back(back)
-            .map_err(|error| wrong(table, error))?;
-        let held = match has_joints {
+        let held = column.with_back(back);
+        column = held.map_err(|error| misfit(table, error))?;
+        let behind_drums = match has_joints {
             true => column.wall_behind_drums().map(drop),
             false => Ok(()),
         };
-        let held = held.map_err(|error| wrong(table, error));
+        let behind_drums = behind_drums.map_err(|error| misfit(table, error));
         table.refuse(lands && column.wall().is_some(), "back", NO_RIGID_BLOCKS)?;
-        held?;
+        behind_drums?;
     }
     Ok(column)
 }

@@ -101,30 +101,28 @@ fn of_column(column: &Column) -> Vec<String> {
 /// Returns the forces of a load, weight and thrust, each as its direction and in words: 0 downwards, 1 to the right, -1 to the left. A mass that does
 /// not move with its block is a constant weight.
 pub fn forces_in_words(load: &PlacedLoad) -> Vec<(f64, String)> {
-    let constant = if load.moves {
-        ""
-    } else {
-        " as constant weight"
-    };
-    let weight = (0.0, format!("{} kg{constant}", metres(load.mass_kg)));
-    let side = if load.thrust_n > 0.0 { "right" } else { "left" };
-    let thrust_kn = metres(load.thrust_n.abs() / 1e3);
-    let thrust = format!("thrust of {thrust_kn} kN to the {side}");
-    let thrust = (load.thrust_n.signum(), thrust);
-    match (load.mass_kg > 0.0, load.thrust_n != 0.0) {
-        (true, true) => vec![weight, thrust],
-        (false, true) => vec![thrust],
-        (_, false) => vec![weight],
+    let mut forces = Vec::new();
+    if load.mass_kg > 0.0 || load.thrust_n == 0.0 {
+        let mass = metres(load.mass_kg);
+        forces.push(match load.moves {
+            true => (0.0, format!("{mass} kg")),
+            false => (0.0, format!("{mass} kg as constant weight")),
+        });
     }
+    if load.thrust_n != 0.0 {
+        let side = if load.thrust_n > 0.0 { "right" } else { "left" };
+        let thrust_kn = metres(load.thrust_n.abs() / 1e3);
+        let thrust = format!("thrust of {thrust_kn} kN to the {side}");
+        forces.push((load.thrust_n.signum(), thrust));
+    }
+    forces
 }
 
 /// Returns a load in words.
 pub fn load_in_words(load: &PlacedLoad) -> String {
     let forces = forces_in_words(load).into_iter();
-    forces
-        .map(|(_, words)| words)
-        .collect::<Vec<_>>()
-        .join(", ")
+    let words: Vec<_> = forces.map(|(_, words)| words).collect();
+    words.join(", ")
 }
 
 fn of_masonry(masonry: &Masonry) -> Vec<String> {
@@ -160,10 +158,10 @@ fn of_masonry(masonry: &Masonry) -> Vec<String> {
             (None, true) => format!("load of {mass} kg{over} at x = {x} m"),
             (None, false) => format!("load at x = {x} m: {}", load_in_words(load)),
             (Some(side), _) => {
-                let height_m = load.height_m.map(metres);
-                let at = height_m.map_or("at its top".to_owned(), |height| {
-                    format!("{height} m above its foot")
-                });
+                let at = match load.height_m.map(metres) {
+                    Some(height) => format!("{height} m above its foot"),
+                    None => "at its top".to_owned(),
+                };
                 let (side, load) = (side.name(), load_in_words(load));
                 format!("load on the {side} pier {at}: {load}")
             }

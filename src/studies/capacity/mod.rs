@@ -53,11 +53,8 @@ pub fn capacity(
             let (masses, control) = Bodies::of_row(&held).masses(&row, control);
             let capacity = Capacity::new(sway, displaced, &masses, control, gravity_m_s2)?;
             // Ties change the push that the first mechanism of a row resists.
-            Ok(Some(capacity.with_ties(
-                &held.tie_event_fractions(),
-                displaced,
-                gravity_m_s2,
-            )))
+            let events = held.tie_event_fractions();
+            Ok(Some(capacity.with_ties(&events, displaced, gravity_m_s2)))
         });
     }
     let model = scenario.mechanisms()?;
@@ -80,7 +77,7 @@ pub fn capacity(
 /// Returns the blocks of a structure whose first mechanism is that of a row: a structure with ties, an arch with constant forces, or a stack on one support other than
 /// Housner's block. `None` for structures that move as four links or as Housner's block.
 fn held_row(structure: &Structure) -> Result<Option<Row>, RowError> {
-    let is_one_prism = matches!(structure, Structure::Column(column) if column.is_one_prism());
+    let is_one_prism = structure.column().is_some_and(crate::Column::is_one_prism);
     let is_stack = structure.stands_on_one_support() && !is_one_prism;
     let is_pushed =
         matches!(structure, Structure::Masonry(masonry) if !masonry.row.ties.is_empty());

@@ -65,9 +65,8 @@ impl Summary {
     /// Returns the curves of the sides to which the structure moves.
     fn sides(&self) -> Vec<(Sway, &CapacitySide)> {
         let sides = self.capacity.iter();
-        sides
-            .filter_map(|(sway, side)| Some((sway, side.as_ref()?)))
-            .collect()
+        let moving = sides.filter_map(|(sway, side)| Some((sway, side.as_ref()?)));
+        moving.collect()
     }
 }
 
@@ -122,18 +121,13 @@ pub fn report(
 
 /// Makes the chart of acceleration against displacement of the control point, for both sides.
 fn chart(sides: &Sides<Option<Capacity>>, figure: Figure) -> Chart {
-    let curves = sides
-        .iter()
-        .zip(CURVES)
-        .filter_map(|((sway, side), stroke)| {
-            let points = side.as_ref()?.curve.iter();
-            let points = points.map(|point| (point.displacement_m, point.acceleration_g));
-            Some(Mark::curve(
-                format!("to the {}", sway.name()),
-                stroke,
-                points,
-            ))
-        });
+    let curves = sides.iter().zip(CURVES);
+    let curves = curves.filter_map(|((sway, side), stroke)| {
+        let points = side.as_ref()?.curve.iter();
+        let points = points.map(|point| (point.displacement_m, point.acceleration_g));
+        let name = format!("to the {}", sway.name());
+        Some(Mark::curve(name, stroke, points))
+    });
     let labels = ["displacement of the control point (m)", "a (g)"];
     Chart::around(figure, 330.0, labels, curves.collect())
 }
@@ -141,13 +135,11 @@ fn chart(sides: &Sides<Option<Capacity>>, figure: Figure) -> Chart {
 /// Makes the table of the points of the curves, to the right first. The secant period is empty at the unstable equilibrium.
 fn table(sides: &Sides<Option<Capacity>>) -> Result<Vec<u8>, OutputError> {
     type Row<'a> = (Sway, &'a CurvePoint);
-    let rows: Vec<Row<'_>> = sides
-        .iter()
-        .flat_map(|(sway, side)| {
-            let points = side.iter().flat_map(|side| &side.curve);
-            points.map(move |point| (sway, point))
-        })
-        .collect();
+    let rows = sides.iter().flat_map(|(sway, side)| {
+        let points = side.iter().flat_map(|side| &side.curve);
+        points.map(move |point| (sway, point))
+    });
+    let rows: Vec<Row<'_>> = rows.collect();
     let mut columns = vec![column("sway", |row: &Row<'_>| row.0.name())];
     columns.extend(fields!(
         |row: &Row<'_>| row.1 => q_rad, displacement_m, acceleration_g, oscillator_displacement_m,

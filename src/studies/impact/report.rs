@@ -403,7 +403,10 @@ impl Summary {
     ) -> Self {
         let impact = scenario.motion.impact();
         let is_prescribed = matches!(impact.model, ImpactModel::Prescribed { .. });
-        let is_wall = scenario.structure.wall_behind().is_some() && !is_prescribed;
+        let model_name = match scenario.structure.wall_behind() {
+            Some(_) if !is_prescribed => "back_wall",
+            _ => impact.model.name(),
+        };
         let starts = sides
             .iter()
             .map(|side| SwayingMechanism::of(model, *side, 0));
@@ -416,12 +419,7 @@ impl Summary {
             starts: starts.collect(),
             count,
             chosen: None,
-            model: if is_wall {
-                "back_wall"
-            } else {
-                impact.model.name()
-            }
-            .into(),
+            model: model_name.into(),
             restitution_factor: impact.restitution_factor,
         }
     }

@@ -299,6 +299,7 @@ impl Report {
     /// Returns the outlines and hinges of a layout.
     fn layout(&self, hinges: &[OpenHinge], points: Option<&ObservedPoints>, unit_m: f64) -> Layout {
         let drawn = |piece: Piece| drawn_piece(&piece, unit_m);
+        let pieces = self.scene.pieces(hinges).into_iter();
         let loads = self.scene.load_arrows(hinges).into_iter().map(|arrow| {
             let (body, x_m, y_m) = point(arrow.at);
             (body, x_m, y_m, arrow.width_m, arrow.label, arrow.sideways)
@@ -317,10 +318,7 @@ impl Report {
         let bodies = self.scene.bodies_of_sections(hinges).into_iter();
         let points = points.into_iter().flat_map(|points| points.bodies(hinges));
         Layout {
-            pieces: (self.scene.pieces(hinges).into_iter())
-                .chain(self.scene.wall())
-                .map(drawn)
-                .collect(),
+            pieces: pieces.chain(self.scene.wall()).map(drawn).collect(),
             fill: self.scene.fill(hinges).into_iter().map(drawn).collect(),
             loads: loads.collect(),
             hinges: marks.collect(),

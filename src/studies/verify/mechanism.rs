@@ -226,6 +226,7 @@ impl Mechanism {
         let pushing_kg =
             (forces.clone()).map(|force| force.force_kg.dot(&force.displacement) * scale);
         let held_kg = held_kg.sum::<f64>() - pushing_kg.sum::<f64>();
+        let forces = forces.map(|force| ConstantForce::new(force, scale, input.gravity_m_s2));
         let curves = found.curves.as_ref().ok();
         let crown = curves
             .and_then(|curves| curves.crown.as_ref())
@@ -261,9 +262,7 @@ impl Mechanism {
                     delta_l: tie.lengthening * scale,
                 })
                 .collect(),
-            forces: forces
-                .map(|force| ConstantForce::new(force, scale, input.gravity_m_s2))
-                .collect(),
+            forces: forces.collect(),
             alpha0,
             moving_mass_kg: participation.moving_mass_kg,
             e_star: participation.mass_fraction,

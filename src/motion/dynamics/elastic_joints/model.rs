@@ -34,8 +34,6 @@ pub struct ElasticJoints {
     given_step_s: Option<f64>,
     /// Bodies and joints.
     pub structure: ElasticStructure,
-    /// Side and height in metres of a wall behind a column.
-    wall: Option<(Sway, f64)>,
     /// Gravity, and the equilibrium under it.
     rest: (f64, Equilibrium),
     /// Gravity, and the energy barrier under it, computed at the first request.
@@ -96,9 +94,7 @@ impl ElasticJoints {
         row: Row,
         properties: ElasticProperties,
     ) -> Result<Self, RowModelError> {
-        let structure = ElasticStructure::of_row(&row, &properties)?;
-        let rigid = RigidRow::new(row)?.with_friction(properties.friction_coefficient)?;
-        Self::standing(rigid, properties, structure, gravity_m_s2)
+        Self::beside(None, gravity_m_s2, row, properties)
     }
 
     /// Returns the model of a column under this gravity, in m/s2, with the wall behind it. Contacts with the wall push, without friction; their stiffness
@@ -112,16 +108,20 @@ impl ElasticJoints {
         properties: ElasticProperties,
     ) -> Result<Self, RowModelError> {
         let row = column.row()?;
-        let Some(wall) = column.wall_behind_drums()? else {
-            return Self::under(gravity_m_s2, row, properties);
-        };
+        let wall = column.wall_behind_drums()?;
+        Self::beside(wall, gravity_m_s2, row, properties)
+    }
+
+    fn beside(
+        wall: Option<(Sway, f64)>,
+        gravity_m_s2: f64,
+        row: Row,
+        properties: ElasticProperties,
+    ) -> Result<Self, RowModelError> {
         let structure = ElasticStructure::of_row(&row, &properties)?;
         let structure = structure.with_wall(&row, wall, &properties)?;
         let rigid = RigidRow::new(row)?.with_friction(properties.friction_coefficient)?;
-        Ok(Self {
-            wall: Some(wall),
-            ..Self::standing(rigid, properties, structure, gravity_m_s2)?
-        })
+        Self::standing(rigid, properties, structure, gravity_m_s2)
     }
 
     fn standing(
@@ -136,7 +136,6 @@ impl ElasticJoints {
             properties,
             given_step_s: None,
             structure,
-            wall: None,
             rest: (gravity_m_s2, rest),
             barrier_j: Arc::default(),
             many_cases: false,
@@ -157,7 +156,6 @@ impl ElasticJoints {
         let settled = Self::standing(rigid, self.properties, structure, self.rest.0)?;
         Ok(Self {
             given_step_s: self.given_step_s,
-            wall: self.wall,
             ..settled
         })
     }
@@ -216,7 +214,7 @@ impl ElasticJoints {
         let damped = 0.5 * structure.damping_time_s * frequency / DAMPED;
         let [undamped, enough] = STEP_RATIO;
         let mut ratio = undamped + (enough - undamped) * damped.min(1.0);
-        if structure.has_wall() {
+        if structure.wall.is_some() {
             ratio *= WALL_STEP_RATIO;
         }
         ratio * structure.stable_step_s()
@@ -272,15 +270,9 @@ impl ElasticJoints {
 
     fn varied(&self, properties: ElasticProperties) -> Result<Self, RowModelError> {
         let structure = ElasticStructure::of_row(self.row(), &properties)?;
-        let mut structure = structure.on_supports(self.structure.supports);
-        if let Some(wall) = self.wall {
-            structure = structure.with_wall(self.row(), wall, &properties)?;
-        }
-        let standing = Self::standing(self.rigid.clone(), properties, structure, self.rest.0)?;
-        Ok(Self {
-            wall: self.wall,
-            ..standing
-        })
+        let structure = structure.on_supports(self.structure.supports);
+        let structure = structure.with_wall(self.row(), self.structure.wall, &properties)?;
+        Self::standing(self.rigid.clone(), properties, structure, self.rest.0)
     }
 
     /// Returns the input of a motion, and the initial velocities of the blocks; empty at rest.
@@ -323,11 +315,8 @@ impl ElasticJoints {
         let allowed = "0 with elastic joints, which have no hinges to rotate about: they start under the weight of the structure";
         allow(rotation_rad == 0.0, "rotation_rad", rotation_rad, allowed)?;
         let release = self.rigid.released(initial)?;
-        Ok(self
-            .rigid
-            .standing
-            .placement
-            .velocities(&release.rates_rad_s))
+        let placement = &self.rigid.standing.placement;
+        Ok(placement.velocities(&release.rates_rad_s))
     }
 
     fn simulate_one(
@@ -451,10 +440,9 @@ impl Model for ElasticJoints {
 
     /// A wall carries every push towards it.
     fn incipient_acceleration_g(&self, sway: Sway) -> Option<f64> {
-        let is_held = self.wall.is_some_and(|(side, _)| side == sway);
-        self.rigid
-            .incipient_acceleration_g(sway)
-            .filter(|_| !is_held)
+        let is_held = self.structure.wall.is_some_and(|(side, _)| side == sway);
+        let start_g = self.rigid.incipient_acceleration_g(sway);
+        start_g.filter(|_| !is_held)
     }
 
     fn simulate(

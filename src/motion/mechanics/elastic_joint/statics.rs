@@ -243,7 +243,7 @@ impl ElasticStructure {
     /// overestimates a convex function.
     pub fn barrier_j(&self, rest: &Equilibrium, gravity_m_s2: f64) -> Option<f64> {
         // Ties and walls are not supported.
-        if !self.ties.is_empty() || self.has_wall() {
+        if !self.ties.is_empty() || self.wall.is_some() {
             return None;
         }
         let load_m_s2 = [0.0, -gravity_m_s2];

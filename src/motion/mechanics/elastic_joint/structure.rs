@@ -160,7 +160,9 @@ pub struct ElasticStructure {
     pub supports: [[f64; 3]; 2],
     /// Elastic joints; contacts with a wall behind a column are the last ones, between the support and the block.
     pub joints: Vec<ElasticJoint>,
-    /// Number of contacts with a wall.
+    /// Side and height in metres of a wall behind a column.
+    pub wall: Option<(Sway, f64)>,
+    /// Number of contacts with the wall.
     wall_contacts: usize,
     /// Ties between bodies, or between a body and the ground.
     pub ties: Vec<BoundTie>,
@@ -225,7 +227,7 @@ impl ElasticStructure {
         })
     }
 
-    /// Returns this structure of a column with a wall behind it, up to this height in metres above the base. Each drum touches the wall with its face,
+    /// Returns this structure of a column with the wall behind it, if there is one, up to this height in metres above the base. Each drum touches the wall with its face,
     /// without friction. The contact has the stiffness per area of a joint; between the centre of a drum and its face is half the width of stone.
     ///
     /// # Errors
@@ -233,9 +235,13 @@ impl ElasticStructure {
     pub fn with_wall(
         mut self,
         row: &Row,
-        (side, height_m): (Sway, f64),
+        wall: Option<(Sway, f64)>,
         properties: &ElasticProperties,
     ) -> Result<Self, ArgumentError> {
+        let Some((side, height_m)) = wall else {
+            return Ok(self);
+        };
+        self.wall = wall;
         let foot_m = row.feet_m()[0];
         for (index, (block, base)) in row.blocks.iter().zip(&row.joints).enumerate() {
             let (bottom_m, width_m) = (base.middle_m().y, base.thickness_m());
@@ -274,11 +280,6 @@ impl ElasticStructure {
         &self.joints[..self.joints.len() - self.wall_contacts]
     }
 
-    /// Returns whether a wall stands behind the structure.
-    pub const fn has_wall(&self) -> bool {
-        self.wall_contacts > 0
-    }
-
     /// Returns a structure of given bodies and joints, without ties.
     pub fn new(
         bodies: Vec<Block>,
@@ -294,6 +295,7 @@ impl ElasticStructure {
             bodies,
             supports: [[0.0; 3]; 2],
             joints,
+            wall: None,
             wall_contacts: 0,
             ties: Vec::new(),
             ties_square_frequency: 0.0,

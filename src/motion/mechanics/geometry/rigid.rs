@@ -146,6 +146,15 @@ pub struct MassMoments {
 }
 
 impl MassMoments {
+    /// Returns the moments of a body from its mass, its centre of gravity and its polar moment about that centre (Steiner).
+    pub(crate) fn of_body(mass: f64, centre: Vector2<f64>, central_polar: f64) -> Self {
+        Self {
+            mass,
+            first: centre * mass,
+            polar: central_polar + mass * centre.norm_squared(),
+        }
+    }
+
     /// Returns the centre of gravity.
     pub fn centroid(&self) -> Vector2<f64> {
         self.first / self.mass

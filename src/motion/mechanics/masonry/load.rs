@@ -35,11 +35,7 @@ impl PlacedLoad {
                     let loaded = piece.between(part(from_x), part(to_x));
                     let moments = loaded.integral(|point, derivative| {
                         let mass = self.mass_kg / self.width_m * derivative.x;
-                        MassMoments {
-                            mass,
-                            first: point * mass,
-                            polar: point.norm_squared() * mass,
-                        }
+                        MassMoments::of_body(mass, point, 0.0)
                     });
                     Block {
                         mass_kg: moments.mass,

@@ -29,7 +29,7 @@ use crate::dynamics::{GroundVelocity, MotionInput, MotionObserver, RowMotionErro
 use crate::mechanics::contact::closing::ClosureSolver;
 use crate::mechanics::contact::{ContactProgram, Load};
 use crate::mechanics::geometry::field::turned;
-use crate::mechanics::{Block, Corners, Edge, Placement, Pose, Row, RowState, Supports, Twist};
+use crate::mechanics::{Corners, Edge, Placement, Pose, Row, RowState, Supports, Twist};
 
 /// Largest closure error of an arch, over the thickness of the thinnest joint; a larger one is an error.
 const LARGEST_CLOSURE_RATIO: f64 = 1e-6;
@@ -238,18 +238,16 @@ impl<'a> LandingStepper<'a> {
     fn set_motions(&mut self, rates_rad_s: &[f64], active: &mut [Corners]) {
         let (motions, pivots) = self.placement.motions(rates_rad_s);
         let blocks = self.row.blocks.iter().zip(&self.placement.centres_m);
-        let piece =
-            |(first, (motion, (block, centre))): (usize, (&Twist, (&Block, &Vector2<f64>)))| {
-                Piece {
-                    first,
-                    mass: block.mass_kg,
-                    inertia: block.inertia_kg_m2,
-                    centre: *centre,
-                    velocity: motion.at(*centre),
-                    rate: motion.rate,
-                }
-            };
-        self.pieces = motions.iter().zip(blocks).enumerate().map(piece).collect();
+        let moving = motions.iter().zip(blocks).enumerate();
+        let pieces = moving.map(|(first, (motion, (block, centre)))| Piece {
+            first,
+            mass: block.mass_kg,
+            inertia: block.inertia_kg_m2,
+            centre: *centre,
+            velocity: motion.at(*centre),
+            rate: motion.rate,
+        });
+        self.pieces = pieces.collect();
         for (active, pivot) in active.iter_mut().zip(&pivots) {
             if let Some(edge) = pivot {
                 *active = [Edge::Intrados, Edge::Extrados].map(|other| other == *edge);
