@@ -234,6 +234,31 @@ fn a_column_with_a_roof_returns_as_the_rigid_one() {
     );
 }
 
+/// The barrier of a column before a wall is that of the free side, also if its roof leans to the wall.
+#[test]
+fn the_barrier_is_that_of_the_free_side() {
+    let roof = PlacedLoad::mass(4000.0, -0.2);
+    let column = column(1, Some(wall(Sway::Left, HEIGHT_M)));
+    let column = column.with_loads(vec![roof], GRAVITY).unwrap();
+    let properties = ElasticProperties::of_stiffness(1e10);
+    let model = ElasticJoints::of_column(GRAVITY, &column, properties).unwrap();
+    let history = history(&model, &started(1.0, Sway::Right, 0.1));
+    let Details::Elastic(row, _) = &history.summary.details else {
+        unreachable!()
+    };
+    let barrier_j = row.largest_potential_j / row.peak_potential_over_barrier.unwrap();
+    // Two masses, 8000 kg and 4000 kg, at 0.5 and 0.7 m from the right toe.
+    let centre_m = [
+        (8.0 * 0.5 + 4.0 * 0.7) / 12.0,
+        (8.0 * 2.0 + 4.0 * 4.0) / 12.0_f64,
+    ];
+    let due_j = 12_000.0 * GRAVITY * (centre_m[1].hypot(centre_m[0]) - centre_m[1]);
+    assert!(
+        (barrier_j / due_j - 1.0).abs() < 1e-9,
+        "{barrier_j} {due_j}"
+    );
+}
+
 /// No corner of a drum enters the wall, the energy balance holds, and the other side is the mirror image.
 #[test]
 fn drums_stay_before_the_wall() {

@@ -834,7 +834,7 @@ fn the_weaker_side_decides_the_outcome() {
     };
     let early = Request {
         end_s: 0.2,
-        ..request.clone()
+        ..request
     };
     let still = GroundMotion::still();
     let rigid = model(&one);
@@ -865,5 +865,26 @@ fn the_weaker_side_decides_the_outcome() {
             own.outcome_time_s,
             due.outcome_time_s
         );
+    }
+}
+
+/// A thrust away from the wall at a low point: the column stands by its toe, although without friction at the base its foot would slip out.
+#[test]
+fn a_column_that_stands_free_stands_before_a_wall() {
+    let low = load(0.0, [0.0, 1.5], true, 5e3);
+    let free = model(&column([8.0, 0.6], &[low]));
+    let wall = BackWall {
+        side: Sway::Left,
+        height_m: None,
+        rate_ratio: None,
+    };
+    let held = Column::new(8.0, 0.6).unwrap().with_back(wall).unwrap();
+    let held = model(&held.with_loads(vec![low], GRAVITY_M_S2).unwrap());
+    let starts_g = |model: &RockingColumn| model.incipient_acceleration_g(Sway::Right);
+    // Weight times half the width, less the moment of the thrust, over weight times half the height.
+    let weight_n = 2000.0 * 8.0 * 0.6 * GRAVITY_M_S2;
+    let due_g = (weight_n * 0.3 - 5e3 * 1.5) / (weight_n * 4.0);
+    for model in [free, held] {
+        assert!((starts_g(&model).unwrap() / due_g - 1.0).abs() < 1e-9);
     }
 }

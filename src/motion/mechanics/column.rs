@@ -236,9 +236,10 @@ impl Column {
     fn overturns_to(&self) -> Option<Sway> {
         let wall = self.wall().map(|(wall, _)| wall.side);
         let mut sides = Sway::ALL.iter().copied();
-        sides.find(|sway| match wall == Some(*sway) {
-            true => !self.leans_safely(),
-            false => self.tilting(*sway).incipient_g() <= 0.0,
+        sides.find(|sway| {
+            let stands_free = self.tilting(*sway).incipient_g() > 0.0;
+            let is_held = wall == Some(*sway) && self.leans_safely();
+            !stands_free && !is_held
         })
     }
 

@@ -121,6 +121,7 @@ impl ElasticJoints {
         let structure = ElasticStructure::of_row(&row, &properties)?;
         let structure = structure.with_wall(&row, wall, &properties)?;
         let rigid = RigidRow::new(row)?.with_friction(properties.friction_coefficient)?;
+        let rigid = rigid.before_wall(wall.map(|(side, _)| side));
         Self::standing(rigid, properties, structure, gravity_m_s2)
     }
 
@@ -438,11 +439,8 @@ impl Model for ElasticJoints {
         Some(&self.rigid.row)
     }
 
-    /// A wall carries every push towards it.
     fn incipient_acceleration_g(&self, sway: Sway) -> Option<f64> {
-        let is_held = self.structure.wall.is_some_and(|(side, _)| side == sway);
-        let start_g = self.rigid.incipient_acceleration_g(sway);
-        start_g.filter(|_| !is_held)
+        self.rigid.incipient_acceleration_g(sway)
     }
 
     fn simulate(

@@ -54,17 +54,17 @@ fn estimated_barrier_j(row: &Row, gravity_m_s2: f64) -> f64 {
         let mass_kg: f64 = blocks.iter().map(|block| block.mass_kg).sum();
         let moments = blocks.iter().map(|block| block.centre_m * block.mass_kg);
         let centre_m = moments.sum::<Vector2<f64>>() / mass_kg;
-        mass_kg * gravity_m_s2 * rise_to_overturn_m(centre_m, joint)
+        mass_kg * gravity_m_s2 * rise_to_overturn_m(centre_m, joint, Edge::ALL)
     };
     let joints = row.joints.iter().enumerate();
     joints.map(above).fold(f64::INFINITY, f64::min)
 }
 
-/// Returns the rise of a centre of gravity, in m, to the position above the nearer edge of the joint about which its block turns.
-pub(super) fn rise_to_overturn_m(centre_m: Vector2<f64>, joint: &Joint) -> f64 {
-    let rise = |edge: Edge| {
-        let arm_m = centre_m - joint.corner_m(edge);
+/// Returns the rise of a centre of gravity, in m, to the position above the nearest of these edges of the joint about which its block turns.
+pub(super) fn rise_to_overturn_m(centre_m: Vector2<f64>, joint: &Joint, edges: &[Edge]) -> f64 {
+    let rises = edges.iter().map(|edge| {
+        let arm_m = centre_m - joint.corner_m(*edge);
         arm_m.norm() - arm_m.y
-    };
-    rise(Edge::Intrados).min(rise(Edge::Extrados))
+    });
+    rises.fold(f64::INFINITY, f64::min)
 }

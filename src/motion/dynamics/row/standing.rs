@@ -6,8 +6,8 @@ use crate::dynamics::request::Initial;
 use crate::dynamics::{GroundMotion, MotionInput, RowModelError, Settings};
 use crate::mechanics::stability::onset;
 use crate::mechanics::{
-    Follower, FourLinks, FrictionError, Hinge, ImpactModel, Mechanism, MechanismChain, Movements,
-    Row, RowState, SettlingError, Sides, StabilityError, Supports, Sway, friction,
+    Edge, Follower, FourLinks, FrictionError, Hinge, ImpactModel, Mechanism, MechanismChain,
+    Movements, Row, RowState, SettlingError, Sides, StabilityError, Supports, Sway, friction,
 };
 
 /// Stable row of rigid blocks.
@@ -23,6 +23,8 @@ pub struct RigidRow {
     with_friction_g: Option<Sides<Option<f64>>>,
     /// First mechanism, if it has four links; `None` for other mechanisms and for stacks, which turn about an edge of their base.
     first: Option<FourLinks>,
+    /// Side of a wall behind a stack, which carries every push towards it.
+    wall_behind: Option<Sway>,
 }
 
 impl RigidRow {
@@ -43,7 +45,17 @@ impl RigidRow {
             row,
             incipient_g,
             with_friction_g: None,
+            wall_behind: None,
         })
+    }
+
+    /// Returns this stack with a wall behind it on this side.
+    #[must_use]
+    pub fn before_wall(self, side: Option<Sway>) -> Self {
+        Self {
+            wall_behind: side,
+            ..self
+        }
     }
 
     /// Returns the names of the blocks.
@@ -54,7 +66,8 @@ impl RigidRow {
 
     /// Returns the push of the first motion to a side, in multiples of gravity; `None` if no push moves the row.
     pub fn incipient_acceleration_g(&self, sway: Sway) -> Option<f64> {
-        *self.with_friction_g.unwrap_or(self.incipient_g).to(sway)
+        let start_g = *self.with_friction_g.unwrap_or(self.incipient_g).to(sway);
+        start_g.filter(|_| self.wall_behind != Some(sway))
     }
 
     /// Returns this row with sliding joints; limit analysis gives the push of the first motion to either side.
@@ -99,6 +112,7 @@ impl RigidRow {
             // The mechanism of the undeformed row gives the scale of energies.
             first: self.first,
             row: self.row,
+            wall_behind: self.wall_behind,
         })
     }
 
@@ -144,7 +158,12 @@ impl RigidRow {
                 Some(gravity_m_s2 * barrier * row.mass_unit_kg() * row.length_m())
             }
             (None, [block], [base]) => {
-                let rise_m = rise_to_overturn_m(block.centre_m, base);
+                let edges = match self.wall_behind {
+                    None => Edge::ALL,
+                    Some(Sway::Right) => &[Edge::Intrados],
+                    Some(Sway::Left) => &[Edge::Extrados],
+                };
+                let rise_m = rise_to_overturn_m(block.centre_m, base, edges);
                 Some(block.mass_kg * gravity_m_s2 * rise_m)
             }
             _ => None,
