@@ -1,7 +1,6 @@
 //! Loads: `[[load]]`, on the extrados of an arch or at points of a column.
 
 use super::prelude::*;
-use crate::argument::ArgumentError;
 use crate::mechanics::stability::collapse_mechanism;
 use crate::mechanics::{ColumnLoadError, LARGEST_THRUST_N, PlacedLoad};
 use crate::{Column, Sway};
@@ -20,6 +19,7 @@ pub(super) struct LoadTable {
 
 impl LoadTable {
     pub(super) fn read(table: &mut Table<'_>) -> ReadResult<Self> {
+        table.rename("[[load]]");
         let thrust = within(&(-LARGEST_THRUST_N..=LARGEST_THRUST_N));
         let read = Self {
             mass_kg: table.optional("mass_kg", &within(&(0.0..=1e15))),
@@ -91,8 +91,19 @@ pub(super) fn loaded_column(
         placed.map_err(|wrong| table.wrong_element("load", index, wrong))
     });
     let placed: Vec<PlacedLoad> = placed.collect::<ReadResult<_>>()?;
+    let wall = column.wall().map(|(wall, _)| wall.side);
     let column = column.with_loads(placed, gravity_m_s2);
-    let column = column.map_err(|error| why_not(table, &error))?;
+    let column = column.map_err(|error| match error {
+        ColumnLoadError::Overturns(side) if wall == Some(side) => {
+            let wrong = format!(
+                "turns the column over the top of the wall on its {0}, foot outwards, without ground motion; give less load or eccentricity to the {0}, or \
+                 a wider column",
+                side.name()
+            );
+            table.wrong("load", wrong)
+        }
+        error => why_not(table, &error),
+    })?;
     if has_joints {
         let held = column.wall_behind_drums().map(drop);
         held.map_err(|error| why_not(table, &ColumnLoadError::Wall(error)))?;
@@ -113,14 +124,8 @@ pub(super) const NO_CONSTANT_FORCES: &str = "cannot be combined with a [[load]] 
 fn why_not(table: &mut Table<'_>, error: &ColumnLoadError) -> FaultRecorded {
     match error {
         ColumnLoadError::Load(index, error) => {
-            let ArgumentError {
-                argument,
-                value,
-                allowed,
-            } = error;
-            let wrong =
-                format!("has `{argument} = {value:?}`, which is not allowed; must be {allowed}");
-            table.wrong_element("load", *index, wrong)
+            let wrong = format!("is not allowed; must be {}", error.allowed);
+            table.wrong_in_element(("load", *index), error.argument, wrong)
         }
         ColumnLoadError::Wall(error) => {
             let wrong = format!("does not fit: it must be {}", error.allowed);
