@@ -89,8 +89,7 @@ pub fn draw(figure: Figure, title: &str, scene: &Scene, text: &str) -> String {
         let view = View::new(scene, place, poses, hinges);
         draw_dimensions(drawing, &view.place, scene);
         supports(drawing, &view.place, scene);
-        view.draw_wall(drawing);
-        view.draw_fill(drawing);
+        view.draw_behind(drawing);
         if !poses.is_empty() {
             view.draw_built(drawing, "built");
         }
@@ -155,11 +154,10 @@ impl<'a> View<'a> {
         }
     }
 
-    /// Draws fill and loads; `has_labels` adds the labels of loads.
-    pub(crate) fn draw_carried(&self, drawing: &mut Drawing, has_labels: bool) {
+    /// Draws the wall behind the structure, and its fill. Blocks are drawn over them, and loads over the blocks.
+    pub(crate) fn draw_behind(&self, drawing: &mut Drawing) {
         self.draw_wall(drawing);
         self.draw_fill(drawing);
-        self.draw_loads(drawing, None, has_labels);
     }
 
     /// Draws the wall behind the structure.
@@ -200,7 +198,7 @@ impl<'a> View<'a> {
     }
 
     /// Draws arrows for loads, from the height `from` if it is given, with their labels if there is space.
-    fn draw_loads(&self, drawing: &mut Drawing, from: Option<f64>, has_labels: bool) {
+    pub(crate) fn draw_loads(&self, drawing: &mut Drawing, from: Option<f64>, has_labels: bool) {
         let mut farthest = f64::NEG_INFINITY;
         let mut loads = self.scene.load_arrows(self.hinges);
         loads.sort_by(|a, b| a.at.at_m.x.total_cmp(&b.at.at_m.x));
