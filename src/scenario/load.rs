@@ -117,6 +117,23 @@ pub(super) fn loaded_column(
     Ok(column)
 }
 
+/// Returns the loads of a column with their defaults. The height of a load at the top is left out: it follows the height of the column, which may vary.
+pub(super) fn with_defaults(loads: &[PlacedLoad]) -> Vec<Value> {
+    let keys = |load: &PlacedLoad| {
+        let mut keys = json!(load);
+        keys["moves"] = json!(load.moves);
+        keys["thrust_n"] = json!(load.thrust_n);
+        if let Value::Object(keys) = &mut keys
+            && load.mass_kg == 0.0
+            && load.thrust_n != 0.0
+        {
+            keys.shift_remove("mass_kg");
+        }
+        keys
+    };
+    loads.iter().map(keys).collect()
+}
+
 /// Message about ties of a structure with constant forces.
 pub(super) const NO_CONSTANT_FORCES: &str = "cannot be combined with a [[load]] that has `thrust_n`, or `moves = false`: the model computes ties or \
                                              constant forces; leave one out";

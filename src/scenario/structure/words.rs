@@ -99,7 +99,7 @@ fn of_column(column: &Column) -> Vec<String> {
 }
 
 /// Returns the forces of a load, weight and thrust, each as its direction and in words: 0 downwards, 1 to the right, -1 to the left. A mass that does
-/// not move with its block is a constant weight.
+/// not move with its block is a constant weight. Empty without forces.
 pub fn forces_in_words(load: &PlacedLoad) -> Vec<(f64, String)> {
     let constant = if load.moves {
         ""
@@ -114,17 +114,19 @@ pub fn forces_in_words(load: &PlacedLoad) -> Vec<(f64, String)> {
     match (load.mass_kg > 0.0, load.thrust_n != 0.0) {
         (true, true) => vec![weight, thrust],
         (false, true) => vec![thrust],
-        (_, false) => vec![weight],
+        (true, false) => vec![weight],
+        (false, false) => Vec::new(),
     }
 }
 
 /// Returns a load in words.
 pub fn load_in_words(load: &PlacedLoad) -> String {
-    let forces = forces_in_words(load).into_iter();
-    forces
-        .map(|(_, words)| words)
-        .collect::<Vec<_>>()
-        .join(", ")
+    let forces = forces_in_words(load).into_iter().map(|(_, words)| words);
+    let words: Vec<_> = forces.collect();
+    match words.is_empty() {
+        true => "0 kg".to_owned(),
+        false => words.join(", "),
+    }
 }
 
 fn of_masonry(masonry: &Masonry) -> Vec<String> {
