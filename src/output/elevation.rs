@@ -236,6 +236,17 @@ impl<'a> View<'a> {
         }
     }
 
+    /// Returns the horizontal position of the face away from a wall on this side; `None` if there is none.
+    fn face_before_wall(&self, side: f64) -> Option<f64> {
+        let wall = self.scene.wall()?;
+        let pieces = self.scene.pieces(self.hinges);
+        let corners = pieces.iter().flat_map(|piece| self.corners(piece));
+        let away = corners.map(|corner| -side * corner.x);
+        let face = -side * away.fold(f64::NEG_INFINITY, f64::max);
+        let is_beside = |corner: Vector2<f64>| (corner.x - face) * side > 0.0;
+        self.corners(&wall).all(is_beside).then_some(face)
+    }
+
     /// Draws a horizontal arrow that ends at a point of the sheet.
     fn draw_thrust(
         &self,
@@ -249,12 +260,13 @@ impl<'a> View<'a> {
         let barb = |side: f64| back(7.0) + Vector2::new(0.0, 4.0 * side);
         drawing.polygon("", [foot, barb(-1.0), barb(1.0)], LOAD.color, LOAD);
         if has_label {
-            let at = back(ARROW_PX + 4.0) + Vector2::new(0.0, 4.5);
-            let anchor = if load.sideways > 0.0 {
-                Anchor::End
-            } else {
-                Anchor::Start
+            // A wall and its dimension leave no space at the tail: the label is beyond the other face.
+            let (x, to) = match self.face_before_wall(-load.sideways) {
+                Some(face) => (face + 6.0 * load.sideways, load.sideways),
+                None => (back(ARROW_PX + 4.0).x, -load.sideways),
             };
+            let anchor = if to > 0.0 { Anchor::Start } else { Anchor::End };
+            let at = Vector2::new(x, foot.y + 4.5);
             drawing.label(at, anchor, 0.0, load.label.as_str());
         }
     }

@@ -179,6 +179,11 @@ fn pictures_and_words_have_the_loads() {
     ] {
         assert!(words.contains(shown), "{words}");
     }
+    // The wall is on the left, so the label of the thrust begins to the right of the column.
+    let label = "thrust of 1.5 kN to the right";
+    let mut labels = svg.descendants();
+    let label = labels.find(|node| node.has_tag_name("text") && node.text() == Some(label));
+    assert_eq!(label.unwrap().attribute("text-anchor"), Some("start"));
     let described = parsed(&format!("{WALL}{ROOF}{VAULT}"))
         .structure
         .described();
