@@ -89,8 +89,7 @@ pub fn draw(figure: Figure, title: &str, scene: &Scene, text: &str) -> String {
         let view = View::new(scene, place, poses, hinges);
         draw_dimensions(drawing, &view.place, scene);
         supports(drawing, &view.place, scene);
-        view.draw_wall(drawing);
-        view.draw_fill(drawing);
+        view.draw_behind(drawing);
         if !poses.is_empty() {
             view.draw_built(drawing, "built");
         }
@@ -155,11 +154,10 @@ impl<'a> View<'a> {
         }
     }
 
-    /// Draws fill and loads; `has_labels` adds the labels of loads.
-    pub(crate) fn draw_carried(&self, drawing: &mut Drawing, has_labels: bool) {
+    /// Draws the wall behind the structure, and its fill. Blocks are drawn over them, and loads over the blocks.
+    pub(crate) fn draw_behind(&self, drawing: &mut Drawing) {
         self.draw_wall(drawing);
         self.draw_fill(drawing);
-        self.draw_loads(drawing, None, has_labels);
     }
 
     /// Draws the wall behind the structure.
@@ -200,7 +198,7 @@ impl<'a> View<'a> {
     }
 
     /// Draws arrows for loads, from the height `from` if it is given, with their labels if there is space.
-    fn draw_loads(&self, drawing: &mut Drawing, from: Option<f64>, has_labels: bool) {
+    pub(crate) fn draw_loads(&self, drawing: &mut Drawing, from: Option<f64>, has_labels: bool) {
         let mut farthest = f64::NEG_INFINITY;
         let mut loads = self.scene.load_arrows(self.hinges);
         loads.sort_by(|a, b| a.at.at_m.x.total_cmp(&b.at.at_m.x));
@@ -210,12 +208,13 @@ impl<'a> View<'a> {
                 let tail = tip - Vector2::new(load.sideways * ARROW_PX, 0.0);
                 draw_arrow(drawing, [tail, tip]);
                 if has_labels {
-                    let at = tip + Vector2::new(-(ARROW_PX + 4.0) * load.sideways, 4.5);
-                    let anchor = match load.sideways > 0.0 {
-                        true => Anchor::End,
-                        false => Anchor::Start,
+                    // A wall and its dimension leave no space at the tail: the label is beyond the other face.
+                    let (x, to) = match self.face_before_wall(-load.sideways) {
+                        Some(face) => (face + 6.0 * load.sideways, load.sideways),
+                        None => (tail.x - 4.0 * load.sideways, -load.sideways),
                     };
-                    drawing.label(at, anchor, 0.0, load.label);
+                    let anchor = if to > 0.0 { Anchor::Start } else { Anchor::End };
+                    drawing.label(Vector2::new(x, tip.y + 4.5), anchor, 0.0, load.label);
                 }
                 continue;
             }
@@ -243,6 +242,17 @@ impl<'a> View<'a> {
                 }
             }
         }
+    }
+
+    /// Returns the horizontal position of the face away from a wall on this side; `None` if there is none.
+    fn face_before_wall(&self, side: f64) -> Option<f64> {
+        let wall = self.scene.wall()?;
+        let pieces = self.scene.pieces(self.hinges);
+        let corners = pieces.iter().flat_map(|piece| self.corners(piece));
+        let away = corners.map(|corner| -side * corner.x);
+        let face = -side * away.fold(f64::NEG_INFINITY, f64::max);
+        let is_beside = |corner: Vector2<f64>| (corner.x - face) * side > 0.0;
+        self.corners(&wall).all(is_beside).then_some(face)
     }
 }
 

@@ -222,9 +222,20 @@ impl Scene {
     pub fn sizes_in_words(&self) -> String {
         let lengths = self.dimensions.iter();
         let lengths = lengths.map(|dimension| dimension.words.clone());
+        // A lower wall has a dimension.
+        let is_full = self.wall_m.is_some_and(|wall_m| {
+            let pieces = self.pieces(&[]).into_iter();
+            let corners = pieces.flat_map(|piece| piece.outline_m);
+            corners.map(|corner| corner.y).fold(0.0, f64::max) <= wall_m[1].y
+        });
+        let wall = is_full.then(|| "wall behind it over its full height".to_owned());
         let loads = self.loads.iter();
         let loads = loads.map(|(_, load)| format!("load {}", load_in_words(load)));
-        lengths.chain(loads).collect::<Vec<_>>().join(", ")
+        lengths
+            .chain(wall)
+            .chain(loads)
+            .collect::<Vec<_>>()
+            .join(", ")
     }
 
     /// Returns the joints from left to right, or from bottom to top, each from the intrados to the extrados, in metres. Empty if hinges may open

@@ -215,10 +215,26 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// Returns true if a value is an array of tables `[[key]]`. The span of such a value is the first header.
-    pub(super) fn is_array_of_tables(&self, path: &str, key: &str) -> bool {
-        let span = self.spans.get(path);
-        span.is_some_and(|span| self.texts[span.text][span.range.clone()] == format!("[[{key}]]"))
+    /// Returns true if a value is an array of tables `[[key]]`. The span of such a value is the first header. An array of tables from a program counts as
+    /// one.
+    pub(super) fn is_array_of_tables(&self, path: &str, value: &Value) -> bool {
+        let Some(span) = self.spans.get(path) else {
+            let elements = value.as_array();
+            return elements.is_some_and(|elements| elements.iter().all(Value::is_object));
+        };
+        let given = &self.texts[span.text][span.range.clone()];
+        given.starts_with("[[") && value[0].is_object()
+    }
+
+    /// Returns the position of the last value inside another one that an assignment replaces; `None` if all values are from the text.
+    pub(super) fn assigned(&self, path: &str) -> Option<(usize, usize)> {
+        let inside = format!("{path}/");
+        let spans = self
+            .spans
+            .iter()
+            .filter(|(path, _)| path.starts_with(&inside));
+        let places = spans.map(|(_, span)| (span.text, span.range.start));
+        places.max().filter(|(text, _)| *text > 0)
     }
 }
 
@@ -272,6 +288,13 @@ fn replace(mut known: &mut Value, mut new: Value, depth: usize) -> Result<[Strin
         };
         match known {
             Value::Object(entries) => {
+                let inner = value.as_object().and_then(|inner| inner.keys().next());
+                let entry = inner.filter(|inner| inner.parse::<usize>().is_ok());
+                if let Some(entry) = entry.filter(|_| !entries.contains_key(key)) {
+                    return Err(format!(
+                        "`{key}.{entry}` is an entry of a list, and the scenario has no `{key}`; give the list, as [[{key}]] in the file"
+                    ));
+                }
                 path += &format!("/{key}");
                 known = entries.entry(key).or_insert(Value::Null);
             }

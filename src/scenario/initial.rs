@@ -92,7 +92,7 @@ fn rate_of_blow(table: &mut Table<'_>, structure: &Structure, blow: &Blow) -> Re
     let wrong = "is computed for a column of one block: a blow on one block of several starts another motion; give `rate_rad_s`";
     table.refuse(started.is_none(), "impulse_n_s", wrong)?;
     let (rate_rad_s, top_m) = started.ok_or(FaultRecorded)?;
-    let wrong = format!("is above the column; must be at most {}", short(top_m));
+    let wrong = format!("is above the column; must be at most {} m", short(top_m));
     table.refuse(blow.height_m > top_m, "height_m", wrong)?;
     let most_rad_s = *Initial::RATE_RAD_S.end();
     let wrong = format!(

@@ -16,6 +16,7 @@ pub(super) struct LoadTable {
 
 impl LoadTable {
     pub(super) fn read(table: &mut Table<'_>) -> ReadResult<Self> {
+        table.rename("[[load]]");
         let thrust = within(&(-LARGEST_THRUST_N..=LARGEST_THRUST_N));
         let mass_kg = table.optional("mass_kg", &within(&(0.0..=1e15)));
         let x_m = table.optional("x_m", &within(&(-1e6..=1e6)));
@@ -77,8 +78,19 @@ pub(super) fn loaded_column(
         placed.map_err(|wrong| table.wrong_element("load", index, wrong))
     });
     let placed: Vec<PlacedLoad> = placed.collect::<ReadResult<_>>()?;
+    let wall = column.wall().map(|(wall, _)| wall.side);
     let column = column.with_loads(placed, gravity_m_s2);
-    let column = column.map_err(|error| why_not(table, &error))?;
+    let column = column.map_err(|error| match error {
+        ColumnLoadError::Overturns(side) if wall == Some(side) => {
+            let wrong = format!(
+                "turns the column over the top of the wall on its {0}, foot outwards, without ground motion; give less load or eccentricity to the {0}, or \
+                 a wider column",
+                side.name()
+            );
+            table.wrong("load", wrong)
+        }
+        error => why_not(table, &error),
+    })?;
     if has_joints {
         let held = column.wall_behind_drums().map(drop);
         held.map_err(|error| why_not(table, &ColumnLoadError::Wall(error)))?;
@@ -92,6 +104,23 @@ pub(super) fn loaded_column(
     Ok(column)
 }
 
+/// Returns the loads of a column with their defaults. The height of a load at the top is left out: it follows the height of the column, which may vary.
+pub(super) fn with_defaults(loads: &[PlacedLoad]) -> Vec<Value> {
+    let keys = |load: &PlacedLoad| {
+        let mut keys = json!(load);
+        keys["moves"] = json!(load.moves);
+        keys["thrust_n"] = json!(load.thrust_n);
+        if let Value::Object(keys) = &mut keys
+            && load.mass_kg == 0.0
+            && load.thrust_n != 0.0
+        {
+            keys.shift_remove("mass_kg");
+        }
+        keys
+    };
+    loads.iter().map(keys).collect()
+}
+
 /// Message about ties of a structure with constant forces.
 pub(super) const NO_CONSTANT_FORCES: &str = "cannot be combined with a [[load]] that has `thrust_n`, or `moves = false`: the model computes ties or \
                                              constant forces; leave one out";
@@ -99,12 +128,8 @@ pub(super) const NO_CONSTANT_FORCES: &str = "cannot be combined with a [[load]] 
 fn why_not(table: &mut Table<'_>, error: &ColumnLoadError) -> FaultRecorded {
     match error {
         ColumnLoadError::Load(index, error) => {
-            let (argument, value) = (error.argument, error.value);
-            let wrong = format!(
-                "has `{argument} = {value:?}`, which is not allowed; must be {}",
-                error.allowed
-            );
-            table.wrong_element("load", *index, wrong)
+            let wrong = format!("is not allowed; must be {}", error.allowed);
+            table.wrong_in_element(("load", *index), error.argument, wrong)
         }
         ColumnLoadError::Wall(error) => {
             let wrong = format!("does not fit: it must be {}", error.allowed);

@@ -300,8 +300,7 @@ impl Additions {
             }
             MasonryError::Fill(error) => table.wrong_in(&["fill"], error.argument, allowed(error)),
             MasonryError::Load(index, error) => {
-                let wrong = format!("has `{} = {:?}`, which {}", error.argument, error.value, allowed(error));
-                table.wrong_element("load", *index, wrong)
+                table.wrong_in_element(("load", *index), error.argument, allowed(error))
             }
             MasonryError::NoPier(index, side) => {
                 let side = side.name();

@@ -594,7 +594,7 @@ impl Scenario {
         let structure = json!(self.structure);
         let mut all = Entries::from_iter([("title".to_owned(), json!(self.title))]);
         all.extend(structure.as_object().cloned().unwrap_or_default());
-        all.extend(loads.map(|loads| ("load".to_owned(), json!(loads))));
+        all.extend(loads.map(|loads| ("load".to_owned(), json!(load::with_defaults(loads)))));
         let tables = tables.into_iter();
         all.extend(tables.map(|(key, table)| (key.to_owned(), table)));
         for (key, table) in all.iter_mut().filter(|(_, table)| !table.is_null()) {

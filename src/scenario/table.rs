@@ -424,11 +424,15 @@ impl<'a> Table<'a> {
             return self.fault(place, format!("`{key}` {message}"));
         };
         let given = match value {
+            // The key of another table, with its distribution or its values.
+            Value::Object(_) if key.contains('.') => format!("`{key}`"),
             Value::Object(_) => format!("table `{key}`"),
-            _ if self.document.is_array_of_tables(&path, key) => format!("`[[{key}]]`"),
+            _ if self.document.is_array_of_tables(&path, value) => format!("`[[{key}]]`"),
             _ => format!("`{key} = {}`", self.document.quote(&path, value)),
         };
-        let place = self.place_of(&path).unwrap_or_default();
+        let assigned = value.is_array().then(|| self.document.assigned(&path));
+        let place = assigned.flatten().or_else(|| self.place_of(&path));
+        let place = place.unwrap_or_default();
         self.fault(place, format!("{given} {message}"))
     }
 
@@ -447,6 +451,24 @@ impl<'a> Table<'a> {
         let value = self.document.quote(&path, element);
         let place = self.place_of(&path).unwrap_or_default();
         self.fault(place, format!("`{value}` in `{key}` {wrong}"))
+    }
+
+    /// Records that the value of `key` is wrong in an element of the array `[[name]]`; elements are counted from 0. `message` follows the key and its
+    /// value.
+    pub(super) fn wrong_in_element<M: Display>(
+        &mut self,
+        (name, at): (&str, usize),
+        key: &str,
+        message: M,
+    ) -> FaultRecorded {
+        let element = self.entries.get(name).and_then(|value| value.get(at));
+        let Some(value) = element.and_then(|element| element.get(key)) else {
+            return self.wrong_element(name, at, format!("has a `{key}` that {message}"));
+        };
+        let path = format!("{}/{name}/{at}/{key}", self.path);
+        let given = format!("`{key} = {}`", self.document.quote(&path, value));
+        let place = self.place_of(&path).unwrap_or_default();
+        self.fault(place, format!("{given} of {name} {} {message}", at + 1))
     }
 
     /// Records that a key is given which another key excludes.

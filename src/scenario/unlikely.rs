@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use super::prelude::*;
 use super::structure::bounds_m;
 use super::{Format, Ground, MotionModel, PulseGround, Scaling, Scenario, Series, Structure};
-use crate::{Model, Sway};
+use crate::{Column, Model, Sway};
 
 /// Usual peaks of records, in g. The strongest recorded accelerations are a little above 2 g, and weaker ones than the lower limit move no
 /// masonry. Other values are probably in another unit.
@@ -137,7 +137,8 @@ impl Structure {
             }
             Self::Column(column) => {
                 let longest_m = column.height_m.max(column.width_m);
-                long("the column measures", longest_m, SIZE_M)
+                let size = long("the column measures", longest_m, SIZE_M);
+                return size.into_iter().chain(loads_beside(column)).collect();
             }
             Self::Masonry(masonry) => {
                 let [low_m, high_m] = bounds_m(&masonry.row);
@@ -146,6 +147,17 @@ impl Structure {
         };
         longest.into_iter().collect()
     }
+}
+
+/// Returns warnings about loads that are more than its width outside of the faces of a column.
+fn loads_beside(column: &Column) -> impl Iterator<Item = String> {
+    let width_m = column.width_m;
+    let loads = column.loads.iter().enumerate();
+    let beside = loads.filter(move |(_, load)| load.x_m.abs() > 1.5 * width_m);
+    beside.map(move |(index, load)| {
+        let (number, x, width) = (index + 1, plain(load.x_m), plain(width_m));
+        format!("load {number} is at x = {x} m, far beside the column, {width} m wide: is it in metres from the axis?")
+    })
 }
 
 /// Returns a warning if a length is larger than usual, with a unit in which it would be usual.

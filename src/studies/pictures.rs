@@ -114,12 +114,13 @@ impl PlacedStructure<'_> {
     /// Draws the open mechanism over the structure at rest.
     fn mechanism(&self, drawing: &mut Drawing, open: &DrawnMechanism<'_>) {
         let view = self.view(&open.poses, &open.hinges);
-        view.draw_carried(drawing, true);
+        view.draw_behind(drawing);
         view.draw_built(drawing, "built");
         view.draw_blocks(drawing, |_, body| match body {
             Some(body) => (["left", "middle", "right"][body].to_owned(), BODIES[body]),
             None => ("still".to_owned(), "#eeeeee"),
         });
+        view.draw_loads(drawing, None, true);
         view.draw_hinges(drawing);
     }
 
@@ -187,11 +188,12 @@ impl PlacedStructure<'_> {
         });
         let hinges: Vec<OpenHinge> = hinges.collect();
         let (view, greys) = (self.view(&[], &hinges), ["#eeeeee", "#e0e0e0"]);
-        view.draw_carried(drawing, true);
+        view.draw_behind(drawing);
         view.draw_blocks(drawing, |_, body| match body {
             Some(body) => (format!("body {}", body + 1), greys[body % 2]),
             None => ("still".to_owned(), "#ffffff"),
         });
+        view.draw_loads(drawing, None, true);
         for (number, ends) in (1..).zip(cuts.windows(2)) {
             let middle = 0.5 * (ends[0] + ends[1]);
             let at = self.beside(seen, middle) + Vector2::new(0.0, 4.5);
@@ -286,8 +288,9 @@ pub fn limit(figure: Figure, model: &FourLinks, first: Sway, scene: &Scene) -> S
                     }
                     draw_dimensions(drawing, &placed.place, scene);
                     let view = placed.view(&[], &[]);
-                    view.draw_carried(drawing, true);
+                    view.draw_behind(drawing);
                     view.draw_blocks(drawing, |_, _| ("block".to_owned(), "#f4f4f4"));
+                    view.draw_loads(drawing, None, true);
                     placed.resultants(drawing, "thrust line", &incipient.thrust_line, first);
                     placed.hinges(drawing, open, "");
                 }

@@ -241,3 +241,82 @@ fn every_command_takes_assignments() {
         Scenario::parse(&edited.to_resolved_toml(), "s.toml").unwrap()
     });
 }
+
+/// Faults of loads name their assignment, or the line of their key.
+#[test]
+fn faults_of_loads_have_places() {
+    let loads = "[[load]]\nmass_kg = 100\n[[load]]\nthrust_n = 500\nheight_m = 5\n";
+    let column = "[column]\nheight_m = 8\nwidth_m = 0.6\n";
+    let errors = |text: &str, set: &str| {
+        let set: Vec<Assignment> = set
+            .split_whitespace()
+            .map(|one| one.parse().unwrap())
+            .collect();
+        let options = ReadOptions {
+            set: &set,
+            ..ReadOptions::default()
+        };
+        let read = Scenario::of(&Source::of_text(text, "s.toml"), &options);
+        read.unwrap_err().to_string()
+    };
+    let text = format!("{column}{loads}");
+    for (text, set, message) in [
+        (
+            &text,
+            "load.1.height_m=8.5",
+            "--set load.1.height_m=8.5: `height_m = 8.5` of load 1 is not allowed; must be from 0 to",
+        ),
+        (
+            &text,
+            "load.1.mass_kg=200 load.2.thrust_n=1e9",
+            "--set load.2.thrust_n=1e9: `[[load]]` overturns the column to the right",
+        ),
+        (
+            &text.replace("= 5\n", "= 9\n"),
+            "",
+            "s.toml:8:12: `height_m = 9` of load 2 is not allowed",
+        ),
+        (
+            &text.replace("500", "1e9"),
+            "",
+            "s.toml:4:1: `[[load]]` overturns the column",
+        ),
+        (
+            &column.to_owned(),
+            "load.1.thrust_n=5",
+            "--set load.1.thrust_n=5: `load.1` is an entry of a list, and the scenario has no `load`",
+        ),
+        (
+            &text.replace("mass_kg = 100\n", ""),
+            "",
+            "s.toml:4:1: [[load]] needs one of the keys mass_kg, thrust_n",
+        ),
+        (
+            &format!("{text}[initial]\nsway = 'right'\nimpulse_n_s = 10\nheight_m = 9\n"),
+            "",
+            "s.toml:12:12: `height_m = 9` is above the column; must be at most 8 m",
+        ),
+        (
+            &text,
+            "column.back={side='left'} load.1.mass_kg=3000 load.1.x_m=-1.5",
+            "--set load.1.x_m=-1.5: `[[load]]` turns the column over the top of the wall on its left",
+        ),
+    ] {
+        let errors = errors(text, set);
+        assert!(errors.starts_with(message), "{errors}");
+        assert_eq!(errors.lines().count(), 1, "{errors}");
+    }
+    let varied = |range: &str| {
+        errors(
+            &format!("{text}[uncertain]\n\"load.2.thrust_n\" = {range}\n"),
+            "",
+        )
+    };
+    let varied = varied("{ from = 0, to = 1e9 }");
+    assert!(
+        varied.contains(
+            "`load.2.thrust_n` reaches 1e9, which the scenario does not allow: `[[load]]` overturns the column"
+        ),
+        "{varied}"
+    );
+}

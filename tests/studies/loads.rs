@@ -179,6 +179,11 @@ fn pictures_and_words_have_the_loads() {
     ] {
         assert!(words.contains(shown), "{words}");
     }
+    // The wall is on the left, so the label of the thrust begins to the right of the column.
+    let label = "thrust of 1.5 kN to the right";
+    let mut labels = svg.descendants();
+    let label = labels.find(|node| node.has_tag_name("text") && node.text() == Some(label));
+    assert_eq!(label.unwrap().attribute("text-anchor"), Some("start"));
     let described = parsed(&format!("{WALL}{ROOF}{VAULT}"))
         .structure
         .described();
@@ -200,6 +205,26 @@ fn pictures_and_words_have_the_loads() {
     assert_eq!(run["outcome"], "rest", "{run}");
 }
 
+/// Snapshots have the arrows of the loads over the blocks, the wall behind them, and both in words.
+#[test]
+fn snapshots_show_loads_over_the_blocks() {
+    let folder = tempfile::tempdir().unwrap();
+    let scenario = scenarios().join("facade-with-roof.toml");
+    let scenario = scenario.to_str().unwrap();
+    let run = ["run", scenario, "--snapshots", "0.5", "--out", "r"];
+    printed(folder.path(), &run);
+    let svg = fs::read_to_string(folder.path().join("r/snapshots.svg")).unwrap();
+    let places = |name: &str| {
+        let found = svg.match_indices(name).map(|(place, _)| place);
+        found.collect::<Vec<_>>()
+    };
+    let [wall, block, loads] = ["\"wall behind\"", "\"body 0\"", "\"load\""].map(places);
+    assert_eq!([wall.len(), block.len(), loads.len()], [1, 1, 3]);
+    assert!(wall[0] < block[0] && block[0] < loads[0]);
+    let words = svg.replace("\n", " ");
+    assert!(words.contains("wall behind it over its"), "{words}");
+}
+
 /// Loads can be set, varied and drawn at random; the resolved scenario gives the same structure again.
 #[test]
 fn keys_of_loads_can_vary() {
@@ -211,9 +236,40 @@ fn keys_of_loads_can_vary() {
     let json = scenario.to_json();
     assert_eq!(
         json["load"][0],
-        serde_json::json!({"mass_kg": 1500.0, "x_m": -0.15})
+        serde_json::json!({"mass_kg": 1500.0, "x_m": -0.15, "moves": true, "thrust_n": 0.0})
     );
     assert_eq!(json["load"][1]["moves"], false);
+    // A load without mass has no key for it. Tops follow the height of the column, so they are not written.
+    let text = |height_m: f64| {
+        let wall = WALL.replace("= 8", &format!("= {height_m}"));
+        format!("{wall}[column.back]\nside = 'left'\n{ROOF}[[load]]\nthrust_n = 100\n")
+    };
+    let scenario = parsed(&text(8.0));
+    let again = parsed(&scenario.to_toml());
+    assert_eq!(again, scenario);
+    assert_eq!(
+        scenario.to_json()["load"][1],
+        serde_json::json!({"x_m": 0.0, "moves": true, "thrust_n": 100.0})
+    );
+    let higher =
+        [&scenario, &again].map(|one| one.with_values(&[("column.height_m", 9.5)]).unwrap());
+    for higher in higher {
+        assert_eq!(higher.structure, parsed(&text(9.5)).structure);
+    }
+}
+
+/// A load without force has no arrow; a load far beside its column is probably in another unit.
+#[test]
+fn unlikely_loads_are_noticed() {
+    let load = |keys: &str| parsed(&format!("{WALL}[[load]]\n{keys}\n"));
+    let empty = load("mass_kg = 0\nmoves = false").structure.described();
+    assert!(empty.contains("load at (0, 8) m: 0 kg;"), "{empty}");
+    for (x_m, count) in [(-0.85, 0), (0.95, 1)] {
+        let warnings = load(&format!("mass_kg = 10\nx_m = {x_m}")).unlikely();
+        assert_eq!(warnings.len(), count, "{warnings:?}");
+        let names = |warning: &String| warning.starts_with("load 1 is at x = 0.95 m");
+        assert!(warnings.iter().all(names), "{warnings:?}");
+    }
 }
 
 #[test]

@@ -166,8 +166,10 @@ function createStage(canvas, motion) {
       lineOf({ stroke: "--soft", dash: [4, 4], close: true }, outline(piece).map(([, x, y]) => [x, y]));
     }
     for (const piece of layout.fill) lineOf({ fill: "--fill", stroke: "--fill" }, outline(piece).map(point));
+    // Of a column, which has no supports, only the wall behind it stands still.
+    const still = motion.supports[0].length > 0 ? "--earth" : "--wall";
     for (const piece of layout.pieces) {
-      const fill = piece.body < 0 ? "--earth" : fills[piece.body % fills.length];
+      const fill = piece.body < 0 ? still : fills[piece.body % fills.length];
       lineOf({ fill, stroke: "--ink", width: 1.3 }, outline(piece).map(point));
     }
 
@@ -179,8 +181,13 @@ function createStage(canvas, motion) {
         const back = (by) => px - sideways * by;
         trace({ stroke: "--mark", width: 2 }, [[back(30), py], [back(2), py]], [[back(8), py - 4], [back(1), py], [back(8), py + 4]]);
         pen.fillStyle = css("--mark");
-        pen.textAlign = sideways > 0 ? "right" : "left";
-        pen.fillText(text, back(34), py + 4);
+        // A wall at the tail leaves no space there: the label is beyond the other face.
+        const behind = (piece) => still === "--wall" && piece.body < 0 && piece.outline[0] * unitM * sideways < x * sideways;
+        const moving = layout.pieces.filter((piece) => piece.body >= 0).flatMap((piece) => outline(piece).map(point));
+        const face = Math.max(...moving.map((corner) => onScreen(corner)[0] * sideways)) * sideways;
+        const isBeyond = layout.pieces.some(behind);
+        pen.textAlign = sideways > 0 === isBeyond ? "left" : "right";
+        pen.fillText(text, isBeyond ? face + 6 * sideways : back(34), py + 4);
         pen.textAlign = "center";
         continue;
       }

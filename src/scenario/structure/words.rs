@@ -99,10 +99,10 @@ fn of_column(column: &Column) -> Vec<String> {
 }
 
 /// Returns the forces of a load, weight and thrust, each as its direction and in words: 0 downwards, 1 to the right, -1 to the left. A mass that does
-/// not move with its block is a constant weight.
+/// not move with its block is a constant weight. Empty without forces.
 pub fn forces_in_words(load: &PlacedLoad) -> Vec<(f64, String)> {
     let mut forces = Vec::new();
-    if load.mass_kg > 0.0 || load.thrust_n == 0.0 {
+    if load.mass_kg > 0.0 {
         let mass = metres(load.mass_kg);
         forces.push(match load.moves {
             true => (0.0, format!("{mass} kg")),
@@ -122,7 +122,10 @@ pub fn forces_in_words(load: &PlacedLoad) -> Vec<(f64, String)> {
 pub fn load_in_words(load: &PlacedLoad) -> String {
     let forces = forces_in_words(load).into_iter();
     let words: Vec<_> = forces.map(|(_, words)| words).collect();
-    words.join(", ")
+    match words.is_empty() {
+        true => "0 kg".to_owned(),
+        false => words.join(", "),
+    }
 }
 
 fn of_masonry(masonry: &Masonry) -> Vec<String> {

@@ -189,7 +189,7 @@ impl Snapshots {
                 drawing.curve("support", ends, Stroke::new(color::BLACK, 2.0, ""));
             }
         }
-        view.draw_carried(drawing, false);
+        view.draw_behind(drawing);
         view.draw_blocks(drawing, |_, body| match body {
             None => ("still".to_owned(), "#e4e4e4"),
             Some(body) if sample.poses.len() == BODIES.len() => {
@@ -197,6 +197,7 @@ impl Snapshots {
             }
             Some(body) => (format!("body {body}"), STONE),
         });
+        view.draw_loads(drawing, None, false);
         let moved = |point: &BodyPoint| view.px(point);
         let broken = |tie: usize| sample.ties.get(tie).is_some_and(|tie| tie.is_broken);
         for (tie, ends) in self.scene.ties(&sample.hinges).iter().enumerate() {

@@ -129,9 +129,10 @@ impl<'a> Cell<'a> {
         };
         let place = SheetTransform::over(self.bounds_m, middle, own);
         let view = View::new(self.scene, place, &self.stage.poses, &[]);
-        view.draw_carried(drawing, false);
+        view.draw_behind(drawing);
         view.draw_built(drawing, "");
         view.draw_blocks(drawing, |block, _| (format!("block {}", block + 1), STONE));
+        view.draw_loads(drawing, None, false);
         view.draw_ties(drawing);
         if let Some(state) = &self.stage.state {
             let joints = self.row.joints.iter().zip(&state.corners).enumerate();

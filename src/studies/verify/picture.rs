@@ -64,7 +64,7 @@ fn draw_mechanism(
         outline: Stroke::new("#777777", 0.6, ""),
         ..View::new(scene, place, &[], &hinges)
     };
-    view.draw_carried(drawing, false);
+    view.draw_behind(drawing);
     let known = &mechanism.body_of_block;
     view.draw_blocks(drawing, |block, body| {
         match known.get(block).copied().unwrap_or(body) {
@@ -72,6 +72,7 @@ fn draw_mechanism(
             Some(body) => (format!("body {}", body + 1), BODIES[body % BODIES.len()]),
         }
     });
+    view.draw_loads(drawing, None, false);
     view.draw_ties(drawing);
     let moves = |body: &Body| Vector2::new(sway.sign() * body.delta_x, -body.delta_y);
     let fastest = mechanism.bodies.iter().map(|body| moves(body).norm());
