@@ -625,7 +625,7 @@ fn errors_of_shapes_name_their_place_and_remedy() {
     assert_error(&piers("0.5"), "6:1", "times as wide");
     assert_error(
         &format!("{arch}[[load]]\nmass_kg = 3\nx_m = 20\n"),
-        "6:1",
+        "8:7",
         "stands on the extrados",
     );
     assert_error(
