@@ -24,6 +24,7 @@ use super::listing::{RecordListing, written};
 use super::prelude::*;
 use super::record::{self, Component, Format, Record, Scaling, Series};
 use super::sequence::Sequence;
+use super::shown::shown;
 use super::simulation::Simulation;
 
 named! {
@@ -170,6 +171,12 @@ impl Suite {
             format!("reads {name} twice; leave an entry out, or give each its `channel` or `acceleration_column`")
         });
         table.refuse_all(!twice.is_empty(), twice)?;
+        if let Some(wrong) = simulation.and_then(|simulation| cut_off(&records, simulation)) {
+            return Err(match table.gives(RECORDS) {
+                true => table.wrong(RECORDS, wrong),
+                false => table.fault_of_table(wrong),
+            });
+        }
         Ok(Self {
             records,
             has_entries,
@@ -275,9 +282,32 @@ fn check_record(
         })?;
     }
     let strongest = series.scaled(strongest.after(series.scaling));
-    strongest.check_strength(simulation.gravity_m_s2)?;
-    let lasts_s = start_s(series) + series.last_s();
-    simulation.check_covers(lasts_s, |lasts| format!("lasts {lasts} s"))
+    strongest.check_strength(simulation.gravity_m_s2)
+}
+
+/// Returns the error if the given duration cuts records off, with all of them; `None` if it covers them.
+fn cut_off(records: &[Series], simulation: &Simulation) -> Option<String> {
+    let end_s = |series: &Series| start_s(series) + series.last_s();
+    let duration_s = simulation.duration_s?;
+    let cut: Vec<_> = records
+        .iter()
+        .filter(|series| end_s(series) > duration_s)
+        .collect();
+    let longest_s = cut.iter().map(|series| end_s(series)).reduce(f64::max)?;
+    let listed = cut
+        .iter()
+        .map(|series| format!("{} ({} s)", shown(&series.file), plain(end_s(series))));
+    let names = if cut.len() == 1 {
+        "a record that lasts"
+    } else {
+        "records that last"
+    };
+    Some(format!(
+        "has {names} longer than `duration_s` and would be cut off at {} s: {}; give at least {} s in [simulation], or leave it out",
+        plain(duration_s),
+        listed.collect::<Vec<_>>().join(", "),
+        plain(longest_s)
+    ))
 }
 
 /// Returns the horizontal ground motion of a record.

@@ -122,7 +122,11 @@ fn studies_follow_the_ground_motion_of_each_case() {
     refused(
         at,
         &["suite", "s.toml", "--set", "simulation.duration_s=10"],
-        &["would be cut off at 10 s"],
+        &[
+            "has a record that lasts longer",
+            "would be cut off at 10 s: late.csv (",
+            "give at least",
+        ],
     );
     // The default follows a pulse that a map varies, and the structure.
     let pulses = format!(
