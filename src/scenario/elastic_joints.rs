@@ -48,7 +48,7 @@ pub static ELASTIC_JOINTS: ModelKind = ModelKind {
     is_rigid: false,
     ignored: Some("[impact] is ignored: elastic joints have no impacts"),
     lacking: Some(
-        "lacks [elastic_joints] with a stiffness: give `normal_stiffness_gpa_m` there; \
+        "lacks [elastic_joints] with a stiffness: give `normal_stiffness_gpa_m` there, as in --set elastic_joints.normal_stiffness_gpa_m=10; \
          docs/elastic-joints.md explains how to choose",
     ),
     read: |table| Ok(Arc::new(ElasticTable::read(table)?)),

@@ -1137,3 +1137,28 @@ fn limit_analysis_of_drums_reports_the_onset() {
         &program::printed(root.path(), &["limit", "s.toml"]),
     );
 }
+
+/// The options after "compare with" work as they are printed.
+#[test]
+fn the_proposed_comparison_runs() {
+    let scenario = format!("[column]\n{SHAKEN_COLUMN}[free_hinges]\n");
+    let printed = Results::of(&scenario, &[]).said;
+    let (_, proposed) = printed.split_once("elastic: compare with ").unwrap();
+    let options: Vec<_> = proposed.lines().next().unwrap().split(' ').collect();
+    let compared = Results::of(&scenario, &options);
+    assert!(
+        compared.said.contains("with elastic joints"),
+        "{}",
+        compared.said
+    );
+    // Without a stiffness the error proposes it.
+    let root = tempfile::tempdir().unwrap();
+    fs::write(root.path().join("s.toml"), &scenario).unwrap();
+    let lacking = archrock(root.path(), &["run", "s.toml", "--hinges", "elastic"]);
+    let (_, proposed) = options.split_at(2);
+    assert!(
+        stderr(&lacking).contains(&proposed.join(" ")),
+        "{}",
+        stderr(&lacking)
+    );
+}
