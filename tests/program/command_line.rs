@@ -616,3 +616,45 @@ fn studies_and_checks_can_be_printed_as_json() {
     assert_eq!(both[0], checked);
     assert!(both[1]["peak_acceleration_m_s2"].as_f64().unwrap() > 0.0);
 }
+
+/// The help of a command names the files that it writes, beside the list `archrock.json`.
+#[test]
+fn the_help_names_the_files() {
+    let path = |name: &str| scenarios().join(name).display().to_string();
+    for (command, scenario) in [
+        ("capacity", "semicircle-pulse.toml"),
+        ("spread", "free-hinges.toml"),
+        ("verify", "semicircle-verify.toml"),
+        ("map", "semicircle-map.toml"),
+        ("suite", "column-suite.toml"),
+        ("threshold", "column-pulse.toml"),
+        ("run", "column-pulse.toml"),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let help = printed(folder.path(), &[command, "--help"]);
+        let (_, files) = help.split_once("Files: ").unwrap();
+        let (named, _) = files.split_once("\n\n").unwrap();
+        let mut arguments = vec![
+            command.to_owned(),
+            path(scenario),
+            "--out".to_owned(),
+            "o".to_owned(),
+        ];
+        if command == "map" {
+            arguments.extend([
+                "--set".to_owned(),
+                "map.duration_s=[0.3]".to_owned(),
+                "--set".to_owned(),
+                "map.amplitude_g=[0.3]".to_owned(),
+            ]);
+        }
+        let arguments: Vec<_> = arguments.iter().map(|one| &**one).collect();
+        printed(folder.path(), &arguments);
+        for file in names(&folder.path().join("o")) {
+            assert!(
+                file == "archrock.json" || named.contains(&file),
+                "{command}: {file} is not in {named}"
+            );
+        }
+    }
+}
