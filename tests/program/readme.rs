@@ -91,6 +91,30 @@ fn pages_quote_the_output_of_their_commands() {
     }
 }
 
+/// The first cells of these tables of docs/report.md are lines that the command above prints, in their order.
+#[test]
+fn the_page_on_the_printed_report_quotes_its_lines() {
+    let page = fs::read_to_string(repository().join("docs/report.md")).unwrap();
+    for command in [
+        "run scenarios/semicircle-pulse.toml",
+        "run scenarios/column-pulse.toml",
+        "limit scenarios/semicircle-pulse.toml",
+    ] {
+        let (_, table) = page
+            .split_once(&format!("`archrock {command}` prints:\n\n"))
+            .unwrap();
+        let rows = table.lines().take_while(|line| line.starts_with('|'));
+        let cells = rows.skip(2).filter_map(|row| row.split('|').nth(1));
+        let command = command.replace("scenarios", &scenarios().display().to_string());
+        let said = run(&command.split(' ').collect::<Vec<_>>());
+        let mut lines = said.lines();
+        for quoted in cells.clone().map(|cell| cell.trim_matches([' ', '`'])) {
+            assert!(lines.any(|own| own.trim() == quoted), "{quoted}\n{said}");
+        }
+        assert!(cells.count() > 1);
+    }
+}
+
 #[test]
 fn the_readme_is_short() {
     let readme = fs::read_to_string(repository().join("README.md")).unwrap();
