@@ -155,7 +155,7 @@ fn peaks_and_impacts_follow_from_the_energy_of_the_start() {
     }
 }
 
-/// The same history in the mirror, and no impact or uplift at the start.
+/// Starts to the left and to the right give mirrored histories.
 #[test]
 fn a_start_to_the_other_side_is_the_mirror_image() {
     let arch = |sway| {

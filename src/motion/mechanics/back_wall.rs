@@ -15,7 +15,8 @@
 //!
 //! After impact 2 the foot of the wall stops the base, which moves towards the wall, and the rotation about `C` becomes a rotation about `I`. We
 //! assume that this passage conserves the energy. At the full height of a block it then keeps the rate as well; at a lower wall, keeping the rate would
-//! add energy. A direct impact from `C` to `O` would not throw the column back at all. The body turns about `O` before and after, so the ratio of rates is
+//! add energy. A direct impact from `C` to `O` would not throw the column back at all. The body turns about `O` before and after, so the ratio of rates
+//! is
 //!
 //! `-c(O, I) c(I, C) c(I, O) = -c(O, I)^2 c(I, C)`.
 //!

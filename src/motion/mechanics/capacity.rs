@@ -1,8 +1,9 @@
 //! Quasi-static capacity of a mechanism at finite displacements, and its equivalent oscillator.
 //!
 //! At the rotation `q`, the first mechanism is in equilibrium under gravity, constant forces and the horizontal acceleration
-//! `a(q) = (S_y(q) + S_f(q)) / S_x(q)` (in multiples of gravity). This follows from virtual power. At the onset, `a(0) = A_L`. The acceleration decreases to zero at the unstable equilibrium. The
-//! capacity curve is `a` against the horizontal displacement `d` of a control point. The value of `d` at its end is the ultimate displacement.
+//! `a(q) = (S_y(q) + S_f(q)) / S_x(q)` (in multiples of gravity). This follows from virtual power. At the onset, `a(0) = A_L`. The acceleration
+//! decreases to zero at the unstable equilibrium. The capacity curve is `a` against the horizontal displacement `d` of a control point. The value of
+//! `d` at its end is the ultimate displacement.
 //!
 //! The equivalent oscillator is that of the kinematic approach to masonry (reviewed by Casapulla, Giresini and Lourenço, Rocking and kinematic
 //! approaches for rigid block analysis of masonry walls, Buildings 7, 69, 2017), defined here as follows. Let `m_i` be the masses of the blocks at

@@ -622,7 +622,7 @@ impl MechanismChain for RockingColumn {
     }
 
     fn hinges(&self, impacts: usize, sway: Sway) -> Vec<Hinge> {
-        // Either side has the same links, except the side of a wall, which has none.
+        // An impact stops the sways to both sides or to neither, so the side of the first sway does not matter; the side of a wall has no links.
         let link = self.link_from(sway, impacts);
         link.map_or(Vec::new(), |_| vec![Hinge::Toe(sway)])
     }

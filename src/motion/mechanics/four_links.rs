@@ -119,8 +119,8 @@ impl FourLinks {
     /// Returns the four-link model of a row of blocks, with a depth of 1 m.
     ///
     /// # Errors
-    /// If the row is a stack, has ties or constant forces, falls under its own weight, starts as another mechanism to either side, or if a number of the law is not
-    /// allowed.
+    /// If the row is a stack, has ties or constant forces, falls under its own weight, starts as another mechanism to either side, or if a number of the
+    /// law is not allowed.
     pub fn of_row(row: &Row, law: impl Into<ImpactLaw>) -> Result<Self, FourLinkError> {
         let law = law.into();
         law.check()?;

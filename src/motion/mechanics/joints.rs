@@ -181,7 +181,8 @@ impl Placement {
         self.place();
     }
 
-    /// Returns the edge about which a joint turns that opens at this rate, in rad/s: the edge in contact; of a closed joint, the edge that does not open.
+    /// Returns the edge about which a joint turns when it opens at this rate, in rad/s: the edge in contact, or in a closed joint the edge that stays
+    /// in contact.
     fn pivot(&self, joint: usize, opening_rad_s: f64) -> Edge {
         let [intrados, extrados] = self.gaps_m[joint];
         let open = match intrados == extrados {

@@ -1,7 +1,7 @@
 //! Loads at points of a structure: a roof, a floor, or the thrust of a vault.
 //!
-//! A load has a mass, a horizontal thrust, or both. The mass is fixed to the block that carries it, or only its weight acts on the block. This weight and
-//! the thrust are constant forces: they keep size and direction while their point moves, and the ground motion does not accelerate them.
+//! A load has a mass, a horizontal thrust, or both. The mass is fixed to the block that carries it, or only its weight acts on the block. This weight
+//! and the thrust are constant forces: they keep size and direction while their point moves, and the ground motion does not accelerate them.
 
 use nalgebra::Vector2;
 use serde::Serialize;

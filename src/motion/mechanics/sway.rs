@@ -23,7 +23,7 @@ impl Sway {
         }
     }
 
-    /// Returns the side of the sway `impacts` impacts later or earlier. Every impact changes the side, unless a wall stands behind the structure.
+    /// Returns the side of the sway `impacts` impacts later or earlier, if every impact changes the side.
     pub const fn after(self, impacts: usize) -> Self {
         if impacts.is_multiple_of(2) {
             self

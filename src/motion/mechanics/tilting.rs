@@ -6,7 +6,8 @@
 //!
 //! `I q'' + m (g + a_y) (a cos q - h sin q) + m a_x (h cos q + a sin q) + V sin q - T cos q = 0`.
 //!
-//! So a push of `(a - T / (m g)) / h` times gravity starts the rotation, and it is in unstable equilibrium at `tan q = (a - T / (m g)) / (h - V / (m g))`.
+//! So a push of `(a - T / (m g)) / h` times gravity starts the rotation, and the column is in unstable equilibrium at
+//! `tan q = (a - T / (m g)) / (h - V / (m g))`.
 
 use std::f64::consts::FRAC_PI_2;
 

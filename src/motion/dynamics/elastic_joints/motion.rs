@@ -200,7 +200,7 @@ impl<'a, const L: usize> ElasticMotion<'a, L> {
         self.energies.set(lane, &EnergyTerms::none());
     }
 
-    /// Gives the bodies of a lane velocities (m/s) and rotation rates, at the time of their positions.
+    /// Sets the velocities (m/s) and rotation rates of the bodies of a lane at the time of their positions; without any, it stays at rest.
     pub fn set_velocities(&mut self, lane: usize, velocities: &[Vector3<f64>]) {
         for (body, velocity) in self.bodies.iter_mut().zip(velocities) {
             body.velocity_m_s[0].0[lane] = velocity.x;

@@ -61,7 +61,8 @@ impl<S: Copy> Phase<S> {
 /// Guards of a rocking structure: each fires when its value falls below zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Guard {
-    /// Uplift at rest, with the value `A_L (g + a_v) - push`, in which `a_v` does not act on constant forces; the ground pushes the structure to this side.
+    /// Uplift at rest to this side, to which the ground pushes the structure, with the value `A_L (g + a_v) - push`. `a_v` does not act on constant
+    /// forces.
     Uplift(Sway),
     /// Closing of all hinges in rocking, with the value `q`.
     Closing,
@@ -135,7 +136,7 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
         self.gravity_m_s2 / self.chain.length_m() * link.barrier
     }
 
-    /// Returns the smaller of the energies that this mechanism and the one after its impact need to overturn under gravity alone.
+    /// Returns the smaller of the energy barriers of this mechanism and of the one after its impact.
     pub fn barrier_ahead(&self, swing: Swing<'a, C::Mechanism>) -> f64 {
         let first = self.chain.sway_after(swing.sway, swing.impacts);
         let next = self.chain.link_from(first, swing.impacts + 1);

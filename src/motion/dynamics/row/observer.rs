@@ -405,8 +405,8 @@ impl<'a> MotionObserver<'a> {
     }
 
     /// Records the height of the row after a step, and the results while the row has not begun its final descent. A rise above the lowest point
-    /// counts as a return, and so does a half cycle to the other side, which may have a lower maximum. `None` if the feet move apart: the feet do work, so heights do not decide whether the row returns. The row has then not
-    /// begun to fall while its kinetic energy is small.
+    /// counts as a return, and so does a half cycle to the other side, which may have a lower maximum. `None` if the feet move apart: the feet do
+    /// work, so heights do not decide whether the row returns. The row has then not begun to fall while its kinetic energy is small.
     pub fn note_height(&mut self, height: Option<f64>) {
         let (least, last_maximum) = (LEAST_RETURN * self.energy_unit, &mut self.last_maximum);
         if let Some(height) = height {

@@ -227,8 +227,8 @@ impl ElasticStructure {
         })
     }
 
-    /// Returns this structure of a column with the wall behind it, if there is one, up to this height in metres above the base. Each drum touches the wall with its face,
-    /// without friction. The contact has the stiffness per area of a joint; between the centre of a drum and its face is half the width of stone.
+    /// Returns this structure of a column with the wall behind it: its side, and its height in metres above the base; `None` without a wall. Each drum
+    /// touches the wall with its face, without friction. The contact has the stiffness per area of a joint with half the width of the drum as stone.
     ///
     /// # Errors
     /// If the stiffness is out of range.

@@ -199,8 +199,8 @@ pub struct LoadOutlines {
     pub loads_m: Vec<(usize, Vector2<f64>)>,
 }
 
-/// Places loads on an arch and its piers; `first` is the index of the first voussoir. Returns the row with the moving masses on its piers, and the loads
-/// for pictures.
+/// Places loads on an arch and its piers; `first` is the index of the first voussoir. Returns the row with the moving masses on its piers, and the
+/// loads for pictures.
 fn place_loads(
     loads: &[PlacedLoad],
     arch: &CutArch,

@@ -234,7 +234,7 @@ impl<'a> LandingStepper<'a> {
         Ok(())
     }
 
-    /// Sets the rates of the blocks, which then are pieces of their own, and the corners about which joints turn.
+    /// Sets the rates of the blocks, each a piece of its own, and the corners about which joints turn.
     fn set_motions(&mut self, rates_rad_s: &[f64], active: &mut [Corners]) {
         let (motions, pivots) = self.placement.motions(rates_rad_s);
         let blocks = self.row.blocks.iter().zip(&self.placement.centres_m);
