@@ -234,13 +234,12 @@ impl Column {
 
     /// Returns the side to which the column, as one block, overturns under its own weight and its loads; `None` if it stands.
     fn overturns_to(&self) -> Option<Sway> {
-        let wall = self.wall().map(|(wall, _)| wall.side);
+        let is_held = |sway| match self.wall() {
+            Some((wall, height_m)) => wall.side == sway && self.leans_safely(sway, height_m),
+            None => false,
+        };
         let mut sides = Sway::ALL.iter().copied();
-        sides.find(|sway| {
-            let stands_free = self.tilting(*sway).incipient_g() > 0.0;
-            let is_held = wall == Some(*sway) && self.leans_safely();
-            !stands_free && !is_held
-        })
+        sides.find(|sway| self.tilting(*sway).incipient_g() <= 0.0 && !is_held(*sway))
     }
 
     /// Returns the column as one block that sways to this side.
@@ -250,20 +249,17 @@ impl Column {
         Tilting::new(size_m, self.prism_kg(), loads, self.gravity_m_s2, sway)
     }
 
-    /// Returns whether its weight and its loads do not turn the column over the top of the wall behind it: in a virtual rotation about that point,
-    /// towards the wall, they do no positive work.
-    fn leans_safely(&self) -> bool {
-        let Some((wall, height_m)) = self.wall() else {
-            return true;
-        };
-        let top_m = Vector2::new(0.5 * self.width_m * wall.side.sign(), height_m);
+    /// Returns whether its weight and its loads do not turn the column over the top of a wall of this height on this side: in a virtual rotation
+    /// about that point, towards the wall, they do no positive work.
+    fn leans_safely(&self, side: Sway, height_m: f64) -> bool {
+        let top_m = Vector2::new(0.5 * self.width_m * side.sign(), height_m);
         let body = self.body();
         let weight_n = Vector2::new(0.0, -body.mass_kg * self.gravity_m_s2);
         let weight = (body.centre_m, weight_n);
         let forces = self.constant_forces().chain([weight]);
         let moments = forces.map(|(at_m, force_n)| (at_m - top_m).perp(&force_n));
         // Clockwise moments turn it to the right.
-        wall.side.sign() * moments.sum::<f64>() >= 0.0
+        side.sign() * moments.sum::<f64>() >= 0.0
     }
 
     /// Returns its loads, each with its point, in metres from the middle of the base.
