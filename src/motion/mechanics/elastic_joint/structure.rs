@@ -140,6 +140,25 @@ impl ElasticProperties {
         }
         self
     }
+
+    /// Returns a joint of this geometry, with a length of stone in metres between the centres of its bodies.
+    fn joint(&self, geometry: JointGeometry, stone_m: f64) -> Result<ElasticJoint, ArgumentError> {
+        let stiffness = match self.stiffness {
+            Stiffness::Uniform(stiffness) => stiffness,
+            Stiffness::Materials(materials) => in_series(&materials, stone_m),
+        };
+        check_stiffness(stiffness)?;
+        let area_m2 = self.depth_m * geometry.length_m;
+        let strength_pa = self.compressive_strength_pa;
+        Ok(ElasticJoint {
+            geometry,
+            normal_n_m: stiffness.normal_pa_m * area_m2,
+            shear_n_m: stiffness.shear_pa_m * area_m2,
+            crushing_penetration_m: strength_pa
+                .map_or(f64::INFINITY, |pa| pa / stiffness.normal_pa_m),
+            area_m2,
+        })
+    }
 }
 
 fn check_stiffness(stiffness: JointStiffness) -> Result<(), ArgumentError> {
@@ -195,25 +214,10 @@ impl ElasticStructure {
                 centre.map_or(0.0, |centre| along.perp(&(centre - middle_m)).abs())
             };
             let length_m = joint.thickness_m();
-            let stiffness = match properties.stiffness {
-                Stiffness::Uniform(stiffness) => stiffness,
-                Stiffness::Materials(materials) => {
-                    in_series(&materials, centres.map(across_m).iter().sum())
-                }
-            };
-            check_stiffness(stiffness)?;
-            let area_m2 = properties.depth_m * length_m;
-            let strength_pa = properties.compressive_strength_pa;
             let arms_m = arms_m.map(|arm| [arm.x, arm.y]);
             let along = [along.x, along.y];
-            Ok(ElasticJoint {
-                geometry: JointGeometry::new(pair, arms_m, along, row.handedness, length_m),
-                normal_n_m: stiffness.normal_pa_m * area_m2,
-                shear_n_m: stiffness.shear_pa_m * area_m2,
-                crushing_penetration_m: strength_pa
-                    .map_or(f64::INFINITY, |pa| pa / stiffness.normal_pa_m),
-                area_m2,
-            })
+            let geometry = JointGeometry::new(pair, arms_m, along, row.handedness, length_m);
+            properties.joint(geometry, centres.map(across_m).iter().sum())
         };
         debug_assert!(row.supports == Supports::Both || row.joints.len() == ground);
         let joints: Result<_, ArgumentError> = row.joints.iter().enumerate().map(joint).collect();
@@ -251,24 +255,14 @@ impl ElasticStructure {
             if length_m <= 0.0 {
                 break;
             }
-            let stiffness_pa_m = match properties.stiffness {
-                Stiffness::Uniform(stiffness) => stiffness,
-                Stiffness::Materials(materials) => in_series(&materials, 0.5 * width_m),
-            };
-            check_stiffness(stiffness_pa_m)?;
-            let normal_pa_m = stiffness_pa_m.normal_pa_m;
             let middle_m = Vector2::new(0.5 * side.sign() * width_m, 0.5 * (bottom_m + top_m));
             let arms_m = [foot_m, block.centre_m].map(|centre_m| (middle_m - centre_m).into());
             let pair = [row.blocks.len(), index];
-            let along = [0.0, side.sign()];
-            let area_m2 = properties.depth_m * length_m;
-            let strength_pa = properties.compressive_strength_pa;
+            let geometry = JointGeometry::new(pair, arms_m, [0.0, side.sign()], 1.0, length_m);
+            let joint = properties.joint(geometry, 0.5 * width_m)?;
             self.joints.push(ElasticJoint {
-                geometry: JointGeometry::new(pair, arms_m, along, 1.0, length_m),
-                normal_n_m: normal_pa_m * area_m2,
                 shear_n_m: 0.0,
-                crushing_penetration_m: strength_pa.map_or(f64::INFINITY, |pa| pa / normal_pa_m),
-                area_m2,
+                ..joint
             });
             self.wall_contacts += 1;
         }
