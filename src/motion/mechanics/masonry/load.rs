@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::Piers;
+use super::Pier;
 use super::cut::CutArch;
 use crate::argument::{ArgumentError, allow};
 use crate::mechanics::{Block, MassMoments, PlacedLoad, Row, Sway};
@@ -69,32 +69,27 @@ impl PlacedLoad {
         allow(all_stands, "x_m", self.x_m, allowed).map(|_| ())
     }
 
-    /// Returns the block of the pier that carries it, at a joint the lower one, and its point in metres; `None` without that pier.
+    /// Returns the block of the pier that carries this load (at a joint, the lower one), and its point in metres.
     pub(super) fn place_on_pier_m(
         &self,
         side: Sway,
-        piers: &Piers,
+        pier: &Pier,
         row: &Row,
-    ) -> Option<Result<(usize, Vector2<f64>), ArgumentError>> {
-        let last = [row.blocks.len() - 1, row.joints.len() - 1];
-        let (pier, foot) = match side {
-            Sway::Left => (piers.left?, &row.joints[0]),
-            Sway::Right => (piers.right?, &row.joints[last[1]]),
-        };
+    ) -> Result<(usize, Vector2<f64>), ArgumentError> {
         let height_m = self.height_m.unwrap_or(pier.height_m);
         let allowed = format_args!("from 0 to the height of the pier, {:?} m", pier.height_m);
         let fits = (0.0..=pier.height_m).contains(&height_m);
-        if let Err(error) = allow(fits, "height_m", height_m, allowed) {
-            return Some(Err(error));
-        }
+        allow(fits, "height_m", height_m, allowed)?;
         let courses = height_m / pier.height_m * pier.blocks as f64;
         let course = ((courses * (1.0 - 1e-9)).ceil() as usize).saturating_sub(1);
-        let block = match side {
-            Sway::Left => course,
-            Sway::Right => last[0] - course,
+        let (block, foot) = match side {
+            Sway::Left => (course, &row.joints[0]),
+            Sway::Right => (
+                row.blocks.len() - 1 - course,
+                &row.joints[row.joints.len() - 1],
+            ),
         };
-        let foot_m = foot.middle_m();
-        Some(Ok((block, foot_m + Vector2::new(self.x_m, height_m))))
+        Ok((block, foot.middle_m() + Vector2::new(self.x_m, height_m)))
     }
 
     /// Returns the voussoir under its middle, and the point on its extrados, in metres.

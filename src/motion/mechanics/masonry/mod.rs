@@ -215,8 +215,12 @@ fn place_loads(
             loads_m.extend(place.map(|(voussoir, at_m)| (first + voussoir, at_m)));
             continue;
         };
-        let place = load.place_on_pier_m(side, piers, &row);
-        let place = place.ok_or(MasonryError::NoPier(index, side))?;
+        let pier = match side {
+            Sway::Left => piers.left,
+            Sway::Right => piers.right,
+        };
+        let pier = pier.ok_or(MasonryError::NoPier(index, side))?;
+        let place = load.place_on_pier_m(side, &pier, &row);
         let (block, at_m) = place.map_err(|error| MasonryError::Load(index, error))?;
         if let Some(body) = load.moving_body(at_m) {
             row = row.with_body(block, &body);
