@@ -195,8 +195,6 @@ impl Tie {
     /// The difference of the squared lengths avoids cancellation for small displacements.
     #[inline(always)]
     pub fn span<R: Real>(&self, moved_m: [[R; 2]; 2]) -> TieSpan<R> {
-        let apart = self.ends[1].at_m - self.ends[0].at_m;
-        let length_m = self.length_m();
         if self.is_constant_force() {
             let along = self.along();
             let by = moved_m[0];
@@ -205,6 +203,8 @@ impl Tie {
                 along: both!(i: R::of(along[i])),
             };
         }
+        let apart = self.ends[1].at_m - self.ends[0].at_m;
+        let length_m = self.length_m();
         let by = both!(i: moved_m[1][i] - moved_m[0][i]);
         let now = both!(i: by[i] + R::of(apart[i]));
         let length = (now[0] * now[0] + now[1] * now[1]).sqrt();
