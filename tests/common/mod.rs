@@ -135,6 +135,47 @@ pub fn run_sampled(
     (history, samples)
 }
 
+/// The least number between two from which a condition holds, to a width.
+pub fn least([mut low, mut high]: [f64; 2], width: f64, holds: impl Fn(f64) -> bool) -> f64 {
+    while high - low > width {
+        let middle = 0.5 * (low + high);
+        if holds(middle) {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    high
+}
+
+/// Integral over `0..1` by Simpson's rule, for smooth integrands.
+pub fn integral(integrand: impl Fn(f64) -> f64) -> f64 {
+    let intervals = 4000;
+    let h = 1.0 / f64::from(intervals);
+    let of = |index: i32| {
+        let at = |x: f64| integrand(h * (f64::from(index) + x));
+        h / 6.0 * (at(0.0) + 4.0 * at(0.5) + at(1.0))
+    };
+    (0..intervals).map(of).sum()
+}
+
+/// Angle and rate after a step by the classical Runge-Kutta method, for an acceleration that depends on time and angle.
+pub fn runge_kutta(
+    acceleration: impl Fn(f64, f64) -> f64,
+    time_s: f64,
+    [q, rate]: [f64; 2],
+    h: f64,
+) -> [f64; 2] {
+    let slope = |time_s: f64, [q, rate]: [f64; 2]| [rate, acceleration(time_s, q)];
+    let add = |k: [f64; 2], h: f64| [q + h * k[0], rate + h * k[1]];
+    let k1 = slope(time_s, [q, rate]);
+    let k2 = slope(time_s + 0.5 * h, add(k1, 0.5 * h));
+    let k3 = slope(time_s + 0.5 * h, add(k2, 0.5 * h));
+    let k4 = slope(time_s + h, add(k3, h));
+    let sum = |i: usize| k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i];
+    [q + h / 6.0 * sum(0), rate + h / 6.0 * sum(1)]
+}
+
 /// Instants of the impacts.
 pub fn impact_times_s(history: &History) -> Vec<f64> {
     history.impacts().map(|(time_s, _)| time_s).collect()

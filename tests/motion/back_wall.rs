@@ -1,6 +1,6 @@
 //! A column with a wall behind it, compared with closed forms, a quadrature and an independent integrator.
 
-use crate::common::{Random, pulse};
+use crate::common::{Random, integral, least, pulse, runge_kutta};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use archrock::mechanics::MechanismChain as _;
@@ -37,6 +37,15 @@ fn wall(side: Sway, rate_ratio: Option<f64>) -> BackWall {
     }
 }
 
+/// A façade of 8 m by 0.6 m with a wall of this height on its left.
+fn facade(height_m: f64, rate_ratio: Option<f64>) -> Result<Column, ArgumentError> {
+    let back = BackWall {
+        height_m: Some(height_m),
+        ..wall(Sway::Left, rate_ratio)
+    };
+    Column::new(8.0, 0.6)?.with_back(back)
+}
+
 fn model(column: &Column) -> RockingColumn {
     RockingColumn::new(column, ImpactModel::MaxRestitution).unwrap()
 }
@@ -51,17 +60,6 @@ fn released(model: &RockingColumn, sway: Sway, rotation_rad: f64) -> History {
         ..REQUEST
     };
     model.history(&GroundMotion::still(), &request).unwrap()
-}
-
-/// Integral over `0..1` by Simpson's rule, for smooth integrands.
-fn integral(integrand: impl Fn(f64) -> f64) -> f64 {
-    let intervals = 4000;
-    let h = 1.0 / f64::from(intervals);
-    let of = |index: i32| {
-        let at = |x: f64| integrand(h * (f64::from(index) + x));
-        h / 6.0 * (at(0.0) + 4.0 * at(0.5) + at(1.0))
-    };
-    (0..intervals).map(of).sum()
 }
 
 /// The rate after each impact, the rate before the next one (no energy is lost between them), and the time between them: twice the integral
@@ -222,13 +220,8 @@ fn the_mirror_image_has_the_same_bits() {
 
 #[test]
 fn a_wall_of_height_zero_changes_no_bit() {
-    let free = Column::new(8.0, 0.6).unwrap();
-    let back = BackWall {
-        side: Sway::Left,
-        height_m: Some(0.0),
-        rate_ratio: None,
-    };
-    let [held, free] = [free.clone().with_back(back).unwrap(), free].map(|column| model(&column));
+    let columns = [facade(0.0, None).unwrap(), Column::new(8.0, 0.6).unwrap()];
+    let [held, free] = columns.map(|column| model(&column));
     for amplitude_g in [-0.2, 0.25] {
         let ground = pulse(Pulse::OneSine, amplitude_g, 1.0);
         let history = |model: &RockingColumn| model.history(&ground, &REQUEST).unwrap();
@@ -240,19 +233,11 @@ fn a_wall_of_height_zero_changes_no_bit() {
 /// The height at which three impacts stop throwing the façade back is that of its centre of percussion, `2 (H^2 + W^2) / (3 H)`.
 #[test]
 fn low_walls_have_no_default() {
-    let of = |height_m: f64, rate_ratio: Option<f64>| {
-        let back = BackWall {
-            side: Sway::Left,
-            height_m: Some(height_m),
-            rate_ratio,
-        };
-        Column::new(8.0, 0.6).unwrap().with_back(back)
-    };
     let is_modelled =
         |column: &Column| RockingColumn::new(column, ImpactModel::MaxRestitution).is_ok();
     let lowest_m = 2.0 * (64.0 + 0.36) / (3.0 * 8.0);
-    assert!(is_modelled(&of(lowest_m + 1e-6, None).unwrap()));
-    let low = of(lowest_m - 1e-6, None).unwrap();
+    assert!(is_modelled(&facade(lowest_m + 1e-6, None).unwrap()));
+    let low = facade(lowest_m - 1e-6, None).unwrap();
     let error = low.wall_rate_ratio().unwrap_err();
     assert!(
         error.argument == "height_m" && error.allowed.starts_with("above 5.36333"),
@@ -262,7 +247,7 @@ fn low_walls_have_no_default() {
     // A prescribed restitution needs no default.
     let law = ImpactModel::Prescribed { restitution: 0.2 };
     assert!(RockingColumn::new(&low, law).is_ok());
-    assert!(of(8.1, Some(0.4)).is_err() && of(8.0, Some(1.1)).is_err());
+    assert!(facade(8.1, Some(0.4)).is_err() && facade(8.0, Some(1.1)).is_err());
     // Wider than 0.7 of its height, no wall is high enough.
     let wide = |width_m: f64| {
         let column = Column::new(1.0, width_m).unwrap();
@@ -279,17 +264,9 @@ fn low_walls_have_no_default() {
 /// Below the centre of gravity, at half the height, a push turns the column over the wall, whatever its restitution.
 #[test]
 fn a_wall_below_the_centre_of_gravity_is_refused() {
-    let of = |height_m: f64, rate_ratio: Option<f64>| {
-        let back = BackWall {
-            side: Sway::Left,
-            height_m: Some(height_m),
-            rate_ratio,
-        };
-        Column::new(8.0, 0.6).unwrap().with_back(back)
-    };
     for height_m in [0.01, 2.0, 4.0 - 1e-9] {
         for rate_ratio in [None, Some(0.0), Some(0.48)] {
-            let error = of(height_m, rate_ratio).unwrap_err();
+            let error = facade(height_m, rate_ratio).unwrap_err();
             assert!(
                 error.argument == "height_m" && error.allowed.contains("at least 4.0 m"),
                 "{error}"
@@ -297,21 +274,16 @@ fn a_wall_below_the_centre_of_gravity_is_refused() {
         }
     }
     for height_m in [4.0, 5.0, 8.0] {
-        assert!(of(height_m, Some(0.48)).is_ok());
+        assert!(facade(height_m, Some(0.48)).is_ok());
     }
-    assert!(of(0.0, Some(0.48)).unwrap().wall().is_none());
+    assert!(facade(0.0, Some(0.48)).unwrap().wall().is_none());
 }
 
 /// The ratios of rates in the table of docs/walls.md, from `k^2 + (G - A).(G - B)` written out for a block.
 #[test]
 fn a_lower_wall_has_the_ratio_of_its_three_impacts() {
     for (height_m, printed) in [(8.0, 0.483), (7.0, 0.366), (6.0, 0.176)] {
-        let back = BackWall {
-            side: Sway::Left,
-            height_m: Some(height_m),
-            rate_ratio: None,
-        };
-        let column = Column::new(8.0, 0.6).unwrap().with_back(back).unwrap();
+        let column = facade(height_m, None).unwrap();
         let found = column.wall_rate_ratio().unwrap().unwrap();
         let square = (64.0 + 0.36) / 12.0;
         let about = |one: f64, other: f64, side: f64| square + one * other + side * 0.09;
@@ -340,15 +312,8 @@ impl Independent {
         -self.p * self.p * (angle.sin() - (self.push_g)(time_s) * angle.cos())
     }
 
-    fn stepped(&self, time_s: f64, [q, rate]: [f64; 2], h: f64) -> [f64; 2] {
-        let slope = |time_s: f64, [q, rate]: [f64; 2]| [rate, self.acceleration(time_s, q)];
-        let add = |k: [f64; 2], h: f64| [q + h * k[0], rate + h * k[1]];
-        let k1 = slope(time_s, [q, rate]);
-        let k2 = slope(time_s + 0.5 * h, add(k1, 0.5 * h));
-        let k3 = slope(time_s + 0.5 * h, add(k2, 0.5 * h));
-        let k4 = slope(time_s + h, add(k3, h));
-        let sum = |i: usize| k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i];
-        [q + h / 6.0 * sum(0), rate + h / 6.0 * sum(1)]
+    fn stepped(&self, time_s: f64, state: [f64; 2], h: f64) -> [f64; 2] {
+        runge_kutta(|time_s, q| self.acceleration(time_s, q), time_s, state, h)
     }
 
     /// Returns whether it overturns, its largest rotation up to then, and its impacts with at least a millionth of the barrier.
@@ -369,16 +334,8 @@ impl Independent {
                     continue;
                 }
                 if excess(time_s + h) > 0.0 {
-                    let (mut low, mut high) = (time_s, time_s + h);
-                    while high - low > 1e-14 {
-                        let middle = 0.5 * (low + high);
-                        *(if excess(middle) > 0.0 {
-                            &mut high
-                        } else {
-                            &mut low
-                        }) = middle;
-                    }
-                    (time_s, rests) = (high, false);
+                    let opens_s = least([time_s, time_s + h], 1e-14, |s| excess(s) > 0.0);
+                    (time_s, rests) = (opens_s, false);
                 } else {
                     time_s += h;
                 }
@@ -386,14 +343,10 @@ impl Independent {
             }
             let next = self.stepped(time_s, state, h);
             if next[0] < 0.0 {
-                let (mut low, mut high) = (0.0, h);
-                while high - low > 1e-15 {
-                    let middle = 0.5 * (low + high);
-                    let is_closed = self.stepped(time_s, state, middle)[0] < 0.0;
-                    *(if is_closed { &mut high } else { &mut low }) = middle;
-                }
-                let closing = self.stepped(time_s, state, high)[1];
-                time_s += high;
+                let is_closed = |h: f64| self.stepped(time_s, state, h)[0] < 0.0;
+                let h = least([0.0, h], 1e-15, is_closed);
+                let closing = self.stepped(time_s, state, h)[1];
+                time_s += h;
                 let energy = |rate: f64| rate * rate / (2.0 * self.p * self.p);
                 impacts += usize::from(energy(closing) > 1e-6 * barrier);
                 state = [0.0, -self.restitution * closing];

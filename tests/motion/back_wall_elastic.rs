@@ -206,12 +206,17 @@ fn a_column_returns_after_the_time_of_the_rigid_one() {
     );
 }
 
+/// A column with a wall on its left, and a roof that leans to the wall.
+fn roofed_column() -> Column {
+    let roof = PlacedLoad::mass(4000.0, -0.2);
+    let column = column(1, Some(wall(Sway::Left, HEIGHT_M)));
+    column.with_loads(vec![roof], GRAVITY).unwrap()
+}
+
 /// With a roof the column returns as Housner's column with this roof and this wall does, and strikes the wall with its face, not with the roof.
 #[test]
 fn a_column_with_a_roof_returns_as_the_rigid_one() {
-    let roof = PlacedLoad::mass(4000.0, -0.2);
-    let column = column(1, Some(wall(Sway::Left, HEIGHT_M)));
-    let column = column.with_loads(vec![roof], GRAVITY).unwrap();
+    let column = roofed_column();
     let properties = ElasticProperties::of_stiffness(1e11);
     let model = ElasticJoints::of_column(GRAVITY, &column, properties).unwrap();
     assert_eq!(model.structure.joints[1].area_m2, HEIGHT_M);
@@ -237,9 +242,7 @@ fn a_column_with_a_roof_returns_as_the_rigid_one() {
 /// The barrier of a column before a wall is that of the free side, also if its roof leans to the wall.
 #[test]
 fn the_barrier_is_that_of_the_free_side() {
-    let roof = PlacedLoad::mass(4000.0, -0.2);
-    let column = column(1, Some(wall(Sway::Left, HEIGHT_M)));
-    let column = column.with_loads(vec![roof], GRAVITY).unwrap();
+    let column = roofed_column();
     let properties = ElasticProperties::of_stiffness(1e10);
     let model = ElasticJoints::of_column(GRAVITY, &column, properties).unwrap();
     let history = history(&model, &started(1.0, Sway::Right, 0.1));

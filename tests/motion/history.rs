@@ -1,10 +1,10 @@
 //! Whole histories: published numbers, exact invariances, and the ways in and out of rest.
 
-use crate::common::pulse;
 use crate::common::{
     GRAVITY, REST_ENERGY_RATIO, four_links, impact_times_s, released, request, run, run_sampled,
     sampled, semicircle, seven_voussoirs, three,
 };
+use crate::common::{least, pulse};
 use archrock::dynamics::Recording;
 use archrock::mechanics::four_link::HingeSites;
 use archrock::mechanics::{Mechanism as _, MechanismChain as _};
@@ -85,19 +85,12 @@ fn published_collapse_amplitudes_without_impact() {
                 && history.summary.impacts == 0
         };
         // Around the least amplitude, collapse without impact is monotone in the amplitude.
-        let (mut low, mut high) = (0.97 * published, 1.03 * published);
+        let [low, high] = [0.97 * published, 1.03 * published];
         assert!(!falls(low) && falls(high), "{duration_s}");
-        while high - low > 1e-5 {
-            let middle = 0.5 * (low + high);
-            if falls(middle) {
-                high = middle
-            } else {
-                low = middle
-            }
-        }
+        let found = least([low, high], 1e-5, falls);
         assert!(
-            (high - published).abs() <= 0.5e-3 + 1e-5,
-            "{duration_s}: {high}"
+            (found - published).abs() <= 0.5e-3 + 1e-5,
+            "{duration_s}: {found}"
         );
     }
 }

@@ -8,7 +8,7 @@ use archrock::{
     Sway,
 };
 
-use crate::common::{GRAVITY, run, run_sampled, sampled};
+use crate::common::{GRAVITY, impact_times_s, integral, run, run_sampled, sampled};
 
 /// Half diagonal of the column in metres.
 const HALF_M: f64 = 2.0;
@@ -83,13 +83,7 @@ fn time_to_peak_s(alpha: f64, from: f64, peak: f64) -> f64 {
         let square = 4.0 * p() * p() * over_square * (alpha - peak + half).sin();
         2.0 * span / square.sqrt()
     };
-    let intervals = 2000;
-    let h = 1.0 / f64::from(intervals);
-    let part = |index: i32| {
-        let at = |x: f64| integrand(h * (f64::from(index) + x));
-        h / 6.0 * (at(0.0) + 4.0 * at(0.5) + at(1.0))
-    };
-    (0..intervals).map(part).sum()
+    integral(integrand)
 }
 
 #[test]
@@ -172,14 +166,9 @@ fn a_start_to_the_other_side_is_the_mirror_image() {
     for model in models(0.25) {
         let [right, left] =
             [Sway::Right, Sway::Left].map(|sway| history(&*model, &started(4.0, sway, 0.05, -0.2)));
-        let times = |history: &History| {
-            history
-                .impacts()
-                .map(|(time_s, _)| time_s)
-                .collect::<Vec<_>>()
-        };
-        assert!(times(&right).len() > 2);
-        for (right_s, left_s) in times(&right).iter().zip(times(&left)) {
+        let [right_s, left_s] = [&right, &left].map(impact_times_s);
+        assert!(right_s.len() > 2);
+        for (right_s, left_s) in right_s.iter().zip(left_s) {
             assert!((right_s - left_s).abs() < 1e-9, "{right_s} {left_s}");
         }
         let rotation = |history: &History| sample(history, false).rotations_rad[0];

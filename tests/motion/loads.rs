@@ -3,7 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::ControlFlow;
 
-use crate::common::{Random, pulse};
+use crate::common::{Random, least, pulse, runge_kutta};
 use archrock::mechanics::{ColumnLoadError, MechanismChain as _, MechanismState, PlacedLoad};
 use archrock::{
     BackWall, Column, ElasticJoints, ElasticProperties, FreeHinges, GroundMotion, History,
@@ -149,19 +149,8 @@ impl Body {
 
     /// Unstable equilibrium, found by bisection of the moment.
     fn critical(&self) -> f64 {
-        let (mut low, mut high) = (0.0, FRAC_PI_2);
-        if self.moment_n_m(high, [0.0; 2]) < 0.0 {
-            return high;
-        }
-        while high - low > 1e-15 {
-            let middle = 0.5 * (low + high);
-            *(if self.moment_n_m(middle, [0.0; 2]) < 0.0 {
-                &mut low
-            } else {
-                &mut high
-            }) = middle;
-        }
-        high
+        let falls = |q: f64| self.moment_n_m(q, [0.0; 2]) >= 0.0;
+        least([0.0, FRAC_PI_2], 1e-15, falls)
     }
 
     /// Push in g that starts a sway to the right, from the moments about the toe.
@@ -359,15 +348,9 @@ impl Independent {
         body.moment_n_m(q, [self.ground_g(side, time_s), 0.0]) / body.inertia_kg_m2()
     }
 
-    fn stepped(&self, side: usize, time_s: f64, [q, rate]: [f64; 2], h: f64) -> [f64; 2] {
-        let slope = |time_s: f64, [q, rate]: [f64; 2]| [rate, self.acceleration(side, time_s, q)];
-        let add = |k: [f64; 2], h: f64| [q + h * k[0], rate + h * k[1]];
-        let k1 = slope(time_s, [q, rate]);
-        let k2 = slope(time_s + 0.5 * h, add(k1, 0.5 * h));
-        let k3 = slope(time_s + 0.5 * h, add(k2, 0.5 * h));
-        let k4 = slope(time_s + h, add(k3, h));
-        let sum = |i: usize| k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i];
-        [q + h / 6.0 * sum(0), rate + h / 6.0 * sum(1)]
+    fn stepped(&self, side: usize, time_s: f64, state: [f64; 2], h: f64) -> [f64; 2] {
+        let acceleration = |time_s, q| self.acceleration(side, time_s, q);
+        runge_kutta(acceleration, time_s, state, h)
     }
 
     /// Returns the state after a step from rest.
@@ -379,16 +362,8 @@ impl Independent {
         if opens(time_s + h).is_none() {
             return (time_s + h, None, [0.0; 2]);
         }
-        let (mut low, mut high) = (time_s, time_s + h);
-        while high - low > 1e-14 {
-            let middle = 0.5 * (low + high);
-            *(if opens(middle).is_some() {
-                &mut high
-            } else {
-                &mut low
-            }) = middle;
-        }
-        (high, opens(high), [0.0; 2])
+        let opens_s = least([time_s, time_s + h], 1e-14, |s| opens(s).is_some());
+        (opens_s, opens(opens_s), [0.0; 2])
     }
 
     /// Returns the state after an impact within a step.
@@ -398,15 +373,11 @@ impl Independent {
         (time_s, state, h): (f64, [f64; 2], f64),
         barrier: f64,
     ) -> Moment {
-        let (mut low, mut high) = (0.0, h);
-        while high - low > 1e-15 {
-            let middle = 0.5 * (low + high);
-            let is_closed = self.stepped(side, time_s, state, middle)[0] < 0.0;
-            *(if is_closed { &mut high } else { &mut low }) = middle;
-        }
-        let closing = -self.stepped(side, time_s, state, high)[1];
+        let is_closed = |h: f64| self.stepped(side, time_s, state, h)[0] < 0.0;
+        let h = least([0.0, h], 1e-15, is_closed);
+        let closing = -self.stepped(side, time_s, state, h)[1];
         let rate = closing * self.sides[side].rate_passed();
-        let (time_s, other) = (time_s + high, 1 - side);
+        let (time_s, other) = (time_s + h, 1 - side);
         let energy = 0.5 * self.sides[other].inertia_kg_m2() * rate * rate;
         let is_held = self.acceleration(other, time_s, 0.0) <= 0.0;
         match rate <= 0.0 || energy < REQUEST.rest_energy_ratio * barrier && is_held {
@@ -732,14 +703,19 @@ fn onset_of_drums_g(size_m: [f64; 2], drums: usize, loads: &[PlacedLoad], sway: 
     pushes.fold(f64::INFINITY, f64::min)
 }
 
+/// A roof that moves with a column of 4 m, and a floor that pushes it to the right.
+fn roof_and_floor() -> [PlacedLoad; 2] {
+    [
+        load(1500.0, [0.1, 4.0], true, 0.0),
+        load(1000.0, [-0.1, 2.5], false, 1e3),
+    ]
+}
+
 /// Drums with free hinges: the onset by hand, and a single drum moves as Housner's column.
 #[test]
 fn drums_carry_loads() {
     let size_m = [4.0, 0.8];
-    let loads = [
-        load(1500.0, [0.1, 4.0], true, 0.0),
-        load(1000.0, [-0.1, 2.5], false, 1e3),
-    ];
+    let loads = roof_and_floor();
     for drums in [1, 4] {
         let row = column(size_m, &loads)
             .with_drums(drums)
@@ -785,10 +761,7 @@ impl Recorder for ThrustLines {
 #[test]
 fn stiff_joints_carry_loads() {
     let size_m = [4.0, 0.8];
-    let loads = [
-        load(1500.0, [0.1, 4.0], true, 0.0),
-        load(1000.0, [-0.1, 2.5], false, 1e3),
-    ];
+    let loads = roof_and_floor();
     let one = column(size_m, &loads);
     let ground = pulse(Pulse::HalfSine, 0.35, 0.5);
     let request = Request {

@@ -71,7 +71,9 @@ proptest! {
             output_step_s: 0.01,
             initial: start.map(|(sway, part)| Initial {
                 sway,
-                rotation_rad: (part * link.critical_rad).min(0.9 * link.limit_rad), rate_rad_s: 0.0 }),
+                rotation_rad: (part * link.critical_rad).min(0.9 * link.limit_rad),
+                rate_rad_s: 0.0,
+            }),
             relative_tolerance: 10_f64.powf(exponent),
             rest_energy_ratio: 1e-8,
         };

@@ -4,8 +4,8 @@ use std::fs;
 use std::os::unix::fs::symlink;
 use std::path::Path;
 
-use crate::common::parsed;
 use crate::common::program::{assert_shown_output_is_printed, scenarios};
+use crate::common::{least, parsed};
 use archrock::mechanics::Ring;
 use archrock::mechanics::Row;
 use archrock::mechanics::four_link::{HingeSites, least_thickness_ratio};
@@ -15,19 +15,6 @@ use archrock::mechanics::stability::{collapse_mechanism, onset};
 use archrock::{Arch, EndCondition, Outcome, Sway};
 use std::f64::consts::PI;
 
-/// The least number from which a condition holds, to 1e-6.
-fn least(mut low: f64, mut high: f64, holds: impl Fn(f64) -> bool) -> f64 {
-    while high - low > 1e-6 {
-        let middle = 0.5 * (low + high);
-        if holds(middle) {
-            high = middle;
-        } else {
-            low = middle;
-        }
-    }
-    high
-}
-
 /// Milankovitch: 0.1075 for radial joints. The ring by its own statics, rows of blocks by the static programme, which
 /// does not know rings; a row with few joints needs less.
 #[test]
@@ -35,7 +22,7 @@ fn least_thickness_of_a_semicircle() {
     let ring = least_thickness_ratio(PI, HingeSites::Anywhere, 1e-9).unwrap();
     assert!((ring - 0.1075).abs() < 5e-5, "{ring}");
     let row = |voussoirs| {
-        least(0.05, 0.2, |ratio| {
+        least([0.05, 0.2], 1e-6, |ratio| {
             let ring = Ring::new(ratio, PI).unwrap();
             let row = Row::arch(&ring, voussoirs, 1.0, 1.0, 1.0).unwrap();
             collapse_mechanism(&row).unwrap().is_none()
@@ -58,7 +45,7 @@ fn least_thickness_of_a_semicircle_under_acceleration() {
         (0.4, 0.2475),
         (0.5, 0.2917),
     ] {
-        let ratio = least(0.11, 0.4, |ratio| {
+        let ratio = least([0.11, 0.4], 1e-6, |ratio| {
             let arch = Arch::new(1.0, ratio, 180.0).unwrap();
             arch.incipient().unwrap().acceleration_g >= acceleration_g
         });
@@ -94,7 +81,7 @@ fn least_thickness_of_a_semicircle_against_friction() {
     ] {
         // Well below this thickness the arch also stands, with little more friction; well above it, more friction is needed
         // again.
-        let ratio = least(0.1, 0.2, |ratio| {
+        let ratio = least([0.1, 0.2], 1e-6, |ratio| {
             stands(&row(ratio), coefficient) == Ok(true)
         });
         assert!((ratio - published).abs() < 2e-3, "{coefficient}: {ratio}");
@@ -105,7 +92,7 @@ fn least_thickness_of_a_semicircle_against_friction() {
         }
     }
     // With more friction than this, the thickness for no sliding suffices; with less, no thickness does.
-    let without = least(0.05, 0.2, |ratio| {
+    let without = least([0.05, 0.2], 1e-6, |ratio| {
         collapse_mechanism(&row(ratio)).unwrap().is_none()
     });
     assert!((without - 0.1068).abs() < 5e-5, "{without}");
@@ -119,7 +106,7 @@ fn least_thickness_of_a_semicircle_against_friction() {
 #[test]
 fn least_thickness_of_pointed_and_elliptic_arches() {
     let of = |rise: f64| {
-        least(0.005, 0.6, |thickness_m| {
+        least([0.005, 0.6], 1e-6, |thickness_m| {
             let dimensions = Dimensions {
                 span_m: 2.0,
                 rise_m: rise,
