@@ -319,6 +319,25 @@ fn a_push_overturns_it_away_from_the_wall_only() {
         assert_eq!(outcome(1.0), Outcome::Overturned(Sway::Right));
         assert!(!matches!(outcome(-1.0), Outcome::Overturned(_)));
         assert!(!matches!(outcome(0.2), Outcome::Overturned(_)));
+        // Variations of the stiffness keep the wall.
+        let towards = pulse(Pulse::Rectangular, 1.0, 0.5);
+        for variation in model.variations() {
+            let history = variation.model.unwrap();
+            let history = history.history(&towards, &sampled(1.0, 0.1)).unwrap();
+            let peaks_rad = &history.summary.peak_rotations_rad;
+            assert!(peaks_rad.iter().all(|peak| *peak < 0.01), "{peaks_rad:?}");
+        }
+    }
+}
+
+/// A push below the onset bends the column away from the wall. This gap at the wall is no open joint.
+#[test]
+fn a_gap_at_the_wall_is_no_rocking() {
+    for back in [Some(wall(Sway::Left, HEIGHT_M)), None] {
+        let model = model(1, back, 1e9);
+        let ground = pulse(Pulse::HalfSine, -0.3 * WIDTH_M / HEIGHT_M, 1.0);
+        let history = model.history(&ground, &sampled(1.5, 0.1)).unwrap();
+        assert_eq!(history.summary.outcome, Outcome::Vibrates);
     }
 }
 

@@ -145,6 +145,9 @@ fn peaks_and_impacts_follow_from_the_energy_of_the_start() {
                 "{found} {largest}"
             );
             assert!(history.summary.energy_defect_ratio < 1e-4);
+            if let Some(row) = history.summary.row() {
+                assert!(row.largest_kinetic_j >= start_j * (1.0 - 1e-12));
+            }
         }
     }
 }

@@ -4,7 +4,9 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::ControlFlow;
 
 use crate::common::{Random, least, pulse, runge_kutta};
-use archrock::mechanics::{ColumnLoadError, MechanismChain as _, MechanismState, PlacedLoad};
+use archrock::mechanics::{
+    ColumnLoadError, MechanismChain as _, MechanismState, PlacedLoad, Ring, Row,
+};
 use archrock::{
     BackWall, Column, ElasticJoints, ElasticProperties, FreeHinges, GroundMotion, History,
     ImpactModel, Initial, MechanismModel as _, Model, Outcome, Pulse, Recorder, Request,
@@ -327,7 +329,8 @@ fn the_mirror_image_has_the_same_bits() {
 /// A column that rocks about both toes, by the classical Runge-Kutta method with small steps and bisected impacts.
 struct Independent {
     sides: [Body; 2],
-    amplitude_g: f64,
+    /// Horizontal and vertical amplitude.
+    amplitudes_g: [f64; 2],
     duration_s: f64,
 }
 
@@ -335,17 +338,19 @@ struct Independent {
 type Moment = (f64, Option<usize>, [f64; 2]);
 
 impl Independent {
-    fn ground_g(&self, side: usize, time_s: f64) -> f64 {
-        let sign = [1.0, -1.0][side];
-        match time_s < self.duration_s {
-            true => sign * self.amplitude_g * (2.0 * PI * time_s / self.duration_s).sin(),
+    /// Horizontal and vertical acceleration of the ground, in the frame of this side.
+    fn ground_g(&self, side: usize, time_s: f64) -> [f64; 2] {
+        let wave = match time_s < self.duration_s {
+            true => (2.0 * PI * time_s / self.duration_s).sin(),
             false => 0.0,
-        }
+        };
+        let [across_g, up_g] = self.amplitudes_g.map(|amplitude_g| amplitude_g * wave);
+        [[1.0, -1.0][side] * across_g, up_g]
     }
 
     fn acceleration(&self, side: usize, time_s: f64, q: f64) -> f64 {
         let body = &self.sides[side];
-        body.moment_n_m(q, [self.ground_g(side, time_s), 0.0]) / body.inertia_kg_m2()
+        body.moment_n_m(q, self.ground_g(side, time_s)) / body.inertia_kg_m2()
     }
 
     fn stepped(&self, side: usize, time_s: f64, state: [f64; 2], h: f64) -> [f64; 2] {
@@ -423,31 +428,35 @@ impl Independent {
     }
 }
 
-/// Forty random columns with loads under a sine, against the independent integrator: side of overturning, or peak.
+/// Forty random columns with loads under a sine, half of them with a vertical component, against the independent integrator: side of overturning, or
+/// peak.
 #[test]
 fn random_loaded_columns_move_as_by_an_independent_integrator() {
     let mut random = Random(462);
     let (mut overturned, mut rocked) = (0, 0);
-    for case in 0..40 {
+    for case in 0..40_u8 {
         let size_m = random_size(&mut random);
         let loads = random_loads(&mut random, size_m);
         let body = Body::new(size_m, &loads);
         let sides = [Sway::Right, Sway::Left].map(|sway| body.towards(sway));
         let onset_g = sides[0].onset_g().max(sides[1].onset_g());
-        let amplitude_g = onset_g * random.within(-3.0, 3.0);
+        let up_g = f64::from(case % 2) * random.within(-0.7, 0.7);
+        let amplitudes_g = [onset_g * random.within(-3.0, 3.0), up_g];
         let duration_s = random.within(0.3, 1.5);
         let request = Request {
             end_s: 8.0,
             output_step_s: 8.0,
             ..REQUEST
         };
-        let ground = pulse(Pulse::OneSine, amplitude_g, duration_s);
+        let ground = Pulse::OneSine.lasting_s(duration_s);
+        let ground = ground.inclined_m_s2(Vector2::from(amplitudes_g) * GRAVITY_M_S2);
+        let ground = ground.unwrap();
         let model = model(&column(size_m, &loads));
         let summary = model.history(&ground, &request).unwrap().summary;
         assert!(summary.energy_defect_ratio < 1e-8, "{case}");
         let independent = Independent {
             sides,
-            amplitude_g,
+            amplitudes_g,
             duration_s,
         };
         let (falls, peak) = independent.motion(8.0);
@@ -557,9 +566,10 @@ fn the_base_carries_weights_and_forces() {
     );
 }
 
-/// In motion, the thrust line passes through the toe, and masses and forces above a section balance its resultant.
+/// In motion, the thrust line passes through the toe, and the resultant at half height balances masses and forces above, whose accelerations come from
+/// differences of positions.
 #[test]
-fn the_thrust_line_in_motion_passes_through_the_toe() {
+fn the_thrust_line_in_motion_balances_masses_and_forces() {
     let size_m = [4.0, 0.8];
     let loads = [
         load(2000.0, [0.1, 4.0], true, 0.0),
@@ -571,15 +581,40 @@ fn the_thrust_line_in_motion_passes_through_the_toe() {
         let body = Body::new(size_m, &loads).towards(sway);
         for (q_rad, push_g) in [(0.0, 0.4), (0.05, 0.0), (0.1, -0.1)] {
             let scale = model.length_m() / GRAVITY_M_S2;
+            let (rate, push_m_s2) = (0.3, push_g * GRAVITY_M_S2);
             let acceleration = body.moment_n_m(q_rad, [-push_g, 0.0]) / body.inertia_kg_m2();
             let motion = MechanismState {
                 q_rad,
-                rate: 0.1,
+                rate: rate * scale.sqrt(),
                 acceleration: acceleration * scale,
                 body_force_g: Vector2::new(push_g, -1.0),
             };
             let ratios = model.eccentricity_ratios(&link.mechanism, &motion);
             assert!((ratios[0].unwrap() - 0.5).abs() < 1e-12);
+            let at = |at_m: Vector2<f64>, time_s: f64| {
+                let turned = rate * time_s + 0.5 * acceleration * time_s * time_s;
+                body.turned_m(at_m, q_rad + turned)
+            };
+            let section_m = at(Vector2::new(0.0, 2.0), 0.0);
+            // Upper half of the block, and the roof.
+            let half_kg = 0.5 * body.masses[0].0;
+            let half = (half_kg, Vector2::new(0.0, 3.0));
+            let turning_n_m = half_kg * (0.8_f64.powi(2) + 2.0_f64.powi(2)) / 12.0 * acceleration;
+            let h = 1e-3;
+            let inertial = [half, body.masses[1]].map(|(kg, at_m)| {
+                let second = at(at_m, h) - 2.0 * at(at_m, 0.0) + at(at_m, -h);
+                let load_m_s2 = Vector2::new(push_m_s2, -GRAVITY_M_S2) - second / (h * h);
+                (at_m, load_m_s2 * kg)
+            });
+            let (mut force_n, mut moment_n_m) = (Vector2::zeros(), turning_n_m);
+            for (at_m, n) in body.forces.iter().chain(&inertial) {
+                force_n += n;
+                moment_n_m += (at(*at_m, 0.0) - section_m).perp(n);
+            }
+            let axis = Vector2::new(q_rad.sin(), q_rad.cos());
+            let due = moment_n_m / (force_n.dot(&axis) * 0.8);
+            let found = ratios[10].unwrap();
+            assert!((found - due).abs() < 1e-6, "{found} {due}");
         }
     }
 }
@@ -738,6 +773,8 @@ fn drums_carry_loads() {
     let housner = model(&one).history(&ground, &request).unwrap();
     let row = FreeHinges::new(one.row().unwrap()).unwrap();
     let free = row.history(&ground, &request).unwrap();
+    let mut lines = ThrustLines(Vec::new());
+    row.simulate(&ground, &request, Some(&mut lines)).unwrap();
     assert!(housner.summary.impacts > 1 && free.summary.energy_defect_ratio < 1e-3);
     let [due, own] = [&housner, &free].map(|history| history.summary.peak_rotations_rad[0]);
     assert!((own / due - 1.0).abs() < 1e-3, "{own} {due}");
@@ -748,6 +785,10 @@ struct ThrustLines(Vec<Vec<Option<f64>>>);
 
 impl Recorder for ThrustLines {
     fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
+        assert!(
+            sample.ties.is_empty(),
+            "constant forces are no ties of results"
+        );
         self.0.push(sample.eccentricity_ratios.clone());
         ControlFlow::Continue(())
     }
@@ -860,4 +901,41 @@ fn a_column_that_stands_free_stands_before_a_wall() {
     for model in [free, held] {
         assert!((starts_g(&model).unwrap() / due_g - 1.0).abs() < 1e-9);
     }
+}
+
+/// A roof that overhangs towards the wall, beyond the base, held by a low thrust towards the wall: the base is pressed at its edge, not beyond it.
+#[test]
+fn a_column_that_leans_on_a_wall_presses_the_edge_of_its_base() {
+    let loads = vec![
+        load(6400.0, [-1.0, 4.0], true, 0.0),
+        load(0.0, [0.0, 1.0], true, -5e3),
+    ];
+    let wall = BackWall {
+        side: Sway::Left,
+        height_m: None,
+        rate_ratio: Some(0.4),
+    };
+    let held = Column::new(4.0, 0.8).unwrap().with_back(wall).unwrap();
+    let held = model(&held.with_loads(loads, GRAVITY_M_S2).unwrap());
+    let demand = held.demand_at_rest(Vector2::new(0.0, -1.0));
+    assert_eq!(demand.friction, 0.0);
+    assert!(demand.excess_ratio < 1e-14, "{demand:?}");
+}
+
+/// The second end of a constant force is at no support: the right foot of an arch does no work on it when it moves apart from the left one.
+#[test]
+fn moving_feet_do_no_work_on_constant_forces() {
+    let ring = Ring::new(0.15, 2.75).unwrap();
+    let row = Row::arch(&ring, 9, 10.0, 1.0, 2000.0).unwrap();
+    let force = (8, row.blocks[8].centre_m, Vector2::new(-4e4, 0.0));
+    let model = FreeHinges::new(row.with_constant_forces([force], GRAVITY_M_S2)).unwrap();
+    let ground = pulse(Pulse::OneSine, 0.1, 1.0);
+    let ground = ground.with_delayed_right_foot(0.2).unwrap();
+    let request = Request {
+        end_s: 2.0,
+        ..REQUEST
+    };
+    let summary = model.simulate(&ground, &request, None).unwrap();
+    assert!(summary.row().unwrap().right_foot_j.abs() > 100.0);
+    assert!(summary.energy_defect_ratio < 1e-4, "{summary:?}");
 }
