@@ -5,7 +5,8 @@ use std::ops::ControlFlow;
 
 use crate::common::{Random, least, pulse, runge_kutta};
 use archrock::mechanics::{
-    ColumnLoadError, MechanismChain as _, MechanismState, PlacedLoad, Ring, Row,
+    Anchor, ColumnLoadError, MechanismChain as _, MechanismState, PlacedLoad, Ring, Row, RowError,
+    Tie,
 };
 use archrock::{
     BackWall, Column, ElasticJoints, ElasticProperties, FreeHinges, GroundMotion, History,
@@ -938,4 +939,30 @@ fn moving_feet_do_no_work_on_constant_forces() {
     let summary = model.simulate(&ground, &request, None).unwrap();
     assert!(summary.row().unwrap().right_foot_j.abs() > 100.0);
     assert!(summary.energy_defect_ratio < 1e-4, "{summary:?}");
+}
+
+/// A row carries ties or constant forces, so a column with both is refused, in either order; a moving mass does not matter.
+#[test]
+fn ties_and_constant_forces_are_refused_together() {
+    let anchor = |block, x_m| Anchor {
+        block,
+        at_m: Vector2::new(x_m, 3.0),
+    };
+    let tie = Tie {
+        ends: [anchor(Some(0), 0.0), anchor(None, 5.0)],
+        stiffness_n_m: 1e6,
+        prestress_n: 0.0,
+        yield_force_n: f64::INFINITY,
+        breaks_at_strain: f64::INFINITY,
+    };
+    let tied = |column: Column| column.with_ties(vec![tie], GRAVITY_M_S2).unwrap();
+    let size_m = [4.0, 0.8];
+    let thrust = load(0.0, [0.0, 2.0], true, 1e3);
+    let free = column(size_m, &[]);
+    let pushed = tied(free).with_loads(vec![thrust], GRAVITY_M_S2).unwrap();
+    for both in [pushed, tied(column(size_m, &[thrust]))] {
+        assert_eq!(both.row(), Err(RowError::TiesAndForces));
+    }
+    let roofed = tied(column(size_m, &[load(1e3, [0.0, 4.0], true, 0.0)]));
+    assert_eq!(roofed.row().unwrap().bars(), [tie]);
 }

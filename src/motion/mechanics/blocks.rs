@@ -67,6 +67,11 @@ pub enum RowError {
         /// Number of joints.
         joints: usize,
     },
+    /// A column has ties as well as loads with constant forces.
+    #[error(
+        "a column carries ties or constant forces (`thrust_n`, or `moves = false`, of [[load]]), not both: leave one out"
+    )]
+    TiesAndForces,
     /// Two neighbouring joints have a point in common.
     #[error("joints {0} and {next} cross or touch", next = .0 + 1)]
     Crossing(usize),

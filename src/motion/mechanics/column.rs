@@ -404,7 +404,7 @@ impl Column {
     /// Returns its drums as a row of blocks, on ground that extends beyond the base, or on a pedestal.
     ///
     /// # Errors
-    /// If the drums do not form a row.
+    /// If the drums do not form a row, or the column has ties and constant forces.
     pub fn row(&self) -> Result<Row, RowError> {
         let row = Row::tapered_stack(
             &self.drum_heights_m(),
@@ -419,10 +419,13 @@ impl Column {
             row.with_body(self.drum_at(at_m.y), &load)
         });
         let row = row.with_supports_that_extend([!self.pedestal, false]);
+        let mut forces = self.constant_forces();
         if self.ties.is_empty() {
-            let forces = self.constant_forces();
             let forces = forces.map(|(at_m, force_n)| (self.drum_at(at_m.y), at_m, force_n));
             return Ok(row.with_constant_forces(forces, self.gravity_m_s2));
+        }
+        if forces.next().is_some() {
+            return Err(RowError::TiesAndForces);
         }
         let tied = row.with_ties(self.ties.clone(), self.gravity_m_s2);
         Ok(tied.expect("the ties were checked with the same blocks"))
