@@ -40,30 +40,50 @@ impl LoadTable {
     /// Returns the load for an arch or one of its piers.
     ///
     /// # Errors
-    /// A key that is missing, or that applies to piers and columns only.
-    pub(super) fn on_arch(&self) -> Result<PlacedLoad, String> {
+    /// A key that is missing, or that applies to piers and columns only, with the reason.
+    fn on_arch(&self) -> Result<PlacedLoad, WrongKey> {
         if self.load.pier.is_none() {
-            let wrong = "has `height_m`, which applies to columns and piers: loads of an arch are on its extrados; leave it out, or give `pier`";
-            ensure(self.load.height_m.is_none(), || wrong.to_owned())?;
-            let lacks = "lacks `x_m`: a load on the extrados has a position; give it, or `pier`";
-            ensure(self.has_position, || lacks.to_owned())?;
+            let wrong = "applies to columns and piers: loads of an arch are on its extrados; leave it out, or give `pier`";
+            ensure(self.load.height_m.is_none(), || ("height_m", wrong))?;
+            let lacks = "is missing: a load on the extrados has a position; give it, or `pier`";
+            ensure(self.has_position, || ("x_m", lacks))?;
         }
         Ok(self.load)
     }
 
     /// Returns the load for a column.
-    fn on_column(&self) -> Result<PlacedLoad, String> {
-        let width = (self.load.width_m > 0.0).then_some("width_m");
-        let key_of_arch = width.or(self.load.pier.map(|_| "pier"));
-        key_of_arch.map_or(Ok(self.load), |key| {
-            Err(format!(
-                "has `{key}`, which applies to arches: a load on a column acts at a point; leave it out"
-            ))
-        })
+    ///
+    /// # Errors
+    /// A key that applies to arches only, with the reason.
+    fn on_column(&self) -> Result<PlacedLoad, WrongKey> {
+        let wrong = "applies to arches: a load on a column acts at a point; leave it out";
+        ensure(self.load.width_m == 0.0, || ("width_m", wrong))?;
+        ensure(self.load.pier.is_none(), || ("pier", wrong))?;
+        Ok(self.load)
     }
 }
 
 /// Adds loads to a column. With `has_joints` it moves as a row of blocks.
+/// A key of a load that does not fit, and the reason.
+type WrongKey = (&'static str, &'static str);
+
+/// Returns loads for an arch and its piers.
+pub(super) fn on_arch(table: &mut Table<'_>, loads: &[LoadTable]) -> ReadResult<Vec<PlacedLoad>> {
+    placed(table, loads, LoadTable::on_arch)
+}
+
+fn placed(
+    table: &mut Table<'_>,
+    loads: &[LoadTable],
+    place: fn(&LoadTable) -> Result<PlacedLoad, WrongKey>,
+) -> ReadResult<Vec<PlacedLoad>> {
+    let loads = loads.iter().enumerate();
+    let placed = loads.map(|(index, load)| {
+        place(load).map_err(|(key, wrong)| table.wrong_in_element(("load", index), key, wrong))
+    });
+    placed.collect()
+}
+
 pub(super) fn loaded_column(
     table: &mut Table<'_>,
     loads: &[LoadTable],
@@ -73,11 +93,7 @@ pub(super) fn loaded_column(
     if loads.is_empty() {
         return Ok(column);
     }
-    let placed = loads.iter().enumerate().map(|(index, load)| {
-        let placed = load.on_column();
-        placed.map_err(|wrong| table.wrong_element("load", index, wrong))
-    });
-    let placed: Vec<PlacedLoad> = placed.collect::<ReadResult<_>>()?;
+    let placed = placed(table, loads, LoadTable::on_column)?;
     let wall = column.wall().map(|(wall, _)| wall.side);
     let column = column.with_loads(placed, gravity_m_s2);
     let column = column.map_err(|error| match error {

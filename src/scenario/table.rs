@@ -453,21 +453,26 @@ impl<'a> Table<'a> {
         self.fault(place, format!("`{value}` in `{key}` {wrong}"))
     }
 
-    /// Records that the value of `key` is wrong in an element of the array `[[name]]`; elements are counted from 0. `message` follows the key and its
-    /// value.
+    /// Records that `key` is wrong or missing in an element of the array `[[name]]`; elements are counted from 0. `message` follows the key, its value
+    /// and the element.
     pub(super) fn wrong_in_element<M: Display>(
         &mut self,
         (name, at): (&str, usize),
         key: &str,
         message: M,
     ) -> FaultRecorded {
-        let element = self.entries.get(name).and_then(|value| value.get(at));
-        let Some(value) = element.and_then(|element| element.get(key)) else {
-            return self.wrong_element(name, at, format!("has a `{key}` that {message}"));
+        let element = format!("{}/{name}/{at}", self.path);
+        let path = format!("{element}/{key}");
+        let value = self
+            .entries
+            .get(name)
+            .and_then(|value| value.get(at)?.get(key));
+        let given = match value {
+            Some(value) => format!("`{key} = {}`", self.document.quote(&path, value)),
+            None => format!("`{key}`"),
         };
-        let path = format!("{}/{name}/{at}/{key}", self.path);
-        let given = format!("`{key} = {}`", self.document.quote(&path, value));
-        let place = self.place_of(&path).unwrap_or_default();
+        let place = self.place_of(&path).or_else(|| self.place_of(&element));
+        let place = place.unwrap_or_default();
         self.fault(place, format!("{given} of {name} {} {message}", at + 1))
     }
 
