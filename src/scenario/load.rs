@@ -1,6 +1,7 @@
 //! Loads: `[[load]]`, on the extrados of an arch or at points of a column.
 
 use super::prelude::*;
+use super::structure::wrong_wall;
 use crate::mechanics::stability::collapse_mechanism;
 use crate::mechanics::{ColumnLoadError, LARGEST_THRUST_N, PlacedLoad};
 use crate::{Column, Sway};
@@ -63,7 +64,6 @@ impl LoadTable {
     }
 }
 
-/// Adds loads to a column. With `has_joints` it moves as a row of blocks.
 /// A key of a load that does not fit, and the reason.
 type WrongKey = (&'static str, &'static str);
 
@@ -84,6 +84,7 @@ fn placed(
     placed.collect()
 }
 
+/// Adds loads to a column. With `has_joints` it moves as a row of blocks.
 pub(super) fn loaded_column(
     table: &mut Table<'_>,
     loads: &[LoadTable],
@@ -109,7 +110,7 @@ pub(super) fn loaded_column(
     })?;
     if has_joints {
         let held = column.wall_behind_drums().map(drop);
-        held.map_err(|error| why_not(table, &ColumnLoadError::Wall(error)))?;
+        held.map_err(|error| wrong_wall(table, &error))?;
         let row = column.row().map_err(|error| error.to_string());
         let falls = row.and_then(|row| collapse_mechanism(&row).map_err(|error| error.to_string()));
         let falls = falls.map_err(|wrong| format!("cannot be checked to stand: {wrong}"));
@@ -147,10 +148,7 @@ fn why_not(table: &mut Table<'_>, error: &ColumnLoadError) -> FaultRecorded {
             let wrong = format!("is not allowed; must be {}", error.allowed);
             table.wrong_in_element(("load", *index), error.argument, wrong)
         }
-        ColumnLoadError::Wall(error) => {
-            let wrong = format!("does not fit: it must be {}", error.allowed);
-            table.wrong_in(&["column", "back"], error.argument, wrong)
-        }
+        ColumnLoadError::Wall(error) => wrong_wall(table, error),
         ColumnLoadError::Overturns(side) => {
             let (side, other) = (side.name(), side.opposite().name());
             let wrong = format!(
