@@ -217,7 +217,8 @@ impl<'a> Table<'a> {
         };
         let Value::Array(elements) = entry else {
             let kind = kind(entry);
-            let wrong = format!("is {kind}; must be an array of tables: write [[{key}]]");
+            let name = format!("{}/{key}", self.path)[1..].replace('/', ".");
+            let wrong = format!("is {kind}; must be an array of tables: write [[{name}]]");
             self.wrong(key, wrong);
             return Vec::new();
         };

@@ -340,6 +340,10 @@ fn faulty_entries_are_refused() {
             entry("file = 'zero.csv'\nunit = 'g'\npeak_g = 1"),
             "is zero throughout",
         ),
+        (
+            "scales = [1]\nrecord = 'smc.smc'\n".to_owned(),
+            "must be an array of tables: write [[suite.record]]",
+        ),
         (entry(""), "lacks `file`"),
         (entry("file = 'none.smc'"), "does not exist"),
         (
