@@ -188,6 +188,21 @@ fn entries_have_keys_of_their_own() {
     );
 }
 
+/// The listed file has no channels, so `channel` is the default of the entry.
+#[test]
+fn a_default_may_apply_to_entries_only() {
+    let folder = folder();
+    let found = suite(
+        folder.path(),
+        "records = 'all/timed.csv'\nunit = 'm/s2'\nacceleration_column = 'north'\nchannel = 'N'\nscales = [1]\n\
+         [[suite.record]]\nfile = 'all/cwb.dat'\n",
+    );
+    assert_eq!(names(&found), ["all/timed.csv", "all/cwb.dat"]);
+    for series in &found.records {
+        assert_samples(series, 1.0);
+    }
+}
+
 /// Two columns of a table are two records; a scaled record gives what its scaled samples give, in every command.
 #[test]
 fn a_factor_multiplies_the_levels() {
@@ -377,6 +392,19 @@ fn faulty_entries_are_refused() {
         (
             format!("unit = 'gg'\n{}", entry("file = 'all/timed.csv'")),
             "`unit = 'gg'`",
+        ),
+        // Defaults that apply to no record.
+        (
+            format!("unit = 'g'\n{}", entry("file = 'all/smc.smc'")),
+            "`unit = 'g'` does not apply to this format",
+        ),
+        (
+            format!("channel = 2\n{}", entry("file = 'all/smc.smc'")),
+            "`channel = 2` applies to formats with several channels only",
+        ),
+        (
+            format!("dt_s = 0.1\n{}", entry("file = 'all/smc.smc'")),
+            "`dt_s = 0.1` applies to `format = \"csv\"` only",
         ),
         (
             entry("file = 'all/cwb.dat'"),
