@@ -10,6 +10,7 @@ use super::histories::{
     History, count_and_step, fields, is_text, largest, rest, squeezed, word_after,
 };
 use super::samples::{LineFault, Parsed, number, step_of_rate, words};
+use super::unit::Unit;
 use crate::scenario::prelude::*;
 
 /// Largest number of lines of a header.
@@ -175,7 +176,7 @@ pub(super) fn unam(lines: &[&str]) -> Parsed<Vec<History>> {
         let [found, channels] = [other.len(), counts.len()];
         ensure(found == channels, || {
             LineFault::on(other_line)(format!(
-                "has values of {found} channels: line {line} has {channels}"
+                "this line has values of {found} channels: line {line} has {channels}"
             ))
         })?;
     }
@@ -184,7 +185,11 @@ pub(super) fn unam(lines: &[&str]) -> Parsed<Vec<History>> {
         .split_once('(')
         .and_then(|(_, unit)| unit.split_once(')'));
     let unit = in_brackets.map_or(unit, |(unit, _)| unit.trim());
-    let peaks = of_channels("acel. max.(gal), c1").map_or_else(|_| Vec::new(), |(_, peaks)| peaks);
+    let peaks = of_channels("acel. max.(gal), c1").map(|(_, peaks)| peaks);
+    let fits = |peaks: &Vec<&str>| {
+        Unit::written(unit) == Some(Unit::CentimetrePerS2) && peaks.len() == counts.len()
+    };
+    let peaks = peaks.ok().filter(fits).unwrap_or_default();
     let channels = counts.iter().zip(&steps).zip(&names).enumerate();
     let histories = channels.map(|(index, ((count, step), name))| {
         let (count, step_s) = count_and_step((line, count), (step_line, number(step)))?;
