@@ -287,12 +287,6 @@ fn faults_of_loads_have_places() {
             "--set load.1.thrust_n=5: `load.1` is an entry of a list, and the scenario has no `load`",
         ),
         (
-            &format!("{column}[suite]\nscales = [1]\nrecords = 'a.at2'\n"),
-            "suite.record.1.scale=2",
-            "--set suite.record.1.scale=2: `suite.record.1` is an entry of a list, and the scenario has no `suite.record`; give the list, as \
-             [[suite.record]] in the file",
-        ),
-        (
             &text.replace("mass_kg = 100\n", ""),
             "",
             "s.toml:4:1: [[load]] needs one of the keys mass_kg, thrust_n",
@@ -312,6 +306,14 @@ fn faults_of_loads_have_places() {
         assert!(errors.starts_with(message), "{errors}");
         assert_eq!(errors.lines().count(), 1, "{errors}");
     }
+    let nested = errors(
+        &format!("{column}[suite]\nscales = [1]\n"),
+        "suite.record.1.scale=2",
+    );
+    assert!(
+        nested.contains("no `suite.record`; give the list, as [[suite.record]] in the file"),
+        "{nested}"
+    );
     let varied = |range: &str| {
         errors(
             &format!("{text}[uncertain]\n\"load.2.thrust_n\" = {range}\n"),

@@ -338,8 +338,16 @@ fn records_with_entries_shake_samples() {
 fn faulty_entries_are_refused() {
     let folder = folder();
     let folder = folder.path();
-    let entry = |keys: &str| format!("scales = [1]\n[[suite.record]]\n{keys}\n");
+    let entry_of = |keys: &str| format!("[[suite.record]]\n{keys}\n");
+    let entry = |keys: &str| format!("scales = [1]\n{}", entry_of(keys));
     fs::write(folder.join("zero.csv"), "0,0\n1,0\n").unwrap();
+    fs::write(folder.join("long.csv"), "0,0,0\n30,1,1\n").unwrap();
+    fs::copy(folder.join("all/timed.csv"), folder.join("all/timed.csv 2")).unwrap();
+    let long = |column: &str| {
+        entry_of(&format!(
+            "file = 'long.csv'\nunit = 'm/s2'\nacceleration_column = {column}"
+        ))
+    };
     let smc = "file = 'all/smc.smc'\n";
     let timed = "file = 'all/timed.csv'\nunit = 'm/s2'\nacceleration_column = 2";
     let cases = [
@@ -388,6 +396,28 @@ fn faulty_entries_are_refused() {
         (
             entry(&format!("{timed}\n[[suite.record]]\n{timed}")),
             "reads all/timed.csv 2 twice",
+        ),
+        // The name of a file is that of a column of another file.
+        (
+            format!(
+                "{}{}{}",
+                entry(timed),
+                entry_of(&timed.replace("= 2", "= 3")),
+                entry_of(
+                    &timed
+                        .replace(".csv", ".csv 2")
+                        .replace("unit", "format = 'csv'\nunit")
+                )
+            ),
+            "reads all/timed.csv 2 twice",
+        ),
+        (
+            format!(
+                "records = 'all/smc.smc'\nscales = [1]\n{}{}",
+                long("2"),
+                long("3")
+            ),
+            "[suite] has records that last longer than `duration_s` and would be cut off at 20 s: long.csv 2 (30 s), long.csv 3 (30 s)",
         ),
         (
             format!("unit = 'gg'\n{}", entry("file = 'all/timed.csv'")),
