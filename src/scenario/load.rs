@@ -84,7 +84,7 @@ fn placed(
     placed.collect()
 }
 
-/// Adds loads to a column. With `has_joints` it moves as a row of blocks.
+/// Puts loads on a column, which moves as a row of blocks if `has_joints`.
 pub(super) fn loaded_column(
     table: &mut Table<'_>,
     loads: &[LoadTable],
@@ -121,7 +121,7 @@ pub(super) fn loaded_column(
     Ok(column)
 }
 
-/// Returns the loads of a column with their defaults. The height of a load at the top is left out: it follows the height of the column, which may vary.
+/// Returns the loads of a column with their defaults, except the height of loads at the top, which follows that of the column.
 pub(super) fn with_defaults(loads: &[PlacedLoad]) -> Vec<Value> {
     let keys = |load: &PlacedLoad| {
         let mut keys = json!(load);

@@ -76,7 +76,7 @@ impl Measure {
 /// The records of a suite and the levels to which they are scaled.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Suite {
-    /// Records with their own scaling: those of `records`, sorted by file name, then those of the entries; at least one.
+    /// Records, each with its own scaling: those of the key `records`, sorted by file name, then those of the entries. At least one.
     pub records: Vec<Series>,
     /// True if some of the records have entries `[[suite.record]]`.
     pub has_entries: bool,
@@ -249,7 +249,7 @@ fn read_entry(
     Ok(records.map(|(_, series)| series.scaled(scaling)).collect())
 }
 
-/// Adds channel or column to the names of records that share their file. Returns a name that two records have even so.
+/// Adds channel or column to the names of records that share their file. Returns a name that two records still share.
 fn name_apart(records: &mut [Series]) -> Option<String> {
     let mut shares: BTreeMap<String, usize> = BTreeMap::new();
     for series in &*records {
@@ -290,7 +290,7 @@ fn check_record(
     strongest.check_strength(simulation.gravity_m_s2)
 }
 
-/// Returns the error if the given duration cuts records off, with all of them; `None` if it covers them.
+/// Returns an error that lists the records longer than the given duration; `None` if there are none.
 fn cut_off(records: &[Series], duration_s: Option<f64>) -> Option<String> {
     let end_s = |series: &Series| start_s(series) + series.last_s();
     let duration_s = duration_s?;

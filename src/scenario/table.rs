@@ -82,8 +82,9 @@ pub struct Table<'a> {
     /// Path of the table in the document.
     path: String,
     entries: &'a Entries,
-    /// Path and entries of the outer table, and the keys whose values there are defaults of this table.
+    /// Path and entries of the outer table.
     outer: Option<(String, &'a Entries)>,
+    /// Keys whose values in the outer table are defaults of this table.
     inherited: Vec<&'static str>,
     document: &'a Document<'a>,
     /// The keys that were read, and true for keys of tables.
@@ -425,7 +426,7 @@ impl<'a> Table<'a> {
             return self.fault(place, format!("`{key}` {message}"));
         };
         let given = match value {
-            // The key of another table, with its distribution or its values.
+            // [uncertain] and [map] name keys of other tables, such as `arch.depth_m`.
             Value::Object(_) if key.contains('.') => format!("`{key}`"),
             Value::Object(_) => format!("table `{key}`"),
             _ if self.document.is_array_of_tables(&path, value) => format!("`[[{key}]]`"),

@@ -29,8 +29,8 @@ fn find(header: &[&str], phrase: &str) -> Parsed<(usize, String)> {
     })
 }
 
-/// Divides a file into its header, and the numbers from the first line below the one with a phrase that `is_header` refuses. Words below are a fault,
-/// or the numbers of another record would be read with this header.
+/// Splits a file into header and numbers. The header extends to the line with a phrase, and over further lines that are blank or satisfy `is_header`.
+/// Words among the numbers are a fault, or the numbers of another record would be read with this header.
 fn header_and_data<'l, 't>(
     lines: &'l [&'t str],
     phrase: &str,
@@ -97,7 +97,7 @@ pub(super) fn cwb(lines: &[&str]) -> Parsed<Vec<History>> {
     let rows: Vec<usize> = data.clone().filter(is_row).collect();
     let count = rows.len() as f64;
     let last_line = rows.last().map_or(data.end.max(1), |index| index + 1);
-    // The header gives the length only, of the samples or of the steps between them.
+    // The header gives only the length: the step times the number of samples, or of steps between them.
     ensure((count * step_s - lasts_s).abs() <= 1.5 * step_s, || {
         let [found_s, lasts_s] = [count * step_s, lasts_s].map(plain);
         LineFault::on(last_line)(format!(

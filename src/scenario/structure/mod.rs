@@ -55,7 +55,7 @@ pub enum ModelError {
 }
 
 impl Structure {
-    /// Reads the structure with its ties, for a model of motion with joints or without. `lands` is true for joints whose blocks move and land as rigid ones.
+    /// Reads the structure with its ties, for a model of motion with joints or without. `lands` is true if its blocks are rigid and land on each other.
     pub(super) fn read(
         table: &mut Table<'_>,
         (has_joints, lands): (bool, bool),
