@@ -265,6 +265,39 @@ fn a_factor_multiplies_the_levels() {
     }
 }
 
+/// Records of one file have their channels in their names, and the levels multiply their peaks.
+#[test]
+fn levels_multiply_peaks() {
+    let folder = folder();
+    let folder = folder.path();
+    let entry = |channel: &str, peak_g: f64| {
+        format!("[[suite.record]]\nfile = 'all/cwb.dat'\nchannel = {channel}\npeak_g = {peak_g}\n")
+    };
+    let keys = format!(
+        "scales = [1.0, 3.0]\nboth_signs = false\n{}{}",
+        entry("'E'", 0.25),
+        entry("2", 0.75)
+    );
+    suite(folder, &keys);
+    done(folder, &["suite", "s.toml", "--out", "results"]);
+    let rows = Table::read(folder.join("results/suite.csv")).rows;
+    let expected = [("E", 0.25), ("E", 0.75), ("2", 0.75), ("2", 2.25)];
+    assert_eq!(rows.len(), expected.len());
+    for (row, (channel, peak_g)) in rows.iter().zip(expected) {
+        assert_eq!(row["record"], format!("all/cwb.dat {channel}"));
+        assert!(
+            (row.number("peak_g") - peak_g).abs() < 1e-9,
+            "{}",
+            row["peak_g"]
+        );
+    }
+    // The channels are proportional, so equal peaks are equal motions.
+    let key = "peak_rotation_over_critical";
+    let [weak, strong, equal] = [0, 1, 2].map(|row| rows[row].number(key));
+    assert!(weak < 0.5 * strong, "{weak} {strong}");
+    assert!((strong - equal).abs() < 1e-6 * equal, "{strong} {equal}");
+}
+
 /// A part of a suite is not resumed after a change of a factor.
 #[test]
 fn parts_belong_to_their_factors() {
@@ -289,14 +322,16 @@ fn parts_belong_to_their_factors() {
 #[test]
 fn defaults_give_way_to_other_keys() {
     let folder = folder();
+    fs::write(folder.path().join("two.csv"), "up,north\n1,2\n3,4\n0,9\n").unwrap();
     let found = suite(
         folder.path(),
         "scales = [1]\nunit = 'cm/s2'\nbaseline = 'linear'\nhigh_pass_hz = 1\ndt_s = 0.01\nwrapped = true\n\
          [[suite.record]]\nfile = 'all/csmip.v2'\nquantity = 'velocity'\n\
          [[suite.record]]\nfile = 'all/timed.csv'\nremove_mean = true\ntime_column = 't'\nacceleration_column = 2\n\
-         [[suite.record]]\nfile = 'even.dat'\nskip_rows = 1\n",
+         [[suite.record]]\nfile = 'even.dat'\nskip_rows = 1\n\
+         [[suite.record]]\nfile = 'two.csv'\nacceleration_column = 'north'\n",
     );
-    let [velocities, timed, even] = &found.records[..] else {
+    let [velocities, timed, even, two] = &found.records[..] else {
         panic!("{:?}", names(&found));
     };
     let corrections = |series: &Series| (series.layout.baseline, series.layout.high_pass_hz);
@@ -305,6 +340,8 @@ fn defaults_give_way_to_other_keys() {
     assert_eq!(corrections(even), (Some(Baseline::Linear), Some(1.0)));
     assert_eq!((timed.layout.wrapped, even.layout.wrapped), (false, true));
     assert_eq!(even.layout.times, Some(Times::Step(0.01)));
+    assert_eq!(two.layout.times, Some(Times::Step(0.01)));
+    assert!(!two.layout.wrapped);
 }
 
 /// Samples of an uncertain structure shake under each record, by its name.
