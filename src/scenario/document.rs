@@ -291,8 +291,9 @@ fn replace(mut known: &mut Value, mut new: Value, depth: usize) -> Result<[Strin
                 let inner = value.as_object().and_then(|inner| inner.keys().next());
                 let entry = inner.filter(|inner| inner.parse::<usize>().is_ok());
                 if let Some(entry) = entry.filter(|_| !entries.contains_key(key)) {
+                    let name = format!("{path}/{key}")[1..].replace('/', ".");
                     return Err(format!(
-                        "`{key}.{entry}` is an entry of a list, and the scenario has no `{key}`; give the list, as [[{key}]] in the file"
+                        "`{name}.{entry}` is an entry of a list, and the scenario has no `{name}`; give the list, as [[{name}]] in the file"
                     ));
                 }
                 path += &format!("/{key}");

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::model_kind::{AnyModel, ModelKind, ModelOptions, Site};
 use super::prelude::*;
-use super::structure::Structure;
+use super::structure::{Structure, wrong_wall};
 use crate::{ImpactLaw, ImpactModel};
 
 /// One mechanism of one degree of freedom at a time: four links, or Housner's column.
@@ -78,10 +78,8 @@ impl ModelOptions for ImpactLaw {
         };
         let is_prescribed = matches!(self.model, ImpactModel::Prescribed { .. });
         if !is_prescribed {
-            column.wall_rate_ratio().map_err(|error| {
-                let wrong = format!("does not fit: it must be {}", error.allowed);
-                table.wrong_in(&["column", "back"], error.argument, wrong)
-            })?;
+            let rate_ratio = column.wall_rate_ratio();
+            rate_ratio.map_err(|error| wrong_wall(table, &error))?;
         }
         let is_given = (column.wall()).is_some_and(|(wall, _)| wall.rate_ratio.is_some());
         let is_own = self.is_theory() && !is_prescribed;

@@ -96,7 +96,7 @@ fn rate_of_blow(table: &mut Table<'_>, structure: &Structure, blow: &Blow) -> Re
     table.refuse(blow.height_m > top_m, "height_m", wrong)?;
     let most_rad_s = *Initial::RATE_RAD_S.end();
     let wrong = format!(
-        "makes a rate of {} rad/s; it must be from 1e-100 to {most_rad_s}",
+        "gives the column a rate of {} rad/s; it must be from 1e-100 to {most_rad_s}",
         short(rate_rad_s)
     );
     let fits = (Initial::MIN_ROTATION_RAD..=most_rad_s).contains(&rate_rad_s);

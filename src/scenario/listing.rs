@@ -23,8 +23,8 @@ struct ListedFile {
 }
 
 impl RecordListing {
-    /// Finds the files that match the patterns of the keys, without those of other records, and reads the keys that describe tables. `format`
-    /// applies to all files; without it the contents or the extensions of the files determine the formats.
+    /// Finds the files that match the patterns of the keys, except files of `others`, and reads the keys that describe them. These keys may be meant
+    /// for `others` only, as defaults. `format` applies to all files; without it the contents or the extensions of the files determine the formats.
     pub(super) fn read(
         table: &mut Table<'_>,
         keys: &[(&'static str, Vec<String>)],
@@ -32,14 +32,16 @@ impl RecordListing {
         others: &[Series],
     ) -> Self {
         let identity = |file: &str| table.files().identity(table.files().path(file));
-        let others: BTreeSet<_> = others.iter().map(|other| identity(&other.file)).collect();
+        let seen: BTreeSet<_> = others.iter().map(|other| identity(&other.file)).collect();
         let keys = keys.iter();
         let files: Vec<_> = keys
-            .flat_map(|(key, patterns)| list(table, (key, patterns), format, others.clone()))
+            .flat_map(|(key, patterns)| list(table, (key, patterns), format, seen.clone()))
             .collect();
         let mut formats = formats(&files);
-        if !others.is_empty() && !formats.contains(&Format::Csv) {
-            // Keys of tables are then those of the other records.
+        let has_tables = formats.contains(&Format::Csv);
+        formats.extend(others.iter().map(|other| other.layout.format));
+        if !has_tables && formats.contains(&Format::Csv) {
+            // Each of the other tables has its required keys, here or in its entry.
             formats.clear();
         }
         let layout = Layout::read(table, &formats);

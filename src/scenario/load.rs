@@ -1,6 +1,7 @@
 //! Loads: `[[load]]`, on the extrados of an arch or at points of a column.
 
 use super::prelude::*;
+use super::structure::wrong_wall;
 use crate::mechanics::stability::collapse_mechanism;
 use crate::mechanics::{ColumnLoadError, LARGEST_THRUST_N, PlacedLoad};
 use crate::{Column, Sway};
@@ -40,30 +41,50 @@ impl LoadTable {
     /// Returns the load for an arch or one of its piers.
     ///
     /// # Errors
-    /// A key that is missing, or that applies to piers and columns only.
-    pub(super) fn on_arch(&self) -> Result<PlacedLoad, String> {
+    /// A key that is missing, or that applies to piers and columns only, with the reason.
+    fn on_arch(&self) -> Result<PlacedLoad, WrongKey> {
         if self.load.pier.is_none() {
-            let wrong = "has `height_m`, which applies to columns and piers: loads of an arch are on its extrados; leave it out, or give `pier`";
-            ensure(self.load.height_m.is_none(), || wrong.to_owned())?;
-            let lacks = "lacks `x_m`: a load on the extrados has a position; give it, or `pier`";
-            ensure(self.has_position, || lacks.to_owned())?;
+            let wrong = "applies to columns and piers: loads of an arch are on its extrados; leave it out, or give `pier`";
+            ensure(self.load.height_m.is_none(), || ("height_m", wrong))?;
+            let lacks = "is missing: a load on the extrados has a position; give it, or `pier`";
+            ensure(self.has_position, || ("x_m", lacks))?;
         }
         Ok(self.load)
     }
 
     /// Returns the load for a column.
-    fn on_column(&self) -> Result<PlacedLoad, String> {
-        let width = (self.load.width_m > 0.0).then_some("width_m");
-        let key_of_arch = width.or(self.load.pier.map(|_| "pier"));
-        key_of_arch.map_or(Ok(self.load), |key| {
-            Err(format!(
-                "has `{key}`, which applies to arches: a load on a column acts at a point; leave it out"
-            ))
-        })
+    ///
+    /// # Errors
+    /// A key that applies to arches only, with the reason.
+    fn on_column(&self) -> Result<PlacedLoad, WrongKey> {
+        let wrong = "applies to arches: a load on a column acts at a point; leave it out";
+        ensure(self.load.width_m == 0.0, || ("width_m", wrong))?;
+        ensure(self.load.pier.is_none(), || ("pier", wrong))?;
+        Ok(self.load)
     }
 }
 
-/// Adds loads to a column. With `has_joints` it moves as a row of blocks.
+/// A key of a load that does not fit, and the reason.
+type WrongKey = (&'static str, &'static str);
+
+/// Returns loads for an arch and its piers.
+pub(super) fn on_arch(table: &mut Table<'_>, loads: &[LoadTable]) -> ReadResult<Vec<PlacedLoad>> {
+    placed(table, loads, LoadTable::on_arch)
+}
+
+fn placed(
+    table: &mut Table<'_>,
+    loads: &[LoadTable],
+    place: fn(&LoadTable) -> Result<PlacedLoad, WrongKey>,
+) -> ReadResult<Vec<PlacedLoad>> {
+    let loads = loads.iter().enumerate();
+    let placed = loads.map(|(index, load)| {
+        place(load).map_err(|(key, wrong)| table.wrong_in_element(("load", index), key, wrong))
+    });
+    placed.collect()
+}
+
+/// Puts loads on a column, which moves as a row of blocks if `has_joints`.
 pub(super) fn loaded_column(
     table: &mut Table<'_>,
     loads: &[LoadTable],
@@ -73,11 +94,7 @@ pub(super) fn loaded_column(
     if loads.is_empty() {
         return Ok(column);
     }
-    let placed = loads.iter().enumerate().map(|(index, load)| {
-        let placed = load.on_column();
-        placed.map_err(|wrong| table.wrong_element("load", index, wrong))
-    });
-    let placed: Vec<PlacedLoad> = placed.collect::<ReadResult<_>>()?;
+    let placed = placed(table, loads, LoadTable::on_column)?;
     let wall = column.wall().map(|(wall, _)| wall.side);
     let column = column.with_loads(placed, gravity_m_s2);
     let column = column.map_err(|error| match error {
@@ -93,7 +110,7 @@ pub(super) fn loaded_column(
     })?;
     if has_joints {
         let held = column.wall_behind_drums().map(drop);
-        held.map_err(|error| why_not(table, &ColumnLoadError::Wall(error)))?;
+        held.map_err(|error| wrong_wall(table, &error))?;
         let row = column.row().map_err(|error| error.to_string());
         let falls = row.and_then(|row| collapse_mechanism(&row).map_err(|error| error.to_string()));
         let falls = falls.map_err(|wrong| format!("cannot be checked to stand: {wrong}"));
@@ -104,7 +121,7 @@ pub(super) fn loaded_column(
     Ok(column)
 }
 
-/// Returns the loads of a column with their defaults. The height of a load at the top is left out: it follows the height of the column, which may vary.
+/// Returns the loads of a column with their defaults, except the height of loads at the top, which follows that of the column.
 pub(super) fn with_defaults(loads: &[PlacedLoad]) -> Vec<Value> {
     let keys = |load: &PlacedLoad| {
         let mut keys = json!(load);
@@ -131,10 +148,7 @@ fn why_not(table: &mut Table<'_>, error: &ColumnLoadError) -> FaultRecorded {
             let wrong = format!("is not allowed; must be {}", error.allowed);
             table.wrong_in_element(("load", *index), error.argument, wrong)
         }
-        ColumnLoadError::Wall(error) => {
-            let wrong = format!("does not fit: it must be {}", error.allowed);
-            table.wrong_in(&["column", "back"], error.argument, wrong)
-        }
+        ColumnLoadError::Wall(error) => wrong_wall(table, error),
         ColumnLoadError::Overturns(side) => {
             let (side, other) = (side.name(), side.opposite().name());
             let wrong = format!(

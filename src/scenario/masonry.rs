@@ -14,7 +14,7 @@ use nalgebra::Vector2;
 
 use super::LineFault;
 use super::files::Files;
-use super::load::{LoadTable, NO_CONSTANT_FORCES};
+use super::load::{self, LoadTable, NO_CONSTANT_FORCES};
 use super::prelude::*;
 use super::record::{Decimal, faulty, read_numbers};
 use super::tie::{self, PULLS_OVER, TieTable};
@@ -252,11 +252,7 @@ impl Additions {
         gravity_m_s2: f64,
     ) -> ReadResult<Masonry> {
         let key = shape.name();
-        let loads = self.loads.iter().enumerate().map(|(index, load)| {
-            let placed = load.on_arch();
-            placed.map_err(|wrong| table.wrong_element("load", index, wrong))
-        });
-        let loads = loads.collect::<ReadResult<_>>()?;
+        let loads = load::on_arch(table, &self.loads)?;
         let masonry = Masonry::new(shape, self.piers, self.fill, loads);
         let masonry = masonry.map_err(|error| self.wrong(table, key, &error))?;
         let on = (&masonry.row, masonry.springing_joints());
@@ -302,10 +298,9 @@ impl Additions {
             MasonryError::Load(index, error) => {
                 table.wrong_in_element(("load", *index), error.argument, allowed(error))
             }
-            MasonryError::NoPier(index, side) => {
-                let side = side.name();
-                let wrong = format!("is on the {side} pier, and the arch has none; give [piers], or leave `pier` out");
-                table.wrong_element("load", *index, wrong)
+            MasonryError::NoPier(index, _) => {
+                let wrong = "names a pier that the arch does not have; give [piers], or leave `pier` out";
+                table.wrong_in_element(("load", *index), "pier", wrong)
             }
             MasonryError::Blocks => self.refused(
                 table,

@@ -24,7 +24,6 @@ use super::listing::{RecordListing, written};
 use super::prelude::*;
 use super::record::{self, Component, Format, Record, Scaling, Series};
 use super::sequence::Sequence;
-use super::shown::shown;
 use super::simulation::Simulation;
 
 named! {
@@ -77,7 +76,7 @@ impl Measure {
 /// The records of a suite and the levels to which they are scaled.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Suite {
-    /// Records with their own scaling: those of `records`, sorted by file name, then those of the entries; at least one.
+    /// Records, each with its own scaling: those of the key `records`, sorted by file name, then those of the entries. At least one.
     pub records: Vec<Series>,
     /// True if some of the records have entries `[[suite.record]]`.
     pub has_entries: bool,
@@ -165,18 +164,22 @@ impl Suite {
         table.refuse_all(cases > MAX_CASES, wrong)?;
         table.refuse_all(files == 0, "has no records")?;
         let has_entries = !entries.is_empty();
-        let listed = listing.series(table, accept)?.into_iter();
-        let mut records: Vec<_> = listed.map(|(_, series)| series).chain(entries).collect();
+        let listed = listing.series(table, accept)?;
+        let of_entries = listed.len()..;
+        let listed = listed.into_iter().map(|(_, series)| series);
+        let mut records: Vec<_> = listed.chain(entries).collect();
         let twice = name_apart(&mut records).map_or(String::new(), |name| {
             format!("reads {name} twice; leave an entry out, or give each its `channel` or `acceleration_column`")
         });
         table.refuse_all(!twice.is_empty(), twice)?;
-        if let Some(wrong) = simulation.and_then(|simulation| cut_off(&records, simulation)) {
-            return Err(match table.gives(RECORDS) {
-                true => table.wrong(RECORDS, wrong),
-                false => table.fault_of_table(wrong),
-            });
+        let duration_s = simulation.and_then(|simulation| simulation.duration_s);
+        if let Some(wrong) = cut_off(&records[..of_entries.start], duration_s) {
+            table.wrong(RECORDS, wrong);
         }
+        if let Some(wrong) = cut_off(&records[of_entries], duration_s) {
+            table.fault_of_table(wrong);
+        }
+        table.check_faultless()?;
         Ok(Self {
             records,
             has_entries,
@@ -246,16 +249,18 @@ fn read_entry(
     Ok(records.map(|(_, series)| series.scaled(scaling)).collect())
 }
 
-/// Adds channel or column to the names of records that share their file. Returns a name that two records have even so.
+/// Adds channel or column to the names of records that share their file. Returns a name that two records still share.
 fn name_apart(records: &mut [Series]) -> Option<String> {
     let mut shares: BTreeMap<String, usize> = BTreeMap::new();
     for series in &*records {
         *shares.entry(series.file.clone()).or_default() += 1;
     }
     let mut names = BTreeSet::new();
-    for series in records.iter_mut().filter(|series| shares[&series.file] > 1) {
+    for series in records {
         let (channel, column) = (&series.layout.channel, &series.layout.acceleration_column);
-        if let Some(column) = channel.as_ref().or(column.as_ref()) {
+        if let Some(column) = channel.as_ref().or(column.as_ref())
+            && shares[&series.file] > 1
+        {
             series.name = format!("{} {column}", series.file);
         }
         if !names.insert(&series.name) {
@@ -285,10 +290,10 @@ fn check_record(
     strongest.check_strength(simulation.gravity_m_s2)
 }
 
-/// Returns the error if the given duration cuts records off, with all of them; `None` if it covers them.
-fn cut_off(records: &[Series], simulation: &Simulation) -> Option<String> {
+/// Returns an error that lists the records longer than the given duration; `None` if there are none.
+fn cut_off(records: &[Series], duration_s: Option<f64>) -> Option<String> {
     let end_s = |series: &Series| start_s(series) + series.last_s();
-    let duration_s = simulation.duration_s?;
+    let duration_s = duration_s?;
     let cut: Vec<_> = records
         .iter()
         .filter(|series| end_s(series) > duration_s)
@@ -296,7 +301,7 @@ fn cut_off(records: &[Series], simulation: &Simulation) -> Option<String> {
     let longest_s = cut.iter().map(|series| end_s(series)).reduce(f64::max)?;
     let listed = cut
         .iter()
-        .map(|series| format!("{} ({} s)", shown(&series.file), plain(end_s(series))));
+        .map(|series| format!("{} ({} s)", series.name(), plain(end_s(series))));
     let names = if cut.len() == 1 {
         "a record that lasts"
     } else {

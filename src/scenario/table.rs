@@ -82,8 +82,9 @@ pub struct Table<'a> {
     /// Path of the table in the document.
     path: String,
     entries: &'a Entries,
-    /// Path and entries of the outer table, and the keys whose values there are defaults of this table.
+    /// Path and entries of the outer table.
     outer: Option<(String, &'a Entries)>,
+    /// Keys whose values in the outer table are defaults of this table.
     inherited: Vec<&'static str>,
     document: &'a Document<'a>,
     /// The keys that were read, and true for keys of tables.
@@ -217,7 +218,8 @@ impl<'a> Table<'a> {
         };
         let Value::Array(elements) = entry else {
             let kind = kind(entry);
-            let wrong = format!("is {kind}; must be an array of tables: write [[{key}]]");
+            let name = format!("{}/{key}", self.path)[1..].replace('/', ".");
+            let wrong = format!("is {kind}; must be an array of tables: write [[{name}]]");
             self.wrong(key, wrong);
             return Vec::new();
         };
@@ -424,7 +426,7 @@ impl<'a> Table<'a> {
             return self.fault(place, format!("`{key}` {message}"));
         };
         let given = match value {
-            // The key of another table, with its distribution or its values.
+            // [uncertain] and [map] name keys of other tables, such as `arch.depth_m`.
             Value::Object(_) if key.contains('.') => format!("`{key}`"),
             Value::Object(_) => format!("table `{key}`"),
             _ if self.document.is_array_of_tables(&path, value) => format!("`[[{key}]]`"),
@@ -453,21 +455,26 @@ impl<'a> Table<'a> {
         self.fault(place, format!("`{value}` in `{key}` {wrong}"))
     }
 
-    /// Records that the value of `key` is wrong in an element of the array `[[name]]`; elements are counted from 0. `message` follows the key and its
-    /// value.
+    /// Records that `key` is wrong or missing in an element of the array `[[name]]`; elements are counted from 0. `message` follows the key, its value
+    /// and the element.
     pub(super) fn wrong_in_element<M: Display>(
         &mut self,
         (name, at): (&str, usize),
         key: &str,
         message: M,
     ) -> FaultRecorded {
-        let element = self.entries.get(name).and_then(|value| value.get(at));
-        let Some(value) = element.and_then(|element| element.get(key)) else {
-            return self.wrong_element(name, at, format!("has a `{key}` that {message}"));
+        let element = format!("{}/{name}/{at}", self.path);
+        let path = format!("{element}/{key}");
+        let value = self
+            .entries
+            .get(name)
+            .and_then(|value| value.get(at)?.get(key));
+        let given = match value {
+            Some(value) => format!("`{key} = {}`", self.document.quote(&path, value)),
+            None => format!("`{key}`"),
         };
-        let path = format!("{}/{name}/{at}/{key}", self.path);
-        let given = format!("`{key} = {}`", self.document.quote(&path, value));
-        let place = self.place_of(&path).unwrap_or_default();
+        let place = self.place_of(&path).or_else(|| self.place_of(&element));
+        let place = place.unwrap_or_default();
         self.fault(place, format!("{given} of {name} {} {message}", at + 1))
     }
 

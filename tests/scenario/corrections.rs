@@ -96,7 +96,27 @@ fn corrected_records_end_without_velocity() {
     assert!(end_velocity(&record(folder.path(), "").main) > 5.0);
 }
 
-/// The filter applies after the baseline; files with other corrections are read anew.
+/// The filter applies after the baseline: for the filter an offset would be a step at both ends.
+#[test]
+fn an_offset_has_no_effect_with_baseline_and_filter() {
+    let folder = folder();
+    let keys = "baseline = 'mean'\nhigh_pass_hz = 0.5";
+    let expected = record(folder.path(), keys);
+    let shifted = drifting().into_iter();
+    let shifted =
+        shifted.map(|(time_s, acceleration)| format!("{time_s},{}\n", acceleration + 5.0));
+    fs::write(folder.path().join("a.csv"), shifted.collect::<String>()).unwrap();
+    let found = record(folder.path(), keys);
+    let samples = found.main.samples.iter().zip(&*expected.main.samples);
+    for (found, expected) in samples {
+        assert!(
+            (found.1 - expected.1).abs() < 1e-9,
+            "{found:?} {expected:?}"
+        );
+    }
+}
+
+/// Files with other corrections are read anew.
 #[test]
 fn each_record_has_its_corrections() {
     let folder = folder();

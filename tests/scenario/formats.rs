@@ -859,6 +859,17 @@ fn headers_state_the_unit() {
     ] {
         assert_fault("geonet.v1a", ("1.00 mm/s/s", unit), line, words);
     }
+    // The peaks of UNAM are in gal, of the channels that have one.
+    let unam = text("unam.asa");
+    for (old, new) in [
+        ("cm/s^2 (Gal)", "m/s2"),
+        ("-2.5/-0.75/0.25", "-2.6/-0.75"),
+        ("ACEL. MAX.", "ACEL."),
+    ] {
+        assert!(unam.contains(old), "{old}");
+        let contents = parse(&choose(Format::Unam, 1), &unam.replacen(old, new, 1)).unwrap();
+        assert_eq!(contents.difference, None, "{old}");
+    }
     let afad = text("afad.txt").replace("VALUES (gal)", "VALUES (g)");
     let contents = parse(&choose(Format::Afad, 1), &afad).unwrap();
     assert_eq!(contents.unit, Unit::Gravity);

@@ -306,6 +306,14 @@ fn faults_of_loads_have_places() {
         assert!(errors.starts_with(message), "{errors}");
         assert_eq!(errors.lines().count(), 1, "{errors}");
     }
+    let nested = errors(
+        &format!("{column}[suite]\nscales = [1]\n"),
+        "suite.record.1.scale=2",
+    );
+    assert!(
+        nested.contains("no `suite.record`; give the list, as [[suite.record]] in the file"),
+        "{nested}"
+    );
     let varied = |range: &str| {
         errors(
             &format!("{text}[uncertain]\n\"load.2.thrust_n\" = {range}\n"),

@@ -188,6 +188,21 @@ fn entries_have_keys_of_their_own() {
     );
 }
 
+/// The listed file has no channels, so `channel` is the default of the entry.
+#[test]
+fn a_default_may_apply_to_entries_only() {
+    let folder = folder();
+    let found = suite(
+        folder.path(),
+        "records = 'all/timed.csv'\nunit = 'm/s2'\nacceleration_column = 'north'\nchannel = 'N'\nscales = [1]\n\
+         [[suite.record]]\nfile = 'all/cwb.dat'\n",
+    );
+    assert_eq!(names(&found), ["all/timed.csv", "all/cwb.dat"]);
+    for series in &found.records {
+        assert_samples(series, 1.0);
+    }
+}
+
 /// Two columns of a table are two records; a scaled record gives what its scaled samples give, in every command.
 #[test]
 fn a_factor_multiplies_the_levels() {
@@ -250,6 +265,39 @@ fn a_factor_multiplies_the_levels() {
     }
 }
 
+/// Records of one file have their channels in their names, and the levels multiply their peaks.
+#[test]
+fn levels_multiply_peaks() {
+    let folder = folder();
+    let folder = folder.path();
+    let entry = |channel: &str, peak_g: f64| {
+        format!("[[suite.record]]\nfile = 'all/cwb.dat'\nchannel = {channel}\npeak_g = {peak_g}\n")
+    };
+    let keys = format!(
+        "scales = [1.0, 3.0]\nboth_signs = false\n{}{}",
+        entry("'E'", 0.25),
+        entry("2", 0.75)
+    );
+    suite(folder, &keys);
+    done(folder, &["suite", "s.toml", "--out", "results"]);
+    let rows = Table::read(folder.join("results/suite.csv")).rows;
+    let expected = [("E", 0.25), ("E", 0.75), ("2", 0.75), ("2", 2.25)];
+    assert_eq!(rows.len(), expected.len());
+    for (row, (channel, peak_g)) in rows.iter().zip(expected) {
+        assert_eq!(row["record"], format!("all/cwb.dat {channel}"));
+        assert!(
+            (row.number("peak_g") - peak_g).abs() < 1e-9,
+            "{}",
+            row["peak_g"]
+        );
+    }
+    // The channels are proportional, so equal peaks are equal motions.
+    let key = "peak_rotation_over_critical";
+    let [weak, strong, equal] = [0, 1, 2].map(|row| rows[row].number(key));
+    assert!(weak < 0.5 * strong, "{weak} {strong}");
+    assert!((strong - equal).abs() < 1e-6 * equal, "{strong} {equal}");
+}
+
 /// A part of a suite is not resumed after a change of a factor.
 #[test]
 fn parts_belong_to_their_factors() {
@@ -274,14 +322,16 @@ fn parts_belong_to_their_factors() {
 #[test]
 fn defaults_give_way_to_other_keys() {
     let folder = folder();
+    fs::write(folder.path().join("two.csv"), "up,north\n1,2\n3,4\n0,9\n").unwrap();
     let found = suite(
         folder.path(),
         "scales = [1]\nunit = 'cm/s2'\nbaseline = 'linear'\nhigh_pass_hz = 1\ndt_s = 0.01\nwrapped = true\n\
          [[suite.record]]\nfile = 'all/csmip.v2'\nquantity = 'velocity'\n\
          [[suite.record]]\nfile = 'all/timed.csv'\nremove_mean = true\ntime_column = 't'\nacceleration_column = 2\n\
-         [[suite.record]]\nfile = 'even.dat'\nskip_rows = 1\n",
+         [[suite.record]]\nfile = 'even.dat'\nskip_rows = 1\n\
+         [[suite.record]]\nfile = 'two.csv'\nacceleration_column = 'north'\n",
     );
-    let [velocities, timed, even] = &found.records[..] else {
+    let [velocities, timed, even, two] = &found.records[..] else {
         panic!("{:?}", names(&found));
     };
     let corrections = |series: &Series| (series.layout.baseline, series.layout.high_pass_hz);
@@ -290,6 +340,8 @@ fn defaults_give_way_to_other_keys() {
     assert_eq!(corrections(even), (Some(Baseline::Linear), Some(1.0)));
     assert_eq!((timed.layout.wrapped, even.layout.wrapped), (false, true));
     assert_eq!(even.layout.times, Some(Times::Step(0.01)));
+    assert_eq!(two.layout.times, Some(Times::Step(0.01)));
+    assert!(!two.layout.wrapped);
 }
 
 /// Samples of an uncertain structure shake under each record, by its name.
@@ -323,8 +375,16 @@ fn records_with_entries_shake_samples() {
 fn faulty_entries_are_refused() {
     let folder = folder();
     let folder = folder.path();
-    let entry = |keys: &str| format!("scales = [1]\n[[suite.record]]\n{keys}\n");
+    let entry_of = |keys: &str| format!("[[suite.record]]\n{keys}\n");
+    let entry = |keys: &str| format!("scales = [1]\n{}", entry_of(keys));
     fs::write(folder.join("zero.csv"), "0,0\n1,0\n").unwrap();
+    fs::write(folder.join("long.csv"), "0,0,0\n30,1,1\n").unwrap();
+    fs::copy(folder.join("all/timed.csv"), folder.join("all/timed.csv 2")).unwrap();
+    let long = |column: &str| {
+        entry_of(&format!(
+            "file = 'long.csv'\nunit = 'm/s2'\nacceleration_column = {column}"
+        ))
+    };
     let smc = "file = 'all/smc.smc'\n";
     let timed = "file = 'all/timed.csv'\nunit = 'm/s2'\nacceleration_column = 2";
     let cases = [
@@ -339,6 +399,10 @@ fn faulty_entries_are_refused() {
         (
             entry("file = 'zero.csv'\nunit = 'g'\npeak_g = 1"),
             "is zero throughout",
+        ),
+        (
+            "scales = [1]\nrecord = 'smc.smc'\n".to_owned(),
+            "must be an array of tables: write [[suite.record]]",
         ),
         (entry(""), "lacks `file`"),
         (entry("file = 'none.smc'"), "does not exist"),
@@ -370,9 +434,44 @@ fn faulty_entries_are_refused() {
             entry(&format!("{timed}\n[[suite.record]]\n{timed}")),
             "reads all/timed.csv 2 twice",
         ),
+        // The name of a file is that of a column of another file.
+        (
+            format!(
+                "{}{}{}",
+                entry(timed),
+                entry_of(&timed.replace("= 2", "= 3")),
+                entry_of(
+                    &timed
+                        .replace(".csv", ".csv 2")
+                        .replace("unit", "format = 'csv'\nunit")
+                )
+            ),
+            "reads all/timed.csv 2 twice",
+        ),
+        (
+            format!(
+                "records = 'all/smc.smc'\nscales = [1]\n{}{}",
+                long("2"),
+                long("3")
+            ),
+            "[suite] has records that last longer than `duration_s` and would be cut off at 20 s: long.csv 2 (30 s), long.csv 3 (30 s)",
+        ),
         (
             format!("unit = 'gg'\n{}", entry("file = 'all/timed.csv'")),
             "`unit = 'gg'`",
+        ),
+        // Defaults that apply to no record.
+        (
+            format!("unit = 'g'\n{}", entry("file = 'all/smc.smc'")),
+            "`unit = 'g'` does not apply to this format",
+        ),
+        (
+            format!("channel = 2\n{}", entry("file = 'all/smc.smc'")),
+            "`channel = 2` applies to formats with several channels only",
+        ),
+        (
+            format!("dt_s = 0.1\n{}", entry("file = 'all/smc.smc'")),
+            "`dt_s = 0.1` applies to `format = \"csv\"` only",
         ),
         (
             entry("file = 'all/cwb.dat'"),

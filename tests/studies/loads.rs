@@ -276,7 +276,10 @@ fn unlikely_loads_are_noticed() {
 fn wrong_loads_are_refused() {
     let load = |keys: &str| refusal(&format!("{WALL}[[load]]\n{keys}\n"));
     assert!(load("x_m = 0.1").contains("needs one of the keys mass_kg, thrust_n"));
-    assert!(load("mass_kg = 10\nwidth_m = 1").contains("has `width_m`, which applies to arches"));
+    assert!(
+        load("mass_kg = 10\nwidth_m = 1")
+            .contains("s.toml:6:11: `width_m = 1` of load 1 applies to arches")
+    );
     assert!(
         load("mass_kg = 10\nheight_m = 9")
             .contains("must be from 0 to the height of the column, 8.0 m")
@@ -292,15 +295,18 @@ fn wrong_loads_are_refused() {
     assert!(drums.contains("opens joints of the column"), "{drums}");
     let arch = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.15\nembrace_deg = 180\nvoussoirs = 20\n[[load]]\nmass_kg = 500\nx_m = 0\n";
     let high = refusal(&format!("{arch}height_m = 2\n"));
-    assert!(high.contains("applies to columns and piers"), "{high}");
+    let words = "s.toml:9:12: `height_m = 2` of load 1 applies to columns and piers";
+    assert!(high.contains(words), "{high}");
     let pier = refusal(&format!("{arch}pier = 'left'\n"));
     assert!(
-        pier.contains("is on the left pier, and the arch has none"),
+        pier.contains(
+            "s.toml:9:8: `pier = 'left'` of load 1 names a pier that the arch does not have"
+        ),
         "{pier}"
     );
     let on_column = load("mass_kg = 10\npier = 'left'");
     assert!(
-        on_column.contains("has `pier`, which applies to arches"),
+        on_column.contains("`pier = 'left'` of load 1 applies to arches"),
         "{on_column}"
     );
     let spread = refusal(&format!("{arch}thrust_n = 10\nwidth_m = 0.5\n"));
@@ -325,7 +331,10 @@ fn wrong_loads_are_refused() {
         "{four}"
     );
     let lacking = refusal(&arch.replace("\nx_m = 0", ""));
-    assert!(lacking.contains("lacks `x_m`"), "{lacking}");
+    assert!(
+        lacking.contains("s.toml:6:1: `x_m` of load 1 is missing"),
+        "{lacking}"
+    );
     let tie = "[[tie]]\nfrom_m = [-3, 7]\nfrom_block = 0\nto_m = [-0.3, 7]\nstiffness_n_m = 1e6\n";
     let tied = refusal(&format!("{WALL}{VAULT}{tie}[free_hinges]\n"));
     assert!(

@@ -68,7 +68,7 @@ pub(super) fn read(table: &mut Table<'_>) -> Corrections {
     (baseline.or(mean.then_some(Baseline::Mean)), corner_hz)
 }
 
-/// Records faults of corrections of velocities.
+/// Records a fault for each correction of a record of velocities.
 pub(super) fn refuse(table: &mut Table<'_>, (baseline, corner_hz): Corrections) {
     let wrong = "applies to accelerations: a uniform velocity shakes nothing; leave it out";
     let given = match table.gives(BASELINE) {
@@ -88,7 +88,7 @@ const HIGH_PASS_HZ: Number = within(&(1e-3..=100.0));
 const PADS: f64 = 3.0;
 
 /// Filters accelerations by a Butterworth filter of order 2, forwards and backwards: without a shift in phase, and with the amplitude response
-/// `1 / (1 + (corner / f)^4)`. The bilinear transform takes `tan(pi f step)` for each frequency `f`.
+/// `1 / (1 + (corner / f)^4)`. The bilinear transform replaces each frequency `f` by `tan(pi f step)`.
 ///
 /// The zeros before and after the record, filtered, are part of the result: without them velocity and displacement would not end at zero (Boore
 /// and Bommer, Soil Dynamics and Earthquake Engineering 25, 2005). Times before the record may be negative.
@@ -248,7 +248,7 @@ mod tests {
         );
     }
 
-    /// A long sine keeps its phase, and its amplitude follows the formula; far from half the rate that is the one of an analogue filter.
+    /// A long sine keeps its phase, and its amplitude follows the formula. Far below half the rate this is the response of an analogue filter.
     #[test]
     fn sines_have_the_response_of_the_formula() {
         let (step_s, corner_hz) = (0.01, 0.2);

@@ -175,7 +175,7 @@ fn holds(histories: &[History], wanted: RecordedQuantity) -> String {
 }
 
 impl History {
-    /// Returns accelerations with one number each, which this line of the header describes, as yet without name, unit, peak and numbers.
+    /// Returns a history of accelerations, one number per sample, that this line of the header describes. Name, unit, peak and data are empty.
     pub(super) fn new(line: usize, count: f64, step_s: Option<f64>) -> Self {
         Self {
             name: String::new(),

@@ -63,7 +63,7 @@ pub enum TableColumn {
     Name(String),
 }
 
-/// Name or number in the name of a record; `/` would begin a folder.
+/// The name or number as a part of the name of a record. Slashes become `_`, because a name may be part of a path.
 impl fmt::Display for TableColumn {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -146,8 +146,8 @@ impl Layout {
         }
     }
 
-    /// Reads the keys that describe files of these formats. The layout is that of tables if one of them is a table, or else of the first. Without a
-    /// format, the fault of the unknown one is recorded elsewhere.
+    /// Reads the keys that describe files of these formats. The layout is that of tables if one of them is a table, or else that of the first. The
+    /// fault of an unknown format is recorded elsewhere.
     pub(in crate::scenario) fn read(table: &mut Table<'_>, formats: &[Format]) -> Self {
         let mut tables = formats.iter().filter(|format| **format == Format::Csv);
         let format = tables.next().or(formats.first()).copied();
@@ -220,8 +220,8 @@ impl Layout {
         layout
     }
 
-    /// Takes the keys of the outer table that apply to files of these formats as defaults: keys of tables, and `unit`, only if one of them is a
-    /// table, corrections only if the samples are accelerations, and none that the given keys exclude.
+    /// Takes the keys of the outer table that apply to files of these formats as defaults. Keys of tables, and `unit`, apply if one of the files is
+    /// a table, corrections if the samples are accelerations. Keys that the given ones exclude are no defaults.
     pub(in crate::scenario) fn inherit(table: &mut Table<'_>, formats: &[Format]) {
         let has_tables = formats.contains(&Format::Csv);
         let has_channels = formats.iter().any(|format| format.has_channels());
@@ -268,7 +268,7 @@ const TABLE_KEYS: [&str; 7] = [
     "decimal",
 ];
 
-/// Keys of which an entry takes no default if it gives the other key.
+/// Pairs of keys that exclude each other: if an entry gives one, the other has no default.
 const EXCLUSIVE: [[&str; 2]; 4] = [
     ["time_column", "dt_s"],
     ["time_column", "wrapped"],

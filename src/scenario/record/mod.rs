@@ -94,7 +94,7 @@ impl Scaling {
         Ok(peak_g.map_or(Self::Factor(scale.unwrap_or(1.0)), Self::PeakG))
     }
 
-    /// Returns this scaling after another one, which a peak replaces.
+    /// Returns the scaling by `first` and then by this one. A factor multiplies `first`, and a peak replaces it.
     pub(super) fn after(self, first: Self) -> Self {
         match (self, first) {
             (Self::Factor(factor), Self::Factor(first)) => Self::Factor(factor * first),
@@ -323,7 +323,7 @@ impl Series {
         }
     }
 
-    /// Returns the corrections of the samples in words that follow others; empty without a correction.
+    /// Returns the corrections of the samples in words, each after a comma; empty without a correction.
     pub fn corrections(&self) -> String {
         let baseline = match self.layout.baseline {
             Some(Baseline::Mean) => ", mean subtracted",
@@ -497,7 +497,7 @@ impl Layout {
 impl Format {
     /// Returns the format of a file from its contents, or else from its extension. The error is a phrase that follows the name.
     ///
-    /// With the keys of tables, files with an extension of tables are tables. A scenario may quote a header, so its contents show no format.
+    /// With the keys of tables, files with an extension of tables are tables. The contents of a scenario are ignored, because it may quote a header.
     pub(super) fn find(files: &Files, file: &str, has_table_keys: bool) -> Result<Self, String> {
         /// Number of bytes of a header that are searched.
         const SEARCHED: usize = 4096;

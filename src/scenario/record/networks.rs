@@ -10,6 +10,7 @@ use super::histories::{
     History, count_and_step, fields, is_text, largest, rest, squeezed, word_after,
 };
 use super::samples::{LineFault, Parsed, number, step_of_rate, words};
+use super::unit::Unit;
 use crate::scenario::prelude::*;
 
 /// Largest number of lines of a header.
@@ -28,8 +29,8 @@ fn find(header: &[&str], phrase: &str) -> Parsed<(usize, String)> {
     })
 }
 
-/// Divides a file into its header, and the numbers from the first line below the one with a phrase that `is_header` refuses. Words below are a fault,
-/// or the numbers of another record would be read with this header.
+/// Splits a file into header and numbers. The header extends to the line with a phrase, and over further lines that are blank or satisfy `is_header`.
+/// Words among the numbers are a fault, or the numbers of another record would be read with this header.
 fn header_and_data<'l, 't>(
     lines: &'l [&'t str],
     phrase: &str,
@@ -96,7 +97,7 @@ pub(super) fn cwb(lines: &[&str]) -> Parsed<Vec<History>> {
     let rows: Vec<usize> = data.clone().filter(is_row).collect();
     let count = rows.len() as f64;
     let last_line = rows.last().map_or(data.end.max(1), |index| index + 1);
-    // The header gives the length only, of the samples or of the steps between them.
+    // The header gives only the length: the step times the number of samples, or of steps between them.
     ensure((count * step_s - lasts_s).abs() <= 1.5 * step_s, || {
         let [found_s, lasts_s] = [count * step_s, lasts_s].map(plain);
         LineFault::on(last_line)(format!(
@@ -175,7 +176,7 @@ pub(super) fn unam(lines: &[&str]) -> Parsed<Vec<History>> {
         let [found, channels] = [other.len(), counts.len()];
         ensure(found == channels, || {
             LineFault::on(other_line)(format!(
-                "has values of {found} channels: line {line} has {channels}"
+                "this line has values of {found} channels: line {line} has {channels}"
             ))
         })?;
     }
@@ -184,7 +185,11 @@ pub(super) fn unam(lines: &[&str]) -> Parsed<Vec<History>> {
         .split_once('(')
         .and_then(|(_, unit)| unit.split_once(')'));
     let unit = in_brackets.map_or(unit, |(unit, _)| unit.trim());
-    let peaks = of_channels("acel. max.(gal), c1").map_or_else(|_| Vec::new(), |(_, peaks)| peaks);
+    let peaks = of_channels("acel. max.(gal), c1").map(|(_, peaks)| peaks);
+    let fits = |peaks: &Vec<&str>| {
+        Unit::written(unit) == Some(Unit::CentimetrePerS2) && peaks.len() == counts.len()
+    };
+    let peaks = peaks.ok().filter(fits).unwrap_or_default();
     let channels = counts.iter().zip(&steps).zip(&names).enumerate();
     let histories = channels.map(|(index, ((count, step), name))| {
         let (count, step_s) = count_and_step((line, count), (step_line, number(step)))?;

@@ -55,7 +55,7 @@ pub enum ModelError {
 }
 
 impl Structure {
-    /// Reads the structure with its ties, for a model of motion with joints or without. `lands` is true for joints whose blocks move and land as rigid ones.
+    /// Reads the structure with its ties, for a model of motion with joints or without. `lands` is true if its blocks are rigid and land on each other.
     pub(super) fn read(
         table: &mut Table<'_>,
         (has_joints, lands): (bool, bool),
@@ -64,18 +64,20 @@ impl Structure {
         let beside = Additions::read(table);
         let alone = beside.as_ref().is_ok_and(Additions::is_empty);
         let arch = table.table("arch", |table| read_arch(table, has_joints, alone));
-        let column = table.table("column", |table| read_column(table, has_joints, lands));
+        let column = table.table("column", |table| read_column(table, has_joints));
         let shape = masonry::read_shapes(table).map(StructureTable::Shape);
         let [pointed, elliptic, basket, blocks] = masonry::SHAPES;
         let tables = ["arch", "column", pointed, elliptic, basket, blocks];
         table.apply_relations(&[OneOf(&tables, None)])?;
-        let read = arch.or(column.map(StructureTable::Column)).or(shape);
+        let column = column.map(|(column, back)| StructureTable::Column(column, back));
+        let read = arch.or(column).or(shape);
         let read = read.ok_or(FaultRecorded)?;
         let (beside, gravity_m_s2) = (beside?, gravity_m_s2.ok_or(FaultRecorded)?);
         let ties = beside.ties.clone();
         let structure = match read {
             StructureTable::Arch(arch) => Self::Arch(arch),
-            StructureTable::Column(column) if beside.fits_column() => {
+            StructureTable::Column(column, back) if beside.fits_column() => {
+                let column = before_wall(table, column, back, (has_joints, lands))?;
                 let has_joints = has_joints || !ties.is_empty();
                 let by = (has_joints, gravity_m_s2);
                 let column = loaded_column(table, &beside.loads, column, by)?;
@@ -85,7 +87,7 @@ impl Structure {
                 table.refuse(is_held, "tie", NO_TIES)?;
                 Self::Column(tie::tied_column(table, &ties, column, gravity_m_s2)?)
             }
-            StructureTable::Column(_) => {
+            StructureTable::Column(..) => {
                 return Err(beside.refused(table, "applies to an arch, not to a column"));
             }
             StructureTable::Shape(shape) => {
@@ -260,7 +262,7 @@ fn four_link_row<L: Into<ImpactLaw>>(
 /// The contents of a table that describes a structure.
 enum StructureTable {
     Arch(Arch),
-    Column(Column),
+    Column(Column, Option<BackWall>),
     Shape(Shape),
 }
 
@@ -362,8 +364,8 @@ const DRUMS: Count = Count(1..=MAX_BLOCKS, "each is a block");
 /// Keys of `[column]` that need a model with joints.
 pub(super) const DRUM_KEYS: [&str; 3] = ["drums", "drum_heights_m", "top_width_m"];
 
-/// Reads `[column]`. Drums and a taper need a model with joints.
-fn read_column(table: &mut Table<'_>, has_joints: bool, lands: bool) -> ReadResult<Column> {
+/// Reads `[column]` and the wall behind it. Drums and a taper need a model with joints.
+fn read_column(table: &mut Table<'_>, has_joints: bool) -> ReadResult<(Column, Option<BackWall>)> {
     let height_m = table.required("height_m", &MAGNITUDE);
     let width_m = table.required("width_m", &MAGNITUDE);
     let drums = table.optional("drums", &DRUMS);
@@ -396,23 +398,34 @@ fn read_column(table: &mut Table<'_>, has_joints: bool, lands: bool) -> ReadResu
         let drums = drums.map_err(|error| format!("does not fit: {error}"));
         column = table.accept("drum_heights_m", drums)?;
     }
-    if let Some(back) = back {
-        let misfit = |table: &mut Table<'_>, error: ArgumentError| {
-            let wrong = format!("does not fit: it must be {}", error.allowed);
-            match error.argument {
-                "width_m" | "top_width_m" => table.wrong(error.argument, wrong),
-                _ => table.wrong_in(&["back"], error.argument, wrong),
-            }
-        };
-        let held = column.with_back(back);
-        column = held.map_err(|error| misfit(table, error))?;
-        let behind_drums = match has_joints {
-            true => column.wall_behind_drums().map(drop),
-            false => Ok(()),
-        };
-        let behind_drums = behind_drums.map_err(|error| misfit(table, error));
-        table.refuse(lands && column.wall().is_some(), "back", NO_RIGID_BLOCKS)?;
-        behind_drums?;
+    Ok((column, back))
+}
+
+/// Puts a wall behind a column. With `lands` its drums are rigid blocks that land on each other.
+fn before_wall(
+    table: &mut Table<'_>,
+    column: Column,
+    back: Option<BackWall>,
+    (has_joints, lands): (bool, bool),
+) -> ReadResult<Column> {
+    let Some(back) = back else {
+        return Ok(column);
+    };
+    let held = column.with_back(back).and_then(|column| {
+        if has_joints {
+            column.wall_behind_drums()?;
+        }
+        Ok(column)
+    });
+    let held = held.map_err(|error| wrong_wall(table, &error));
+    if lands && back.height_m != Some(0.0) {
+        return Err(table.wrong_in(&["column"], "back", NO_RIGID_BLOCKS));
     }
-    Ok(column)
+    held
+}
+
+/// Records that a wall behind the column does not fit the column and its loads.
+pub(super) fn wrong_wall(table: &mut Table<'_>, error: &ArgumentError) -> FaultRecorded {
+    let wrong = format!("does not fit: it must be {}", error.allowed);
+    table.wrong_in(&["column", "back"], error.argument, wrong)
 }

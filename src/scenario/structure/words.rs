@@ -98,8 +98,8 @@ fn of_column(column: &Column) -> Vec<String> {
     parts
 }
 
-/// Returns the forces of a load, weight and thrust, each as its direction and in words: 0 downwards, 1 to the right, -1 to the left. A mass that does
-/// not move with its block is a constant weight. Empty without forces.
+/// Returns weight and thrust of a load, each as a direction and in words. Directions: 0 downwards, 1 to the right, -1 to the left. A mass that does not
+/// move with its block is a constant weight. Empty without forces.
 pub fn forces_in_words(load: &PlacedLoad) -> Vec<(f64, String)> {
     let mut forces = Vec::new();
     if load.mass_kg > 0.0 {
