@@ -71,7 +71,9 @@ fn limit_and_capacity_are_those_of_the_moments() {
     }
     // The words have both sides, and columns without loads have one.
     assert!(
-        words.contains("A_L to the left") && words.contains("swaying left"),
+        words.contains("A_L to the left")
+            && words.contains("on quiet ground, swaying right")
+            && words.contains("swaying left"),
         "{words}"
     );
     let left = &limit["to_the_left"];
