@@ -122,6 +122,7 @@ fn verify_has_constant_forces_as_external_forces() {
             let work = force.force_x_kn * force.delta_x + force.force_y_kn * force.delta_y;
             let alpha0 = (body.weight_kn * body.delta_y - work) / (body.weight_kn * body.delta_x);
             assert!((alpha0 / own.alpha0 - 1.0).abs() < 1e-12);
+            assert!((own.sum_f_delta_l_kn + work).abs() < 1e-12 * body.weight_kn);
             assert!((own.e_star - 1.0).abs() < 1e-12);
             assert!((own.d_c0_crown_m.unwrap() / due_m - 1.0).abs() < 1e-9);
         }

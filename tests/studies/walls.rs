@@ -56,6 +56,7 @@ fn limit_and_capacity_have_one_side() {
             words.contains(&format!("no push to the {held} moves it")),
             "{words}"
         );
+        assert!(one.get("to_the_left").is_none());
         let curves = capacity(&parsed(&text), None).unwrap();
         let of_free = capacity(&parsed(FREE), None).unwrap();
         let away: Sway = serde_json::from_value(away.into()).unwrap();
