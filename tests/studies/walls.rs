@@ -194,7 +194,7 @@ fn drums_with_elastic_joints_have_one_side() {
     let [free, held] = ["", back].map(|back| answer(path, &["limit"], &drums(back)));
     let words = printed(path, &["limit", "s.toml"]);
     assert!(
-        words.contains("no push to the left moves it: a wall stands behind it"),
+        words.contains("no push to the left moves it: a wall stands there"),
         "{words}"
     );
     for key in ["incipient_acceleration_g", "mechanism"] {
