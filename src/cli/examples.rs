@@ -1,15 +1,19 @@
 //! Files and examples below the help of commands.
 
+use archrock::studies::StudyKind;
+
+/// Returns the files that studies may write, and examples of their command.
+pub fn of_studies(kinds: &[StudyKind], examples: &str) -> String {
+    let files: Vec<&str> = kinds.iter().flat_map(|kind| kind.files).copied().collect();
+    format!("Possible files: {}.\n\n{examples}", files.join(", "))
+}
+
 pub const INIT: &str = "\
 Examples:
   archrock init arch arch.toml      an arch to begin with
   archrock init column | less       the same of a column, on standard output";
 
 pub const RUN: &str = "\
-Files: rotations.csv, events.csv, impacts.csv, history.svg, report.html, summary.json;
-  joints.csv with free hinges or elastic joints; overlay.svg of several models;
-  poses.csv and snapshots.svg on request.
-
 Examples:
   archrock run arch.toml                                 results in results/arch
   archrock run arch.toml --hinges four,free              two models of motion, compared
@@ -33,44 +37,31 @@ Examples:
   archrock impact arch.toml --models        restitution by all impact models";
 
 pub const CAPACITY: &str = "\
-Files: capacity.csv, capacity.svg, capacity.json.
-
 Examples:
   archrock capacity arch.toml
   archrock capacity arch.toml --format json";
 
 pub const SPREAD: &str = "\
-Files: spread.csv, spread.svg, spread.json.
-
 Examples:
   archrock spread arch.toml
   archrock spread arch.toml --springing left --angle 45 --angle -90";
 
 pub const VERIFY: &str = "\
-Files: verify.html, verify.json.
-
 Examples:
   archrock verify arch.toml --out check     verify.html is the page to file";
 
 pub const MAP: &str = "\
-Files: map.csv, map.svg, map.html, map.json.
-
 Examples:
   archrock map arch.toml --threads 4
   archrock map arch.toml --resume      continues after Ctrl-C
   archrock map arch.toml --shard 1/3 --out part-1    and 2/3, 3/3 elsewhere; then archrock merge";
 
 pub const SUITE: &str = "\
-Files: suite.csv, suite.svg, fragility.csv, fragility.json, capacities.csv, intensity.csv,
-  ida.csv, ida.svg, peaks.csv, peaks.svg.
-
 Examples:
   archrock suite arch.toml
   archrock suite arch.toml --hinges free --format json";
 
 pub const THRESHOLD: &str = "\
-Files: threshold.csv, threshold.svg, threshold.json; with --along those of threshold_along.
-
 Examples:
   archrock threshold arch.toml
   archrock threshold arch.toml --from 0.8 --to 1.5 --stride 0.005 --hinges four,free

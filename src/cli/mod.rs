@@ -25,6 +25,7 @@ use std::process::ExitCode;
 
 use archrock::output::{OutputError, pretty};
 use archrock::scenario::{ScenarioErrors, shown_lines};
+use archrock::studies::{CAPACITY, MAP, RUN, SPREAD, SUITE, THRESHOLD, THRESHOLD_ALONG, VERIFY};
 use clap::error::{ContextKind, ContextValue};
 use clap::{CommandFactory as _, Parser, Subcommand, ValueEnum};
 
@@ -47,7 +48,7 @@ enum Command {
     #[command(after_help = examples::INIT)]
     Init(init::Arguments),
     /// Simulate the time history of a scenario: report.html to look at, pictures, tables as CSV, summary.json.
-    #[command(after_help = examples::RUN)]
+    #[command(after_help = examples::of_studies(&[RUN], examples::RUN))]
     Run(run::Arguments),
     /// Print the incipient acceleration, the mechanism to either side and the equivalent block.
     #[command(after_help = examples::LIMIT)]
@@ -56,23 +57,23 @@ enum Command {
     #[command(after_help = examples::IMPACT)]
     Impact(impact::Arguments),
     /// Find the quasi-static capacity curve of the first mechanism and its equivalent oscillator.
-    #[command(after_help = examples::CAPACITY)]
+    #[command(after_help = examples::of_studies(&[CAPACITY], examples::CAPACITY))]
     Capacity(capacity_spread_verify::CapacityArguments),
     /// Find how far a springing may move until the arch falls, and what push it bears on the way.
-    #[command(after_help = examples::SPREAD)]
+    #[command(after_help = examples::of_studies(&[SPREAD], examples::SPREAD))]
     Spread(capacity_spread_verify::SpreadArguments),
     /// Check the first mechanism by the Circolare 7/2019 (C8.7.1.2.1) against [demand] of the scenario: one page, JSON.
-    #[command(after_help = examples::VERIFY)]
+    #[command(after_help = examples::of_studies(&[VERIFY], examples::VERIFY))]
     Verify(capacity_spread_verify::CommonArguments),
     /// Map which pulses overturn the structure: one history per cell of [map] in the scenario.
-    #[command(after_help = examples::MAP)]
+    #[command(after_help = examples::of_studies(&[MAP], examples::MAP))]
     Map(studies::MapArguments),
     /// Run every record of a suite at every level and fit a fragility curve: see [suite] in the scenario.
-    #[command(after_help = examples::SUITE)]
+    #[command(after_help = examples::of_studies(&[SUITE], examples::SUITE))]
     Suite(study::StudyArguments),
     /// Find the factors on the ground motion that overturn the structure, and the safe gaps between them; or the least factor for
     /// each value of a key.
-    #[command(after_help = examples::THRESHOLD)]
+    #[command(after_help = examples::of_studies(&[THRESHOLD, THRESHOLD_ALONG], examples::THRESHOLD))]
     Threshold(threshold::Arguments),
     /// Merge the parts of a study computed with --shard.
     #[command(after_help = examples::MERGE)]

@@ -123,7 +123,7 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
                 // The other scenarios are still run.
                 Err(Failure::Work(message)) if count > 1 => {
                     folder.iter().for_each(Folder::abandon);
-                    // They keep the samples of the failed scenario, for --resume.
+                    // The file with the samples of the failed scenario stays, for --resume.
                     job.finished_parts.truncate(earlier_parts);
                     failures.push(format!("{}: {message}", task.name));
                     None

@@ -249,8 +249,8 @@ impl StudyJob<'_> {
         Ok(folder.map_or(Ok(()), |folder| folder.check(&kind.files[first..]))?)
     }
 
-    /// Returns an error if results of scenarios that differ in their models of motion, of their samples, or of the comparison of the models cannot be
-    /// written.
+    /// Returns an error if results cannot be written: those of each scenario (one for each model of motion), of its samples, or of the comparison of
+    /// the models.
     pub fn check_results(
         &self,
         [kind, samples]: [StudyKind; 2],

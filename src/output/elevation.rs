@@ -244,7 +244,7 @@ impl<'a> View<'a> {
         }
     }
 
-    /// Returns the horizontal position of the face away from a wall on this side; `None` if there is none.
+    /// Returns the horizontal position of the face opposite to a wall on this side; `None` without a wall there.
     fn face_before_wall(&self, side: f64) -> Option<f64> {
         let wall = self.scene.wall()?;
         let pieces = self.scene.pieces(self.hinges);

@@ -222,7 +222,7 @@ impl Scene {
     pub fn sizes_in_words(&self) -> String {
         let lengths = self.dimensions.iter();
         let lengths = lengths.map(|dimension| dimension.words.clone());
-        // A lower wall has a dimension.
+        // The dimensions have the height of a lower wall.
         let is_full = self.wall_m.is_some_and(|wall_m| {
             let pieces = self.pieces(&[]).into_iter();
             let corners = pieces.flat_map(|piece| piece.outline_m);

@@ -632,7 +632,7 @@ fn the_help_names_the_files() {
     ] {
         let folder = tempfile::tempdir().unwrap();
         let help = printed(folder.path(), &[command, "--help"]);
-        let (_, files) = help.split_once("Files: ").unwrap();
+        let (_, files) = help.split_once("Possible files: ").unwrap();
         let (named, _) = files.split_once("\n\n").unwrap();
         let mut arguments = vec![
             command.to_owned(),

@@ -3,7 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::common::program::{archrock, scenarios, stderr};
+use crate::common::program::{archrock, scenarios, stderr, stdout};
+use crate::common::prose::skeleton;
 
 fn repository() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -91,28 +92,53 @@ fn pages_quote_the_output_of_their_commands() {
     }
 }
 
-/// The first cells of these tables of docs/report.md are lines that the command above prints, in their order.
+/// Returns true if a line is the quoted one, in which "..." is any text.
+fn is_quoted(quoted: &str, line: &str) -> bool {
+    let mut parts = quoted.split("...");
+    let Some(rest) = line.strip_prefix(parts.next().unwrap_or_default()) else {
+        return false;
+    };
+    let rest = parts.try_fold(rest, |rest, part| Some(rest.split_once(part)?.1));
+    rest.is_some_and(|rest| rest.is_empty() || quoted.ends_with("..."))
+}
+
+/// The first cells of the tables of docs/report.md below a command are lines that the command prints, in their order.
 #[test]
 fn the_page_on_the_printed_report_quotes_its_lines() {
     let page = fs::read_to_string(repository().join("docs/report.md")).unwrap();
-    for command in [
-        "run scenarios/semicircle-pulse.toml",
-        "run scenarios/column-pulse.toml",
-        "limit scenarios/semicircle-pulse.toml",
-    ] {
-        let (_, table) = page
-            .split_once(&format!("`archrock {command}` prints:\n\n"))
-            .unwrap();
+    let mut tables = 0;
+    for part in page.split("`archrock ").skip(1) {
+        let Some((command, table)) = part.split_once("` prints") else {
+            continue;
+        };
+        // A map has thousands of histories.
+        if command.starts_with("map ") {
+            continue;
+        }
+        // The motion of rows of blocks depends on the last digits of the machine, so only the words are compared.
+        let is_exact = !["free-hinges", "elastic-joints"]
+            .iter()
+            .any(|name| command.contains(name));
+        let shape = |text: &str| match is_exact {
+            true => text.to_owned(),
+            false => skeleton(text).0,
+        };
+        let (_, table) = table.split_once(":\n\n").unwrap();
         let rows = table.lines().take_while(|line| line.starts_with('|'));
         let cells = rows.skip(2).filter_map(|row| row.split('|').nth(1));
         let command = command.replace("scenarios", &scenarios().display().to_string());
-        let said = run(&command.split(' ').collect::<Vec<_>>());
+        let folder = tempfile::tempdir().unwrap();
+        let output = archrock(folder.path(), &command.split(' ').collect::<Vec<_>>());
+        let said = stdout(&output) + &stderr(&output);
         let mut lines = said.lines();
         for quoted in cells.clone().map(|cell| cell.trim_matches([' ', '`'])) {
-            assert!(lines.any(|own| own.trim() == quoted), "{quoted}\n{said}");
+            let is_here = |own: &str| is_quoted(&shape(quoted), &shape(own.trim()));
+            assert!(lines.any(is_here), "{quoted}\n{said}");
         }
         assert!(cells.count() > 1);
+        tables += 1;
     }
+    assert_eq!(tables, 8);
 }
 
 #[test]

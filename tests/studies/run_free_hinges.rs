@@ -1138,27 +1138,33 @@ fn limit_analysis_of_drums_reports_the_onset() {
     );
 }
 
-/// The options after "compare with" work as they are printed.
+/// A run with free hinges proposes options for elastic joints. They run, and keep the stiffness of a scenario that has one.
 #[test]
 fn the_proposed_comparison_runs() {
     let scenario = format!("[column]\n{SHAKEN_COLUMN}[free_hinges]\n");
     let printed = Results::of(&scenario, &[]).said;
     let (_, proposed) = printed.split_once("elastic: compare with ").unwrap();
-    let options: Vec<_> = proposed.lines().next().unwrap().split(' ').collect();
-    let compared = Results::of(&scenario, &options);
-    assert!(
-        compared.said.contains("with elastic joints"),
-        "{}",
-        compared.said
-    );
+    let (model, stiffness) = proposed
+        .split_once(" (without [elastic_joints] add ")
+        .unwrap();
+    let (stiffness, _) = stiffness.split_once(")\n").unwrap();
+    let words = |options: &str| options.split(' ').map(str::to_owned).collect::<Vec<_>>();
+    let [model, stiffness] = [model, stiffness].map(words);
+    let run = |scenario: &str, options: &[&[String]]| {
+        let options = options.concat();
+        let options: Vec<_> = options.iter().map(|option| &**option).collect();
+        Results::of(scenario, &options).said
+    };
+    // The stiffness is varied by factors of 1/3 and 3.
+    let compared = run(&scenario, &[&model, &stiffness]);
+    assert!(compared.contains("with 30 GPa/m: "), "{compared}");
+    let own = format!("{scenario}[elastic_joints]\nnormal_stiffness_gpa_m = 20\n");
+    let compared = run(&own, &[&model]);
+    assert!(compared.contains("with 60 GPa/m: "), "{compared}");
     // Without a stiffness the error proposes it.
     let root = tempfile::tempdir().unwrap();
     fs::write(root.path().join("s.toml"), &scenario).unwrap();
     let lacking = archrock(root.path(), &["run", "s.toml", "--hinges", "elastic"]);
-    let (_, proposed) = options.split_at(2);
-    assert!(
-        stderr(&lacking).contains(&proposed.join(" ")),
-        "{}",
-        stderr(&lacking)
-    );
+    let error = stderr(&lacking);
+    assert!(error.contains(&stiffness.join(" ")), "{error}");
 }

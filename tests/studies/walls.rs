@@ -56,6 +56,7 @@ fn limit_and_capacity_have_one_side() {
             words.contains(&format!("no push to the {held} moves it")),
             "{words}"
         );
+        assert!(one.get("to_the_left").is_none());
         let curves = capacity(&parsed(&text), None).unwrap();
         let of_free = capacity(&parsed(FREE), None).unwrap();
         let away: Sway = serde_json::from_value(away.into()).unwrap();
@@ -193,7 +194,7 @@ fn drums_with_elastic_joints_have_one_side() {
     let [free, held] = ["", back].map(|back| answer(path, &["limit"], &drums(back)));
     let words = printed(path, &["limit", "s.toml"]);
     assert!(
-        words.contains("no push to the left moves it: a wall stands behind it"),
+        words.contains("no push to the left moves it: a wall stands there"),
         "{words}"
     );
     for key in ["incipient_acceleration_g", "mechanism"] {

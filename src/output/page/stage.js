@@ -166,7 +166,7 @@ function createStage(canvas, motion) {
       lineOf({ stroke: "--soft", dash: [4, 4], close: true }, outline(piece).map(([, x, y]) => [x, y]));
     }
     for (const piece of layout.fill) lineOf({ fill: "--fill", stroke: "--fill" }, outline(piece).map(point));
-    // Of a column, which has no supports, only the wall behind it stands still.
+    // A column has no supports: its only piece that stands still is the wall behind it.
     const still = motion.supports[0].length > 0 ? "--earth" : "--wall";
     for (const piece of layout.pieces) {
       const fill = piece.body < 0 ? still : fills[piece.body % fills.length];

@@ -74,15 +74,16 @@ pub fn capacity(
     })
 }
 
-/// Returns the blocks of a structure whose first mechanism is that of a row: a structure with ties, an arch with constant forces, or a stack on one support other than
-/// Housner's block. `None` for structures that move as four links or as Housner's block.
+/// Returns the blocks of a structure whose first mechanism is that of a row: a structure with ties, an arch with constant forces, or a stack on one
+/// support other than Housner's block. `None` for structures that move as four links or as Housner's block.
 fn held_row(structure: &Structure) -> Result<Option<Row>, RowError> {
     let is_one_prism = structure.column().is_some_and(crate::Column::is_one_prism);
     let is_stack = structure.stands_on_one_support() && !is_one_prism;
-    let is_pushed =
-        matches!(structure, Structure::Masonry(masonry) if !masonry.row.ties.is_empty());
-    let is_held = is_stack || is_pushed || !structure.ties().is_empty();
-    is_held.then(|| structure.row()).transpose()
+    let is_held = match structure {
+        Structure::Masonry(masonry) => !masonry.row.ties.is_empty(),
+        _ => !structure.ties().is_empty(),
+    };
+    (is_stack || is_held).then(|| structure.row()).transpose()
 }
 
 /// Returns the control point with its place along the structure: the given point, or the crown.

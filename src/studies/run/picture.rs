@@ -217,7 +217,7 @@ impl Timeline {
             if over_barrier.is_some_and(|peak| peak >= LARGE_RATIO) {
                 let ends = span_s.map(|time_s| (time_s, 1.0));
                 curves.push(Mark::curve("barrier", BARRIER, ends));
-                let label = "gravity alone overturns the first mechanism";
+                let label = "the first mechanism overturns on quiet ground";
                 panels.keys.push(Key::line(label, BARRIER));
             }
             panels.curves(label, energy_px, curves, states);

@@ -164,7 +164,7 @@ impl FrictionDemand {
 /// Results of four links or of a column.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct MechanismResults {
-    /// Largest rotation over that at the unstable equilibrium of the mechanism that moved. From 1 on, gravity alone overturns the structure.
+    /// Largest rotation over that at the unstable equilibrium of the mechanism that moved. From 1 on, the structure overturns on quiet ground.
     pub peak_rotation_over_critical: Option<f64>,
     /// Largest excess of the thrust line of four links up to the largest rotation, or up to overturning, over the thickness; null for a column.
     pub thrust_excess_ratio: Option<f64>,

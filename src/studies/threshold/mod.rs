@@ -275,7 +275,7 @@ pub fn results(
     let scenario = &scenarios[0];
     check(scenario).map_err(StudyError::Scenario)?;
     let (ground, request) = (scenario.ground_motion(), scenario.request());
-    // A model that cannot be built must not cost the search of another one.
+    // The search with one model may take hours, so errors of all models come first.
     let models = scenarios.iter().map(Scenario::model);
     let models: Vec<_> = models
         .collect::<Result<_, _>>()

@@ -340,13 +340,13 @@ impl VirtualMechanism {
             bodies[index].1 += own.centre_m * own.mass_kg;
             *body_of = Some(index);
         }
+        let towards = |v: Vector2<f64>| Vector2::new(sway.sign() * v.x, v.y);
         let bodies = bodies.into_iter().map(|(mass_kg, first, block)| {
             let (centre_m, twist) = (first / mass_kg, onset.velocities[block]);
-            let velocity = twist.at(centre_m);
             MovingBody {
                 mass_kg,
                 centre_m,
-                displacement: Vector2::new(sway.sign() * velocity.x, velocity.y),
+                displacement: towards(twist.at(centre_m)),
                 rotation: -sway.sign() * twist.rate,
             }
         });
@@ -359,12 +359,10 @@ impl VirtualMechanism {
         let forces = row.constant_forces().map(|force| {
             let (at_m, force_n) = (force.ends[0].at_m, force.force_at_rest_n());
             let block = force.ends[0].block.unwrap_or(0);
-            let velocity = onset.velocities[block].at(at_m);
-            let towards = |v: Vector2<f64>| Vector2::new(sway.sign() * v.x, v.y);
             MovingForce {
                 at_m,
                 force_kg: towards(force_n) / row.gravity_m_s2,
-                displacement: towards(velocity),
+                displacement: towards(onset.velocities[block].at(at_m)),
             }
         });
         let ties = row.bars().iter().zip(&onset.lengthening);

@@ -181,6 +181,11 @@ impl Notes<'_> {
         mechanisms.any(|one| one.curve_m_g.is_some())
     }
 
+    fn has_constant_forces(&self) -> bool {
+        let mut mechanisms = self.check.mechanisms.values();
+        mechanisms.any(|one| !one.forces.is_empty())
+    }
+
     fn has_histories(&self) -> bool {
         let mut states = self.check.states.values();
         states.any(|one| one.histories.is_some())
