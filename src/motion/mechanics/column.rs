@@ -385,7 +385,7 @@ impl Column {
         let foot_only = "that of the base with a wall behind the column, which a tapered face touches at its foot only";
         allow(!tapers, "top_width_m", self.top_width_m(), foot_only)?;
         allow(self.ties.is_empty(), "height_m", height_m, "0 with ties")?;
-        let allowed = format_args!(
+        let allowed = format!(
             "0 for no wall, or at least {} m, the centre of the top drum: a push turns a drum over the top of a lower wall, and its onset is not computed",
             plain(least_m)
         );

@@ -136,7 +136,11 @@ fn choose(histories: &[&History], channel: Option<&TableColumn>) -> Result<usize
                 true => "no channel matches",
                 false => "several channels match",
             };
-            format!("{matches} `{}`; the file has {listed}", excerpt(name))
+            let number = match name.trim().parse::<usize>() {
+                Ok(number) => format!(" (its number has no quotation marks: `channel = {number}`)"),
+                Err(_) => String::new(),
+            };
+            format!("{matches} `{}`{number}; the file has {listed}", excerpt(name))
         }
     })
 }
