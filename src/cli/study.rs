@@ -57,7 +57,7 @@ pub struct WorkOptions {
     /// Continue an interrupted run, if there is one.
     #[arg(long)]
     resume: bool,
-    /// Compute only part I of N, into a file for `archrock merge`.
+    /// Compute only part I of N, into a file for `archrock merge PART...`.
     #[arg(long, value_name = "I/N")]
     shard: Option<Shard>,
 }
@@ -349,7 +349,7 @@ impl StudyJob<'_> {
             Computation::Partial { part, cases, all } => {
                 let path = part.path().display();
                 print_status(&format!(
-                    "part {shard}: {cases} of {all} cases in {path}; join the parts with archrock merge"
+                    "part {shard}: {cases} of {all} cases in {path}; join all parts with `archrock merge PART...`"
                 ));
                 Ok(None)
             }

@@ -489,7 +489,9 @@ impl Scenario {
         let give = "nothing moves the structure: give a table [ground.<kind>], such as [ground.rectangular], or \
                     [initial]";
         Err(match self.suite {
-            Some(_) => format!("{give}; the records of [suite] are run by `archrock suite`"),
+            Some(_) => {
+                format!("{give}; the records of [suite] are run by `archrock suite SCENARIO`")
+            }
             None => give.to_owned(),
         })
     }

@@ -54,7 +54,7 @@ pub(super) fn check(
     };
     let wrong = match follower.move_supports(|part| moved * part, 0.0, 1.0) {
         Ok(Some(part)) => format!(
-            "makes the arch fall at {:.2} % of this movement, with rigid joints: reduce it; `archrock spread` finds how far the \
+            "makes the arch fall at {:.2} % of this movement, with rigid joints: reduce it; `archrock spread SCENARIO` finds how far the \
              springings may move",
             1e2 * part
         ),

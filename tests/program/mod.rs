@@ -5,6 +5,7 @@ mod command_line;
 mod init;
 mod long_work;
 mod names;
+mod proposals;
 mod public_api;
 mod readme;
 mod results_folder;

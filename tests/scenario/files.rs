@@ -323,7 +323,7 @@ fn a_run_needs_something_that_moves() {
     let suite = "[suite]\nrecords = 'a.csv'\nunit = 'g'\nscales = [1]\n";
     std::fs::write(&path, format!("{ARCH}{suite}")).unwrap();
     let of_suite = Scenario::read(&path).unwrap().check_for_run().unwrap_err();
-    assert!(of_suite.ends_with("the records of [suite] are run by `archrock suite`"));
+    assert!(of_suite.ends_with("the records of [suite] are run by `archrock suite SCENARIO`"));
     assert_eq!(
         says("[ground.ricker]\namplitude_g = 0\nduration_s = 1"),
         Ok(())

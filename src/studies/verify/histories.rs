@@ -173,7 +173,7 @@ pub(super) fn histories(
         // These errors recommend another model of motion.
         FourLinkError::Stack | FourLinkError::Argument(_) | FourLinkError::Row(..) => failed(format!(
             "they are of four links or of Housner's block, and stacks, drums, tapers and other mechanisms are neither: leave {}_records \
-             out, and compute the records with `archrock suite`",
+             out, and compute the records with `archrock suite SCENARIO`",
             state.name()
         )),
         error => failed(error.to_string()),
