@@ -7,8 +7,9 @@ mod long_work;
 mod names;
 mod public_api;
 mod readme;
+mod recipes;
 mod results_folder;
 mod robustness;
 mod run_input;
 mod summaries;
-mod tour;
+
