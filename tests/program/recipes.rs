@@ -101,7 +101,7 @@ fn assert_numbers_are_printed(part: &str, output: &str) {
     }
 }
 
-/// Runs the commands of a page beside the scenarios; compares the lines and the numbers that it shows.
+/// Runs the commands of a page beside the scenarios; compares the lines that it shows, and the numbers of parts with a command.
 #[track_caller]
 fn assert_page_is_true(page: &str, commands: usize) {
     let folder = tempfile::tempdir().unwrap();
@@ -112,7 +112,9 @@ fn assert_page_is_true(page: &str, commands: usize) {
     for part in text.split("\n## ") {
         let outputs = shown_output(part, folder.path());
         run += outputs.len();
-        assert_numbers_are_printed(part, &outputs.join("\n"));
+        if !outputs.is_empty() {
+            assert_numbers_are_printed(part, &outputs.join("\n"));
+        }
     }
     assert_eq!(run, commands, "{page}");
 }
