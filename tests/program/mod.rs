@@ -12,4 +12,3 @@ mod results_folder;
 mod robustness;
 mod run_input;
 mod summaries;
-

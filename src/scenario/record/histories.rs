@@ -140,7 +140,10 @@ fn choose(histories: &[&History], channel: Option<&TableColumn>) -> Result<usize
                 Ok(number) => format!(" (its number has no quotation marks: `channel = {number}`)"),
                 Err(_) => String::new(),
             };
-            format!("{matches} `{}`{number}; the file has {listed}", excerpt(name))
+            format!(
+                "{matches} `{}`{number}; the file has {listed}",
+                excerpt(name)
+            )
         }
     })
 }
