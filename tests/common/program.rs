@@ -129,8 +129,10 @@ pub fn scenario_files() -> Vec<PathBuf> {
 /// The commands that a page of the documentation shows, each with the lines of its output that are shown.
 pub fn shown_commands(page: &str) -> Vec<(Vec<String>, Vec<String>)> {
     let mut commands: Vec<(Vec<String>, Vec<String>)> = Vec::new();
+    let mut is_fenced = false;
     for line in page.lines() {
-        let Some(line) = line.strip_prefix("    ") else {
+        is_fenced ^= line.starts_with("```");
+        let Some(line) = line.strip_prefix("    ").filter(|_| !is_fenced) else {
             continue;
         };
         match line.strip_prefix("$ archrock ") {
@@ -167,20 +169,27 @@ pub fn validated(label: &str) -> Vec<Vec<f64>> {
 #[track_caller]
 pub fn assert_shown_output_is_printed(page: &str, folder: &Path) -> usize {
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join(page);
-    let commands = shown_commands(&fs::read_to_string(page).unwrap());
-    for (command, shown) in &commands {
+    shown_output(&fs::read_to_string(page).unwrap(), folder).len()
+}
+
+/// Runs the commands of a text, as printed there, in a folder; each must print the lines shown, in their order. Returns all that they print.
+#[track_caller]
+pub fn shown_output(text: &str, folder: &Path) -> Vec<String> {
+    let commands = shown_commands(text).into_iter();
+    let outputs = commands.map(|(command, shown)| {
         let arguments: Vec<&str> = command.iter().map(String::as_str).collect();
         let output = archrock(folder, &arguments);
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
         let said = String::from_utf8(output.stdout.clone()).unwrap() + &stderr(&output);
         let mut lines = said.lines();
-        assert!(!shown.is_empty());
+        assert!(!shown.is_empty(), "{arguments:?}");
         for line in shown {
             assert!(
                 line == "..." || lines.any(|said| said == line),
                 "{arguments:?} does not say {line:?}, or not after the line before:\n{said}"
             );
         }
-    }
-    commands.len()
+        said
+    });
+    outputs.collect()
 }

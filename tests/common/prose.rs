@@ -36,7 +36,7 @@ pub fn skeleton(text: &str) -> (String, Vec<&str>) {
 }
 
 /// Whether a printed number is this one, rounded to the digits shown; it must show two of them, because many numbers begin with any one digit.
-fn is_shown(printed: &str, value: f64) -> bool {
+pub fn is_shown(printed: &str, value: f64) -> bool {
     let printed = printed.replace('\u{2212}', "-");
     let printed = printed.trim_start_matches('+');
     let digits = printed.split_once('.').map_or(0, |(_, after)| after.len());

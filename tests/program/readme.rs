@@ -1,9 +1,10 @@
 //! The README and other pages: pictures are those that the program draws, printed output is the program's, links lead somewhere.
 
 use std::fs;
+use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
 
-use crate::common::program::{archrock, scenarios, stderr, stdout};
+use crate::common::program::{archrock, printed, scenarios, stderr, stdout};
 use crate::common::prose::skeleton;
 
 fn repository() -> &'static Path {
@@ -17,35 +18,73 @@ fn run(arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// The commands are those of `docs/pictures/draw`.
-#[test]
-fn the_pictures_of_the_readme_are_up_to_date() {
+/// The commands of `docs/pictures/draw` that draw a picture: its name, the file among the results (none: the command draws it with --plot),
+/// and the words of the command.
+fn drawn_pictures() -> Vec<(String, Option<String>, Vec<String>)> {
     let script = fs::read_to_string(repository().join("docs/pictures/draw")).unwrap();
-    let script = script.replace("\\\n", " ");
+    let pictures = script.lines().filter_map(|line| {
+        let mut words = line.split_whitespace().map(str::to_owned);
+        match words.next()?.as_str() {
+            "picture" => Some((words.next()?, Some(words.next()?), words.collect())),
+            "plot" => Some((words.next()?, None, words.collect())),
+            _ => None,
+        }
+    });
+    pictures.collect()
+}
+
+#[test]
+fn the_pictures_of_the_documents_are_up_to_date() {
     let folder = tempfile::tempdir().unwrap();
-    let drawn = folder.path().to_str().unwrap();
-    let mut commands = 0;
-    for line in script.lines() {
-        let Some(arguments) = line.strip_prefix("\"$program\" ") else {
-            continue;
+    symlink(scenarios(), folder.path().join("scenarios")).unwrap();
+    let mut total = 0;
+    let pictures = drawn_pictures();
+    for (name, file, command) in &pictures {
+        let mut arguments: Vec<&str> = command.iter().map(String::as_str).collect();
+        let picture = format!("{name}.svg");
+        match file {
+            Some(_) => arguments.extend(["--out", name]),
+            None => arguments.extend(["--plot", &picture]),
+        }
+        printed(folder.path(), &arguments);
+        let drawn = match file {
+            Some(file) => folder.path().join(name).join(file),
+            None => folder.path().join(&picture),
         };
-        let arguments = arguments.replace("../../scenarios", scenarios().to_str().unwrap());
-        let arguments = arguments
-            .replace("\"$folder/", &format!("{drawn}/"))
-            .replace('"', "");
-        run(&arguments.split_whitespace().collect::<Vec<_>>());
-        commands += 1;
-    }
-    assert_eq!(commands, 3);
-    for picture in ["free/snapshots.svg", "pulse/history.svg", "map/map.svg"] {
-        let name = Path::new(picture).file_name().unwrap();
-        let committed = fs::read_to_string(repository().join("docs/pictures").join(name));
-        let drawn = fs::read_to_string(folder.path().join(picture)).unwrap();
+        let drawn = fs::read_to_string(drawn).unwrap();
+        let committed = fs::read_to_string(repository().join("docs/pictures").join(&picture));
         assert!(
             committed.unwrap_or_default() == drawn,
             "{picture} is stale: draw it with docs/pictures/draw and look at it"
         );
+        // A page of recipes has many of them.
+        let limit = match name.as_str() {
+            "map" | "history" => 160_000,
+            _ => 60_000,
+        };
+        assert!(drawn.len() < limit, "{picture}: {} bytes", drawn.len());
+        total += drawn.len();
     }
+    assert!(pictures.len() > 20 && total < 1_200_000, "{total} bytes");
+}
+
+/// Below each picture of the gallery is the command that draws it.
+#[test]
+fn the_gallery_has_the_command_of_each_picture() {
+    let page = fs::read_to_string(repository().join("docs/gallery.md")).unwrap();
+    let pictures = drawn_pictures();
+    let mut shown = 0;
+    for part in page.split("](pictures/").skip(1) {
+        let (name, below) = part.split_once(".svg)").unwrap();
+        let (_, file, command) = (pictures.iter().find(|(known, ..)| known == name)).unwrap();
+        let mut expected = format!("`archrock {}", command.join(" "));
+        if file.is_none() {
+            expected += &format!(" --plot {name}.svg");
+        }
+        assert!(below.contains(&(expected.clone() + "`")), "{expected}");
+        shown += 1;
+    }
+    assert_eq!(shown, 12);
 }
 
 #[test]
@@ -61,35 +100,6 @@ fn the_readme_quotes_the_output_of_run() {
         assert!(lines.any(|own| own == line), "{line}\n{said}");
     }
     assert!(quoted.count() > 5);
-}
-
-/// Below a paragraph of these pages with a command on a scenario are lines that the command prints, in their order.
-#[test]
-fn pages_quote_the_output_of_their_commands() {
-    for (page, outputs) in [("docs/example.md", 3), ("docs/models.md", 1)] {
-        let page = fs::read_to_string(repository().join(page)).unwrap();
-        let mut blocks = page.split("\n\n").peekable();
-        let mut quoted = 0;
-        while let Some(paragraph) = blocks.next() {
-            let paragraph = paragraph.replace('\n', " ");
-            let mut code = paragraph.split('`').skip(1).step_by(2);
-            let Some(command) = code.find(|code| code.contains(" scenarios/")) else {
-                continue;
-            };
-            let folder = scenarios().display().to_string();
-            let command = command.replace("scenarios", &folder);
-            let said = run(&command.split(' ').skip(1).collect::<Vec<_>>());
-            let mut lines = said.lines();
-            assert!(blocks.peek().is_some_and(|next| next.starts_with("    ")));
-            while let Some(output) = blocks.next_if(|next| next.starts_with("    ")) {
-                for line in output.lines().filter_map(|line| line.strip_prefix("    ")) {
-                    assert!(lines.any(|own| own == line), "{line}\n{said}");
-                }
-            }
-            quoted += 1;
-        }
-        assert_eq!(quoted, outputs);
-    }
 }
 
 /// Returns true if a line is the quoted one, in which "..." is any text.
@@ -141,14 +151,32 @@ fn the_page_on_the_printed_report_quotes_its_lines() {
     assert_eq!(tables, 8);
 }
 
+/// The words of these pages outside code blocks.
 #[test]
-fn the_readme_is_short() {
-    let readme = fs::read_to_string(repository().join("README.md")).unwrap();
-    let words = readme.split_whitespace();
-    let words = words
-        .filter(|word| word.contains(char::is_alphanumeric))
-        .count();
-    assert!(words <= 700, "{words} words");
+fn pages_for_a_first_look_are_short() {
+    for (page, limit) in [
+        ("README.md", 500),
+        ("python/README.md", 200),
+        ("docs/README.md", 200),
+        ("docs/start.md", 900),
+        ("docs/report.md", 2_400),
+        ("docs/choose.md", 1_400),
+        ("docs/recipes.md", 3_200),
+        ("docs/gallery.md", 500),
+        ("docs/questions.md", 900),
+        ("docs/python.md", 900),
+    ] {
+        let text = fs::read_to_string(repository().join(page)).unwrap();
+        let mut is_code = false;
+        let lines = text.lines().filter(|line| {
+            is_code ^= line.starts_with("```");
+            !is_code && !line.starts_with("    ")
+        });
+        let words = lines.flat_map(str::split_whitespace);
+        let words = words.filter(|word| word.contains(char::is_alphanumeric));
+        let words = words.count();
+        assert!(words <= limit, "{page}: {words} words");
+    }
 }
 
 #[test]
@@ -158,7 +186,7 @@ fn links_of_the_documents_have_targets() {
     let mut pages: Vec<PathBuf> = pages
         .filter(|path| path.extension().is_some_and(|e| e == "md"))
         .collect();
-    pages.push(repository().join("README.md"));
+    pages.extend(["README.md", "python/README.md"].map(|page| repository().join(page)));
     let mut links = 0;
     for page in pages {
         let text = fs::read_to_string(&page).unwrap();

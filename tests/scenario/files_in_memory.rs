@@ -23,7 +23,7 @@ fn contents(folder: &Path, base: &Path) -> Vec<(PathBuf, Vec<u8>)> {
 fn every_example_is_the_same_with_its_files_in_memory() {
     let options = ReadOptions::default();
     let mut records = 0;
-    for folder in ["scenarios", "scenarios/tour"] {
+    for folder in ["scenarios", "scenarios/recipes"] {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
         let files = contents(&folder, &folder);
         let texts = files.iter().filter(|(name, _)| {

@@ -237,7 +237,7 @@ fn scenarios_follow_the_schema() {
     let mut checked = 0;
     for folder in [
         "scenarios",
-        "scenarios/tour",
+        "scenarios/recipes",
         "scenarios/uncertain",
         "src/cli/init",
     ] {

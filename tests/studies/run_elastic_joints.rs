@@ -492,7 +492,8 @@ fn a_threshold_reports_its_dependence_on_stiffness() {
 #[test]
 fn the_verdict_names_repetitions_that_overturn_to_the_other_side() {
     let folder = tempfile::tempdir().unwrap();
-    let record = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/tour/nga1.at2");
+    let record =
+        std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios/recipes/nga1.at2");
     fs::copy(record, folder.path().join("nga1.at2")).unwrap();
     let text = "[arch]\nspan_m = 6.0\nmeasured_at = \"intrados\"\nembrace_deg = 150.0\nthickness_m = 0.5\nvoussoirs = 21\n\
                 [elastic_joints]\nnormal_stiffness_gpa_m = 30.0\n[simulation]\nduration_s = 30.0\n\
