@@ -40,6 +40,7 @@ mod listing;
 mod load;
 mod map;
 mod masonry;
+mod meanings;
 mod model_kind;
 mod models;
 mod prelude;
@@ -246,7 +247,7 @@ impl Scenario {
         Self::of(&Source::of_file(path)?, &ReadOptions::default())
     }
 
-    /// Returns the JSON schema of scenarios for editors: all tables and keys with their rules and defaults.
+    /// Returns the JSON schema of scenarios for editors: all tables and keys with their meanings, rules and defaults.
     pub fn schema() -> Value {
         // With a set model, tables of several models are allowed together.
         let options = ReadOptions {
@@ -256,6 +257,7 @@ impl Scenario {
         let mut schema = table::describe(|table| Self::read_table(table, &[], &options));
         schema["$schema"] = "http://json-schema.org/draft-07/schema#".into();
         schema["title"] = "Scenario of archrock".into();
+        meanings::add(&mut schema, "");
         schema
     }
 

@@ -1,6 +1,7 @@
 //! Code that several test files share: arches by their published names, and short ways to run them.
 
 pub mod browser;
+pub mod documents;
 pub mod momentum;
 pub mod motions;
 pub mod program;

@@ -149,10 +149,10 @@ pub fn shown_commands(page: &str) -> Vec<(Vec<String>, Vec<String>)> {
     commands
 }
 
-/// The cells of the row of docs/validation.md whose label begins with `label`, as the numbers in each cell.
+/// The cells of the row of docs/evidence.md whose label begins with `label`, as the numbers in each cell.
 #[track_caller]
 pub fn validated(label: &str) -> Vec<Vec<f64>> {
-    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/validation.md");
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/evidence.md");
     let page = fs::read_to_string(page).unwrap();
     let start = format!("| {label}");
     let row = page.lines().find(|line| line.starts_with(&start)).unwrap();

@@ -13,7 +13,7 @@ pub fn violations(schema: &Value, value: &Value, place: &str) -> Vec<String> {
         let bound = || rule.as_f64().unwrap();
         let number = value.as_f64();
         let holds = match keyword.as_str() {
-            "$schema" | "title" | "default" | "examples" => true,
+            "$schema" | "title" | "description" | "default" | "examples" => true,
             "type" => match rule.as_str().unwrap() {
                 "object" => value.is_object(),
                 "array" => value.is_array(),

@@ -196,7 +196,7 @@ fn row(scenario: &Scenario) -> Row {
     }
 }
 
-/// The arch on buttresses of the scripts of HybriDFEM-4 (see docs/validation.md): an independent static programme gives
+/// The arch on buttresses of the scripts of HybriDFEM-4 (see docs/evidence.md): an independent static programme gives
 /// 0.113086 g for sector voussoirs, 0.113071 g for straight-sided ones.
 #[test]
 fn an_arch_on_buttresses_given_as_blocks() {

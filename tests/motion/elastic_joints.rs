@@ -909,7 +909,7 @@ fn overturning_of_drums_agrees_with_an_independent_program() {
     );
 }
 
-/// Numbers in the last cell of rows of docs/validation.md, each with the stiffness of its joints in Pa/m from the first cell.
+/// Numbers in the last cell of rows of docs/evidence.md, each with the stiffness of its joints in Pa/m from the first cell.
 fn shown(label: &str) -> Vec<(f64, f64)> {
     let cells = validated(label);
     let stiffness = cells[0].iter().map(|gpa_m| gpa_m * 1e9);
@@ -923,7 +923,7 @@ fn four_decimals(shown_g: f64) -> f64 {
     5e-5 / shown_g + 1e-4
 }
 
-/// Pulses of docs/validation.md: friction of 35 degrees, continuous contact.
+/// Pulses of docs/evidence.md: friction of 35 degrees, continuous contact.
 fn rough(stiffness_pa_m: f64, damping_time_s: f64) -> ElasticProperties {
     ElasticProperties {
         damping_time_s,
@@ -1028,7 +1028,7 @@ fn the_page_has_the_pulses_that_overturn_an_arch_that_crushes() {
     }
 }
 
-/// The drums of docs/validation.md under step pairs. Near the edge, amplitudes that overturn them lie beside others that do not: by up to
+/// The drums of docs/evidence.md under step pairs. Near the edge, amplitudes that overturn them lie beside others that do not: by up to
 /// 0.75 % from 0.15 s on; with 0.1 s there is no edge.
 #[test]
 fn the_page_has_the_step_pairs_that_overturn_drums() {

@@ -1,4 +1,4 @@
-//! The numbers of docs/validation.md.
+//! The numbers of docs/evidence.md.
 
 use std::fs;
 use std::os::unix::fs::symlink;
@@ -131,10 +131,10 @@ fn least_thickness_of_pointed_and_elliptic_arches() {
 }
 
 #[test]
-fn commands_print_the_output_shown_in_docs_validation() {
+fn commands_print_the_output_shown_in_docs_evidence() {
     let folder = tempfile::tempdir().unwrap();
     symlink(scenarios(), folder.path().join("scenarios")).unwrap();
-    let commands = assert_shown_output_is_printed("docs/validation.md", folder.path());
+    let commands = assert_shown_output_is_printed("docs/evidence.md", folder.path());
     assert!(commands >= 15, "{commands}");
 }
 
@@ -144,7 +144,7 @@ fn commands_print_the_output_shown_in_docs_validation() {
 fn threshold_reproduces_the_failure_domain_of_the_page() {
     let path = scenarios().join("drums-step-pair.toml");
     let scenario = fs::read_to_string(&path).unwrap();
-    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/validation.md");
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/evidence.md");
     let page = fs::read_to_string(page).unwrap();
     let (_, table) = page.split_once("| t_p (s) |").unwrap();
     let mut rows = 0;

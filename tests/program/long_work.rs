@@ -1,4 +1,4 @@
-//! The ways to distribute a study over several machines, as in docs/long-work.md.
+//! The ways to distribute a study over several machines, as in docs/commands.md.
 
 use crate::common::program::skip_without;
 use std::env;
@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 
 /// The code block of the documentation that contains these words.
 fn block(words: &str) -> String {
-    let page = fs::read_to_string(repository().join("docs/long-work.md")).unwrap();
+    let page = fs::read_to_string(repository().join("docs/commands.md")).unwrap();
     let block = page.split("```").find_map(|block| {
         block
             .strip_prefix("bash\n")

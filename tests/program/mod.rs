@@ -2,6 +2,7 @@
 
 mod caveats;
 mod command_line;
+mod documents;
 mod init;
 mod long_work;
 mod names;

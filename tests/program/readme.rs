@@ -2,14 +2,10 @@
 
 use std::fs;
 use std::os::unix::fs::symlink;
-use std::path::{Path, PathBuf};
 
+use crate::common::documents::{pages, repository, words};
 use crate::common::program::{archrock, printed, scenarios, stderr, stdout};
 use crate::common::prose::skeleton;
-
-fn repository() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
 
 fn run(arguments: &[&str]) -> String {
     let folder = tempfile::tempdir().unwrap();
@@ -151,7 +147,6 @@ fn the_page_on_the_printed_report_quotes_its_lines() {
     assert_eq!(tables, 8);
 }
 
-/// The words of these pages outside code blocks.
 #[test]
 fn pages_for_a_first_look_are_short() {
     for (page, limit) in [
@@ -167,28 +162,15 @@ fn pages_for_a_first_look_are_short() {
         ("docs/python.md", 900),
     ] {
         let text = fs::read_to_string(repository().join(page)).unwrap();
-        let mut is_code = false;
-        let lines = text.lines().filter(|line| {
-            is_code ^= line.starts_with("```");
-            !is_code && !line.starts_with("    ")
-        });
-        let words = lines.flat_map(str::split_whitespace);
-        let words = words.filter(|word| word.contains(char::is_alphanumeric));
-        let words = words.count();
+        let words = words(&text);
         assert!(words <= limit, "{page}: {words} words");
     }
 }
 
 #[test]
 fn links_of_the_documents_have_targets() {
-    let docs = fs::read_dir(repository().join("docs")).unwrap();
-    let pages = docs.map(|entry| entry.unwrap().path());
-    let mut pages: Vec<PathBuf> = pages
-        .filter(|path| path.extension().is_some_and(|e| e == "md"))
-        .collect();
-    pages.extend(["README.md", "python/README.md"].map(|page| repository().join(page)));
     let mut links = 0;
-    for page in pages {
+    for page in pages() {
         let text = fs::read_to_string(&page).unwrap();
         for link in text
             .split("](")
@@ -215,6 +197,17 @@ fn links_of_the_documents_have_targets() {
         }
     }
     assert!(links > 30);
+}
+
+/// The contents link every page.
+#[test]
+fn the_contents_name_every_page() {
+    let contents = fs::read_to_string(repository().join("docs/README.md")).unwrap();
+    let names = fs::read_dir(repository().join("docs")).unwrap();
+    let names = names.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    for name in names.filter(|name| name.ends_with(".md") && name != "README.md") {
+        assert!(contents.contains(&format!("]({name})")), "{name}");
+    }
 }
 
 /// The anchor of a heading, as repository hosts form it.

@@ -1,11 +1,12 @@
-//! The reference of summaries in docs/results.md follows from the types that are written as JSON, and from their doc comments.
+//! The reference of summaries in docs/json.md follows from the types that are written as JSON, and from their doc comments.
 //!
 //! Every `Summary` of a study has a table there, and so have events, which Python gives. `ARCHROCK_GOLDEN=write cargo test summaries` writes them anew.
 
 use std::fmt::Write as _;
+use std::fs;
 use std::path::{Path, PathBuf};
-use std::{env, fs};
 
+use crate::common::documents::assert_generated;
 use syn::{Attribute, Expr, Field, Fields, GenericArgument, Item, Lit, Meta, PathArguments, Type};
 
 /// A type that is written as JSON, and its file.
@@ -329,21 +330,9 @@ fn summaries_are_described_by_their_types() {
         }
     }
     assert!(text.matches("###").count() >= 2, "{text}");
-    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/results.md");
-    let old = fs::read_to_string(&page).unwrap();
-    let begin = "<!-- Written by tests/program/summaries.rs from the types of src. -->\n";
-    let (before, after) = old.split_once(begin).unwrap();
-    let (known, after) = after.split_once("\n<!-- end -->").unwrap();
-    if env::var("ARCHROCK_GOLDEN").is_ok_and(|value| value == "write") {
-        fs::write(page, format!("{before}{begin}{text}\n<!-- end -->{after}")).unwrap();
-        return;
-    }
-    let first = known
-        .lines()
-        .zip(text.lines())
-        .find(|(known, now)| known != now);
-    assert!(
-        known == text,
-        "docs/results.md differs from the types, first in {first:?}: ARCHROCK_GOLDEN=write cargo test --test all summaries"
+    assert_generated(
+        "docs/json.md",
+        "tests/program/summaries.rs from the types of src",
+        &text,
     );
 }

@@ -1,232 +1,312 @@
-//! The keys that a scenario allows, as the reader describes them, and their description in the documents.
+//! The keys that a scenario allows, as the reader describes them, and their reference in the documents, which is written from this description.
+//! `ARCHROCK_GOLDEN=write cargo test --test all summaries keys` writes it anew.
 
+use crate::common::documents::assert_generated;
 use crate::common::schema::violations;
 use crate::common::{ARCH, COLUMN};
 use archrock::Scenario;
-use serde_json::Value;
-use std::collections::{BTreeMap, BTreeSet};
+use serde_json::{Map, Value};
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-pub fn document(name: &str) -> String {
-    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
-    fs::read_to_string(docs.join(name)).unwrap()
+/// A table of a scenario: its path, and its schema.
+type Described = (String, Value);
+
+/// The alternatives of a schema.
+fn ways(schema: &Value) -> Vec<&Value> {
+    let any = schema["anyOf"].as_array();
+    any.map_or(vec![schema], |any| any.iter().flat_map(ways).collect())
 }
 
-/// The parts of a text in backticks.
-fn code(text: &str) -> impl Iterator<Item = &str> {
-    text.split('`').skip(1).step_by(2)
+/// Returns true for a table `{ from, to, count }`, which is a range of values.
+fn is_range(schema: &Value) -> bool {
+    schema["properties"]["count"].is_object()
 }
 
-/// The cells of a row of a table in a document.
-fn cells(row: &str) -> Vec<&str> {
-    row.split('|').map(str::trim).collect()
+/// The keys of a table with their schemas.
+fn properties(schema: &Value) -> impl Iterator<Item = (&str, &Value)> {
+    let dotted = schema["patternProperties"].get("\\.");
+    let dotted = dotted.map(|schema| ("\"table.key\"", schema));
+    let keys = schema["properties"].as_object().into_iter().flatten();
+    keys.map(|(key, schema)| (key.as_str(), schema))
+        .chain(dotted)
 }
 
-/// Rows of the reference below the heading of a table; `None`: there is no such heading.
-fn rows_of<'d>(reference: &'d str, table: &str) -> Option<Vec<Vec<&'d str>>> {
-    let heading = format!("| **`[{table}]`** |");
-    let mut lines = reference.lines();
-    lines.find(|line| line.starts_with(&heading))?;
-    let rows = lines.take_while(|line| line.starts_with("| `"));
-    Some(rows.map(cells).collect())
-}
-
-/// Rows of the reference below the heading of a table: the keys, and the default.
-pub fn rows(reference: &str, table: &str) -> Vec<(Vec<String>, String)> {
-    let rows = rows_of(reference, table).expect("a heading").into_iter();
-    rows.map(|cells| {
-        let keys = code(cells[1]).map(str::to_owned).collect();
-        (keys, cells[3].to_owned())
-    })
-    .collect()
-}
-
-/// The tables that a schema describes, each with the schemas of its keys and the keys that are required.
-type Tables = BTreeMap<String, (BTreeMap<String, Value>, BTreeSet<String>)>;
-
-fn add(tables: &mut Tables, name: &str, schema: &Value) {
-    for one in schema["anyOf"].as_array().into_iter().flatten() {
-        add(tables, name, one);
-    }
-    if schema["items"].is_object() {
-        add(tables, &format!("[{name}]"), &schema["items"]);
-    }
-    let Some(properties) = schema["properties"].as_object() else {
-        return;
-    };
-    let (keys, required) = tables.entry(name.to_owned()).or_default();
-    for (key, schema) in properties {
-        keys.insert(key.clone(), schema.clone());
-    }
-    let names = schema["required"].as_array().into_iter().flatten();
-    required.extend(names.map(|key| key.as_str().unwrap().to_owned()));
-    let dotted = &schema["patternProperties"]["\\."];
-    let inner = properties
-        .iter()
-        .map(|(key, schema)| (key.as_str(), schema));
-    for (key, schema) in inner.chain([("\"table.key\"", dotted)]) {
-        let name = match name.strip_suffix(']') {
-            Some(outer) => format!("{outer}.{key}]"),
-            None if name.is_empty() => key.to_owned(),
-            None => format!("{name}.{key}"),
+/// Adds the tables of a schema, each before those in it.
+fn add(tables: &mut Vec<Described>, path: &str, schema: &Value) {
+    for way in ways(schema) {
+        let (way, path) = match way["items"].is_object() {
+            true => (&way["items"], format!("[{path}]")),
+            false => (way, path.to_owned()),
         };
-        add(tables, &name, schema);
+        if !way["properties"].is_object() || is_range(way) {
+            continue;
+        }
+        tables.push((path.clone(), way.clone()));
+        for (key, schema) in properties(way) {
+            let inner = match path.strip_suffix(']') {
+                Some(outer) if key != "\"table.key\"" => format!("{outer}.{key}]"),
+                _ if path.is_empty() => key.to_owned(),
+                _ => format!("{path}.{key}"),
+            };
+            add(tables, &inner, schema);
+        }
     }
 }
 
-fn tables() -> Tables {
-    let mut tables = Tables::new();
+/// The order of the reference.
+const ORDER: [&str; 23] = [
+    "",
+    "arch",
+    "pointed_arch",
+    "elliptic_arch",
+    "basket_arch",
+    "blocks",
+    "column",
+    "piers",
+    "fill",
+    "load",
+    "tie",
+    "supports",
+    "free_hinges",
+    "elastic_joints",
+    "impact",
+    "initial",
+    "ground",
+    "simulation",
+    "map",
+    "suite",
+    "uncertain",
+    "demand",
+    "verify",
+];
+
+fn tables() -> Vec<Described> {
+    let mut tables = Vec::new();
     add(&mut tables, "", &Scenario::schema());
+    tables.sort_by_key(|(path, _)| {
+        let first = path.trim_matches(['[', ']']).split('.').next();
+        ORDER
+            .iter()
+            .position(|name| Some(*name) == first)
+            .expect("a place in the order")
+    });
     tables
 }
 
-/// The heading of the reference under which a table is described.
-fn heading(table: &str) -> &str {
-    match table {
-        "supports.left" => "supports.right",
-        "ground.record" | "ground.right" => table,
-        kind if kind.starts_with("ground.") && kind.matches('.').count() == 1 => "ground.<kind>",
-        other => other,
-    }
-}
-
-/// The document that describes tables which the reference only names.
-fn other_document(table: &str) -> &'static str {
-    let name = table.trim_matches(['[', ']']);
-    match name.split('.').next().unwrap_or_default() {
-        "demand" | "verify" => "verify.md",
-        "uncertain" => "uncertain.md",
-        "ground" => "records.md",
-        "map" | "suite" => "maps.md",
-        _ => "shapes.md",
-    }
-}
-
-/// Every table of the reader is described: in the reference, which has all of its keys and no others, or in the document to which the
-/// reference refers, which names all of them.
-#[test]
-fn the_documents_list_all_keys_of_the_reader() {
-    let reference = document("scenario.md");
+/// The keys of the tables with these paths.
+pub fn keys_of(paths: &[&str]) -> BTreeSet<String> {
     let tables = tables();
-    assert!(tables.len() > 50, "{} tables", tables.len());
-    let mut read: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
-    for (name, (keys, _)) in tables.iter().filter(|(name, _)| !name.is_empty()) {
-        let keys = keys.keys().map(String::as_str);
-        read.entry(heading(name)).or_default().extend(keys);
-    }
-    let mut compared = 0;
-    for (table, mut keys) in read {
-        let rows = rows_of(&reference, table).unwrap_or_default();
-        if rows.is_empty() {
-            let text = document(other_document(table)) + &reference;
-            let named: BTreeSet<&str> = code(&text)
-                .flat_map(|code| code.split(|c: char| !(c == '_' || c.is_alphanumeric())))
-                .collect();
-            for key in keys {
-                let file = other_document(table);
-                assert!(
-                    named.contains(key),
-                    "{file} does not name `{key}` of [{table}]"
-                );
-            }
-            continue;
-        }
-        // Joints of unequal voussoirs are described with other shapes.
-        keys.remove("joints_deg");
-        let described: BTreeSet<&str> = rows.iter().flat_map(|cells| code(cells[1])).collect();
-        assert_eq!(keys, described, "[{table}]");
-        compared += 1;
-    }
-    assert!(compared >= 14, "{compared} tables");
-}
-
-/// Every key in the tables of the documents is a key of the reader.
-#[test]
-fn the_documents_name_no_other_keys() {
-    let tables = tables();
-    let keys: BTreeSet<&str> = tables
-        .values()
-        .flat_map(|(keys, _)| keys.keys())
-        .map(String::as_str)
+    let named = tables
+        .iter()
+        .filter(|(path, _)| paths.contains(&path.as_str()));
+    let keys: BTreeSet<String> = named
+        .flat_map(|(_, schema)| properties(schema).map(|(key, _)| key.to_owned()))
         .collect();
-    for file in ["scenario.md", "verify.md"] {
-        let text = document(file);
-        let mut lines = text.lines();
-        while lines.any(|line| line.starts_with("| key |")) {
-            let rows = lines.by_ref().take_while(|line| line.starts_with('|'));
-            for row in rows.filter(|row| row.starts_with("| `")) {
-                for key in code(cells(row)[1]) {
-                    assert!(keys.contains(key), "{file} has `{key}`, which is not read");
+    assert!(!keys.is_empty(), "{paths:?}");
+    keys
+}
+
+/// A number as a user writes it.
+fn number(value: &Value) -> String {
+    if let Some(whole) = value.as_u64() {
+        return whole.to_string();
+    }
+    let value = value.as_f64().unwrap();
+    match value.abs() {
+        0.0 | 1e-3..1e6 => value.to_string(),
+        _ => format!("{value:e}"),
+    }
+}
+
+/// The allowed values of a schema, in words.
+fn values(schema: &Value) -> String {
+    let bounds = || {
+        let bound = |key: &str| schema.get(key).map(number);
+        let lowest =
+            bound("minimum").or(bound("exclusiveMinimum").map(|low| format!("above {low}")));
+        let highest =
+            bound("maximum").or(bound("exclusiveMaximum").map(|high| format!("below {high}")));
+        match (lowest, highest) {
+            (Some(low), Some(high)) => format!(", {low} to {high}"),
+            (Some(one), None) | (None, Some(one)) => format!(", {one}"),
+            (None, None) => String::new(),
+        }
+    };
+    if let Some(names) = schema["enum"].as_array() {
+        let names: Vec<String> = names
+            .iter()
+            .map(|name| format!("`{}`", name.as_str().unwrap()))
+            .collect();
+        return names.join(", ");
+    }
+    if schema["anyOf"].is_array() {
+        let ways: Vec<String> = ways(schema).into_iter().map(values).collect();
+        return ways.join(" or ");
+    }
+    match schema["type"].as_str().unwrap() {
+        "object" if is_range(schema) => "range".to_owned(),
+        "object" => "table".to_owned(),
+        "array" if schema["items"]["type"] == "object" => "list of tables".to_owned(),
+        "array" => format!("list: {}", values(&schema["items"])),
+        "string" => match schema["examples"].as_array() {
+            Some(examples) => {
+                let examples: Vec<String> = examples
+                    .iter()
+                    .map(|one| format!("`{}`", one.as_str().unwrap()))
+                    .collect();
+                examples.join(", ")
+            }
+            None => "text".to_owned(),
+        },
+        "boolean" => "true or false".to_owned(),
+        "integer" => format!("whole number{}", bounds()),
+        "number" => format!("number{}", bounds()),
+        other => panic!("{other}"),
+    }
+}
+
+/// The rows of a table.
+fn rows(schema: &Value) -> String {
+    let required = schema["required"].as_array().into_iter().flatten();
+    let required: Vec<&str> = required.map(|key| key.as_str().unwrap()).collect();
+    let mut text = String::new();
+    for (key, schema) in properties(schema) {
+        let default = match &schema["default"] {
+            _ if required.contains(&key) => "required".to_owned(),
+            Value::Null => String::new(),
+            Value::String(word) => format!("`{word}`"),
+            Value::Bool(value) => value.to_string(),
+            other if other.is_number() => number(other),
+            _ => String::new(),
+        };
+        let meaning = schema["description"]
+            .as_str()
+            .unwrap_or_else(|| panic!("`{key}` has no meaning"));
+        writeln!(
+            text,
+            "| `{key}` | {meaning} | {} | {default} |",
+            values(schema)
+        )
+        .unwrap();
+    }
+    text
+}
+
+/// The relations between the keys of a table, each as a sentence.
+fn relations(schema: &Value, sentences: &mut Vec<String>) {
+    let code = |key: &Value| format!("`{}`", key.as_str().unwrap());
+    let codes = |keys: &Value| {
+        keys.as_array()
+            .unwrap()
+            .iter()
+            .map(code)
+            .collect::<Vec<_>>()
+            .join(", ")
+    };
+    let each = |ways: &Value| {
+        let ways = ways.as_array().unwrap().iter();
+        ways.map(|way| codes(&way["required"]))
+            .collect::<Vec<_>>()
+            .join(", ")
+    };
+    for relation in schema["allOf"].as_array().into_iter().flatten() {
+        let relation: &Map<String, Value> = relation.as_object().unwrap();
+        let (keyword, rule) = relation.iter().next().unwrap();
+        match keyword.as_str() {
+            "oneOf" => sentences.push(format!("Exactly one of {}.", each(rule))),
+            "anyOf" => sentences.push(format!("At least one of {}.", each(rule))),
+            "not" => sentences.push(format!("Not both of {}.", codes(&rule["required"]))),
+            "allOf" => relations(&Value::Object(relation.clone()), sentences),
+            "dependencies" => {
+                for (key, needed) in rule.as_object().unwrap() {
+                    let needed = needed
+                        .as_array()
+                        .unwrap()
+                        .iter()
+                        .filter(|other| *other != key);
+                    let needed: Vec<String> = needed.map(code).collect();
+                    sentences.push(format!("`{key}` needs {}.", needed.join(", ")));
                 }
             }
+            other => panic!("{other}"),
         }
     }
 }
 
-/// The two numbers of `3 to 200` in a text.
-fn bounds(text: &str) -> Option<[f64; 2]> {
-    let words: Vec<&str> = text.split([' ', '(', ')', ';', ',']).collect();
-    let number = |word: &str| word.parse::<f64>().ok();
-    words.windows(3).find_map(|words| match words {
-        [from, "to", to] => Some([number(from)?, number(to)?]),
-        _ => None,
-    })
-}
-
-/// The bounds of a number, or of the numbers of an array.
-fn limits(schema: &Value) -> Option<[f64; 2]> {
-    let any = schema["anyOf"].as_array().into_iter().flatten();
-    let numbers = any.map(|one| &one["items"]).chain([schema]);
-    let mut limits =
-        numbers.filter_map(|one| Some([one["minimum"].as_f64()?, one["maximum"].as_f64()?]));
-    limits.next()
-}
-
-/// The reference has the defaults and bounds of the reader, and says which keys are required.
+/// Tables with the same keys share a section.
 #[test]
-fn the_reference_has_the_defaults_and_bounds_of_the_reader() {
-    let reference = document("scenario.md");
-    let (mut defaults, mut ranges) = (0, 0);
-    for (table, (schemas, required)) in tables() {
-        for cells in rows_of(&reference, heading(&table)).unwrap_or_default() {
-            let keys: Vec<&str> = code(cells[1]).collect();
-            for (key, default) in keys.iter().zip(cells[3].split(", ")) {
-                let Some(schema) = schemas.get(*key) else {
-                    continue;
-                };
-                if required.contains(*key) {
-                    assert!(
-                        default.ends_with("required"),
-                        "`{key}` of [{table}] is required"
-                    );
-                }
-                let default = default.trim_matches('`');
-                let described = match default.parse::<f64>() {
-                    Ok(number) => Value::from(number),
-                    Err(_) => default.into(),
-                };
-                let read = match &schema["default"] {
-                    Value::Number(number) => number.as_f64().into(),
-                    Value::Bool(value) => value.to_string().into(),
-                    other => other.clone(),
-                };
-                if !read.is_null() && described != "" || described.is_number() {
-                    assert_eq!(described, read, "`{key}` of [{table}]");
-                    defaults += 1;
-                }
-            }
-            if let ([key], Some(bounds)) = (&keys[..], bounds(cells[2]))
-                && let Some(schema) = schemas.get(*key)
-                && let Some(read) = limits(schema)
-            {
-                assert_eq!(bounds, read, "`{key}` of [{table}]");
-                ranges += 1;
-            }
+fn the_reference_of_keys_is_written_from_the_schema() {
+    let mut sections: Vec<(Vec<String>, String)> = Vec::new();
+    for (path, schema) in tables() {
+        let mut sentences = Vec::new();
+        relations(&schema, &mut sentences);
+        let mut text = format!(
+            "| key | meaning | values | default |\n|---|---|---|---|\n{}",
+            rows(&schema)
+        );
+        if !sentences.is_empty() {
+            write!(text, "\n{}\n", sentences.join(" ")).unwrap();
+        }
+        let name = match &*path {
+            "" => "Tables of a scenario".to_owned(),
+            _ => format!("`[{path}]`"),
+        };
+        match sections.iter_mut().find(|(_, known)| *known == text) {
+            Some((names, _)) => names.push(name),
+            None => sections.push((vec![name], text)),
         }
     }
-    assert!(defaults >= 25, "{defaults} defaults");
-    assert!(ranges >= 8, "{ranges} ranges");
+    assert!(sections.len() > 30, "{} sections", sections.len());
+    let mut text = String::new();
+    for (names, table) in sections {
+        write!(text, "\n### {}\n\n{table}", names.join(", ")).unwrap();
+    }
+    assert_generated(
+        "docs/scenario.md",
+        "tests/scenario/keys.rs from the reader",
+        &text,
+    );
+}
+
+/// All meanings in a schema, ranges included.
+fn descriptions<'s>(schema: &'s Value, found: &mut BTreeSet<&'s str>) {
+    found.extend(schema["description"].as_str());
+    let inner = [
+        schema.as_object().map(|all| all.values().collect()),
+        schema.as_array().map(|all| all.iter().collect()),
+    ];
+    let inner: Vec<Vec<&Value>> = inner.into_iter().flatten().collect();
+    inner
+        .into_iter()
+        .flatten()
+        .for_each(|schema| descriptions(schema, found));
+}
+
+/// No meaning is left over from a key that is no longer read.
+#[test]
+fn every_meaning_is_that_of_a_key() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/scenario/meanings.txt");
+    let text = fs::read_to_string(path).unwrap();
+    let schema = Scenario::schema();
+    let mut used = BTreeSet::new();
+    descriptions(&schema, &mut used);
+    let mut meanings = 0;
+    for line in text.lines().filter(|line| !line.starts_with(['#', '['])) {
+        let Some((key, meaning)) = line.split_once(": ") else {
+            assert!(line.is_empty(), "{line}");
+            continue;
+        };
+        assert!(
+            used.contains(meaning),
+            "`{key}` is not read, or a section above has it"
+        );
+        assert!(!meaning.contains('|') && !meaning.ends_with('.'), "{line}");
+        meanings += 1;
+    }
+    assert!(meanings > 150, "{meanings}");
 }
 
 /// All scenarios of the repository, and those to start from, are valid by the schema that editors use.

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 class Impact(Part):
-    """An impact. Its keys are those of ``impact`` in the table of events of ``docs/results.md``, ``time_s`` and ``sway_after``.
+    """An impact. Its keys are those of ``impact`` in the table of events of ``docs/json.md``, ``time_s`` and ``sway_after``.
 
     Rates are those of the bodies in rad/s, anticlockwise, just before and just after; hinges that ``closed`` and ``opened`` are in order from
     left to right.
@@ -39,7 +39,7 @@ class Impact(Part):
 
 
 class Event(Part):
-    """An event of a history, and the state just after it. Its keys are in the table of events of ``docs/results.md``."""
+    """An event of a history, and the state just after it. Its keys are in the table of events of ``docs/json.md``."""
 
     __slots__ = ()
     _parts: ClassVar[Mapping[str, type[Part]]] = {"hinges": Hinge, "impact": Impact}

@@ -13,7 +13,7 @@ class Summary(dict[str, Any]):
     """A result as the program writes it in JSON: a dictionary whose keys are attributes too.
 
     ``summary.steps`` is ``summary["steps"]``, and ``summary.dimensionless.p_rad_s`` lies one level deeper. The keys follow from the types of
-    the library; ``docs/results.md`` explains them with their units. A key that is a word of Python is read as ``band["from"]``.
+    the library; ``docs/json.md`` explains them with their units. A key that is a word of Python is read as ``band["from"]``.
     """
 
     __slots__ = ()

@@ -5,7 +5,7 @@
 //! repetitions follow, and the verdict is their [count](OutcomeCount): **uncertain** if some overturn and others survive. The side of overturning, and
 //! whether a survivor comes to rest, do not count. Motions whose outcome no later impact can change need no repetition (`needs_no_repetition`).
 //!
-//! docs/models.md has the shares of further histories that contradict this rule. Small changes of the ground motion as repetitions gave more uncertain
+//! docs/evidence.md has the shares of further histories that contradict this rule. Small changes of the ground motion as repetitions gave more uncertain
 //! cases and no better verdicts.
 
 use std::collections::VecDeque;

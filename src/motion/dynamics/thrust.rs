@@ -59,7 +59,7 @@ impl FrictionDemands {
 }
 
 /// Largest excess of the thrust line, over the thickness and up to the largest rotation, of histories that four links describe. Histories with a
-/// larger one are outside the model: the mechanism cannot transmit its own forces. `docs/models.md` has the data from which it was chosen.
+/// larger one are outside the model: the mechanism cannot transmit its own forces. `docs/evidence.md` has the data from which it was chosen.
 pub const MODEL_LIMIT: f64 = 0.5;
 
 impl ThrustRecord {
