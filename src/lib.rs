@@ -24,7 +24,7 @@
 //! - [`scenario`]: what to simulate, read from a TOML file. [`studies`]: a [run](studies::run), and many histories evaluated together.
 //!   [`output`]: results as CSV, JSON and pictures.
 //!
-//! The arch of the paper, and the history of `docs/example.md`:
+//! The arch of the paper, and its history under a pulse:
 //!
 //! ```
 //! use archrock::{Arch, FourLinks, ImpactModel, Model, Outcome, Pulse, Request};
