@@ -24,7 +24,7 @@
 //! - [`scenario`]: what to simulate, read from a TOML file. [`studies`]: a [run](studies::run), and many histories evaluated together.
 //!   [`output`]: results as CSV, JSON and pictures.
 //!
-//! The arch of the paper, and its history under a pulse:
+//! The arch of the paper, and the history of `docs/start.md`:
 //!
 //! ```
 //! use archrock::{Arch, FourLinks, ImpactModel, Model, Outcome, Pulse, Request};
