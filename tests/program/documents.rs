@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 use std::os::unix::fs::symlink;
+use std::path::Path;
 use std::{env, fs};
 
 use crate::common::documents::{pages, repository, words};
@@ -39,7 +40,36 @@ fn commands_print_the_output_shown_in_the_documents() {
         symlink(scenarios(), folder.path().join("scenarios")).unwrap();
         let commands = assert_shown_output_is_printed(page, folder.path());
         assert_eq!(commands, shown, "{page}");
+        columns_are_those_of_the_page(&folder.path().join("results"));
     }
+}
+
+/// The first lines of tables are those in docs/results.md, where `...` stands for the first column or columns.
+fn columns_are_those_of_the_page(results: &Path) {
+    let page = fs::read_to_string(repository().join("docs/results.md")).unwrap();
+    let mut compared = 0;
+    for folder in fs::read_dir(results).unwrap() {
+        for file in fs::read_dir(folder.unwrap().path()).unwrap() {
+            let path = file.unwrap().path();
+            if path.extension().is_none_or(|ending| ending != "csv") {
+                continue;
+            }
+            let name = path.file_name().unwrap().to_str().unwrap();
+            let text = fs::read_to_string(&path).unwrap();
+            let columns = text.lines().next().unwrap();
+            let mut lines = page.lines().filter_map(|line| line.strip_prefix(name));
+            let shown = lines
+                .next()
+                .unwrap_or_else(|| panic!("{name} is not on the page"))
+                .trim();
+            match shown.strip_prefix("...") {
+                Some(last) => assert!(columns.ends_with(last), "{name}: {columns}"),
+                None => assert_eq!(columns, shown, "{name}"),
+            }
+            compared += 1;
+        }
+    }
+    assert!(compared > 0);
 }
 
 /// The picture of the failure domain shows the numbers of the table below it. `ARCHROCK_GOLDEN=write` draws it.

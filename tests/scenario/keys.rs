@@ -7,6 +7,7 @@ use crate::common::{ARCH, COLUMN};
 use archrock::Scenario;
 use serde_json::{Map, Value};
 use std::collections::BTreeSet;
+use std::f64::consts::PI;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
@@ -116,6 +117,7 @@ fn number(value: &Value) -> String {
     }
     let value = value.as_f64().unwrap();
     match value.abs() {
+        PI => "pi".to_owned(),
         0.0 | 1e-3..1e6 => value.to_string(),
         _ => format!("{value:e}"),
     }
@@ -143,7 +145,8 @@ fn values(schema: &Value) -> String {
         return names.join(", ");
     }
     if schema["anyOf"].is_array() {
-        let ways: Vec<String> = ways(schema).into_iter().map(values).collect();
+        let mut ways: Vec<String> = ways(schema).into_iter().map(values).collect();
+        ways.dedup();
         return ways.join(" or ");
     }
     match schema["type"].as_str().unwrap() {
