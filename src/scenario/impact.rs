@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
+use super::back_wall::wrong_wall;
 use super::model_kind::{AnyModel, ModelKind, ModelOptions, Site};
 use super::prelude::*;
-use super::structure::{Structure, wrong_wall};
+use super::structure::Structure;
 use crate::{ImpactLaw, ImpactModel};
 
 /// One mechanism of one degree of freedom at a time: four links, or Housner's column.

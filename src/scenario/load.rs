@@ -1,7 +1,7 @@
 //! Loads: `[[load]]`, on the extrados of an arch or at points of a column.
 
+use super::back_wall::wrong_wall;
 use super::prelude::*;
-use super::structure::wrong_wall;
 use crate::mechanics::stability::collapse_mechanism;
 use crate::mechanics::{ColumnLoadError, LARGEST_THRUST_N, PlacedLoad};
 use crate::{Column, Sway};

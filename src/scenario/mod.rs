@@ -26,6 +26,7 @@
 //! Field names are the keys of the file, units included.
 
 mod assignment;
+mod back_wall;
 mod bounds;
 mod document;
 mod elastic_joints;

@@ -11,12 +11,13 @@ use std::f64::consts::FRAC_PI_2;
 
 use thiserror::Error;
 
+use super::back_wall;
 use super::load::{NO_CONSTANT_FORCES, loaded_column};
 use super::masonry::{self, Additions};
 use super::prelude::*;
 use super::span::Circular;
 use super::tie::{self, TieTable};
-use crate::argument::{ArgumentError, rounded_up};
+use crate::argument::rounded_up;
 use crate::mechanics::four_link::least_thickness_ratio;
 use crate::mechanics::masonry::{CircularArch, LoadOutlines};
 use crate::mechanics::{DENSITY_KG_M3, DEPTH_M, MAX_BLOCKS};
@@ -77,7 +78,7 @@ impl Structure {
         let structure = match read {
             StructureTable::Arch(arch) => Self::Arch(arch),
             StructureTable::Column(column, back) if beside.fits_column() => {
-                let column = before_wall(table, column, back, (has_joints, lands))?;
+                let column = back_wall::before_wall(table, column, back, (has_joints, lands))?;
                 let has_joints = has_joints || !ties.is_empty();
                 let by = (has_joints, gravity_m_s2);
                 let column = loaded_column(table, &beside.loads, column, by)?;
@@ -344,20 +345,6 @@ fn why_not(arch: &Arch, error: LimitError) -> String {
 
 /// Message about ties of a column with a wall behind it.
 const NO_TIES: &str = "cannot be combined with [column.back]: a tie may pull the column against the wall, which no model computes; leave one out";
-/// Message about a wall behind a row of rigid blocks.
-const NO_RIGID_BLOCKS: &str = "cannot be combined with free hinges: their impacts lose all energy of the contacts that close, so base and wall together \
-                               would stop the column; give [elastic_joints], or Housner's column, or leave [column.back] out";
-
-/// Reads `[column.back]`.
-fn read_back(table: &mut Table<'_>) -> ReadResult<BackWall> {
-    let back = BackWall {
-        side: table.required("side", &one_of(Sway::ALL)),
-        height_m: table.optional("height_m", &within(&(0.0..=1e12))),
-        rate_ratio: table.optional("restitution", &within(&(0.0..=1.0))),
-    };
-    table.check_faultless()?;
-    Ok(back)
-}
 
 const DRUMS: Count = Count(1..=MAX_BLOCKS, "each is a block");
 
@@ -374,7 +361,7 @@ fn read_column(table: &mut Table<'_>, has_joints: bool) -> ReadResult<(Column, O
     let depth_m = table.or("depth_m", &MAGNITUDE, DEPTH_M);
     let density_kg_m3 = table.or("density_kg_m3", &MAGNITUDE, DENSITY_KG_M3);
     let pedestal = table.or("pedestal", &switch(), false);
-    let back = table.table("back", read_back);
+    let back = table.table("back", back_wall::read);
     if !has_joints && let Some(key) = DRUM_KEYS.into_iter().find(|key| table.gives(key)) {
         let wrong = "needs a table [free_hinges] or [elastic_joints]: Housner's model is a single prismatic block";
         table.wrong(key, wrong);
@@ -399,33 +386,4 @@ fn read_column(table: &mut Table<'_>, has_joints: bool) -> ReadResult<(Column, O
         column = table.accept("drum_heights_m", drums)?;
     }
     Ok((column, back))
-}
-
-/// Puts a wall behind a column. With `lands` its drums are rigid blocks that land on each other.
-fn before_wall(
-    table: &mut Table<'_>,
-    column: Column,
-    back: Option<BackWall>,
-    (has_joints, lands): (bool, bool),
-) -> ReadResult<Column> {
-    let Some(back) = back else {
-        return Ok(column);
-    };
-    let held = column.with_back(back).and_then(|column| {
-        if has_joints {
-            column.wall_behind_drums()?;
-        }
-        Ok(column)
-    });
-    let held = held.map_err(|error| wrong_wall(table, &error));
-    if lands && back.height_m != Some(0.0) {
-        return Err(table.wrong_in(&["column"], "back", NO_RIGID_BLOCKS));
-    }
-    held
-}
-
-/// Records that a wall behind the column does not fit the column and its loads.
-pub(super) fn wrong_wall(table: &mut Table<'_>, error: &ArgumentError) -> FaultRecorded {
-    let wrong = format!("does not fit: it must be {}", error.allowed);
-    table.wrong_in(&["column", "back"], error.argument, wrong)
 }
