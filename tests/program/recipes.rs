@@ -27,7 +27,7 @@ fn records() -> [(&'static str, String); 3] {
     }
     let mut third =
         "Synthetic: tests/common/motions.rs; synthetic(12, 12 s, 0.005 s), peak 380 cm/s2\n\
-                     Not of an earthquake; for the tour\ntime (s);acceleration (cm/s2)\n"
+                     Not of an earthquake; for the recipes\ntime (s);acceleration (cm/s2)\n"
             .to_owned();
     for (time_s, acceleration) in scaled(&synthetic(12, 12.0, 0.005), 380.0) {
         let _ = writeln!(third, "{time_s:.3};{:.4}", acceleration + 0.0);
