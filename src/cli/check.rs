@@ -66,6 +66,7 @@ fn check_file(file: &Path, arguments: &Arguments) -> Result<(String, Value), Fai
         let scene = drawn(&scenario)?;
         let title = scenario.title.as_deref().unwrap_or("Structure");
         let mut text = scenario.structure.described();
+        text += "; blue arrow: positive ground acceleration, which pushes to the left";
         if scene.has_settled() {
             text += "; dashed: as built; circles: open hinges";
         }

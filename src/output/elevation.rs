@@ -8,7 +8,7 @@ use super::sheet::{PartHeight, Sheet};
 use super::svg::{Anchor, Drawing, Frame, Stroke, color};
 use super::text::{TEXT_PX, Text, text_px};
 use crate::mechanics::BodyPoint;
-use crate::scenario::{Dimension, DimensionSide};
+use crate::scenario::{Dimension, DimensionSide, metres};
 use crate::{OpenHinge, Pose};
 
 /// Colour of blocks.
@@ -32,6 +32,12 @@ const BUILT: Stroke = Stroke::new(color::GREY, 0.7, "3 3");
 pub(crate) const HINGE: Stroke = Stroke::new(color::VERMILION, 1.6, "");
 pub(crate) const HINGE_PX: f64 = 3.2;
 const LOAD: Stroke = Stroke::new("#7a3b00", 1.6, "");
+/// Stroke of the axes of the frame of reference.
+const AXIS: Stroke = Stroke::new(color::BLACK, 1.0, "");
+/// Length of an axis.
+const AXIS_PX: f64 = 34.0;
+/// Stroke of the arrow of the ground acceleration.
+const GROUND: Stroke = Stroke::new(color::BLUE, 2.0, "");
 
 /// Distance from the structure to the first line of dimensions.
 const BESIDE_PX: f64 = 34.0;
@@ -39,6 +45,8 @@ const BESIDE_PX: f64 = 34.0;
 const APART_PX: f64 = 26.0;
 /// Length of the arrow of a load.
 const ARROW_PX: f64 = 30.0;
+/// Length of the arrow of the ground acceleration, or of a push of the ground.
+pub(crate) const PUSH_PX: f64 = 46.0;
 
 /// Converts metres to positions on the sheet.
 #[derive(Clone, Copy, Debug)]
@@ -68,7 +76,7 @@ impl SheetTransform {
     }
 }
 
-/// Draws a structure at rest with its dimensions, the numbers of its joints, and a text below. On moved supports it is drawn displaced; dashed
+/// Draws a structure at rest with its dimensions, the numbers of its joints, the axes, the positive ground acceleration, and a text below. On moved supports it is drawn displaced; dashed
 /// lines then show the undeformed structure, to which the dimensions refer.
 pub fn draw(figure: Figure, title: &str, scene: &Scene, text: &str) -> String {
     let room = |side: DimensionSide| room_px(scene, side).max(24.0);
@@ -98,6 +106,7 @@ pub fn draw(figure: Figure, title: &str, scene: &Scene, text: &str) -> String {
         view.draw_loads(drawing, Some(part.top), true);
         view.draw_hinges(drawing);
         joint_numbers(drawing, &view.place, scene);
+        draw_axes(drawing, &view.place, scene);
     });
     sheet.caption(room(DimensionSide::Below) + 22.0, text);
     sheet.gap(10.0);
@@ -206,7 +215,7 @@ impl<'a> View<'a> {
             let tip = self.px(&load.at);
             if load.sideways != 0.0 {
                 let tail = tip - Vector2::new(load.sideways * ARROW_PX, 0.0);
-                draw_arrow(drawing, [tail, tip]);
+                draw_arrow(drawing, "load", LOAD, [tail, tip]);
                 if has_labels {
                     // A wall and its dimension leave no space at the tail: the label is beyond the other face.
                     let (x, to) = match self.face_before_wall(-load.sideways) {
@@ -221,7 +230,7 @@ impl<'a> View<'a> {
             let from = from.filter(|_| !load.is_beside);
             let tail = from.map_or(tip.y - 20.0, |top| top - 8.0);
             let tail = Vector2::new(tip.x, tail);
-            draw_arrow(drawing, [tail, tip]);
+            draw_arrow(drawing, "load", LOAD, [tail, tip]);
             if load.width_m > 0.0 {
                 let edge = |side: f64| {
                     let at_m = load.at.at_m + Vector2::new(0.5 * side * load.width_m, 0.0);
@@ -256,12 +265,42 @@ impl<'a> View<'a> {
     }
 }
 
-/// Draws the horizontal or vertical arrow of a load.
-fn draw_arrow(drawing: &mut Drawing, [tail, tip]: [Vector2<f64>; 2]) {
-    drawing.curve("load", [tail, tip], LOAD);
+/// Draws a horizontal or vertical arrow.
+pub(crate) fn draw_arrow(
+    drawing: &mut Drawing,
+    name: &str,
+    stroke: Stroke,
+    [tail, tip]: [Vector2<f64>; 2],
+) {
+    drawing.curve(name, [tail, tip], stroke);
     let along = (tip - tail).normalize();
     let barb = |side: f64| tip - along * 7.0 + along.yx().abs() * (4.0 * side);
-    drawing.polygon("", [tip, barb(-1.0), barb(1.0)], LOAD.color, LOAD);
+    drawing.polygon("", [tip, barb(-1.0), barb(1.0)], stroke.color, stroke);
+}
+
+/// Draws the axes x and y at the origin, and below it the arrow of a positive ground acceleration. If the origin is outside the structure, as the
+/// centre of a flat arch, the axes are at the nearest point inside, with its coordinates.
+fn draw_axes(drawing: &mut Drawing, place: &SheetTransform, scene: &Scene) {
+    let [low_m, high_m] = scene.frame_m();
+    let at_m = Vector2::zeros().sup(&low_m).inf(&high_m);
+    let at = place.px(at_m);
+    for (name, along, anchor, label) in [
+        ("x", Vector2::x(), Anchor::Start, Vector2::new(5.0, 4.5)),
+        ("y", -Vector2::y(), Anchor::Middle, Vector2::new(0.0, -5.0)),
+    ] {
+        let tip = at + along * AXIS_PX;
+        draw_arrow(drawing, &format!("axis {name}"), AXIS, [at, tip]);
+        drawing.label(tip + label, anchor, 0.0, name);
+    }
+    let [x, y] = [at_m.x, at_m.y].map(|at_m| metres(at_m + 0.0));
+    let (label, origin) = match at_m.norm() > 1e-9 * (high_m - low_m).norm() {
+        true => (Vector2::new(8.0, -8.0), format!("({x}, {y}) m")),
+        false => (Vector2::new(6.0, 14.0), "0".to_owned()),
+    };
+    drawing.label(at + label, Anchor::Start, 0.0, origin);
+    let tip = Vector2::new(at.x - 12.0, place.px(low_m).y + 13.0);
+    let tail = tip - Vector2::new(PUSH_PX, 0.0);
+    draw_arrow(drawing, "ground acceleration", GROUND, [tail, tip]);
 }
 
 /// Returns the space that the dimensions on a side of a structure need, in pixels.

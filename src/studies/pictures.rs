@@ -5,13 +5,15 @@ use nalgebra::Vector2;
 use super::impact::LinkImpact;
 use crate::mechanics::four_link::{ArchLink, ResultantLine, closing_field};
 use crate::mechanics::{Edge, MechanismChain as _, Profile};
-use crate::output::elevation::{BODIES, SheetTransform, View, draw_dimensions, room_px};
+use crate::output::elevation::{
+    BODIES, PUSH_PX, SheetTransform, View, draw_arrow, draw_dimensions, room_px,
+};
 use crate::output::mechanisms::HINGES;
 use crate::output::scene::FARTHEST;
 use crate::output::text::Text;
 use crate::output::{Anchor, Drawing, Figure, Frame, PartHeight, Scene, Sheet, Stroke, color};
 use crate::scenario::DimensionSide;
-use crate::{FourLinks, Hinge, OpenHinge, Pose, Sway};
+use crate::{FourLinks, Hinge, MechanismModel as _, OpenHinge, Pose, Sway};
 
 /// Fraction of the limit rotation at which a mechanism is drawn, so that it is visibly open.
 const DRAWN_PART: f64 = 0.25;
@@ -162,6 +164,20 @@ impl PlacedStructure<'_> {
         drawing.curve(name, points, Stroke::new(color::BLUE, 1.8, ""));
     }
 
+    /// Draws the push that starts the structure, an arrow through the common centre of the masses that it moves.
+    fn push(&self, drawing: &mut Drawing) {
+        let first = self.of.first;
+        let bodies = self.of.model.moving_bodies(first).unwrap_or_default();
+        let whole_kg: f64 = bodies.iter().map(|body| body.mass_kg).sum();
+        let bodies = bodies.iter();
+        let centre_m = bodies.map(|body| body.centre_m * (body.mass_kg / whole_kg));
+        let at = self.place.px(centre_m.sum());
+        let half = Vector2::new(0.5 * PUSH_PX * first.sign(), 0.0);
+        let green = Stroke::new(color::GREEN, 2.2, "");
+        draw_arrow(drawing, "push", green, [at - half, at + half]);
+        drawing.circle("centre", at, 2.4, Stroke::new(color::BLACK, 1.2, ""));
+    }
+
     /// Draws the bodies into which the mechanisms before and after an impact divide the structure, the impulse line, and the hinges of both.
     fn impact(
         &self,
@@ -257,8 +273,8 @@ pub fn limit(figure: Figure, model: &FourLinks, first: Sway, scene: &Scene) -> S
     );
     let texts = [
         &*format!(
-            "Thrust line under gravity and a push of A_L to the {}; A to D: hinges, circles at the edge about which the \
-             arch turns",
+            "Thrust line under gravity and a push of A_L to the {} (green arrow, at the centre of the moving masses); A to D: \
+             hinges, circles at the edge about which the arch turns",
             first.name()
         ),
         &*format!(
@@ -292,6 +308,7 @@ pub fn limit(figure: Figure, model: &FourLinks, first: Sway, scene: &Scene) -> S
                     view.draw_blocks(drawing, |_, _| ("block".to_owned(), "#f4f4f4"));
                     view.draw_loads(drawing, None, true);
                     placed.resultants(drawing, "thrust line", &incipient.thrust_line, first);
+                    placed.push(drawing);
                     placed.hinges(drawing, open, "");
                 }
             },

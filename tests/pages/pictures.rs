@@ -127,6 +127,91 @@ fn limit_shows_the_thrust_line_inside_the_ring_and_through_its_hinges() {
     }
 }
 
+/// The push of `limit` is an arrow through the centre of the bodies, here the ring from the first hinge to the last: its centre is at the
+/// radius `(R + t^2/(12 R)) sin(b)/b` for the half angle `b`.
+#[test]
+fn limit_shows_the_push_through_the_centre_of_the_moving_masses() {
+    let ratio = 0.15;
+    let (arch, scene) = arch(ratio, 180.0);
+    let ring = arch.chain().profile(0);
+    let mechanism = arch.chain().link(0).unwrap().mechanism;
+    for sway in [Sway::Right, Sway::Left] {
+        let picture = draw_limit(Figure::SCREEN, &arch, sway, &scene);
+        let document = Document::parse(&picture).unwrap();
+        let hinges = mechanism.hinges_from_left(ring, sway);
+        let hinges = hinges.map(|(angle, edge)| ring.point(angle, edge));
+        let shown = ["hinge A", "hinge D"].map(|name| center(&named(&document, name)[0]));
+        let sheet = Sheet::new(shown, [hinges[0], hinges[3]]);
+        let [from, to] = [0, 3].map(|end| f64::atan2(hinges[end].x, hinges[end].y));
+        let (half, middle) = (0.5 * (to - from), 0.5 * (from + to));
+        let radius = (1.0 + ratio * ratio / 12.0) * half.sin() / half;
+        let expected = radius * Vector2::new(middle.sin(), middle.cos());
+        let push = points(&named(&document, "push")[0]);
+        let [tail, tip] = [push[0], push[1]];
+        assert_eq!((tip.x - tail.x).signum(), sway.sign());
+        assert_eq!(tip.y, tail.y);
+        let off = sheet.back(0.5 * (tail + tip)) - expected;
+        assert!(off.norm() * sheet.scale < 2.0 * PIXEL, "{off}");
+        assert!(
+            texts(&document)
+                .join(" ")
+                .contains(&format!("A_L to the {} (green arrow", sway.name()))
+        );
+    }
+}
+
+/// `check` draws the axes at the origin, or with the coordinates of their point if the origin is outside, and the positive ground
+/// acceleration, to the right: it pushes to the left.
+#[test]
+fn check_shows_axes_and_the_positive_ground_acceleration() {
+    let folder = tempfile::tempdir().unwrap();
+    let circle = |embrace: f64| {
+        format!("[arch]\nmean_radius_m = 5\nthickness_ratio = 0.15\nembrace_deg = {embrace}\n")
+    };
+    for (text, origin) in [
+        (circle(180.0), None),
+        ("[column]\nheight_m = 4\nwidth_m = 0.8\n".to_owned(), None),
+        // The intrados of the springings, 4.625 m from the centre, at 45 degrees.
+        (circle(90.0), Some("(0, 3.27) m")),
+    ] {
+        fs::write(folder.path().join("s.toml"), &text).unwrap();
+        printed(folder.path(), &["check", "s.toml", "--plot", "s.svg"]);
+        let picture = fs::read_to_string(folder.path().join("s.svg")).unwrap();
+        let document = Document::parse(&picture).unwrap();
+        let ends = |name: &str| points(&named(&document, name)[0]);
+        let (x, y) = (ends("axis x"), ends("axis y"));
+        assert!(
+            x[0] == y[0]
+                && x[1].x > x[0].x
+                && x[1].y == x[0].y
+                && y[1].y < y[0].y
+                && y[1].x == y[0].x
+        );
+        // The supports are at the level of the origin, and symmetric about it.
+        let supports: Vec<_> = named(&document, "support")
+            .iter()
+            .flat_map(points)
+            .collect();
+        let middle = supports.iter().sum::<Vector2<f64>>() / supports.len() as f64;
+        assert!((middle.x - x[0].x).abs() < 2.0 * PIXEL, "{middle} {}", x[0]);
+        let words = texts(&document);
+        match origin {
+            None => {
+                assert!((middle.y - x[0].y).abs() < 2.0 * PIXEL);
+                assert!(words.iter().any(|word| word == "0"));
+            }
+            Some(place) => assert!(words.iter().any(|word| word == place), "{words:?}"),
+        }
+        let ground = ends("ground acceleration");
+        assert!(ground[1].x > ground[0].x && ground[1].y == ground[0].y);
+        assert!(
+            words
+                .join(" ")
+                .contains("positive ground acceleration, which pushes to the left")
+        );
+    }
+}
+
 #[test]
 fn joints_are_drawn_for_voussoirs() {
     let arch = Arch::new(10.0, 0.15, 157.5).unwrap();
