@@ -36,7 +36,8 @@ def table() -> pd.DataFrame:
     """A row for each variant; histories use all processors."""
     cases = [(thickness_m, amplitude_g) for thickness_m in THICKNESSES_M for amplitude_g in AMPLITUDES_G]
     with ThreadPoolExecutor() as pool:
-        return pd.DataFrame(list(pool.map(variant, cases)))
+        found: pd.DataFrame = pd.DataFrame(list(pool.map(variant, cases)))
+    return found
 
 
 if __name__ == "__main__":
