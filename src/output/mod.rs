@@ -50,7 +50,7 @@ pub(crate) use svg::{Anchor, CURVES, Drawing, Frame, Stroke, color};
 pub(crate) use table::{
     Cell, Column, TableWriter, column, csv, each, fields, list, numbers, row_number, several,
 };
-pub(crate) use template::{filters, render};
+pub(crate) use template::{filters, render, render_in};
 pub use text::text_px;
 use thiserror::Error;
 

@@ -1,13 +1,36 @@
 //! Texts and pages from templates, and the format of numbers in them.
 
-use askama::Template;
+use std::any::Any;
 
-/// Fills a template. The text begins with its first line, and ends with one line break.
+use askama::{Template, Values, get_value};
+
+use crate::scenario::Language;
+
+/// Fills a template in English. The text begins with its first line, and ends with one line break.
 pub(crate) fn render(template: &impl Template) -> String {
-    let text = template.render();
+    render_in(template, Language::English)
+}
+
+/// Fills a template in a language, which its filters `it`, `shown`, `fixed` and `data` read.
+pub(crate) fn render_in(template: &impl Template, language: Language) -> String {
+    let text = template.render_with_values(&("language", &language as &dyn Any));
     // Writing to a string cannot fail, and the filters do not fail.
     let text = text.expect("templates are written to memory");
     format!("{}\n", text.trim_start_matches('\n').trim_end())
+}
+
+/// Returns the language of a template.
+fn language(values: &dyn Values) -> Language {
+    let language = get_value::<Language>(values, "language");
+    language.copied().unwrap_or_default()
+}
+
+/// Replaces the decimal point of a number by the mark of the language.
+fn with_decimal_mark(number: String, values: &dyn Values) -> String {
+    match language(values) {
+        Language::English => number,
+        Language::Italian => number.replace('.', ","),
+    }
 }
 
 /// A number of a template; absent ones are printed as "-".
@@ -42,13 +65,30 @@ pub(crate) mod filters {
     use askama::{Result, Values, filter_fn};
 
     use super::super::text::escaped;
-    use super::Number;
+    use super::{Number, language, with_decimal_mark};
     use crate::argument;
+    use crate::scenario::Language;
+
+    /// Chooses between a phrase in English and in Italian.
+    #[filter_fn]
+    pub fn it(english: &str, values: &dyn Values, italian: &str) -> Result<Safe<String>> {
+        let phrase = match language(values) {
+            Language::English => english,
+            Language::Italian => italian,
+        };
+        Ok(Safe(phrase.to_owned()))
+    }
+
+    /// Formats a number with its own digits, and the decimal mark of the language.
+    #[filter_fn]
+    pub fn shown(number: impl Display, values: &dyn Values) -> Result<String> {
+        Ok(with_decimal_mark(number.to_string(), values))
+    }
 
     /// Formats a number with this many decimals; zero has no sign.
     #[filter_fn]
-    pub fn fixed(number: impl Number, _: &dyn Values, decimals: usize) -> Result<String> {
-        let fixed = |number| argument::fixed(number, decimals);
+    pub fn fixed(number: impl Number, values: &dyn Values, decimals: usize) -> Result<String> {
+        let fixed = |number| with_decimal_mark(argument::fixed(number, decimals), values);
         Ok(number.value().map_or_else(|| "-".to_owned(), fixed))
     }
 
@@ -61,9 +101,9 @@ pub(crate) mod filters {
 
     /// Formats a number for a page, with this many decimals, in an element that holds the full value.
     #[filter_fn]
-    pub fn data(number: impl Number, _: &dyn Values, decimals: usize) -> Result<Safe<String>> {
+    pub fn data(number: impl Number, values: &dyn Values, decimals: usize) -> Result<Safe<String>> {
         let element = |number: f64| {
-            let shown = argument::fixed(number, decimals);
+            let shown = with_decimal_mark(argument::fixed(number, decimals), values);
             // Adding zero makes a negative zero positive.
             format!("<data value=\"{:?}\">{shown}</data>", number + 0.0)
         };

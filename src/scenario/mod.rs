@@ -106,8 +106,8 @@ pub(crate) use toml_text::toml_text;
 pub use uncertain::{Distribution, DistributionForm, MAX_DEVIATIONS, Uncertain, UncertainKey};
 pub use verify::{
     BEHAVIOUR_FACTOR, Building, BuildingMode, ByState, CONFIDENCE_FACTOR, CheckedSides, CodeDemand,
-    Demand, FreeStanding, LimitState, ModeState, PointDemand, Records, SiteTopography, StateRule,
-    Verify,
+    Demand, FreeStanding, Language, LimitState, ModeState, PointDemand, Records, SiteTopography,
+    StateRule, Verify,
 };
 
 /// Changes that are made to a scenario while it is read.

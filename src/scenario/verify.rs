@@ -6,6 +6,7 @@
 //! behaviour_factor = 2.0
 //! sides = "both"                # or "right", "left"
 //! free_standing = { t0_s = 0.143 }     # or { kappa = 6.2, length_m = 4, thickness_m = 0.8, modulus_gpa = 1.5 }
+//! language = "en"               # or "it"
 //! slv_records = "slv/*.at2"     # the dynamic route; likewise slc_records; of tables, columns and units as in [suite]
 //!
 //! [demand]
@@ -64,8 +65,27 @@ named! {
     }
 }
 
+named! {
+    /// The language of the words and the page of a check.
+    #[derive(Default)]
+    pub enum Language {
+        /// English.
+        #[default]
+        English = "en",
+        /// Italian, in the terms of the Circolare.
+        Italian = "it",
+    }
+}
+
+impl Language {
+    /// Returns true for English, which resolved scenarios and summaries leave out.
+    pub const fn is_english(&self) -> bool {
+        matches!(self, Self::English)
+    }
+}
+
 /// Period of the elastic vibration before a mechanism moves, of a structure that walls do not hold.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum FreeStanding {
     /// A known period.
@@ -135,6 +155,9 @@ pub struct Verify {
     pub sides: CheckedSides,
     /// Elastic vibration of a structure that is free to vibrate before it moves; `None` if walls hold it up to the mechanism.
     pub free_standing: Option<FreeStanding>,
+    /// Language of the words and the page.
+    #[serde(skip_serializing_if = "Language::is_english")]
+    pub language: Language,
     /// Records of the dynamic route.
     #[serde(flatten)]
     pub records: Records,
@@ -218,6 +241,7 @@ impl Default for Verify {
             behaviour_factor: BEHAVIOUR_FACTOR,
             sides: CheckedSides::Both,
             free_standing: None,
+            language: Language::English,
             records: Records::default(),
         }
     }
@@ -231,6 +255,7 @@ impl Verify {
             behaviour_factor: table.or("behaviour_factor", &BEHAVIOUR, BEHAVIOUR_FACTOR),
             sides: table.or("sides", &one_of(CheckedSides::ALL), CheckedSides::Both),
             free_standing: table.table("free_standing", FreeStanding::read),
+            language: table.or("language", &one_of(Language::ALL), Language::English),
             records: Records::read(table, gravity_m_s2)?,
         })
     }

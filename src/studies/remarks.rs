@@ -162,14 +162,14 @@ pub(crate) struct ModelCheck {
         rename = "four_link_histories",
         skip_serializing_if = "is_zero"
     )]
-    of: usize,
+    pub(crate) of: usize,
     /// Largest excess of the thrust line, over the thickness; absent if it is unknown, or for other models.
     #[serde(
         default,
         rename = "largest_thrust_excess_ratio",
         skip_serializing_if = "Option::is_none"
     )]
-    largest_ratio: Option<f64>,
+    pub(crate) largest_ratio: Option<f64>,
 }
 
 fn is_zero<N: Default + PartialEq>(number: &N) -> bool {

@@ -30,5 +30,6 @@ mod uncertain;
 mod verify;
 mod verify_formulas;
 mod verify_histories;
+mod verify_page;
 mod walls;
 mod words_of_json;

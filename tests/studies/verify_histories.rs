@@ -571,12 +571,13 @@ fn words_json_and_page_agree_on_histories() {
     );
     // The check by displacement decides the verdict of the state.
     assert_eq!(data["verdict"]["slv"], "not_passed");
-    let names = data["decisions"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .map(|one| one["name"].as_str().unwrap());
-    assert!(names.into_iter().any(|name| name == "D9"));
+    let mut decisions = data["decisions"].as_array().unwrap().iter();
+    assert!(decisions.any(|one| {
+        one["text"]
+            .as_str()
+            .unwrap()
+            .contains("four-link mechanisms")
+    }));
     let page = folder.path().join("out/verify.html");
     let html = fs::read_to_string(&page).unwrap();
     assert!(html.contains("C8.7.1.2.1.9") && !html.contains("omplian"));

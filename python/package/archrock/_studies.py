@@ -797,7 +797,7 @@ def verify(
         title: free text for the page.
         slv_records: records for the dynamic route at SLV, all in one unit, each with its own name.
         slc_records: records for the dynamic route at SLC, likewise.
-        how: keys of ``[verify]``: ``confidence_factor``, ``behaviour_factor``, ``sides``, ``free_standing``.
+        how: keys of ``[verify]``: ``confidence_factor``, ``behaviour_factor``, ``sides``, ``free_standing``, ``language``.
 
     Raises:
         ValueError: when there is nothing to check, or a number is outside the range of the code, with the library's explanation.

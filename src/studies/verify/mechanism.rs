@@ -6,10 +6,11 @@ use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
 use super::{CheckInput, VerifyError};
+use crate::bisection::{Width, bisect};
 use crate::mechanics::settling::Held;
 use crate::mechanics::stability::onset;
 use crate::mechanics::{
-    BodyPoint, Capacity, Control, Displaced, Edge, FrictionError, MovingBody, MovingForce,
+    Anchor, BodyPoint, Capacity, Control, Displaced, Edge, FrictionError, MovingBody, MovingForce,
     MovingTie, Participation, Parts as _, RowOnset, friction, load_multiplier,
     per_displacement_of_centre,
 };
@@ -46,6 +47,9 @@ pub struct Body {
     pub delta_y: f64,
     /// Virtual rotation towards the side of the sway, per metre.
     pub rotation_per_m: f64,
+    /// Numbers of its first and last block, from 1; absent for a ring.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub blocks: Option<[usize; 2]>,
 }
 
 /// A tie of a mechanism.
@@ -55,6 +59,10 @@ pub struct HeldTie {
     pub force_kn: f64,
     /// Elongation of the tie for the virtual displacement of the mechanism.
     pub delta_l: f64,
+    /// Positions of its ends in the undeformed structure, in metres.
+    pub ends_m: [Vector2<f64>; 2],
+    /// Numbers of the blocks at its ends, from 1; null for a support.
+    pub blocks: [Option<usize>; 2],
 }
 
 /// A constant force on a mechanism: a thrust, or a weight without inertia.
@@ -88,6 +96,24 @@ impl ConstantForce {
         }
     }
 }
+
+/// The mechanism at a displacement of its capacity curve.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Position {
+    /// Displacement over that at the unstable equilibrium.
+    pub part_of_d0: f64,
+    /// Displacement of the oscillator, in metres.
+    pub displacement_m: f64,
+    /// Acceleration of the oscillator, not divided, in g.
+    pub acceleration_g: f64,
+    /// Positions of the hinges, in metres.
+    pub hinges_m: Vec<Vector2<f64>>,
+    /// Positions of the centres of the bodies, in metres.
+    pub centres_m: Vec<Vector2<f64>>,
+}
+
+/// Parts of the ultimate displacement at which positions are printed, besides those of the limit states.
+const PRINTED_PARTS: [f64; 3] = [0.4, 0.6, 1.0];
 
 /// The mechanism that starts to one side.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -138,6 +164,9 @@ pub struct Mechanism {
     pub friction: Option<f64>,
     /// Displacements in metres and accelerations in g of the oscillator.
     pub curve_m_g: Option<Vec<[f64; 2]>>,
+    /// Positions at the displacements of the limit states and at the unstable equilibrium; absent without a capacity curve.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub positions: Vec<Position>,
     /// The reason why there is no capacity curve.
     pub no_curve: Option<String>,
     /// The body to which each block of a row belongs; for pictures of a mechanism without a curve.
@@ -153,6 +182,8 @@ struct VirtualMechanism {
     hinges: Vec<(Hinge, Vector2<f64>)>,
     bodies: Vec<MovingBody>,
     ties: Vec<MovingTie>,
+    /// Ends of the ties.
+    ends: Vec<[Anchor; 2]>,
     forces: Vec<MovingForce>,
     body_of_block: Vec<Option<usize>>,
     curves: Result<CapacityCurves, String>,
@@ -165,6 +196,8 @@ pub struct CapacityCurves {
     pub centre: Capacity,
     /// Capacity curve with the crown (or the top) as control point; `None` if the crown does not move to that side.
     pub crown: Option<Capacity>,
+    /// Positions at the displacements of the limit states and at the unstable equilibrium.
+    pub positions: Vec<Position>,
 }
 
 impl CapacityCurves {
@@ -174,19 +207,63 @@ impl CapacityCurves {
         displaced: impl Fn(f64) -> Displaced,
         bodies: &[MovingBody],
         crown: BodyPoint,
-        gravity_m_s2: f64,
+        input: &CheckInput<'_>,
     ) -> Result<Self, String> {
+        let gravity_m_s2 = input.gravity_m_s2;
         let masses = (0..).map(Some).zip(bodies).map(|(body, own)| {
             let at_m = own.centre_m;
             (own.mass_kg, BodyPoint { at_m, body })
         });
         let masses: Vec<(f64, BodyPoint)> = masses.collect();
         let curve = |control| Capacity::new(sway, &displaced, &masses, control, gravity_m_s2);
-        let centre = curve(Control::centre_of(&masses));
+        let centre = curve(Control::centre_of(&masses)).map_err(|error| error.to_string())?;
+        let mut parts: Vec<f64> = input.parts_of_d0().chain(PRINTED_PARTS).collect();
+        parts.sort_by(f64::total_cmp);
+        parts.dedup();
+        let end_m = centre.end().oscillator_displacement_m;
+        let whole_kg: f64 = bodies.iter().map(|body| body.mass_kg).sum();
+        let centres_m = |at: &Displaced| {
+            let centres = at.poses.iter().zip(bodies);
+            let centres = centres.map(|(pose, body)| pose.of(body.centre_m));
+            centres.collect::<Vec<_>>()
+        };
+        let oscillator_m = |at: &Displaced| {
+            let shifts_m = centres_m(at).into_iter().zip(bodies);
+            let shifts_m = shifts_m.map(|(at_m, body)| (at_m - body.centre_m).x * body.mass_kg);
+            sway.sign() * shifts_m.sum::<f64>() / whole_kg * centre.to_oscillator
+        };
+        let positions = parts.iter().map(|part| {
+            let goes = |way: f64| oscillator_m(&displaced(way)) >= part * end_m;
+            let is_end = *part == 1.0;
+            let way = match is_end {
+                true => 1.0,
+                false => bisect(0.0, 1.0, Width::Rounding, goes).1,
+            };
+            let at = displaced(way);
+            Position {
+                part_of_d0: *part,
+                displacement_m: oscillator_m(&at),
+                acceleration_g: match is_end {
+                    true => 0.0,
+                    false => at.acceleration_g / centre.mass_fraction,
+                },
+                centres_m: centres_m(&at),
+                hinges_m: at.hinges_m,
+            }
+        });
         Ok(Self {
-            centre: centre.map_err(|error| error.to_string())?,
+            positions: positions.collect(),
             crown: curve(Control::point(crown)).ok(),
+            centre,
         })
+    }
+
+    /// Returns displacements in metres and accelerations in g of the oscillator.
+    fn points_m_g(&self) -> Vec<[f64; 2]> {
+        let points = self.centre.curve.iter();
+        let points =
+            points.map(|one| (one.oscillator_displacement_m, one.oscillator_acceleration_g));
+        points.map(Into::into).collect()
     }
 
     /// Returns the largest friction coefficient needed up to a fraction of the ultimate displacement.
@@ -206,7 +283,7 @@ impl Mechanism {
         let alpha0 = load_multiplier(&found.bodies, &found.ties, &found.forces);
         let participation = Participation::of_bodies(&found.bodies);
         let scale = per_displacement_of_centre(&found.bodies);
-        let bodies = found.bodies.iter().map(|body| Body {
+        let bodies = found.bodies.iter().enumerate().map(|(index, body)| Body {
             mass_kg: body.mass_kg,
             weight_kn: weight_kn(body.mass_kg),
             // Adding zero makes a negative zero positive.
@@ -215,6 +292,7 @@ impl Mechanism {
             delta_x: body.displacement.x * scale,
             delta_y: body.displacement.y * scale,
             rotation_per_m: body.rotation * scale,
+            blocks: found.blocks_of(index),
         });
         let bodies: Vec<Body> = bodies.collect();
         let sum = |term: fn(&Body) -> f64| -> f64 {
@@ -228,21 +306,12 @@ impl Mechanism {
         let held_kg = held_kg.sum::<f64>() - pushing_kg.sum::<f64>();
         let forces = forces.map(|force| ConstantForce::new(force, scale, input.gravity_m_s2));
         let curves = found.curves.as_ref().ok();
+        let furthest_part = input.parts_of_d0().fold(0.0, f64::max);
         let crown = curves
             .and_then(|curves| curves.crown.as_ref())
             .map(Capacity::end);
         let end = curves.map(|curves| curves.centre.end());
         let yielding = curves.and_then(|curves| input.yielding(curves));
-        let curve = curves.map(|curves| {
-            let points = curves.centre.curve.iter();
-            let curve = points.map(|point| {
-                [
-                    point.oscillator_displacement_m,
-                    point.oscillator_acceleration_g,
-                ]
-            });
-            curve.collect()
-        });
         let hinges = found.hinges.iter().map(|(hinge, at_m)| PlacedHinge {
             hinge: *hinge,
             x_m: at_m.x + 0.0,
@@ -257,11 +326,15 @@ impl Mechanism {
             sum_p_delta_y_kn: sum(|body| body.delta_y),
             bodies,
             ties: ties
-                .map(|tie| HeldTie {
+                .zip(&found.ends)
+                .map(|(tie, ends)| HeldTie {
                     force_kn: weight_kn(tie.force_kg),
                     delta_l: tie.lengthening * scale,
+                    ends_m: ends.map(|end| end.at_m),
+                    blocks: ends.map(|end| Some(end.block? + 1)),
                 })
                 .collect(),
+            positions: curves.map_or_else(Vec::new, |curves| curves.positions.clone()),
             forces: forces.collect(),
             alpha0,
             moving_mass_kg: participation.moving_mass_kg,
@@ -274,8 +347,8 @@ impl Mechanism {
             d0_crown_m: crown.map(|end| end.oscillator_displacement_m),
             d_y_m: yielding.map(|both| both.0),
             a_y_over_fc_g: yielding.map(|both| both.1),
-            friction: curves.map(|curves| curves.friction_up_to(input.furthest_part())),
-            curve_m_g: curve,
+            friction: curves.map(|curves| curves.friction_up_to(furthest_part)),
+            curve_m_g: curves.map(CapacityCurves::points_m_g),
             no_curve: found.curves.as_ref().err().cloned(),
             body_of_block: found.body_of_block,
             curves: found.curves.ok(),
@@ -284,12 +357,28 @@ impl Mechanism {
 }
 
 impl VirtualMechanism {
+    /// Returns the numbers of the first and the last block of a body, from 1; `None` for a ring.
+    fn blocks_of(&self, body: usize) -> Option<[usize; 2]> {
+        let of_body = |of: &Option<usize>| *of == Some(body);
+        if let Some(first) = self.body_of_block.iter().position(of_body) {
+            let last = self.body_of_block.iter().rposition(of_body);
+            return Some([first + 1, last.unwrap_or(first) + 1]);
+        }
+        let joint = |hinge: usize| match self.hinges.get(hinge)?.0 {
+            Hinge::Joint { joint, .. } => Some(joint),
+            Hinge::Section { .. } | Hinge::Toe(_) => None,
+        };
+        joint(body)
+            .zip(joint(body + 1))
+            .map(|(from, to)| [from + 1, to])
+    }
+
     /// Finds the mechanism to one side of a model that moves as one mechanism.
     fn of_model(
         structure: &Structure,
         model: &dyn MechanismModel,
         sway: Sway,
-        gravity_m_s2: f64,
+        input: &CheckInput<'_>,
     ) -> Option<Self> {
         let bodies = model.moving_bodies(sway)?;
         let at_rest = model.displaced(sway, 0.0)?;
@@ -299,19 +388,20 @@ impl VirtualMechanism {
             displaced.expect("a structure has its first mechanism")
         };
         let crown = Bodies::of_model(model, sway).body_point(structure.as_parts().crown());
-        let curves = CapacityCurves::new(sway, displaced, &bodies, crown, gravity_m_s2);
+        let curves = CapacityCurves::new(sway, displaced, &bodies, crown, input);
         Some(Self {
             hinges: named.zip(at_rest.hinges_m).collect(),
             curves,
             bodies,
             ties: Vec::new(),
+            ends: Vec::new(),
             forces: model.moving_forces(sway)?,
             body_of_block: Vec::new(),
         })
     }
 
     /// Finds the mechanism of a row at rest by limit analysis, and its motion if the row has no ties.
-    fn of_onset(row: &Row, sway: Sway, onset: &RowOnset, gravity_m_s2: f64) -> Self {
+    fn of_onset(row: &Row, sway: Sway, onset: &RowOnset, input: &CheckInput<'_>) -> Self {
         let opens = |joint: usize| onset.openings.iter().any(|open| open.joint == joint);
         let fastest = |block: usize| {
             let twist = onset.velocities[block];
@@ -379,11 +469,12 @@ impl VirtualMechanism {
             let held = Held::new(row, sway).map_err(|error| error.to_string())?;
             let crown = Bodies::of_row(&held).body_point(row.crown());
             let displaced = |part| held.displaced(part);
-            CapacityCurves::new(sway, displaced, &bodies, crown, gravity_m_s2)
+            CapacityCurves::new(sway, displaced, &bodies, crown, input)
         };
         Self {
             hinges: hinges.collect(),
             ties: ties.collect(),
+            ends: row.bars().iter().map(|tie| tie.ends).collect(),
             forces: forces.collect(),
             curves: curves(),
             bodies,
@@ -413,7 +504,7 @@ fn slides_at_g(row: &Row, coefficient: f64, sway: Sway, alpha0: f64) -> Option<f
 /// # Errors
 /// When the structure cannot stand, no acceleration moves it to a side, or joints slide first.
 pub(super) fn mechanisms(input: &CheckInput<'_>) -> Result<BTreeMap<Sway, Mechanism>, VerifyError> {
-    let (structure, gravity_m_s2) = (&input.scenario.structure, input.gravity_m_s2);
+    let structure = &input.scenario.structure;
     let coefficient = input.allowed_friction;
     let none =
         |sway: Sway| VerifyError::NoMechanism(format!("no push moves it to the {}", sway.name()));
@@ -431,14 +522,14 @@ pub(super) fn mechanisms(input: &CheckInput<'_>) -> Result<BTreeMap<Sway, Mechan
     };
     let of = |sway: Sway| {
         let found = if let Ok(model) = &model {
-            VirtualMechanism::of_model(structure, &**model, sway, gravity_m_s2)
+            VirtualMechanism::of_model(structure, &**model, sway, input)
                 .ok_or_else(|| none(sway))?
         } else {
             let row = row.as_ref().map_err(VerifyError::clone)?;
             let found =
                 onset(row, sway).map_err(|error| VerifyError::NoMechanism(error.to_string()))?;
             let found = found.ok_or_else(|| none(sway))?;
-            VirtualMechanism::of_onset(row, sway, &found, gravity_m_s2)
+            VirtualMechanism::of_onset(row, sway, &found, input)
         };
         let mechanism = Mechanism::new(found, input);
         let alpha0 = mechanism.alpha0;

@@ -4,6 +4,7 @@
 //! are compared with a spectrum ([`Spectrum`]) at each limit state. The [`Summary`] has every number and verdict; words, notes and the printed
 //! page are templates that read the summary. Where the text of the Circolare leaves a choice, the notes state the decision.
 
+mod geometry;
 mod histories;
 mod mechanism;
 mod picture;
@@ -24,14 +25,15 @@ use crate::bisection::{Width, bisect};
 use crate::dynamics::demand::{Hazard, PeriodOutOfRange};
 use crate::dynamics::{GroundSpectrum, Site};
 use crate::mechanics::Capacity;
-use crate::output::filters;
 use crate::scenario::{
-    CheckedSides, Demand, InputFile, LimitState, Scenario, StateRule, Verify, sha256,
+    CheckedSides, Demand, FreeStanding, InputFile, Language, LimitState, Scenario, StateRule,
+    Verify, sha256,
 };
+pub use geometry::{FillGeometry, Geometry, LoadAt, PlacedBlock, RingGeometry};
 pub use histories::{ComparedPeak, Histories, HistorySide, MeanSpectrum, Peak, RecordPeaks};
-pub use mechanism::{Body, CapacityCurves, HeldTie, Mechanism, PlacedHinge};
+pub use mechanism::{Body, CapacityCurves, HeldTie, Mechanism, PlacedHinge, Position};
 pub use report::{FILES, Page, SidePictures, page_of, report, words};
-pub use spectrum::{FloorMode, Ground, Spectrum};
+pub use spectrum::{FloorMode, FloorOrdinates, Ground, Spectrum};
 
 /// Friction coefficient that the Circolare gives for walls (C8.7.1.2.1.2).
 pub const FRICTION: f64 = 0.577;
@@ -164,6 +166,10 @@ pub struct DisplacementCheck {
     pub ag_capacity_following_g: Option<f64>,
     /// `zeta_E` with the crown as control point; `None` if the crown does not move.
     pub zeta_e_crown: Option<f64>,
+    /// Divided acceleration at the allowed displacement with the crown as control point, in g; `None` if the crown does not move.
+    pub acceleration_crown_g: Option<f64>,
+    /// Period there, in seconds.
+    pub period_crown_s: Option<f64>,
     /// The governing result: the ratio of displacements, or the activation if motion starts later.
     #[serde(flatten)]
     pub margin: Margin,
@@ -190,6 +196,9 @@ pub struct SideCheck {
     pub simplified: Option<SimplifiedCheck>,
     /// The check by displacements, for SLV and SLC.
     pub displacement: Option<DisplacementCheck>,
+    /// Ordinates of the spectrum at a height, mode by mode, at the periods of the check; absent on the ground.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub floor: Vec<FloorOrdinates>,
 }
 
 named! {
@@ -208,19 +217,17 @@ named! {
 type MethodResult = (Method, Margin, Option<([f64; 2], &'static str)>);
 
 impl SideCheck {
-    /// Returns the results, the governing one first: by displacements if there is a curve, or the activation if it governs.
+    /// Returns the results, the governing one first: by displacements if there is a curve, or the activation if it governs, before the
+    /// displacements.
     fn results(&self) -> impl Iterator<Item = MethodResult> {
         let displacement = self.displacement.map(|one| {
-            let start = one.activation_ag_g.zip(one.margin.ag_g);
-            let compared = match start {
-                Some((start_g, ag_g)) => ([start_g, ag_g], "g"),
-                None => ([one.capacity_m, one.demand_m], "m"),
-            };
-            let method = match one.activation_governs {
-                true => Method::Activation,
-                false => Method::Displacement,
-            };
-            (method, one.margin, Some(compared))
+            let margin = Margin::new(one.zeta_e_by_displacement(), one.margin.ag_g);
+            let compared = ([one.capacity_m, one.demand_m], "m");
+            (Method::Displacement, margin, Some(compared))
+        });
+        let start = self.displacement.and_then(|one| {
+            let compared = (one.activation_ag_g?, one.margin.ag_g?).into();
+            Some((Method::Activation, one.margin, Some((compared, "g"))))
         });
         let simplified = self.simplified;
         let simplified = simplified.map(|one| (Method::Simplified, one.margin, None));
@@ -228,7 +235,8 @@ impl SideCheck {
             let compared = ([one.capacity_g, one.demand_g], "g");
             (Method::Activation, one.margin, Some(compared))
         });
-        [displacement, simplified, activation].into_iter().flatten()
+        let results = [start, displacement, simplified, activation];
+        results.into_iter().flatten()
     }
 
     /// Returns the governing method and result; `None` if the side cannot be checked.
@@ -306,7 +314,7 @@ pub struct Decision {
 
 /// The check of a scenario by the Circolare 7/2019.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Template)]
-#[template(path = "studies/verify/words.txt")]
+#[template(source = "{{ self.words() }}", ext = "txt")]
 pub struct Summary {
     /// Name of the program.
     pub program: Cow<'static, str>,
@@ -360,6 +368,14 @@ pub struct Summary {
     pub is_symmetric: bool,
     /// The highest point, a second control point of the capacity curve.
     pub top: HighestPoint,
+    /// The structure in numbers.
+    pub geometry: Geometry,
+    /// The input of the elastic vibration before motion; absent if walls hold the structure up to the mechanism.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub free_standing: Option<FreeStanding>,
+    /// Language of words and page; absent in English.
+    #[serde(default, skip_serializing_if = "Language::is_english")]
+    pub language: Language,
 }
 
 /// Returns true if two numbers of mirrored sides differ by rounding errors only.
@@ -444,6 +460,9 @@ pub fn verify(scenario: &Scenario) -> Result<Summary, VerifyError> {
             true => HighestPoint::Top,
             false => HighestPoint::Crown,
         },
+        geometry: Geometry::of(scenario),
+        free_standing: input.settings.free_standing,
+        language: input.settings.language,
     };
     report::add_notes(&mut summary, scenario.unlikely());
     Ok(summary)
@@ -482,10 +501,10 @@ impl CheckInput<'_> {
         }
     }
 
-    /// Returns the largest fraction of the ultimate displacement that a limit state allows.
-    fn furthest_part(&self) -> f64 {
+    /// Returns the fractions of the ultimate displacement that the limit states allow.
+    fn parts_of_d0(&self) -> impl Iterator<Item = f64> {
         let rules = self.demand.states().filter_map(|state| self.rule(state));
-        rules.map(|rule| rule.part_of_d0).fold(0.0, f64::max)
+        rules.map(|rule| rule.part_of_d0)
     }
 
     /// Checks a limit state. `sld` is the check of SLD, if there is one.
@@ -516,6 +535,7 @@ impl CheckInput<'_> {
             };
             let mut side = SideCheck {
                 zeta_e: None,
+                floor: self.floor(&spectrum, displacement.as_ref(), rule.as_ref()),
                 activation,
                 simplified: both_g.map(|(start_g, ag_g)| self.simplified(start_g, ag_g)),
                 displacement,
@@ -544,6 +564,25 @@ impl CheckInput<'_> {
             histories,
             sides,
         })
+    }
+
+    /// Returns the ordinates of the spectrum at a height that a check uses: at the period of the mechanism, and at that of the building beyond
+    /// resonance; for SLD of a structure that is free to vibrate, at its period.
+    fn floor(
+        &self,
+        spectrum: &Spectrum,
+        displacement: Option<&DisplacementCheck>,
+        rule: Option<&StateRule>,
+    ) -> Vec<FloorOrdinates> {
+        let resonance = displacement.and_then(|one| one.resonance_m.and(spectrum.first_period_s()));
+        let own_s = match rule {
+            Some(_) => displacement.map(|one| one.period_s),
+            None => self.t0_s,
+        };
+        let percent = rule.map_or(5.0, |rule| rule.damping_percent);
+        let periods_s = [own_s, resonance].into_iter().flatten();
+        let ordinates = periods_s.filter_map(|period_s| spectrum.ordinates(period_s, percent));
+        ordinates.collect()
     }
 
     /// Checks the onset of motion by C8.7.1.2.1.5: with [C8.7.1.8] if walls hold the structure, with [C8.7.1.9] if it is free to vibrate.
@@ -611,6 +650,8 @@ impl CheckInput<'_> {
                 Spectrum::Floor { .. } | Spectrum::Points { .. } => None,
             },
             zeta_e_crown: crown.map(|(capacity_m, .., demand_m)| capacity_m / demand_m),
+            acceleration_crown_g: crown.map(|(_, acceleration_g, ..)| acceleration_g),
+            period_crown_s: crown.map(|(_, _, period_s, _)| period_s),
             margin,
             activation_ag_g,
         })

@@ -11,13 +11,17 @@ use serde_json::{Value, json};
 
 use super::histories::{FOR_THE_MEAN, SPECTRUM_MARGIN};
 use super::{
-    Decision, FRICTION, HighestPoint, Histories, Mechanism, Method, PlacedHinge, Spectrum,
-    StateCheck, Summary, Verdict, alike, picture,
+    ComparedPeak, Decision, FRICTION, FloorMode, FloorOrdinates, GoverningSide, HighestPoint,
+    Histories, Mechanism, Method, PlacedHinge, Spectrum, StateCheck, Summary, Verdict, alike,
+    picture,
 };
 use crate::clock;
+use crate::dynamics::MODEL_LIMIT;
 use crate::dynamics::demand::damping_factor;
-use crate::output::{Figure, OutputError, filters, render};
-use crate::scenario::{CONFIDENCE_FACTOR, CheckedSides, LimitState, Scenario, StateRule};
+use crate::output::{Figure, OutputError, filters, render, render_in};
+use crate::scenario::{
+    CONFIDENCE_FACTOR, CheckedSides, FreeStanding, Language, LimitState, Scenario, StateRule,
+};
 use crate::studies::{Results, no_verdict};
 use crate::{Hinge, Sway};
 
@@ -55,8 +59,6 @@ pub struct Page {
     pub date: Option<String>,
     /// Pictures of the printed sides: one if the left side is the mirror image of the right one.
     pub pictures: BTreeMap<Sway, SidePictures>,
-    /// The structure in words.
-    pub described: String,
     /// The scenario with every default written out.
     pub resolved: String,
 }
@@ -81,15 +83,18 @@ pub fn page_of(json: &str) -> serde_json::Result<String> {
 impl Page {
     /// Makes the page of a check.
     pub fn new(scenario: &Scenario, check: &Summary, date: Option<String>) -> Self {
-        let figure = match check.printed_sides() {
-            1 => "78mm",
-            _ => "90mm",
-        };
-        let figure: Figure = figure.parse().expect("a width of a figure");
+        let figure: Figure = "78mm".parse().expect("a width of a figure");
         let drawn = |(sway, mechanism): (&Sway, _)| {
             let pictures = SidePictures {
                 mechanism: picture::mechanism(figure, &scenario.structure, *sway, mechanism),
                 curve: picture::capacity(figure, check, *sway, mechanism),
+            };
+            let pictures = match check.language {
+                Language::English => pictures,
+                Language::Italian => SidePictures {
+                    mechanism: in_italian(&pictures.mechanism),
+                    curve: pictures.curve.as_deref().map(in_italian),
+                },
             };
             (*sway, pictures)
         };
@@ -98,14 +103,41 @@ impl Page {
             check: check.clone(),
             date,
             pictures: printed.map(drawn).collect(),
-            described: scenario.structure.described(),
             resolved: scenario.to_resolved_toml(),
         }
     }
 
     /// Returns the page as HTML.
     pub fn html(&self) -> String {
-        render(self)
+        render_in(self, self.check.language)
+    }
+
+    /// Returns the category of the subsoil; empty without spectra of the code.
+    fn soil(&self) -> &'static str {
+        let mut grounds = self.check.states.values();
+        let ground = grounds.find_map(|one| one.demand.ground());
+        ground.map_or("", |ground| ground.spectrum.soil.name())
+    }
+
+    /// Returns the modes of the building with their ordinates.
+    fn modes<'a>(
+        &self,
+        state: &'a StateCheck,
+        at: &'a FloorOrdinates,
+    ) -> impl Iterator<Item = (&'a FloorMode, &'a f64)> {
+        let modes = match &state.demand {
+            Spectrum::Floor { modes, .. } => modes.as_slice(),
+            Spectrum::Ground(_) | Spectrum::Points { .. } => &[],
+        };
+        modes.iter().zip(&at.modes_g)
+    }
+
+    /// Returns every fifth point of a capacity curve in rows of three, which continue downwards.
+    fn curve_rows(&self, one: &Mechanism) -> Vec<Vec<[f64; 2]>> {
+        let points: Vec<[f64; 2]> = one.curve_m_g.iter().flatten().step_by(5).copied().collect();
+        let rows = points.len().div_ceil(3).max(1);
+        let row = |row| points.iter().skip(row).step_by(rows).copied().collect();
+        (0..rows).map(row).collect()
     }
 
     /// Returns the hinges with their letters on the picture.
@@ -135,7 +167,98 @@ impl StateCheck {
     }
 }
 
+/// Words of numbers and states that stand alone, in English and in Italian.
+const WORDS: [[&str; 2]; 9] = [
+    ["right", "destra"],
+    ["left", "sinistra"],
+    ["crown", "chiave"],
+    ["top", "sommità"],
+    ["intrados", "intradosso"],
+    ["extrados", "estradosso"],
+    ["mean of the peaks", "media dei massimi"],
+    ["largest peak", "massimo maggiore"],
+    [
+        "the forces of ties change as the structure moves; this check does not follow them, quasi-static capacity does",
+        "le forze delle catene variano durante il moto; questa verifica non le segue",
+    ],
+];
+
+/// Words of pictures, in English and in Italian.
+const PICTURE_WORDS: [[&str; 2]; 7] = [
+    ["span", "luce"],
+    ["rise", "freccia"],
+    ["fill", "riempimento"],
+    ["wall behind", "muro retrostante"],
+    ["capacity", "capacità"],
+    ["spectral displacement", "spostamento spettrale"],
+    ["spectral acceleration", "accelerazione spettrale"],
+];
+
+/// Returns a picture with its texts in Italian, numbers with a decimal comma.
+fn in_italian(svg: &str) -> String {
+    let parts = svg.split('<').map(|part| match part.split_once('>') {
+        Some((tag, text)) if tag.starts_with("text") => {
+            let words = PICTURE_WORDS.iter();
+            let text = words.fold(text.replace('.', ","), |text, [english, italian]| {
+                text.replace(english, italian)
+            });
+            format!("{tag}>{text}")
+        }
+        _ => part.to_owned(),
+    });
+    parts.collect::<Vec<_>>().join("<")
+}
+
+/// The printed words.
+#[derive(Template)]
+#[template(path = "studies/verify/words.txt")]
+struct Words<'a> {
+    check: &'a Summary,
+}
+
+impl Words<'_> {
+    /// Returns the side in a column of equal width.
+    fn to(&self, sway: &Sway) -> String {
+        let to = self.check.choose("to the", "verso");
+        let width = match self.check.language {
+            Language::English => 5,
+            Language::Italian => 8,
+        };
+        format!("{to} {:<width$}", self.check.word(sway.name()))
+    }
+}
+
 impl Summary {
+    /// Returns the words of the check.
+    pub(super) fn words(&self) -> String {
+        render_in(&Words { check: self }, self.language)
+    }
+
+    /// Chooses the phrase in the language of the check.
+    pub(super) const fn choose<'a>(&self, english: &'a str, italian: &'a str) -> &'a str {
+        match self.language {
+            Language::English => english,
+            Language::Italian => italian,
+        }
+    }
+
+    /// Returns a word of [`WORDS`] in the language of the check, and any other text unchanged.
+    fn word<'a>(&self, english: &'a str) -> &'a str {
+        let known = WORDS.iter().find(|[word, _]| *word == english);
+        known.map_or(english, |[_, italian]| self.choose(english, italian))
+    }
+
+    /// Returns the reason why there is no capacity curve. In Italian, reasons of the mechanics share two sentences.
+    fn no_curve<'a>(&self, why: &'a str) -> &'a str {
+        let known = self.word(why);
+        let italian = match why.starts_with("the linkage") {
+            _ if known != why => known,
+            true => "il cinematismo raggiunge la posizione limite prima che α si annulli",
+            false => "dopo l’attivazione non si muove come un solo cinematismo fino ad α = 0",
+        };
+        self.choose(why, italian)
+    }
+
     /// Returns the number of printed sides.
     fn printed_sides(&self) -> usize {
         if self.is_symmetric {
@@ -166,7 +289,11 @@ impl Summary {
 
 /// The notes, one per line, in four paragraphs.
 #[derive(Template)]
-#[template(path = "studies/verify/notes.txt")]
+#[template(
+    source = "{% match check.language %}{% when Language::English %}{% include \"studies/verify/notes.txt\" %}\
+              {% when Language::Italian %}{% include \"studies/verify/notes.it.txt\" %}{% endmatch %}",
+    ext = "txt"
+)]
 struct Notes<'a> {
     check: &'a Summary,
 }
@@ -194,18 +321,15 @@ impl Notes<'_> {
 
 /// Adds decisions, assumptions, gaps and warnings to a check. `unlikely` are warnings about the scenario.
 pub(super) fn add_notes(check: &mut Summary, unlikely: Vec<String>) {
-    let text = render(&Notes { check });
+    let text = render_in(&Notes { check }, check.language);
     let mut parts = text.split("\n\n").map(|part| {
         let lines = part.lines().skip(1).map(str::to_owned);
         lines.collect::<Vec<String>>()
     });
     let mut part = || parts.next().unwrap_or_default();
-    let decisions = part().into_iter().filter_map(|line| {
-        let (name, text) = line.split_once(": ")?;
-        Some(Decision {
-            name: name.to_owned(),
-            text: text.to_owned(),
-        })
+    let decisions = (1..).zip(part()).map(|(number, text)| Decision {
+        name: format!("D{number}"),
+        text,
     });
     check.decisions = decisions.collect();
     check.assumptions = part();
@@ -227,11 +351,19 @@ pub(super) fn are_mirrored(
     mirrored.bodies.reverse();
     let hinges = mirrored.hinges.iter_mut().map(|hinge| &mut hinge.x_m);
     let bodies = mirrored.bodies.iter_mut().map(|body| &mut body.x_m);
-    hinges.chain(bodies).for_each(|x_m| *x_m = -*x_m);
+    let positions = mirrored.positions.iter_mut().flat_map(|at| {
+        at.hinges_m.reverse();
+        at.centres_m.reverse();
+        let points_m = at.hinges_m.iter_mut().chain(&mut at.centres_m);
+        points_m.map(|point_m| &mut point_m.x)
+    });
+    let all = hinges.chain(bodies).chain(positions);
+    all.for_each(|x_m| *x_m = -*x_m);
     let mut own = right.clone();
-    // Joints and angles of hinges differ between mirrored sides, so the comparison uses positions only.
-    for hinge in own.hinges.iter_mut().chain(&mut mirrored.hinges) {
-        hinge.hinge = Hinge::Toe(Sway::Right);
+    // Joints, blocks and angles of hinges differ between mirrored sides, so the comparison uses positions only.
+    for one in [&mut own, &mut mirrored] {
+        (one.hinges.iter_mut()).for_each(|hinge| hinge.hinge = Hinge::Toe(Sway::Right));
+        one.bodies.iter_mut().for_each(|body| body.blocks = None);
     }
     let states = states.values().all(|one| {
         let histories = one.histories.as_ref().map(|all| &all.sides);

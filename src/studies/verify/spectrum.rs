@@ -56,6 +56,19 @@ pub struct FloorMode {
     pub f: f64,
 }
 
+/// Ordinates of the spectrum at a height at a period, mode by mode.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FloorOrdinates {
+    /// The period, in seconds.
+    pub period_s: f64,
+    /// Ordinate of each mode [C7.2.6], in g.
+    pub modes_g: Vec<f64>,
+    /// Spectral acceleration of the ground, below which the ordinate does not fall, in g.
+    pub ground_g: f64,
+    /// Spectral acceleration at the height [C7.2.5], in g.
+    pub acceleration_g: f64,
+}
+
 fn floor_spectrum(ground: &Ground, modes: &[FloorMode]) -> FloorSpectrum {
     FloorSpectrum {
         ground: ground.spectrum,
@@ -155,6 +168,30 @@ impl Spectrum {
             }
             Self::Points { points, .. } => points.acceleration_g(period_s, damping_percent),
         }
+    }
+
+    /// Returns the longest period of the building, in seconds; `None` on the ground.
+    pub(super) fn first_period_s(&self) -> Option<f64> {
+        let Self::Floor { ground, modes, .. } = self else {
+            return None;
+        };
+        Some(floor_spectrum(ground, modes).first_period_s())
+    }
+
+    /// Returns the ordinates of the modes at a period and a damping; `None` on the ground.
+    pub(super) fn ordinates(&self, period_s: f64, percent: f64) -> Option<FloorOrdinates> {
+        let Self::Floor { ground, modes, .. } = self else {
+            return None;
+        };
+        let spectrum = &ground.spectrum;
+        let modes_g = modes.iter();
+        let modes_g = modes_g.map(|one| one.mode.acceleration_g(spectrum, period_s, percent));
+        Some(FloorOrdinates {
+            period_s,
+            modes_g: modes_g.collect(),
+            ground_g: spectrum.acceleration_g(period_s, percent),
+            acceleration_g: floor_spectrum(ground, modes).acceleration_g(period_s, percent),
+        })
     }
 
     /// Returns the smallest displacement demand, in metres, on a floor at a period beyond resonance with the building; `None` below it and on

@@ -40,7 +40,12 @@ impl Mode {
     }
 
     /// Returns the ordinate of the mode, [C7.2.6], in g.
-    fn acceleration_g(&self, ground: &GroundSpectrum, period_s: f64, damping_percent: f64) -> f64 {
+    pub fn acceleration_g(
+        &self,
+        ground: &GroundSpectrum,
+        period_s: f64,
+        damping_percent: f64,
+    ) -> f64 {
         let factor = self.amplification(damping_percent);
         let [low, high] = PLATEAU.map(|part| period_s / (part * self.t_s));
         let falls = if low < 1.0 {
