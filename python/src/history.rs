@@ -3,6 +3,7 @@
 use std::mem;
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::PathBuf;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -10,8 +11,12 @@ use archrock::dynamics::repeatability::Repeatability;
 use archrock::dynamics::{FallEnd, Summary};
 use archrock::dynamics::{Recording, Samples};
 use archrock::mechanics::Demand;
-use archrock::output::{Scene, StructurePoint};
-use archrock::studies::run::{self, ComputedRun, OutcomeSummary, Report};
+use archrock::output::{
+    FilmFormat, Scene, StructurePoint, check_named_file, write_named_file,
+};
+use archrock::studies::run::{
+    self, ComputedRun, Film, FilmOptions, OutcomeSummary, Report,
+};
 use archrock::{Event, GroundMotion, Model, Recorder, Sample, SimulationError, State};
 use numpy::{Element, PyArray1, PyArrayMethods as _, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyKeyError;
@@ -21,6 +26,7 @@ use serde_json::Value;
 
 use crate::error::{not_written, panicked, refused, too_large};
 use crate::scenario::{Ground, Scenario};
+use crate::studies::failed;
 use crate::watched::watched;
 
 /// Interval at which a history looks for signals.
@@ -494,6 +500,34 @@ impl History {
     /// `warnings` of `summary.json`.
     fn warnings(&self, py: Python<'_>) -> Vec<String> {
         py.detach(|| run::Summary::of(&self.computed(&self.shaken(), None)).warnings)
+    }
+
+    /// Writes a film; `factors` are its speed and that on the displacements. Simulates the history again, with the line of thrust.
+    fn film(
+        &self,
+        py: Python<'_>,
+        path: PathBuf,
+        size_px: [u32; 2],
+        (speed, exaggeration): (f64, f64),
+        background: &str,
+        caption: Option<String>,
+    ) -> PyResult<()> {
+        let format = FilmFormat::of_file(&path).map_err(refused)?;
+        let options = FilmOptions {
+            speed,
+            size_px,
+            background: background.parse().map_err(refused)?,
+            caption,
+            exaggeration,
+        };
+        options.check().map_err(refused)?;
+        check_named_file(&path).map_err(not_written)?;
+        let (scenario, model) = (self.shaken(), Arc::clone(&self.model));
+        let film = watched(py, None, move |watch| {
+            let film = Film::simulate(&scenario, &*model, &options, &mut *watch);
+            film.and_then(|film| film.encode(format, watch)).map_err(failed)
+        })?;
+        write_named_file(&path, &film).map_err(not_written)
     }
 
     /// `report.html` with the verdict on it. Simulates the history again, with the line of thrust.

@@ -37,7 +37,7 @@ fn kind_of(name: &str) -> PyResult<StudyKind> {
     })
 }
 
-fn failed(error: StudyError) -> PyErr {
+pub fn failed(error: StudyError) -> PyErr {
     match error {
         StudyError::Scenario(message) => refused(message),
         StudyError::Read(error) => refused(error),

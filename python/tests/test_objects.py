@@ -403,8 +403,13 @@ def test_errors_in_files_name_their_place(program: Program, tmp_path: Path) -> N
 
 def test_pictures(arch: Arch, pulse: Pulse, tmp_path: Path) -> None:
     history = simulate(arch, pulse, duration_s=1.0)
-    figure = history.plot()
-    ground, rotations = figure.axes
+    rotations = history.plot()
+    figure: Any = rotations.figure
+    ground = figure.axes[0]
+    # It stays open, so a notebook and show() display it.
+    from matplotlib import pyplot
+
+    assert figure.number in pyplot.get_fignums()
     assert [line.get_label() for line in rotations.get_lines()[:3]] == ["left", "middle", "right"]
     assert np.array_equal(rotations.get_lines()[2].get_ydata(), history.rotations[:, 2])
     # The arch still has more than a quarter of the energy that overturns it.
@@ -416,7 +421,7 @@ def test_pictures(arch: Arch, pulse: Pulse, tmp_path: Path) -> None:
 
     own = Figure()
     one, other = own.subplots(1, 2)
-    assert history.plot(ax=other) is own
+    assert history.plot(ax=other) is other
     assert len(one.get_lines()) == 0
     assert other.get_xlabel() == "time (s)" and other.get_ylabel() == "rotation (rad)"
     names = [text.get_text() for text in other.get_legend().get_texts()]
@@ -428,6 +433,31 @@ def test_pictures(arch: Arch, pulse: Pulse, tmp_path: Path) -> None:
     assert html.startswith("<iframe srcdoc=") and html.count("<iframe") == 1 and "<script" not in html
     history.save_report(tmp_path / "report.html")
     assert (tmp_path / "report.html").read_text(encoding="utf-8") == page
+
+
+def test_a_film_is_that_of_the_program(arch: Arch, pulse: Pulse, program: Program, tmp_path: Path) -> None:
+    history = simulate(arch, pulse, duration_s=0.4)
+    (tmp_path / "arch.toml").write_text(history.scenario.to_toml())
+    options = ("--speed", 0.5, "--size", "320x180", "--background", "f5f0e6", "--caption", "M", "--exaggerate", 5)
+    made = program("film", tmp_path / "arch.toml", "--out", tmp_path / "a.gif", *options)
+    how: dict[str, Any] = {"speed": 0.5, "size": (320, 180), "background": "f5f0e6", "caption": "M", "exaggerate": 5.0}
+    history.film(tmp_path / "b.gif", **how)
+    film = (tmp_path / "b.gif").read_bytes()
+    assert film.startswith(b"GIF89a")
+    # A program may be built without films.
+    if made.returncode == 0:
+        assert film == (tmp_path / "a.gif").read_bytes()
+    else:
+        assert "--features print" in made.stderr
+    history.film(str(tmp_path / "b.gif"), **{**how, "speed": 1.0})
+    assert len((tmp_path / "b.gif").read_bytes()) < len(film)
+    for wrong, words in (({"size": (321, 180)}, "even numbers"), ({"speed": 0.0}, "from 0.001"), ({"background": "x"}, "rrggbb")):
+        with pytest.raises(ValueError, match=words):
+            history.film(tmp_path / "b.gif", **{**how, **wrong})
+    with pytest.raises(ValueError, match="mp4, webm, gif and png"):
+        history.film(tmp_path / "b.avi")
+    with pytest.raises(OSError, match="none"):
+        history.film(tmp_path / "none" / "b.gif")
 
 
 def test_tables_for_pandas(arch: Arch, pulse: Pulse) -> None:

@@ -130,6 +130,6 @@ def test_the_largest_body_is_that_of_the_program(program: Program, tmp_path: Pat
         assert peaks_rad[history.largest_body] == max(peaks_rad) == history.summary["largest_peak_rotation_rad"]
         assert pickle.loads(pickle.dumps(history)).largest_body == history.largest_body
         largest.add(history.largest_body)
-    labels = [line.get_label() for line in simulate(ARCH, pulse, model="free_hinges", duration_s=2.0).plot().axes[1].get_lines()]
+    labels = [line.get_label() for line in simulate(ARCH, pulse, model="free_hinges", duration_s=2.0).plot().get_lines()]
     assert any(str(label).endswith(", which turns most") for label in labels)
     assert len(largest) == 2, "not one index for all"

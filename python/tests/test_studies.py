@@ -74,6 +74,14 @@ def test_a_map_is_that_of_the_program(program: Program, tmp_path: Path, arch: Ar
     assert len(table) == 30 and list(table["outcome"]) == found.outcome.ravel().tolist()
     found.save(tmp_path / "saved")
     assert_files(found, tmp_path / "saved")
+    # Each cell has the colour of its outcome.
+    ax = found.plot()
+    (mesh,) = ax.collections
+    colors = [tuple(color) for color in mesh.get_facecolors()]
+    outcomes = found.outcome.T.ravel()
+    assert len(set(colors)) == 3 and len(set(zip(colors, outcomes))) == 3
+    assert sorted(legend(ax)) == ["never moved", "overturned", "rest"]
+    assert (ax.get_xlabel(), ax.get_ylabel()) == found.axes
 
 
 def test_axes_are_anything_like_an_array() -> None:
@@ -96,6 +104,9 @@ def test_thresholds_along_a_key_are_those_of_the_program(program: Program, tmp_p
     options = ("--along", "column.width_m=0.6..1:3", "--no-impact", "--stride", "0.1")
     assert_files(found, by_program(program, tmp_path, "threshold", scenario.to_toml(), *options))
     assert found.columns()["column.width_m"].tolist() == [0.6, 0.8, 1.0]
+    ax = found.plot()
+    assert np.array_equal(ax.get_lines()[0].get_ydata(), found.columns()["overturns_from_factor"])
+    assert legend(ax) == ["overturns from", "survives up to", "overturns without impact from"]
 
 
 def test_an_ensemble_is_that_of_the_program(program: Program, tmp_path: Path) -> None:
@@ -132,6 +143,8 @@ def test_a_map_of_probability_is_that_of_the_program(program: Program, tmp_path:
     assert found.probability.shape == low.shape == (len(found.x), len(found.y))
     assert (low <= found.probability).all() and (found.probability <= high).all()
     assert len(found.lines["overturned_50"]) == len(found.x)
+    mesh = found.plot().collections[0]
+    assert np.array_equal(np.ravel(mesh.get_array()), found.probability.T.ravel())
 
 
 def test_a_suite_is_that_of_the_program(program: Program, tmp_path: Path) -> None:
@@ -155,7 +168,7 @@ def test_a_suite_is_that_of_the_program(program: Program, tmp_path: Path) -> Non
     assert found.fragility["overturned"].max() == 4
     assert found.summary["median"] > 0.0
     assert len(found.columns()["record"]) == 4 * 6 * 2
-    (ax,) = found.plot().axes
+    ax = found.plot()
     assert np.array_equal(ax.get_lines()[0].get_ydata(), found.fragility["fraction"])
     assert legend(ax) == ["fraction of cases", "lognormal curve", "95 % band"]
 
@@ -207,7 +220,7 @@ def test_a_threshold_is_that_of_the_program(program: Program, tmp_path: Path) ->
     with pytest.raises(ValueError, match="`stride = 0.0`"):
         threshold(column, pulse, stride=0.0)
     # Overturned factors have no largest rotation and are shaded.
-    (ax,) = found.plot().axes
+    ax = found.plot()
     peak = np.asarray(ax.get_lines()[0].get_ydata(), dtype=float)
     assert np.array_equal(np.isnan(peak), found.columns()["outcome"] == "overturned")
     assert legend(ax)[:2] == ["largest rotation", "overturns"]
@@ -220,7 +233,7 @@ def test_a_capacity_is_that_of_the_program(program: Program, tmp_path: Path, arc
     assert_files(capacity(scenario), by_program(program, tmp_path, "capacity", scenario.to_toml()))
     right = found.side("right")
     assert right["acceleration_g"][0] == pytest.approx(arch.limit().right.acceleration_g, rel=1e-9)
-    (ax,) = found.plot().axes
+    ax = found.plot()
     assert np.array_equal(ax.get_lines()[0].get_xdata(), right["displacement_m"])
     assert legend(ax) == ["to the right", "to the left"]
     with pytest.raises(TypeError, match="not str"):

@@ -100,7 +100,12 @@ fn run(
     warn(&scenario.unlikely());
     let style = Style::of(figure.get()?);
     let destination = input.results(arguments.out.as_deref());
-    let root = destination.lock(kind, Origin::of(&scenario), figure.figure_format, false)?;
+    let root = destination.lock(
+        kind.name,
+        Origin::of(&scenario),
+        figure.figure_format,
+        false,
+    )?;
     let job = StudyJob {
         input: Some(&input),
         work: WorkOptions::default(),

@@ -21,6 +21,14 @@ Examples:
   archrock run arch.toml --set ground.rectangular.amplitude_g=-0.4 --out stronger
   archrock run arch.toml --format json | jq .outcome";
 
+pub const FILM: &str = "\
+Files: film.mp4, or film.gif without ffmpeg; with --out that file.
+
+Examples:
+  archrock film arch.toml                                 results/arch/film.mp4
+  archrock film arch.toml --speed 0.25 --exaggerate 5 --out talk.gif
+  archrock film arch.toml --size 720x720 --background f5f0e6 --caption 'Arch, 5 m' --out arch.webm";
+
 pub const LIMIT: &str = "\
 Files: only that of --plot.
 

@@ -7,6 +7,7 @@ mod capacity_spread_verify;
 mod check;
 mod examples;
 mod figure;
+mod film;
 mod impact;
 mod init;
 mod limit;
@@ -50,6 +51,9 @@ enum Command {
     /// Simulate the time history of a scenario: report.html to look at, pictures, tables as CSV, summary.json.
     #[command(after_help = examples::of_studies(&[RUN], examples::RUN))]
     Run(run::Arguments),
+    /// Make a film of the moving structure: MP4 or WebM by ffmpeg, GIF or animated PNG.
+    #[command(after_help = examples::FILM)]
+    Film(film::Arguments),
     /// Print the incipient acceleration, the mechanism to either side and the equivalent block.
     #[command(after_help = examples::LIMIT)]
     Limit(limit::LimitArguments),
@@ -174,6 +178,7 @@ pub fn main() -> ExitCode {
     let result = match arguments.command {
         Command::Init(init) => init::init(&init),
         Command::Run(run) => run::run(&run, arguments.quiet),
+        Command::Film(film) => film::film(&film),
         Command::Limit(limit) => limit::limit(&limit),
         Command::Impact(arguments) => impact::impact(&arguments),
         Command::Capacity(capacity) => capacity_spread_verify::capacity(&capacity),

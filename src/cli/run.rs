@@ -234,7 +234,7 @@ impl Arguments {
                 continue;
             }
             let (pictures, is_part) = (self.figure.figure_format, self.work.is_part());
-            let lock = |one: Destination| one.lock(RUN, file.origin, pictures, is_part);
+            let lock = |one: Destination| one.lock(RUN.name, file.origin, pictures, is_part);
             all.push((file.destination.map(lock).transpose()?, file.tasks));
         }
         Ok(all)

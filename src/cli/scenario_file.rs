@@ -6,7 +6,6 @@ use std::{env, io};
 
 use archrock::output::{Folder, Origin, PictureFormat};
 use archrock::scenario::{Assignment, ModelKind, ReadOptions, Scenario, Source};
-use archrock::studies::StudyKind;
 
 use super::progress::with_notice;
 use super::{Failure, check_no_errors};
@@ -237,17 +236,17 @@ impl Destination {
         }
     }
 
-    /// Locks the folder and everything below it for the results of a study, before anything is written. Prints warnings about results of other
+    /// Locks the folder and everything below it for the results of a command, before anything is written. Prints warnings about results of other
     /// commands from another scenario. `pictures` is the format of pictures in addition to SVG. Several parts of a study may be computed in one folder at the same time.
     pub fn lock(
         &self,
-        kind: StudyKind,
+        command: &str,
         mut origin: Origin,
         pictures: Option<PictureFormat>,
         is_part: bool,
     ) -> Result<Folder, Failure> {
         origin.scenario_file.clone_from(&self.scenario_file);
-        let mut folder = Folder::lock(&self.path, kind.name, origin, !is_part)?;
+        let mut folder = Folder::lock(&self.path, command, origin, !is_part)?;
         folder.pictures = pictures;
         if !is_part {
             super::warn(&folder.warnings());

@@ -207,7 +207,7 @@ pub fn merge(arguments: &MergeArguments) -> Result<(), Failure> {
         let manifest = Manifest::read(around)?;
         super::warn(&manifest.warnings(around, kind.name, &origin));
     }
-    let folder = destination.lock(kind, origin, arguments.figure.figure_format, false)?;
+    let folder = destination.lock(kind.name, origin, arguments.figure.figure_format, false)?;
     folder.check(kind.files)?;
     results.write(&folder)?;
     folder.publish()?;

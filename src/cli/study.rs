@@ -88,6 +88,7 @@ impl From<StudyError> for Failure {
             StudyError::Read(error) => error.into(),
             StudyError::Part(error) | StudyError::Runner(RunnerError::Part(error)) => error.into(),
             StudyError::Output(error) => error.into(),
+            StudyError::Film(error) => error.into(),
             _ => Self::Work(error.to_string()),
         }
     }
@@ -112,7 +113,7 @@ impl StudyArguments {
     ) -> Result<StudyJob<'s>, Failure> {
         let destination = input.results(self.out.as_deref());
         let (pictures, is_part) = (self.figure.figure_format, self.work.is_part());
-        let root = destination.lock(kind, origin, pictures, is_part)?;
+        let root = destination.lock(kind.name, origin, pictures, is_part)?;
         Ok(StudyJob {
             input: Some(input),
             work: self.work,
@@ -477,7 +478,7 @@ fn warn_of_rows(folder: &Folder, samples: StudyKind) {
 }
 
 /// A shorter history shows no progress.
-const PATIENCE: Duration = Duration::from_secs(1);
+pub const PATIENCE: Duration = Duration::from_secs(1);
 
 /// The message when Ctrl-C ends a computation.
 fn interrupted(
@@ -500,7 +501,7 @@ fn interrupted(
 }
 
 /// The progress of a history, in milliseconds.
-fn simulated(Progress { done, all }: Progress, elapsed: Duration) -> String {
+pub fn simulated(Progress { done, all }: Progress, elapsed: Duration) -> String {
     if done == all {
         return "repeating the history with other steps".to_owned();
     }

@@ -1,9 +1,10 @@
 //! The layout of a picture: width and height, size of text, and drawn parts.
 
+use std::fmt;
 use std::ops::RangeInclusive;
 use std::str::FromStr;
 
-use super::svg::Frame;
+use super::svg::{Frame, color};
 use super::text::TEXT_PX;
 
 /// The size of a picture. The layout is in pixels, with text of 13 pixels. Wider pictures have more space, not larger text.
@@ -19,11 +20,15 @@ pub struct Figure {
     pub has_title: bool,
     /// The panels of a history to draw; `None` for all, and for the three most important ones in a narrow picture.
     pub panels: Option<[bool; Panel::ALL.len()]>,
+    /// Colour behind everything.
+    pub background: Background,
 }
 
 /// Size of text in print, in points.
 const TEXT_PT: f64 = 8.0;
 const MM_PER_PT: f64 = 25.4 / 72.0;
+/// Smallest text in a film, in pixels of the film.
+const LEAST_TEXT_PX: f64 = 11.0;
 
 /// Width in print, in mm, below which a picture is for a single column of a journal.
 const COLUMN_MM: f64 = 100.0;
@@ -74,6 +79,7 @@ impl Figure {
         height: None,
         has_title: true,
         panels: None,
+        background: Background::WHITE,
     };
 
     /// Widths for print, in mm.
@@ -86,6 +92,25 @@ impl Figure {
         Self {
             width_px: width_mm / (MM_PER_PT * TEXT_PT) * TEXT_PX,
             width_mm: Some(width_mm),
+            ..Self::SCREEN
+        }
+    }
+
+    /// Makes a picture with the proportions of a frame of a film, in pixels of the film. Text is as large as on the screen if the longer side is
+    /// 900 pixels, and grows with it; in smaller films it does not shrink below 11 pixels.
+    pub(crate) fn of_frame(size_px: [u32; 2], background: Background) -> Self {
+        let [width_px, height_px] = size_px.map(f64::from);
+        let longer_px = width_px.max(height_px);
+        let layout_px = Self::SCREEN
+            .width_px
+            .min(longer_px * TEXT_PX / LEAST_TEXT_PX);
+        let [width, height] = [width_px, height_px].map(|side_px| side_px / longer_px * layout_px);
+        Self {
+            width_px: width,
+            // One pixel of the layout is a millimetre, so the height is that of the frame.
+            width_mm: Some(width),
+            height: Some(Height(height)),
+            background,
             ..Self::SCREEN
         }
     }
@@ -173,6 +198,53 @@ impl FromStr for Figure {
         let fits = length_mm(text).filter(|width_mm| Self::WIDTHS_MM.contains(width_mm));
         fits.map(Self::of_width_mm)
             .ok_or_else(|| "give a width from 60mm to 500mm, such as 85mm or 17cm".to_owned())
+    }
+}
+
+/// Colour behind a picture: red, green and blue.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Background(pub [u8; 3]);
+
+impl Background {
+    /// White.
+    pub const WHITE: Self = Self([255; 3]);
+
+    /// Returns the colour of texts and lines that can be seen on this colour: black or white.
+    pub(crate) fn ink(self) -> &'static str {
+        // Weights of ITU-R BT.601.
+        let [red, green, blue] = self.0.map(f64::from);
+        let is_dark = 0.299 * red + 0.587 * green + 0.114 * blue < 128.0;
+        if is_dark { color::WHITE } else { color::BLACK }
+    }
+}
+
+impl fmt::Display for Background {
+    /// Writes the colour for SVG.
+    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [red, green, blue] = self.0;
+        write!(to, "#{red:02x}{green:02x}{blue:02x}")
+    }
+}
+
+impl FromStr for Background {
+    type Err = String;
+
+    /// Parses `white`, `black` or six hexadecimal digits, with or without `#`.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let digits = text.strip_prefix('#').unwrap_or(text);
+        let is_hexadecimal = digits.len() == 6 && digits.bytes().all(|it| it.is_ascii_hexdigit());
+        match text {
+            "white" => Ok(Self::WHITE),
+            "black" => Ok(Self([0; 3])),
+            _ if !is_hexadecimal => {
+                Err("give white, black or a colour as rrggbb, such as f5f0e6".to_owned())
+            }
+            _ => {
+                let [_, red, green, blue] =
+                    u32::from_str_radix(digits, 16).unwrap_or(0).to_be_bytes();
+                Ok(Self([red, green, blue]))
+            }
+        }
     }
 }
 

@@ -368,7 +368,7 @@ fn hidden_file(folder: &Path, name: &str) -> io::Result<NamedTempFile> {
     builder.tempfile_in(folder)
 }
 
-/// Writes a file that no manifest lists, because the user named it. It replaces only an earlier one that begins alike.
+/// Writes a file that no manifest lists, because the user named it. It replaces only an earlier one that begins alike or names this program.
 ///
 /// # Errors
 /// When the system reports an error, or the file is there and was not written by this program.
@@ -378,11 +378,38 @@ pub fn write_named_file(path: &Path, contents: &[u8]) -> Result<(), OutputError>
         // A device, such as that of standard output.
         return fs::write(path, contents).map_err(cannot());
     }
-    if path.exists() && beginning(&fs::read(path).map_err(cannot())?) != beginning(contents) {
-        return Err(OutputError::NotWrittenHere(path.to_owned()));
+    if path.exists() {
+        let earlier = fs::read(path).map_err(cannot())?;
+        if beginning(&earlier) != beginning(contents) && !names_program(&earlier) {
+            return Err(OutputError::NotWrittenHere(path.to_owned()));
+        }
     }
     let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
     write_whole(&path, contents).map_err(|error| cannot()(error.kind().into()))
+}
+
+/// Checks, before long work, that a film can be written to a file that the user named: its folder exists, and the file is absent or an earlier film.
+///
+/// # Errors
+/// When the folder does not exist, or the file is there and was not written by this program.
+pub fn check_named_file(path: &Path) -> Result<(), OutputError> {
+    let folder = path.parent().filter(|it| !it.as_os_str().is_empty());
+    let found = folder.map_or(Ok(()), |folder| fs::metadata(folder).map(drop));
+    found.map_err(OutputError::unusable(cannot_write(path)))?;
+    if !path.exists() {
+        return Ok(());
+    }
+    let earlier = fs::read(path).map_err(OutputError::unusable(cannot_write(path)))?;
+    match names_program(&earlier) {
+        true => Ok(()),
+        false => Err(OutputError::NotWrittenHere(path.to_owned())),
+    }
+}
+
+/// Returns true if a file names this program, as films do.
+fn names_program(contents: &[u8]) -> bool {
+    let name = env!("CARGO_PKG_NAME").as_bytes();
+    contents.windows(name.len()).any(|part| part == name)
 }
 
 /// Writes a file under a hidden name, and then gives it its name, so the file is complete or absent.

@@ -1,4 +1,5 @@
-//! Pictures as PDF and PNG, for journals and programs without SVG. The feature `print` is needed; builds without it take half the time.
+//! Pictures as PDF and PNG, for journals and programs without SVG, and pixels of films. The feature `print` is needed; builds without it take half
+//! the time.
 
 use std::path::Path;
 use std::str::FromStr;
@@ -26,9 +27,27 @@ pub enum PrintError {
         "this archrock was built without PDF and PNG: build it with `cargo install --path . --features print`, or choose SVG"
     )]
     NotBuilt,
+    /// The program was built without the feature `print`, which films need.
+    #[error(
+        "this archrock was built without films: build it with `cargo install --path . --features print`"
+    )]
+    NoFilms,
     /// There is no such format.
     #[error("pictures are written as svg, pdf and png, not as {0:?}")]
     Unknown(String),
+    /// There is no such format of films.
+    #[error(
+        "films are written as mp4, webm, gif and png (animated), not as {0:?}: give a name such as arch.mp4"
+    )]
+    UnknownFilm(String),
+    /// The encoder of a film is missing.
+    #[error(
+        "MP4 and WebM need the program ffmpeg, which is not in the PATH: install it (https://ffmpeg.org), or choose .gif or .png"
+    )]
+    NoFfmpeg,
+    /// The film cannot be encoded.
+    #[error("the film cannot be encoded: {0}")]
+    Film(String),
     /// The system has no suitable font.
     #[error(
         "the system has no font like Helvetica: install one, such as Liberation Sans, or take the picture as SVG"
@@ -81,16 +100,20 @@ impl PictureFormat {
 }
 
 #[cfg(feature = "print")]
+pub(super) use converted::Raster;
+
+#[cfg(feature = "print")]
 mod converted {
     use krilla::Document;
     use krilla::geom::Size;
     use krilla::page::PageSettings;
     use krilla_svg::{SurfaceExt as _, SvgSettings};
-    use resvg::tiny_skia::{self, Pixmap, Transform};
+    use resvg::tiny_skia::{self, Color, Pixmap, Transform};
     use resvg::usvg::fontdb::{Family, Query};
     use resvg::usvg::{self, Options, Tree};
 
     use super::PrintError;
+    use crate::output::figure::Background;
     use crate::output::text::FONTS;
 
     /// Resolution of pictures for print and for the screen, in dots per inch.
@@ -101,8 +124,7 @@ mod converted {
     const POINTS_PER_INCH: f32 = 72.0;
 
     pub fn pdf(picture: &str) -> Result<Vec<u8>, PrintError> {
-        let failed = |what: &str| PrintError::Failed(what.to_owned());
-        let tree = tree(picture)?;
+        let tree = Raster::new()?.tree(picture)?;
         let size = tree.size();
         let points = |px: f32| px * POINTS_PER_INCH / CSS_DPI;
         let size = Size::from_wh(points(size.width()), points(size.height()));
@@ -120,8 +142,7 @@ mod converted {
     }
 
     pub fn png(picture: &str) -> Result<Vec<u8>, PrintError> {
-        let failed = |what: &str| PrintError::Failed(what.to_owned());
-        let tree = tree(picture)?;
+        let tree = Raster::new()?.tree(picture)?;
         let header = picture.lines().next().unwrap_or_default();
         let is_print = header.contains("mm\"");
         let dpi = if is_print { PRINT_DPI } else { SCREEN_DPI };
@@ -131,8 +152,7 @@ mod converted {
         let whole = scaled
             .ok_or_else(|| failed("it has no size"))?
             .to_int_size();
-        let pixels = Pixmap::new(whole.width(), whole.height());
-        let mut pixels = pixels.ok_or_else(|| failed("it is too large"))?;
+        let mut pixels = pixmap(whole.width(), whole.height())?;
         // Stretches the picture to whole pixels, so that the last row and column are as opaque as the others.
         let whole = whole.to_size();
         let scaled =
@@ -143,22 +163,62 @@ mod converted {
             .map_err(|error| PrintError::Failed(error.to_string()))
     }
 
-    fn tree(picture: &str) -> Result<Tree, PrintError> {
-        let mut options = Options::default();
-        let fonts = options.fontdb_mut();
-        fonts.load_system_fonts();
-        let names = FONTS.split(", ").map(|name| match name {
-            "sans-serif" => Family::SansSerif,
-            name => Family::Name(name),
-        });
-        let query = Query {
-            families: &names.collect::<Vec<_>>(),
-            ..Query::default()
-        };
-        // Without a font texts would be missing without an error.
-        fonts.query(&query).ok_or(PrintError::NoFont)?;
-        usvg::Tree::from_str(picture, &options)
-            .map_err(|error| PrintError::Failed(error.to_string()))
+    fn failed(what: &str) -> PrintError {
+        PrintError::Failed(what.to_owned())
+    }
+
+    fn pixmap(width: u32, height: u32) -> Result<Pixmap, PrintError> {
+        Pixmap::new(width, height).ok_or_else(|| failed("it is too large"))
+    }
+
+    /// Reads pictures with the fonts of the system, which take long to find.
+    pub struct Raster(Options<'static>);
+
+    impl Raster {
+        pub fn new() -> Result<Self, PrintError> {
+            let mut options = Options::default();
+            let fonts = options.fontdb_mut();
+            fonts.load_system_fonts();
+            let names = FONTS.split(", ").map(|name| match name {
+                "sans-serif" => Family::SansSerif,
+                name => Family::Name(name),
+            });
+            let query = Query {
+                families: &names.collect::<Vec<_>>(),
+                ..Query::default()
+            };
+            // Without a font texts would be missing without an error.
+            fonts.query(&query).ok_or(PrintError::NoFont)?;
+            Ok(Self(options))
+        }
+
+        fn tree(&self, picture: &str) -> Result<Tree, PrintError> {
+            usvg::Tree::from_str(picture, &self.0)
+                .map_err(|error| PrintError::Failed(error.to_string()))
+        }
+
+        /// Returns red, green and blue of all pixels of a frame with the picture in the middle, as large as it fits.
+        pub fn frame(
+            &self,
+            picture: &str,
+            size_px: [u32; 2],
+            background: Background,
+        ) -> Result<Vec<u8>, PrintError> {
+            let (tree, [width, height]) = (self.tree(picture)?, size_px);
+            let mut pixels = pixmap(width, height)?;
+            let [red, green, blue] = background.0;
+            pixels.fill(Color::from_rgba8(red, green, blue, u8::MAX));
+            let size = tree.size();
+            let [width, height] = [width as f32, height as f32];
+            let scale = (width / size.width()).min(height / size.height());
+            let [left, top] = [width - scale * size.width(), height - scale * size.height()];
+            let place = Transform::from_scale(scale, scale).post_translate(0.5 * left, 0.5 * top);
+            resvg::render(&tree, place, &mut pixels.as_mut());
+            let pixels = pixels.data().chunks_exact(4);
+            Ok(pixels
+                .flat_map(|pixel| [pixel[0], pixel[1], pixel[2]])
+                .collect())
+        }
     }
 }
 

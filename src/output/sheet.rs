@@ -164,7 +164,7 @@ impl<'a> Sheet<'a> {
             draw(&mut drawing, frame);
         }
         FinishedSheet {
-            svg: drawing.finish([figure.width_px, top], figure.width_mm),
+            svg: drawing.finish([figure.width_px, top], figure.width_mm, figure.background),
             height_px: top,
             frames,
         }

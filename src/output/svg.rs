@@ -7,6 +7,7 @@ use std::fmt::Write as _;
 
 use nalgebra::Vector2;
 
+use super::figure::Background;
 use super::text::{FONTS, TEXT_PX, Text, escaped};
 
 /// Dark colours that colour-blind people can distinguish (Okabe and Ito).
@@ -25,6 +26,8 @@ pub mod color {
     pub const SKY: &str = "#56b4e9";
     /// For text and axes.
     pub const BLACK: &str = "#000000";
+    /// For text and axes on a dark background.
+    pub const WHITE: &str = "#ffffff";
     /// For things in the background.
     pub const GREY: &str = "#999999";
 }
@@ -94,8 +97,13 @@ impl Frame {
 pub struct Drawing(String);
 
 impl Drawing {
-    /// Returns the complete file, with this width and height in pixels and this width in print.
-    pub fn finish(self, size_px: [f64; 2], width_mm: Option<f64>) -> String {
+    /// Returns the complete file, with this width and height in pixels, this width in print, and this colour behind the shapes.
+    pub fn finish(
+        self,
+        size_px: [f64; 2],
+        width_mm: Option<f64>,
+        background: Background,
+    ) -> String {
         let [width_px, height_px] = size_px.map(|length| (length * 1e3).round() / 1e3);
         let [wide, high] = match width_mm {
             None => [width_px.to_string(), height_px.to_string()],
@@ -104,11 +112,16 @@ impl Drawing {
                 format!("{:.3}mm", height_px * width_mm / width_px),
             ],
         };
+        // Only texts have no colour of their own.
+        let ink = match background.ink() {
+            color::BLACK => String::new(),
+            ink => attribute("fill", ink),
+        };
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{wide}\" height=\"{high}\" \
              viewBox=\"0 0 {width_px} {height_px}\" font-family=\"{FONTS}\" \
-             font-size=\"{TEXT_PX}\">\n\
-             <rect width=\"{width_px}\" height=\"{height_px}\" fill=\"#ffffff\"/>\n{}</svg>\n",
+             font-size=\"{TEXT_PX}\"{ink}>\n\
+             <rect width=\"{width_px}\" height=\"{height_px}\" fill=\"{background}\"/>\n{}</svg>\n",
             self.0
         )
     }
@@ -278,7 +291,7 @@ mod tests {
         drawing.label(Vector2::zeros(), Anchor::Start, 0.0, text);
         assert!(
             drawing
-                .finish([10.0; 2], None)
+                .finish([10.0; 2], None, Background::WHITE)
                 .contains("a &lt; b &amp; &quot;c&quot; \\u0007\\u202e</text>")
         );
     }

@@ -11,7 +11,7 @@ use thiserror::Error;
 use super::part::PartError;
 use super::{ModelAnswer, RunnerError, Study};
 use crate::SimulationError;
-use crate::output::{Figure, Folder, OutputError, pretty, render, summary_of};
+use crate::output::{Figure, Folder, OutputError, PrintError, pretty, render, summary_of};
 use crate::scenario::ScenarioErrors;
 
 /// Errors of studies.
@@ -36,6 +36,9 @@ pub enum StudyError {
     /// A result is not a number.
     #[error(transparent)]
     Output(#[from] OutputError),
+    /// A film cannot be made.
+    #[error(transparent)]
+    Film(#[from] PrintError),
 }
 
 impl StudyError {

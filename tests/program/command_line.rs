@@ -559,6 +559,7 @@ fn every_help_text_has_valid_examples() {
     let commands = [
         "init",
         "run",
+        "film",
         "limit",
         "impact",
         "capacity",

@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     import pandas
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
     from ._scenario import Scenario
 
@@ -45,26 +44,11 @@ class Event(Part):
     _parts: ClassVar[Mapping[str, type[Part]]] = {"hinges": Hinge, "impact": Impact}
 
 
-def _figure_of(ax: Axes) -> Figure:
-    """The figure that axes belong to."""
-    from matplotlib.figure import Figure
-
-    figure = ax.get_figure()
-    while figure is not None and not isinstance(figure, Figure):
-        figure = figure.figure
-    if figure is None:
-        raise ValueError("`ax` belongs to no figure")
-    return figure
-
-
 def _axes(ax: Axes | None) -> Axes:
-    """The given axes, or those of a new figure."""
-    from matplotlib.figure import Figure
+    """The given axes, or those of a new figure of pyplot, which a notebook and ``show()`` display."""
+    from matplotlib import pyplot
 
-    if ax is not None:
-        return ax
-    axes: Axes = Figure(figsize=(9.0, 5.0), layout="constrained").subplots()
-    return axes
+    return pyplot.subplots(figsize=(9.0, 5.0), layout="constrained")[1] if ax is None else ax
 
 
 class History(Summarised):
@@ -379,22 +363,23 @@ class History(Summarised):
         table: pandas.DataFrame = pandas.DataFrame(columns)
         return table
 
-    def plot(self, ax: Axes | None = None) -> Figure:
+    def plot(self, ax: Axes | None = None) -> Axes:
         """Ground acceleration in g and rotations in rad over time in s. Needs matplotlib.
 
         Args:
             ax: axes to draw the rotations into, with a legend and without the ground; ``None``: a new figure with both.
 
         Returns:
-            The figure.
+            The axes of the rotations. Their ``figure`` stays open; its first axes are those of the ground.
         """
         if ax is not None:
             self._plot_rotations(ax)
-            return _figure_of(ax)
-        from matplotlib.figure import Figure
+            return ax
+        from matplotlib import pyplot
 
-        figure = Figure(figsize=(9.0, 6.0), layout="constrained")
-        ground, rotations = figure.subplots(2, 1, sharex=True, height_ratios=(1, 2))
+        _, (ground, rotations) = pyplot.subplots(
+            2, 1, sharex=True, height_ratios=(1, 2), figsize=(9.0, 6.0), layout="constrained"
+        )
         gravity_m_s2 = self._numbers()["scenario"]["simulation"]["gravity_m_s2"]
         ground.plot(
             self.time, self.ground_acceleration_m_s2 / gravity_m_s2, color="0.3", label="ground"
@@ -403,7 +388,8 @@ class History(Summarised):
         ground.legend()
         self._plot_rotations(rotations)
         ground.set_title(self._words())
-        return figure
+        axes: Axes = rotations
+        return axes
 
     def _plot_rotations(self, ax: Axes) -> None:
         few = len(self.bodies) <= 6
@@ -439,6 +425,36 @@ class History(Summarised):
             OSError: when it cannot be written.
         """
         Path(path).write_text(self.report_html(), encoding="utf-8")
+
+    def film(
+        self,
+        path: str | Path,
+        *,
+        speed: float = 1.0,
+        size: tuple[int, int] = (1280, 720),
+        background: str = "white",
+        caption: str | None = None,
+        exaggerate: float = 1.0,
+    ) -> None:
+        """Writes a film of the moving structure, as ``archrock film``. Simulates the history again, with the line of thrust.
+
+        Args:
+            path: the file: ``.mp4`` and ``.webm`` need the program ffmpeg, ``.gif`` and ``.png`` (animated) do not.
+            speed: relative to real time; 0.25 is slow motion.
+            size: width and height in pixels, even numbers from 160 to 3840.
+            background: ``"white"``, ``"black"`` or a colour such as ``"f5f0e6"``.
+            caption: text below the structure in place of the legend.
+            exaggerate: factor on the displacements.
+
+        Raises:
+            ValueError: when an argument is not allowed, or ffmpeg is missing.
+            OSError: when the file cannot be written, or archrock did not write the file that is there.
+            RuntimeError: when the encoder fails.
+            KeyboardInterrupt: on Ctrl-C, within a second.
+        """
+        native = self._native or self.scenario.run()._native
+        assert native is not None, "a history that was run is there"
+        native.film(path, size, (speed, exaggerate), background, caption)
 
     def _repr_html_(self) -> str:
         page = html.escape(self.report_html(), quote=True)

@@ -62,6 +62,14 @@ class History:
     def summary_json(self, repeat: bool) -> str: ...
     def warnings(self) -> list[str]: ...
     def report(self) -> str: ...
+    def film(
+        self,
+        path: str | os.PathLike[str],
+        size: tuple[int, int],
+        factors: tuple[float, float],
+        background: str,
+        caption: str | None,
+    ) -> None: ...
 
 def study(
     scenario: Scenario,

@@ -15,7 +15,7 @@ import numpy as np
 
 from . import _native
 from ._ground import Ground, Pulse, Record, _csv
-from ._history import _axes, _figure_of
+from ._history import _axes
 from ._scenario import Scenario
 from ._structure import Structure
 from ._summary import Summarised, Summary
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     import pandas
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 Progress = Callable[[int, int], object]
 """Called with the number of cases done and of all cases; an exception that it raises ends the work."""
@@ -150,6 +149,17 @@ class _Plane(Results):
         x, y, *_ = self.columns()
         return x, y
 
+    def _draw(self, ax: Axes | None, cells: npt.NDArray[Any], **look: Any) -> tuple[Axes, Any]:
+        """Draws cells of shape ``(len(x), len(y))``; returns the axes and the mesh."""
+        ax = _axes(ax)
+        mesh = ax.pcolormesh(self.x, self.y, cells.T, shading="nearest", **look)
+        for name, values, axis in zip(self.axes, (self.x, self.y), ("x", "y")):
+            # Values in a constant ratio have a logarithmic axis.
+            if len(values) > 2 and values[0] > 0.0 and np.ptp(values[1:] / values[:-1]) < 1e-6:
+                getattr(ax, f"set_{axis}scale")("log")
+            getattr(ax, f"set_{axis}label")(name)
+        return ax, mesh
+
     def _plane(self, name: str) -> npt.NDArray[Any]:
         columns = self.columns()
         cells: npt.NDArray[Any] = columns[name].reshape(len(self.x), len(self.y))
@@ -169,6 +179,20 @@ class _Plane(Results):
         x, y = self.axes
         of_first: npt.NDArray[np.float64] = columns[y][columns[x] == columns[x][0]]
         return of_first
+
+
+_OUTCOMES = {
+    "never_moved": "#b0b0b0",
+    "vibrates": "#dfe8c8",
+    "rest": "#a9d3f5",
+    "still_rocking": "#6f8ba0",
+    "overturned": "#d55e00",
+    "incomplete": "#8c7aa0",
+    "uncertain": "#009e73",
+    "cannot_stand": "#ffffff",
+    "failed": "#000000",
+}
+"""Colours of outcomes; those of ``map.svg``, where overturned cells are divided by their number of impacts."""
 
 
 class OverturningMap(_Plane):
@@ -195,6 +219,28 @@ class OverturningMap(_Plane):
         """Number of impacts of each cell, NaN without a history, shape ``(len(x), len(y))``."""
         return self._plane("impacts")
 
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """The outcome of each cell over the two quantities, which are named by their keys. Needs matplotlib.
+
+        Args:
+            ax: axes to draw into; ``None``: those of a new figure.
+
+        Returns:
+            The axes.
+        """
+        from matplotlib.colors import ListedColormap
+        from matplotlib.patches import Patch
+
+        found, cells = np.unique(self.outcome, return_inverse=True)
+        colors = [_OUTCOMES.get(name, "0.85") for name in found]
+        look = {"cmap": ListedColormap(colors), "vmin": -0.5, "vmax": len(found) - 0.5}
+        ax, _ = self._draw(ax, cells.reshape(self.outcome.shape), **look)
+        x, y = np.nonzero(self.uncertain)
+        ax.plot(self.x[x], self.y[y], "k.", ms=3)
+        labels = [name.replace("_", " ") for name in found]
+        ax.legend(handles=[Patch(color=color, label=label) for color, label in zip(colors, labels)])
+        return ax
+
 
 class ThresholdAlong(Results):
     """The least factor that overturns a structure, for each value of a key."""
@@ -204,6 +250,31 @@ class ThresholdAlong(Results):
     _picture = "threshold_along.svg"
     _table = "threshold_along.csv"
     _json = "threshold_along.json"
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """The factors that surely overturn, are uncertain and surely survive, over the value of the key. Needs matplotlib.
+
+        Args:
+            ax: axes to draw into; ``None``: those of a new figure.
+
+        Returns:
+            The axes.
+        """
+        ax = _axes(ax)
+        columns = self.columns()
+        key = next(iter(columns))
+        for name, label in (
+            ("overturns_from_factor", "overturns from"),
+            ("uncertain_from_factor", "uncertain from"),
+            ("survives_up_to_factor", "survives up to"),
+            ("no_impact_factor", "overturns without impact from"),
+        ):
+            if name in columns and np.isfinite(columns[name]).any():
+                ax.plot(columns[key], columns[name], "o-", mfc="none", label=label)
+        ax.set_xlabel(key)
+        ax.set_ylabel("factor on the ground motion")
+        ax.legend()
+        return ax
 
 
 class Suite(Results):
@@ -228,7 +299,7 @@ class Suite(Results):
         """Whether overturning is uncertain, one entry for each row of ``suite.csv``."""
         return np.asarray(self.columns()["outcome"] == "uncertain")
 
-    def plot(self, ax: Axes | None = None) -> Figure:
+    def plot(self, ax: Axes | None = None) -> Axes:
         """The fraction of cases that overturn over the intensity, the curve and its 95 % band. Needs matplotlib.
 
         Intensities are peak accelerations in g, or factors on the records, as in ``fragility.csv``.
@@ -237,7 +308,7 @@ class Suite(Results):
             ax: axes to draw into; ``None``: those of a new figure.
 
         Returns:
-            The figure.
+            The axes.
         """
         ax = _axes(ax)
         table = self.fragility
@@ -257,7 +328,7 @@ class Suite(Results):
         ax.set_ylabel("fraction that overturns")
         ax.set_ylim(-0.02, 1.02)
         ax.legend()
-        return _figure_of(ax)
+        return ax
 
 
 class Threshold(Results):
@@ -277,7 +348,7 @@ class Threshold(Results):
         summary = self.summary
         return Summary({**summary, **summary.models[0]})
 
-    def plot(self, ax: Axes | None = None) -> Figure:
+    def plot(self, ax: Axes | None = None) -> Axes:
         """The largest rotation over the factor on the ground motion, with the factors that overturn. Needs matplotlib.
 
         Rotations are over the critical one where that is known, else in rad. Overturned histories have no largest rotation.
@@ -286,7 +357,7 @@ class Threshold(Results):
             ax: axes to draw into; ``None``: those of a new figure.
 
         Returns:
-            The figure.
+            The axes.
         """
         ax = _axes(ax)
         table = self.columns()
@@ -306,7 +377,7 @@ class Threshold(Results):
         ax.set_xlabel("factor on the ground motion")
         ax.set_ylabel("largest / critical rotation" if known else "largest rotation (rad)")
         ax.legend()
-        return _figure_of(ax)
+        return ax
 
 
 class Capacity(Results):
@@ -324,14 +395,14 @@ class Capacity(Results):
         own = columns["sway"] == sway
         return {name: values[own] for name, values in columns.items() if name != "sway"}
 
-    def plot(self, ax: Axes | None = None) -> Figure:
+    def plot(self, ax: Axes | None = None) -> Axes:
         """Acceleration in g against displacement of the control point in m, to both sides. Needs matplotlib.
 
         Args:
             ax: axes to draw into; ``None``: those of a new figure.
 
         Returns:
-            The figure.
+            The axes.
         """
         ax = _axes(ax)
         for sway, line in (("right", "-"), ("left", "--")):
@@ -343,7 +414,7 @@ class Capacity(Results):
         ax.set_xlabel("displacement of the control point (m)")
         ax.set_ylabel("acceleration (g)")
         ax.legend()
-        return _figure_of(ax)
+        return ax
 
 
 class Ensemble(Results):
@@ -454,6 +525,19 @@ class ProbabilityMap(_Plane):
     def lines(self) -> dict[str, npt.NDArray[Any]]:
         """Where the probability first reaches 5, 50 and 95 % along y, for each x, as in ``probability.csv``."""
         return self.columns("probability.csv")
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """The probability that each cell overturns, with a scale of colours beside it. Needs matplotlib.
+
+        Args:
+            ax: axes to draw into; ``None``: those of a new figure.
+
+        Returns:
+            The axes.
+        """
+        ax, mesh = self._draw(ax, self.probability, vmin=0.0, vmax=1.0, cmap="cividis")
+        ax.figure.colorbar(mesh, ax=ax, label="probability of overturning")
+        return ax
 
 
 class Check(Files):

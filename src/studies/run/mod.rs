@@ -11,6 +11,7 @@ mod animation;
 mod caveats;
 mod comparison;
 mod feet;
+mod film;
 mod impacts;
 mod open_joints;
 mod overlay;
@@ -32,6 +33,7 @@ use std::time::Duration;
 use nalgebra::Vector2;
 
 use self::comparison::Comparison;
+pub use self::film::{Film, FilmOptions};
 pub use self::impacts::NotableImpacts;
 use self::overlay::Curves;
 use self::picture::Timeline;

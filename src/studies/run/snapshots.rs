@@ -1,4 +1,4 @@
-//! `snapshots.svg`: the deformed structure at chosen times, side by side.
+//! The deformed structure at chosen times: side by side in `snapshots.svg`, or one by one in a film.
 
 use std::fmt::Write as _;
 
@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 use crate::mechanics::BodyPoint;
 use crate::output::elevation::{BODIES, STONE, SheetTransform, TIE, View};
 use crate::output::{Anchor, Drawing, Figure, PartHeight, Scene, Sheet, Stroke, color};
-use crate::{Sample, State};
+use crate::{Pose, Sample, State};
 
 /// Collects the samples nearest to chosen times, and draws them.
 #[derive(Clone, Debug)]
@@ -16,14 +16,30 @@ pub(super) struct Snapshots {
     exaggeration: f64,
     /// The requested times, in seconds, each with the nearest sample until now.
     taken: Vec<(f64, Option<Sample>)>,
-    /// For a film: the interval between pictures, and the time of the next picture, in seconds; minus infinity before the first sample.
-    film: Option<(f64, f64)>,
+    film: Option<FilmTimes>,
+    /// Text in place of the legend.
+    caption: Option<String>,
+    /// Speed of a film, relative to real time.
+    speed: f64,
     /// Times of the first and the last sample, in seconds.
     span_s: [f64; 2],
 }
 
+/// The instants of a film.
+#[derive(Clone, Debug)]
+struct FilmTimes {
+    /// Interval between pictures, in seconds.
+    interval_s: f64,
+    /// Time of the next picture, in seconds.
+    next_s: f64,
+    /// The last sample; `None` before the first one.
+    last: Option<Sample>,
+}
+
 /// Largest number of pictures of a film.
-const MAX_FILM_PICTURES: usize = 9999;
+pub(super) const MAX_FILM_PICTURES: usize = 9999;
+/// Times that differ by less than this are the same, in seconds.
+const SAME_S: f64 = 1e-9;
 /// Largest number of pictures side by side.
 const COLUMNS: usize = 3;
 /// Smallest width of a picture.
@@ -37,6 +53,8 @@ impl Snapshots {
             exaggeration,
             taken: Vec::new(),
             film: None,
+            caption: None,
+            speed: 1.0,
             span_s: [f64::INFINITY, f64::NEG_INFINITY],
         }
     }
@@ -48,21 +66,43 @@ impl Snapshots {
     }
 
     /// Makes a film instead, with a picture at each of these intervals, in seconds.
-    pub(super) const fn every(mut self, interval_s: f64) -> Self {
-        self.film = Some((interval_s, f64::NEG_INFINITY));
+    pub(super) fn every(mut self, interval_s: f64) -> Self {
+        self.film = Some(FilmTimes {
+            interval_s,
+            next_s: f64::NEG_INFINITY,
+            last: None,
+        });
         self
+    }
+
+    /// Replaces the legend by a text if there is one; otherwise adds the speed of the film to it.
+    pub(super) fn with_caption(mut self, caption: Option<String>, speed: f64) -> Self {
+        (self.caption, self.speed) = (caption, speed);
+        self
+    }
+
+    /// Returns the number of pictures.
+    pub(super) fn count(&self) -> usize {
+        self.taken.len()
     }
 
     /// Adds a sample. Samples come in the order of time.
     pub(super) fn push(&mut self, sample: &Sample) {
         let time_s = sample.time_s;
         self.span_s = [self.span_s[0].min(time_s), time_s];
-        if let Some((every_s, next_s)) = &mut self.film {
-            if time_s >= *next_s - 1e-9 && self.taken.len() < MAX_FILM_PICTURES {
-                let due_s = if next_s.is_finite() { *next_s } else { time_s };
-                *next_s = due_s + *every_s;
-                self.taken.push((time_s, Some(sample.clone())));
+        if let Some(film) = &mut self.film {
+            film.next_s = film.next_s.max(self.span_s[0]);
+            while film.next_s <= time_s + SAME_S && self.taken.len() < MAX_FILM_PICTURES {
+                let shown = match &film.last {
+                    Some(last) if film.next_s < time_s - SAME_S => {
+                        between(last, sample, film.next_s)
+                    }
+                    _ => sample.clone(),
+                };
+                self.taken.push((film.next_s, Some(shown)));
+                film.next_s += film.interval_s;
             }
+            film.last = Some(sample.clone());
             return;
         }
         for (wanted_s, nearest) in &mut self.taken {
@@ -85,7 +125,7 @@ impl Snapshots {
     }
 
     /// Returns the largest joint stress in all pictures, in Pa.
-    fn largest_pa(&self) -> f64 {
+    pub(super) fn largest_pa(&self) -> f64 {
         let pressures = self.shown().into_iter();
         let pressures = pressures.flat_map(|sample| &sample.pressures);
         let stresses_pa = pressures.flat_map(|pressure| pressure.edge_stresses_pa);
@@ -100,25 +140,32 @@ impl Snapshots {
     }
 
     /// Returns the samples that are drawn.
-    fn shown(&self) -> Vec<&Sample> {
+    pub(super) fn shown(&self) -> Vec<&Sample> {
         let taken = self.taken.iter();
         taken.filter_map(|(_, sample)| sample.as_ref()).collect()
     }
 
     /// Draws all snapshots in one picture.
     pub(super) fn draw(&self, figure: Figure, title: &str) -> String {
-        self.sheet(figure, title, &self.shown())
+        self.sheet(figure, title, &self.shown(), self.largest_pa())
     }
 
     /// Draws each snapshot as a separate picture, all with one scale.
     pub(super) fn film_pictures(&self, figure: Figure, title: &str) -> Vec<String> {
-        let shown = self.shown().into_iter();
+        let (shown, largest_pa) = (self.shown().into_iter(), self.largest_pa());
         shown
-            .map(|sample| self.sheet(figure, title, &[sample]))
+            .map(|sample| self.sheet(figure, title, &[sample], largest_pa))
             .collect()
     }
 
-    fn sheet(&self, figure: Figure, title: &str, shown: &[&Sample]) -> String {
+    /// Draws samples side by side; stresses are drawn relative to `largest_pa`.
+    pub(super) fn sheet(
+        &self,
+        figure: Figure,
+        title: &str,
+        shown: &[&Sample],
+        largest_pa: f64,
+    ) -> String {
         let columns = figure.columns(shown.len().clamp(1, COLUMNS), LEAST_PX);
         let cell_px = figure.width_px / columns as f64;
         let [low_m, high_m] = self.scene.frame_m();
@@ -136,24 +183,39 @@ impl Snapshots {
                         let middle = (f64::from(column) + 0.5) * cell_px;
                         let sway_m = Vector2::new(0.0, 0.1 * height_m);
                         let place = SheetTransform::over([low_m, high_m + sway_m], middle, part);
-                        self.draw_one(drawing, place, sample, 0.5 * cell_px - 8.0);
+                        let half_px = 0.5 * cell_px - 8.0;
+                        self.draw_one(
+                            drawing,
+                            place,
+                            sample,
+                            (half_px, figure.background.ink()),
+                            largest_pa,
+                        );
                     }
                 },
             );
             sheet.gap(52.0);
         }
-        sheet.caption(0.0, &self.caption());
+        sheet.caption(0.0, &self.caption(largest_pa));
         sheet.gap(8.0);
         sheet.finish()
     }
 
-    fn caption(&self) -> String {
+    fn caption(&self, largest_pa: f64) -> String {
         let mut caption = match self.exaggeration {
             1.0 => "to scale".to_owned(),
             exaggeration => format!("displacements times {exaggeration}"),
         };
+        match &self.caption {
+            Some(own) if self.exaggeration == 1.0 => return own.clone(),
+            Some(own) if own.is_empty() => return caption,
+            Some(own) => return format!("{own} ({caption})"),
+            None => {}
+        }
+        if self.speed != 1.0 {
+            caption = format!("{} times real speed; {caption}", self.speed);
+        }
         caption += "; dashed: at rest; circles: open hinges; blue: thrust line";
-        let largest_pa = self.largest_pa();
         if largest_pa > 0.0 {
             let _ = write!(
                 caption,
@@ -173,7 +235,8 @@ impl Snapshots {
         drawing: &mut Drawing,
         place: SheetTransform,
         sample: &Sample,
-        half_px: f64,
+        (half_px, ink): (f64, &'static str),
+        largest_pa: f64,
     ) {
         let left = place.at - Vector2::new(half_px, 0.0);
         let right = place.at + Vector2::new(half_px, 0.0);
@@ -186,7 +249,7 @@ impl Snapshots {
         if self.scene.has_settled() {
             for face in self.scene.supports_m(self.exaggeration) {
                 let ends = face.map(|end| place.px(end));
-                drawing.curve("support", ends, Stroke::new(color::BLACK, 2.0, ""));
+                drawing.curve("support", ends, Stroke::new(ink, 2.0, ""));
             }
         }
         view.draw_behind(drawing);
@@ -213,7 +276,7 @@ impl Snapshots {
             }
         }
         for pressed in self.scene.compressed_joints(sample) {
-            let high_m = WEDGE_RATIO * self.thickness_m() / self.largest_pa();
+            let high_m = WEDGE_RATIO * self.thickness_m() / largest_pa;
             let wedge = pressed.wedge(high_m);
             let stroke = Stroke::new(color::PURPLE, 0.8, "");
             drawing.polygon("stress", wedge.iter().map(moved), PRESSED, stroke);
@@ -233,6 +296,38 @@ impl Snapshots {
         let below = place.at + Vector2::new(0.0, 22.0);
         let text = format!("{:.3} s, {state}", sample.time_s);
         drawing.label(below, Anchor::Middle, 0.0, text);
+    }
+}
+
+/// Returns the state between two samples. The bodies move evenly from one to the other; everything else is that of the first one. At a change
+/// of the mechanism, whose bodies are others, it is the nearer sample.
+fn between(first: &Sample, second: &Sample, time_s: f64) -> Sample {
+    let part = (time_s - first.time_s) / (second.time_s - first.time_s);
+    // Blocks are the same bodies at all times.
+    let has_blocks = !first.gaps_m.is_empty();
+    let hinges = |sample: &Sample| {
+        sample
+            .hinges
+            .iter()
+            .map(|open| open.hinge)
+            .collect::<Vec<_>>()
+    };
+    if !has_blocks && hinges(first) != hinges(second) {
+        let nearer = if part < 0.5 { first } else { second };
+        return Sample {
+            time_s,
+            ..nearer.clone()
+        };
+    }
+    let poses = first.poses.iter().zip(&second.poses).map(|(from, to)| {
+        let turn_rad = to.rotation_rad() - from.rotation_rad();
+        let moved_m = from.translation.lerp(&to.translation, part);
+        Pose::new(from.rotation_rad() + part * turn_rad, moved_m)
+    });
+    Sample {
+        time_s,
+        poses: poses.collect(),
+        ..first.clone()
     }
 }
 
