@@ -636,8 +636,10 @@ fn redo(text: &str) -> usize {
                     None if spectrum.modes.is_empty() => spectrum.ground.ag_g * spectrum.ground.s,
                     None => spectrum.a_z,
                 };
-                start = Some(spectrum.ground.ag_g * a0 / demand);
-                after(own, "ag,SLD = ").value;
+                let start_g = spectrum.ground.ag_g * a0 / demand;
+                let (_, computed) = own.split_once("ag,SLD = ").unwrap();
+                after(computed, " = ").is(start_g);
+                start = Some(start_g);
                 ratios.push(("activation", a0 / demand));
             }
             if own.contains("√(d/a)") {
