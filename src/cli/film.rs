@@ -1,12 +1,12 @@
 //! The command `film`.
 
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
-use archrock::output::{Background, FilmFormat, Folder, Origin, PrintError, check_named_file};
+use archrock::output::{Background, FilmFormat, Origin, PrintError, check_named_file};
 use archrock::scenario::Scenario;
 use archrock::studies::run::{Film, FilmOptions};
 use archrock::studies::{Progress, StudyError};
@@ -30,12 +30,7 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Speed relative to real time, such as 0.25 for slow motion.
-    #[arg(
-        long,
-        value_name = "TIMES",
-        default_value_t = 1.0,
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "TIMES", default_value_t = 1.0)]
     speed: f64,
     /// Width and height in pixels.
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1280x720", value_parser = size_px)]
@@ -47,12 +42,7 @@ pub struct Arguments {
     #[arg(long, value_name = "TEXT")]
     caption: Option<String>,
     /// Factor on the displacements.
-    #[arg(
-        long,
-        value_name = "K",
-        default_value_t = 1.0,
-        allow_negative_numbers = true
-    )]
+    #[arg(long, value_name = "K", default_value_t = 1.0)]
     exaggerate: f64,
     #[command(flatten)]
     models: ModelsOption,
@@ -102,11 +92,22 @@ pub fn film(arguments: &Arguments) -> Result<(), Failure> {
         process::exit(INTERRUPTED_CODE);
     }
     let (pictures, film) = made?;
-    let path = write(folder.as_ref(), out.unwrap_or(Path::new(&name)), &film)?;
-    let [width, height] = options.size_px;
-    let (rate_hz, path) = (Film::RATE_HZ, path.display());
+    let path = match (out, folder) {
+        (Some(file), _) => {
+            write_named(file, &film, "--out")?;
+            file.to_owned()
+        }
+        (None, None) => return Ok(()),
+        (None, Some(folder)) => {
+            folder.add(&name, &film)?;
+            folder.publish()?;
+            folder.path().join(name)
+        }
+    };
+    let ([width, height], rate_hz) = (options.size_px, Film::RATE_HZ);
     print_status(&format!(
-        "{path}: {pictures} pictures of {width}x{height} pixels, {:.2} s at {rate_hz} a second",
+        "{}: {pictures} pictures of {width}x{height} pixels, {:.2} s at {rate_hz} a second",
+        path.display(),
         pictures as f64 / f64::from(rate_hz)
     ));
     Ok(())
@@ -141,22 +142,13 @@ fn watch(words: impl Fn(Progress, Duration) -> String) -> impl FnMut(Progress) -
     }
 }
 
-/// Writes the film to the folder, or to the file that the user named. Returns its path.
-fn write(folder: Option<&Folder>, file: &Path, film: &[u8]) -> Result<PathBuf, Failure> {
-    let Some(folder) = folder else {
-        write_named(file, film, "--out")?;
-        return Ok(file.to_owned());
-    };
-    folder.add(&file.to_string_lossy(), film)?;
-    folder.publish()?;
-    Ok(folder.path().join(file))
-}
-
 impl From<PrintError> for Failure {
     fn from(error: PrintError) -> Self {
         match error {
-            PrintError::Failed(_) | PrintError::Film(_) => Self::Work(error.to_string()),
-            error => Self::Input(error.to_string()),
+            PrintError::NotBuilt | PrintError::NoFfmpeg | PrintError::UnknownFilm(_) => {
+                Self::Input(error.to_string())
+            }
+            error => Self::Work(error.to_string()),
         }
     }
 }

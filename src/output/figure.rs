@@ -1,10 +1,9 @@
 //! The layout of a picture: width and height, size of text, and drawn parts.
 
-use std::fmt;
 use std::ops::RangeInclusive;
 use std::str::FromStr;
 
-use super::svg::{Frame, color};
+use super::svg::{Background, Frame};
 use super::text::TEXT_PX;
 
 /// The size of a picture. The layout is in pixels, with text of 13 pixels. Wider pictures have more space, not larger text.
@@ -198,53 +197,6 @@ impl FromStr for Figure {
         let fits = length_mm(text).filter(|width_mm| Self::WIDTHS_MM.contains(width_mm));
         fits.map(Self::of_width_mm)
             .ok_or_else(|| "give a width from 60mm to 500mm, such as 85mm or 17cm".to_owned())
-    }
-}
-
-/// Colour behind a picture: red, green and blue.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Background(pub [u8; 3]);
-
-impl Background {
-    /// White.
-    pub const WHITE: Self = Self([255; 3]);
-
-    /// Returns the colour of texts and lines that can be seen on this colour: black or white.
-    pub(crate) fn ink(self) -> &'static str {
-        // Weights of ITU-R BT.601.
-        let [red, green, blue] = self.0.map(f64::from);
-        let is_dark = 0.299 * red + 0.587 * green + 0.114 * blue < 128.0;
-        if is_dark { color::WHITE } else { color::BLACK }
-    }
-}
-
-impl fmt::Display for Background {
-    /// Writes the colour for SVG.
-    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [red, green, blue] = self.0;
-        write!(to, "#{red:02x}{green:02x}{blue:02x}")
-    }
-}
-
-impl FromStr for Background {
-    type Err = String;
-
-    /// Parses `white`, `black` or six hexadecimal digits, with or without `#`.
-    fn from_str(text: &str) -> Result<Self, String> {
-        let digits = text.strip_prefix('#').unwrap_or(text);
-        let is_hexadecimal = digits.len() == 6 && digits.bytes().all(|it| it.is_ascii_hexdigit());
-        match text {
-            "white" => Ok(Self::WHITE),
-            "black" => Ok(Self([0; 3])),
-            _ if !is_hexadecimal => {
-                Err("give white, black or a colour as rrggbb, such as f5f0e6".to_owned())
-            }
-            _ => {
-                let [_, red, green, blue] =
-                    u32::from_str_radix(digits, 16).unwrap_or(0).to_be_bytes();
-                Ok(Self([red, green, blue]))
-            }
-        }
     }
 }
 

@@ -1,9 +1,11 @@
 //! Films: pictures one after another, as MP4 and WebM by the program `ffmpeg`, or as GIF and animated PNG. The feature `print` is needed.
 
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
 use super::print::PrintError;
+use super::svg::Background;
 
 named! {
     /// Format of a film, named by the extension of its file.
@@ -33,7 +35,7 @@ impl FilmFormat {
         let found = all.find(|format| extension.eq_ignore_ascii_case(format.name()));
         let format = found.ok_or_else(|| PrintError::UnknownFilm(extension.into_owned()))?;
         match format {
-            _ if cfg!(not(feature = "print")) => Err(PrintError::NoFilms),
+            _ if cfg!(not(feature = "print")) => Err(PrintError::NotBuilt),
             Self::Mp4 | Self::WebM if !has_ffmpeg() => Err(PrintError::NoFfmpeg),
             format => Ok(format),
         }
@@ -53,12 +55,8 @@ impl FilmFormat {
 
 fn has_ffmpeg() -> bool {
     let mut command = Command::new(FFMPEG);
-    let silent = command
-        .arg("-version")
-        .stdin(Stdio::null())
-        .stdout(Stdio::null())
-        .stderr(Stdio::null());
-    silent.status().is_ok_and(|status| status.success())
+    let command = command.arg("-version").stdin(Stdio::null());
+    command.output().is_ok_and(|output| output.status.success())
 }
 
 /// The pictures of a film.
@@ -69,92 +67,71 @@ pub(crate) struct Reel<'a> {
     pub(crate) rate_hz: u16,
     /// Number of pictures.
     pub(crate) count: usize,
-    pub(crate) background: super::figure::Background,
+    pub(crate) background: Background,
     /// Draws a picture as SVG, from its number.
     pub(crate) draw: &'a (dyn Fn(usize) -> String + Sync),
 }
 
+/// Receives the number of finished pictures; a break ends the work.
+pub(crate) type Done<'d> = &'d mut dyn FnMut(usize) -> ControlFlow<()>;
+
 impl Reel<'_> {
-    /// Makes the file of the film. `done` receives the number of finished pictures; its error ends the work.
+    /// Makes the file of the film.
     ///
     /// # Errors
-    /// When the program was built without films, the system has no suitable font, or the encoder fails.
-    pub(crate) fn encode<E: From<PrintError>>(
-        &self,
-        format: FilmFormat,
-        done: impl FnMut(usize) -> Result<(), E>,
-    ) -> Result<Vec<u8>, E> {
-        #[cfg(feature = "print")]
-        return encoded::encode(self, format, done);
-        #[cfg(not(feature = "print"))]
-        {
-            let _ = (format, done);
-            Err(PrintError::NoFilms.into())
-        }
+    /// When the program was built without films, the system has no suitable font, the encoder fails, or the work is ended.
+    #[cfg(not(feature = "print"))]
+    pub(crate) fn encode(&self, _: FilmFormat, _: Done<'_>) -> Result<Vec<u8>, PrintError> {
+        Err(PrintError::NotBuilt)
     }
 }
 
 #[cfg(feature = "print")]
 mod encoded {
+    use std::cmp::Reverse;
     use std::collections::HashMap;
-    use std::fmt::Display;
-    use std::fs::{self, File};
+    use std::error::Error;
+    use std::fs;
     use std::io::{Read as _, Seek as _, Write as _};
-    use std::process::{Child, Command, Stdio};
+    use std::process::{Command, Stdio};
 
-    use gif::{AnyExtension, DisposalMethod, Frame, Repeat};
+    use gif::{AnyExtension, DisposalMethod, Repeat};
     use png::{BitDepth, BlendOp, ColorType, Compression, FilterType};
     use rayon::iter::{IntoParallelIterator as _, ParallelIterator as _};
 
-    use super::{FFMPEG, FilmFormat, PrintError, Reel};
+    use super::{Done, FFMPEG, FilmFormat, PrintError, Reel};
     use crate::output::page::PROGRAM;
     use crate::output::print::Raster;
 
-    pub fn encode<E: From<PrintError>>(
-        reel: &Reel<'_>,
-        format: FilmFormat,
-        mut done: impl FnMut(usize) -> Result<(), E>,
-    ) -> Result<Vec<u8>, E> {
-        let frames = Frames(reel, Raster::new()?);
-        let done = &mut done;
-        match format {
-            FilmFormat::Mp4 => {
-                const MP4: [&str; 8] = [
-                    "-c:v",
-                    "libx264",
-                    "-crf",
-                    "18",
-                    "-movflags",
-                    "+faststart",
-                    "-f",
-                    "mp4",
-                ];
-                ffmpeg(&frames, &MP4, done)
-            }
-            FilmFormat::WebM => {
-                const WEBM: [&str; 12] = [
-                    "-c:v",
-                    "libvpx-vp9",
-                    "-crf",
-                    "24",
-                    "-b:v",
-                    "0",
-                    "-cpu-used",
-                    "4",
-                    "-row-mt",
-                    "1",
-                    "-f",
-                    "webm",
-                ];
-                ffmpeg(&frames, &WEBM, done)
-            }
-            FilmFormat::Gif => gif(&frames, done),
-            FilmFormat::Png => png(&frames, done),
-        }
-    }
+    type Encoded<T> = Result<T, Box<dyn Error>>;
 
-    fn failed(error: impl Display) -> PrintError {
-        PrintError::Film(error.to_string())
+    impl Reel<'_> {
+        /// Makes the file of the film.
+        ///
+        /// # Errors
+        /// When the system has no suitable font, the encoder fails, or the work is ended.
+        pub(crate) fn encode(
+            &self,
+            format: FilmFormat,
+            done: Done<'_>,
+        ) -> Result<Vec<u8>, PrintError> {
+            let frames = Frames(self, Raster::new()?);
+            let film = match format {
+                FilmFormat::Mp4 => {
+                    frames.ffmpeg("-c:v libx264 -crf 18 -movflags +faststart -f mp4", done)
+                }
+                FilmFormat::WebM => {
+                    let options = "-c:v libvpx-vp9 -crf 24 -b:v 0 -cpu-used 4 -row-mt 1 -f webm";
+                    frames.ffmpeg(options, done)
+                }
+                FilmFormat::Gif => frames.gif(done),
+                FilmFormat::Png => frames.png(done),
+            };
+            film.map_err(|error| match error.downcast::<PrintError>() {
+                Ok(error) => *error,
+                Err(error) => PrintError::Film(error.to_string()),
+            })
+        }
     }
 
     /// The pictures as pixels.
@@ -167,12 +144,12 @@ mod encoded {
         }
 
         /// Draws all pictures, several at a time, and passes them on in order.
-        fn each<E: From<PrintError>>(
+        fn each(
             &self,
             prepare: impl Fn(Vec<u8>) -> Vec<u8> + Sync,
-            mut add: impl FnMut(Vec<u8>) -> Result<(), PrintError>,
-            done: &mut dyn FnMut(usize) -> Result<(), E>,
-        ) -> Result<(), E> {
+            mut add: impl FnMut(Vec<u8>) -> Encoded<()>,
+            done: Done<'_>,
+        ) -> Encoded<()> {
             let (count, batch) = (self.0.count, 2 * rayon::current_num_threads());
             for first in (0..count).step_by(batch) {
                 let end = count.min(first + batch);
@@ -180,109 +157,107 @@ mod encoded {
                 let frames = frames.map(|number| self.frame(number).map(&prepare));
                 let frames: Result<Vec<_>, _> = frames.collect();
                 frames?.into_iter().try_for_each(&mut add)?;
-                done(end)?;
+                if done(end).is_break() {
+                    return Err(PrintError::Cancelled.into());
+                }
             }
             Ok(())
         }
 
-        /// Width and height, where the format has 16 bits for them.
-        fn size(&self) -> Result<[u16; 2], PrintError> {
-            let [width, height] = self.0.size_px.map(u16::try_from);
-            Ok([width.map_err(failed)?, height.map_err(failed)?])
-        }
-    }
-
-    /// The program `ffmpeg`, which ends with its film.
-    struct Running(Child);
-
-    impl Drop for Running {
-        fn drop(&mut self) {
-            // It may have ended.
-            let _ = self.0.kill();
-            let _ = self.0.wait();
-        }
-    }
-
-    fn ffmpeg<E: From<PrintError>>(
-        frames: &Frames<'_>,
-        format: &[&str],
-        done: &mut dyn FnMut(usize) -> Result<(), E>,
-    ) -> Result<Vec<u8>, E> {
-        let [width, height] = frames.0.size_px;
-        // Seekable, because the index at the beginning of a film is written last.
-        let mut file = tempfile::Builder::new();
-        let file = file
-            .prefix("archrock-film-")
-            .tempfile()
-            .map_err(failed)?
-            .into_temp_path();
-        let mut messages = tempfile::tempfile().map_err(failed)?;
-        let mut command = Command::new(FFMPEG);
-        command
-            .args([
-                "-hide_banner",
-                "-loglevel",
-                "error",
-                "-f",
-                "rawvideo",
-                "-pix_fmt",
-                "rgb24",
-            ])
-            .args(["-video_size", &format!("{width}x{height}")])
-            .args(["-framerate", &frames.0.rate_hz.to_string(), "-i", "-"])
+        /// Encodes the film by `ffmpeg`, with these options.
+        fn ffmpeg(&self, options: &str, done: Done<'_>) -> Encoded<Vec<u8>> {
+            let ([width, height], rate_hz) = (self.0.size_px, self.0.rate_hz);
+            // A file, because the index at the beginning of a film is written last.
+            let file = tempfile::NamedTempFile::new()?.into_temp_path();
+            let mut messages = tempfile::tempfile()?;
             // Players take the colours of films of this size for those of BT.709.
-            .args([
-                "-vf",
-                "scale=out_color_matrix=bt709:out_range=tv",
-                "-pix_fmt",
-                "yuv420p",
-            ])
-            .args([
-                "-colorspace",
-                "bt709",
-                "-color_primaries",
-                "bt709",
-                "-color_trc",
-                "bt709",
-            ])
-            .args(["-metadata", &format!("comment={PROGRAM}")])
-            .args(format)
-            .arg("-y")
-            .arg(&file)
-            .stdin(Stdio::piped())
-            .stdout(Stdio::null())
-            .stderr(messages.try_clone().map_err(failed)?);
-        let mut program = Running(command.spawn().map_err(failed)?);
-        let mut input = program.0.stdin.take();
-        let add = |frame: Vec<u8>| {
-            let written = input
-                .as_mut()
-                .map_or(Ok(()), |input| input.write_all(&frame));
-            written.map_err(|_| reason(&mut program, &mut messages))
-        };
-        frames.each(|frame| frame, add, done)?;
-        drop(input);
-        match program.0.wait() {
-            Ok(status) if status.success() => Ok(fs::read(&file).map_err(failed)?),
-            _ => Err(reason(&mut program, &mut messages).into()),
+            let arguments = format!(
+                "-loglevel error -f rawvideo -pix_fmt rgb24 -video_size {width}x{height} -framerate {rate_hz} -i - \
+                 -vf scale=out_color_matrix=bt709:out_range=tv -pix_fmt yuv420p -colorspace bt709 -color_primaries bt709 \
+                 -color_trc bt709 -metadata comment={} {options} -y",
+                env!("CARGO_PKG_NAME")
+            );
+            let mut command = Command::new(FFMPEG);
+            let command = command.args(arguments.split(' ')).arg(&file);
+            let piped = command.stdin(Stdio::piped()).stdout(Stdio::null());
+            let mut program = piped.stderr(messages.try_clone()?).spawn()?;
+            let mut input = program.stdin.take().ok_or("ffmpeg has no input")?;
+            let fed = self.each(|frame| frame, |frame| Ok(input.write_all(&frame)?), done);
+            drop(input);
+            if !program.wait()?.success() {
+                let mut text = String::new();
+                messages.rewind()?;
+                messages.read_to_string(&mut text)?;
+                let lines: Vec<&str> = text.lines().collect();
+                return Err(format!("ffmpeg failed: {}", lines.join("; ")).into());
+            }
+            fed?;
+            Ok(fs::read(&file)?)
         }
-    }
 
-    /// Returns the last messages of `ffmpeg`, which has failed.
-    fn reason(program: &mut Running, messages: &mut File) -> PrintError {
-        let _ = program.0.wait();
-        let mut text = String::new();
-        // Without its messages the film has failed all the same.
-        let _ = messages
-            .rewind()
-            .and_then(|()| messages.read_to_string(&mut text));
-        let lines: Vec<&str> = text
-            .lines()
-            .map(str::trim)
-            .filter(|line| !line.is_empty())
-            .collect();
-        let last = &lines[lines.len().saturating_sub(3)..];
-        failed(format!("ffmpeg failed: {}", last.join("; ")))
+        /// Returns red, green and blue of the most frequent colours of the first, the middle and the last picture, and of a last one. A drawing has few
+        /// colours, and softened edges get the nearest ones.
+        fn palette(&self) -> Encoded<Vec<u8>> {
+            let last = self.0.count.saturating_sub(1);
+            let frames = [self.frame(0)?, self.frame(last / 2)?, self.frame(last)?];
+            let mut counts: HashMap<&[u8], usize> = HashMap::new();
+            for pixel in frames.iter().flat_map(|frame| frame.chunks_exact(3)) {
+                *counts.entry(pixel).or_default() += 1;
+            }
+            let mut colours: Vec<_> = counts.into_iter().collect();
+            colours.sort_by_key(|(colour, count)| (Reverse(*count), *colour));
+            let colours = colours.into_iter().take(UNCHANGED.into());
+            let mut bytes: Vec<u8> = colours.flat_map(|(colour, _)| colour.to_vec()).collect();
+            bytes.resize(3 * COLOURS, 0);
+            Ok(bytes)
+        }
+
+        fn gif(&self, done: Done<'_>) -> Encoded<Vec<u8>> {
+            /// The label of a comment.
+            const COMMENT: AnyExtension = AnyExtension(0xFE);
+            let [width, height] = self.0.size_px.map(u16::try_from);
+            let (palette, width, height) = (self.palette()?, width?, height?);
+            let (mut file, mut last) = (Vec::new(), Vec::new());
+            let mut encoder = gif::Encoder::new(&mut file, width, height, &palette)?;
+            encoder.set_repeat(Repeat::Infinite)?;
+            encoder.write_raw_extension(COMMENT, &[PROGRAM.as_bytes()])?;
+            let add = |frame| {
+                let changed = changes(&mut last, frame);
+                let transparent = Some(UNCHANGED);
+                let mut frame =
+                    gif::Frame::from_indexed_pixels(width, height, changed, transparent);
+                // In hundredths of a second.
+                frame.delay = 100 / self.0.rate_hz;
+                frame.dispose = DisposalMethod::Keep;
+                Ok(encoder.write_frame(&frame)?)
+            };
+            self.each(|frame| indices(&palette, &frame), add, done)?;
+            drop(encoder);
+            Ok(file)
+        }
+
+        fn png(&self, done: Done<'_>) -> Encoded<Vec<u8>> {
+            let (palette, [width, height]) = (self.palette()?, self.0.size_px);
+            let (mut file, mut last) = (Vec::new(), Vec::new());
+            let mut opacity = vec![u8::MAX; COLOURS];
+            opacity[usize::from(UNCHANGED)] = 0;
+            let mut encoder = png::Encoder::new(&mut file, width, height);
+            encoder.set_color(ColorType::Indexed);
+            encoder.set_depth(BitDepth::Eight);
+            encoder.set_filter(FilterType::NoFilter);
+            encoder.set_compression(Compression::Default);
+            encoder.set_palette(&palette);
+            encoder.set_trns(opacity);
+            encoder.set_animated(u32::try_from(self.0.count)?, 0)?;
+            encoder.set_frame_delay(1, self.0.rate_hz)?;
+            encoder.set_blend_op(BlendOp::Over)?;
+            encoder.add_text_chunk("Software".to_owned(), PROGRAM.to_owned())?;
+            let mut writer = encoder.write_header()?;
+            let add = |frame| Ok(writer.write_image_data(&changes(&mut last, frame))?);
+            self.each(|frame| indices(&palette, &frame), add, done)?;
+            writer.finish()?;
+            Ok(file)
+        }
     }
 
     /// Number of colours of GIF and indexed PNG.
@@ -290,137 +265,39 @@ mod encoded {
     /// The last colour is transparent: the pixel is that of the picture before.
     const UNCHANGED: u8 = u8::MAX;
 
-    /// The most frequent colours of a film. A drawing has few colours; softened edges get the nearest ones.
-    struct Palette(Vec<[u8; 3]>);
-
-    impl Palette {
-        /// Takes the colours of the first, the middle and the last picture.
-        fn of(frames: &Frames<'_>) -> Result<Self, PrintError> {
-            let mut counts: HashMap<[u8; 3], usize> = HashMap::new();
-            let last = frames.0.count.saturating_sub(1);
-            for number in [0, last / 2, last] {
-                for pixel in frames.frame(number)?.chunks_exact(3) {
-                    *counts.entry([pixel[0], pixel[1], pixel[2]]).or_default() += 1;
-                }
-            }
-            let mut colours: Vec<_> = counts.into_iter().collect();
-            colours.sort_by_key(|(colour, count)| (usize::MAX - count, *colour));
-            let mut colours: Vec<_> = colours.into_iter().map(|(colour, _)| colour).collect();
-            colours.truncate(UNCHANGED.into());
-            Ok(Self(colours))
-        }
-
-        /// Returns red, green and blue of all colours, with unused ones at the end.
-        fn bytes(&self) -> Vec<u8> {
-            let mut bytes = self.0.concat();
-            bytes.resize(3 * COLOURS, 0);
-            bytes
-        }
-
-        /// Returns the number of the nearest colour of each pixel.
-        fn indices(&self, pixels: &[u8]) -> Vec<u8> {
-            let mut known: HashMap<[u8; 3], u8> = HashMap::new();
-            let mut last = ([0; 3], self.nearest([0; 3]));
-            let pixels = pixels.chunks_exact(3);
-            let index = pixels.map(|pixel| {
-                let pixel = [pixel[0], pixel[1], pixel[2]];
-                if pixel != last.0 {
-                    last = (
-                        pixel,
-                        *known.entry(pixel).or_insert_with(|| self.nearest(pixel)),
-                    );
-                }
-                last.1
-            });
-            index.collect()
-        }
-
-        fn nearest(&self, pixel: [u8; 3]) -> u8 {
-            let distance = |colour: &[u8; 3]| -> u32 {
+    /// Returns the number of the nearest colour of each pixel.
+    fn indices(palette: &[u8], pixels: &[u8]) -> Vec<u8> {
+        let nearest = |pixel: &[u8]| {
+            let colours = (0..UNCHANGED).zip(palette.chunks_exact(3));
+            let distances = colours.map(|(index, colour)| {
                 let parts = colour.iter().zip(pixel);
-                parts.map(|(a, b)| u32::from(a.abs_diff(b)).pow(2)).sum()
-            };
-            let nearest = (0..UNCHANGED)
-                .zip(&self.0)
-                .min_by_key(|(_, colour)| distance(colour));
-            nearest.map_or(0, |(index, _)| index)
-        }
+                let squares = parts.map(|(a, b)| u32::from(a.abs_diff(*b)).pow(2));
+                (squares.sum::<u32>(), index)
+            });
+            distances.min().map_or(0, |(_, index)| index)
+        };
+        let mut known: HashMap<&[u8], u8> = HashMap::new();
+        let mut last: (&[u8], u8) = (&[], 0);
+        let pixels = pixels.chunks_exact(3).map(|pixel| {
+            if pixel != last.0 {
+                let index = known.entry(pixel).or_insert_with(|| nearest(pixel));
+                last = (pixel, *index);
+            }
+            last.1
+        });
+        pixels.collect()
     }
 
     /// Returns the changed pixels of a picture, and keeps the picture for the next one.
     fn changes(last: &mut Vec<u8>, new: Vec<u8>) -> Vec<u8> {
-        let pairs = new.iter().zip(last.iter());
-        let mut changed: Vec<u8> = pairs
-            .map(|(new, last)| if new == last { UNCHANGED } else { *new })
-            .collect();
-        if changed.is_empty() {
-            changed.clone_from(&new);
+        let mut changed = new.clone();
+        for (changed, last) in changed.iter_mut().zip(&*last) {
+            if changed == last {
+                *changed = UNCHANGED;
+            }
         }
         *last = new;
         changed
-    }
-
-    fn gif<E: From<PrintError>>(
-        frames: &Frames<'_>,
-        done: &mut dyn FnMut(usize) -> Result<(), E>,
-    ) -> Result<Vec<u8>, E> {
-        /// The label of a comment.
-        const COMMENT: AnyExtension = AnyExtension(0xFE);
-        let (palette, [width, height]) = (Palette::of(frames)?, frames.size()?);
-        let (mut file, mut last) = (Vec::new(), Vec::new());
-        let encoder = gif::Encoder::new(&mut file, width, height, &palette.bytes());
-        let mut encoder = encoder.map_err(failed)?;
-        encoder.set_repeat(Repeat::Infinite).map_err(failed)?;
-        let comment = encoder.write_raw_extension(COMMENT, &[PROGRAM.as_bytes()]);
-        comment.map_err(failed)?;
-        let add = |frame| {
-            let frame = Frame {
-                width,
-                height,
-                // In hundredths of a second.
-                delay: 100 / frames.0.rate_hz,
-                transparent: Some(UNCHANGED),
-                dispose: DisposalMethod::Keep,
-                buffer: changes(&mut last, frame).into(),
-                ..Frame::default()
-            };
-            encoder.write_frame(&frame).map_err(failed)
-        };
-        frames.each(|frame| palette.indices(&frame), add, done)?;
-        drop(encoder);
-        Ok(file)
-    }
-
-    fn png<E: From<PrintError>>(
-        frames: &Frames<'_>,
-        done: &mut dyn FnMut(usize) -> Result<(), E>,
-    ) -> Result<Vec<u8>, E> {
-        let (palette, [width, height]) = (Palette::of(frames)?, frames.0.size_px);
-        let (mut file, mut last) = (Vec::new(), Vec::new());
-        let mut encoder = png::Encoder::new(&mut file, width, height);
-        encoder.set_color(ColorType::Indexed);
-        encoder.set_depth(BitDepth::Eight);
-        encoder.set_filter(FilterType::NoFilter);
-        encoder.set_compression(Compression::Default);
-        encoder.set_palette(palette.bytes());
-        let mut opacity = vec![u8::MAX; COLOURS];
-        opacity[usize::from(UNCHANGED)] = 0;
-        encoder.set_trns(opacity);
-        let count = u32::try_from(frames.0.count).map_err(failed)?;
-        let header = encoder
-            .set_animated(count, 0)
-            .and_then(|()| encoder.set_frame_delay(1, frames.0.rate_hz))
-            .and_then(|()| encoder.set_blend_op(BlendOp::Over))
-            .and_then(|()| encoder.add_text_chunk("Software".to_owned(), PROGRAM.to_owned()))
-            .and_then(|()| encoder.write_header());
-        let mut writer = header.map_err(failed)?;
-        let add = |frame| {
-            let changed = changes(&mut last, frame);
-            writer.write_image_data(&changed).map_err(failed)
-        };
-        frames.each(|frame| palette.indices(&frame), add, done)?;
-        writer.finish().map_err(failed)?;
-        Ok(file)
     }
 }
 
@@ -436,7 +313,7 @@ mod tests {
         }
         let expected = match cfg!(feature = "print") {
             true => Ok(FilmFormat::Gif),
-            false => Err(PrintError::NoFilms),
+            false => Err(PrintError::NotBuilt),
         };
         assert_eq!(format("talk/a.GIF"), expected);
     }

@@ -33,7 +33,7 @@ pub(crate) use axes::{Axes, Scale};
 pub(crate) use chart::{BELOW_PX, Chart, LEFT_PX, Mark, Shape};
 pub use elevation::draw as draw_elevation;
 pub(crate) use envelope::{Envelope, Thinned};
-pub use figure::{Background, Figure, Height, Panel};
+pub use figure::{Figure, Height, Panel};
 pub use film::FilmFormat;
 pub(crate) use film::Reel;
 pub(crate) use folder::NewFile;
@@ -49,6 +49,7 @@ pub use scene::Scene;
 use serde_json::Value;
 pub(crate) use sheet::{Key, PartHeight, Sheet, Sign};
 pub(crate) use summary::{Named, summary_of};
+pub use svg::Background;
 pub(crate) use svg::{Anchor, CURVES, Drawing, Frame, Stroke, color};
 pub(crate) use table::{
     Cell, Column, TableWriter, column, csv, each, fields, list, numbers, row_number, several,

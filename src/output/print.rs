@@ -24,14 +24,9 @@ named! {
 pub enum PrintError {
     /// The program was built without the feature `print`.
     #[error(
-        "this archrock was built without PDF and PNG: build it with `cargo install --path . --features print`, or choose SVG"
+        "this archrock was built without PDF, PNG and films: build it with `cargo install --path . --features print`, or choose SVG"
     )]
     NotBuilt,
-    /// The program was built without the feature `print`, which films need.
-    #[error(
-        "this archrock was built without films: build it with `cargo install --path . --features print`"
-    )]
-    NoFilms,
     /// There is no such format.
     #[error("pictures are written as svg, pdf and png, not as {0:?}")]
     Unknown(String),
@@ -48,6 +43,9 @@ pub enum PrintError {
     /// The film cannot be encoded.
     #[error("the film cannot be encoded: {0}")]
     Film(String),
+    /// The work was ended.
+    #[error("the film was cancelled")]
+    Cancelled,
     /// The system has no suitable font.
     #[error(
         "the system has no font like Helvetica: install one, such as Liberation Sans, or take the picture as SVG"
@@ -113,7 +111,7 @@ mod converted {
     use resvg::usvg::{self, Options, Tree};
 
     use super::PrintError;
-    use crate::output::figure::Background;
+    use crate::output::svg::Background;
     use crate::output::text::FONTS;
 
     /// Resolution of pictures for print and for the screen, in dots per inch.

@@ -3,11 +3,11 @@
 //! Plotting libraries need fonts and backends, while a few strings are enough here. Marks of results have their name in `data-name`, for scripts
 //! and tests.
 
-use std::fmt::Write as _;
+use std::fmt::{self, Write as _};
+use std::str::FromStr;
 
 use nalgebra::Vector2;
 
-use super::figure::Background;
 use super::text::{FONTS, TEXT_PX, Text, escaped};
 
 /// Dark colours that colour-blind people can distinguish (Okabe and Ito).
@@ -69,6 +69,49 @@ named! {
         Middle = "middle",
         /// The text ends at the point.
         End = "end",
+    }
+}
+
+/// Colour behind a picture: red, green and blue.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Background(pub [u8; 3]);
+
+impl Background {
+    /// White.
+    pub const WHITE: Self = Self([255; 3]);
+
+    /// Returns the colour of texts and lines that can be seen on this colour: black or white.
+    pub(crate) fn ink(self) -> &'static str {
+        // Weights of ITU-R BT.601.
+        let [red, green, blue] = self.0.map(f64::from);
+        let is_dark = 0.299 * red + 0.587 * green + 0.114 * blue < 128.0;
+        if is_dark { color::WHITE } else { color::BLACK }
+    }
+}
+
+impl fmt::Display for Background {
+    /// Writes the colour for SVG.
+    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [red, green, blue] = self.0;
+        write!(to, "#{red:02x}{green:02x}{blue:02x}")
+    }
+}
+
+impl FromStr for Background {
+    type Err = String;
+
+    /// Parses `white`, `black` or six hexadecimal digits, with or without `#`.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let digits = match text {
+            "white" => "ffffff",
+            "black" => "000000",
+            text => text.trim_start_matches('#'),
+        };
+        let number = u32::from_str_radix(digits, 16).ok();
+        let number = number.filter(|_| digits.len() == 6 && !digits.starts_with('+'));
+        let wrong = "give white, black or a colour as rrggbb, such as f5f0e6";
+        let [_, rest @ ..] = number.ok_or(wrong)?.to_be_bytes();
+        Ok(Self(rest))
     }
 }
 

@@ -43,22 +43,16 @@ impl FilmOptions {
     /// When one is out of range.
     pub fn check(&self) -> Result<(), String> {
         let is_allowed = |side_px: &u32| (160..=3840).contains(side_px) && side_px % 2 == 0;
-        let checks = [
-            (
-                (1e-3..=1e3).contains(&self.speed),
-                "the speed of a film is from 0.001 to 1000 times real time, such as 0.25",
-            ),
-            (
-                self.size_px.iter().all(is_allowed),
-                "width and height of a film are even numbers from 160 to 3840, such as 1280x720",
-            ),
-            (
-                (1e-3..=1e6).contains(&self.exaggeration),
-                "the factor on the displacements is from 0.001 to 1000000, such as 10",
-            ),
-        ];
-        let wrong = checks.into_iter().find(|(is_right, _)| !is_right);
-        wrong.map_or(Ok(()), |(_, message)| Err(message.to_owned()))
+        Err(if !(1e-3..=1e3).contains(&self.speed) {
+            "the speed of a film is from 0.001 to 1000 times real time, such as 0.25"
+        } else if !self.size_px.iter().all(is_allowed) {
+            "width and height of a film are even numbers from 160 to 3840, such as 1280x720"
+        } else if !(1e-3..=1e6).contains(&self.exaggeration) {
+            "the factor on the displacements is from 0.001 to 1000000, such as 10"
+        } else {
+            return Ok(());
+        }
+        .to_owned())
     }
 }
 
@@ -115,33 +109,24 @@ impl Film {
     /// # Errors
     /// When the program was built without films, the system has no suitable font, the encoder fails, or the work is cancelled.
     pub fn encode(&self, format: FilmFormat, watch: Watch<'_>) -> Result<Vec<u8>, StudyError> {
-        let FilmOptions {
-            size_px,
-            background,
-            ..
-        } = self.options;
-        let figure = Figure::of_frame(size_px, background);
-        let (shown, largest_pa) = (self.snapshots.shown(), self.snapshots.largest_pa());
+        let (size_px, background) = (self.options.size_px, self.options.background);
+        let (shown, figure) = (
+            self.snapshots.shown(),
+            Figure::of_frame(size_px, background),
+        );
+        let (all, rate_hz) = (shown.len(), Self::RATE_HZ);
         let draw = |number: usize| {
             let sample = &shown[number..=number];
-            self.snapshots
-                .sheet(figure, &self.title, sample, largest_pa)
+            self.snapshots.sheet(figure, &self.title, sample)
         };
-        let all = shown.len();
         let reel = Reel {
             size_px,
-            rate_hz: Self::RATE_HZ,
+            rate_hz,
             count: all,
             background,
             draw: &draw,
         };
-        reel.encode(format, |done| {
-            let progress = Progress { done, all };
-            match watch(progress) {
-                ControlFlow::Continue(()) => Ok(()),
-                ControlFlow::Break(()) => Err(RunnerError::Cancelled(progress).into()),
-            }
-        })
+        Ok(reel.encode(format, &mut |done| watch(Progress { done, all }))?)
     }
 }
 
@@ -160,8 +145,7 @@ impl Recorder for Camera<'_> {
         let done = (sample.time_s * MILLISECONDS) as usize;
         let all = self.duration_ms;
         let progress = Progress { done, all };
-        let flow = (self.watch)(progress);
-        if flow.is_break() {
+        if (self.watch)(progress).is_break() {
             self.status = Err(RunnerError::Cancelled(progress).into());
         } else if self.snapshots.count() == MAX_FILM_PICTURES {
             self.status = Err(StudyError::scenario(format!(

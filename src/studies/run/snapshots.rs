@@ -1,6 +1,7 @@
 //! The deformed structure at chosen times: side by side in `snapshots.svg`, or one by one in a film.
 
 use std::fmt::Write as _;
+use std::sync::OnceLock;
 
 use nalgebra::Vector2;
 
@@ -21,6 +22,8 @@ pub(super) struct Snapshots {
     caption: Option<String>,
     /// Speed of a film, relative to real time.
     speed: f64,
+    /// Largest joint stress in all pictures, in Pa, once it is known.
+    largest_pa: OnceLock<f64>,
     /// Times of the first and the last sample, in seconds.
     span_s: [f64; 2],
 }
@@ -55,6 +58,7 @@ impl Snapshots {
             film: None,
             caption: None,
             speed: 1.0,
+            largest_pa: OnceLock::new(),
             span_s: [f64::INFINITY, f64::NEG_INFINITY],
         }
     }
@@ -125,11 +129,13 @@ impl Snapshots {
     }
 
     /// Returns the largest joint stress in all pictures, in Pa.
-    pub(super) fn largest_pa(&self) -> f64 {
-        let pressures = self.shown().into_iter();
-        let pressures = pressures.flat_map(|sample| &sample.pressures);
-        let stresses_pa = pressures.flat_map(|pressure| pressure.edge_stresses_pa);
-        stresses_pa.fold(0.0, f64::max)
+    fn largest_pa(&self) -> f64 {
+        *self.largest_pa.get_or_init(|| {
+            let pressures = self.shown().into_iter();
+            let pressures = pressures.flat_map(|sample| &sample.pressures);
+            let stresses_pa = pressures.flat_map(|pressure| pressure.edge_stresses_pa);
+            stresses_pa.fold(0.0, f64::max)
+        })
     }
 
     /// Returns the thickness of the thinnest joint, in metres.
@@ -147,25 +153,19 @@ impl Snapshots {
 
     /// Draws all snapshots in one picture.
     pub(super) fn draw(&self, figure: Figure, title: &str) -> String {
-        self.sheet(figure, title, &self.shown(), self.largest_pa())
+        self.sheet(figure, title, &self.shown())
     }
 
     /// Draws each snapshot as a separate picture, all with one scale.
     pub(super) fn film_pictures(&self, figure: Figure, title: &str) -> Vec<String> {
-        let (shown, largest_pa) = (self.shown().into_iter(), self.largest_pa());
+        let shown = self.shown().into_iter();
         shown
-            .map(|sample| self.sheet(figure, title, &[sample], largest_pa))
+            .map(|sample| self.sheet(figure, title, &[sample]))
             .collect()
     }
 
-    /// Draws samples side by side; stresses are drawn relative to `largest_pa`.
-    pub(super) fn sheet(
-        &self,
-        figure: Figure,
-        title: &str,
-        shown: &[&Sample],
-        largest_pa: f64,
-    ) -> String {
+    /// Draws samples side by side.
+    pub(super) fn sheet(&self, figure: Figure, title: &str, shown: &[&Sample]) -> String {
         let columns = figure.columns(shown.len().clamp(1, COLUMNS), LEAST_PX);
         let cell_px = figure.width_px / columns as f64;
         let [low_m, high_m] = self.scene.frame_m();
@@ -183,25 +183,19 @@ impl Snapshots {
                         let middle = (f64::from(column) + 0.5) * cell_px;
                         let sway_m = Vector2::new(0.0, 0.1 * height_m);
                         let place = SheetTransform::over([low_m, high_m + sway_m], middle, part);
-                        let half_px = 0.5 * cell_px - 8.0;
-                        self.draw_one(
-                            drawing,
-                            place,
-                            sample,
-                            (half_px, figure.background.ink()),
-                            largest_pa,
-                        );
+                        let look = (0.5 * cell_px - 8.0, figure.background.ink());
+                        self.draw_one(drawing, place, sample, look);
                     }
                 },
             );
             sheet.gap(52.0);
         }
-        sheet.caption(0.0, &self.caption(largest_pa));
+        sheet.caption(0.0, &self.caption());
         sheet.gap(8.0);
         sheet.finish()
     }
 
-    fn caption(&self, largest_pa: f64) -> String {
+    fn caption(&self) -> String {
         let mut caption = match self.exaggeration {
             1.0 => "to scale".to_owned(),
             exaggeration => format!("displacements times {exaggeration}"),
@@ -216,6 +210,7 @@ impl Snapshots {
             caption = format!("{} times real speed; {caption}", self.speed);
         }
         caption += "; dashed: at rest; circles: open hinges; blue: thrust line";
+        let largest_pa = self.largest_pa();
         if largest_pa > 0.0 {
             let _ = write!(
                 caption,
@@ -236,7 +231,6 @@ impl Snapshots {
         place: SheetTransform,
         sample: &Sample,
         (half_px, ink): (f64, &'static str),
-        largest_pa: f64,
     ) {
         let left = place.at - Vector2::new(half_px, 0.0);
         let right = place.at + Vector2::new(half_px, 0.0);
@@ -276,7 +270,7 @@ impl Snapshots {
             }
         }
         for pressed in self.scene.compressed_joints(sample) {
-            let high_m = WEDGE_RATIO * self.thickness_m() / largest_pa;
+            let high_m = WEDGE_RATIO * self.thickness_m() / self.largest_pa();
             let wedge = pressed.wedge(high_m);
             let stroke = Stroke::new(color::PURPLE, 0.8, "");
             drawing.polygon("stress", wedge.iter().map(moved), PRESSED, stroke);
@@ -303,16 +297,11 @@ impl Snapshots {
 /// of the mechanism, whose bodies are others, it is the nearer sample.
 fn between(first: &Sample, second: &Sample, time_s: f64) -> Sample {
     let part = (time_s - first.time_s) / (second.time_s - first.time_s);
-    // Blocks are the same bodies at all times.
-    let has_blocks = !first.gaps_m.is_empty();
-    let hinges = |sample: &Sample| {
-        sample
-            .hinges
-            .iter()
-            .map(|open| open.hinge)
-            .collect::<Vec<_>>()
-    };
-    if !has_blocks && hinges(first) != hinges(second) {
+    let mut hinges = first.hinges.iter().zip(&second.hinges);
+    let are_equal =
+        first.hinges.len() == second.hinges.len() && hinges.all(|(a, b)| a.hinge == b.hinge);
+    // Blocks, whose joints have gaps, are the same bodies at all times.
+    if first.gaps_m.is_empty() && !are_equal {
         let nearer = if part < 0.5 { first } else { second };
         return Sample {
             time_s,
