@@ -4,3 +4,4 @@ mod figures;
 mod map;
 mod pictures;
 mod report;
+mod studies;
