@@ -33,6 +33,9 @@ pub struct CapacityArguments {
     /// Control point in metres, such as `--point 0,5.4` [default: the crown, or the top of a column].
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = point_m)]
     point: Option<Vector2<f64>>,
+    /// Write no page (HTML) for the browser.
+    #[arg(long)]
+    no_report: bool,
     #[command(flatten)]
     figure: FigureOption,
 }
@@ -47,6 +50,9 @@ pub struct SpreadArguments {
     /// Direction in degrees from outwards (0) over down (90) to inwards (180); up is -90. Can be repeated [default: 0, 180 and 90].
     #[arg(long = "angle", value_name = "DEG", allow_hyphen_values = true, value_parser = angle)]
     angles_deg: Vec<f64>,
+    /// Write no page (HTML) for the browser.
+    #[arg(long)]
+    no_report: bool,
     #[command(flatten)]
     figure: FigureOption,
 }
@@ -57,10 +63,11 @@ fn angle(text: &str) -> Result<f64, String> {
 }
 
 pub fn capacity(arguments: &CapacityArguments) -> Result<(), Failure> {
-    let options = Options {
+    let mut options = Options {
         point_m: arguments.point,
         ..Options::default()
     };
+    options.run.no_report = arguments.no_report;
     run(CAPACITY, &arguments.common, arguments.figure, options)
 }
 
@@ -73,10 +80,11 @@ pub fn spread(arguments: &SpreadArguments) -> Result<(), Failure> {
         springing: arguments.springing,
         angle_deg: *angle_deg,
     };
-    let options = Options {
+    let mut options = Options {
         directions: angles_deg.iter().map(direction).collect(),
         ..Options::default()
     };
+    options.run.no_report = arguments.no_report;
     run(SPREAD, &arguments.common, arguments.figure, options)
 }
 

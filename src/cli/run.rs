@@ -46,7 +46,7 @@ pub struct Arguments {
     /// Do not repeat a run with free hinges or elastic joints in other steps, nor elastic joints with other stiffness and contact.
     #[arg(long)]
     no_repeat: bool,
-    /// Write no report.html.
+    /// Write no page for the browser (report.html, samples.html).
     #[arg(long)]
     no_report: bool,
     /// Draw the deformed structure at these times, in seconds, to snapshots.svg; each shows the nearest row of the

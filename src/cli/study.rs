@@ -43,6 +43,9 @@ pub struct StudyArguments {
     pub figure: FigureOption,
     #[command(flatten)]
     pub work: WorkOptions,
+    /// Write no page (HTML) for the browser.
+    #[arg(long)]
+    no_report: bool,
     /// Format of the printed summary; JSON goes to standard output.
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,
@@ -107,10 +110,11 @@ impl StudyArguments {
         &self,
         input: &'s Input<'s>,
         style: Style,
-        options: Options,
+        mut options: Options,
         kind: StudyKind,
         origin: Origin,
     ) -> Result<StudyJob<'s>, Failure> {
+        options.run.no_report = self.no_report;
         let destination = input.results(self.out.as_deref());
         let (pictures, is_part) = (self.figure.figure_format, self.work.is_part());
         let root = destination.lock(kind.name, origin, pictures, is_part)?;
@@ -342,7 +346,10 @@ impl StudyJob<'_> {
             (error, _) => error.into(),
         });
         match done? {
-            Computation::Complete(results, part) => {
+            Computation::Complete(mut results, part) => {
+                if self.options.run.no_report {
+                    results.files.retain(|(name, _)| !name.ends_with(".html"));
+                }
                 folder.map_or(Ok(()), |folder| results.write(folder))?;
                 self.finished_parts.extend(part);
                 Ok(Some(results))

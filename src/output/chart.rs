@@ -2,6 +2,7 @@
 
 use super::axes::{Axes, Scale};
 use super::figure::Figure;
+use super::page::Spot;
 use super::sheet::{Key, PartHeight, Sheet};
 use super::svg::{Drawing, Frame, Stroke};
 
@@ -130,6 +131,8 @@ pub(crate) enum Shape {
     Ticks(Vec<f64>),
     /// Marks clipped to the plot.
     Clipped(Vec<Mark>),
+    /// A case, on a page. It is drawn inside the plot.
+    Spot(Point, Spot),
 }
 
 /// Smallest distance between ticks, in pixels; closer ones would merge.
@@ -191,6 +194,11 @@ impl Mark {
     /// Clips marks to the plot.
     pub(crate) fn clipped(marks: Vec<Self>) -> Self {
         Self::new("", Stroke::new("", 0.0, ""), Shape::Clipped(marks))
+    }
+
+    /// Marks a case with its outcome, on a page.
+    pub(crate) fn spot(spot: &Spot, at: Point) -> Self {
+        Self::new("", Stroke::new("", 0.0, ""), Shape::Spot(at, spot.clone()))
     }
 
     /// Returns the entry in a legend.
@@ -255,6 +263,14 @@ impl Mark {
                     }
                 }
             }
+            Shape::Spot((x, y), spot) => {
+                let [x, y] = [(x, &axes.x), (y, &axes.y)].map(|(at, scale)| {
+                    // Without a number it is at the end of the axis.
+                    let at = if at.is_nan() { scale.low } else { *at };
+                    at.clamp(scale.low, scale.high)
+                });
+                drawing.spot(axes.place(x, y), spot);
+            }
             Shape::Clipped(marks) => {
                 drawing.within(&axes.frame, |drawing| draw(drawing, axes, marks));
             }
@@ -263,7 +279,7 @@ impl Mark {
 }
 
 /// Draws marks in order, the last on top.
-fn draw(drawing: &mut Drawing, axes: &Axes, marks: &[Mark]) {
+pub(crate) fn draw(drawing: &mut Drawing, axes: &Axes, marks: &[Mark]) {
     for mark in marks {
         mark.draw(drawing, axes);
     }

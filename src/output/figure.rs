@@ -81,6 +81,17 @@ impl Figure {
         background: Background::WHITE,
     };
 
+    /// Picture on a page, below its title.
+    pub(crate) const PAGE: Self = Self {
+        has_title: false,
+        ..Self::SCREEN
+    };
+    /// Picture on a page on a phone, whose text is not smaller than that of the page.
+    pub(crate) const PHONE: Self = Self {
+        width_px: 366.0,
+        ..Self::PAGE
+    };
+
     /// Widths for print, in mm.
     const WIDTHS_MM: RangeInclusive<f64> = 60.0..=500.0;
     /// Heights for print, in mm.

@@ -14,10 +14,65 @@ pub(crate) const STAGE: &str = include_str!("page/stage.js");
 pub(crate) const PLOTS: &str = include_str!("page/plots.js");
 pub(crate) const PLAYER: &str = include_str!("page/player.js");
 pub(crate) const STYLE: &str = include_str!("page/page.css");
+pub(crate) const STUDY: &str = include_str!("page/study.js");
 // uPlot, the library that draws the curves.
 pub(crate) const PLOT_STYLE: &str = include_str!("../../vendor/uplot/uPlot.min.css");
 pub(crate) const PLOT_SCRIPT: &str = include_str!("../../vendor/uplot/uPlot.iife.min.js");
 pub(crate) const PLOT_LICENCE: &str = include_str!("../../vendor/uplot/LICENSE");
+
+named! {
+    /// The outcome of a case, as a page marks it.
+    pub enum SpotKind {
+        /// It certainly survives.
+        Survives = "survives",
+        /// It certainly overturns.
+        Overturns = "overturns",
+        /// It is uncertain whether it overturns.
+        Uncertain = "uncertain",
+        /// It has no verdict.
+        Unknown = "unknown",
+        /// A point of a curve, without an outcome.
+        Point = "point",
+    }
+}
+
+impl SpotKind {
+    /// Returns its shape in the notation of SVG, around zero. Shapes differ, so that no outcome is known by its colour alone.
+    pub(crate) const fn shape(self) -> &'static str {
+        match self {
+            Self::Survives | Self::Point => "M4 0A4 4 0 1 0-4 0A4 4 0 1 0 4 0Z",
+            Self::Overturns => "M-6-4L-4-6 0-2 4-6 6-4 2 0 6 4 4 6 0 2-4 6-6 4-2 0Z",
+            Self::Uncertain => "M0-6L6 0 0 6-6 0Z",
+            Self::Unknown => "M-5 0H5M0-5V5",
+        }
+    }
+
+    /// Returns its entry in the legend.
+    pub(crate) const fn label(self) -> &'static str {
+        match self {
+            Self::Survives => "survives",
+            Self::Overturns => "overturns",
+            Self::Uncertain => "UNCERTAIN whether it overturns",
+            Self::Unknown => "no verdict",
+            Self::Point => "a row of the table",
+        }
+    }
+}
+
+/// The frame around a case outside the model of four links, in the notation of SVG.
+pub(crate) const OUTSIDE_MODEL: &str = "M-8-8H8V8H-8Z";
+
+/// A case in the picture of a page.
+#[derive(Clone, Debug)]
+pub(crate) struct Spot {
+    /// Number of its row in the table, from 0.
+    pub(crate) row: usize,
+    pub(crate) kind: SpotKind,
+    /// True if it is outside the model of four links.
+    pub(crate) outside: bool,
+    /// The case and its outcome.
+    pub(crate) words: String,
+}
 
 /// Formats data as JSON for a script of a page: nothing in the text ends the script.
 pub(crate) fn script_safe(data: &impl Serialize) -> String {

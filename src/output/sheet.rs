@@ -122,25 +122,37 @@ impl<'a> Sheet<'a> {
             return;
         }
         let right = self.figure.width_px - 15.0;
-        let mut at = Vector2::new(left, 0.5 * LEGEND_ROW_PX);
+        // In a narrow picture the legend has little space, and begins at its side.
+        let is_narrow = self.figure.width_px < NARROW_PX;
+        let [left, right] = if is_narrow {
+            [8.0, right + 15.0]
+        } else {
+            [left, right]
+        };
+        let (row_px, sign_px, apart_px) = match is_narrow {
+            true => (NARROW_ROW_PX, 14.0, 9.0),
+            false => (LEGEND_ROW_PX, SIGN_PX, 18.0),
+        };
+        let text_px = sign_px + 6.0;
+        let mut at = Vector2::new(left, 0.5 * row_px);
         let mut placed = Vec::new();
         for Key { text, sign } in keys {
-            let advance = SIGN_PX + 6.0 + Text::from(&text).px() + 18.0;
+            let advance = text_px + Text::from(&text).px() + apart_px;
             if at.x > left && at.x + advance > right {
-                at = Vector2::new(left, at.y + LEGEND_ROW_PX);
+                at = Vector2::new(left, at.y + row_px);
             }
             // A text wider than the picture continues on the next line.
-            let lines = Text::lines(&text, (right - at.x - SIGN_PX - 6.0).max(TEXT_PX));
+            let lines = Text::lines(&text, (right - at.x - text_px).max(TEXT_PX));
             let more = LINE_PX * lines.len().saturating_sub(1) as f64;
             placed.push((at, sign, lines));
             at += Vector2::new(advance, more);
         }
-        let height = PartHeight::Fixed(at.y + 0.5 * LEGEND_ROW_PX);
+        let height = PartHeight::Fixed(at.y + 0.5 * row_px);
         self.part(height, move |drawing, frame| {
             for (at, sign, lines) in placed {
                 let at = at + Vector2::new(0.0, frame.top);
-                sign.draw(drawing, at);
-                let at = at + Vector2::new(SIGN_PX + 6.0, 4.5);
+                sign.draw(drawing, at, sign_px);
+                let at = at + Vector2::new(text_px, 4.5);
                 draw_lines(drawing, at, Anchor::Start, lines);
             }
         });
@@ -230,16 +242,20 @@ pub(crate) enum Sign {
 const SIGN_PX: f64 = 24.0;
 /// Height of a row of a legend.
 const LEGEND_ROW_PX: f64 = 24.0;
+/// Height of a row in a narrow picture.
+const NARROW_ROW_PX: f64 = 17.0;
+/// Width below which a picture is narrow, as for a single column of a journal.
+const NARROW_PX: f64 = 460.0;
 
 impl Sign {
     /// Draws the sign; `left` is the middle of its left side.
-    fn draw(self, drawing: &mut Drawing, left: Vector2<f64>) {
-        let ends = [left, left + Vector2::new(SIGN_PX, 0.0)];
+    fn draw(self, drawing: &mut Drawing, left: Vector2<f64>, width: f64) {
+        let ends = [left, left + Vector2::new(width, 0.0)];
         let middle = 0.5 * (ends[0] + ends[1]);
         let frame = Frame {
             left: left.x,
             top: left.y - 7.0,
-            width: SIGN_PX,
+            width,
             height: 14.0,
         };
         match self {

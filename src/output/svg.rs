@@ -8,6 +8,7 @@ use std::str::FromStr;
 
 use nalgebra::Vector2;
 
+use super::page::{OUTSIDE_MODEL, Spot};
 use super::text::{FONTS, TEXT_PX, Text, escaped};
 
 /// Dark colours that colour-blind people can distinguish (Okabe and Ito).
@@ -253,6 +254,23 @@ impl Drawing {
             self.0,
             "<circle{name} cx=\"{x:.3}\" cy=\"{y:.3}\" r=\"{radius}\" fill=\"#ffffff\" \
              stroke=\"{color}\" stroke-width=\"{width}\"/>"
+        );
+    }
+
+    /// Adds the mark of a case, whose colours are in the style of the page.
+    pub fn spot(&mut self, at: Vector2<f64>, spot: &Spot) {
+        let (kind, row, words) = (spot.kind.name(), spot.row, escaped(&spot.words));
+        let outside = match spot.outside {
+            true => format!("<path class=\"outside\" d=\"{OUTSIDE_MODEL}\"/>"),
+            false => String::new(),
+        };
+        let _ = writeln!(
+            self.0,
+            "<g class=\"spot {kind}\" data-row=\"{row}\" transform=\"translate({:.2} {:.2})\"><title>{words}</title>\
+             {outside}<path d=\"{}\"/></g>",
+            at.x,
+            at.y,
+            spot.kind.shape(),
         );
     }
 

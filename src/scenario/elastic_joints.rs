@@ -44,6 +44,7 @@ pub static ELASTIC_JOINTS: ModelKind = ModelKind {
     name: "elastic_joints",
     table: "elastic_joints",
     label: "elastic joints",
+    assumptions: "elastic joints: rigid blocks on joints with a stiffness, which is rarely known well, and without tension. After the first reversals the motion depends on the vibration of the joints, so histories are repeated with other steps",
     has_joints: true,
     is_rigid: false,
     ignored: Some("[impact] is ignored: elastic joints have no impacts"),

@@ -15,6 +15,7 @@ pub static FREE_HINGES: ModelKind = ModelKind {
     name: "free_hinges",
     table: "free_hinges",
     label: "free hinges",
+    assumptions: "free hinges: rigid blocks, whose joints open about either edge and close again at any time; impacts are perfectly inelastic; joints slip only with `friction_coefficient`. After the first reversal the motion depends on the order of impacts, so histories are repeated with other steps",
     has_joints: true,
     is_rigid: true,
     ignored: Some("[impact] is ignored: with free hinges impacts follow from the blocks"),

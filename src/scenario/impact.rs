@@ -14,6 +14,7 @@ pub static FOUR_LINKS: ModelKind = ModelKind {
     name: "four_links",
     table: "impact",
     label: "four links",
+    assumptions: "four links: one mechanism with four hinges at a time, of a column one rigid block; at an impact all hinges close at once; joints do not slip. A tolerance sets the steps. Hinges at other places are neglected",
     has_joints: false,
     is_rigid: true,
     ignored: None,

@@ -23,6 +23,8 @@ pub struct ModelKind {
     pub table: &'static str,
     /// Name of the model in sentences.
     pub label: &'static str,
+    /// Its assumptions and its accuracy, in words.
+    pub assumptions: &'static str,
     /// True: the structure is a row of blocks with joints. False: it is one mechanism at a time.
     pub has_joints: bool,
     /// True: blocks and joints are rigid. False: joints have a stiffness, and several motions are computed faster together.

@@ -195,6 +195,23 @@ impl Suite {
         1 + self.both_signs as usize
     }
 
+    /// Returns the ground motion of each record with a peak of 1 g, as the table `[ground]`, by the name of the record.
+    pub(crate) fn unit_grounds(&self, gravity_m_s2: f64) -> Vec<(String, Value)> {
+        let records = self.records.iter();
+        let unit = records.map(|series| {
+            let unscaled_g = series.scaled(Scaling::Factor(1.0)).peak_g(gravity_m_s2);
+            let record = Record {
+                main: series.scaled(Scaling::Factor(1.0 / unscaled_g)),
+                ..scaled_record(series, Scaling::Factor(1.0))
+            };
+            (
+                series.name.clone(),
+                super::given(json!({ "record": record })),
+            )
+        });
+        unit.collect()
+    }
+
     /// Returns a record scaled to a level, mirrored if `mirrored`.
     pub(crate) fn shake(&self, record: usize, level: f64, mirrored: bool) -> Record {
         let signed = if mirrored { -level } else { level };

@@ -23,6 +23,7 @@ mod impact;
 mod limit;
 pub mod map;
 mod outcome_colors;
+mod page;
 mod part;
 mod peaks;
 mod pictures;
@@ -50,6 +51,7 @@ pub use impact::{
     four_links_result,
 };
 pub use limit::{Summary as LimitSummary, limit};
+pub use page::page_of as study_page_of;
 pub use part::{
     Header, PartError, PartErrorKind, PartFile, Shard, merge as merge_parts, read_header, rows_in,
 };

@@ -187,11 +187,8 @@ impl Style {
         }
     }
 
-    /// Returns the style of the same picture on a page.
-    pub(super) const fn on_screen(self) -> Self {
-        Self {
-            figure: Figure::SCREEN,
-            ..self
-        }
+    /// Returns the style with another layout.
+    pub(super) const fn with(self, figure: Figure) -> Self {
+        Self { figure, ..self }
     }
 }

@@ -115,8 +115,8 @@ data.rows.forEach((row, index) => {
 });
 // The middle of the cell under the pointer lies in the rectangle that marks it.
 const box = map.querySelector('svg').getBoundingClientRect();
-const [xs, ys] = archrock.data.axes.map((axis) => axis.edges_px);
-const scale = box.width / archrock.data.sheet_px.width;
+const [xs, ys] = archrock.data.sheets[0].edges_px;
+const scale = box.width / archrock.data.sheets[0].width_px;
 const at = { clientX: box.left + scale * (xs[3] + xs[4]) / 2, clientY: box.top + scale * (ys[1] + ys[2]) / 2, bubbles: true };
 map.dispatchEvent(new PointerEvent('pointermove', at));
 verify(archrock.chosen().join() === '3,1', archrock.chosen().join());

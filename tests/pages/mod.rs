@@ -5,3 +5,4 @@ mod film;
 mod map;
 mod pictures;
 mod report;
+mod studies;

@@ -794,7 +794,10 @@ fn hinges_override_the_scenario() {
 #[test]
 fn both_models_stand_side_by_side_with_one_picture() {
     let results = Results::of(SEVEN, &["--hinges", "both", "--no-repeat"]);
-    assert_eq!(results.files(""), ["four", "free", "overlay.svg"]);
+    assert_eq!(
+        results.files(""),
+        ["four", "free", "overlay.svg", "report.html"]
+    );
     let outcome = |name: &str| json(&results.path(name))["outcome"].clone();
     assert_eq!(outcome("four/summary.json"), "rest");
     assert_eq!(outcome("free/summary.json"), "rest");
@@ -812,7 +815,10 @@ fn both_models_stand_side_by_side_with_one_picture() {
     }
     let arguments = ["run", "s.toml", "--out", "out", "--hinges", "both"];
     assert_eq!(archrock(root, &arguments).status.code(), Some(0));
-    assert_eq!(results.files(""), ["four", "free", "overlay.svg"]);
+    assert_eq!(
+        results.files(""),
+        ["four", "free", "overlay.svg", "report.html"]
+    );
 }
 
 #[test]

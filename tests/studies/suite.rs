@@ -25,7 +25,8 @@ use serde_json::Value;
 const COLUMN: &str = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[simulation]\nduration_s = 30.0\n";
 const ARCH: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n\
                     [simulation]\nduration_s = 30.0\n";
-const FILES: [&str; 10] = [
+const FILES: [&str; 11] = [
+    "suite.html",
     "suite.svg",
     "ida.svg",
     "peaks.svg",

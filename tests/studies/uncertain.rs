@@ -320,7 +320,7 @@ fn a_run_with_uncertain_input_prints_and_writes_its_results() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     fs::write(at.join("s.toml"), uncertain_arch(64, 1)).unwrap();
-    let said = printed(at, &["run", "s.toml", "--out", "one", "--no-report"]);
+    let said = printed(at, &["run", "s.toml", "--out", "one"]);
     golden("uncertain", &said);
     let results = at.join("one/uncertain");
     assert_eq!(
@@ -330,6 +330,7 @@ fn a_run_with_uncertain_input_prints_and_writes_its_results() {
             "bands.svg",
             "matters.svg",
             "samples.csv",
+            "samples.html",
             "uncertain.json"
         ]
     );

@@ -4,3 +4,14 @@ const data = JSON.parse(find("data").textContent);
 const buffer = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer;
 const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const farthest = (values) => values.reduce((most, value) => Math.max(most, Math.abs(value ?? 0)), 0);
+
+/** Copies the command of a page. */
+async function copyCommand() {
+  try {
+    await navigator.clipboard.writeText(find("command").textContent);
+    find("copy").textContent = "Copied";
+  } catch {
+    // Where pages may not write to the clipboard, the text is selected for the keyboard.
+    getSelection().selectAllChildren(find("command"));
+  }
+}

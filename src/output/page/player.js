@@ -68,6 +68,7 @@ function createPlayer(motion, addCurves) {
   function exaggerate(to) {
     find("exaggeration").value = to;
     find("times").textContent = find("exaggeration").value;
+    find("drawn").textContent = `Displacements are drawn ${find("exaggeration").value} times as large as they are.`;
     draw();
   }
 

@@ -6,15 +6,23 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::held_row;
+use crate::argument::{fixed, plain};
 use crate::mechanics::{Capacity, CurvePoint, Parts as _, Sides, TieEventDisplacements};
+use crate::output::page::{Spot, SpotKind};
 use crate::output::{
     CURVES, Chart, Figure, Mark, Named, OutputError, column, csv, fields, filters,
 };
+use crate::studies::page::{Page, PageCases};
 use crate::studies::results::Results;
 use crate::{Scenario, Sway};
 
 /// Names of the files, the seal last.
-pub const FILES: [&str; 3] = ["capacity.svg", "capacity.csv", "capacity.json"];
+pub const FILES: [&str; 4] = [
+    "capacity.html",
+    "capacity.svg",
+    "capacity.csv",
+    "capacity.json",
+];
 
 /// Summary of the capacity curves of a structure.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Template)]
@@ -114,13 +122,56 @@ pub fn report(
         scenario: scenario.to_json(),
     };
     let title = scenario.title.as_deref().unwrap_or("Capacity");
-    let picture = chart(sides, figure).draw(figure, title);
+    let picture = chart(sides, figure, &[]).draw(figure, title);
     let others = [picture.into_bytes(), table(sides)?];
-    Results::new(&FILES, &summary, others)
+    let results = Results::new(&FILES[1..], &summary, others)?;
+    let mut cases = PageCases::default();
+    for (sway, point) in points(sides) {
+        let (d_m, a_g) = (plain(point.displacement_m), plain(point.acceleration_g));
+        let words = format!(
+            "to the {}: a {a_g} g at a displacement of {d_m} m",
+            sway.name()
+        );
+        let scenario = || Some(summary.scenario.clone());
+        cases.push((SpotKind::Point, false), words, scenario);
+    }
+    let control_m = sides
+        .iter()
+        .find_map(|(_, side)| Some(side.as_ref()?.control.at_m));
+    let control_m = control_m.unwrap_or_default();
+    let draw = |figure| chart(sides, figure, &cases.spots).draw(figure, title);
+    let sides_in_words = summary.sides().into_iter().map(|(sway, side)| {
+        let (start_g, end_m) = (side.acceleration_g, side.ultimate_displacement_m);
+        let (sway, start_g, end_m) = (sway.name(), fixed(start_g, 4), fixed(end_m, 4));
+        format!(
+            "to the {sway}: {start_g} g starts it, and it would fall at a displacement of {end_m} m"
+        )
+    });
+    let verdict: Vec<String> = sides_in_words.collect();
+    let masses = format!("masses at the centres of {}", summary.masses);
+    let what = scenario.structure.described();
+    let mut page = Page::new(title, what, &[STATIC, &masses], &[]);
+    page.verdict = verdict.join("; ");
+    page.command = format!(
+        "capacity - --point {:?},{:?} --out case",
+        control_m.x, control_m.y
+    );
+    Ok(results.with_page(FILES[0], page, &cases, (&draw, &[])))
 }
 
-/// Makes the chart of acceleration against displacement of the control point, for both sides.
-fn chart(sides: &Sides<Option<Capacity>>, figure: Figure) -> Chart {
+const STATIC: &str = "the first mechanism, held at each displacement without inertia and without slip; the hinges stay where they open";
+
+/// Returns the points of the curves, to the right first.
+fn points(sides: &Sides<Option<Capacity>>) -> impl Iterator<Item = (Sway, &CurvePoint)> {
+    sides.iter().flat_map(|(sway, side)| {
+        let points = side.iter().flat_map(|side| &side.curve);
+        points.map(move |point| (sway, point))
+    })
+}
+
+/// Makes the chart of acceleration against displacement of the control point, for both sides, with marks for their points on a
+/// page.
+fn chart(sides: &Sides<Option<Capacity>>, figure: Figure, spots: &[Spot]) -> Chart {
     let curves = sides.iter().zip(CURVES);
     let curves = curves.filter_map(|((sway, side), stroke)| {
         let points = side.as_ref()?.curve.iter();
@@ -129,17 +180,18 @@ fn chart(sides: &Sides<Option<Capacity>>, figure: Figure) -> Chart {
         Some(Mark::curve(name, stroke, points))
     });
     let labels = ["displacement of the control point (m)", "a (g)"];
-    Chart::around(figure, 330.0, labels, curves.collect())
+    let mut chart = Chart::around(figure, 330.0, labels, curves.collect());
+    let marks = points(sides)
+        .zip(spots)
+        .map(|((_, point), spot)| Mark::spot(spot, (point.displacement_m, point.acceleration_g)));
+    chart.marks.extend(marks);
+    chart
 }
 
 /// Makes the table of the points of the curves, to the right first. The secant period is empty at the unstable equilibrium.
 fn table(sides: &Sides<Option<Capacity>>) -> Result<Vec<u8>, OutputError> {
     type Row<'a> = (Sway, &'a CurvePoint);
-    let rows = sides.iter().flat_map(|(sway, side)| {
-        let points = side.iter().flat_map(|side| &side.curve);
-        points.map(move |point| (sway, point))
-    });
-    let rows: Vec<Row<'_>> = rows.collect();
+    let rows: Vec<Row<'_>> = points(sides).collect();
     let mut columns = vec![column("sway", |row: &Row<'_>| row.0.name())];
     columns.extend(fields!(
         |row: &Row<'_>| row.1 => q_rad, displacement_m, acceleration_g, oscillator_displacement_m,

@@ -102,6 +102,14 @@ impl Influences {
         words
     }
 
+    /// Returns the index of the number with the largest influence on the first answer with known influences.
+    pub(super) fn strongest(&self) -> Option<usize> {
+        let shares = self.0.values().flatten().next()?.iter();
+        let shares = shares.map(|number| number.sensitivity.first_order);
+        let strongest = shares.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+        strongest.map(|(index, _)| index)
+    }
+
     /// Draws the influence of each number on each answer: a bar with its interval.
     pub(super) fn draw(&self, figure: Figure, title: &str) -> String {
         let mut sheet = Sheet::new(figure, title);

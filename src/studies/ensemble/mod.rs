@@ -6,6 +6,7 @@
 //! (`uncertain_map`) are a separate study, whose cases are cells of samples.
 
 mod influence;
+mod page;
 mod report;
 mod samples;
 mod sensitivity;

@@ -126,9 +126,9 @@ impl SampleSummary {
     }
 
     /// Draws the influence of each number on each answer.
-    pub(super) fn draw_influences<A>(&self, samples: &Samples<'_, A>, figure: Figure) -> Vec<u8> {
+    pub(super) fn draw_influences<A>(&self, samples: &Samples<'_, A>, figure: Figure) -> String {
         let title = samples.title("Influence of uncertain data");
-        self.what_matters.draw(figure, title).into_bytes()
+        self.what_matters.draw(figure, title)
     }
 
     /// Returns the reason of the first sample that has no answer for this reason.

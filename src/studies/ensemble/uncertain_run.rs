@@ -7,6 +7,7 @@ use askama::Template;
 use serde::{Deserialize, Serialize};
 
 use super::influence::{InfluencedAnswer, percent};
+use super::page::{PageAnswer, SamplePage};
 use super::report::{self, Band, Line, SampleSummary, of_answer};
 use super::{NoAnswer, Question, Samples};
 use crate::dynamics::WithoutDemand;
@@ -18,6 +19,7 @@ use crate::output::{
 };
 use crate::scenario::{MotionModel, Scenario, Structure};
 use crate::studies::ending::columns::{self, OUTCOMES, OVERTURNED};
+use crate::studies::page::kind_of;
 use crate::studies::statistics::{Share, band, fractile, quantile};
 use crate::studies::{ModelCheck, Results};
 use crate::{Ending, Factors, Model, NoHistory, Sample, Verdict};
@@ -62,6 +64,7 @@ impl Question for Histories {
     const NAME: &'static str = "uncertain";
 
     const FILES: &'static [&'static str] = &[
+        "samples.html",
         "bands.svg",
         "matters.svg",
         "bands.csv",
@@ -141,13 +144,24 @@ impl Question for Histories {
         let bands = self.bands(samples);
         let others = [
             self.draw(figure, samples, &bands).into_bytes(),
-            report.all.draw_influences(samples, figure),
+            report.all.draw_influences(samples, figure).into_bytes(),
             table(&bands)?,
             report::table(samples, columns)?,
         ];
+        let results = Results::new(&Self::FILES[1..], &report, others)?;
+        let page = SamplePage {
+            name: Self::FILES[0],
+            title: samples.title(TITLE),
+            label: "peak rotation (rad)",
+            command: "run - --out case".to_owned(),
+            answer: &page_answer,
+            more: [&|figure| self.draw(figure, samples, &bands), &|figure| {
+                report.all.draw_influences(samples, figure)
+            }],
+        };
         Ok(Results {
             largest_rotations_rad,
-            ..Results::new(Self::FILES, &report, others)?
+            ..page.add_to(results, samples, &report.all)
         })
     }
 
@@ -224,7 +238,7 @@ impl Histories {
         bands: &[BandAt],
     ) -> String {
         let scenario = samples.scenario;
-        let title = samples.title("Histories with uncertain data");
+        let title = samples.title(TITLE);
         let end_s = bands.last().map_or(1.0, |at| at.time_s);
         let mut panels = Panels::new(figure, title, [0.0, end_s]);
         let subject = Subject {
@@ -288,6 +302,18 @@ impl HistoryAnswer {
             None => last,
         }
     }
+}
+
+const TITLE: &str = "Histories with uncertain data";
+
+/// Returns the answer of a sample on its page: the largest rotation, beyond the axis if the sample overturned.
+fn page_answer(HistoryAnswer { ending, .. }: &HistoryAnswer) -> PageAnswer {
+    let peak_rad = (!ending.overturned_itself()).then_some(ending.peak_rotation_rad);
+    (
+        kind_of(Some(ending.verdict())),
+        ending.is_outside_model(),
+        peak_rad,
+    )
 }
 
 /// Report on the histories of samples.

@@ -5,9 +5,11 @@ use askama::Template;
 use serde::{Deserialize, Serialize};
 
 use super::influence::InfluencedAnswer;
+use super::page::SamplePage;
 use super::report::{self, SampleSummary, of_answer, why_not};
 use super::uncertain_threshold::{StrengthBand, first_strength};
 use super::{NoAnswer, Question, Samples};
+use crate::output::page::SpotKind;
 use crate::output::{Chart, Figure, Key, Mark, OutputError, Scale, Stroke, color, column, csv};
 use crate::scenario::{Measure, Scenario, Suite, shown};
 use crate::studies::statistics::{
@@ -19,6 +21,7 @@ use crate::studies::threshold::first_edge::{FirstEdge, TREATMENTS, Treatment};
 use crate::studies::threshold::{Factors, rounded, rounded_range};
 use crate::studies::{Ending, ModelCheck, Results};
 
+const TITLE: &str = "Fragility with uncertain data";
 /// Relative width to which bisection encloses an intensity: much less than the scatter between records.
 const WIDTH: f64 = 2e-3;
 
@@ -90,7 +93,7 @@ impl Capacities {
             marks,
             ..Chart::new(405.0, (&label, x), y_axis)
         };
-        chart.draw(figure, samples.title("Fragility with uncertain data"))
+        chart.draw(figure, samples.title(TITLE))
     }
 }
 
@@ -99,6 +102,7 @@ impl Question for Capacities {
     const NAME: &'static str = "uncertain_suite";
 
     const FILES: &'static [&'static str] = &[
+        "samples.html",
         "fragility.svg",
         "matters.svg",
         "fragility.csv",
@@ -151,12 +155,32 @@ impl Question for Capacities {
         let columns = [of_answer("overturned", overturned), why_not()];
         let others = [
             self.draw(figure, samples).into_bytes(),
-            report.all.draw_influences(samples, figure),
+            report.all.draw_influences(samples, figure).into_bytes(),
             counted.at_levels()?,
             self.table(samples)?,
             report::table(samples, columns)?,
         ];
-        Results::new(Self::FILES, &report, others)
+        let results = Results::new(&Self::FILES[1..], &report, others)?;
+        let answer = |edges: &Edges| {
+            let median = first_strength(edges.iter(), 0.5).map(|(strength, _)| strength);
+            let outside = edges.iter().any(FirstEdge::is_outside_model);
+            (
+                SpotKind::Point,
+                outside,
+                median.filter(|strength| strength.is_finite()),
+            )
+        };
+        let page = SamplePage {
+            name: Self::FILES[0],
+            title: samples.title(TITLE),
+            label: "median intensity that overturns",
+            command: "suite - --out case".to_owned(),
+            answer: &answer,
+            more: [&|figure| self.draw(figure, samples), &|figure| {
+                report.all.draw_influences(samples, figure)
+            }],
+        };
+        Ok(page.add_to(results, samples, &report.all))
     }
 
     fn answer(&self, scenario: &Scenario) -> Result<Edges, NoAnswer> {

@@ -6,8 +6,10 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::influence::InfluencedAnswer;
+use super::page::{PageAnswer, SamplePage};
 use super::report::{self, Band, Line, SampleSummary, why_not};
 use super::{NoAnswer, Question, Samples};
+use crate::output::page::SpotKind;
 use crate::output::{
     Chart, Figure, Key, Mark, OutputError, Scale, Sign, Stroke, color, column, csv, each, list,
 };
@@ -92,6 +94,7 @@ impl Question for FirstEdges {
     const NAME: &'static str = "uncertain_threshold";
 
     const FILES: &'static [&'static str] = &[
+        "samples.html",
         "probability.svg",
         "matters.svg",
         "probability.csv",
@@ -147,11 +150,25 @@ impl Question for FirstEdges {
         });
         let others = [
             draw(figure, samples, &probabilities).into_bytes(),
-            report.all.draw_influences(samples, figure),
+            report.all.draw_influences(samples, figure).into_bytes(),
             csv(shares, &probabilities)?,
             report::table(samples, columns.into_iter().chain([why_not()]))?,
         ];
-        Results::new(Self::FILES, &report, others)
+        let results = Results::new(&Self::FILES[1..], &report, others)?;
+        let (from, to, stride) = (self.factors.from, self.factors.to, self.factors.stride);
+        let page = SamplePage {
+            name: Self::FILES[0],
+            title: samples.title(TITLE),
+            label: "first factor that overturns",
+            command: format!(
+                "threshold - --from {from:?} --to {to:?} --stride {stride:?} --out case"
+            ),
+            answer: &page_answer,
+            more: [&|figure| draw(figure, samples, &probabilities), &|figure| {
+                report.all.draw_influences(samples, figure)
+            }],
+        };
+        Ok(page.add_to(results, samples, &report.all))
     }
 
     fn answer(&self, scenario: &Scenario) -> Result<FirstEdge, NoAnswer> {
@@ -288,5 +305,17 @@ fn draw(
         marks,
         ..Chart::new(405.0, x_axis, ("probability of overturning", y))
     };
-    chart.draw(figure, samples.title("Probability of overturning"))
+    chart.draw(figure, samples.title(TITLE))
+}
+
+const TITLE: &str = "Probability of overturning";
+
+/// Returns the answer of a sample on its page: the first factor, beyond the axis if no factor overturns the sample.
+fn page_answer(edge: &FirstEdge) -> PageAnswer {
+    let kind = match (edge.factor, edge.uncertain_from) {
+        (_, Some(_)) => SpotKind::Uncertain,
+        (Some(_), None) => SpotKind::Overturns,
+        (None, None) => SpotKind::Survives,
+    };
+    (kind, edge.is_outside_model(), edge.factor)
 }

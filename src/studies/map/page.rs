@@ -10,7 +10,8 @@ use serde_json::Value;
 
 use super::picture::{ColoredCells, Drawn};
 use super::{CellRow, Described, OverturningMap, described};
-use crate::output::page::{PROGRAM, script_safe};
+use crate::output::caption::caption;
+use crate::output::page::{BASE, PROGRAM, STYLE, script_safe};
 use crate::output::{Figure, filters, render};
 use crate::scenario::{Ground, Quantity, toml_text};
 use crate::studies::ending::columns::NUMBERS;
@@ -25,8 +26,11 @@ struct Page {
     picture: String,
     title: String,
     scenario: String,
+    /// The input in one line.
+    what: String,
     axes: [PageAxis; 2],
-    sheet_px: SheetSize,
+    /// The drawings for wide and for narrow screens.
+    sheets: [PageSheet; 2],
     /// The colour of each cell, as the number of its label.
     kinds: String,
     /// The reasons of uncertain cells, by the number of the cell.
@@ -42,13 +46,14 @@ struct Page {
 struct PageAxis {
     label: String,
     values: Vec<f64>,
-    edges_px: Vec<f64>,
 }
 
+/// Size of a drawing, and the edges of its columns and rows.
 #[derive(Serialize, Deserialize)]
-struct SheetSize {
-    width: f64,
-    height: f64,
+struct PageSheet {
+    width_px: f64,
+    height_px: f64,
+    edges_px: [Vec<f64>; 2],
 }
 
 /// A number for each cell; NaN for a cell without a value.
@@ -72,12 +77,12 @@ pub fn page_of(picture: &str, data: &str) -> serde_json::Result<String> {
 pub(crate) type CellNumbers = (&'static str, Vec<Option<f64>>);
 
 impl ColoredCells {
-    /// Makes the page from a picture for the screen, with reasons of uncertain cells and columns of numbers.
+    /// Makes the page from a picture of any width, with reasons of uncertain cells and columns of numbers.
     pub(crate) fn page(
         &self,
         title: &str,
         map: &OverturningMap<'_>,
-        drawn: Drawn,
+        draw: impl Fn(Figure) -> Drawn,
         doubts: BTreeMap<usize, String>,
         columns: impl IntoIterator<Item = CellNumbers>,
     ) -> String {
@@ -94,10 +99,15 @@ impl ColoredCells {
                 values: BASE64_STANDARD.encode(bytes),
             }
         });
+        let drawn = [Figure::PAGE, Figure::PHONE].map(|figure| (figure, draw(figure)));
+        let pictures = ["wide", "narrow"].into_iter().zip(&drawn);
+        let pictures = pictures.map(|(name, (_, drawn))| {
+            format!("<div class=\"picture {name}\">{}</div>", drawn.picture)
+        });
+        let pictures: Vec<String> = pictures.collect();
         let axis = |i: usize| PageAxis {
             label: described(map.axes[i]).label.to_owned(),
             values: map.values[i].clone(),
-            edges_px: drawn.edges_px[i].clone(),
         };
         let outside = (0..self.outside.len()).filter(|index| self.outside[*index]);
         let labels = self.palette.iter().map(|color| color.label.to_owned());
@@ -105,17 +115,19 @@ impl ColoredCells {
             title: title.to_owned(),
             scenario: map.scenario.to_toml(),
             axes: [axis(0), axis(1)],
-            sheet_px: SheetSize {
-                width: Figure::SCREEN.width_px,
-                height: drawn.height_px,
-            },
+            sheets: drawn.each_ref().map(|(figure, drawn)| PageSheet {
+                width_px: figure.width_px,
+                height_px: drawn.height_px,
+                edges_px: drawn.edges_px.clone(),
+            }),
+            what: caption(map.scenario, &map.axes),
             kinds: BASE64_STANDARD.encode(kinds),
             doubts,
             outside: outside.collect(),
             labels: labels.collect(),
             columns: columns.collect(),
             command: command(map),
-            picture: drawn.picture,
+            picture: pictures.concat(),
         })
     }
 }

@@ -44,7 +44,13 @@ impl ReportedStudy for OverturningMap<'_> {
         let colored = ColoredCells::of_outcomes(&cells, style);
         let picture = |style| picture::drawn(title, self, &cells, &colored, style);
         let (doubts, columns) = (page::doubts(&cells), page::columns(&cells));
-        let page = colored.page(title, self, picture(style.on_screen()), doubts, columns);
+        let page = colored.page(
+            title,
+            self,
+            |figure| picture(style.with(figure)),
+            doubts,
+            columns,
+        );
         let others = [
             picture(style).picture.into_bytes(),
             page.into_bytes(),

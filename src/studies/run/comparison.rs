@@ -3,15 +3,19 @@
 use askama::Template;
 use serde::{Deserialize, Serialize};
 
-use super::summary::Summary;
+use super::summary::{FourLinkQuality, Summary};
+use super::{ModelResults, REPORT, Run};
 use crate::Verdict;
 use crate::dynamics::OutcomeKind;
 use crate::output::{Named, filters};
+use crate::scenario::ModelKind;
+use crate::studies::Results;
+use crate::studies::page::{Page, PageCases, input_in_words, kind_of};
 
 /// The runs of one structure with several models of motion.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Comparison {
-    /// The answer of the model with the fewest assumptions, in words.
+    /// The answer of the model with the fewest in words.
     pub to_quote: Option<String>,
     /// The runs, by the name of the model.
     #[serde(flatten)]
@@ -65,6 +69,29 @@ impl Comparison {
         };
         pairs.filter(differs).collect()
     }
+}
+
+/// Adds the page that compares several models of motion.
+pub(super) fn with_page(results: Results, runs: &[Run<'_>], all: &[ModelResults]) -> Results {
+    let mut cases = PageCases::default();
+    for (run, one) in runs.iter().zip(all) {
+        let kind = kind_of(Some(one.summary.verdict));
+        let outside = one.summary.four_links() == Some(FourLinkQuality::Outside);
+        let (label, verdict) = (run.scenario.motion.kind.label, one.summary.verdict_line());
+        let words = format!("{label}: {}", verdict.trim());
+        let scenario = || Some(run.scenario.to_json());
+        cases.push((kind, outside), words, scenario);
+    }
+    let kinds: Vec<&ModelKind> = runs.iter().map(|run| run.scenario.motion.kind).collect();
+    let scenario = runs[0].scenario;
+    let own = "all models move the same structure under the same ground motion; the folder of each model has its own page";
+    let title = scenario.title.as_deref().unwrap_or("Comparison of models");
+    let what = input_in_words(&runs.iter().map(|run| run.scenario).collect::<Vec<_>>());
+    let draw = |figure| super::overlay(figure, runs, all, &cases.spots);
+    let warnings = all.iter().flat_map(|one| &one.summary.warnings);
+    let mut page = Page::new(title, what, &[own], &kinds);
+    page.warnings = warnings.cloned().collect();
+    results.with_page(REPORT, page, &cases, (&draw, &[]))
 }
 
 impl Summary {

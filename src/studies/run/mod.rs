@@ -50,6 +50,7 @@ use super::{Progress, Results, RunnerError, StudyError, Watch};
 use crate::clock;
 use crate::dynamics::repeatability::Repetitions;
 use crate::dynamics::{FallEnd, Repeatability, Variations};
+use crate::output::page::Spot;
 use crate::output::{
     Figure, Folder, Named, NewFile, OutputError, Scene, Subject, TableWriter, pretty, render,
     summary_of,
@@ -183,13 +184,16 @@ pub fn results(
         Some(comparison) => summary_of(comparison)?,
     };
     if comparison.is_some() && all[0].files.is_some() {
-        results.files = vec![(OVERLAY, overlay(&runs, &all).into_bytes())];
+        results.files = vec![(OVERLAY, overlay(figure, &runs, &all, &[]).into_bytes())];
     }
     let printed = all.iter().map(|one| (&one.summary, one.files.as_ref()));
     results.words = super::results::words_of(&Printed {
         comparison: comparison.as_ref(),
         runs: printed.collect(),
     });
+    if !results.files.is_empty() && !options.no_report {
+        results = comparison::with_page(results, &runs, &all);
+    }
     Ok(results)
 }
 
@@ -368,7 +372,7 @@ impl<'a> Run<'a> {
 }
 
 /// One picture of several models of motion.
-fn overlay(runs: &[Run<'_>], all: &[ModelResults]) -> String {
+fn overlay(figure: Figure, runs: &[Run<'_>], all: &[ModelResults], spots: &[Spot]) -> String {
     let names: Vec<_> = runs
         .iter()
         .map(|run| run.scenario.motion.kind.label)
@@ -381,7 +385,7 @@ fn overlay(runs: &[Run<'_>], all: &[ModelResults]) -> String {
     let subject = first.subject(first.scenario.title.as_deref().unwrap_or(&title));
     let curves = all.iter().map(|one| &one.curves);
     let named: Vec<_> = names.into_iter().zip(curves).collect();
-    overlay::draw(first.figure, &subject, &named)
+    overlay::draw(figure, &subject, &named, spots)
 }
 
 /// The drawable parts of a structure, as a model moves them.

@@ -1,5 +1,6 @@
 //! `overlay.svg`: histories of one structure by several models of motion in one picture.
 
+use crate::output::page::{Spot, SpotKind};
 use crate::output::panels::scale_around;
 use crate::output::{CURVES, Envelope, Figure, Mark, Panels, Subject};
 use crate::{Sample, Sway};
@@ -31,8 +32,13 @@ impl Curves {
 }
 
 /// Draws named histories: the ground, the largest rotation of a body, and the energy. Rotations are positive (anticlockwise) while the structure
-/// sways left, and negative while it sways right.
-pub fn draw(figure: Figure, subject: &Subject<'_>, histories: &[(&str, &Curves)]) -> String {
+/// sways left, and negative while it sways right. On a page each history has a mark: at its largest rotation, or at its end if it overturned.
+pub fn draw(
+    figure: Figure,
+    subject: &Subject<'_>,
+    histories: &[(&str, &Curves)],
+    spots: &[Spot],
+) -> String {
     let ends_s = histories.iter().map(|(_, curves)| curves.end_s);
     let start_s = subject.ground.start_s();
     let span_s = [start_s, ends_s.fold(start_s, f64::max)];
@@ -44,12 +50,23 @@ pub fn draw(figure: Figure, subject: &Subject<'_>, histories: &[(&str, &Curves)]
             .map(|((name, curves), stroke)| Mark::curve(*name, stroke, quantity(curves).points()))
             .collect()
     };
-    let rotations = each(|curves| &curves.rotation_rad);
+    let mut rotations = each(|curves| &curves.rotation_rad);
     panels.keys = rotations.iter().map(Mark::key).collect();
+    let y = scale_around(&rotations, [], 6);
+    let marks = rotations.iter().zip(spots).filter_map(|(curve, spot)| {
+        let points = curve.points().iter();
+        let at = match spot.kind {
+            SpotKind::Overturns => points.last(),
+            _ => points.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())),
+        };
+        Some(Mark::spot(spot, *at?))
+    });
+    let marks: Vec<Mark> = marks.collect();
+    rotations.extend(marks);
     panels.panel(
         "Largest rotation (rad), swaying left positive",
         280.0,
-        scale_around(&rotations, [], 6),
+        y,
         None,
         rotations,
     );

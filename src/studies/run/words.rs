@@ -169,7 +169,7 @@ impl Summary {
         self.mechanisms.as_ref()?.peak_rotation_over_critical
     }
 
-    fn four_links(&self) -> Option<FourLinkQuality> {
+    pub(super) fn four_links(&self) -> Option<FourLinkQuality> {
         self.mechanisms.as_ref()?.thrust?.four_links
     }
 

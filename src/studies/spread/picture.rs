@@ -6,6 +6,7 @@ use super::{Push, SpreadPath, Stage, Summary};
 use crate::Row;
 use crate::mechanics::BodyPoint;
 use crate::output::elevation::{HINGE, HINGE_PX, STONE, SheetTransform, View};
+use crate::output::page::Spot;
 use crate::output::scene::widened;
 use crate::output::{
     Anchor, CURVES, Chart, Drawing, Figure, Frame, Key, Mark, PartHeight, Scene, Sheet, Stroke,
@@ -19,15 +20,16 @@ const LEAST_PX: f64 = 180.0;
 /// Width of the dashed lines of first motions.
 const FIRST_MOTION_PX: f64 = 1.0;
 
-/// Draws pushes and arches.
+/// Draws pushes and arches, with marks for all stages on a page.
 pub(super) fn draw(
     figure: Figure,
     title: &str,
     spread: &Summary,
     (row, scene): (&Row, &Scene),
+    spots: &[Spot],
 ) -> String {
     let mut sheet = Sheet::new(figure, title);
-    pushes(figure, spread).add_to(&mut sheet);
+    pushes(figure, spread, spots).add_to(&mut sheet);
     sheet.gap(10.0);
     let columns = figure.columns(spread.paths.len().clamp(1, COLUMNS), LEAST_PX);
     let cell_px = figure.width_px / columns as f64;
@@ -58,7 +60,7 @@ pub(super) fn draw(
 }
 
 /// Draws the smaller push of both sides against the movement: capacity and first motion.
-fn pushes(figure: Figure, spread: &Summary) -> Chart {
+fn pushes(figure: Figure, spread: &Summary, spots: &[Spot]) -> Chart {
     let thin = |color| Stroke::new(color, FIRST_MOTION_PX, "3 3");
     let (mut marks, mut keys) = (Vec::new(), Vec::new());
     for (path, stroke) in spread.paths.iter().zip(CURVES.into_iter().cycle()) {
@@ -82,10 +84,13 @@ fn pushes(figure: Figure, spread: &Summary) -> Chart {
     }
     keys.push(Key::line("dashed: first motion", thin(color::BLACK)));
     let labels = ["movement of the springing (m)", "push (g)"];
-    Chart {
-        keys,
-        ..Chart::around(figure, 300.0, labels, marks)
-    }
+    let mut chart = Chart::around(figure, 300.0, labels, marks);
+    let stages = spread.paths.iter().flat_map(|path| &path.stages);
+    chart.marks.extend(stages.zip(spots).map(|(stage, spot)| {
+        let push_g = stage.smaller_push(Push::Capacity);
+        Mark::spot(spot, (stage.movement_m, push_g.unwrap_or(0.0)))
+    }));
+    Chart { keys, ..chart }
 }
 
 /// The arch at the end of a path.

@@ -1,14 +1,19 @@
 //! Files and words of moved springings.
 
+use serde_json::json;
+
 use super::picture::draw;
-use super::{SpreadPath, Stage, Summary};
+use super::{Direction, Push, SpreadPath, Stage, Summary};
+use crate::argument::plain;
 use crate::mechanics::Sides;
+use crate::output::page::SpotKind;
 use crate::output::{Cell, Figure, OutputError, Scene, column, csv, list, several};
 use crate::scenario::Scenario;
+use crate::studies::page::{Page, PageCases};
 use crate::studies::results::{Results, StudyError};
 
 /// Names of the files, the seal last.
-pub const FILES: [&str; 3] = ["spread.svg", "spread.csv", "spread.json"];
+pub const FILES: [&str; 4] = ["spread.html", "spread.svg", "spread.csv", "spread.json"];
 
 /// Makes files and words of all paths.
 ///
@@ -22,18 +27,56 @@ pub fn report(
     let row = scenario.structure.row().map_err(StudyError::scenario)?;
     let scene = Scene::of_row(&row, &scenario.structure);
     let title = scenario.title.as_deref().unwrap_or("Springings that move");
-    let picture = draw(figure, title, spread, (&row, &scene));
-    let others = [picture.into_bytes(), table(spread)?];
-    Ok(Results::new(&FILES, spread, others)?)
+    let drawn = |figure, spots: &[_]| draw(figure, title, spread, (&row, &scene), spots);
+    let others = [drawn(figure, &[]).into_bytes(), table(spread)?];
+    let results = Results::new(&FILES[1..], spread, others)?;
+    let mut cases = PageCases::default();
+    for (path, stage) in rows(spread) {
+        let Direction { springing, .. } = path.direction;
+        let push_g = stage.smaller_push(Push::Capacity);
+        let words = format!(
+            "{} springing {} {} m: {}",
+            springing.name(),
+            path.direction.label(),
+            plain(stage.movement_m),
+            push_g.map_or("no push found".to_owned(), |g| format!(
+                "falls at {} g",
+                plain(g)
+            )),
+        );
+        cases.push((SpotKind::Point, false), words, || {
+            let mut moved = scenario.to_json();
+            moved["supports"] = json!(path.direction.movements(stage.movement_m));
+            Some(moved)
+        });
+    }
+    // The line of each path is not indented; the last line explains the table.
+    let lines: Vec<&str> = results.words.lines().collect();
+    let paths = lines.iter().rev().skip(1).rev();
+    let verdict: Vec<String> = paths
+        .filter(|line| !line.starts_with(' '))
+        .map(|line| (*line).to_owned())
+        .collect();
+    let own = "the supports move slowly, and joints do not slip; the arch rests on three hinges, or on more with ties, and snaps to others";
+    let (what, picture) = (scenario.structure.described(), |figure| {
+        drawn(figure, &cases.spots)
+    });
+    let mut page = Page::new(title, what, &[own], &[]);
+    page.verdict = verdict.join("; ");
+    page.command = "limit -".to_owned();
+    Ok(results.with_page(FILES[0], page, &cases, (&picture, &[])))
+}
+
+/// Returns all stages of all paths.
+fn rows(spread: &Summary) -> impl Iterator<Item = (&SpreadPath, &Stage)> {
+    let paths = spread.paths.iter();
+    paths.flat_map(|path| path.stages.iter().map(move |stage| (path, stage)))
 }
 
 /// Makes the table of all stages of all paths.
 fn table(spread: &Summary) -> Result<Vec<u8>, OutputError> {
     type Row<'a> = (&'a SpreadPath, &'a Stage);
-    let paths = spread.paths.iter();
-    let rows: Vec<Row<'_>> = paths
-        .flat_map(|path| path.stages.iter().map(move |stage| (path, stage)))
-        .collect();
+    let rows: Vec<Row<'_>> = rows(spread).collect();
     // Arches with ties may have more than three hinges.
     let most = rows
         .iter()

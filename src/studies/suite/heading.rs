@@ -5,8 +5,10 @@ use serde_json::Value;
 
 use super::{CaseRow, SuiteFragility};
 use crate::argument::plain;
+use crate::output::caption::caption;
 use crate::output::{Figure, Scale};
 use crate::scenario::{Measure, ModelKind, Scenario, Spacing, Spectral, Suite};
+use crate::studies::page::under_factor;
 
 /// The parts of a scenario that the report of its suite needs. Part files keep them, so that `merge` needs no record files.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -23,6 +25,12 @@ pub struct Heading {
     pub(super) spectral: Spectral,
     /// Warnings about the scenario.
     pub(super) warnings: Vec<String>,
+    /// The scenario in one line.
+    #[serde(default)]
+    pub(super) what: String,
+    /// The ground motion of each record with a peak of 1 g, by the name of the record.
+    #[serde(default)]
+    unit_grounds: Vec<(String, Value)>,
 }
 
 impl Heading {
@@ -37,6 +45,9 @@ impl Heading {
             spacing: suite.levels.spacing(),
             spectral: suite.spectral,
             warnings: scenario.unlikely(),
+            // The records of the suite replace the ground motion of the scenario.
+            what: caption(&scenario.with_ground(None), &[]),
+            unit_grounds: suite.unit_grounds(scenario.gravity_m_s2()),
         }
     }
 
@@ -61,6 +72,25 @@ impl Heading {
             Spacing::Linear => Scale::exactly(0.0, 1.05 * high, figure.ticks(8)),
         };
         (label, scale)
+    }
+
+    /// Returns the scenario of a case, without the suite.
+    pub(super) fn scenario_of(&self, case: &CaseRow) -> Option<Value> {
+        let mut known = self.unit_grounds.iter();
+        let (_, unit) = known.find(|(name, _)| *name == case.record)?;
+        let factor = if case.mirrored {
+            -case.peak_g
+        } else {
+            case.peak_g
+        };
+        let mut ground = unit.clone();
+        // The right foot follows with its delay.
+        if let Some(right) = self.scenario["ground"].get("right") {
+            ground["right"] = right.clone();
+        }
+        let mut scenario = self.scenario.clone();
+        scenario["ground"] = ground;
+        Some(under_factor(&scenario, factor))
     }
 
     /// Returns the level of a case in words.

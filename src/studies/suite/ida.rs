@@ -2,6 +2,7 @@
 
 use super::fragility::by_intensity;
 use super::{CaseRow, Heading, SuiteFragility};
+use crate::output::page::Spot;
 use crate::output::{CURVES, Chart, Figure, Key, Mark, Scale, Shape, Sign, Stroke, color};
 use crate::studies::ending::Ending;
 use crate::studies::ending::columns::are_over_critical;
@@ -14,8 +15,8 @@ const SURVIVED: f64 = 0.94;
 
 /// Draws the intensity against the peak rotation, relative to the critical rotation if that is known. Every record has a curve, and a second one
 /// for the mirrored record if mirrored cases count. Overturned cases are at the right end; the position of an uncertain case shows the outcome
-/// of its own history.
-pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility) -> String {
+/// of its own history. On a page every case has a mark.
+pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility, spots: &[Spot]) -> String {
     let over_critical = are_over_critical(results.cases.iter().map(|case| &case.result));
     let endings = results.cases.iter().filter_map(CaseRow::complete);
     let survived = endings.filter(|ending| !ending.overturned_itself());
@@ -62,6 +63,12 @@ pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility) -> Stri
     if over_critical {
         chart.keys.push(Key::line("critical rotation", CRITICAL));
     }
+    chart
+        .marks
+        .extend(results.cases.iter().zip(spots).map(|(case, spot)| {
+            let peak = beyond(case).unwrap_or(0.0);
+            Mark::spot(spot, (peak, case.level(results.measure)))
+        }));
     chart.draw(figure, heading.title())
 }
 

@@ -14,6 +14,7 @@ use crate::argument::plain;
 use crate::output::{Column, Figure, OutputError, column, csv, each, fields, list};
 use crate::scenario::{Measure, Spectral, shown};
 use crate::studies::ending::columns::{self, FAILED, yes};
+use crate::studies::page::{DrawPicture, Page, PageCases};
 use crate::studies::quotable::{self, ModelAnswer};
 use crate::studies::threshold::survival::{self, Survival};
 use crate::studies::{OutcomeCounts, Remarks, Results, Verdict, rounded, rounded_down};
@@ -21,7 +22,8 @@ use crate::studies::{OutcomeCounts, Remarks, Results, Verdict, rounded, rounded_
 const FRAGILITY: &str = "fragility.json";
 
 /// Names of the files, the seal last.
-pub const FILES: [&str; 10] = [
+pub const FILES: [&str; 11] = [
+    "suite.html",
     "suite.svg",
     "ida.svg",
     "peaks.svg",
@@ -208,7 +210,7 @@ impl Heading {
         let peaks = [list(["peak", "share"], |at: &(f64, f64)| [at.0, at.1])];
         let others = [
             picture::draw(figure, self, &results, &caption).into_bytes(),
-            ida::draw(figure, self, &results).into_bytes(),
+            ida::draw(figure, self, &results, &[]).into_bytes(),
             ida::draw_peaks(figure, self, &results).into_bytes(),
             csv(fractiles, &ida::fractiles(&results))?,
             csv(peaks, &ida::peaks(&results))?,
@@ -217,11 +219,30 @@ impl Heading {
             csv(self.level_columns(), &results.levels)?,
             csv(self.case_columns(), &results.cases)?,
         ];
+        let found = Results::new(&FILES[1..], &report, others)?;
         Ok(Results {
             largest_rotations_rad: ida::rotations_rad(&results.cases),
             answer: Some(answer),
-            ..Results::new(&FILES, &report, others)?
+            ..self.with_page(found, &results, &caption)
         })
+    }
+
+    /// Adds the page. `caption` has the fragility curves in words.
+    fn with_page(&self, found: Results, results: &SuiteFragility, caption: &str) -> Results {
+        let mut cases = PageCases::default();
+        for case in &results.cases {
+            let words = format!("{}, {}", case.record_in_words(), self.level(case));
+            cases.push_history(&words, &case.result, || self.scenario_of(case));
+        }
+        let own = "each record acts alone, at every level, and starts from rest; the lowest overturning level of a record is bisected between \
+                   two levels only; the curve takes the records as equally likely";
+        let draw = |figure| ida::draw(figure, self, results, &cases.spots);
+        let page = Page::new(self.title(), self.what.clone(), &[own], &[self.model]);
+        let more: [DrawPicture<'_>; 2] = [
+            &|figure| picture::draw(figure, self, results, caption),
+            &|figure| ida::draw_peaks(figure, self, results),
+        ];
+        found.with_page(FILES[0], page, &cases, (&draw, &more))
     }
 
     /// Returns the answer that may be quoted: the largest intensity that is safe under all records.

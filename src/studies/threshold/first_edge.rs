@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::factors::{EDGE_WIDTH, Factors};
 use crate::bisection::{Width, try_bisect};
+use crate::dynamics::MODEL_LIMIT;
 use crate::output::{Column, column};
 use crate::studies::ending::columns::yes;
 use crate::studies::ending::{Ending, NoAnswer, NoHistory, Verdict};
@@ -46,6 +47,12 @@ pub type Treatment = fn(f64) -> f64;
 pub const TREATMENTS: [Treatment; 3] = [|share| share, f64::ceil, f64::floor];
 
 impl FirstEdge {
+    /// Returns true if the history at the edge is outside the model of four links; false for other models.
+    pub fn is_outside_model(&self) -> bool {
+        self.thrust_excess_ratio
+            .is_some_and(|ratio| ratio > MODEL_LIMIT)
+    }
+
     /// Finds the first edge of a scenario that starts from rest, among these factors on its ground motion.
     ///
     /// # Errors

@@ -5,6 +5,8 @@ use nalgebra::Vector2;
 use super::digits::rounded;
 use super::survival::{self, Survival};
 use super::{EDGE_WIDTH, FactorSample, Factors, RangeEnd, Threshold};
+use crate::output::chart::draw as draw_marks;
+use crate::output::page::Spot;
 use crate::output::{
     Anchor, Axes, BELOW_PX, Chart, Drawing, Figure, Frame, Key, LEFT_PX, Mark, PartHeight, Scale,
     Sheet, Stroke, color,
@@ -36,16 +38,23 @@ pub fn draw(
     factors: &Factors,
     thresholds: &[Threshold],
 ) -> String {
+    drawn(figure, title, peak_g, (factors, thresholds), &[])
+}
+
+/// Draws the same picture with marks for the histories of all models, in their order, on a page.
+pub(super) fn drawn(
+    figure: Figure,
+    title: &str,
+    peak_g: f64,
+    (factors, thresholds): (&Factors, &[Threshold]),
+    spots: &[Spot],
+) -> String {
     let samples = thresholds.iter().flat_map(|threshold| &threshold.samples);
-    let kinds: Vec<OutcomeColor> = samples
-        .map(|sample| OutcomeColor::of_result(&sample.result))
-        .collect();
+    let results = samples.map(|sample| &sample.result);
+    let kinds: Vec<OutcomeColor> = results.clone().map(OutcomeColor::of_result).collect();
     let names = thresholds.iter().map(|one| one.model.replace('_', " "));
     let names: Vec<String> = names.collect();
-    let over_critical = {
-        let samples = thresholds.iter().flat_map(|threshold| &threshold.samples);
-        are_over_critical(samples.map(|sample| &sample.result))
-    };
+    let over_critical = are_over_critical(results);
     let peak = |sample: &FactorSample| sample.peak(over_critical);
     let (least, y_label) = match over_critical {
         true => (1.0, "peak rotation / critical rotation"),
@@ -66,16 +75,28 @@ pub fn draw(
     };
     let y = scale(thresholds, least, peak);
     let mut sheet = Sheet::new(figure, title);
-    for (threshold, name) in thresholds.iter().zip(&names) {
+    // A page has these words beside the picture.
+    for (threshold, name) in thresholds.iter().zip(&names).filter(|_| spots.is_empty()) {
         let words = survival::in_words(&Survival::of_threshold(threshold), "", Some(peak_g));
         sheet.caption(16.0, &format!("{name}: {words}"));
     }
     sheet.legend(LEFT_PX, keys);
+    let (mut spots, mut on_curves) = (spots.iter(), Vec::new());
     for (threshold, name) in thresholds.iter().zip(&names) {
+        // Histories without a peak are marked on the strip.
+        let mut on_strip = Vec::new();
+        for (sample, spot) in threshold.samples.iter().zip(&mut spots) {
+            match peak(sample) {
+                Some(peak) => on_curves.push(Mark::spot(spot, (sample.factor, peak))),
+                None => on_strip.push(Mark::spot(spot, (sample.factor, 0.5))),
+            }
+        }
         sheet.gap(EDGE_LABELS);
         sheet.part(PartHeight::Fixed(STRIP), move |drawing, part| {
             let frame = figure.right_of(LEFT_PX, part);
             strip(drawing, &Axes { frame, x, y }, threshold);
+            let y = Scale::exactly(0.0, 1.0, 1);
+            draw_marks(drawing, &Axes { frame, x, y }, &on_strip);
             let at = Vector2::new(frame.left - 8.0, frame.top + 0.5 * STRIP + 4.5);
             drawing.label(at, Anchor::End, 0.0, name);
         });
@@ -94,7 +115,7 @@ pub fn draw(
     }
     let label = format!("factor on the ground motion (1: {} g)", rounded(peak_g));
     let chart = Chart {
-        marks: vec![Mark::clipped(marks)],
+        marks: [vec![Mark::clipped(marks)], on_curves].concat(),
         ..Chart::new(320.0, (&label, x), (y_label, y))
     };
     chart.add_plot(&mut sheet);

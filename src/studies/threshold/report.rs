@@ -10,18 +10,25 @@ use super::{
     EDGE_WIDTH, FactorRange, FactorSample, Factors, RangeEnd, Threshold, VariedThreshold, peak_g,
     picture,
 };
+use crate::argument::plain;
 use crate::dynamics::{MODEL_LIMIT, OutcomeCount};
 use crate::output::{Figure, OutputError, column, csv, fields};
-use crate::scenario::{Ground, Scenario};
+use crate::scenario::{Ground, ModelKind, Scenario};
 use crate::studies::ending::columns::{GROUND_FALLS, OVERTURNED};
 use crate::studies::ending::{NoHistory, Verdict, outcome_name};
+use crate::studies::page::{Page, PageCases, input_in_words, under_factor};
 use crate::studies::quotable::{self, ModelAnswer};
 use crate::studies::statistics::ascending;
 use crate::studies::{Remarks, Results};
 use crate::{Outcome, Sway};
 
 /// Names of the files, the seal last.
-pub const FILES: [&str; 3] = ["threshold.svg", "threshold.csv", "threshold.json"];
+pub const FILES: [&str; 4] = [
+    "threshold.html",
+    "threshold.svg",
+    "threshold.csv",
+    "threshold.json",
+];
 
 /// Report on the thresholds of scenarios that differ only in their models of motion.
 #[derive(Serialize, Deserialize, Template)]
@@ -185,7 +192,30 @@ pub fn report(
     };
     let picture = picture::draw(figure, title, peak_g, factors, thresholds);
     let others = [picture.into_bytes(), table(&report.models)?];
-    Results::new(&FILES, &report, others)
+    let results = Results::new(&FILES[1..], &report, others)?;
+    let mut cases = PageCases::default();
+    for (threshold, model) in thresholds.iter().zip(&report.models) {
+        for sample in &threshold.samples {
+            let (name, factor) = (model.model.replace('_', " "), sample.factor);
+            let case = format!("{name}, factor {}", at(&factor, &peak_g));
+            cases.push_history(&case, &sample.result, || {
+                Some(under_factor(&model.scenario, factor))
+            });
+        }
+    }
+    let draw = |figure| {
+        let searched = (factors, thresholds);
+        picture::drawn(figure, title, peak_g, searched, &cases.spots)
+    };
+    let edges = format!(
+        "{}. The edge between two neighbours with different verdicts is bisected to {} %",
+        factors.in_words(),
+        plain(100.0 * EDGE_WIDTH)
+    );
+    let models: Vec<&ModelKind> = scenarios.iter().map(|one| one.motion.kind).collect();
+    let what = input_in_words(&scenarios.iter().collect::<Vec<_>>());
+    let page = Page::new(title, what, &[&edges], &models);
+    Ok(results.with_page(FILES[0], page, &cases, (&draw, &[])))
 }
 
 /// Makes the table of the samples, ordered by model, then by factor.

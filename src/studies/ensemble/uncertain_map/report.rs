@@ -144,12 +144,15 @@ pub(super) fn report(
         outside: counts.iter().map(CellCounts::is_outside_model).collect(),
     };
     let picture = |style| draw(title, study, &colored, &crossings, style);
-    let (screen, columns) = (picture(style.on_screen()), page_columns(&counts));
-    let page = colored.page(title, &study.map, screen, BTreeMap::new(), columns);
+    let (on_page, columns) = (|figure| picture(style.with(figure)), page_columns(&counts));
+    let page = colored.page(title, &study.map, on_page, BTreeMap::new(), columns);
     let others = [
         picture(style).picture.into_bytes(),
         page.into_bytes(),
-        report.all.draw_influences(samples, style.figure),
+        report
+            .all
+            .draw_influences(samples, style.figure)
+            .into_bytes(),
         crossing_table(study, &crossings)?,
         table(study, &counts)?,
     ];

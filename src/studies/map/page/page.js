@@ -1,14 +1,15 @@
-"use strict";
 // A cursor over the picture of a map: which cell is under it, its numbers, and the command that runs it.
 (() => {
-  const find = (id) => document.getElementById(id);
-  const data = JSON.parse(find("data").textContent);
-  const bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)).buffer;
-  const kinds = new Uint8Array(bytes(data.kinds));
-  const columns = data.columns.map(({ name, values }) => ({ name, values: new Float64Array(bytes(values)) }));
+  const kinds = new Uint8Array(buffer(data.kinds));
+  const columns = data.columns.map(({ name, values }) => ({ name, values: new Float64Array(buffer(values)) }));
   const [xs, ys] = data.axes.map((axis) => axis.values);
   const map = find("map");
-  const svg = map.querySelector("svg");
+  const pictures = [...map.querySelectorAll(".picture > svg")];
+  // The drawing for wide or for narrow screens, and the positions of its cells.
+  const shown = () => {
+    const index = pictures.findIndex((svg) => svg.getBoundingClientRect().width > 0);
+    return { svg: pictures[Math.max(index, 0)], sheet: data.sheets[Math.max(index, 0)] };
+  };
   let chosen = [0, 0];
   let stays = false;
 
@@ -24,9 +25,8 @@
   function show([column, line]) {
     chosen = [column, line];
     const index = column * ys.length + line;
-    const [xEdges, yEdges] = [data.axes[0].edges_px, data.axes[1].edges_px];
+    const { width_px: width, height_px: height, edges_px: [xEdges, yEdges] } = shown().sheet;
     const percent = (px, of) => `${(100 * px) / of}%`;
-    const { width, height } = data.sheet_px;
     const top = Math.min(yEdges[line], yEdges[line + 1]);
     Object.assign(find("cell").style, {
       left: percent(xEdges[column], width),
@@ -53,9 +53,11 @@
   }
 
   function cellAt(event) {
+    const { svg, sheet } = shown();
     const box = svg.getBoundingClientRect();
-    const column = within(data.axes[0].edges_px, ((event.clientX - box.left) * data.sheet_px.width) / box.width);
-    const line = within(data.axes[1].edges_px, ((event.clientY - box.top) * data.sheet_px.height) / box.height);
+    const scale = sheet.width_px / box.width;
+    const column = within(sheet.edges_px[0], (event.clientX - box.left) * scale);
+    const line = within(sheet.edges_px[1], (event.clientY - box.top) * scale);
     return column < 0 || line < 0 ? null : [column, line];
   }
 
@@ -79,15 +81,8 @@
     const clamp = (value, count) => Math.min(Math.max(value, 0), count - 1);
     show([clamp(chosen[0] + far * step[0], xs.length), clamp(chosen[1] + far * step[1], ys.length)]);
   });
-  find("copy").addEventListener("click", async () => {
-    try {
-      await navigator.clipboard.writeText(find("command").textContent);
-      find("copy").textContent = "Copied";
-    } catch {
-      // Where pages may not write to the clipboard, the text is selected for the keyboard.
-      getSelection().selectAllChildren(find("command"));
-    }
-  });
+  find("copy").addEventListener("click", copyCommand);
+  window.addEventListener("resize", () => show(chosen));
   show([Math.floor(xs.length / 2), Math.floor(ys.length / 2)]);
 
   // For scripts.

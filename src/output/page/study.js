@@ -1,0 +1,78 @@
+// The cases of a page: the one under the pointer or chosen by keys, its row of the table, and its command.
+(() => {
+  const holder = find("points");
+  const spots = [...holder.querySelectorAll(".spot")];
+  const cells = [...document.querySelectorAll("#rows tbody tr")];
+  const names = [...document.querySelectorAll("#rows thead th")].map((cell) => cell.textContent);
+  let chosen = 0;
+  let stays = false;
+
+  /** The command that computes a case: the text of its scenario follows from that of an earlier one by some lines. */
+  function command(row) {
+    const { text, lines } = data.cases[row];
+    if (text === null) return "There is no command: the values make no valid structure.";
+    const all = data.texts[text].split("\n");
+    for (const [index, line] of lines) all[index] = line;
+    return `archrock ${data.command} <<'END'\n${all.join("\n")}END\n`;
+  }
+
+  function show(row) {
+    chosen = row;
+    for (const spot of spots) spot.classList.toggle("chosen", Number(spot.dataset.row) === row);
+    cells.forEach((line, index) => line.classList.toggle("chosen", index === row));
+    const words = spots.find((spot) => Number(spot.dataset.row) === row).querySelector("title").textContent;
+    const known = cells[row] ? [...cells[row].cells].map((cell, i) => [names[i], cell.textContent]) : [];
+    find("case").textContent = words;
+    find("numbers").textContent = known.filter(([, cell]) => cell).map((pair) => pair.join(" ")).join(", ");
+    find("command").textContent = command(row);
+    find("copy").textContent = "Copy";
+  }
+
+  /** The row of the case nearest to the pointer; `null` if all are far away. */
+  function nearest(event) {
+    let found = null;
+    let least = 24;
+    for (const spot of spots) {
+      const box = spot.getBoundingClientRect();
+      if (box.width === 0) continue;
+      const apart = Math.hypot(event.clientX - box.left - box.width / 2, event.clientY - box.top - box.height / 2);
+      if (apart < least) [least, found] = [apart, Number(spot.dataset.row)];
+    }
+    return found;
+  }
+
+  holder.addEventListener("pointermove", (event) => {
+    const row = stays ? null : nearest(event);
+    if (row !== null && row !== chosen) show(row);
+  });
+  holder.addEventListener("click", (event) => {
+    const row = nearest(event);
+    stays = row !== null && !(stays && row === chosen);
+    if (row !== null) show(row);
+  });
+  const steps = { ArrowLeft: -1, ArrowUp: -1, ArrowRight: 1, ArrowDown: 1 };
+  holder.addEventListener("keydown", (event) => {
+    const step = steps[event.key];
+    if (!step) return;
+    event.preventDefault();
+    stays = true;
+    show(Math.min(Math.max(chosen + (event.shiftKey ? 10 : 1) * step, 0), data.cases.length - 1));
+  });
+  cells.forEach((line, row) => line.addEventListener("click", () => ((stays = true), row < data.cases.length && show(row))));
+  find("copy").addEventListener("click", copyCommand);
+  // In print the page is one sheet of A4.
+  const SHEET_PX = 1030;
+  window.addEventListener("beforeprint", () => {
+    document.documentElement.classList.add("print");
+    const tall = document.body.scrollHeight;
+    if (tall > SHEET_PX) document.body.style.zoom = (0.98 * SHEET_PX) / tall;
+  });
+  window.addEventListener("afterprint", () => {
+    document.documentElement.classList.remove("print");
+    document.body.style.zoom = "";
+  });
+  show(Number(holder.querySelector(".overturns")?.dataset.row ?? 0));
+
+  // For scripts.
+  window.archrock = { data, show, command, chosen: () => chosen };
+})();

@@ -1,0 +1,104 @@
+//! The page of samples: an answer of each sample against its most influential number.
+
+use super::report::SampleSummary;
+use super::{NoAnswer, SampleRow, Samples};
+use crate::argument::plain;
+use crate::output::page::{Spot, SpotKind};
+use crate::output::{Chart, Figure, Mark, Scale};
+use crate::studies::Results;
+use crate::studies::page::{DrawPicture, Page, PageCases, input_in_words};
+
+/// The answer of a sample on a page: its outcome, true if it is outside the model of four links, and the number on the y axis, `None` if it is beyond
+/// the axis.
+pub(super) type PageAnswer = (SpotKind, bool, Option<f64>);
+
+/// The parts of a page of samples that depend on the question.
+pub(super) struct SamplePage<'a, A> {
+    pub(super) name: &'static str,
+    pub(super) title: &'a str,
+    /// Label of the y axis.
+    pub(super) label: &'static str,
+    /// The command of a sample, without `archrock` and its scenario.
+    pub(super) command: String,
+    pub(super) answer: &'a dyn Fn(&A) -> PageAnswer,
+    /// Other pictures.
+    pub(super) more: [DrawPicture<'a>; 2],
+}
+
+impl<A> SamplePage<'_, A> {
+    /// Adds the page of the samples to their results.
+    pub(super) fn add_to(
+        &self,
+        results: Results,
+        samples: &Samples<'_, A>,
+        all: &SampleSummary,
+    ) -> Results {
+        let scenario = samples.scenario;
+        let json = scenario.to_json();
+        let mut cases = PageCases::default();
+        cases.are_suites = self.command.starts_with("suite");
+        for (number, row) in samples.lines() {
+            let case = match number {
+                0 => "the scenario itself".to_owned(),
+                number => format!("sample {number}"),
+            };
+            let label = self.label;
+            let (kind, outside, words) = match self.of(row) {
+                Ok((kind, outside, number)) => {
+                    let number = number.map_or("beyond the axis".to_owned(), plain);
+                    (kind, outside, format!("{}; {label} {number}", kind.label()))
+                }
+                Err(why) => (SpotKind::Unknown, false, why.reason().to_owned()),
+            };
+            cases.push((kind, outside), format!("{case}: {words}"), || {
+                if number == 0 {
+                    return Some(json.clone());
+                }
+                let sample = samples.uncertain.scenario(scenario, &row.values).ok()?;
+                let mut sample = sample.to_json();
+                if let Some(suite) = json.get("suite") {
+                    sample["suite"] = suite.clone();
+                }
+                Some(sample)
+            });
+        }
+        let key = all.what_matters.strongest().unwrap_or(0);
+        let draw = |figure: Figure| self.draw(figure, samples, key, &cases.spots);
+        let numbers = format!(
+            "numbers are independent, and distributed as [uncertain] says; {}",
+            all.not_considered
+        );
+        let what = input_in_words(&[scenario]);
+        let mut page = Page::new(self.title, what, &[&numbers], &[scenario.motion.kind]);
+        page.command = self.command.clone();
+        results.with_page(self.name, page, &cases, (&draw, &self.more))
+    }
+
+    fn of<'r>(&self, row: &'r SampleRow<A>) -> Result<PageAnswer, &'r NoAnswer> {
+        row.answer.as_ref().map(self.answer)
+    }
+
+    /// Draws the answers of all samples against the number with this index.
+    fn draw(&self, figure: Figure, samples: &Samples<'_, A>, key: usize, spots: &[Spot]) -> String {
+        let uncertain = &samples.uncertain.keys[key];
+        let at = |(number, row): (usize, &SampleRow<A>)| match number {
+            0 => uncertain.own,
+            _ => row.values.get(key).copied(),
+        };
+        let numbers = samples.lines().filter_map(|(_, row)| self.of(row).ok()?.2);
+        let y = Scale::around(numbers.chain([0.0]), 6);
+        let x = Scale::around(samples.lines().filter_map(at), figure.ticks(8));
+        let marks = samples.lines().zip(spots).map(|(line, spot)| {
+            let y = match self.of(line.1) {
+                Ok((.., number)) => number.unwrap_or(y.high),
+                Err(_) => y.low,
+            };
+            Mark::spot(spot, (at(line).unwrap_or(x.low), y))
+        });
+        let chart = Chart {
+            marks: marks.collect(),
+            ..Chart::new(405.0, (&uncertain.key, x), (self.label, y))
+        };
+        chart.draw(figure, self.title)
+    }
+}

@@ -1,0 +1,324 @@
+//! The page of a study, beside its other results: verdict, pictures with all cases and their commands, words, assumptions and tables.
+//!
+//! A study provides its pictures, its cases in the order of its first table, and its assumptions. Words, warnings and tables are those of its
+//! other files, so the page has no number of its own.
+
+use std::iter;
+
+use askama::Template;
+use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
+
+use super::Results;
+use super::ending::{Ending, NoHistory, Verdict};
+use super::outcome_colors::OutcomeColor;
+use crate::argument::plain;
+use crate::output::caption::caption;
+use crate::output::page::{
+    BASE, OUTSIDE_MODEL, PROGRAM, STUDY, STYLE, Spot, SpotKind, script_safe,
+};
+use crate::output::{Figure, filters, render};
+use crate::scenario::{ModelKind, Scenario, toml_text};
+
+/// Largest number of cases on a page, and of rows in its first table.
+const MOST_CASES: usize = 1000;
+/// Largest number of rows of the other tables.
+const MOST_ROWS: usize = 100;
+
+/// The page. Everything but the pictures is in its JSON.
+#[derive(Default, Serialize, Deserialize, Template)]
+#[template(path = "output/page/study.html")]
+pub(super) struct Page {
+    title: String,
+    /// The verdict; empty for the answer that may be quoted, or without one the first line of the words.
+    pub(super) verdict: String,
+    /// The input of the study in one line.
+    what: String,
+    /// Warnings, without those of the summary.
+    pub(super) warnings: Vec<String>,
+    /// The command of a case, without `archrock` and its scenario; that of a run by default.
+    pub(super) command: String,
+    assumptions: Vec<String>,
+    /// The picture with the cases, for wide and for narrow screens.
+    #[serde(skip)]
+    picture: [String; 2],
+    /// The other pictures, side by side on wide screens.
+    #[serde(skip)]
+    more: Vec<String>,
+    /// Number of cases with each outcome.
+    legend: Vec<(SpotKind, usize)>,
+    /// Number of cases outside the model of four links.
+    outside: usize,
+    #[serde(flatten)]
+    all: PageCases,
+    words: String,
+    tables: Vec<PageTable>,
+}
+
+/// The scenario of a case: an earlier text with some other lines. Texts without a number have no valid scenario.
+#[derive(Clone, Default, Serialize, Deserialize)]
+struct CaseText {
+    text: Option<usize>,
+    lines: Vec<(usize, String)>,
+}
+
+/// A table with rounded numbers.
+#[derive(Serialize, Deserialize)]
+struct PageTable {
+    name: String,
+    header: Vec<String>,
+    rows: Vec<Vec<String>>,
+    /// Number of rows in the file.
+    all: usize,
+}
+
+/// Renders a page again from its picture for wide and for narrow screens, its other pictures, and the JSON inside it.
+///
+/// # Errors
+/// When the JSON is not that of a page.
+pub fn page_of(picture: [String; 2], more: Vec<String>, data: &str) -> serde_json::Result<String> {
+    let page = serde_json::from_str::<Page>(data)?;
+    Ok(render(&Page {
+        picture,
+        more,
+        ..page
+    }))
+}
+
+impl Page {
+    /// Makes a page without cases, with assumptions of the study itself, of its models and of all models.
+    pub(super) fn new(title: &str, what: String, own: &[&str], models: &[&ModelKind]) -> Self {
+        const ALL: &str = "blocks are rigid and move in one plane, without tension in the joints, on springings or a base that move with the \
+                           ground; not computed: motion in three dimensions, the soil, and the thrust of a fill";
+        let models = models.iter().map(|model| model.assumptions);
+        let all = own.iter().copied().chain(models).chain([ALL]);
+        Self {
+            title: title.to_owned(),
+            what,
+            command: "run - --out case".to_owned(),
+            assumptions: all.map(str::to_owned).collect(),
+            ..Self::default()
+        }
+    }
+
+    /// Returns true if blanks align the words.
+    fn is_aligned(&self) -> bool {
+        let mut lines = self.words.lines().map(str::trim);
+        lines.any(|line| line.contains("   "))
+    }
+
+    /// Returns true if a command names record files.
+    fn has_files(&self) -> bool {
+        let mut texts = self.all.texts.iter();
+        texts.any(|text| text.contains("\nfile = "))
+    }
+}
+
+/// The cases of a page, in the order of the last table of its study.
+#[derive(Clone, Default, Serialize, Deserialize)]
+pub(super) struct PageCases {
+    #[serde(skip)]
+    pub(super) spots: Vec<Spot>,
+    /// True if the command of a case is a suite.
+    #[serde(skip)]
+    pub(super) are_suites: bool,
+    /// Number of all cases, also of those that are not on the page.
+    count: usize,
+    texts: Vec<String>,
+    cases: Vec<CaseText>,
+}
+
+impl PageCases {
+    /// Adds a case: its outcome, whether it is outside the model of four links, its words, and its scenario as JSON, unless it is not valid.
+    /// Only the first cases are on the page.
+    pub(super) fn push(
+        &mut self,
+        (kind, outside): (SpotKind, bool),
+        words: String,
+        scenario: impl FnOnce() -> Option<Value>,
+    ) {
+        self.count += 1;
+        if self.spots.len() == MOST_CASES {
+            return;
+        }
+        self.spots.push(Spot {
+            row: self.spots.len(),
+            kind,
+            outside,
+            words,
+        });
+        let case = scenario().map(|mut scenario| {
+            if let Value::Object(tables) = &mut scenario {
+                tables.retain(|name, _| match &**name {
+                    "map" | "demand" | "verify" | "uncertain" => false,
+                    "suite" => self.are_suites,
+                    _ => true,
+                });
+            }
+            self.text(&toml_text(&scenario))
+        });
+        self.cases.push(case.unwrap_or_default());
+    }
+
+    /// Adds the case of a history.
+    pub(super) fn push_history(
+        &mut self,
+        case: &str,
+        result: &Result<Ending, NoHistory>,
+        scenario: impl FnOnce() -> Option<Value>,
+    ) {
+        let (kind, words) = history_in_words(result);
+        let outside = result.as_ref().is_ok_and(Ending::is_outside_model);
+        let beyond = match outside {
+            true => "; OUTSIDE the model of four links",
+            false => "",
+        };
+        self.push(
+            (kind, outside),
+            format!("{case}: {words}{beyond}"),
+            scenario,
+        );
+    }
+
+    /// Returns a text as the last one with other lines, or as a new one.
+    fn text(&mut self, text: &str) -> CaseText {
+        let last = self.texts.last().map_or("", |last| last);
+        let (old, new): (Vec<&str>, Vec<&str>) =
+            (last.split('\n').collect(), text.split('\n').collect());
+        if old.len() != new.len() || self.texts.is_empty() {
+            self.texts.push(text.to_owned());
+            return self.text(text);
+        }
+        let changed = new.iter().zip(old).enumerate();
+        let changed = changed.filter(|(_, (new, old))| *new != old);
+        CaseText {
+            text: Some(self.texts.len() - 1),
+            lines: changed
+                .map(|(index, (new, _))| (index, (*new).to_owned()))
+                .collect(),
+        }
+    }
+}
+
+/// Returns the mark of a verdict; `None` without a history.
+pub(super) const fn kind_of(verdict: Option<Verdict>) -> SpotKind {
+    match verdict {
+        Some(Verdict::Survives) => SpotKind::Survives,
+        Some(Verdict::Overturns) => SpotKind::Overturns,
+        Some(Verdict::Uncertain) => SpotKind::Uncertain,
+        _ => SpotKind::Unknown,
+    }
+}
+
+/// Returns the outcome of a history, and its words.
+pub(super) fn history_in_words(result: &Result<Ending, NoHistory>) -> (SpotKind, String) {
+    let words = match result {
+        Ok(ending) => match ending.doubt() {
+            Some(doubt) => format!("UNCERTAIN: {doubt}"),
+            None => OutcomeColor::of_result(result).label.to_owned(),
+        },
+        Err(reason) => format!("no verdict: {reason}"),
+    };
+    let verdict = result.as_ref().ok().map(Ending::verdict);
+    (kind_of(verdict), words)
+}
+
+/// Returns a scenario whose ground accelerations are multiplied by a factor.
+pub(super) fn under_factor(scenario: &Value, factor: f64) -> Value {
+    fn multiply(table: &mut Value, factor: f64) {
+        let Value::Object(table) = table else { return };
+        if table.contains_key("file") && !table.contains_key("peak_g") {
+            table.entry("scale").or_insert(json!(1.0));
+        }
+        for (key, value) in table {
+            match (&**key, value.as_f64()) {
+                ("amplitude_g" | "vertical_amplitude_g" | "scale" | "peak_g", Some(number)) => {
+                    *value = json!(number * factor);
+                }
+                _ => multiply(value, factor),
+            }
+        }
+    }
+    let mut scenario = scenario.clone();
+    multiply(&mut scenario["ground"], factor);
+    scenario
+}
+
+/// Returns the input of a study in one line; without the model if there are several.
+pub(super) fn input_in_words(scenarios: &[&Scenario]) -> String {
+    let all = caption(scenarios[0], &[]);
+    match all.rsplit_once("; ") {
+        Some((others, _)) if scenarios.len() > 1 => others.to_owned(),
+        _ => all,
+    }
+}
+
+/// Draws a picture of a page.
+pub(super) type DrawPicture<'a> = &'a dyn Fn(Figure) -> String;
+
+impl Results {
+    /// Adds the page, before all other files: with its cases, a picture of them, other pictures, and the words, warnings and tables of the results,
+    /// the last table first.
+    pub(super) fn with_page(
+        mut self,
+        name: &'static str,
+        mut page: Page,
+        cases: &PageCases,
+        (picture, more): (DrawPicture<'_>, &[DrawPicture<'_>]),
+    ) -> Self {
+        let (summary, spots) = (&self.summary, &cases.spots);
+        let warnings = summary["warnings"].as_array().into_iter().flatten();
+        page.warnings
+            .extend(warnings.flat_map(Value::as_str).map(str::to_owned));
+        page.warnings
+            .retain(|warning| !self.words.contains(warning));
+        let tables = self
+            .files
+            .iter()
+            .rev()
+            .filter(|(name, _)| name.ends_with(".csv"));
+        let most = [MOST_CASES].into_iter().chain(iter::repeat(MOST_ROWS));
+        let tables = tables.zip(most);
+        let tables = tables.map(|((name, contents), most)| table_of(name, contents, most));
+        page.tables = tables.collect();
+        let lines = self.words.lines();
+        let lines = lines.map(|line| line.strip_prefix("  ").unwrap_or(line));
+        if page.verdict.is_empty() {
+            let first = lines.clone().next();
+            let verdict = summary["to_quote"].as_str().or(first);
+            page.verdict = verdict.unwrap_or_default().to_owned();
+        }
+        let words: Vec<&str> = lines.filter(|line| *line != page.verdict).collect();
+        page.words = words.join("\n");
+        let count = |kind| spots.iter().filter(|spot| spot.kind == kind).count();
+        let counts = SpotKind::ALL.iter().map(|kind| (*kind, count(*kind)));
+        page.legend = counts.filter(|(_, count)| *count > 0).collect();
+        page.outside = spots.iter().filter(|spot| spot.outside).count();
+        page.picture = [Figure::PAGE, Figure::PHONE].map(picture);
+        page.more = more.iter().map(|draw| draw(Figure::PHONE)).collect();
+        page.all = cases.clone();
+        self.files.insert(0, (name, render(&page).into_bytes()));
+        self
+    }
+}
+
+/// Reads the first rows of a table, and rounds its numbers.
+fn table_of(name: &str, contents: &[u8], most: usize) -> PageTable {
+    let mut reader = csv::Reader::from_reader(contents);
+    let header = reader.headers().cloned().unwrap_or_default();
+    let rows: Vec<csv::StringRecord> = reader.records().flatten().collect();
+    let rounded = |cell: &str| match cell.parse::<f64>() {
+        Ok(number) => plain(number),
+        Err(_) => cell.to_owned(),
+    };
+    PageTable {
+        name: name.to_owned(),
+        header: header.iter().map(str::to_owned).collect(),
+        all: rows.len(),
+        rows: rows
+            .iter()
+            .take(most)
+            .map(|row| row.iter().map(rounded).collect())
+            .collect(),
+    }
+}

@@ -1,0 +1,33 @@
+// Every case has its words and its command; the nearest mark follows the pointer, and texts are legible at any width.
+const text = (id) => document.getElementById(id).textContent;
+const holder = document.getElementById('points');
+data.commands.forEach((command, row) => {
+  archrock.show(row);
+  verify(text('command') === command, `${row}: ${text('command')}`);
+  verify(text('case').includes('factor'), text('case'));
+});
+const shown = [...holder.querySelectorAll('.spot')].filter((spot) => spot.getBoundingClientRect().width > 0);
+verify(shown.length === data.commands.length, `${shown.length} marks`);
+const middle = (spot) => {
+  const box = spot.getBoundingClientRect();
+  return { clientX: box.left + box.width / 2, clientY: box.top + box.height / 2, bubbles: true };
+};
+const first = shown.find((spot) => spot.dataset.row === '0');
+holder.dispatchEvent(new PointerEvent('pointermove', middle(first)));
+verify(archrock.chosen() === 0, 'pointer');
+holder.dispatchEvent(new KeyboardEvent('keydown', { key: 'ArrowRight', bubbles: true }));
+verify(archrock.chosen() === 1, 'next');
+verify(document.querySelectorAll('#rows tbody tr')[1].classList.contains('chosen'), 'row');
+holder.dispatchEvent(new PointerEvent('pointermove', middle(first)));
+verify(archrock.chosen() === 1, 'stays');
+// No text is smaller than 12 px, and only tables are wider than the page.
+for (const element of document.querySelectorAll('p, td, th, li, pre, svg text, button, h1, h2')) {
+  const box = element.getBoundingClientRect();
+  if (box.width === 0) continue;
+  const svg = element.closest('svg[viewBox]');
+  const scale = svg ? svg.getBoundingClientRect().width / svg.viewBox.baseVal.width : 1;
+  const size = parseFloat(getComputedStyle(element).fontSize) * scale;
+  verify(size >= 12, `${size} px: ${element.textContent.slice(0, 40)}`);
+}
+verify(document.documentElement.scrollWidth <= innerWidth, `${document.documentElement.scrollWidth} px wide`);
+verify(document.getElementById('command').scrollWidth <= document.getElementById('command').clientWidth + 1, 'cut command');

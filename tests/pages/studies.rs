@@ -1,0 +1,381 @@
+//! The pages of studies: rendered again from their data, compared with their tables, and opened in a real browser. Their commands are run.
+
+use crate::common::browser;
+use crate::common::program::{archrock, printed, scenarios, stderr};
+use crate::common::results::{Row, Table, data_of, json};
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use archrock::studies::study_page_of;
+use roxmltree::Document;
+use serde_json::{Value, json};
+
+/// A page in a folder, and the table whose rows are its cases.
+struct Page {
+    html: String,
+    data: Value,
+    rows: Vec<Row>,
+}
+
+/// Runs a command, and reads its page. Every page has one mark for each row of its table in each of two drawings, names no address, and follows from its
+/// own data.
+fn page(folder: &Path, arguments: &[&str], page: &str, table: &str) -> Page {
+    let output = archrock(folder, &[arguments, &["--out", "o"]].concat());
+    assert!(output.status.success(), "{}", stderr(&output));
+    let html = fs::read_to_string(folder.join("o").join(page)).unwrap();
+    let data = data_of(&html);
+    for foreign in ["src=", "@import", "<link", "url(", "https:"] {
+        assert!(!html.contains(foreign), "{foreign}");
+    }
+    let inside = |before: &str, after: &str| -> Vec<String> {
+        let parts = html.split(before).skip(1);
+        parts
+            .map(|part| part.split_once(after).unwrap().0.to_owned())
+            .collect()
+    };
+    let both = ["wide", "narrow"].map(|width| {
+        let own = format!("<div class=\"{width}\">");
+        inside(&own, "</div>").remove(0)
+    });
+    let mut more = inside("<div class=\"picture\">", "</div>");
+    more.retain(|picture| picture.starts_with("<svg"));
+    let text = inside("id=\"data\">", "</script>").remove(0);
+    let again = study_page_of(both.clone(), more, &text).unwrap();
+    assert!(again == html, "{arguments:?}");
+    assert_balanced(&html);
+    let rows = match table {
+        "" => Vec::new(),
+        table => Table::read(folder.join("o").join(table)).rows,
+    };
+    let count = data["cases"].as_array().unwrap().len();
+    assert!(count == rows.len() || table.is_empty());
+    for picture in both {
+        let picture = Document::parse(&picture).unwrap();
+        let spots = picture.descendants().filter(|node| {
+            let class = node.attribute("class").unwrap_or_default();
+            class.starts_with("spot")
+        });
+        let mut marked: Vec<usize> = spots
+            .map(|spot| {
+                let words = spot.first_element_child().unwrap();
+                assert!(!words.text().unwrap().is_empty());
+                spot.attribute("data-row").unwrap().parse().unwrap()
+            })
+            .collect();
+        marked.sort_unstable();
+        assert!(marked.into_iter().eq(0..count), "{arguments:?}");
+    }
+    Page { html, data, rows }
+}
+
+/// Every element of a page is closed, in order.
+fn assert_balanced(html: &str) {
+    // Data, scripts and styles are no elements.
+    let mut text = html.to_owned();
+    for name in ["script", "style"] {
+        while let Some(from) = text.find(&format!("<{name}")) {
+            let end = format!("</{name}>");
+            let to = from + text[from..].find(&end).unwrap() + end.len();
+            text.replace_range(from..to, "");
+        }
+    }
+    let mut open: Vec<&str> = Vec::new();
+    for tag in text.split('<').skip(1) {
+        let tag = tag.split('>').next().unwrap();
+        let name = tag.split([' ', '/', '\n']).find(|name| !name.is_empty());
+        match (name.unwrap(), tag.starts_with('/'), tag.ends_with('/')) {
+            ("!doctype" | "meta" | "link", ..) | (_, false, true) => {}
+            (name, true, _) => assert_eq!(open.pop(), Some(name), "</{name}>"),
+            (name, false, false) => open.push(name),
+        }
+    }
+    assert!(open.is_empty(), "{open:?}");
+}
+
+impl Page {
+    /// The command of a row.
+    fn command(&self, row: usize) -> String {
+        let (data, case) = (&self.data, &self.data["cases"][row]);
+        let text = usize::try_from(case["text"].as_u64().unwrap()).unwrap();
+        let text = data["texts"][text].as_str().unwrap();
+        let lines = text.split('\n').enumerate().map(|(index, line)| {
+            let mut changed = case["lines"].as_array().unwrap().iter();
+            let changed = changed.find(|changed| changed[0] == index);
+            changed.map_or(line, |changed| changed[1].as_str().unwrap())
+        });
+        let lines: Vec<&str> = lines.collect();
+        let command = data["command"].as_str().unwrap();
+        format!("archrock {command} <<'END'\n{}END\n", lines.join("\n"))
+    }
+
+    /// Runs the command of a row in a shell, with further options; returns its standard output.
+    fn run(&self, folder: &Path, row: usize, options: &str) -> Value {
+        let own = format!("{} ", env!("CARGO_BIN_EXE_archrock"));
+        let line = self.command(row).replacen("archrock ", &own, 1);
+        let line = line.replacen(" - ", &format!(" - {options} "), 1);
+        let mut shell = Command::new("sh");
+        let output = shell.arg("-c").arg(&line).current_dir(folder).output();
+        let output = output.unwrap();
+        assert!(output.status.success(), "{line}: {}", stderr(&output));
+        serde_json::from_slice(&output.stdout).unwrap()
+    }
+
+    /// The first row with each outcome.
+    fn one_of_each(&self, column: &str) -> Vec<usize> {
+        let mut known = BTreeSet::new();
+        let rows = self.rows.iter().enumerate();
+        rows.filter(|(_, row)| known.insert(&row[column]))
+            .map(|(index, _)| index)
+            .collect()
+    }
+
+    /// Runs one row of each outcome as a history, and compares outcome and largest rotation.
+    fn assert_histories(&self, folder: &Path) {
+        let outcomes = self.one_of_each("outcome");
+        assert!(outcomes.len() > 1);
+        for index in outcomes {
+            let row = &self.rows[index];
+            let summary = self.run(folder, index, "--format json");
+            assert_eq!(summary["outcome"], row["outcome"], "{row:?}");
+            let time_s = summary["outcome_time_s"].as_f64().unwrap();
+            assert!((time_s - row.number("outcome_time_s")).abs() < 1e-6 * time_s);
+        }
+    }
+}
+
+const COLUMN: &str =
+    "title = \"A column & <b>more</b>\"\n[column]\nheight_m = 4.0\nwidth_m = 0.8\n";
+const PULSE: &str =
+    "[ground.one_sine]\namplitude_g = 0.4\nvertical_amplitude_g = 0.1\nduration_s = 0.6\n";
+const ARCH: &str = "[arch]\nspan_m = 9.0\nrise_m = 3.0\nthickness_m = 0.9\nmeasured_at = \"mean\"\nvoussoirs = 9\n";
+const UNCERTAIN: &str = "[uncertain]\nsamples = 5\n'column.width_m' = { from = 0.6, to = 1.1 }\n\
+                         'ground.one_sine.duration_s' = { deviation = 0.05 }\n";
+
+fn write(folder: &Path, parts: &[&str]) {
+    fs::write(folder.join("s.toml"), parts.concat()).unwrap();
+}
+
+/// Copies the records of the suite in the scenarios.
+fn write_suite(folder: &Path, more: &str) {
+    fs::create_dir(folder.join("records")).unwrap();
+    for name in ["wave-1.at2", "wave-2.at2"] {
+        let from = scenarios().join("records").join(name);
+        fs::copy(from, folder.join("records").join(name)).unwrap();
+    }
+    let suite = "[ground.record]\nfile = 'records/wave-1.at2'\n[suite]\nrecords = 'records/*.at2'\n\
+                 peaks_g = { from = 0.3, to = 3.0, count = 4, spacing = 'logarithmic' }\n";
+    write(folder, &[COLUMN, suite, more]);
+}
+
+#[test]
+fn a_factor_on_a_page_is_run_by_its_command() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    write(at, &[COLUMN, PULSE]);
+    let options = [
+        "threshold",
+        "s.toml",
+        "--from",
+        "0.3",
+        "--to",
+        "3",
+        "--stride",
+        "0.2",
+    ];
+    let both = [&options[..], &["--hinges", "four,free"]].concat();
+    let found = page(at, &both, "threshold.html", "threshold.csv");
+    found.assert_histories(at);
+    let models = found.one_of_each("model");
+    let texts = models
+        .iter()
+        .map(|row| found.command(*row).contains("[free_hinges]"));
+    assert_eq!(texts.collect::<Vec<_>>(), [false, true]);
+    assert!(
+        found
+            .html
+            .contains("<h1>A column &amp; &lt;b&gt;more&lt;/b&gt;</h1>")
+    );
+    assert_eq!(
+        found.html.matches("&lt;b&gt;more").count(),
+        2,
+        "title and heading"
+    );
+    // Both scales of records, and no page.
+    write_suite(at, "");
+    for scale in ["", "--set=ground.record.peak_g=0.5"] {
+        let set = if scale.is_empty() { &[][..] } else { &[scale] };
+        let again = [&options[..], set].concat();
+        page(at, &again, "threshold.html", "threshold.csv").assert_histories(at);
+    }
+    printed_without(at, &options, "threshold.html");
+}
+
+/// A study without its page has all other files.
+fn printed_without(folder: &Path, options: &[&str], page: &str) {
+    let before: BTreeSet<String> = crate::common::program::names(&folder.join("o"))
+        .into_iter()
+        .collect();
+    let output = archrock(folder, &[options, &["--out", "o", "--no-report"]].concat());
+    assert!(output.status.success(), "{}", stderr(&output));
+    let mut after: BTreeSet<String> = crate::common::program::names(&folder.join("o"))
+        .into_iter()
+        .collect();
+    assert!(after.insert(page.to_owned()) && after == before);
+}
+
+#[test]
+fn a_case_of_a_suite_is_run_by_its_command() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    write_suite(at, "");
+    let found = page(at, &["suite", "s.toml"], "suite.html", "suite.csv");
+    found.assert_histories(at);
+    // A mirrored record falls to the other side.
+    let falls = |sign: &str| {
+        let mut rows = found.rows.iter().enumerate();
+        let own = rows.find(|(_, row)| row["sign"] == sign && row["outcome"] == "overturned");
+        let (index, row) = own.unwrap();
+        let summary = found.run(at, index, "--format json");
+        assert_eq!(summary["overturning_sway"], row["overturning_sway"]);
+        row["overturning_sway"].clone()
+    };
+    assert_ne!(falls("1"), falls("-1"));
+    assert!(
+        found
+            .html
+            .contains("to be entered in the folder of the scenario file")
+    );
+    // Parts keep what the page needs.
+    for part in ["1/2", "2/2"] {
+        printed(at, &["suite", "s.toml", "--shard", part, "--out", "p"]);
+    }
+    fs::rename(at.join("records"), at.join("moved")).unwrap();
+    printed(
+        at,
+        &[
+            "merge",
+            "p/suite-1-of-2.part",
+            "p/suite-2-of-2.part",
+            "--out",
+            "m",
+        ],
+    );
+    assert!(fs::read_to_string(at.join("m/suite.html")).unwrap() == found.html);
+}
+
+#[test]
+fn a_sample_is_computed_by_its_command() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    write(at, &[COLUMN, PULSE, UNCERTAIN]);
+    let of_kind = |command: &[&str], folder: &str| {
+        let [html, table] = ["html", "csv"].map(|end| format!("{folder}/samples.{end}"));
+        page(at, command, &html, &table)
+    };
+    of_kind(&["run", "s.toml"], "uncertain").assert_histories(at);
+    let factors = ["--from", "0.3", "--to", "3", "--stride", "0.1"];
+    let options = [&["threshold", "s.toml"], &factors[..]].concat();
+    let found = of_kind(&options, "uncertain_threshold");
+    for row in [0, 3] {
+        let summary = found.run(at, row, "--format json");
+        let factor = summary["models"][0]["lowest_factor"].as_f64().unwrap();
+        let known = found.rows[row].number("first_factor");
+        assert!((factor / known - 1.0).abs() < 2e-4, "{factor} {known}");
+    }
+    let widths = "both_signs = false\n[uncertain]\nsamples = 5\n'column.width_m' = { from = 0.6, to = 1.1 }\n";
+    write_suite(at, widths);
+    let found = of_kind(&["suite", "s.toml"], "uncertain_suite");
+    for row in [0, 2] {
+        found.run(at, row, "--format json");
+        let capacities = Table::read(at.join("case/capacities.csv")).rows;
+        let overturned = capacities
+            .iter()
+            .filter(|row| !row["scale"].is_empty())
+            .count();
+        assert_eq!(found.rows[row]["overturned"], overturned.to_string());
+    }
+}
+
+#[test]
+fn a_stage_of_a_moved_springing_is_computed_by_its_command() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    write(at, &[ARCH]);
+    let found = page(at, &["spread", "s.toml"], "spread.html", "spread.csv");
+    for index in found.one_of_each("angle_deg") {
+        let row = &found.rows[index + 10];
+        let summary = found.run(at, index + 10, "--format json");
+        for side in ["right", "left"] {
+            let push_g = summary["capacity_g"][side].as_f64().unwrap();
+            let known_g = row.number(&format!("capacity_{side}_g"));
+            assert!((push_g - known_g).abs() < 1e-9, "{row:?} {summary}");
+        }
+    }
+}
+
+#[test]
+fn a_capacity_curve_is_computed_by_its_command() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    write(at, &[ARCH]);
+    let options = ["capacity", "s.toml", "--point", "-1,2.9"];
+    let found = page(at, &options, "capacity.html", "capacity.csv");
+    found.run(at, 3, "--format json");
+    let again = Table::read(at.join("case/capacity.csv"));
+    assert_eq!(again.rows, found.rows);
+}
+
+#[test]
+fn a_compared_model_is_run_by_its_command() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    write(at, &[ARCH, PULSE]);
+    let options = [
+        "run",
+        "s.toml",
+        "--hinges",
+        "four,free",
+        "--set",
+        "ground.one_sine.amplitude_g=0.3",
+    ];
+    let found = page(at, &options, "report.html", "");
+    for (index, model) in ["four", "free"].into_iter().enumerate() {
+        let summary = found.run(at, index, "--format json");
+        let own = json(&at.join("o").join(model).join("summary.json"));
+        assert_eq!(summary["outcome"], own["outcome"]);
+        assert_eq!(summary["peak_rotations_rad"], own["peak_rotations_rad"]);
+    }
+}
+
+#[test]
+fn cases_in_a_browser() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    write(at, &[COLUMN, PULSE]);
+    let options = [
+        "threshold",
+        "s.toml",
+        "--from",
+        "0.3",
+        "--to",
+        "3",
+        "--stride",
+        "0.2",
+    ];
+    let found = page(at, &options, "threshold.html", "threshold.csv");
+    let commands: Vec<String> = (0..found.rows.len())
+        .map(|row| found.command(row))
+        .collect();
+    let script = include_str!("studies.js");
+    let data = json!({ "commands": commands }).to_string();
+    let page = at.join("o/threshold.html");
+    for (settings, least) in [
+        (&["--window-size=1280,900"][..], 30),
+        (&["--window-size=390,900", "--force-dark-mode"], 30),
+    ] {
+        browser::assert_checked(&page, script, &data, settings, least);
+    }
+    assert!(browser::sheets(&page).is_none_or(|sheets| sheets == 1));
+}
