@@ -60,6 +60,10 @@ fn has_ffmpeg() -> bool {
 }
 
 /// The pictures of a film.
+#[cfg_attr(
+    not(feature = "print"),
+    expect(dead_code, reason = "only films read them")
+)]
 pub(crate) struct Reel<'a> {
     /// Width and height in pixels.
     pub(crate) size_px: [u32; 2],

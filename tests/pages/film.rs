@@ -1,11 +1,10 @@
 //! Films, decoded again: their pictures are those of the history at equal intervals.
 
 use std::fs;
-use std::path::Path;
 
 use roxmltree::Document;
 
-use crate::common::program::{archrock, command, names, printed, refused, scenarios, stderr};
+use crate::common::program::{names, printed, refused, scenarios};
 use crate::common::results::{named, points};
 
 fn pulse() -> String {
@@ -107,7 +106,8 @@ fn wrong_options_of_a_film_are_refused() {
 #[cfg(feature = "print")]
 mod decoded {
     use super::*;
-    use crate::common::program::skip_without;
+    use crate::common::program::{archrock, command, skip_without, stderr};
+    use std::path::Path;
     use std::process::Command;
 
     /// Pictures of a film, as red, green and blue of each pixel.

@@ -42,7 +42,8 @@ impl FilmOptions {
     /// # Errors
     /// When one is out of range.
     pub fn check(&self) -> Result<(), String> {
-        let is_allowed = |side_px: &u32| (160..=3840).contains(side_px) && side_px % 2 == 0;
+        let is_allowed =
+            |side_px: &u32| (160..=3840).contains(side_px) && side_px.is_multiple_of(2);
         Err(if !(1e-3..=1e3).contains(&self.speed) {
             "the speed of a film is from 0.001 to 1000 times real time, such as 0.25"
         } else if !self.size_px.iter().all(is_allowed) {
