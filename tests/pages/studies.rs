@@ -320,7 +320,7 @@ fn a_capacity_curve_is_computed_by_its_command() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     write(at, &[ARCH]);
-    let options = ["capacity", "s.toml", "--point", "-1,2.9"];
+    let options = ["capacity", "s.toml", "--point", "-1,4.8"];
     let found = page(at, &options, "capacity.html", "capacity.csv");
     found.run(at, 3, "--format json");
     let again = Table::read(at.join("case/capacity.csv"));
