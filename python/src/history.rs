@@ -11,12 +11,8 @@ use archrock::dynamics::repeatability::Repeatability;
 use archrock::dynamics::{FallEnd, Summary};
 use archrock::dynamics::{Recording, Samples};
 use archrock::mechanics::Demand;
-use archrock::output::{
-    FilmFormat, Scene, StructurePoint, check_named_file, write_named_file,
-};
-use archrock::studies::run::{
-    self, ComputedRun, Film, FilmOptions, OutcomeSummary, Report,
-};
+use archrock::output::{FilmFormat, Scene, StructurePoint, check_named_file, write_named_file};
+use archrock::studies::run::{self, ComputedRun, Film, FilmOptions, OutcomeSummary, Report};
 use archrock::{Event, GroundMotion, Model, Recorder, Sample, SimulationError, State};
 use numpy::{Element, PyArray1, PyArrayMethods as _, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyKeyError;
@@ -508,11 +504,12 @@ impl History {
         py: Python<'_>,
         path: PathBuf,
         size_px: [u32; 2],
-        (speed, exaggeration): (f64, f64),
+        factors: (f64, f64),
         background: &str,
         caption: Option<String>,
     ) -> PyResult<()> {
         let format = FilmFormat::of_file(&path).map_err(refused)?;
+        let (speed, exaggeration) = factors;
         let options = FilmOptions {
             speed,
             size_px,
@@ -525,7 +522,8 @@ impl History {
         let (scenario, model) = (self.shaken(), Arc::clone(&self.model));
         let film = watched(py, None, move |watch| {
             let film = Film::simulate(&scenario, &*model, &options, &mut *watch);
-            film.and_then(|film| film.encode(format, watch)).map_err(failed)
+            film.and_then(|film| film.encode(format, watch))
+                .map_err(failed)
         })?;
         write_named_file(&path, &film).map_err(not_written)
     }
