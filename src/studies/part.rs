@@ -359,7 +359,10 @@ impl PartFile {
             .map_err(|error| unusable(path, format!("cannot be written: {error}")))?;
         // On systems where files cannot be locked, two programs may write to the same file.
         if let Err(fs::TryLockError::WouldBlock) = file.try_lock() {
-            return Err(unusable(path, "another program is at work on it"));
+            return Err(unusable(
+                path,
+                "another archrock is writing this file: wait until it ends",
+            ));
         }
         let mut part = Self {
             path: path.to_owned(),

@@ -148,7 +148,7 @@ fn draw(figure: Figure, title: &str, distributions: &[Distribution<'_>]) -> Stri
     let curves = distributions.iter().zip(CURVES);
     let curves = curves
         .map(|((name, all), stroke)| Mark::staircase(*name, stroke, (x, 0.0), all.iter().copied()));
-    let label = "largest rotation (rad); overturned cases are beyond";
+    let label = "largest rotation (rad); overturned cases count as infinite";
     let y = Scale::exactly(0.0, 1.0, 5);
     let chart = Chart::new(405.0, (label, x), ("share with at most this rotation", y));
     chart.with_named(curves.collect()).draw(figure, title)

@@ -438,7 +438,7 @@ fn one_of_several_channels_is_chosen() {
         let text = doubled(name, old, new);
         let layout = Layout::new(format(name));
         let fault = parse(&layout, &text).unwrap_err();
-        let words = "the file has 2 channels: give `channel`, the number of the one to read or a part of its name: 1 `";
+        let words = "the file has 2 channels: set `channel` to the number or to a part of the name of one of them: 1 `";
         assert!(fault.message.starts_with(words), "{name} {fault:?}");
         let choose = |channel| {
             let channel = Some(channel);
@@ -706,9 +706,14 @@ fn texts_of_networks_are_compared_with_their_header() {
             "/.01/.01/.01",
             "/.01/.01",
             18,
-            "has values of 2 channels: line 24 has 3",
+            "channels differs: 2 in this line, 3 in line 24",
         ),
-        ("/N00E;+/N90E;+/V;+", "/V;+", 16, "has values of 1 channels"),
+        (
+            "/N00E;+/N90E;+/V;+",
+            "/V;+",
+            16,
+            "channels differs: 1 in this line",
+        ),
         (
             "UNIDADES DE",
             "UNIDAD",

@@ -457,13 +457,13 @@ fn faulty_records_are_input_errors() {
         (
             "file = 'six.csv'\nunit = 'g'\ndt_s = 0.01",
             "6:8",
-            "six.csv:1: there are 3 columns: give `acceleration_column`, the one to read, or `wrapped = true`, if a row \
+            "six.csv:1: there are 3 columns: set `acceleration_column` to the column to read, or `wrapped = true`, if a row \
              holds samples",
         ),
         (
             "file = 'six.csv'\nunit = 'g'",
             "6:8",
-            "six.csv:1: there are 3 columns: give `acceleration_column`, the one to read, or `dt_s` and `wrapped = true`, if a row holds samples",
+            "six.csv:1: there are 3 columns: set `acceleration_column` to the column to read, or `dt_s` and `wrapped = true`, if a row holds samples",
         ),
         (
             "file = 'six.csv'\nunit = 'g'\ndt_s = 0.01\nwrapped = true\nacceleration_column = 1",

@@ -443,7 +443,7 @@ fn two_programs_do_not_work_on_one_part() {
     let folder = folder_with_map(300);
     let path = folder.path();
     let locked = "the folder r is being written to by another run";
-    let same_part = "another program is at work on it";
+    let same_part = "another archrock is writing this file: wait until it ends";
     for (shard, part, same) in [
         (&[][..], "r/map.part", locked),
         (&["--shard", "1/2"], "r/map-1-of-2.part", same_part),

@@ -617,7 +617,10 @@ fn files_agree_and_threads_change_nothing() {
     });
     let bands = named("four_links ") - named("four_links peak");
     assert_eq!(bands, runs.count());
-    for edge in ["0.5325", "factor on the ground motion (1: 0.5000 g)"] {
+    for edge in [
+        "0.5325",
+        "factor on the ground motion (factor 1 = 0.5000 g)",
+    ] {
         assert!(svg.contains(&format!(">{edge}<")), "{edge}");
     }
 }

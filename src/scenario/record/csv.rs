@@ -349,7 +349,7 @@ impl<'a> Columns<'a> {
                 }
             };
             format!(
-                "there are {count} columns: give `acceleration_column`, the one to read{wrapped}: `{text}`"
+                "there are {count} columns: set `acceleration_column` to the column to read{wrapped}: `{text}`"
             )
         })
     }
@@ -962,8 +962,7 @@ mod tests {
             acceleration_column: Some(TableColumn::Number(2)),
             ..layout
         };
-        let say =
-            "there are 3 columns: give `acceleration_column`, the one to read, or `wrapped = true`";
+        let say = "there are 3 columns: set `acceleration_column` to the column to read, or `wrapped = true`";
         for text in [
             "1 -2 3\n4 5 6\n",
             "# 6 samples\n1 -2 3\n4 5 6\n",
@@ -971,7 +970,7 @@ mod tests {
         ] {
             assert_fault(text, &step, 1 + usize::from(text.starts_with('#')), say);
         }
-        let say = "there are 3 columns: give `acceleration_column`, the one to read, or `dt_s` and `wrapped = true`";
+        let say = "there are 3 columns: set `acceleration_column` to the column to read, or `dt_s` and `wrapped = true`";
         assert_fault("0 -2 3\n4 5 6\n", &numbered(), 1, say);
         // Rows with a missing cell.
         for (layout, text, line) in [

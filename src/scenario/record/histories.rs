@@ -125,7 +125,7 @@ fn choose(histories: &[&History], channel: Option<&TableColumn>) -> Result<usize
     }
     Err(match channel {
         None => format!(
-            "the file has {} channels: give `channel`, the number of the one to read or a part of its name: {listed}",
+            "the file has {} channels: set `channel` to the number or to a part of the name of one of them: {listed}",
             histories.len()
         ),
         Some(TableColumn::Number(number)) => {

@@ -173,7 +173,7 @@ impl fmt::Display for Sampling {
         let steps = match self.step_s {
             Some(step_s) => format!("every {} s", rounded(step_s)),
             None => format!(
-                "at uneven steps, the least of {} s",
+                "at unequal steps (smallest {} s)",
                 rounded(self.least_step_s)
             ),
         };

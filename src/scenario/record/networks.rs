@@ -176,7 +176,7 @@ pub(super) fn unam(lines: &[&str]) -> Parsed<Vec<History>> {
         let [found, channels] = [other.len(), counts.len()];
         ensure(found == channels, || {
             LineFault::on(other_line)(format!(
-                "this line has values of {found} channels: line {line} has {channels}"
+                "the number of channels differs: {found} in this line, {channels} in line {line}"
             ))
         })?;
     }

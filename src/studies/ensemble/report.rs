@@ -43,7 +43,7 @@ pub(super) fn of_answer<'a, A: 'a, C: Into<Cell<'static>>>(
     })
 }
 
-/// Returns the column with the reasons of samples without an answer.
+/// Returns the column with the reasons for samples without an answer.
 pub(super) fn why_not<'a, A: 'a>() -> Column<'a, Line<'a, A>> {
     column("why_not", |(_, row): &Line<'_, A>| {
         row.answer.as_ref().err().map(NoAnswer::name)

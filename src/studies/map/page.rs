@@ -77,7 +77,7 @@ pub fn page_of(picture: &str, data: &str) -> serde_json::Result<String> {
 pub(crate) type CellNumbers = (&'static str, Vec<Option<f64>>);
 
 impl ColoredCells {
-    /// Makes the page from a picture of any width, with reasons of uncertain cells and columns of numbers.
+    /// Makes the page from a picture of any width, with reasons for uncertain cells and columns of numbers.
     pub(crate) fn page(
         &self,
         title: &str,
@@ -132,7 +132,7 @@ impl ColoredCells {
     }
 }
 
-/// Returns the reasons of uncertain cells, by the number of the cell.
+/// Returns the reasons for uncertain cells, by the number of the cell.
 pub(super) fn doubts(rows: &[CellRow]) -> BTreeMap<usize, String> {
     let doubt = |row: &CellRow| Some(row.result.as_ref().ok()?.doubt()?.to_string());
     let doubts = rows.iter().map(doubt).enumerate();

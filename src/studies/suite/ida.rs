@@ -180,7 +180,7 @@ pub fn draw_peaks(figure: Figure, heading: &Heading, results: &SuiteFragility) -
         results.cases.iter().map(|case| &case.result),
     ));
     let y_axis = ("share with at most this peak", Scale::exactly(0.0, 1.0, 5));
-    let words = "share of all records and levels; overturned cases are beyond";
+    let words = "share of all cases (records at all levels); overturned cases count as infinite";
     let chart = Chart {
         keys: vec![Key::line(words, PEAKS)],
         marks: vec![Mark::staircase("peaks", PEAKS, (x, 0.0), peaks)],
