@@ -352,21 +352,18 @@ mod tests {
             [Figure::SCREEN, narrow].map(|figure| height_px(Sheet::new(figure, title)));
         assert_eq!(long, short + LINE_PX);
         let stroke = Stroke::new(color::BLUE, 1.0, "");
-        let rows = |figure: Figure, texts: &[&str]| {
+        let legend_px = |figure: Figure, texts: &[&str]| {
             let mut sheet = Sheet::new(figure, "");
             sheet.legend(
                 85.0,
                 texts.iter().map(|text| Key::line(*text, stroke)).collect(),
             );
-            (height_px(sheet) - 4.0) / LEGEND_ROW_PX
+            height_px(sheet) - 4.0
         };
         let texts = ["left", "middle", "right", "sways right", "sways left"];
-        assert_eq!(rows(Figure::SCREEN, &texts), 1.0);
-        assert_eq!(rows(narrow, &texts), 2.0);
+        assert_eq!(legend_px(Figure::SCREEN, &texts), LEGEND_ROW_PX);
+        assert_eq!(legend_px(narrow, &texts), 2.0 * NARROW_ROW_PX);
         let long = ["a text of a legend that is wider than the picture of a column is"; 2];
-        assert_eq!(
-            rows(narrow, &long),
-            2.0 * (LEGEND_ROW_PX + LINE_PX) / LEGEND_ROW_PX
-        );
+        assert_eq!(legend_px(narrow, &long), 2.0 * (NARROW_ROW_PX + LINE_PX));
     }
 }
