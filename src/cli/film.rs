@@ -25,7 +25,7 @@ use super::study::{PATIENCE, simulated};
 pub struct Arguments {
     #[command(flatten)]
     scenario: ScenarioFile,
-    /// File of the film: .mp4, .webm, .gif or .png (animated) [default: film.mp4 in results/<name of the scenario file>;
+    /// File of the film: .mp4 or .webm (by ffmpeg), .gif or .png (animated) [default: film.mp4 in results/<name of the scenario file>;
     /// film.gif without ffmpeg].
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,

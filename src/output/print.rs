@@ -24,7 +24,7 @@ named! {
 pub enum PrintError {
     /// The program was built without the feature `print`.
     #[error(
-        "this archrock was built without PDF, PNG and films: build it with `cargo install --path . --features print`, or choose SVG"
+        "this archrock was built without PDF, PNG and films, so pictures are SVG only: install it with `cargo install --path . --locked --features print` in a copy of its repository"
     )]
     NotBuilt,
     /// There is no such format.
