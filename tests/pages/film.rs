@@ -85,7 +85,7 @@ fn wrong_options_of_a_film_are_refused() {
             _ if built => words,
             [_, "a.avi" | "a", ..] | [_, _, "--background", _] => words,
             [_, _, "--size", "640"] => words,
-            _ => "cargo install --path . --features print",
+            _ => "cargo install --path . --locked --features print",
         };
         refused(
             folder.path(),
@@ -95,7 +95,7 @@ fn wrong_options_of_a_film_are_refused() {
     }
     let words = match built {
         true => "one model",
-        false => "cargo install --path . --features print",
+        false => "cargo install --path . --locked --features print",
     };
     let blocks = scenarios().join("free-hinges.toml").display().to_string();
     let several = ["film", &blocks, "--hinges", "four,free"];

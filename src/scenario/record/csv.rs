@@ -327,8 +327,8 @@ impl<'a> Columns<'a> {
         ensure(self.fits(row) || may_end && count <= most, || {
             let [text, first] = [row.text, first].map(excerpt);
             format!(
-                "`{text}` has {count} cells, but `{first}` on line {line} has {least}: complete the row, or give \
-                 `skip_rows = {line}` if the table begins below"
+                "`{text}` has {count} cells, but `{first}` on line {line} has {least}: complete the row, give its first word as `end_marker` if the \
+                 table ends above, or `skip_rows = {line}` if it begins below"
             )
         })
     }
