@@ -17,13 +17,13 @@ use super::{Failure, Format, warn};
 #[derive(clap::Args)]
 pub struct CommonArguments {
     #[command(flatten)]
-    scenario: ScenarioFile,
+    pub scenario: ScenarioFile,
     /// Folder for the results [default: results/<name of the scenario file>].
     #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
+    pub out: Option<PathBuf>,
     /// Output format.
     #[arg(long, value_enum, default_value_t)]
-    format: Format,
+    pub format: Format,
 }
 
 #[derive(clap::Args)]
@@ -94,7 +94,7 @@ pub fn verify(arguments: &CommonArguments) -> Result<(), Failure> {
 }
 
 /// Computes a study, writes its results and prints their summary.
-fn run(
+pub fn run(
     kind: StudyKind,
     arguments: &CommonArguments,
     figure: FigureOption,

@@ -30,10 +30,11 @@ Examples:
   archrock film arch.toml --size 720x720 --background f5f0e6 --caption 'Arch, 5 m' --out arch.webm";
 
 pub const LIMIT: &str = "\
-Files: only that of --plot.
+Files: that of --plot; with --out also limit.html, limit.svg, limit.json.
 
 Examples:
   archrock limit arch.toml
+  archrock limit arch.toml --out limit
   archrock limit arch.toml --plot mechanism.svg
   archrock limit arch.toml --format json | jq .incipient_acceleration_g";
 

@@ -4,22 +4,22 @@ use std::path::PathBuf;
 
 use archrock::output::Scene;
 use archrock::scenario::Scenario;
-use archrock::studies::{draw_limit, limit as compute};
+use archrock::studies::{LIMIT, Options, draw_limit, limit as compute};
 use archrock::{FourLinkError, FourLinks};
 
+use super::capacity_spread_verify::{CommonArguments, run};
 use super::figure::FigureOption;
 use super::named_files::write_picture;
 use super::parsers::FirstOption;
-use super::scenario_file::ScenarioFile;
-use super::{Failure, Format, show, warn};
+use super::{Failure, show, warn};
 
 #[derive(clap::Args)]
+#[command(mut_arg("out", |out| out
+    .help("Also write a page, the picture and the JSON to this folder")
+    .conflicts_with_all(["plot", "sway"])))]
 pub struct LimitArguments {
     #[command(flatten)]
-    scenario: ScenarioFile,
-    /// Output format.
-    #[arg(long, value_enum, default_value_t)]
-    format: Format,
+    common: CommonArguments,
     /// Also draw the mechanism and the thrust line to this SVG file.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
@@ -30,7 +30,11 @@ pub struct LimitArguments {
 }
 
 pub fn limit(arguments: &LimitArguments) -> Result<(), Failure> {
-    let input = arguments.scenario.open()?;
+    let (common, figure) = (&arguments.common, arguments.figure);
+    if common.out.is_some() {
+        return run(LIMIT, common, figure, Options::default());
+    }
+    let input = common.scenario.open()?;
     let mut scenario = input.read_statics()?;
     if arguments.plot.is_some() {
         scenario = input.without_moved_springings(scenario)?;
@@ -40,12 +44,12 @@ pub fn limit(arguments: &LimitArguments) -> Result<(), Failure> {
         let first = arguments.first.sway.unwrap_or_default();
         let model =
             four_links(&scenario, "--plot is").map_err(|wrong| input.with_file_name(wrong))?;
-        let (figure, scene) = (arguments.figure.get()?, Scene::new(&scenario.structure));
+        let (figure, scene) = (figure.get()?, Scene::new(&scenario.structure));
         let picture = draw_limit(figure, &model, first, &scene);
         write_picture(plot, &picture)?;
     }
     let found = compute(&scenario).map_err(|wrong| input.with_file_name(wrong.into()))?;
-    show(&found.json, &found.text, arguments.format)
+    show(&found.json, &found.text, common.format)
 }
 
 /// Makes the four-link model of a scenario. `what` is the subject and verb of the error for a column.

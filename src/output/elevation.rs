@@ -3,13 +3,14 @@
 use nalgebra::Vector2;
 
 use super::figure::Figure;
+use super::page::Spot;
 use super::scene::{Piece, Scene};
 use super::sheet::{PartHeight, Sheet};
 use super::svg::{Anchor, Drawing, Frame, Stroke, color};
 use super::text::{TEXT_PX, Text, text_px};
 use crate::mechanics::BodyPoint;
 use crate::scenario::{Dimension, DimensionSide, metres};
-use crate::{OpenHinge, Pose};
+use crate::{OpenHinge, Pose, Sway};
 
 /// Colour of blocks.
 pub(crate) const STONE: &str = "#f3efe6";
@@ -79,6 +80,17 @@ impl SheetTransform {
 /// Draws a structure at rest with its dimensions, the numbers of its joints, the axes, the positive ground acceleration, and a text below. On moved supports it is drawn displaced; dashed
 /// lines then show the undeformed structure, to which the dimensions refer.
 pub fn draw(figure: Figure, title: &str, scene: &Scene, text: &str) -> String {
+    draw_hinges(figure, title, (scene, text), &[], &[])
+}
+
+/// Draws a structure as [`draw`], with the hinges of its mechanisms, each with its sway and its position in metres, and with marks on them.
+pub(crate) fn draw_hinges(
+    figure: Figure,
+    title: &str,
+    (scene, text): (&Scene, &str),
+    hinges_m: &[(Sway, Vector2<f64>)],
+    spots: &[Spot],
+) -> String {
     let room = |side: DimensionSide| room_px(scene, side).max(24.0);
     let [low_m, high_m] = scene.frame_m();
     let size_m = high_m - low_m;
@@ -107,6 +119,12 @@ pub fn draw(figure: Figure, title: &str, scene: &Scene, text: &str) -> String {
         view.draw_hinges(drawing);
         joint_numbers(drawing, &view.place, scene);
         draw_axes(drawing, &view.place, scene);
+        for (index, (sway, at_m)) in hinges_m.iter().enumerate() {
+            drawing.circle("hinge", place.px(*at_m), 6.0 + sway.sign(), HINGE);
+            if let Some(spot) = spots.get(index) {
+                drawing.spot(place.px(*at_m), spot);
+            }
+        }
     });
     sheet.caption(room(DimensionSide::Below) + 22.0, text);
     sheet.gap(10.0);

@@ -33,6 +33,8 @@ named! {
         Unknown = "unknown",
         /// A point of a curve, without an outcome.
         Point = "point",
+        /// A hinge of a mechanism, without an outcome.
+        Hinge = "hinge",
     }
 }
 
@@ -40,7 +42,7 @@ impl SpotKind {
     /// Returns its shape in the notation of SVG, around zero. Shapes differ, so that no outcome is known by its colour alone.
     pub(crate) const fn shape(self) -> &'static str {
         match self {
-            Self::Survives | Self::Point => "M4 0A4 4 0 1 0-4 0A4 4 0 1 0 4 0Z",
+            Self::Survives | Self::Point | Self::Hinge => "M4 0A4 4 0 1 0-4 0A4 4 0 1 0 4 0Z",
             Self::Overturns => "M-6-4L-4-6 0-2 4-6 6-4 2 0 6 4 4 6 0 2-4 6-6 4-2 0Z",
             Self::Uncertain => "M0-6L6 0 0 6-6 0Z",
             Self::Unknown => "M-5 0H5M0-5V5",
@@ -55,6 +57,7 @@ impl SpotKind {
             Self::Uncertain => "UNCERTAIN whether it overturns",
             Self::Unknown => "no verdict",
             Self::Point => "a row of the table",
+            Self::Hinge => "a hinge",
         }
     }
 }

@@ -11,6 +11,7 @@ use super::ensemble::uncertain_run::Histories;
 use super::ensemble::uncertain_suite::Capacities;
 use super::ensemble::uncertain_threshold::FirstEdges;
 use super::ensemble::{Ensemble, Question};
+use super::limit;
 use super::map::OverturningMap;
 use super::part::{self, PartFile};
 use super::run::{self, RunOptions, Sinks};
@@ -151,6 +152,13 @@ pub const THRESHOLD_ALONG: StudyKind =
         let study = along.and_then(|along| Along::of(&scenarios[0], along));
         computed(study, style, rows)
     });
+/// The push that starts the structure, and its mechanism.
+pub const LIMIT: StudyKind = StudyKind {
+    needs_motion: false,
+    ..StudyKind::whole("limit", &limit::FILES, |scenarios, _, style, _, _| {
+        Ok(limit::results(&scenarios[0], style.figure)?.into())
+    })
+};
 /// The capacity curves of the first mechanism.
 pub const CAPACITY: StudyKind = StudyKind {
     needs_motion: false,
@@ -205,12 +213,13 @@ pub const UNCERTAIN_MAP: StudyKind =
 
 impl StudyKind {
     /// All studies.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         RUN,
         MAP,
         SUITE,
         THRESHOLD,
         THRESHOLD_ALONG,
+        LIMIT,
         CAPACITY,
         SPREAD,
         VERIFY,

@@ -41,8 +41,9 @@ pub mod verify;
 
 pub use capacity::{CapacityCurveError, Summary as CapacitySummary, capacity};
 pub use catalogue::{
-    CAPACITY, Computation, MAP, Options, RUN, RowSource, SPREAD, SUITE, StudyKind, THRESHOLD,
-    THRESHOLD_ALONG, UNCERTAIN, UNCERTAIN_MAP, UNCERTAIN_SUITE, UNCERTAIN_THRESHOLD, VERIFY, merge,
+    CAPACITY, Computation, LIMIT, MAP, Options, RUN, RowSource, SPREAD, SUITE, StudyKind,
+    THRESHOLD, THRESHOLD_ALONG, UNCERTAIN, UNCERTAIN_MAP, UNCERTAIN_SUITE, UNCERTAIN_THRESHOLD,
+    VERIFY, merge,
 };
 use ending::NoAnswer;
 pub use ending::{Ending, NoHistory, Steps, Verdict, outcome_name};

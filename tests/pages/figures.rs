@@ -609,7 +609,7 @@ fn pictures_are_written_as_pdf_and_png() {
                         .starts_with(begins)
                 );
             } else {
-                assert!(refusal(&output).contains("--path . --features print"));
+                assert!(refusal(&output).contains("--path . --locked --features print"));
             }
         }
     }

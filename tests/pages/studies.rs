@@ -327,6 +327,77 @@ fn a_capacity_curve_is_computed_by_its_command() {
     assert_eq!(again.rows, found.rows);
 }
 
+/// A ring, a row of blocks, a row with a tie, a column, and an arch on a moved springing, which no four links describe.
+#[test]
+fn hinges_of_limit_analysis_are_marked() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let ring = "[arch]\nembrace_deg = 157.5\nmean_radius_m = 5.0\nthickness_ratio = 0.2\n";
+    let tie = "[[tie]]\nheight_m = 2.0\narea_mm2 = 300.0\nmodulus_gpa = 210.0\n";
+    let moved = "[supports]\nright = { spread_m = 0.02 }\n";
+    for (parts, pictures) in [
+        (&[ring][..], 2),
+        (&[ARCH], 2),
+        (&[ARCH, tie], 0),
+        (&[COLUMN], 0),
+        (&[ARCH, moved], 0),
+    ] {
+        write(at, parts);
+        let printed = archrock(at, &["limit", "s.toml", "--format", "json"]);
+        assert!(printed.status.success(), "{}", stderr(&printed));
+        let known: Value = serde_json::from_slice(&printed.stdout).unwrap();
+        let found = page(at, &["limit", "s.toml"], "limit.html", "");
+        assert_eq!(json(&at.join("o/limit.json")), known);
+        assert_eq!(found.run(at, 0, "--format json"), known);
+        let more = found.html.matches("<div class=\"picture\"><svg").count();
+        assert_eq!(more, pictures, "{parts:?}");
+        // The words of a mark have the place of its hinge, and marks to the left are the mirror image of those to the right.
+        let spots = found.html.split("<g class=\"spot hinge\"").skip(1);
+        let spots: Vec<&str> = spots.collect();
+        let sides = ["right", "left"].map(|side| known["mechanism"][side].as_array().unwrap());
+        let hinges: Vec<&Value> = sides.into_iter().flatten().collect();
+        assert!(hinges.len() > 1);
+        let of_legend = 1;
+        assert_eq!(spots.len(), of_legend + 2 * hinges.len());
+        for (hinge, spot) in hinges.iter().zip(&spots[of_legend..]) {
+            if let Some(x_m) = hinge["x_m"].as_f64() {
+                let y_m = hinge["y_m"].as_f64().unwrap();
+                assert!(spot.contains(&format!("({x_m:.5}, {y_m:.5}) m")), "{spot}");
+            }
+        }
+        let x_px = |index: usize| -> f64 {
+            let after = spots[of_legend + index].split_once("translate(").unwrap().1;
+            after.split_once(' ').unwrap().0.parse().unwrap()
+        };
+        let middles = (0..sides[0].len()).map(|index| x_px(index) + x_px(hinges.len() - 1 - index));
+        let middles: Vec<f64> = middles.collect();
+        let is_symmetric = parts.len() == 1;
+        let is_mirrored = middles.iter().all(|sum| (sum - middles[0]).abs() < 0.03);
+        assert!(is_mirrored || !is_symmetric, "{middles:?}");
+    }
+    // A column 0.8 m wide and 4 m high starts at b/h, and turns about its toes; without hinges the command remains.
+    write(at, &[COLUMN]);
+    let found = page(at, &["limit", "s.toml"], "limit.html", "");
+    let verdict = found.html.split_once("<p id=\"outcome\">").unwrap().1;
+    let verdict = verdict.split_once("</p>").unwrap().0;
+    assert!(verdict.contains("0.20000000 g"), "{verdict}");
+    assert!(found.html.contains("right, (0.40000, ") && found.html.contains("left, (-0.40000, "));
+    let flat = "[arch]\nspan_m = 9.0\nrise_m = 0.3\nthickness_m = 1.0\nmeasured_at = \"mean\"\nvoussoirs = 9\n[free_hinges]\n";
+    write(at, &[flat]);
+    let output = archrock(at, &["limit", "s.toml", "--out", "flat"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let html = fs::read_to_string(at.join("flat/limit.html")).unwrap();
+    assert!(
+        html.contains("<p id=\"outcome\">no push to the right moves it without sliding; no push")
+    );
+    assert!(!html.contains("spot hinge"));
+    assert_eq!(data_of(&html)["cases"].as_array().unwrap().len(), 1);
+    // Without a folder nothing is written.
+    let before = fs::read_dir(at).unwrap().count();
+    assert!(archrock(at, &["limit", "s.toml"]).status.success());
+    assert_eq!(fs::read_dir(at).unwrap().count(), before);
+}
+
 #[test]
 fn a_compared_model_is_run_by_its_command() {
     let folder = tempfile::tempdir().unwrap();

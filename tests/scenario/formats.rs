@@ -576,7 +576,7 @@ fn columns_of_a_text_are_channels() {
     for (name, format, channel, number) in COLUMNS {
         let text = text(name);
         let fault = parse(&Layout::new(format), &text).unwrap_err();
-        let words = "the file has 3 channels: give `channel`";
+        let words = "the file has 3 channels: set `channel`";
         assert!(fault.message.starts_with(words), "{fault:?}");
         let choose = |channel| Layout {
             channel: Some(channel),

@@ -475,7 +475,7 @@ fn faulty_entries_are_refused() {
         ),
         (
             entry("file = 'all/cwb.dat'"),
-            "the file has 3 channels: give `channel`",
+            "the file has 3 channels: set `channel`",
         ),
         (entry(&format!("{smc}scale = 999999")), "must be at most"),
     ];

@@ -20,7 +20,7 @@
     chosen = row;
     for (const spot of spots) spot.classList.toggle("chosen", Number(spot.dataset.row) === row);
     cells.forEach((line, index) => line.classList.toggle("chosen", index === row));
-    const words = spots.find((spot) => Number(spot.dataset.row) === row).querySelector("title").textContent;
+    const words = spots.find((spot) => Number(spot.dataset.row) === row)?.querySelector("title").textContent ?? "";
     const known = cells[row] ? [...cells[row].cells].map((cell, i) => [names[i], cell.textContent]) : [];
     find("case").textContent = words;
     find("numbers").textContent = known.filter(([, cell]) => cell).map((pair) => pair.join(" ")).join(", ");

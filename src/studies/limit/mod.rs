@@ -1,7 +1,9 @@
 //! Limit analysis of a scenario: the ground acceleration that starts the structure, and its mechanism.
 
+mod page;
 mod report;
 
+pub(super) use self::page::{FILES, results};
 use self::report::open_joints;
 pub use self::report::{
     FourLinkSide, FourLinks, Friction, FrictionLimit, FrictionSide, Summary, TieLimits, Ties,
@@ -19,11 +21,7 @@ use crate::{FourLinkError, Row, RowModelError, Scenario, Sway};
 /// # Errors
 /// When the structure cannot stand, or the analysis does not apply or fails.
 pub fn limit(scenario: &Scenario) -> Result<PrintedResult, StudyError> {
-    let summary = Summary {
-        warnings: scenario.unlikely(),
-        ..summary(scenario)?
-    };
-    Ok(PrintedResult::of(&summary)?)
+    Ok(PrintedResult::of(&summary(scenario)?)?)
 }
 
 impl From<FrictionError> for StudyError {
@@ -57,6 +55,7 @@ fn summary(scenario: &Scenario) -> Result<Summary, StudyError> {
     if let Some(coefficient) = coefficient {
         summary.friction = Some(with_friction(&row()?, coefficient, summary.wall_behind)?);
     }
+    summary.warnings = scenario.unlikely();
     Ok(summary)
 }
 
@@ -177,6 +176,7 @@ fn of_moved_row(
         None => Ok(None),
     });
     let mut summary = Summary::new(starts_g, mechanism, scenario.gravity_m_s2());
+    summary.warnings = scenario.unlikely();
     summary.capacity_g = Some(capacity.map(|found| found.as_ref().ok().copied().flatten()));
     summary.capacity_not_found =
         Some(capacity.map(|found| found.as_ref().err().map(ToString::to_string)));

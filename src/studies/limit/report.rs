@@ -1,6 +1,7 @@
 //! The report of limit analysis: the summary as JSON, from which the words follow.
 
 use askama::Template;
+use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
 use crate::argument::fixed;
@@ -8,8 +9,8 @@ use crate::mechanics::friction::YieldingJoint;
 use crate::mechanics::settling::Pin;
 use crate::mechanics::{Edge, Equivalent, RowOnset, Sides};
 use crate::output::mechanisms::{HINGES, by_body, columns, degrees};
-use crate::output::{Named, filters};
-use crate::{Hinge, MechanismModel, Row, Sway};
+use crate::output::{Named, Scene, filters};
+use crate::{Hinge, MechanismModel, OpenHinge, Row, Sway};
 
 /// The onset of motion of a structure, to either side.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, Template)]
@@ -262,8 +263,20 @@ pub(super) fn open_joints(row: &Row, onset: Option<&RowOnset>) -> Vec<MechanismH
 }
 
 impl MechanismHinge {
+    /// Returns the place of the hinge in the undeformed structure, in metres.
+    pub(super) fn at_m(&self, scene: &Scene) -> Vector2<f64> {
+        match self {
+            Self::Joint { x_m, y_m, .. } => Vector2::new(*x_m, *y_m),
+            Self::Link(hinge) => {
+                let (hinge, position_m) = (*hinge, Vector2::zeros());
+                let open = scene.hinges(&[OpenHinge { hinge, position_m }]);
+                open.first().map_or(position_m, |point| point.at_m)
+            }
+        }
+    }
+
     /// Returns a line about the hinge at this position in the mechanism, from 0.
-    fn words(&self, position: &usize) -> String {
+    pub(super) fn words(&self, position: &usize) -> String {
         let named = |edge: &Option<Edge>, otherwise| edge.map_or(otherwise, Edge::name);
         match self {
             Self::Joint {

@@ -1,0 +1,73 @@
+//! Files of limit analysis: the page, the picture and the summary.
+
+use super::summary;
+use crate::argument::fixed;
+use crate::output::elevation::draw_hinges;
+use crate::output::page::{Spot, SpotKind};
+use crate::output::{Figure, Scene};
+use crate::studies::draw_limit;
+use crate::studies::page::{DrawPicture, Page, PageCases};
+use crate::studies::results::{Results, StudyError};
+use crate::{Scenario, Sway};
+
+/// Names of the files, the seal last.
+pub const FILES: [&str; 3] = ["limit.html", "limit.svg", "limit.json"];
+
+const HINGES: &str = "circles: hinges that a push opens, large ones to the right, small ones to the left; blue arrow: positive ground \
+                      acceleration, which pushes to the left";
+const SLOWLY: &str = "the push grows slowly from zero; a short pulse may exceed it without overturning; joints slip only in results with a \
+                      coefficient of friction";
+/// First words of the lines of the report that are the verdict.
+const VERDICT: &str =
+    "incipient;no push;any push;first motion;capacity;with joints that slip;a push of";
+
+/// Computes the onset of motion, and makes its files and words. Four links are drawn with their thrust line, other structures with their hinges.
+///
+/// # Errors
+/// As for [`super::limit`].
+pub fn results(scenario: &Scenario, figure: Figure) -> Result<Results, StudyError> {
+    let (summary, scene) = (summary(scenario)?, Scene::new(&scenario.structure));
+    let title = scenario.title.as_deref().unwrap_or("Limit analysis");
+    let (mut hinges_m, mut cases) = (Vec::new(), PageCases::default());
+    let case = || Some(scenario.to_json());
+    for (sway, hinges) in summary.mechanism.iter() {
+        for (index, hinge) in hinges.iter().enumerate() {
+            let (at_m, words, push) = (hinge.at_m(&scene), hinge.words(&index), sway.name());
+            let [x, y] = [at_m.x, at_m.y].map(|at_m| fixed(at_m, 5));
+            let words = format!("push to the {push}, ({x}, {y}) m: {words}");
+            cases.push((SpotKind::Hinge, false), words, case);
+            hinges_m.push((sway, at_m));
+        }
+    }
+    if hinges_m.is_empty() {
+        // The command remains, without a mark.
+        cases.push((SpotKind::Hinge, false), String::new(), case);
+        cases.spots.clear();
+    }
+    let at_rest =
+        |figure, spots: &[Spot]| draw_hinges(figure, title, (&scene, HINGES), &hinges_m, spots);
+    // Four links need the undeformed structure; the words have the reason if there are none.
+    let as_built = scenario.motion.supports().is_none();
+    let model = scenario.structure.four_links(scenario.motion.impact());
+    let model = model.ok().flatten().filter(|_| as_built);
+    let rocking = |figure, sway| Some(draw_limit(figure, model.as_ref()?, sway, &scene));
+    let picture = rocking(figure, Sway::Right).unwrap_or_else(|| at_rest(figure, &[]));
+    let results = Results::new(&FILES[1..], &summary, [picture.into_bytes()])?;
+    let mut page = Page::new(title, scenario.structure.described(), &[SLOWLY], &[]);
+    let lines = results.words.lines().map(str::trim);
+    let verdict = lines.filter(|line| VERDICT.split(';').any(|words| line.starts_with(words)));
+    page.verdict = verdict
+        .collect::<Vec<_>>()
+        .join("; ")
+        .replace(":;", ":")
+        .replace("; then hinges open at", "");
+    page.command = "limit - --out case".to_owned();
+    let draw = |figure| at_rest(figure, &cases.spots);
+    let right = |figure| rocking(figure, Sway::Right).unwrap_or_default();
+    let left = |figure| rocking(figure, Sway::Left).unwrap_or_default();
+    let more: &[DrawPicture<'_>] = match model.is_some() {
+        true => &[&right, &left],
+        false => &[],
+    };
+    Ok(results.with_page(FILES[0], page, &cases, (&draw, more)))
+}
