@@ -363,7 +363,8 @@ mod tests {
         let texts = ["left", "middle", "right", "sways right", "sways left"];
         assert_eq!(legend_px(Figure::SCREEN, &texts), LEGEND_ROW_PX);
         assert_eq!(legend_px(narrow, &texts), NARROW_ROW_PX);
-        let long = ["a text of a legend that is wider than the picture of a column is"; 2];
+        let long = ["a text of a legend that is wider than the picture of a single column of a journal is";
+            2];
         assert_eq!(legend_px(narrow, &long), 2.0 * (NARROW_ROW_PX + LINE_PX));
     }
 }

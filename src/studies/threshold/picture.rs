@@ -113,10 +113,8 @@ pub(super) fn drawn(
         let name = format!("{} peak", threshold.model);
         marks.push(Mark::curve(name, stroke, points));
     }
-    let label = format!(
-        "factor on the ground motion (factor 1 = {} g)",
-        rounded(peak_g)
-    );
+    let peak_g = rounded(peak_g);
+    let label = format!("factor on the ground motion (factor 1 = {peak_g} g)");
     let chart = Chart {
         marks: [vec![Mark::clipped(marks)], on_curves].concat(),
         ..Chart::new(320.0, (&label, x), (y_label, y))
