@@ -208,7 +208,7 @@ def test_rows_of_several_samples_are_read(tmp_path: Path) -> None:
     record = Record.read(tmp_path / "r.txt", unit="g", dt_s=0.1, wrapped=True)
     assert record.acceleration.tolist() == [0.0, 0.1, 0.2, 0.3, 0.2, 0.1, 0.0]
     (tmp_path / "r.txt").write_text("0 0.1 0.2\n0.3 0.2 0.1\n")
-    with pytest.raises(ValueError, match="there are 3 columns: give `acceleration_column`"):
+    with pytest.raises(ValueError, match="there are 3 columns: set `acceleration_column` to"):
         Record.read(tmp_path / "r.txt", unit="g", dt_s=0.1)
     record = Record.read(tmp_path / "r.txt", unit="g", dt_s=0.1, wrapped=True)
     assert len(record.time) == 6
