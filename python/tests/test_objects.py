@@ -424,7 +424,9 @@ def test_pictures(arch: Arch, pulse: Pulse, tmp_path: Path) -> None:
     assert history.plot(ax=other) is other
     assert len(one.get_lines()) == 0
     assert other.get_xlabel() == "time (s)" and other.get_ylabel() == "rotation (rad)"
-    names = [text.get_text() for text in other.get_legend().get_texts()]
+    key = other.get_legend()
+    assert key is not None
+    names = [text.get_text() for text in key.get_texts()]
     assert names == ["left", "middle", "right"]
     page = history.report_html()
     assert page.startswith("<!DOCTYPE html>") or page.lower().startswith("<!doctype html>")

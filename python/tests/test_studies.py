@@ -77,7 +77,8 @@ def test_a_map_is_that_of_the_program(program: Program, tmp_path: Path, arch: Ar
     # Each cell has the colour of its outcome.
     ax = found.plot()
     (mesh,) = ax.collections
-    colors = [tuple(color) for color in mesh.get_facecolors()]
+    mesh.update_scalarmappable()
+    colors = [tuple(color) for color in np.asarray(mesh.get_facecolor()).tolist()]
     outcomes = found.outcome.T.ravel()
     assert len(set(colors)) == 3 and len(set(zip(colors, outcomes))) == 3
     assert sorted(legend(ax)) == ["never moved", "overturned", "rest"]
@@ -117,7 +118,7 @@ def test_an_ensemble_is_that_of_the_program(program: Program, tmp_path: Path) ->
     }
     scenario = Scenario.of(Column(4.0, 0.8), COSINE, uncertain=uncertain)
     found = ensemble(scenario)
-    folder = by_program(program, tmp_path, "run", scenario.to_toml(), "--no-report")
+    folder = by_program(program, tmp_path, "run", scenario.to_toml())
     assert_files(found, folder / "uncertain")
     assert found.keys == ("column.width_m", "ground.one_cosine.amplitude_g")
     assert found.values.shape == (40, 2) and len(found.outcome) == len(found.peak_rotation) == 40
@@ -143,8 +144,8 @@ def test_a_map_of_probability_is_that_of_the_program(program: Program, tmp_path:
     assert found.probability.shape == low.shape == (len(found.x), len(found.y))
     assert (low <= found.probability).all() and (found.probability <= high).all()
     assert len(found.lines["overturned_50"]) == len(found.x)
-    mesh = found.plot().collections[0]
-    assert np.array_equal(np.ravel(mesh.get_array()), found.probability.T.ravel())
+    shown = found.plot().collections[0].get_array()
+    assert shown is not None and np.array_equal(np.ravel(shown), found.probability.T.ravel())
 
 
 def test_a_suite_is_that_of_the_program(program: Program, tmp_path: Path) -> None:
