@@ -36,6 +36,8 @@ pub struct MotionModel {
     pub(crate) options: Arc<dyn ModelOptions>,
     /// The conditions at time 0.
     pub(super) site: Site,
+    /// True if the scenario has a table `[elastic_joints]` that another model, chosen by the user, ignores.
+    pub(crate) ignores_elastic_joints: bool,
 }
 
 impl PartialEq for MotionModel {
@@ -171,6 +173,7 @@ impl Tables {
         let law = links.law();
         let wrong = "needs joints that follow: four links start undeformed; choose [free_hinges] or [elastic_joints], or leave it out";
         table.refuse(supports.is_some() && !kind.has_joints, "supports", wrong)?;
+        let has_elastic_joints = joints.iter().any(|(one, _)| *one == &ELASTIC_JOINTS);
         let mut given = joints.into_iter().chain([(&FOUR_LINKS, links)]);
         let options = match (given.find(|(one, _)| *one == kind), kind.lacking) {
             (Some((_, options)), _) => options,
@@ -184,6 +187,7 @@ impl Tables {
                 supports: supports.unwrap_or_default(),
                 gravity_m_s2: gravity_m_s2.unwrap_or(Request::default().gravity_m_s2),
             },
+            ignores_elastic_joints: has_elastic_joints && *kind != ELASTIC_JOINTS,
         };
         let ignores_impact = law != Some(model.impact());
         Ok((model, ignores_impact))

@@ -106,6 +106,9 @@ pub struct Summary {
     /// Models of motion of all runs whose words are printed together; absent for one model.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub compared_models: Vec<&'static ModelKind>,
+    /// True if the scenario has a table `[elastic_joints]` that this run ignores; absent otherwise.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub ignores_elastic_joints: bool,
     /// Summary of the samples of `[uncertain]`, as their `uncertain.json`; absent without samples.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub uncertain: Option<Value>,
@@ -386,6 +389,7 @@ impl Summary {
             points: Vec::new(),
             to_quote: None,
             compared_models: Vec::new(),
+            ignores_elastic_joints: scenario.motion.ignores_elastic_joints,
             uncertain: None,
             longest_step_us: None,
         };
