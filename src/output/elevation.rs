@@ -77,8 +77,8 @@ impl SheetTransform {
     }
 }
 
-/// Draws a structure at rest with its dimensions, the numbers of its joints, the axes, the positive ground acceleration, and a text below. On moved supports it is drawn displaced; dashed
-/// lines then show the undeformed structure, to which the dimensions refer.
+/// Draws a structure at rest with its dimensions, the numbers of its joints, the axes, the positive ground acceleration, and a text below. On moved
+/// supports it is drawn displaced; dashed lines then show the undeformed structure, to which the dimensions refer.
 pub fn draw(figure: Figure, title: &str, scene: &Scene, text: &str) -> String {
     draw_hinges(figure, title, (scene, text), &[], &[])
 }

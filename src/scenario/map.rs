@@ -199,7 +199,13 @@ impl Map {
                 ("pulses that last", longest.ground_motion(1.0).end_s())
             }
         };
-        simulation.check_covers(end_s, |last| format!("[map] has {what} until {last} s"))
+        let duration_s = simulation.duration_s.unwrap_or(f64::INFINITY);
+        ensure(end_s <= duration_s, || {
+            let [last, end] = [end_s, duration_s].map(plain);
+            format!(
+                "[map] has {what} until {last} s and would be cut off at {end} s; give a longer `duration_s` in [simulation]"
+            )
+        })
     }
 }
 

@@ -46,9 +46,7 @@ fn meaning(table: &str, key: &str) -> Option<&'static str> {
 
 /// Returns true if a name is the given one, of which a part `*` stands for any part.
 fn fits(given: &str, name: &str) -> bool {
-    let parts = given.split('.').zip(name.split('.'));
-    given.split('.').count() == name.split('.').count()
-        && parts
-            .into_iter()
-            .all(|(given, part)| ["*", part].contains(&given))
+    let [given, name] = [given, name].map(|path| path.split('.').collect::<Vec<_>>());
+    let mut parts = given.iter().zip(&name);
+    given.len() == name.len() && parts.all(|(given, part)| ["*", part].contains(given))
 }

@@ -63,22 +63,6 @@ impl Simulation {
         self.duration_s.is_none().then_some(latest_s)
     }
 
-    /// Returns an error if a ground motion lasts longer than the given duration. `until` is the beginning of the sentence.
-    pub(super) fn check_covers(
-        &self,
-        last_s: f64,
-        until: impl FnOnce(&str) -> String,
-    ) -> Result<(), String> {
-        let duration_s = self.duration_s.unwrap_or(f64::INFINITY);
-        ensure(last_s <= duration_s, || {
-            let [last, end] = [last_s, duration_s].map(plain);
-            let until = until(&last);
-            format!(
-                "{until} and would be cut off at {end} s; give a longer `duration_s` in [simulation]"
-            )
-        })
-    }
-
     /// Checks that the output of a history with default end has at least one step and fits on a disk.
     pub(super) fn check_default_end(&self, table: &mut Table<'_>, end_s: f64) -> ReadResult<()> {
         let is_default = self.duration_s.is_none();

@@ -165,7 +165,7 @@ impl Suite {
         table.refuse_all(files == 0, "has no records")?;
         let has_entries = !entries.is_empty();
         let listed = listing.series(table, accept)?;
-        let of_entries = listed.len()..;
+        let count = listed.len();
         let listed = listed.into_iter().map(|(_, series)| series);
         let mut records: Vec<_> = listed.chain(entries).collect();
         let twice = name_apart(&mut records).map_or(String::new(), |name| {
@@ -173,10 +173,11 @@ impl Suite {
         });
         table.refuse_all(!twice.is_empty(), twice)?;
         let duration_s = simulation.and_then(|simulation| simulation.duration_s);
-        if let Some(wrong) = cut_off(&records[..of_entries.start], duration_s) {
+        let (listed, entries) = records.split_at(count);
+        if let Some(wrong) = cut_off(listed, duration_s) {
             table.wrong(RECORDS, wrong);
         }
-        if let Some(wrong) = cut_off(&records[of_entries], duration_s) {
+        if let Some(wrong) = cut_off(entries, duration_s) {
             table.fault_of_table(wrong);
         }
         table.check_faultless()?;
@@ -199,15 +200,11 @@ impl Suite {
     pub(crate) fn unit_grounds(&self, gravity_m_s2: f64) -> Vec<(String, Value)> {
         let records = self.records.iter();
         let unit = records.map(|series| {
-            let unscaled_g = series.scaled(Scaling::Factor(1.0)).peak_g(gravity_m_s2);
-            let record = Record {
-                main: series.scaled(Scaling::Factor(1.0 / unscaled_g)),
-                ..scaled_record(series, Scaling::Factor(1.0))
-            };
-            (
-                series.name.clone(),
-                super::given(json!({ "record": record })),
-            )
+            let unscaled = series.scaled(Scaling::Factor(1.0));
+            let to_unit = Scaling::Factor(1.0 / unscaled.peak_g(gravity_m_s2));
+            let record = scaled_record(&unscaled, to_unit);
+            let ground = super::given(json!({ "record": record }));
+            (series.name.clone(), ground)
         });
         unit.collect()
     }

@@ -1,6 +1,6 @@
 //! Housner's free-standing column compared with closed forms and independent quadratures.
 
-use crate::common::pulse;
+use crate::common::{integral, least, pulse};
 use std::f64::consts::PI;
 
 use archrock::mechanics::MechanismChain as _;
@@ -53,18 +53,6 @@ fn released(sway: Sway, rotation_rad: f64) -> Request {
 
 fn run(column: &RockingColumn, ground: &GroundMotion, request: &Request) -> History {
     column.history(ground, request).unwrap()
-}
-
-/// Integral over `0..1` by Simpson's rule, for smooth integrands: error about `1e-13`.
-fn integral(integrand: impl Fn(f64) -> f64) -> f64 {
-    let intervals = 2000;
-    let h = 1.0 / f64::from(intervals);
-    (0..intervals)
-        .map(|i| {
-            let at = |x: f64| integrand(h * (f64::from(i) + x));
-            h / 6.0 * (at(0.0) + 4.0 * at(0.5) + at(1.0))
-        })
-        .sum()
 }
 
 /// Time of the first impact after the release from `theta_0`.
@@ -215,16 +203,9 @@ fn overturns_at_once(column: &RockingColumn, ground: &GroundMotion) -> bool {
 /// Smallest `x = a / (g alpha)` that overturns at once, by bisection to `1e-9`.
 fn overturning_x(kind: Pulse, alpha: f64, duration_s: f64) -> f64 {
     let column = column(alpha);
-    let (mut low, mut high) = (1.0, 30.0);
-    while high - low > 1e-9 {
-        let x = 0.5 * (low + high);
-        if overturns_at_once(&column, &pulse(kind, -x * alpha, duration_s)) {
-            high = x;
-        } else {
-            low = x;
-        }
-    }
-    0.5 * (low + high)
+    least([1.0, 30.0], 1e-9, |x| {
+        overturns_at_once(&column, &pulse(kind, -x * alpha, duration_s))
+    })
 }
 
 /// Slender: `cosh(p t_1) = 1 + 1 / (2 x (x - 1))` (Housner), solved for `x`. The error is of the order
@@ -284,17 +265,9 @@ fn rectangular_pulses_overturn_fat_columns_by_the_energy_integral() {
 fn half_sines_overturn_slender_columns_by_the_linear_solution() {
     for b in [1.5, 3.0, 6.0_f64] {
         let excess = |x: f64| (x * x - 1.0).sqrt() + x * (-(PI - (1.0 / x).asin()) / b).exp() - b;
-        let (mut low, mut high) = (1.0, 30.0);
-        while high - low > 1e-12 {
-            let x = 0.5 * (low + high);
-            if excess(x) > 0.0 {
-                high = x;
-            } else {
-                low = x;
-            }
-        }
+        let due = least([1.0, 30.0], 1e-12, |x| excess(x) > 0.0);
         let duration_s = PI / (b * p());
-        let miss = |alpha: f64| overturning_x(Pulse::HalfSine, alpha, duration_s) / low - 1.0;
+        let miss = |alpha: f64| overturning_x(Pulse::HalfSine, alpha, duration_s) / due - 1.0;
         assert!(miss(0.01).abs() < 1e-4, "{b}: {}", miss(0.01));
         let ratio = miss(0.2) / miss(0.1);
         assert!((3.3..4.7).contains(&ratio), "{b}: {ratio}");

@@ -2,6 +2,7 @@
 //! English and in Italian, on paper and on a telephone.
 
 use std::f64::consts::PI;
+use std::path::Path;
 
 use crate::common::browser;
 use crate::common::parsed;
@@ -35,6 +36,22 @@ const FREE: &str =
 
 fn on_piers() -> String {
     std::fs::read_to_string(scenarios().join("pointed-arch-on-piers.toml")).unwrap()
+}
+
+/// The piers have another density than the arch.
+fn on_light_piers() -> String {
+    on_piers().replace("blocks = 2\n", "blocks = 2\ndensity_kg_m3 = 1700\n")
+}
+
+/// Three blocks from a file in this folder, each with a density of its own, one on top of the other.
+fn given_blocks(folder: &Path) -> String {
+    let joints: String = (0..4).map(|y| format!("0.4,{y},-0.4,{y}\n")).collect();
+    let file = folder.join("joints.csv");
+    std::fs::write(&file, joints).unwrap();
+    format!(
+        "[blocks]\njoints = '{}'\nsupports = 'left'\ndensity_kg_m3 = [2400, 2000, 1800]\n[free_hinges]\n",
+        file.display()
+    )
 }
 
 fn html_of(scenario: &Scenario) -> String {
@@ -393,10 +410,15 @@ fn bodies_by_hand(
         });
         return bodies.collect();
     }
-    let blocks = &tables(structure, "blocks")[0][1..];
-    let parts = blocks.iter().map(|row| {
+    let table = &tables(structure, "blocks")[0];
+    let has_densities = table[0].iter().any(|head| head == "ρ (kg/m³)");
+    let parts = table[1..].iter().map(|row| {
         let corners = points(&row[1]);
-        let masses: Vec<f64> = row[2..row.len() - 2]
+        let rho = match has_densities {
+            true => number(&row[2]),
+            false => rho,
+        };
+        let masses: Vec<f64> = row[2 + usize::from(has_densities)..row.len() - 2]
             .iter()
             .map(|cell| number(cell))
             .collect();
@@ -587,18 +609,9 @@ fn redo(text: &str) -> usize {
         let checks = text_of(&checks);
         let t0 = text.contains("T0 =").then(|| {
             let density = after(&whole, "ρ = ").value;
-            let [kappa, length, thickness, modulus] = ["κ λ L √(W/(E g)) = ", " · ", "/", " · 109"]
-                .map(|mark| {
-                    let from = text.split_once("κ λ L √(W/(E g)) = ").unwrap().1;
-                    match mark {
-                        " · 109" => {
-                            let before = from.split_once(" · 109").unwrap().0;
-                            Shown::first_of(before.rsplit_once("/ (").unwrap().1).value
-                        }
-                        mark if mark.starts_with('κ') => Shown::first_of(from).value,
-                        mark => after(from, mark).value,
-                    }
-                });
+            let (_, from) = text.split_once("κ λ L √(W/(E g)) = ").unwrap();
+            let [kappa, length, thickness, modulus] =
+                ["", " · ", "/", "/ ("].map(|mark| after(from, mark).value);
             let t0 = kappa * length / thickness * length * (density / (modulus * 1e9)).sqrt();
             after(&text, " · 109)) = ").is(t0);
             t0
@@ -707,10 +720,13 @@ fn own_weight(bodies: &[(f64, Vector2<f64>)]) -> f64 {
 /// Every ratio of the page follows from its other numbers: corners, masses, hinges, displaced positions, hazard and modes.
 #[test]
 fn the_check_is_redone_by_hand_from_the_printed_page() {
+    let folder = tempfile::tempdir().unwrap();
     for (text, ratios) in [
         (format!("{ARCH}{DEMAND}"), 6),
         (format!("{ARCH}{DEMAND}{HEIGHT}"), 6),
         (format!("{}{DEMAND}{HEIGHT}", on_piers()), 12),
+        (format!("{}{DEMAND}", on_light_piers()), 12),
+        (format!("{}{DEMAND}", given_blocks(folder.path())), 6),
         (format!("{COLUMN}{DEMAND}{FREE}"), 6),
         (format!("{COLUMN}{DEMAND}{HEIGHT}{FREE}"), 6),
         (format!("{LOADED}{DEMAND}"), 12),
@@ -723,6 +739,42 @@ fn the_check_is_redone_by_hand_from_the_printed_page() {
         ),
     ] {
         assert_eq!(redo(&text), ratios, "{text}");
+    }
+}
+
+/// Loads name their block and point, fill its level.
+#[test]
+fn the_page_lists_loads_and_fill() {
+    let drums = DRUMS.replace("top_width_m = 0.6\n", "");
+    let page = |text: String| text_of(&html_of(&parsed(&text)));
+    let of_drums = page(format!(
+        "{drums}[[load]]\nmass_kg = 500\nx_m = 0.1\nheight_m = 3\n\
+         [[load]]\nmass_kg = 200\nmoves = false\nthrust_n = 100\n{DEMAND}"
+    ));
+    for line in [
+        "Load 1: block 4, at (0.10000; 3.00000) m: 500.00 kg.",
+        "Load 2: block 5, at (0.00000; 4.00000) m: 200.00 kg (weight only, without inertia), thrust 0.1000 kN.",
+    ] {
+        assert!(of_drums.contains(line), "{line}");
+    }
+    let of_arch = page(format!("{}{DEMAND}", on_piers()));
+    let level = on_piers().replace("height_m = 2.0", "above_crown_m = 0.2");
+    let above_crown = page(format!("{level}{DEMAND}"));
+    let of_piers = page(format!("{}{DEMAND}", on_light_piers()));
+    for (page, words) in [
+        (
+            &of_arch,
+            "Fill up to 2.0000 m above the springing of the extrados, 1600.00 kg/m³.",
+        ),
+        (&of_arch, "over a width of 0.5000 m: 1500.00 kg."),
+        (&of_arch, "ρ = 2000.00 kg/m³; g"),
+        (
+            &above_crown,
+            "Fill up to 0.2000 m above the crown of the extrados",
+        ),
+        (&of_piers, "ρ = 2000.00 kg/m³ of the arch; g"),
+    ] {
+        assert!(page.contains(words), "{words}");
     }
 }
 
@@ -851,6 +903,7 @@ fn the_italian_check_mirrors_the_english_one() {
         format!("{STOUT}{DEMAND}"),
         format!("{TIED}{DEMAND}"),
         format!("{DRUMS}{DEMAND}{left}"),
+        format!("{}{DEMAND}", on_light_piers()),
         format!("{COLUMN}{}", DEMAND.replace("'B'", "'D'")),
     ] {
         let scenarios = both_languages(&text);

@@ -141,18 +141,32 @@ impl Geometry {
                 let (filled, bare) = (without(masonry.fill), without(None));
                 let rows = [&filled, &bare].map(|one| one.as_ref().map(|one| &one.row));
                 geometry.shape = masonry.shape.name().to_owned();
-                let densities = match &masonry.shape {
+                let given = match &masonry.shape {
                     Shape::Blocks(given) => &*given.density_kg_m3,
                     _ => &[],
                 };
-                // One density may be that of all blocks.
-                let density = |block| *densities.get(block).unwrap_or(&density_kg_m3);
+                let [left, right] = masonry.springing_joints().unwrap_or([0, usize::MAX]);
+                let of_pier = |block| match block {
+                    _ if block < left => masonry.piers.left?.density_kg_m3,
+                    _ if block >= right => masonry.piers.right?.density_kg_m3,
+                    _ => None,
+                };
+                let density = |block| {
+                    let own = given.get(block).copied().or_else(|| of_pier(block));
+                    own.unwrap_or(density_kg_m3)
+                };
                 geometry.blocks = blocks([row.as_ref(), rows[0], rows[1]], density);
                 geometry.fill = masonry.fill.map(FillGeometry::new);
                 geometry.loads = loads(&masonry.loads, &masonry.load_outlines.loads_m);
             }
         }
         geometry
+    }
+
+    /// Returns true if the page prints the density of each block.
+    pub(super) fn has_densities(&self) -> bool {
+        let mut blocks = self.blocks.iter();
+        self.shape == "blocks" || blocks.any(|one| one.density_kg_m3 != self.density_kg_m3)
     }
 }
 
