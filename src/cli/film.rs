@@ -92,18 +92,14 @@ pub fn film(arguments: &Arguments) -> Result<(), Failure> {
         process::exit(INTERRUPTED_CODE);
     }
     let (pictures, film) = made?;
-    let path = match (out, folder) {
-        (Some(file), _) => {
-            write_named(file, &film, "--out")?;
-            file.to_owned()
-        }
-        (None, None) => return Ok(()),
-        (None, Some(folder)) => {
-            folder.add(&name, &film)?;
-            folder.publish()?;
-            folder.path().join(name)
-        }
-    };
+    let mut path = arguments.out.clone().unwrap_or_default();
+    if let Some(folder) = folder {
+        folder.add(&name, &film)?;
+        folder.publish()?;
+        path = folder.path().join(name);
+    } else {
+        write_named(&path, &film, "--out")?;
+    }
     let ([width, height], rate_hz) = (options.size_px, Film::RATE_HZ);
     print_status(&format!(
         "{}: {pictures} pictures of {width}x{height} pixels, {:.2} s at {rate_hz} a second",
@@ -154,11 +150,7 @@ impl From<PrintError> for Failure {
 }
 
 fn size_px(text: &str) -> Result<[u32; 2], String> {
-    let sides = text
-        .split_once('x')
-        .map(|(width, height)| [width.parse(), height.parse()]);
-    match sides {
-        Some([Ok(width), Ok(height)]) => Ok([width, height]),
-        _ => Err("give width and height in pixels, such as 1280x720".to_owned()),
-    }
+    let sides = text.split_once('x');
+    let sides = sides.and_then(|(width, height)| Some([width.parse().ok()?, height.parse().ok()?]));
+    sides.ok_or_else(|| "give width and height in pixels, such as 1280x720".to_owned())
 }

@@ -368,7 +368,7 @@ fn hidden_file(folder: &Path, name: &str) -> io::Result<NamedTempFile> {
     builder.tempfile_in(folder)
 }
 
-/// Writes a file that no manifest lists, because the user named it. It replaces only an earlier one that begins alike or names this program.
+/// Writes a file that no manifest lists, because the user named it. It replaces only an earlier one that begins alike, or a film by a film.
 ///
 /// # Errors
 /// When the system reports an error, or the file is there and was not written by this program.
@@ -380,7 +380,9 @@ pub fn write_named_file(path: &Path, contents: &[u8]) -> Result<(), OutputError>
     }
     if path.exists() {
         let earlier = fs::read(path).map_err(cannot())?;
-        if beginning(&earlier) != beginning(contents) && !names_program(&earlier) {
+        // Another text may name this program too: a scenario does.
+        let are_films = names_program(&earlier) && names_program(contents);
+        if beginning(&earlier) != beginning(contents) && !are_films {
             return Err(OutputError::NotWrittenHere(path.to_owned()));
         }
     }

@@ -314,7 +314,8 @@ impl Scene {
         marks.collect()
     }
 
-    fn hinge(&self, hinge: Hinge) -> Option<BodyPoint> {
+    /// Returns the position of a hinge; `None` if the structure does not have it.
+    pub(crate) fn hinge(&self, hinge: Hinge) -> Option<BodyPoint> {
         let (body, at_m) = match (hinge, &self.outline) {
             (Hinge::Section { angle_rad, edge }, Outline::Ring { .. }) => {
                 (None, self.on_ring_m(angle_rad, edge)?)

@@ -123,15 +123,9 @@ impl<'a> Sheet<'a> {
         }
         let right = self.figure.width_px - 15.0;
         // In a narrow picture the legend has little space, and begins at its side.
-        let is_narrow = self.figure.width_px < NARROW_PX;
-        let [left, right] = if is_narrow {
-            [8.0, right + 15.0]
-        } else {
-            [left, right]
-        };
-        let (row_px, sign_px, apart_px) = match is_narrow {
-            true => (NARROW_ROW_PX, 14.0, 9.0),
-            false => (LEGEND_ROW_PX, SIGN_PX, 18.0),
+        let ([left, right], row_px, sign_px, apart_px) = match self.figure.width_px < NARROW_PX {
+            true => ([8.0, right + 15.0], NARROW_ROW_PX, 14.0, 9.0),
+            false => ([left, right], LEGEND_ROW_PX, SIGN_PX, 18.0),
         };
         let text_px = sign_px + 6.0;
         let mut at = Vector2::new(left, 0.5 * row_px);

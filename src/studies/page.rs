@@ -167,14 +167,21 @@ impl PageCases {
         result: &Result<Ending, NoHistory>,
         scenario: impl FnOnce() -> Option<Value>,
     ) {
-        let (kind, words) = history_in_words(result);
-        let outside = result.as_ref().is_ok_and(Ending::is_outside_model);
+        let words = match result {
+            Ok(ending) => match ending.doubt() {
+                Some(doubt) => format!("UNCERTAIN: {doubt}"),
+                None => OutcomeColor::of_result(result).label.to_owned(),
+            },
+            Err(reason) => format!("no verdict: {reason}"),
+        };
+        let ending = result.as_ref().ok();
+        let outside = ending.is_some_and(Ending::is_outside_model);
         let beyond = match outside {
             true => "; OUTSIDE the model of four links",
             false => "",
         };
         self.push(
-            (kind, outside),
+            (kind_of(ending.map(Ending::verdict)), outside),
             format!("{case}: {words}{beyond}"),
             scenario,
         );
@@ -208,19 +215,6 @@ pub(super) const fn kind_of(verdict: Option<Verdict>) -> SpotKind {
         Some(Verdict::Uncertain) => SpotKind::Uncertain,
         _ => SpotKind::Unknown,
     }
-}
-
-/// Returns the outcome of a history, and its words.
-pub(super) fn history_in_words(result: &Result<Ending, NoHistory>) -> (SpotKind, String) {
-    let words = match result {
-        Ok(ending) => match ending.doubt() {
-            Some(doubt) => format!("UNCERTAIN: {doubt}"),
-            None => OutcomeColor::of_result(result).label.to_owned(),
-        },
-        Err(reason) => format!("no verdict: {reason}"),
-    };
-    let verdict = result.as_ref().ok().map(Ending::verdict);
-    (kind_of(verdict), words)
 }
 
 /// Returns a scenario whose ground accelerations are multiplied by a factor.

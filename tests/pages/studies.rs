@@ -177,12 +177,9 @@ fn a_factor_on_a_page_is_run_by_its_command() {
     let options = [
         "threshold",
         "s.toml",
-        "--from",
-        "0.3",
-        "--to",
-        "3",
-        "--stride",
-        "0.2",
+        "--from=0.3",
+        "--to=3",
+        "--stride=0.2",
     ];
     let both = [&options[..], &["--hinges", "four,free"]].concat();
     let found = page(at, &both, "threshold.html", "threshold.csv");
@@ -202,6 +199,7 @@ fn a_factor_on_a_page_is_run_by_its_command() {
         2,
         "title and heading"
     );
+    open_in_a_browser(&found, &at.join("o/threshold.html"));
     // Both scales of records, and no page.
     write_suite(at, "");
     for scale in ["", "--set=ground.record.peak_g=0.5"] {
@@ -210,6 +208,21 @@ fn a_factor_on_a_page_is_run_by_its_command() {
         page(at, &again, "threshold.html", "threshold.csv").assert_histories(at);
     }
     printed_without(at, &options, "threshold.html");
+}
+
+/// Moves over the cases of a page, on a wide and on a narrow screen, and prints it.
+fn open_in_a_browser(found: &Page, page: &Path) {
+    let rows = 0..found.rows.len();
+    let commands: Vec<String> = rows.map(|row| found.command(row)).collect();
+    let script = include_str!("studies.js");
+    let data = json!({ "commands": commands }).to_string();
+    for settings in [
+        &["--window-size=1280,900"][..],
+        &["--window-size=390,900", "--force-dark-mode"],
+    ] {
+        browser::assert_checked(page, script, &data, settings, 30);
+    }
+    assert!(browser::sheets(page).is_none_or(|sheets| sheets == 1));
 }
 
 /// A study without its page has all other files.
@@ -418,35 +431,4 @@ fn a_compared_model_is_run_by_its_command() {
         assert_eq!(summary["outcome"], own["outcome"]);
         assert_eq!(summary["peak_rotations_rad"], own["peak_rotations_rad"]);
     }
-}
-
-#[test]
-fn cases_in_a_browser() {
-    let folder = tempfile::tempdir().unwrap();
-    let at = folder.path();
-    write(at, &[COLUMN, PULSE]);
-    let options = [
-        "threshold",
-        "s.toml",
-        "--from",
-        "0.3",
-        "--to",
-        "3",
-        "--stride",
-        "0.2",
-    ];
-    let found = page(at, &options, "threshold.html", "threshold.csv");
-    let commands: Vec<String> = (0..found.rows.len())
-        .map(|row| found.command(row))
-        .collect();
-    let script = include_str!("studies.js");
-    let data = json!({ "commands": commands }).to_string();
-    let page = at.join("o/threshold.html");
-    for (settings, least) in [
-        (&["--window-size=1280,900"][..], 30),
-        (&["--window-size=390,900", "--force-dark-mode"], 30),
-    ] {
-        browser::assert_checked(&page, script, &data, settings, least);
-    }
-    assert!(browser::sheets(&page).is_none_or(|sheets| sheets == 1));
 }

@@ -534,6 +534,7 @@ fn no_result_replaces_or_removes_an_input() {
             &["limit", "s.toml", "--plot", "plain"][..],
             "did not write it",
         ),
+        (&["impact", "s.toml", "--line", "plain"], "did not write it"),
         (
             &["impact", "s.toml", "--line", "s.toml"],
             "did not write it",
@@ -543,7 +544,7 @@ fn no_result_replaces_or_removes_an_input() {
             "did not write it",
         ),
     ] {
-        fs::write(at.join("plain"), "mine").unwrap();
+        fs::write(at.join("plain"), "my notes on archrock").unwrap();
         refused(at, line, &[words, "choose another file with"]);
     }
     for line in [

@@ -406,11 +406,8 @@ class Capacity(Results):
         """
         ax = _axes(ax)
         for sway, line in (("right", "-"), ("left", "--")):
-            own = self.columns()["sway"] == sway
-            columns = {name: values[own] for name, values in self.columns().items()}
-            ax.plot(
-                columns["displacement_m"], columns["acceleration_g"], line, label=f"to the {sway}"
-            )
+            own = self.side(sway)
+            ax.plot(own["displacement_m"], own["acceleration_g"], line, label=f"to the {sway}")
         ax.set_xlabel("displacement of the control point (m)")
         ax.set_ylabel("acceleration (g)")
         ax.legend()

@@ -14,16 +14,18 @@ pub(super) type PageAnswer = (SpotKind, bool, Option<f64>);
 
 /// The parts of a page of samples that depend on the question.
 pub(super) struct SamplePage<'a, A> {
-    pub(super) name: &'static str,
     pub(super) title: &'a str,
     /// Label of the y axis.
     pub(super) label: &'static str,
     /// The command of a sample, without `archrock` and its scenario.
     pub(super) command: String,
     pub(super) answer: &'a dyn Fn(&A) -> PageAnswer,
-    /// Other pictures.
-    pub(super) more: [DrawPicture<'a>; 2],
+    /// The picture of all samples.
+    pub(super) picture: DrawPicture<'a>,
 }
+
+/// Name of the page.
+pub(super) const SAMPLES: &str = "samples.html";
 
 impl<A> SamplePage<'_, A> {
     /// Adds the page of the samples to their results.
@@ -71,7 +73,8 @@ impl<A> SamplePage<'_, A> {
         let what = input_in_words(&[scenario]);
         let mut page = Page::new(self.title, what, &[&numbers], &[scenario.motion.kind]);
         page.command = self.command.clone();
-        results.with_page(self.name, page, &cases, (&draw, &self.more))
+        let influences = |figure| all.draw_influences(samples, figure);
+        results.with_page(SAMPLES, page, &cases, (&draw, &[self.picture, &influences]))
     }
 
     fn of<'r>(&self, row: &'r SampleRow<A>) -> Result<PageAnswer, &'r NoAnswer> {

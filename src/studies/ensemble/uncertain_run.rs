@@ -7,7 +7,7 @@ use askama::Template;
 use serde::{Deserialize, Serialize};
 
 use super::influence::{InfluencedAnswer, percent};
-use super::page::{PageAnswer, SamplePage};
+use super::page::{PageAnswer, SAMPLES, SamplePage};
 use super::report::{self, Band, Line, SampleSummary, of_answer};
 use super::{NoAnswer, Question, Samples};
 use crate::dynamics::WithoutDemand;
@@ -64,7 +64,7 @@ impl Question for Histories {
     const NAME: &'static str = "uncertain";
 
     const FILES: &'static [&'static str] = &[
-        "samples.html",
+        SAMPLES,
         "bands.svg",
         "matters.svg",
         "bands.csv",
@@ -150,14 +150,11 @@ impl Question for Histories {
         ];
         let results = Results::new(&Self::FILES[1..], &report, others)?;
         let page = SamplePage {
-            name: Self::FILES[0],
             title: samples.title(TITLE),
             label: "peak rotation (rad)",
             command: "run - --out case".to_owned(),
             answer: &page_answer,
-            more: [&|figure| self.draw(figure, samples, &bands), &|figure| {
-                report.all.draw_influences(samples, figure)
-            }],
+            picture: &|figure| self.draw(figure, samples, &bands),
         };
         Ok(Results {
             largest_rotations_rad,

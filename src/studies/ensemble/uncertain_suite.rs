@@ -5,7 +5,7 @@ use askama::Template;
 use serde::{Deserialize, Serialize};
 
 use super::influence::InfluencedAnswer;
-use super::page::SamplePage;
+use super::page::{SAMPLES, SamplePage};
 use super::report::{self, SampleSummary, of_answer, why_not};
 use super::uncertain_threshold::{StrengthBand, first_strength};
 use super::{NoAnswer, Question, Samples};
@@ -102,7 +102,7 @@ impl Question for Capacities {
     const NAME: &'static str = "uncertain_suite";
 
     const FILES: &'static [&'static str] = &[
-        "samples.html",
+        SAMPLES,
         "fragility.svg",
         "matters.svg",
         "fragility.csv",
@@ -171,14 +171,11 @@ impl Question for Capacities {
             )
         };
         let page = SamplePage {
-            name: Self::FILES[0],
             title: samples.title(TITLE),
             label: "median intensity that overturns",
             command: "suite - --out case".to_owned(),
             answer: &answer,
-            more: [&|figure| self.draw(figure, samples), &|figure| {
-                report.all.draw_influences(samples, figure)
-            }],
+            picture: &|figure| self.draw(figure, samples),
         };
         Ok(page.add_to(results, samples, &report.all))
     }

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::influence::InfluencedAnswer;
-use super::page::{PageAnswer, SamplePage};
+use super::page::{PageAnswer, SAMPLES, SamplePage};
 use super::report::{self, Band, Line, SampleSummary, why_not};
 use super::{NoAnswer, Question, Samples};
 use crate::output::page::SpotKind;
@@ -94,7 +94,7 @@ impl Question for FirstEdges {
     const NAME: &'static str = "uncertain_threshold";
 
     const FILES: &'static [&'static str] = &[
-        "samples.html",
+        SAMPLES,
         "probability.svg",
         "matters.svg",
         "probability.csv",
@@ -157,16 +157,13 @@ impl Question for FirstEdges {
         let results = Results::new(&Self::FILES[1..], &report, others)?;
         let (from, to, stride) = (self.factors.from, self.factors.to, self.factors.stride);
         let page = SamplePage {
-            name: Self::FILES[0],
             title: samples.title(TITLE),
             label: "first factor that overturns",
             command: format!(
                 "threshold - --from {from:?} --to {to:?} --stride {stride:?} --out case"
             ),
             answer: &page_answer,
-            more: [&|figure| draw(figure, samples, &probabilities), &|figure| {
-                report.all.draw_influences(samples, figure)
-            }],
+            picture: &|figure| draw(figure, samples, &probabilities),
         };
         Ok(page.add_to(results, samples, &report.all))
     }

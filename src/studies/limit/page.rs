@@ -17,9 +17,6 @@ const HINGES: &str = "circles: hinges that a push opens, large ones to the right
                       acceleration, which pushes to the left";
 const SLOWLY: &str = "the push grows slowly from zero; a short pulse may exceed it without overturning; joints slip only in results with a \
                       coefficient of friction";
-/// First words of the lines of the report that are the verdict.
-const VERDICT: &str =
-    "incipient;no push;any push;first motion;capacity;with joints that slip;a push of";
 
 /// Computes the onset of motion, and makes its files and words. Four links are drawn with their thrust line, other structures with their hinges.
 ///
@@ -54,13 +51,7 @@ pub fn results(scenario: &Scenario, figure: Figure) -> Result<Results, StudyErro
     let picture = rocking(figure, Sway::Right).unwrap_or_else(|| at_rest(figure, &[]));
     let results = Results::new(&FILES[1..], &summary, [picture.into_bytes()])?;
     let mut page = Page::new(title, scenario.structure.described(), &[SLOWLY], &[]);
-    let lines = results.words.lines().map(str::trim);
-    let verdict = lines.filter(|line| VERDICT.split(';').any(|words| line.starts_with(words)));
-    page.verdict = verdict
-        .collect::<Vec<_>>()
-        .join("; ")
-        .replace(":;", ":")
-        .replace("; then hinges open at", "");
+    page.verdict = summary.verdict();
     page.command = "limit - --out case".to_owned();
     let draw = |figure| at_rest(figure, &cases.spots);
     let right = |figure| rocking(figure, Sway::Right).unwrap_or_default();

@@ -1,5 +1,7 @@
 //! The report of limit analysis: the summary as JSON, from which the words follow.
 
+use std::iter;
+
 use askama::Template;
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
@@ -10,7 +12,7 @@ use crate::mechanics::settling::Pin;
 use crate::mechanics::{Edge, Equivalent, RowOnset, Sides};
 use crate::output::mechanisms::{HINGES, by_body, columns, degrees};
 use crate::output::{Named, Scene, filters};
-use crate::{Hinge, MechanismModel, OpenHinge, Row, Sway};
+use crate::{Hinge, MechanismModel, Row, Sway};
 
 /// The onset of motion of a structure, to either side.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, Template)]
@@ -224,14 +226,70 @@ impl Summary {
         }
     }
 
-    /// Returns the reason why the push at collapse was not found.
-    fn not_found(&self, sway: &Sway) -> Option<&String> {
-        self.capacity_not_found.as_ref()?.to(*sway).as_ref()
+    /// Returns all pushes in one line.
+    pub(super) fn verdict(&self) -> String {
+        let friction = self.friction.as_ref().map(|friction| {
+            let [right, left] = Sides::of(|sway| friction.starts(&sway)).into();
+            format!("{}: {right}; {left}", friction.heading())
+        });
+        let all: Vec<String> = self.pushes().into_iter().chain(friction).collect();
+        all.join("; ")
     }
 
-    /// Returns the push at collapse, in units of gravity.
-    fn falls_g(&self, sway: &Sway) -> Option<f64> {
-        *self.capacity_g.as_ref()?.to(*sway)
+    /// Returns the pushes that start the structure and those at which it falls in words, without slip.
+    fn pushes(&self) -> Vec<String> {
+        let sides = match self.wall_behind {
+            Some(wall) if self.unstable_rotations.is_some() => [wall.opposite(), wall],
+            _ => [Sway::Right, Sway::Left],
+        };
+        let each = |sway| iter::once(self.starts(sway)).chain(self.falls(sway));
+        let mut lines: Vec<String> = sides.iter().flat_map(each).collect();
+        // One line for both sides of a structure that is its mirror image.
+        lines.dedup();
+        lines
+    }
+
+    /// Returns the push that starts the structure to one side in words.
+    fn starts(&self, sway: &Sway) -> String {
+        let name = sway.name();
+        let shown = |starts: &Sides<Option<f64>>, decimals| {
+            starts.to(*sway).map(|push| fixed(push, decimals))
+        };
+        let is_moved = self.hinges.is_some();
+        match shown(&self.incipient_acceleration_g, 8) {
+            None if self.wall_behind == Some(*sway) => {
+                format!("no push to the {name} moves it: a wall stands there")
+            }
+            None => format!("no push to the {name} moves it without sliding"),
+            Some(_) if is_moved && self.mechanism.to(*sway).is_empty() => {
+                format!("any push to the {name} moves it")
+            }
+            Some(push_g) if is_moved => {
+                format!("first motion to the {name}, where hinges give way to others: {push_g} g")
+            }
+            Some(push_g) => {
+                let push_m_s2 = shown(&self.incipient_acceleration_m_s2, 6).unwrap_or_default();
+                let is_one = self.wall_behind.is_none() && self.to_the_left.is_none();
+                let side = match self.unstable_rotations {
+                    Some(_) if is_one => ", either side".to_owned(),
+                    _ => format!(" to the {name}"),
+                };
+                format!("incipient rocking acceleration A_L{side}: {push_g} g = {push_m_s2} m/s2")
+            }
+        }
+    }
+
+    /// Returns the push at which a structure on moved springings falls to one side in words; `None` if no push starts it.
+    fn falls(&self, sway: &Sway) -> Option<String> {
+        let (name, pushes_g) = (sway.name(), self.capacity_g.as_ref()?);
+        self.incipient_acceleration_g.to(*sway).as_ref()?;
+        if let Some(reason) = self.capacity_not_found.as_ref()?.to(*sway) {
+            return Some(format!("capacity to the {name} not found: {reason}"));
+        }
+        Some(match pushes_g.to(*sway).map(|push_g| fixed(push_g, 8)) {
+            Some(push_g) => format!("capacity to the {name}, where it falls: {push_g} g"),
+            None => format!("no push to the {name} was found at which it falls"),
+        })
     }
 
     /// Returns rotations with the names of their bodies.
@@ -243,6 +301,38 @@ impl Summary {
     fn unstable_by_body(&self, Named(rotations_rad): &Named<f64>) -> String {
         let rotations_rad = rotations_rad.iter().map(|(_, value)| *value);
         self.by_body(&rotations_rad.collect::<Vec<_>>())
+    }
+}
+
+impl Friction {
+    fn heading(&self) -> String {
+        let coefficient = self.coefficient;
+        format!("with joints that slip at a coefficient of friction of {coefficient:?}")
+    }
+
+    /// Returns the push that starts the row to one side in words.
+    fn starts(&self, sway: &Sway) -> String {
+        let name = sway.name();
+        let (push_g, slips) = match &self.onset {
+            FrictionLimit::Moved {
+                incipient_acceleration_g: pushes_g,
+            } => (*pushes_g.to(*sway), None),
+            FrictionLimit::Undeformed { sides, .. } => {
+                let side = sides.to(*sway);
+                (side.incipient_acceleration_g, Some(side.sliding_governs))
+            }
+        };
+        match (push_g.map(|push_g| fixed(push_g, 8)), slips) {
+            (None, _) => format!("no push to the {name} starts it"),
+            (Some(push_g), None) => format!("first motion to the {name} at {push_g} g"),
+            (Some(push_g), Some(false)) => {
+                format!("a push of {push_g} g starts it to the {name}: no joint slips")
+            }
+            (Some(push_g), Some(true)) => format!(
+                "a push of {push_g} g starts it to the {name}: sliding governs; this is an upper bound, because joints are assumed to \
+                 open as they slip"
+            ),
+        }
     }
 }
 
@@ -268,9 +358,8 @@ impl MechanismHinge {
         match self {
             Self::Joint { x_m, y_m, .. } => Vector2::new(*x_m, *y_m),
             Self::Link(hinge) => {
-                let (hinge, position_m) = (*hinge, Vector2::zeros());
-                let open = scene.hinges(&[OpenHinge { hinge, position_m }]);
-                open.first().map_or(position_m, |point| point.at_m)
+                let point = scene.hinge(*hinge);
+                point.map_or_else(Vector2::zeros, |point| point.at_m)
             }
         }
     }

@@ -15,7 +15,7 @@ use crate::studies::page::{Page, PageCases, input_in_words, kind_of};
 /// The runs of one structure with several models of motion.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Comparison {
-    /// The answer of the model with the fewest in words.
+    /// The answer of the model with the fewest assumptions, in words.
     pub to_quote: Option<String>,
     /// The runs, by the name of the model.
     #[serde(flatten)]

@@ -24,18 +24,6 @@ pub struct FilmOptions {
     pub exaggeration: f64,
 }
 
-impl Default for FilmOptions {
-    fn default() -> Self {
-        Self {
-            speed: 1.0,
-            size_px: [1280, 720],
-            background: Background::WHITE,
-            caption: None,
-            exaggeration: 1.0,
-        }
-    }
-}
-
 impl FilmOptions {
     /// Checks all numbers.
     ///
@@ -150,7 +138,7 @@ impl Recorder for Camera<'_> {
             self.status = Err(RunnerError::Cancelled(progress).into());
         } else if self.snapshots.count() == MAX_FILM_PICTURES {
             self.status = Err(StudyError::scenario(format!(
-                "a film has less than {MAX_FILM_PICTURES} pictures, and the history needs more: choose a greater speed, or a shorter duration_s"
+                "a film has fewer than {MAX_FILM_PICTURES} pictures, and the history needs more: choose a greater speed, or a shorter duration_s"
             )));
         }
         match self.status {
