@@ -337,6 +337,7 @@ impl StudyJob<'_> {
         let sinks = Sinks {
             folder: folder.cloned(),
             rotations: self.options.run.no_rotations.then(stdout),
+            ..Sinks::default()
         };
         let rows = RowSource::Compute(runner, task, &mut watch);
         let done = kind.compute(scenarios, &self.options, self.style, rows, sinks);

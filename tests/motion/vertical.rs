@@ -230,8 +230,8 @@ fn the_vertical_acceleration_is_the_last_column_if_present() {
             &RunOptions::default(),
             Figure::SCREEN,
             Sinks {
-                folder: None,
                 rotations: Some(Box::new(&mut text)),
+                ..Sinks::default()
             },
             &mut |_| ControlFlow::Continue(()),
         )

@@ -27,6 +27,7 @@ mod words;
 
 use std::collections::BTreeMap;
 use std::io;
+use std::mem;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
@@ -104,13 +105,15 @@ pub struct RunOptions {
 }
 
 /// Receives the rotations in place of a file.
-pub type RotationsOutput<'w> = Option<Box<dyn io::Write + 'w>>;
+pub type RotationsOutput<'w> = Option<Output<'w>>;
 
 /// The receivers of the tables of a run, which are written while it is computed.
 #[derive(Default)]
 pub struct Sinks<'w> {
     /// The folder; with several models of motion each has a folder inside it. `None`: no files are written.
     pub folder: Option<Folder>,
+    /// Whether the results of a single model without folder hold its files.
+    pub in_memory: bool,
     /// The output for the rotations in place of a file.
     pub rotations: RotationsOutput<'w>,
 }
@@ -122,6 +125,8 @@ struct ModelResults {
     curves: Curves,
     /// The files in its folder, if there is one.
     files: Option<Files>,
+    /// Its files if they stay in memory.
+    in_memory: Vec<(&'static str, Vec<u8>)>,
 }
 
 /// A scenario to run.
@@ -166,10 +171,17 @@ pub fn results(
         let folder = sinks.folder.as_ref();
         let folder = folder.map(|it| it.of_model(run.scenario.motion.kind, runs.len() > 1));
         let samples = options.samples.get(number);
-        let rotations = sinks.rotations.take();
-        all.push(run.compute(folder.as_ref(), rotations, samples, &mut *watch)?);
+        let sinks = Sinks {
+            folder,
+            in_memory: sinks.in_memory && runs.len() == 1,
+            rotations: sinks.rotations.take(),
+        };
+        all.push(run.compute(sinks, samples, &mut *watch)?);
     }
-    let mut results = Results::default();
+    let mut results = Results {
+        files: mem::take(&mut all[0].in_memory),
+        ..Results::default()
+    };
     let comparison = (all.len() > 1).then(|| {
         let answers: Vec<_> = all.iter().map(|one| one.answer.clone()).collect();
         let summaries = all.iter().map(|one| one.summary.clone());
@@ -191,7 +203,7 @@ pub fn results(
         comparison: comparison.as_ref(),
         runs: printed.collect(),
     });
-    if !results.files.is_empty() && !options.no_report {
+    if comparison.is_some() && !results.files.is_empty() && !options.no_report {
         results = comparison::with_page(results, &runs, &all);
     }
     Ok(results)
@@ -252,20 +264,24 @@ impl<'a> Run<'a> {
         FILES.into_iter().filter(is_written).collect()
     }
 
-    /// Simulates the scenario and writes its files into the folder, if there is one. The page begins with the words about the samples of
-    /// `[uncertain]`. Rotations go to `rotations` instead, if it is given.
+    /// Simulates the scenario and writes its files into the sinks. The page begins with the words about the samples of `[uncertain]`.
     fn compute(
         &self,
-        folder: Option<&Folder>,
-        rotations: RotationsOutput<'_>,
+        sinks: Sinks<'_>,
         samples: Option<&Results>,
         watch: Watch<'_>,
     ) -> Result<ModelResults, StudyError> {
+        let folder = sinks.folder.as_ref();
+        let has_files = folder.is_some() || sinks.in_memory;
         let (scenario, model) = (self.scenario, &*self.model);
         let (ground, request) = (scenario.ground_motion(), scenario.request());
-        let mut drawings = Drawings::new(self, folder.is_some());
+        let mut drawings = Drawings::new(self, has_files);
         // Created before the history starts, so a folder that cannot be written costs no simulation.
         let mut files = folder.map_or_else(|| Ok(Vec::new()), |folder| self.create(folder))?;
+        let mut in_memory: BTreeMap<&str, Vec<u8>> = match sinks.in_memory {
+            true => self.tables().map(|name| (name, Vec::new())).collect(),
+            false => BTreeMap::new(),
+        };
         let repeats = !self.options.no_repeat && model.row().is_some();
         let repetitions = repeats.then(|| Repetitions::start(model, ground, &request));
         let variations = match self.options.no_repeat {
@@ -275,8 +291,14 @@ impl<'a> Run<'a> {
         let variations = Variations::start(variations, ground, &request);
         let duration_ms = (request.end_s * MILLISECONDS).round() as usize;
         let (history, rows) = {
+            let outputs = files.iter_mut();
+            let outputs = outputs.map(|(name, file)| (*name, boxed(&mut file.writer)));
+            let held = in_memory.iter_mut();
+            let held = held.map(|(name, bytes)| (*name, boxed(bytes)));
+            let streamed = sinks.rotations.map(|output| (ROTATIONS, output));
+            let outputs = streamed.into_iter().chain(outputs).chain(held);
             let mut recorder = RunRecorder {
-                tables: Tables::new(self, &mut files, rotations)?,
+                tables: Tables::new(self, outputs)?,
                 drawings: &mut drawings,
                 watch: &mut *watch,
                 duration_ms,
@@ -299,7 +321,7 @@ impl<'a> Run<'a> {
             scenario,
             model,
             history: &history,
-            impacts: std::mem::take(&mut drawings.notable),
+            impacts: mem::take(&mut drawings.notable),
             repeated: repeated.as_ref(),
             varied: &varied,
         });
@@ -312,10 +334,13 @@ impl<'a> Run<'a> {
             summary.compared_models = self.all_models.to_vec();
         }
         summary.uncertain = samples.map(|samples| samples.summary.clone());
-        let files = folder.map(|folder| {
+        let mut texts = BTreeMap::new();
+        if has_files {
             let of_samples = samples.map_or("", |samples| &samples.words);
-            let mut texts = drawings.texts(self, &history, of_samples, &summary);
+            texts = drawings.texts(self, &history, of_samples, &summary);
             texts.insert(SUMMARY, pretty(&summary_of(&summary)?));
+        }
+        let files = folder.map(|folder| {
             let film_pictures = drawings.add_film(self, folder)?;
             self.write(folder, files.into_iter().collect(), &texts)?;
             let snapshots = drawings.snapshots.as_ref();
@@ -328,21 +353,29 @@ impl<'a> Run<'a> {
                     .map_or_else(Default::default, Snapshots::outside_times_s),
             })
         });
+        if sinks.in_memory {
+            in_memory.extend(texts.into_iter().map(|(name, text)| (name, text.into_bytes())));
+        }
         Ok(ModelResults {
             answer: summary.answer(scenario),
             summary,
             curves: drawings.curves,
             files: files.transpose()?,
+            in_memory: in_memory.into_iter().collect(),
         })
     }
 
     /// Creates its tables in a folder to which all its files can be written.
     fn create(&self, folder: &Folder) -> Result<Vec<(&'static str, NewFile)>, OutputError> {
-        let names = self.files();
-        folder.check(&names)?;
-        let tables = names.into_iter().filter(|name| name.ends_with(".csv"));
-        let created = tables.map(|name| Ok((name, folder.create(name)?)));
+        folder.check(&self.files())?;
+        let created = self.tables().map(|name| Ok((name, folder.create(name)?)));
         created.collect()
+    }
+
+    /// The tables that it writes.
+    fn tables(&self) -> impl Iterator<Item = &'static str> {
+        let names = self.files().into_iter();
+        names.filter(|name| name.ends_with(".csv"))
     }
 
     /// Completes the tables and writes the other files, the seal last.
@@ -417,17 +450,17 @@ struct Drawings {
 }
 
 impl Drawings {
-    /// The page, the film and the snapshots are collected only if there is a folder.
-    fn new(run: &Run<'_>, has_folder: bool) -> Self {
+    /// The page, the film and the snapshots are collected only if there are files.
+    fn new(run: &Run<'_>, has_files: bool) -> Self {
         let (model, options) = (&*run.model, &run.options);
         let factor = options.exaggeration.unwrap_or(1.0);
         let snapshots = || Snapshots::new(scene(run.scenario, model), factor);
-        let film_rate_hz = options.film_rate_hz.filter(|_| has_folder);
+        let film_rate_hz = options.film_rate_hz.filter(|_| has_files);
         let times_s =
-            Some(&options.snapshots_s).filter(|times_s| has_folder && !times_s.is_empty());
+            Some(&options.snapshots_s).filter(|times_s| has_files && !times_s.is_empty());
         Self {
             timeline: Timeline::new(model),
-            report: (has_folder && !options.no_report).then(|| Report::new(run.scenario, model)),
+            report: (has_files && !options.no_report).then(|| Report::new(run.scenario, model)),
             film: film_rate_hz.map(|rate_hz| snapshots().every(1.0 / rate_hz)),
             snapshots: times_s.map(|times_s| snapshots().at(times_s)),
             notable: NotableImpacts::default(),
@@ -503,8 +536,15 @@ impl Drawings {
     }
 }
 
+/// The output of a table.
+type Output<'f> = Box<dyn io::Write + 'f>;
+
 /// A table that is written during the computation.
-type StreamedTable<'f, R> = TableWriter<'static, R, Box<dyn io::Write + 'f>>;
+type StreamedTable<'f, R> = TableWriter<'static, R, Output<'f>>;
+
+fn boxed<'f>(output: impl io::Write + 'f) -> Output<'f> {
+    Box::new(output)
+}
 
 /// The tables of a run.
 #[derive(Default)]
@@ -517,16 +557,11 @@ struct Tables<'f> {
 impl<'f> Tables<'f> {
     fn new(
         run: &Run<'_>,
-        files: &'f mut [(&str, NewFile)],
-        rotations: RotationsOutput<'f>,
+        outputs: impl Iterator<Item = (&'f str, Output<'f>)>,
     ) -> Result<Self, OutputError> {
-        type File<'f> = Box<dyn io::Write + 'f>;
         let model = &*run.model;
-        let files = files.iter_mut();
-        let files = files.map(|(name, file)| (*name, Box::new(&mut file.writer) as File<'f>));
-        let streamed = rotations.map(|file| (ROTATIONS, file));
         let mut tables = Self::default();
-        for (name, file) in streamed.into_iter().chain(files) {
+        for (name, file) in outputs {
             let what = format!("cannot write the {}", name.trim_end_matches(".csv"));
             let columns = match name {
                 ROTATIONS => {

@@ -1,0 +1,203 @@
+//! The library in a browser: a request as JSON in, an answer as JSON out.
+//!
+//! JavaScript asks for [`room`], writes the request there, calls [`compute`], and reads as many bytes from [`answer`]. A panic leaves its message in
+//! the answer, and ends the module.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::ops::ControlFlow;
+use std::panic;
+use std::path::PathBuf;
+use std::slice;
+
+use archrock::output::Figure;
+use archrock::scenario::{ReadOptions, Scenario, ScenarioErrors, Source};
+use archrock::studies::run::Sinks;
+use archrock::studies::{Computation, Options, Progress, RowSource, StudyError, StudyKind, Style};
+use archrock::Runner;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+/// A study of a scenario.
+#[derive(Deserialize)]
+struct Request {
+    /// The scenario as TOML.
+    scenario: String,
+    /// Contents of the files that it names.
+    #[serde(default)]
+    files: BTreeMap<PathBuf, String>,
+    /// Name of the study; `None` to read the scenario alone.
+    study: Option<String>,
+    /// Options of the study.
+    #[serde(default)]
+    options: Options,
+    /// Whether computations in steps are not repeated.
+    #[serde(default)]
+    no_repeat: bool,
+    /// Names of the files to answer with.
+    #[serde(default)]
+    names: Vec<String>,
+}
+
+/// The answer to a request.
+#[derive(Default, Serialize)]
+struct Answer {
+    /// The scenario with all defaults.
+    #[serde(skip_serializing_if = "Value::is_null")]
+    scenario: Value,
+    /// The report in words.
+    words: String,
+    /// The report as JSON.
+    #[serde(skip_serializing_if = "Value::is_null")]
+    summary: Value,
+    /// The files of the study that the request names.
+    files: BTreeMap<&'static str, String>,
+    /// The errors; empty for a result.
+    errors: Vec<PlacedError>,
+}
+
+/// An error, with its place in the scenario if it has one.
+#[derive(Serialize)]
+struct PlacedError {
+    message: String,
+    line: Option<usize>,
+    column: Option<usize>,
+}
+
+// All runs on the only thread of a worker.
+thread_local! {
+    static REQUEST: RefCell<Vec<u8>> = const { RefCell::new(Vec::new()) };
+    static ANSWER: RefCell<Vec<u8>> = const { RefCell::new(Vec::new()) };
+}
+
+unsafe extern "C" {
+    /// Receives the progress: cases that are done, and all.
+    safe fn progress(done: usize, all: usize);
+}
+
+/// Makes room for a request of so many bytes, and returns its place.
+#[unsafe(no_mangle)]
+pub extern "C" fn room(bytes: usize) -> *mut u8 {
+    REQUEST.with_borrow_mut(|request| {
+        request.clear();
+        request.resize(bytes, 0);
+        request.as_mut_ptr()
+    })
+}
+
+/// Computes the answer to the request, and returns its length in bytes.
+#[unsafe(no_mangle)]
+pub extern "C" fn compute() -> usize {
+    panic::set_hook(Box::new(|panic| {
+        keep(&Answer::of_error(format!("internal error: {panic}")));
+    }));
+    let request = REQUEST.take();
+    let answer = match serde_json::from_slice::<Request>(&request) {
+        Ok(request) => answer_to(request),
+        Err(error) => Answer::of_error(format!("the request is wrong: {error}")),
+    };
+    keep(&answer)
+}
+
+/// Returns the place of the answer.
+#[unsafe(no_mangle)]
+pub extern "C" fn answer() -> *const u8 {
+    ANSWER.with_borrow(|answer| answer.as_ptr())
+}
+
+/// Returns the length of the answer in bytes.
+#[unsafe(no_mangle)]
+pub extern "C" fn length() -> usize {
+    ANSWER.with_borrow(Vec::len)
+}
+
+fn keep(answer: &Answer) -> usize {
+    // The keys are names, and all numbers of results are finite.
+    ANSWER.set(serde_json::to_vec(answer).unwrap_or_default());
+    length()
+}
+
+fn answer_to(request: Request) -> Answer {
+    let files = request.files.into_iter();
+    let files = files.map(|(name, text)| (name, text.into_bytes()));
+    let source = Source::of_text(&request.scenario, "scenario.toml").with_files(files);
+    let kind = request.study.as_deref().map(StudyKind::of_name);
+    let options = ReadOptions {
+        statics: matches!(kind, Some(Some(kind)) if !kind.needs_motion),
+        ..ReadOptions::default()
+    };
+    let scenario = match Scenario::of(&source, &options) {
+        Ok(scenario) => scenario,
+        Err(errors) => return Answer::of_errors(errors),
+    };
+    let json = scenario.to_json();
+    let mut answer = match kind {
+        None => Answer::default(),
+        Some(None) => Answer::of_error("there is no such study".to_owned()),
+        Some(Some(kind)) => {
+            let mut options = request.options;
+            options.run.no_repeat = request.no_repeat;
+            let computed = study(kind, &scenario, &options, &request.names);
+            computed.unwrap_or_else(|error| Answer::of_error(error.to_string()))
+        }
+    };
+    answer.scenario = json;
+    answer
+}
+
+fn study(
+    kind: StudyKind,
+    scenario: &Scenario,
+    options: &Options,
+    names: &[String],
+) -> Result<Answer, StudyError> {
+    let mut watch = |Progress { done, all }| {
+        progress(done, all);
+        ControlFlow::Continue(())
+    };
+    let rows = RowSource::Compute(Runner::default(), None, &mut watch);
+    let sinks = Sinks {
+        in_memory: true,
+        ..Sinks::default()
+    };
+    let style = Style::of(Figure::SCREEN);
+    let computed = kind.compute(slice::from_ref(scenario), options, style, rows, sinks)?;
+    let Computation::Complete(results, _) = computed else {
+        return Ok(Answer::of_error("the study is incomplete".to_owned()));
+    };
+    let files = results.files.into_iter();
+    let named = files.filter(|(name, _)| names.iter().any(|one| one == name));
+    let texts = named.map(|(name, bytes)| (name, String::from_utf8_lossy(&bytes).into_owned()));
+    Ok(Answer {
+        words: results.words,
+        summary: results.summary,
+        files: texts.collect(),
+        ..Answer::default()
+    })
+}
+
+impl Answer {
+    fn of_error(message: String) -> Self {
+        let error = PlacedError {
+            message,
+            line: None,
+            column: None,
+        };
+        Self {
+            errors: vec![error],
+            ..Self::default()
+        }
+    }
+
+    fn of_errors(ScenarioErrors(errors): ScenarioErrors) -> Self {
+        let errors = errors.into_iter().map(|error| PlacedError {
+            message: error.message,
+            line: error.place.map(|place| place.line),
+            column: error.place.map(|place| place.column),
+        });
+        Self {
+            errors: errors.collect(),
+            ..Self::default()
+        }
+    }
+}
