@@ -25,8 +25,8 @@ const ARGUMENTS: [&str; 8] = [
     "--disable-sync",
 ];
 
-/// Output of the installed browser with these further arguments for a page; `None`, with a message, if there is no browser.
-fn browse(arguments: &[&str], page: &Path) -> Option<Output> {
+/// The installed browser with these further arguments for an address, and a new profile; `None`, with a message, if there is no browser.
+pub fn browser(arguments: &[&str], address: &str) -> Option<(Command, tempfile::TempDir)> {
     let browser = BROWSERS.into_iter().find(|name| {
         let version = Command::new(name).arg("--version").output();
         version.is_ok_and(|output| output.status.success())
@@ -36,13 +36,19 @@ fn browse(arguments: &[&str], page: &Path) -> Option<Output> {
         return None;
     };
     let profile = tempfile::tempdir().unwrap();
-    let output = Command::new(browser)
+    let mut command = Command::new(browser);
+    command
         .args(ARGUMENTS)
         .arg(format!("--user-data-dir={}", profile.path().display()))
         .args(arguments)
-        .arg(format!("file://{}", page.display()))
-        .output();
-    Some(output.unwrap())
+        .arg(address);
+    Some((command, profile))
+}
+
+/// Output of the installed browser with these further arguments for a page; `None`, with a message, if there is no browser.
+fn browse(arguments: &[&str], page: &Path) -> Option<Output> {
+    let (mut command, _profile) = browser(arguments, &format!("file://{}", page.display()))?;
+    Some(command.output().unwrap())
 }
 
 /// The result of a page's own script `check`, which has `data` and calls `verify(true or false, "what")`;

@@ -6,3 +6,4 @@ mod map;
 mod pictures;
 mod report;
 mod studies;
+mod web;

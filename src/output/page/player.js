@@ -10,6 +10,9 @@ function createPlayer(motion, addCurves) {
   const { frames } = motion;
   let time = start;
   let playing = false;
+  // A page may show one motion after another: the last one leaves.
+  const leaving = new AbortController();
+  const { signal } = leaving;
   const curves = createPlots(find("plots"), { start, end: stage.historyEnd }, seek);
   const { plots } = curves;
   addCurves(curves, stage);
@@ -111,11 +114,11 @@ function createPlayer(motion, addCurves) {
       event.preventDefault();
       act(event);
     }
-  });
+  }, { signal });
   window.addEventListener("resize", () => {
     for (const plot of plots) plot.setSize({ width: plot.root.parentElement.clientWidth, height: plot.height });
     seek(time);
-  });
+  }, { signal });
   // In print the page is one sheet: structure and plots share the space beside the words.
   const SHEET_PX = { width: 715, height: 1030 };
   const LEAST_PX = { stage: 200, plot: 70 };
@@ -138,17 +141,17 @@ function createPlayer(motion, addCurves) {
     }
     if (least > tall) document.body.style.zoom = tall / least;
     seek(time);
-  });
+  }, { signal });
   window.addEventListener("afterprint", () => {
     document.documentElement.classList.remove("print");
     canvas.style.height = document.body.style.zoom = "";
     for (const plot of plots) plot.setSize({ width: plot.root.parentElement.clientWidth, height: plot.tall });
     seek(time);
-  });
+  }, { signal });
   window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
     for (const plot of plots) plot.redraw();
     draw();
-  });
+  }, { signal });
 
   // The page opens at the time of overturning or of the largest rotation.
   exaggerate(stage.visible(motion.opens_s));
@@ -159,6 +162,7 @@ function createPlayer(motion, addCurves) {
     data: motion,
     seek,
     play,
+    leave: () => (play(false), leaving.abort(), plots.forEach((plot) => plot.destroy())),
     times,
     hingesAt: stage.hingesAt,
     pressure: stage.pressure,

@@ -1,0 +1,205 @@
+// Checks of the page to try, in the page itself. `part` chooses them; the verdict goes to the test at `address`.
+const failures = [];
+let passed = 0;
+const verify = (holds, what) => {
+  if (holds) passed += 1;
+  else failures.push(what);
+};
+const wait = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
+
+/** Waits until something holds, at most a minute. */
+async function until(holds, what) {
+  for (const begin = performance.now(); !holds(); await wait(20)) {
+    if (performance.now() - begin > 60000) throw new Error(`in vain: ${what}`);
+  }
+  passed += 1;
+}
+
+const element = (id) => document.getElementById(id);
+const event = (target, name) => target.dispatchEvent(new Event(name, { bubbles: true }));
+const inside = (id) => element(id).querySelector("iframe:not(.waiting)").contentWindow;
+const verdictShown = () => inside("run").document.getElementById("outcome").textContent;
+const firstLine = (words) => words.split("\n")[0];
+
+/** Does something, and waits for the picture that follows. */
+async function afterwards(act, what) {
+  page.answer = null;
+  act();
+  await until(() => page.answer, what);
+}
+
+function differences(one, other, path) {
+  if (Object.is(one, other)) return [];
+  if (typeof one !== "object" || typeof other !== "object" || !one || !other) return [`${path}: ${one} ${other}`];
+  const keys = new Set([...Object.keys(one), ...Object.keys(other)]);
+  return [...keys].flatMap((key) => differences(one[key], other[key], `${path}.${key}`));
+}
+
+const PARTS = {
+  async bits() {
+    for (const { name, study, scenario, files, expected } of data) {
+      const names = Object.keys(expected.tables);
+      const answer = await page.ask({ study, scenario, files, names, no_repeat: study === "run" });
+      const what = `${name} ${study}`;
+      verify(answer.errors.length === 0, `${what}: ${JSON.stringify(answer.errors)}`);
+      verify(answer.words === expected.words, `${what}: ${answer.words}\n${expected.words}`);
+      const found = differences(answer.summary, expected.summary, what);
+      verify(found.length === 0, found.slice(0, 5).join("; "));
+      for (const table of names) {
+        const rows = [answer.files[table], expected.tables[table]].map((text) => text.split("\n"));
+        const row = rows[1].findIndex((line, i) => line !== rows[0][i]);
+        verify(row < 0 && rows[0].length === rows[1].length, `${what} ${table} row ${row}: ${rows.map((all) => all[row])}`);
+      }
+    }
+  },
+
+  async readers() {
+    const text = element("text");
+    const slider = (key) => element(`number-${key}`);
+    // Sliders change the text, and the text moves the sliders.
+    await afterwards(() => {
+      const number = slider("ground.half_sine.amplitude_g");
+      number.nextSibling.value = -0.35;
+      event(number.nextSibling, "input");
+    }, "a slider");
+    verify(text.value.includes("amplitude_g = -0.35\n"), text.value);
+    verify(firstLine(page.answer.words) === firstLine(data.slider), `${page.answer.words}\n${data.slider}`);
+    verify(verdictShown() === firstLine(data.slider), verdictShown());
+    verify(decodeURIComponent(location.hash.slice(1)) === text.value, location.hash);
+    verify([...document.querySelectorAll(".slider")].filter((row) => row.offsetParent).length === 6, "sliders of the arch and its pulse");
+    const tasks = [];
+    new PerformanceObserver((list) => list.getEntries().forEach(({ duration }) => tasks.push(duration))).observe({ type: "longtask" });
+    await afterwards(() => page.edit(text.value.replace("-0.35", "-0.36")), "a text");
+    verify(slider("ground.half_sine.amplitude_g").value === "-0.36", "the slider follows the text");
+    // The view of the reader stays.
+    const box = inside("run").document.getElementById("sizes");
+    box.click();
+    await afterwards(() => page.edit(text.value.replace("-0.36", "-0.35")), "the view");
+    verify(inside("run").document.getElementById("sizes").checked === false, "dimensions stay hidden");
+    verify(Math.max(0, ...tasks) < 400, `tasks of ${tasks} ms`);
+
+    // Other structures, pulses and models.
+    for (const [id, value, table] of [
+      ["ground", "one_cosine", "[ground.one_cosine]"],
+      ["model", "free_hinges", "[free_hinges]"],
+      ["model", "elastic_joints", "[elastic_joints]"],
+      ["model", "", "[arch]"],
+      ["structure", "column", "[column]"],
+      ["structure", "arch", "[arch]"],
+      ["ground", "half_sine", "[ground.half_sine]"],
+    ]) {
+      await afterwards(() => {
+        element(id).value = value;
+        event(element(id), "change");
+      }, `${id} ${value}`);
+      verify(text.value.includes(table) && element("errors").children.length === 0, `${value}: ${text.value} ${element("errors").textContent}`);
+    }
+    verify(!text.value.includes("[free_hinges]") && !text.value.includes("[column]"), text.value);
+    await afterwards(() => {
+      element("model").value = "free_hinges";
+      event(element("model"), "change");
+    }, "free hinges");
+    await afterwards(() => document.querySelector(".switch input").click(), "slip");
+    verify(text.value.includes("friction_coefficient = 0.6"), text.value);
+    // The picture comes first, repetitions after it.
+    await until(() => page.answer?.words.includes("repeated ("), "repetitions");
+
+    // Errors have their places, and the last picture stays.
+    const good = text.value;
+    text.value = good.replace("embrace_deg = 180.0", "embrace_deg = 500");
+    event(text, "input");
+    await until(() => element("errors").textContent.includes("line "), "an error");
+    verify(/line \d+, column \d+: `embrace_deg = 500`/.test(element("errors").textContent), element("errors").textContent);
+    verify(inside("run").document.getElementById("stage") !== null, "the last picture");
+    element("errors").querySelector("button").click();
+    verify(text.selectionStart > 0 && document.activeElement === text, "the cursor is at the error");
+    await afterwards(() => page.edit("[arch"), "").catch(() => {});
+    await afterwards(() => page.edit(good), "a mended text");
+    verify(element("errors").children.length === 0, element("errors").textContent);
+
+    // Records.
+    await afterwards(() => page.edit(good.replace(/\n\[free_hinges\][^[]*/, "\n")), "four links");
+    await afterwards(() => {
+      const dropped = new DataTransfer();
+      dropped.items.add(new File([data.record], "synthetic.at2"));
+      document.dispatchEvent(new DragEvent("drop", { dataTransfer: dropped, bubbles: true, cancelable: true }));
+    }, "a record");
+    verify(page.answer.words === data.of_record, `${page.answer.words}\n${data.of_record}`);
+    const large = new DataTransfer();
+    large.items.add(new File([new Uint8Array(50e6)], "large.at2"));
+    document.dispatchEvent(new DragEvent("drop", { dataTransfer: large, bubbles: true, cancelable: true }));
+    await until(() => element("errors").textContent.includes("at most 16 MB"), "a large record");
+
+    // Links.
+    const link = "[column]\nheight_m = 4\nwidth_m = 0.8\n[ground.half_sine]\namplitude_g = 0.3\nduration_s = 1\n";
+    await afterwards(() => (location.hash = encodeURIComponent(link)), "a link");
+    verify(text.value === link && element("structure").value === "column", text.value);
+    location.hash = "%E0%A4%A";
+    await until(() => !element("broken").hidden, "a damaged link");
+    await until(() => page.answer && text.value.includes("[arch]"), "the first scenario");
+
+    // Studies.
+    const start = text.value.replace(/amplitude_g = .*/, "amplitude_g = -0.35").replace(/^#.*\n/, "");
+    await afterwards(() => page.edit(start), "the arch");
+    await page.computeStudy("threshold");
+    verify(page.study.words === data.threshold, `${page.study.words}\n${data.threshold}`);
+    verify(inside("study-page").document.getElementById("points") !== null, "the page of the threshold");
+    await page.computeStudy("map");
+    const map = inside("study-page");
+    verify(map.document.getElementById("numbers").textContent.startsWith("pulse duration (s) 0.3, pulse amplitude (g) 0.35"), map.document.getElementById("numbers").textContent);
+    map.archrock.show([3, 4]);
+    await afterwards(() => element("take").click(), "a cell");
+    verify(/duration_s = 0\.0\d+/.test(text.value), text.value);
+    verify(element("errors").children.length === 0, element("errors").textContent);
+    await page.computeStudy("verify");
+    verify(element("study-status").textContent.includes("[demand"), element("study-status").textContent);
+
+    // Long work shows its progress and stops.
+    page.edit(`${link.replace("duration_s = 1", "duration_s = 3000\nstart_s = 1")}[simulation]\nduration_s = 900000\noutput_step_s = 1\n`);
+    const many = "duration_s = { from = 0.1, to = 2, count = 400 }\namplitude_g = { from = 0.1, to = 2, count = 400 }\n";
+    const long = page.ask({ study: "map", scenario: `${start}[map]\n${many}`, files: {} });
+    await until(() => !element("study-stop").hidden && element("study-status").textContent.includes("left"), "progress");
+    element("study-stop").click();
+    verify((await long) === null && element("study-status").textContent.startsWith("Stopped"), "stopped");
+    await afterwards(() => page.edit(start), "work after a stop");
+
+    // A page that is closed while it computes.
+    const other = Object.assign(document.createElement("iframe"), { srcdoc: document.documentElement.outerHTML.replace(/<script type="module">const \[data[^]*/, "") });
+    document.body.append(other);
+    await until(() => other.contentWindow.page, "another page");
+    other.remove();
+    await afterwards(() => page.edit(start.replace("-0.35", "-0.34")), "this page");
+  },
+
+  async narrow() {
+    const frame = Object.assign(document.createElement("iframe"), { src: `${address}page`, width: 390, height: 840 });
+    document.body.append(frame);
+    await until(() => frame.contentWindow.page?.answer, "the narrow page");
+    const { document: narrow } = frame.contentWindow;
+    verify(narrow.documentElement.scrollWidth <= 390, `${narrow.documentElement.scrollWidth} px wide`);
+    const walker = narrow.createTreeWalker(narrow.body, NodeFilter.SHOW_TEXT);
+    const small = [];
+    while (walker.nextNode()) {
+      const { parentElement: parent } = walker.currentNode;
+      const size = parseFloat(getComputedStyle(parent).fontSize);
+      if (walker.currentNode.textContent.trim() && parent.offsetParent && size < 12) small.push(`${size} ${walker.currentNode.textContent}`);
+    }
+    verify(small.length === 0, small.join("; "));
+    const unnamed = [...narrow.querySelectorAll("input, select, textarea, iframe, progress")].filter(
+      (field) => field.offsetParent && !field.labels?.length && !field.getAttribute("aria-label") && !field.title,
+    );
+    verify(unnamed.length === 0, unnamed.map(({ outerHTML }) => outerHTML).join("; "));
+  },
+};
+
+// In a frame of the page to try, the page alone is of interest.
+if (window === top) {
+  try {
+    await until(() => window.page?.answer, "the first arch");
+    await PARTS[part]();
+  } catch (error) {
+    failures.push(`${error} ${error.stack}`);
+  }
+  failures.push(...window.errors);
+  await fetch(address, { method: "POST", mode: "no-cors", body: JSON.stringify({ failures, passed }) });
+}

@@ -1,0 +1,216 @@
+//! The page to try, in a browser. `web/build` makes it; ARCHROCK_WEB is its folder, and without that nothing is tested.
+
+use std::fs;
+use std::io::{BufRead as _, BufReader, Read as _, Write as _};
+use std::net::{TcpListener, TcpStream};
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::process::Stdio;
+use std::sync::mpsc::{self, Sender};
+use std::thread;
+use std::time::Duration;
+
+use archrock::output::Figure;
+use archrock::scenario::{Scenario, Source};
+use archrock::studies::run::Sinks;
+use archrock::studies::{Computation, Options, RowSource, StudyKind, Style};
+use archrock::Runner;
+use serde_json::{Value, json};
+
+use crate::common::browser::browser;
+use crate::common::program::skip_without;
+use crate::common::scenarios;
+
+const SCRIPT: &str = include_str!("web.js");
+
+/// Scenarios of all models; the third has more than 100 impacts, the last ones have a record.
+const COMPARED: [&str; 11] = [
+    "semicircle-pulse.toml",
+    "free-rocking.toml",
+    "column-pulse.toml",
+    "overturning-after-impacts.toml",
+    "pointed-arch-on-piers.toml",
+    "facade.toml",
+    "tie.toml",
+    "free-hinges.toml",
+    "two-feet.toml",
+    "drums-step-pair.toml",
+    "semicircle-record.toml",
+];
+
+/// An arch with elastic joints: the one of the repository has a table of joints as a file.
+const ELASTIC: &str = "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.15\nembrace_deg = 180\nvoussoirs = 17\n\
+    [elastic_joints]\nnormal_stiffness_gpa_m = 10\n[ground.half_sine]\namplitude_g = -0.2\nduration_s = 0.25\n\
+    [simulation]\nduration_s = 1.5\n";
+
+fn pages() -> Option<PathBuf> {
+    let folder = std::env::var_os("ARCHROCK_WEB").map(PathBuf::from);
+    if folder.is_none() {
+        skip_without_page();
+    }
+    folder
+}
+
+#[expect(clippy::print_stderr, reason = "the reader of the test")]
+fn skip_without_page() {
+    eprintln!("ARCHROCK_WEB is not set: build the page by web/build to test it");
+}
+
+/// A file of a scenario folder as the page holds it.
+fn file(name: &str) -> String {
+    fs::read_to_string(scenarios().join(name)).unwrap()
+}
+
+/// The files of a study as this build of the library computes them.
+fn computed(study: &str, text: &str, files: &[(&str, String)], no_repeat: bool) -> Value {
+    let held = files.iter().map(|(name, text)| (PathBuf::from(name), text.clone().into_bytes()));
+    let source = Source::of_text(text, "scenario.toml").with_files(held);
+    let scenario = Scenario::of(&source, &Default::default()).unwrap();
+    let mut options = Options::default();
+    options.run.no_repeat = no_repeat;
+    let sinks = Sinks {
+        in_memory: true,
+        ..Sinks::default()
+    };
+    let watch = &mut |_| ControlFlow::Continue(());
+    let rows = RowSource::Compute(Runner::default(), None, watch);
+    let kind = StudyKind::of_name(study).unwrap();
+    let done = kind
+        .compute(&[scenario], &options, Style::of(Figure::SCREEN), rows, sinks)
+        .unwrap();
+    let Computation::Complete(results, _) = done else {
+        panic!("{study} is incomplete");
+    };
+    let tables = results.files.iter().filter(|(name, _)| name.ends_with(".csv"));
+    let tables = tables.map(|(name, bytes)| ((*name).to_owned(), String::from_utf8_lossy(bytes).into()));
+    let mut summary = results.summary;
+    summary.as_object_mut().unwrap().remove("longest_step_us");
+    json!({ "summary": summary, "words": results.words, "tables": Value::Object(tables.collect()) })
+}
+
+/// Answers the browser, and passes on the verdict that the page sends.
+fn serve(listener: &TcpListener, folder: &Path, html: &str, verdict: &Sender<String>) {
+    for stream in listener.incoming().map_while(Result::ok) {
+        let mut reader = BufReader::new(&stream);
+        let (mut first, mut length) = (String::new(), 0);
+        reader.read_line(&mut first).unwrap_or_default();
+        loop {
+            let mut line = String::new();
+            if reader.read_line(&mut line).unwrap_or_default() < 3 {
+                break;
+            }
+            if let Some(count) = line.to_lowercase().strip_prefix("content-length:") {
+                length = count.trim().parse().unwrap();
+            }
+        }
+        if first.starts_with("POST") {
+            let mut body = vec![0; length];
+            reader.read_exact(&mut body).unwrap();
+            send(&stream, "text/plain", b"");
+            verdict.send(String::from_utf8(body).unwrap()).unwrap_or_default();
+        } else if first.contains("archrock.wasm") {
+            // A simple server does not know this type of file.
+            let module = fs::read(folder.join("archrock.wasm")).unwrap();
+            send(&stream, "application/octet-stream", &module);
+        } else {
+            send(&stream, "text/html; charset=utf-8", html.as_bytes());
+        }
+    }
+}
+
+fn send(mut stream: &TcpStream, kind: &str, body: &[u8]) {
+    let head = format!(
+        "HTTP/1.1 200 OK\r\nContent-Type: {kind}\r\nContent-Length: {}\r\nConnection: close\r\n\r\n",
+        body.len()
+    );
+    // A browser that has gone wants nothing.
+    let _ = stream.write_all(head.as_bytes()).and_then(|()| stream.write_all(body));
+}
+
+/// Asserts that the checks of a part of web.js pass on a page, at least this many. `single` is the page of one file, opened from disk.
+fn assert_page(part: &str, single: bool, settings: &[&str], data: &Value, least: usize) {
+    let Some(folder) = pages() else { return };
+    let name = if single { "archrock.html" } else { "index.html" };
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let port = listener.local_addr().unwrap().port();
+    let address = format!("http://127.0.0.1:{port}/");
+    let own = format!("const [data, part, address] = [{data}, {part:?}, {address:?}];\n{SCRIPT}");
+    let own = own.replace("</", "<\\/");
+    let before = "<script>window.errors = []; addEventListener('error', ({ message }) => errors.push(message));\
+        addEventListener('unhandledrejection', ({ reason }) => errors.push(`${reason} ${reason.stack}`));</script>";
+    let html = fs::read_to_string(folder.join(name)).unwrap();
+    let html = html.replacen("<head>", &format!("<head>{before}"), 1);
+    let html = html.replacen("</body>", &format!("<script type=\"module\">{own}</script></body>"), 1);
+    let disk = tempfile::tempdir().unwrap();
+    let file = disk.path().join("archrock.html");
+    fs::write(&file, &html).unwrap();
+    let (sender, receiver) = mpsc::channel();
+    thread::spawn(move || serve(&listener, &folder, &html, &sender));
+    let opened = match single {
+        true => format!("file://{}", file.display()),
+        false => address,
+    };
+    let size = ["--window-size=1280,1000"];
+    let all = [settings, &size, &["--remote-debugging-port=0"]].concat();
+    let Some((mut command, _profile)) = browser(&all, &opened) else {
+        return;
+    };
+    let output = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn();
+    let mut browser = output.unwrap();
+    let verdict = receiver.recv_timeout(Duration::from_secs(300));
+    browser.kill().unwrap();
+    browser.wait().unwrap();
+    let verdict: Value = serde_json::from_str(&verdict.expect("the page sends its verdict")).unwrap();
+    assert_eq!(verdict["failures"], json!([]), "{part}");
+    assert!(verdict["passed"].as_u64().unwrap() as usize >= least, "{verdict}");
+}
+
+/// Every number of the module is that of the program, to the last digit: a run, its tables and its words.
+#[test]
+fn the_page_computes_the_bits_of_the_program() {
+    if pages().is_none() {
+        return;
+    }
+    let mut all: Vec<Value> = Vec::new();
+    let record = [("synthetic.at2", file("synthetic.at2"))];
+    let texts = COMPARED.map(file).into_iter().chain([ELASTIC.to_owned()]);
+    for (text, name) in texts.zip(COMPARED.into_iter().chain(["elastic"])) {
+        let files = if name.contains("record") { &record[..] } else { &[] };
+        let expected = computed("run", &text, files, true);
+        let files: serde_json::Map<_, _> =
+            files.iter().map(|(name, text)| ((*name).to_owned(), text.clone().into())).collect();
+        all.push(json!({ "name": name, "study": "run", "scenario": text, "files": files, "expected": expected }));
+    }
+    for (study, name) in [("map", "semicircle-map.toml"), ("threshold", "semicircle-pulse.toml"), ("limit", "tie.toml")] {
+        let text = file(name);
+        let expected = computed(study, &text, &[], false);
+        all.push(json!({ "name": name, "study": study, "scenario": text, "files": {}, "expected": expected }));
+    }
+    assert!(all[2]["expected"]["words"].as_str().unwrap().contains("152 impacts"));
+    assert_page("bits", false, &[], &json!(all), 45);
+}
+
+/// Sliders, choices, text, records, links, broken input, studies, stops and a page that is closed.
+#[test]
+fn the_page_answers_its_readers() {
+    if pages().is_none() {
+        return;
+    }
+    let arch = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 36\n\n[ground.half_sine]\n";
+    let text = format!("{arch}amplitude_g = -0.35\nduration_s = 0.3\n");
+    let record = file("synthetic.at2");
+    let of_record = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 36\n\n[ground.record]\nfile = \"synthetic.at2\"\nscale = 1.0\n";
+    let data = json!({
+        "slider": computed("run", &text, &[], true)["words"],
+        "record": record,
+        "of_record": computed("run", of_record, &[("synthetic.at2", record.clone())], true)["words"],
+        "threshold": computed("threshold", &text, &[], false)["words"],
+    });
+    assert_page("readers", true, &[], &data, 40);
+}
+
+/// A telephone in the dark: nothing is cut, no text is smaller than 12 pixels.
+#[test]
+fn the_page_fits_telephones() {
+    assert_page("narrow", false, &["--force-dark-mode"], &json!({}), 4);
+}

@@ -1,0 +1,41 @@
+// Computes in the background: a request in, an answer out, and the progress in between.
+let module;
+let exports;
+
+function start() {
+  const env = { progress: report };
+  exports = new WebAssembly.Instance(module, { env }).exports;
+}
+
+let told = 0;
+function report(done, all) {
+  const now = performance.now();
+  if (now - told < 100 && done < all) return;
+  told = now;
+  postMessage({ done, all });
+}
+
+const bytes = (place, length) => new Uint8Array(exports.memory.buffer, place, length);
+
+onmessage = ({ data }) => {
+  if (data instanceof WebAssembly.Module) {
+    module = data;
+    start();
+    return;
+  }
+  const request = new TextEncoder().encode(JSON.stringify(data));
+  told = performance.now();
+  let length;
+  try {
+    const place = exports.room(request.length);
+    bytes(place, request.length).set(request);
+    length = exports.compute();
+  } catch (error) {
+    // A panic has left its message; without one the memory was not enough.
+    length = exports.length();
+    if (length === 0) return postMessage({ answer: { errors: [{ message: `the computation failed: ${error.message}` }], files: {} } });
+  }
+  const answer = JSON.parse(new TextDecoder().decode(bytes(exports.answer(), length)));
+  if (answer.errors.some(({ message }) => message.startsWith("internal error"))) start();
+  postMessage({ answer });
+};
