@@ -1,6 +1,7 @@
 //! Speed of free hinges: steps over a record, a history to rest, maps, and the most expensive step of a long row.
 //!
 //! Run with `cargo bench --bench free_hinges`.
+#![allow(clippy::disallowed_methods, reason = "digits do not matter here")]
 
 use std::f64::consts::PI;
 

@@ -6,6 +6,10 @@
     clippy::print_stderr,
     reason = "an example prints its results"
 )]
+#![allow(
+    clippy::disallowed_methods,
+    reason = "digits of an example may depend on the machine"
+)]
 
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;

@@ -1,6 +1,7 @@
 //! All integration tests, as one program: shared code is compiled once, and the library is linked once.
 //! `cargo test --test all studies::limit::` runs the tests of one file.
 #![allow(clippy::unwrap_used, reason = "a test may fail by panicking")]
+#![allow(clippy::disallowed_methods, reason = "tests compare with tolerances")]
 
 mod common;
 mod mechanics;

@@ -109,7 +109,7 @@ pub fn rounded_down(x: f64) -> f64 {
 
 /// Returns the factor that gives a positive number `digits` digits before the decimal point.
 fn whole(x: f64, digits: f64) -> f64 {
-    10.0_f64.powf(digits - 1.0 - x.log10().floor())
+    libm::pow(10.0, digits - 1.0 - libm::log10(x).floor())
 }
 
 /// Returns a bound in the shortest notation: 1e6, not 1000000.0.

@@ -76,14 +76,14 @@ impl Scale {
 
     /// Returns ticks at powers of ten and multiples of them; the more powers, the fewer multiples.
     fn logarithmic_ticks(&self) -> Vec<(f64, String)> {
-        let decades = (self.high / self.low).log10();
+        let decades = libm::log10(self.high / self.low);
         let digits: &[u32] = match decades {
             _ if decades < 1.0 => &[1, 2, 3, 4, 5, 6, 7, 8, 9],
             _ if decades < 2.0 => &[1, 2, 3, 5, 7],
             _ if decades < 4.0 => &[1, 2, 5],
             _ => &[1],
         };
-        let [first, last] = [self.low, self.high].map(|end| end.log10().floor() as i32);
+        let [first, last] = [self.low, self.high].map(|end| libm::log10(end).floor() as i32);
         (first..=last)
             .flat_map(|exponent| digits.iter().map(move |digit| (*digit, exponent)))
             .filter_map(|(digit, exponent)| {
@@ -101,7 +101,7 @@ impl Scale {
         let count = (self.high / step + 1e-6).floor() - first;
         let largest = self.low.abs().max(self.high.abs());
         // Very large and very small values are written as powers of ten.
-        let exponent = step.log10().floor();
+        let exponent = libm::log10(step).floor();
         let plain = largest < 1e5 && exponent >= -5.0;
         let (count, digits) = (count.max(0.0) as u32, (-exponent).max(0.0) as usize);
         (0..=count)
@@ -120,14 +120,16 @@ impl Scale {
     pub fn at(&self, part: f64) -> f64 {
         match self.spacing {
             TickSpacing::Linear(_) => self.low + part * (self.high - self.low),
-            TickSpacing::Logarithmic => self.low * (self.high / self.low).powf(part),
+            TickSpacing::Logarithmic => self.low * libm::pow(self.high / self.low, part),
         }
     }
 
     fn part(&self, value: f64) -> f64 {
         match self.spacing {
             TickSpacing::Linear(_) => (value - self.low) / (self.high - self.low),
-            TickSpacing::Logarithmic => (value / self.low).ln() / (self.high / self.low).ln(),
+            TickSpacing::Logarithmic => {
+                libm::log(value / self.low) / libm::log(self.high / self.low)
+            }
         }
     }
 }
@@ -135,7 +137,7 @@ impl Scale {
 /// Returns a tick distance, 1, 2 or 5 times a power of ten, that divides `span` into about `ticks` parts.
 fn tick_step(span: f64, ticks: u32) -> f64 {
     let rough = span / f64::from(ticks.max(1));
-    let power = 10_f64.powf(rough.log10().floor());
+    let power = libm::pow(10.0, libm::log10(rough).floor());
     let digit = rough / power;
     power
         * match digit {

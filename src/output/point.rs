@@ -46,7 +46,7 @@ impl Scene {
         let part = match &self.outline {
             Outline::Ring { ring, .. } => {
                 let left = ring.radial(0.0);
-                let angle_rad = -left.perp(&at_m).atan2(left.dot(&at_m));
+                let angle_rad = -libm::atan2(left.perp(&at_m), left.dot(&at_m));
                 // Points just below the left springing have angles down to this one; smaller angles are beyond the right springing.
                 let before_rad = 0.5 * (ring.embrace_rad - TAU);
                 let turns = if angle_rad < before_rad { TAU } else { 0.0 };

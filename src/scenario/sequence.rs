@@ -121,7 +121,7 @@ impl Sequence {
 /// Rounds a number as people would write it: 0.12 instead of 0.12000000000000002. The largest number has twelve digits; there are more decimals
 /// if a millionth of a step needs them.
 fn round(value: f64, largest: f64, step: f64) -> f64 {
-    let digits = (12.0 - largest.log10().floor()).max(6.0 - step.log10().floor());
+    let digits = (12.0 - libm::log10(largest).floor()).max(6.0 - libm::log10(step).floor());
     let digits = digits.clamp(0.0, 340.0) as usize;
     let rounded: f64 = format!("{value:.digits$}").parse().unwrap_or(value);
     // Turns negative zero into zero.
@@ -138,6 +138,6 @@ fn between(from: f64, to: f64, index: usize, last: usize, spacing: Spacing) -> f
             let (largest, step) = (from.abs().max(to.abs()), (to - from) / last as f64);
             round(from * (1.0 - part) + to * part, largest, step)
         }
-        Spacing::Logarithmic => from * (to / from).powf(part),
+        Spacing::Logarithmic => from * libm::pow(to / from, part),
     }
 }

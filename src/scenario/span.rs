@@ -68,7 +68,7 @@ impl Circular {
             (_, _, embrace_deg) => embrace_deg.ok_or(FaultRecorded)?,
         };
         let radius_m = match (span_m, mean_radius_m) {
-            (Some(span_m), _) => 0.5 * span_m / (0.5 * embrace_deg.to_radians()).sin(),
+            (Some(span_m), _) => 0.5 * span_m / libm::sin(0.5 * embrace_deg.to_radians()),
             (None, radius_m) => radius_m.ok_or(FaultRecorded)?,
         };
         let to_mean = measured_at.unwrap_or(MeasuredAt::Mean).to_mean();
@@ -130,7 +130,7 @@ impl Circular {
 pub(super) fn embrace_deg(span_m: f64, rise_m: f64) -> f64 {
     let half_m = 0.5 * span_m;
     // The angle between chord and tangent at the crown is a quarter of the embrace angle.
-    4.0 * (rise_m / half_m).atan().to_degrees()
+    4.0 * libm::atan(rise_m / half_m).to_degrees()
 }
 
 /// Returns the embrace angle of an arc with this span and rise, in degrees. A fault is recorded if it is out of range.

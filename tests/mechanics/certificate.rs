@@ -58,7 +58,7 @@ impl Case {
                 (joint.angle_rad, jump)
             })
             .collect();
-        Field::from_jumps(&jumps)
+        Field::from_jumps(&self.ring, &jumps)
     }
 }
 

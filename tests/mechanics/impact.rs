@@ -406,7 +406,7 @@ fn best_of_joints(
     use archrock::mechanics::Twist;
     let unit = |i: usize, edge: Edge| {
         let twist = Twist::rotation(ring.point(section(i), edge), 1.0);
-        Field::from_jumps(&[(section(i), twist)])
+        Field::from_jumps(ring, &[(section(i), twist)])
     };
     let edges = [Edge::Intrados, Edge::Extrados];
     let fields: Vec<Field> = (0..=count)

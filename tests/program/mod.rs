@@ -2,6 +2,7 @@
 
 mod caveats;
 mod command_line;
+mod digits;
 mod documents;
 mod init;
 mod long_work;

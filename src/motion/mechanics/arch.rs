@@ -215,7 +215,7 @@ impl Arch {
     /// Returns span and rise of a line, in metres.
     pub fn span_and_rise_m(&self, line: MeasuredAt) -> [f64; 2] {
         let radius_m = self.radius_at_m(line);
-        let (sin, cos) = (0.5 * self.embrace_deg.to_radians()).sin_cos();
+        let (sin, cos) = libm::sincos(0.5 * self.embrace_deg.to_radians());
         [2.0 * radius_m * sin, radius_m * (1.0 - cos)]
     }
 

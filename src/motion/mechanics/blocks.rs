@@ -374,7 +374,7 @@ impl Row {
             outlines_m.push(outline.to_vec());
             (y, below_m) = (y + drum.height_m, drum.top_width_m);
         }
-        let size_m = 0.5 * y.hypot(drums[0].base_width_m);
+        let size_m = 0.5 * libm::hypot(y, drums[0].base_width_m);
         Ok(Self::new(blocks, joints, Supports::Left, size_m)?.with_outlines_m(outlines_m))
     }
 

@@ -306,7 +306,7 @@ impl Column {
     /// Returns the column and its moving loads as one rigid body; its drums and its taper are neglected.
     pub fn body(&self) -> Block {
         let mass_kg = self.prism_kg();
-        let diagonal_m = self.height_m.hypot(self.width_m);
+        let diagonal_m = libm::hypot(self.height_m, self.width_m);
         let own = Block {
             mass_kg,
             centre_m: Vector2::new(0.0, 0.5 * self.height_m),
@@ -398,7 +398,7 @@ impl Column {
 
     /// Returns half the diagonal of its outline, in metres, for a top as wide as the base.
     pub fn half_diagonal_m(&self) -> f64 {
-        0.5 * self.height_m.hypot(self.width_m)
+        0.5 * libm::hypot(self.height_m, self.width_m)
     }
 
     /// Returns its drums as a row of blocks, on ground that extends beyond the base, or on a pedestal.
@@ -474,7 +474,7 @@ impl Column {
 
     /// Returns the slenderness `alpha`, the angle of the diagonal with the vertical, in radians.
     pub fn slenderness_rad(&self) -> f64 {
-        self.width_m.atan2(self.height_m)
+        libm::atan2(self.width_m, self.height_m)
     }
 }
 

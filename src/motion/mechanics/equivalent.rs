@@ -48,7 +48,7 @@ pub fn equivalent_towards<C: MechanismChain>(
     gravity_m_s2: f64,
 ) -> Option<Equivalent> {
     let link = structure.link_from(sway, 0)?;
-    let slenderness_rad = structure.incipient_towards_g(sway).atan();
+    let slenderness_rad = libm::atan(structure.incipient_towards_g(sway));
     let block = |squared: f64| {
         let per_s2 = squared * gravity_m_s2 / structure.length_m();
         (per_s2 > 0.0).then(|| Block {
@@ -58,7 +58,7 @@ pub fn equivalent_towards<C: MechanismChain>(
     };
     Some(Equivalent {
         slenderness_rad,
-        at_rest: block(growth_squared(link, 0.0) / slenderness_rad.cos()),
+        at_rest: block(growth_squared(link, 0.0) / libm::cos(slenderness_rad)),
         at_critical: block(growth_squared(link, link.critical_rad)),
     })
 }

@@ -284,7 +284,7 @@ impl Placement {
         let opening = (gaps[1] - gaps[0]) / face.thickness;
         let along = product(unit(left.rotation_rad() + 0.5 * s * opening), face.along);
         let normal = turned(along) * s;
-        let chord = face.thickness * (0.5 * opening.abs()).sin();
+        let chord = face.thickness * libm::sin(0.5 * opening.abs());
         let nearer = gaps[0].min(gaps[1]);
         let start = left.of(face.middle) + normal * (nearer + chord);
         if closing {

@@ -123,7 +123,7 @@ impl Parts for Arch {
         let (ring, radius_m) = (self.ring(), self.mean_radius_m);
         let ratio = at_m.norm() / radius_m;
         let half = 0.5 * ring.thickness_ratio * (1.0 + 1e-9);
-        let angle_rad = 0.5 * ring.embrace_rad + at_m.x.atan2(at_m.y);
+        let angle_rad = 0.5 * ring.embrace_rad + libm::atan2(at_m.x, at_m.y);
         ((ratio - 1.0).abs() <= half && (0.0..=ring.embrace_rad).contains(&angle_rad))
             .then_some(angle_rad)
     }

@@ -11,10 +11,11 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use nalgebra::{Rotation2, Vector2};
+use nalgebra::Vector2;
 
 use super::back_wall::rate_passed;
 use super::chain::{Coefficients, MechanismState};
+use super::geometry::pose::{product, unit};
 use super::geometry::rigid::mirrored;
 use crate::mechanics::four_link::thrust::Load;
 use crate::mechanics::{MassMoments, Mechanism, Momentum, PlacedLoad, Pose, Sway};
@@ -61,7 +62,7 @@ impl Tilting {
         gravity_m_s2: f64,
         sway: Sway,
     ) -> Self {
-        let diagonal_m = height_m.hypot(width_m);
+        let diagonal_m = libm::hypot(height_m, width_m);
         let (sin, cos) = (width_m / diagonal_m, height_m / diagonal_m);
         let towards = |v: Vector2<f64>| match sway {
             Sway::Right => v,
@@ -124,7 +125,7 @@ impl Tilting {
         let mass = self.body.mass;
         let rise = mass * self.arm.x - self.moment;
         let fall = mass * self.arm.y - self.virial;
-        rise.atan2(fall).min(FRAC_PI_2)
+        libm::atan2(rise, fall).min(FRAC_PI_2)
     }
 
     /// Returns the rate of this rotation after an impact on the base, for a unit rate of the opposite rotation before it. The closing motion, a
@@ -145,7 +146,7 @@ impl Tilting {
 
     /// Returns the arm of the centre of gravity after a rotation: its distance behind the toe, and its height.
     fn arm_at(&self, q_rad: f64) -> Vector2<f64> {
-        let (sin, cos) = q_rad.sin_cos();
+        let (sin, cos) = libm::sincos(q_rad);
         Vector2::new(
             self.arm.x * cos - self.arm.y * sin,
             self.arm.y * cos + self.arm.x * sin,
@@ -218,10 +219,11 @@ impl Tilting {
     /// Returns the crossings of the thrust line with sections normal to the axis in motion; see [`Self::crossings`].
     pub(super) fn eccentricity_ratios(&self, motion: &MechanismState) -> Vec<Option<f64>> {
         // In the frame of the block, which has turned clockwise.
-        let body_force_g = Rotation2::new(motion.q_rad) * motion.body_force_g;
+        let turn = unit(motion.q_rad);
+        let body_force_g = product(turn, motion.body_force_g);
         let turning = (-motion.acceleration, motion.rate * motion.rate);
         let load = Load::of_body(self.toe(), body_force_g, turning);
-        self.crossings(&load, |force| Rotation2::new(motion.q_rad) * force)
+        self.crossings(&load, |force| product(turn, force))
     }
 
     /// Returns the crossings of the thrust line with sections normal to the axis, from the base up: the distance to the right over the width, for the
@@ -279,7 +281,7 @@ impl Mechanism for Tilting {
     }
 
     fn coefficients(&self, q_rad: f64) -> Coefficients {
-        let (sin, cos) = q_rad.sin_cos();
+        let (sin, cos) = libm::sincos(q_rad);
         let (arm, mass) = (self.arm_at(q_rad), self.block * self.body.mass);
         Coefficients {
             inertia: self.inertia * self.block,
@@ -292,14 +294,14 @@ impl Mechanism for Tilting {
 
     /// Differences of sines and cosines are written as products, to avoid cancellation at small rotations.
     fn displacement(&self, q_rad: f64) -> Vector2<f64> {
-        let chord = 2.0 * (self.block * self.body.mass) * (0.5 * q_rad).sin();
+        let chord = 2.0 * (self.block * self.body.mass) * libm::sin(0.5 * q_rad);
         let arm = self.arm_at(0.5 * q_rad);
         Vector2::new(chord * arm.y, chord * arm.x)
     }
 
     fn potential(&self, q_rad: f64) -> f64 {
-        let half = (0.5 * q_rad).sin();
-        let of_forces = 2.0 * self.virial * half * half - self.moment * q_rad.sin();
+        let half = libm::sin(0.5 * q_rad);
+        let of_forces = 2.0 * self.virial * half * half - self.moment * libm::sin(q_rad);
         self.displacement(q_rad).y + self.block * of_forces
     }
 

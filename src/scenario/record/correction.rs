@@ -142,7 +142,7 @@ struct Butterworth {
 impl Butterworth {
     /// Makes the filter with the corner at this multiple of the rate, by the bilinear transform.
     fn high_pass(corner_over_rate: f64) -> Self {
-        let warped = (PI * corner_over_rate).tan();
+        let warped = libm::tan(PI * corner_over_rate);
         let gain = 1.0 / (1.0 + SQRT_2 * warped + warped * warped);
         Self {
             gain,

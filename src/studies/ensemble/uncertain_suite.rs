@@ -274,7 +274,7 @@ fn distribution(intensities: impl IntoIterator<Item = [f64; 2]>) -> [Option<f64>
     let intensities = ascending_weighted(intensities);
     let finite = |part| weighted_fractile(&intensities, part).filter(|at| at.is_finite());
     let [low, median, high] = [0.16, 0.5, 0.84].map(finite);
-    let dispersion = low.zip(high).map(|(low, high)| 0.5 * (high / low).ln());
+    let dispersion = low.zip(high).map(|(low, high)| 0.5 * libm::log(high / low));
     [median, dispersion]
 }
 

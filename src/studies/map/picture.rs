@@ -47,8 +47,8 @@ fn scale(axis: &Axis, factor: f64, figure: Figure) -> (Scale, Vec<f64>) {
     let values: Vec<f64> = axis.sequence.values();
     let values: Vec<f64> = values.into_iter().map(|value| factor * value).collect();
     let logarithmic = axis.sequence.is_logarithmic(&values);
-    let to = |value: f64| if logarithmic { value.ln() } else { value };
-    let from = |place: f64| if logarithmic { place.exp() } else { place };
+    let to = |value: f64| if logarithmic { libm::log(value) } else { value };
+    let from = |place: f64| if logarithmic { libm::exp(place) } else { place };
     let places: Vec<_> = values.iter().map(|value| to(*value)).collect();
     let (first, last) = (places[0], places[places.len() - 1]);
     // A single value has a cell as wide as the value itself.

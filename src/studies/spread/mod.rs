@@ -55,7 +55,7 @@ impl Direction {
 
     /// Returns the movements of both springings for a distance along this direction, in metres.
     pub fn movements(&self, movement_m: f64) -> Movements {
-        let (sin, cos) = self.angle_deg.to_radians().sin_cos();
+        let (sin, cos) = libm::sincos(self.angle_deg.to_radians());
         // Removes rounding errors of right angles.
         let is_quarter = self.angle_deg % 90.0 == 0.0;
         let [outwards, down] = [cos, sin].map(|part| if is_quarter { part.round() } else { part });

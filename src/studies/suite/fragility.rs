@@ -176,7 +176,7 @@ impl Fragility {
 
         // `theta = exp(pivot - level / slope)` and `beta = 1 / slope`.
         let (level, dispersion) = (line.coefficients.x, line.coefficients.y.recip());
-        let median = (line.pivot - level * dispersion).exp();
+        let median = libm::exp(line.pivot - level * dispersion);
         let log_median_gradient = Vector2::new(-1.0, level * dispersion) * dispersion;
         let dispersion_gradient = Vector2::new(0.0, -dispersion * dispersion);
         let errors = |covariance: &Matrix2<f64>| Errors {
@@ -206,7 +206,7 @@ impl Fragility {
 
 /// Returns `ln x` with `x` clamped to positive finite numbers, so that the logarithm is finite.
 fn logarithm(x: f64) -> f64 {
-    x.clamp(f64::MIN_POSITIVE, f64::MAX).ln()
+    libm::log(x.clamp(f64::MIN_POSITIVE, f64::MAX))
 }
 
 /// Groups cases by intensity, the lowest first. Only exactly equal intensities form a group.
@@ -263,7 +263,7 @@ fn demand_two_levels(levels: &[Fraction]) -> Result<(), NoFit> {
     match ends.each_mut().map(|numbers| numbers.sum::<f64>()) {
         [overturned, _] if overturned <= 0.0 => Err(NoFit::NoneOverturned(cases, highest)),
         [_, survived] if survived <= 0.0 => Err(NoFit::AllOverturned(cases, lowest)),
-        [overturned, _] if highest.ln() == lowest.ln() => Err(NoFit::OneIntensity(
+        [overturned, _] if libm::log(highest) == libm::log(lowest) => Err(NoFit::OneIntensity(
             lowest,
             cases,
             overturned.round() as usize,
@@ -274,7 +274,7 @@ fn demand_two_levels(levels: &[Fraction]) -> Result<(), NoFit> {
 
 impl Fraction {
     fn log(&self) -> f64 {
-        self.intensity.ln()
+        libm::log(self.intensity)
     }
 
     /// Returns the number of overturned cases and the number of survived cases.
@@ -318,7 +318,10 @@ fn demand_overlap_and_growth(levels: &[Fraction]) -> Result<(), NoFit> {
     });
     let range = levels[levels.len() - 1].log() - levels[0].log();
     if overturned - survived <= ROUNDING * range {
-        return Err(NoFit::NotIncreasing(survived.exp(), overturned.exp()));
+        return Err(NoFit::NotIncreasing(
+            libm::exp(survived),
+            libm::exp(overturned),
+        ));
     }
     Ok(())
 }
@@ -479,18 +482,18 @@ impl LogProbability {
             let excess = terms.fold(0.0, |rest, k| k / (rest - eta));
             let slope = excess - eta;
             return Self {
-                value: -0.5 * eta * eta - (slope * (2.0 * PI).sqrt()).ln(),
+                value: -0.5 * eta * eta - libm::log(slope * (2.0 * PI).sqrt()),
                 slope,
                 bend: slope * excess,
             };
         }
         let probability = normal_probability(eta);
-        let slope = (-0.5 * eta * eta).exp() / ((2.0 * PI).sqrt() * probability);
+        let slope = libm::exp(-0.5 * eta * eta) / ((2.0 * PI).sqrt() * probability);
         Self {
             // Above zero the complement has more digits.
             value: match eta > 0.0 {
-                true => (-normal_probability(-eta)).ln_1p(),
-                false => probability.ln(),
+                true => libm::log1p(-normal_probability(-eta)),
+                false => libm::log(probability),
             },
             slope,
             bend: slope * (slope + eta),

@@ -66,7 +66,7 @@ impl Heading {
         };
         let scale = match self.spacing {
             Spacing::Logarithmic => {
-                let margin = (high / low).powf(0.05);
+                let margin = libm::pow(high / low, 0.05);
                 Scale::logarithmic(low / margin, high * margin)
             }
             Spacing::Linear => Scale::exactly(0.0, 1.05 * high, figure.ticks(8)),

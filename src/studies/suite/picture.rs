@@ -111,7 +111,7 @@ fn along(scale: &Scale, curves: &[(&Fragility, CurveStyle)]) -> Vec<f64> {
     let rising = curves.iter().flat_map(|(fit, _)| {
         parts
             .clone()
-            .map(|part| fit.median * (fit.dispersion * RISES * (2.0 * part - 1.0)).exp())
+            .map(|part| fit.median * libm::exp(fit.dispersion * RISES * (2.0 * part - 1.0)))
     });
     let values = even.chain(rising);
     ascending(values.filter(|x| *x > 0.0 && (scale.low..=scale.high).contains(x)))

@@ -451,5 +451,5 @@ impl Curve {
 
 /// Returns the number of decimals that show two significant digits of an error.
 fn digits(error: f64) -> usize {
-    (1.0 - error.log10().floor()).clamp(0.0, 12.0) as usize
+    (1.0 - libm::log10(error).floor()).clamp(0.0, 12.0) as usize
 }

@@ -143,12 +143,16 @@ fn scatter<'a>(
     measure: usize,
 ) -> Option<(usize, [f64; 3])> {
     let found = capacities.filter_map(|capacity| capacity.in_measures[measure]);
-    let logarithms: Vec<f64> = found.filter(|at| *at > 0.0).map(f64::ln).collect();
+    let logarithms: Vec<f64> = found.filter(|at| *at > 0.0).map(libm::log).collect();
     let count = logarithms.len() as f64;
     let mean = logarithms.iter().sum::<f64>() / count;
     let squares: f64 = logarithms.iter().map(|value| (value - mean).powi(2)).sum();
     let dispersion = (squares / (count - 1.0)).sqrt();
-    let numbers = [mean.exp(), dispersion, dispersion / MEASURES[measure].2];
+    let numbers = [
+        libm::exp(mean),
+        dispersion,
+        dispersion / MEASURES[measure].2,
+    ];
     (logarithms.len() >= LEAST_CAPACITIES).then_some((logarithms.len(), numbers))
 }
 

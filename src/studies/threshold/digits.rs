@@ -26,7 +26,7 @@ pub fn rounded_range(ends: [f64; 2]) -> [String; 2] {
 
 /// Returns the number of decimals that shows four digits.
 fn decimals(value: f64) -> usize {
-    let power = if value > 0.0 { value.log10() } else { 0.0 };
+    let power = if value > 0.0 { libm::log10(value) } else { 0.0 };
     (4.0 - (power.floor() + 1.0)).max(0.0) as usize
 }
 

@@ -370,7 +370,7 @@ fn spectrum_ratios(
         .into_par_iter()
         .map(|step| {
             let part = f64::from(step) / f64::from(PERIODS);
-            let period_s = from_s * (to_s / from_s).powf(part);
+            let period_s = from_s * libm::pow(to_s / from_s, part);
             let own_m = records
                 .iter()
                 .map(|samples| peak_displacement(samples, period_s, 5.0));

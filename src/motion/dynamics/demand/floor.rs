@@ -49,9 +49,9 @@ impl Mode {
         let factor = self.amplification(damping_percent);
         let [low, high] = PLATEAU.map(|part| period_s / (part * self.t_s));
         let falls = if low < 1.0 {
-            (1.0 - low).powf(1.6)
+            libm::pow(1.0 - low, 1.6)
         } else if high > 1.0 {
-            (high - 1.0).powf(1.2)
+            libm::pow(high - 1.0, 1.2)
         } else {
             0.0
         };

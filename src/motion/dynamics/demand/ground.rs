@@ -40,10 +40,10 @@ impl Soil {
     pub fn period_coefficient(self, tc_star_s: f64) -> f64 {
         match self {
             Self::A => 1.0,
-            Self::B => 1.10 * tc_star_s.powf(-0.20),
-            Self::C => 1.05 * tc_star_s.powf(-0.33),
-            Self::D => 1.25 * tc_star_s.powf(-0.50),
-            Self::E => 1.15 * tc_star_s.powf(-0.40),
+            Self::B => 1.10 * libm::pow(tc_star_s, -0.20),
+            Self::C => 1.05 * libm::pow(tc_star_s, -0.33),
+            Self::D => 1.25 * libm::pow(tc_star_s, -0.50),
+            Self::E => 1.15 * libm::pow(tc_star_s, -0.40),
         }
     }
 

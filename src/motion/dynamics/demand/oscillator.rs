@@ -52,8 +52,8 @@ impl Advance {
     /// Computes the coefficients for a step. With `x'' + 2 z w x' + w^2 x = -(a + b s)`, the particular motion is `-(a + b s) / w^2 + 2 z b / w^3`.
     fn new(omega: f64, ratio: f64, step_s: f64) -> Self {
         let damped = omega * (1.0 - ratio * ratio).sqrt();
-        let decay = (-ratio * omega * step_s).exp();
-        let (sin, cos) = (damped * step_s).sin_cos();
+        let decay = libm::exp(-ratio * omega * step_s);
+        let (sin, cos) = libm::sincos(damped * step_s);
         let lean = ratio * omega / damped;
         let own = [
             [decay * (cos + lean * sin), decay * sin / damped],

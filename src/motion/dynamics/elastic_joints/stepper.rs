@@ -288,8 +288,8 @@ impl<'a> Lane<'a> {
             .get_or_insert((self.observer.time, energy_j));
         if self.until == EndCondition::Settled {
             // Assume that the energy decays `SLOWER` times more slowly from now on.
-            let rate = (quiet_j / energy_j).ln() / (self.observer.time - quiet_from_s);
-            let rests_s = SLOWER * (energy_j / self.stillness.limit_j).ln().max(0.0) / rate;
+            let rate = libm::log(quiet_j / energy_j) / (self.observer.time - quiet_from_s);
+            let rests_s = SLOWER * libm::log(energy_j / self.stillness.limit_j).max(0.0) / rate;
             let rested_s = self.observer.time + rests_s + self.observer.rest_time_s();
             let rests = rate > 0.0 && rested_s < self.observer.input.settings.end_s;
             if !(self.observer.moved && rests && energy_j < DECAYED * self.monitor.largest_j) {
@@ -351,7 +351,7 @@ impl<'a, const L: usize> Group<'a, L> {
             .blocks
             .iter()
             .zip(&self.rest.self_weight_displacements);
-        let moved = weighted.map(|(block, moved)| block.mass_kg * moved[0].hypot(moved[1]));
+        let moved = weighted.map(|(block, moved)| block.mass_kg * libm::hypot(moved[0], moved[1]));
         let moved_kg_m: f64 = moved.sum();
         let none = || Sliding::none(self.structure.row_joints().len());
         begun.observer.row_summary.sliding = self.structure.slips().then(none);

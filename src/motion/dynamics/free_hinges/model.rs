@@ -274,7 +274,7 @@ impl Model for FreeHinges {
         let standing = &self.rigid.standing;
         let summary = motion(input, standing, release.as_ref(), recorder)?;
         let halvings = summary.row().map_or(0, |row| row.halvings);
-        let step_s = SHORTER * (settings.longest_step_s * 0.5_f64.powf(halvings.into()));
+        let step_s = SHORTER * (settings.longest_step_s * libm::pow(0.5, halvings.into()));
         Ok(balanced(summary, "free_hinges", step_s)?)
     }
 }

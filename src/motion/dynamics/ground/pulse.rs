@@ -189,7 +189,7 @@ impl PulseShape {
             Pulse::AntisymmetricRicker => {
                 // The extrema are the zeros of the Hermite polynomial y^4 - 6 y^2 + 3.
                 let [inner, outer] = [-1.0, 1.0].map(|sign| (3.0 + sign * 6.0_f64.sqrt()).sqrt());
-                let peak = inner * 6.0_f64.sqrt() * (-0.5 * inner * inner).exp();
+                let peak = inner * 6.0_f64.sqrt() * libm::exp(-0.5 * inner * inner);
                 let ends =
                     [-outer, -inner, inner, outer].map(|y| 2.5 + y * 3.0_f64.sqrt() / (2.0 * PI));
                 let wavelet = Formula::Shaped(a / peak, Shape::AntisymmetricRicker(t));

@@ -32,7 +32,7 @@ pub struct Sine {
 
 impl Sine {
     pub fn at(&self, since_s: f64) -> (f64, f64) {
-        let (sin, cos) = (self.frequency_rad_s * since_s + self.phase_rad).sin_cos();
+        let (sin, cos) = libm::sincos(self.frequency_rad_s * since_s + self.phase_rad);
         let rate = self.amplitude * self.frequency_rad_s * cos;
         (self.amplitude * sin, rate)
     }
@@ -43,10 +43,10 @@ impl Sine {
         let per_angle = if half_angle == 0.0 {
             1.0
         } else {
-            half_angle.sin() / half_angle
+            libm::sin(half_angle) / half_angle
         };
         let middle = 0.5 * self.frequency_rad_s * (from_s + to_s) + self.phase_rad;
-        self.amplitude * (to_s - from_s) * middle.sin() * per_angle
+        self.amplitude * (to_s - from_s) * libm::sin(middle) * per_angle
     }
 }
 
@@ -62,7 +62,7 @@ impl Gabor {
     /// Returns the angle of the oscillation from the middle of the bell, and sine and cosine of this angle plus the phase.
     fn angle(&self, since_s: f64) -> (f64, (f64, f64)) {
         let angle = self.frequency_rad_s * (since_s - self.centre_s);
-        (angle, (angle + self.train.phase_rad).sin_cos())
+        (angle, libm::sincos(angle + self.train.phase_rad))
     }
 }
 
@@ -100,7 +100,7 @@ impl Shape {
             Self::Ricker(period_s) => {
                 let scale = PI / period_s;
                 let x = scale * (since_s - 2.0 * period_s);
-                let bell = (-x * x).exp();
+                let bell = libm::exp(-x * x);
                 let square = 2.0 * x * x;
                 let rate = bell * scale * 2.0 * x * (square - 3.0);
                 (bell * (1.0 - square), rate)
@@ -108,7 +108,7 @@ impl Shape {
             Self::AntisymmetricRicker(period_s) => {
                 let scale = 2.0 * PI / (3.0_f64.sqrt() * period_s);
                 let y = scale * (since_s - 2.5 * period_s);
-                let bell = (-0.5 * y * y).exp();
+                let bell = libm::exp(-0.5 * y * y);
                 let square = y * y;
                 let rate = bell * scale * (square * (6.0 - square) - 3.0);
                 (bell * y * (square - 3.0), rate)
@@ -116,7 +116,7 @@ impl Shape {
             Self::Gabor(gabor) => {
                 let (angle, (sin, cos)) = gabor.angle(since_s);
                 let square = gabor.train.cycles * gabor.train.cycles;
-                let bell = (-angle * angle / square).exp();
+                let bell = libm::exp(-angle * angle / square);
                 let rate = -bell * gabor.frequency_rad_s * (2.0 * angle / square * cos + sin);
                 (bell * cos, rate)
             }
@@ -132,7 +132,7 @@ impl Shape {
                 let scale = PI / period_s;
                 let antiderivative = |since_s: f64| {
                     let x = scale * (since_s - 2.0 * period_s);
-                    x * (-x * x).exp()
+                    x * libm::exp(-x * x)
                 };
                 (antiderivative(to_s) - antiderivative(from_s)) / scale
             }
@@ -140,7 +140,7 @@ impl Shape {
                 let scale = 2.0 * PI / (3.0_f64.sqrt() * period_s);
                 let antiderivative = |since_s: f64| {
                     let y = scale * (since_s - 2.5 * period_s);
-                    (1.0 - y * y) * (-0.5 * y * y).exp()
+                    (1.0 - y * y) * libm::exp(-0.5 * y * y)
                 };
                 (antiderivative(to_s) - antiderivative(from_s)) / scale
             }

@@ -380,7 +380,7 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
         };
         // Except for terms of the relative size of its height, a hop is a parabola. The sixth derivative, which determines the error of the method,
         // is of the order of the square of that size. The error of a step h is estimated as height^2 (h/hop)^6.
-        let part = (relative_tolerance / (height * height)).powf(1.0 / 6.0);
+        let part = libm::pow(relative_tolerance / (height * height), 1.0 / 6.0);
         let longest_s = hop_s.min(self.piece(now.piece).longest_step_s());
         (part.min(1.0) * hop_s, longest_s)
     }

@@ -37,7 +37,7 @@ impl Section {
     pub(super) fn new(contact: Contact, crushes: bool) -> Self {
         match contact {
             Contact::Continuous if crushes => {
-                let node = |index: usize| 0.5 * (1.0 - (PI * index as f64 / CELLS as f64).cos());
+                let node = |index: usize| 0.5 * (1.0 - libm::cos(PI * index as f64 / CELLS as f64));
                 Self::Cells((0..=CELLS).map(node).collect())
             }
             Contact::Continuous => Self::Whole,

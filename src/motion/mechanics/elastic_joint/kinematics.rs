@@ -17,8 +17,8 @@ remembered!(BodyPosition { ; moved_m, half_turn });
 impl<R: Real> BodyPosition<R> {
     /// Returns the position for displacements in m and a rotation in rad.
     pub fn at(moved: &[f64; 3]) -> Self {
-        let quarter = (0.25 * moved[2]).sin();
-        let half_turn = [-2.0 * quarter * quarter, (0.5 * moved[2]).sin()];
+        let quarter = libm::sin(0.25 * moved[2]);
+        let half_turn = [-2.0 * quarter * quarter, libm::sin(0.5 * moved[2])];
         Self {
             moved_m: [moved[0], moved[1]].map(R::of),
             half_turn: half_turn.map(R::of),

@@ -154,7 +154,7 @@ impl ElasticStructure {
     fn settled(&self, load_m_s2: [f64; 2], built: Equilibrium) -> Result<Equilibrium, RestError> {
         let self_weight_displacements = built.self_weight_displacements.clone();
         let length_m = Search::new(self, load_m_s2).length_m;
-        let far = |moved: &[f64; 3]| moved[0].hypot(moved[1]).max(length_m * moved[2].abs());
+        let far = |moved: &[f64; 3]| libm::hypot(moved[0], moved[1]).max(length_m * moved[2].abs());
         // A common displacement of both supports causes no forces.
         let (along_m, along) = self.moved_along();
         let from = along.supports.iter().zip(self.supports);
@@ -383,7 +383,7 @@ impl<'a> Search<'a> {
             structure,
             load_m_s2,
             yielded_m: vec![0.0; structure.ties.len()],
-            weight_n: structure.mass_kg() * load_m_s2[0].hypot(load_m_s2[1]),
+            weight_n: structure.mass_kg() * libm::hypot(load_m_s2[0], load_m_s2[1]),
             length_m: lengths / joints.len() as f64,
             width: 3 * reach.max().unwrap_or(0) + 2,
         }
@@ -495,8 +495,8 @@ impl<'a> Search<'a> {
         };
         let variable = |axis: usize| Dual::<6>::variable(at[axis], 3 * end + axis);
         let angle = variable(2);
-        let (sin, cos) = (0.5 * at[2]).sin_cos();
-        let quarter = (0.25 * at[2]).sin();
+        let (sin, cos) = libm::sincos(0.5 * at[2]);
+        let quarter = libm::sin(0.25 * at[2]);
         let half_turn = [
             angle.chained(-2.0 * quarter * quarter, -0.5 * sin),
             angle.chained(sin, 0.5 * cos),

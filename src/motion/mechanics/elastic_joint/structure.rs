@@ -484,7 +484,7 @@ impl ElasticStructure {
         let frequency = self.frequency_bound_rad_s();
         let z = 0.5 * self.damping_time_s * frequency;
         // Difference of square root and `z`, written without cancellation.
-        2.0 / frequency / (1.0_f64.hypot(z) + z)
+        2.0 / frequency / (libm::hypot(1.0, z) + z)
     }
 }
 

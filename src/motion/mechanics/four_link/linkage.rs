@@ -61,8 +61,6 @@ impl Body {
 pub struct Linkage {
     profile: Arc<dyn Profile>,
     mechanism: FourLink,
-    /// Mass moments before the hinges.
-    before: [MassMoments; 4],
     /// Bar A-B.
     left: Body,
     /// Bar B-C.
@@ -94,19 +92,17 @@ fn rotate_back(turn: Vector2<f64>, v: Vector2<f64>) -> Vector2<f64> {
 
 /// Returns the angle from the direction of `from` to that of `to`.
 fn angle_between(from: Vector2<f64>, to: Vector2<f64>) -> f64 {
-    from.perp(&to).atan2(from.dot(&to))
+    libm::atan2(from.perp(&to), from.dot(&to))
 }
 
 impl Linkage {
     /// Returns the linkage of `mechanism`.
     pub fn new(profile: &dyn Profile, mechanism: &FourLink) -> Self {
-        let before = mechanism.hinges_rad.map(|hinge| profile.moments_to(hinge));
         let [point_a, point_b, point_c, point_d] = mechanism.points;
-        let [left, middle, right] = Self::sectors(&before);
+        let [left, middle, right] = Self::sectors(&mechanism.before);
         Self {
             profile: profile.shared(),
             mechanism: *mechanism,
-            before,
             left: Body::new(&left, point_a, point_b - point_a).loaded(middle.mass),
             middle: Body::new(&middle, point_b, point_c - point_b),
             right: Body::new(&right, point_d, point_c - point_d),
@@ -123,7 +119,7 @@ impl Linkage {
     ///
     /// NaN where the bars B-C and C-D do not reach each other.
     fn bars(&self, q_rad: f64) -> Bars {
-        let (sin, cos) = q_rad.sin_cos();
+        let (sin, cos) = libm::sincos(q_rad);
         let left = product(self.left.bar, Vector2::new(cos, -sin));
         // C is where the circles about B and D meet, on the left of the line from B to D.
         let line = self.ground - left;
@@ -199,7 +195,7 @@ impl Linkage {
         let right = Load::of_body(point_d, rotate_back(turn_right, force), right_spin);
 
         let [a, b, c, d] = self.mechanism.hinges_rad;
-        let sectors = Self::sectors(&self.before);
+        let sectors = Self::sectors(&self.mechanism.before);
         let on_left = left.resultant(&sectors[0]);
         let on_middle = middle.resultant(&sectors[1]);
         let on_right = right.resultant(&sectors[2]);
@@ -213,7 +209,7 @@ impl Linkage {
         let still = Load::uniform(force);
         let part = |hinge: usize, end_rad: f64, load: Load, force: Vector2<f64>| {
             let at_hinge = Momentum::applied_at(self.mechanism.points[hinge], force);
-            Part::after(&self.before[hinge], end_rad, load, at_hinge)
+            Part::after(&self.mechanism.before[hinge], end_rad, load, at_hinge)
         };
         [
             part(0, a, still, force_a),
@@ -235,9 +231,9 @@ impl Linkage {
         // Angle from A-D to A-B, undeformed and at the limit.
         let start = angle_between(self.ground, self.left.bar);
         let end = if left + middle < right + base {
-            cosine(left + middle, base, right).acos()
+            libm::acos(cosine(left + middle, base, right))
         } else {
-            cosine(left, right + base, middle).acos()
+            libm::acos(cosine(left, right + base, middle))
         };
         start - end
     }
@@ -249,9 +245,7 @@ impl Mechanism for Linkage {
     const BODIES: &'static [&'static str] = &["left", "middle", "right"];
 
     fn moments(&self) -> Vec<MassMoments> {
-        let hinges = self.mechanism.hinges_rad.windows(2);
-        let moments = hinges.map(|ends| self.profile.sector(ends[0], ends[1]));
-        moments.collect()
+        Self::sectors(&self.mechanism.before).to_vec()
     }
 
     /// Returns the coefficients of the equation of motion at `q`, masses in `rho d R^2`, lengths in `R`.

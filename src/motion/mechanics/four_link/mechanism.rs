@@ -4,7 +4,7 @@
 //! intrados, extrados from the left springing. A sway to the left is reflected ([`Sway`]). A ring is symmetric, so left and right agree exactly. A
 //! row of blocks may not be symmetric, and then has a profile for each side.
 
-use crate::mechanics::{Edge, Field, Hinge, Profile, Sway, Twist};
+use crate::mechanics::{Edge, Field, Hinge, MassMoments, Profile, Sway, Twist};
 use nalgebra::Vector2;
 
 /// Edges of the hinges A, B, C, D of a mechanism that sways right.
@@ -49,6 +49,8 @@ pub struct FourLink {
     pub openings: [f64; 4],
     /// Positions of the hinges.
     pub points: [Vector2<f64>; 4],
+    /// Mass moments before the hinges.
+    pub(super) before: [MassMoments; 4],
 }
 
 impl FourLink {
@@ -67,6 +69,7 @@ impl FourLink {
             hinges_rad,
             openings: openings.map(|opening| opening / -openings[0]),
             points,
+            before: hinges_rad.map(|hinge| profile.moments_to(hinge)),
         })
     }
 
@@ -108,7 +111,7 @@ impl FourLink {
                 Twist::rotation(self.points[i], self.openings[i]),
             )
         });
-        Field::from_jumps(&jumps)
+        Field::with_moments(self.before.to_vec(), &jumps)
     }
 }
 

@@ -6,7 +6,7 @@
 
 use std::sync::Arc;
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Vector2, Vector3};
 
 use super::mechanism::{EDGES, FourLink, HingeSites};
 use crate::mechanics::{Edge, Field, Momentum, Profile, Twist};
@@ -169,13 +169,18 @@ impl ResultantLine {
         top(refined.chain(samples.iter().copied()))
     }
 
-    /// Returns the derivative with respect to the angle of the moment about the edge point of the section, where the load is `local`. Zero where the
-    /// line touches the edge.
-    fn edge_moment_slope(&self, angle_rad: f64, edge: Edge, local: Twist) -> f64 {
+    /// Returns the derivative with respect to the angle of the moment about the edge point `point` of the section, where the load is `local`. Zero
+    /// where the line touches the edge.
+    fn edge_moment_slope(
+        &self,
+        angle_rad: f64,
+        edge: Edge,
+        point: Vector2<f64>,
+        local: Twist,
+    ) -> f64 {
         let slice = local.momentum(&self.profile.slice(angle_rad));
         let along_edge = self.profile.edge_slope(angle_rad, edge);
-        slice.about(self.profile.point(angle_rad, edge))
-            - along_edge.perp(&self.at(angle_rad).linear)
+        slice.about(point) - along_edge.perp(&self.at(angle_rad).linear)
     }
 
     /// Returns the derivatives of the power of the load on `mechanism` (at `q' = 1`) by the sections of its hinges. The rotations change so that the
@@ -184,9 +189,10 @@ impl ResultantLine {
     /// A moved hinge changes the rotations at all four hinges, but the line has no moment there. Only the moment about the moved point itself
     /// contributes. `local` is the load at each hinge.
     pub(crate) fn power_gradient(&self, mechanism: &FourLink, local: [Twist; 4]) -> [f64; 4] {
-        let (hinges, openings) = (mechanism.hinges_rad, mechanism.openings);
+        let (hinges, points) = (mechanism.hinges_rad, mechanism.points);
         std::array::from_fn(|i| {
-            -openings[i] * self.edge_moment_slope(hinges[i], EDGES[i], local[i])
+            let slope = self.edge_moment_slope(hinges[i], EDGES[i], points[i], local[i]);
+            -mechanism.openings[i] * slope
         })
     }
 }

@@ -69,9 +69,9 @@ impl SymmetricLines {
 
     /// Returns the `k` for which the thrust line with thrust `h` meets an edge at a section.
     fn touching(&self, edge: Edge, h: f64, angle_rad: f64) -> Bound {
-        let (sin, cos) = angle_rad.sin_cos();
+        let (sin, cos) = libm::sincos(angle_rad);
         // This form of 1 - cos phi avoids cancellation in shallow rings.
-        let drop = 2.0 * (0.5 * angle_rad).sin().powi(2);
+        let drop = 2.0 * libm::sin(0.5 * angle_rad).powi(2);
         let radius = self.ring.radius(edge);
         Bound {
             value: radius * (h * cos + angle_rad * sin) - self.slice_radius * drop,
@@ -110,7 +110,7 @@ impl SymmetricLines {
     fn haunch_rad(&self, h: f64) -> f64 {
         let radius = self.ring.radius(Edge::Intrados);
         let rises = |angle: f64| {
-            let (sin, cos) = angle.sin_cos();
+            let (sin, cos) = libm::sincos(angle);
             radius * angle * cos > (radius * (h - 1.0) + self.slice_radius) * sin
         };
         last(0.0, 0.5 * self.ring.embrace_rad, rises)

@@ -69,7 +69,7 @@ impl Curve {
                 radius,
                 angles_rad: [from_rad, to_rad],
             } => {
-                let (sin, cos) = (from_rad + (to_rad - from_rad) * part).sin_cos();
+                let (sin, cos) = libm::sincos(from_rad + (to_rad - from_rad) * part);
                 let arm = Vector2::new(cos, sin) * radius;
                 (centre + arm, turned(arm) * (to_rad - from_rad))
             }
@@ -78,7 +78,7 @@ impl Curve {
                 offset,
                 angles_rad: [from_rad, to_rad],
             } => {
-                let (sin, cos) = (from_rad + (to_rad - from_rad) * part).sin_cos();
+                let (sin, cos) = libm::sincos(from_rad + (to_rad - from_rad) * part);
                 let on_ellipse = Vector2::new(semi_axes.x * cos, semi_axes.y * sin);
                 let outward = Vector2::new(semi_axes.y * cos, semi_axes.x * sin);
                 let speed = outward.norm();

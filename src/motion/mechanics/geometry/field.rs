@@ -4,7 +4,7 @@
 //! acceleration field such as gravity, and the change of velocity in an impact. Two fields have a scalar product, the integral of `rho v . w`. It is
 //! twice a kinetic energy for `v = w`, and a virtual power if one of the fields is a load per unit mass.
 
-use crate::mechanics::Profile;
+use crate::mechanics::{MassMoments, Profile};
 use std::mem;
 use std::ops::Add;
 
@@ -25,6 +25,8 @@ pub enum Side {
 pub struct Field {
     /// Sections where the field may jump, in radians, ascending.
     pub cuts_rad: Vec<f64>,
+    /// Mass moments before each cut, computed only once: most of the work of a search for an impact.
+    before: Vec<MassMoments>,
     twists: Vec<Twist>,
 }
 
@@ -33,12 +35,19 @@ impl Field {
     pub fn uniform(twist: Twist) -> Self {
         Self {
             cuts_rad: Vec::new(),
+            before: Vec::new(),
             twists: vec![twist],
         }
     }
 
     /// Returns a field that jumps by `jumps[i].1` at section `jumps[i].0` (angles ascending) and is zero before the first of them.
-    pub fn from_jumps(jumps: &[(f64, Twist)]) -> Self {
+    pub fn from_jumps(profile: &dyn Profile, jumps: &[(f64, Twist)]) -> Self {
+        let before = jumps.iter().map(|(angle, _)| profile.moments_to(*angle));
+        Self::with_moments(before.collect(), jumps)
+    }
+
+    /// Returns [`Self::from_jumps`], given the mass moments before each jump.
+    pub(crate) fn with_moments(before: Vec<MassMoments>, jumps: &[(f64, Twist)]) -> Self {
         let mut twist = Twist::ZERO;
         let mut twists = vec![twist];
         for (_, jump) in jumps {
@@ -47,6 +56,7 @@ impl Field {
         }
         Self {
             cuts_rad: jumps.iter().map(|(angle, _)| *angle).collect(),
+            before,
             twists,
         }
     }
@@ -64,6 +74,7 @@ impl Field {
     pub fn scaled(&self, factor: f64) -> Self {
         Self {
             cuts_rad: self.cuts_rad.clone(),
+            before: self.before.clone(),
             twists: self.twists.iter().map(|twist| *twist * factor).collect(),
         }
     }
@@ -71,21 +82,38 @@ impl Field {
     /// Returns the mirror image about the vertical axis of the profile.
     pub fn mirrored(&self, profile: &dyn Profile) -> Self {
         let cuts_rad = self.cuts_rad.iter().rev().map(|cut| profile.end() - cut);
+        let cuts_rad: Vec<f64> = cuts_rad.collect();
+        let before = cuts_rad.iter().map(|cut| profile.moments_to(*cut));
         Self {
-            cuts_rad: cuts_rad.collect(),
+            before: before.collect(),
+            cuts_rad,
             twists: self.twists.iter().rev().map(Twist::mirrored).collect(),
         }
     }
 
     /// Returns this field minus another: rigid on the sectors between the cuts of both.
     pub fn minus(&self, other: &Self) -> Self {
-        let mut cuts_rad = [self.cuts_rad.as_slice(), other.cuts_rad.as_slice()].concat();
-        cuts_rad.sort_by(f64::total_cmp);
-        cuts_rad.dedup();
+        let mut cuts: Vec<(f64, MassMoments)> = [self, other]
+            .into_iter()
+            .flat_map(|field| {
+                field
+                    .cuts_rad
+                    .iter()
+                    .copied()
+                    .zip(field.before.iter().copied())
+            })
+            .collect();
+        cuts.sort_by(|a, b| a.0.total_cmp(&b.0));
+        cuts.dedup_by_key(|cut| cut.0);
+        let (cuts_rad, before): (Vec<f64>, _) = cuts.into_iter().unzip();
         let after = |cut: f64| self.at(cut, Side::After) - other.at(cut, Side::After);
         let starts = std::iter::once(f64::NEG_INFINITY).chain(cuts_rad.iter().copied());
         let twists = starts.map(after).collect();
-        Self { cuts_rad, twists }
+        Self {
+            cuts_rad,
+            before,
+            twists,
+        }
     }
 
     /// Returns the rigid sectors: bounds and motion of each.
@@ -96,13 +124,23 @@ impl Field {
         sectors.map(|((start, end), twist)| (start, end, *twist))
     }
 
+    /// Returns the mass moments before the end of a sector.
+    fn moments_to_end(&self, sector: usize, profile: &dyn Profile) -> MassMoments {
+        let known = self.before.get(sector).copied();
+        known.unwrap_or_else(|| profile.moments_to(profile.end()))
+    }
+
     /// Returns the momentum of the part of the profile from the left springing to `angle_rad`.
     pub fn momentum_to(&self, profile: &dyn Profile, angle_rad: f64) -> Momentum {
         let sectors = self.sectors(profile.end());
         let before = sectors.take_while(|(start, ..)| *start < angle_rad);
-        let mut from = profile.moments_to(0.0);
-        let momenta = before.map(|(_, end, twist)| {
-            let to = profile.moments_to(end.min(angle_rad));
+        let mut from = MassMoments::default();
+        let momenta = before.enumerate().map(|(sector, (_, end, twist))| {
+            let to = if end <= angle_rad {
+                self.moments_to_end(sector, profile)
+            } else {
+                profile.moments_to(angle_rad)
+            };
             twist.momentum(&(to - mem::replace(&mut from, to)))
         });
         momenta.fold(Momentum::ZERO, Add::add)
@@ -113,13 +151,17 @@ impl Field {
     pub fn product(&self, other: &Self, profile: &dyn Profile) -> f64 {
         let end_of =
             |field: &Self, sector| field.cuts_rad.get(sector).map_or(profile.end(), |cut| *cut);
-        let (mut from, mut before) = (0.0, profile.moments_to(0.0));
+        let (mut from, mut before) = (0.0, MassMoments::default());
         let (mut own, mut others, mut sum) = (0, 0, 0.0);
         while own < self.twists.len() && others < other.twists.len() {
             let ends = [end_of(self, own), end_of(other, others)];
             let to = ends[0].min(ends[1]);
             if from < to {
-                let after = profile.moments_to(to);
+                let after = if ends[0] <= to {
+                    self.moments_to_end(own, profile)
+                } else {
+                    other.moments_to_end(others, profile)
+                };
                 sum += self.twists[own].power(&other.twists[others].momentum(&(after - before)));
                 (from, before) = (to, after);
             }
@@ -142,8 +184,14 @@ mod tests {
             at_center: Vector2::new(x, y),
             rate,
         };
-        let u = Field::from_jumps(&[(0.3, twist(0.1, -0.2, 0.7)), (1.2, twist(-0.4, 0.3, 0.1))]);
-        let w = Field::from_jumps(&[(0.3, twist(0.5, 0.2, -0.3)), (0.8, twist(0.2, 0.2, 0.2))]);
+        let u = Field::from_jumps(
+            &ring,
+            &[(0.3, twist(0.1, -0.2, 0.7)), (1.2, twist(-0.4, 0.3, 0.1))],
+        );
+        let w = Field::from_jumps(
+            &ring,
+            &[(0.3, twist(0.5, 0.2, -0.3)), (0.8, twist(0.2, 0.2, 0.2))],
+        );
         (ring, u, w)
     }
 
@@ -189,7 +237,7 @@ mod tests {
     fn momentum_is_the_product_with_a_rigid_motion_of_the_part() {
         let (ring, u, _) = example();
         let part = Twist::rotation(Vector2::new(0.3, -0.1), 0.4);
-        let stop = Field::from_jumps(&[(0.0, part), (1.0, part * -1.0)]);
+        let stop = Field::from_jumps(&ring, &[(0.0, part), (1.0, part * -1.0)]);
         let expected = part.power(&u.momentum_to(&ring, 1.0));
         assert!((stop.product(&u, &ring) - expected).abs() < 1e-15);
     }

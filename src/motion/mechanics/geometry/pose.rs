@@ -77,7 +77,7 @@ impl Pose {
 
 /// Returns the unit vector at an angle from the x axis.
 pub(crate) fn unit(angle_rad: f64) -> Vector2<f64> {
-    let (sin, cos) = angle_rad.sin_cos();
+    let (sin, cos) = libm::sincos(angle_rad);
     Vector2::new(cos, sin)
 }
 

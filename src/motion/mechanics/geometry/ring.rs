@@ -86,7 +86,7 @@ impl Ring {
 
     /// Returns the unit vector from the centre through the section at `angle_rad`.
     pub fn radial(&self, angle_rad: f64) -> Vector2<f64> {
-        let (sin, cos) = (angle_rad - 0.5 * self.embrace_rad).sin_cos();
+        let (sin, cos) = libm::sincos(angle_rad - 0.5 * self.embrace_rad);
         Vector2::new(sin, cos)
     }
 
@@ -125,11 +125,10 @@ impl Ring {
     /// radial unit vector, the mass is `t` and the polar moment `t (1 + t^2/4)` per radian.
     pub fn moments_to(&self, angle_rad: f64) -> MassMoments {
         let (start, end) = (self.left, self.radial(angle_rad));
-        let slice = self.slice(angle_rad);
         MassMoments {
-            mass: slice.mass * angle_rad,
+            mass: self.thickness_ratio * angle_rad,
             first: Vector2::new(start.y - end.y, end.x - start.x) * self.first_moment_per_rad(),
-            polar: slice.polar * angle_rad,
+            polar: self.polar_moment_per_rad() * angle_rad,
         }
     }
 
@@ -140,17 +139,21 @@ impl Ring {
 
     /// Mass moments per radian at a section: the derivative of [`Ring::moments_to`].
     pub fn slice(&self, angle_rad: f64) -> MassMoments {
-        let t = self.thickness_ratio;
         MassMoments {
-            mass: t,
+            mass: self.thickness_ratio,
             first: self.radial(angle_rad) * self.first_moment_per_rad(),
-            polar: t * (1.0 + 0.25 * t * t),
+            polar: self.polar_moment_per_rad(),
         }
     }
 
     fn first_moment_per_rad(&self) -> f64 {
         let t = self.thickness_ratio;
         t * (1.0 + t * t / 12.0)
+    }
+
+    fn polar_moment_per_rad(&self) -> f64 {
+        let t = self.thickness_ratio;
+        t * (1.0 + 0.25 * t * t)
     }
 }
 

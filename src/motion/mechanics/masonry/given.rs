@@ -203,7 +203,7 @@ impl GivenBlocks {
             let values = || corners().map(|corner| of(&corner));
             values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
         };
-        0.5 * extent(|corner| corner.x).hypot(extent(|corner| corner.y))
+        0.5 * libm::hypot(extent(|corner| corner.x), extent(|corner| corner.y))
     }
 
     /// Returns the index, from 0, of the block or joint of an error, as a line of the file of joints; `None` for other errors.

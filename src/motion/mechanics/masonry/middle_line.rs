@@ -158,18 +158,18 @@ impl BasketArch {
         above("crown_deg", self.crown_deg, 0.0, 179.0)?;
         let half_rad = 0.5 * self.crown_deg.to_radians();
         let (half_m, rise_m) = (0.5 * dimensions.span_m, dimensions.rise_m);
-        let aside_m = (half_m - rise_m) / (1.0 - (0.5 * half_rad).tan());
+        let aside_m = (half_m - rise_m) / (1.0 - libm::tan(0.5 * half_rad));
         let outer_m = half_m - aside_m;
         let allowed = format_args!(
             "above {:.6} and at most {half_m:?}, half the span, for three arcs with {:?} degrees at the crown",
-            half_m * (0.5 * half_rad).tan(),
+            half_m * libm::tan(0.5 * half_rad),
             self.crown_deg
         );
         allow(aside_m >= 0.0 && outer_m > 0.0, "rise_m", rise_m, allowed)?;
         dimensions.check_curvature(outer_m)?;
         let crown = Curve::Arc {
-            centre: Vector2::new(0.0, -aside_m / half_rad.tan()),
-            radius: outer_m + aside_m / half_rad.sin(),
+            centre: Vector2::new(0.0, -aside_m / libm::tan(half_rad)),
+            radius: outer_m + aside_m / libm::sin(half_rad),
             angles_rad: [FRAC_PI_2 + half_rad, FRAC_PI_2 - half_rad],
         };
         let left = Curve::Arc {

@@ -33,12 +33,12 @@ pub(super) fn cut_pointed(dimensions: &Dimensions) -> Result<CutArch, ArgumentEr
         centre,
         radius,
         // The arc ends at the middle.
-        angles_rad: [PI, (-centre.x / radius).acos()],
+        angles_rad: [PI, libm::acos(-centre.x / radius)],
     };
     let halves = |radius: f64| vec![arc(radius), arc(radius).mirrored()];
     let outer_m = inner_m + thickness_m;
     // Fraction of the extrados opposite the intrados; the rest extends to the crown.
-    let angle = |radius: f64| PI - (-centre.x / radius).acos();
+    let angle = |radius: f64| PI - libm::acos(-centre.x / radius);
     let shorter = angle(inner_m) / angle(outer_m);
     let joint = |joint: usize| {
         // Twice the fraction of the path, so that the crown is at 1.

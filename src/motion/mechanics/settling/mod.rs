@@ -66,7 +66,7 @@ linear!(Movement {
 impl Movement {
     /// Returns the displacement over the size of the row plus the rotation in radians.
     fn extent(&self, size_m: f64) -> f64 {
-        self.spread_m.hypot(self.settlement_m) / size_m + self.rotation_rad.abs()
+        libm::hypot(self.spread_m, self.settlement_m) / size_m + self.rotation_rad.abs()
     }
 }
 

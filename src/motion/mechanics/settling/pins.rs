@@ -349,7 +349,7 @@ pub(super) fn two_bodies(
     let pin = ends[0] + axis * along + turned(axis) * (side * height_squared.sqrt());
     let body = |from: Vector2<f64>, to: Vector2<f64>, end: Vector2<f64>, arm: Vector2<f64>| {
         let now = to - from;
-        Pose::about(end, from, arm.perp(&now).atan2(arm.dot(&now)))
+        Pose::about(end, from, libm::atan2(arm.perp(&now), arm.dot(&now)))
     };
     Some(vec![
         body(ends[0], pin, left, first),

@@ -265,7 +265,7 @@ impl Crossing {
             };
             let part = (level - least) / (share - least);
             Some(if logarithmic {
-                below * (y / below).powf(part)
+                below * libm::pow(y / below, part)
             } else {
                 below + part * (y - below)
             })
