@@ -10,11 +10,11 @@ use std::sync::mpsc::{self, Sender};
 use std::thread;
 use std::time::Duration;
 
+use archrock::Runner;
 use archrock::output::Figure;
 use archrock::scenario::{Scenario, Source};
 use archrock::studies::run::Sinks;
 use archrock::studies::{Computation, Options, RowSource, StudyKind, Style};
-use archrock::Runner;
 use serde_json::{Value, json};
 
 use crate::common::browser::browser;
@@ -63,7 +63,9 @@ fn file(name: &str) -> String {
 
 /// The files of a study as this build of the library computes them.
 fn computed(study: &str, text: &str, files: &[(&str, String)], no_repeat: bool) -> Value {
-    let held = files.iter().map(|(name, text)| (PathBuf::from(name), text.clone().into_bytes()));
+    let held = files
+        .iter()
+        .map(|(name, text)| (PathBuf::from(name), text.clone().into_bytes()));
     let source = Source::of_text(text, "scenario.toml").with_files(held);
     let scenario = Scenario::of(&source, &Default::default()).unwrap();
     let mut options = Options::default();
@@ -76,13 +78,23 @@ fn computed(study: &str, text: &str, files: &[(&str, String)], no_repeat: bool) 
     let rows = RowSource::Compute(Runner::default(), None, watch);
     let kind = StudyKind::of_name(study).unwrap();
     let done = kind
-        .compute(&[scenario], &options, Style::of(Figure::SCREEN), rows, sinks)
+        .compute(
+            &[scenario],
+            &options,
+            Style::of(Figure::SCREEN),
+            rows,
+            sinks,
+        )
         .unwrap();
     let Computation::Complete(results, _) = done else {
         panic!("{study} is incomplete");
     };
-    let tables = results.files.iter().filter(|(name, _)| name.ends_with(".csv"));
-    let tables = tables.map(|(name, bytes)| ((*name).to_owned(), String::from_utf8_lossy(bytes).into()));
+    let tables = results
+        .files
+        .iter()
+        .filter(|(name, _)| name.ends_with(".csv"));
+    let tables =
+        tables.map(|(name, bytes)| ((*name).to_owned(), String::from_utf8_lossy(bytes).into()));
     let mut summary = results.summary;
     summary.as_object_mut().unwrap().remove("longest_step_us");
     json!({ "summary": summary, "words": results.words, "tables": Value::Object(tables.collect()) })
@@ -107,7 +119,9 @@ fn serve(listener: &TcpListener, folder: &Path, html: &str, verdict: &Sender<Str
             let mut body = vec![0; length];
             reader.read_exact(&mut body).unwrap();
             send(&stream, "text/plain", b"");
-            verdict.send(String::from_utf8(body).unwrap()).unwrap_or_default();
+            verdict
+                .send(String::from_utf8(body).unwrap())
+                .unwrap_or_default();
         } else if first.contains("archrock.wasm") {
             // A simple server does not know this type of file.
             let module = fs::read(folder.join("archrock.wasm")).unwrap();
@@ -124,13 +138,19 @@ fn send(mut stream: &TcpStream, kind: &str, body: &[u8]) {
         body.len()
     );
     // A browser that has gone wants nothing.
-    let _ = stream.write_all(head.as_bytes()).and_then(|()| stream.write_all(body));
+    let _ = stream
+        .write_all(head.as_bytes())
+        .and_then(|()| stream.write_all(body));
 }
 
 /// Asserts that the checks of a part of web.js pass on a page, at least this many. `single` is the page of one file, opened from disk.
 fn assert_page(part: &str, single: bool, settings: &[&str], data: &Value, least: usize) {
     let Some(folder) = pages() else { return };
-    let name = if single { "archrock.html" } else { "index.html" };
+    let name = if single {
+        "archrock.html"
+    } else {
+        "index.html"
+    };
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let port = listener.local_addr().unwrap().port();
     let address = format!("http://127.0.0.1:{port}/");
@@ -140,7 +160,11 @@ fn assert_page(part: &str, single: bool, settings: &[&str], data: &Value, least:
         addEventListener('unhandledrejection', ({ reason }) => errors.push(`${reason} ${reason.stack}`));</script>";
     let html = fs::read_to_string(folder.join(name)).unwrap();
     let html = html.replacen("<head>", &format!("<head>{before}"), 1);
-    let html = html.replacen("</body>", &format!("<script type=\"module\">{own}</script></body>"), 1);
+    let html = html.replacen(
+        "</body>",
+        &format!("<script type=\"module\">{own}</script></body>"),
+        1,
+    );
     let disk = tempfile::tempdir().unwrap();
     let file = disk.path().join("archrock.html");
     fs::write(&file, &html).unwrap();
@@ -160,9 +184,13 @@ fn assert_page(part: &str, single: bool, settings: &[&str], data: &Value, least:
     let verdict = receiver.recv_timeout(Duration::from_secs(300));
     browser.kill().unwrap();
     browser.wait().unwrap();
-    let verdict: Value = serde_json::from_str(&verdict.expect("the page sends its verdict")).unwrap();
+    let verdict: Value =
+        serde_json::from_str(&verdict.expect("the page sends its verdict")).unwrap();
     assert_eq!(verdict["failures"], json!([]), "{part}");
-    assert!(verdict["passed"].as_u64().unwrap() as usize >= least, "{verdict}");
+    assert!(
+        verdict["passed"].as_u64().unwrap() as usize >= least,
+        "{verdict}"
+    );
 }
 
 /// Every number of the module is that of the program, to the last digit: a run, its tables and its words.
@@ -175,18 +203,33 @@ fn the_page_computes_the_bits_of_the_program() {
     let record = [("synthetic.at2", file("synthetic.at2"))];
     let texts = COMPARED.map(file).into_iter().chain([ELASTIC.to_owned()]);
     for (text, name) in texts.zip(COMPARED.into_iter().chain(["elastic"])) {
-        let files = if name.contains("record") { &record[..] } else { &[] };
+        let files = if name.contains("record") {
+            &record[..]
+        } else {
+            &[]
+        };
         let expected = computed("run", &text, files, true);
-        let files: serde_json::Map<_, _> =
-            files.iter().map(|(name, text)| ((*name).to_owned(), text.clone().into())).collect();
+        let files: serde_json::Map<_, _> = files
+            .iter()
+            .map(|(name, text)| ((*name).to_owned(), text.clone().into()))
+            .collect();
         all.push(json!({ "name": name, "study": "run", "scenario": text, "files": files, "expected": expected }));
     }
-    for (study, name) in [("map", "semicircle-map.toml"), ("threshold", "semicircle-pulse.toml"), ("limit", "tie.toml")] {
+    for (study, name) in [
+        ("map", "semicircle-map.toml"),
+        ("threshold", "semicircle-pulse.toml"),
+        ("limit", "tie.toml"),
+    ] {
         let text = file(name);
         let expected = computed(study, &text, &[], false);
         all.push(json!({ "name": name, "study": study, "scenario": text, "files": {}, "expected": expected }));
     }
-    assert!(all[2]["expected"]["words"].as_str().unwrap().contains("152 impacts"));
+    assert!(
+        all[2]["expected"]["words"]
+            .as_str()
+            .unwrap()
+            .contains("152 impacts")
+    );
     assert_page("bits", false, &[], &json!(all), 45);
 }
 

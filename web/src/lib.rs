@@ -10,11 +10,11 @@ use std::panic;
 use std::path::PathBuf;
 use std::slice;
 
+use archrock::Runner;
 use archrock::output::Figure;
 use archrock::scenario::{ReadOptions, Scenario, ScenarioErrors, Source};
 use archrock::studies::run::Sinks;
 use archrock::studies::{Computation, Options, Progress, RowSource, StudyError, StudyKind, Style};
-use archrock::Runner;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 

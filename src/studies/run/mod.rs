@@ -354,7 +354,11 @@ impl<'a> Run<'a> {
             })
         });
         if sinks.in_memory {
-            in_memory.extend(texts.into_iter().map(|(name, text)| (name, text.into_bytes())));
+            in_memory.extend(
+                texts
+                    .into_iter()
+                    .map(|(name, text)| (name, text.into_bytes())),
+            );
         }
         Ok(ModelResults {
             answer: summary.answer(scenario),
@@ -456,8 +460,7 @@ impl Drawings {
         let factor = options.exaggeration.unwrap_or(1.0);
         let snapshots = || Snapshots::new(scene(run.scenario, model), factor);
         let film_rate_hz = options.film_rate_hz.filter(|_| has_files);
-        let times_s =
-            Some(&options.snapshots_s).filter(|times_s| has_files && !times_s.is_empty());
+        let times_s = Some(&options.snapshots_s).filter(|times_s| has_files && !times_s.is_empty());
         Self {
             timeline: Timeline::new(model),
             report: (has_files && !options.no_report).then(|| Report::new(run.scenario, model)),
