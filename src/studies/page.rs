@@ -56,7 +56,7 @@ pub(super) struct Page {
 }
 
 /// The scenario of a case: an earlier text with some other lines. Texts without a number have no valid scenario.
-#[derive(Clone, Default, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct CaseText {
     text: Option<usize>,
     lines: Vec<(usize, String)>,
@@ -101,6 +101,14 @@ impl Page {
         }
     }
 
+    /// Returns the name of all marks.
+    fn marked(&self) -> &'static str {
+        match self.command.starts_with("limit") {
+            true => "Hinges",
+            false => "Cases",
+        }
+    }
+
     /// Returns true if blanks align the words.
     fn is_aligned(&self) -> bool {
         let mut lines = self.words.lines().map(str::trim);
@@ -115,7 +123,7 @@ impl Page {
 }
 
 /// The cases of a page, in the order of the last table of its study.
-#[derive(Clone, Default, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct PageCases {
     #[serde(skip)]
     pub(super) spots: Vec<Spot>,
@@ -133,9 +141,44 @@ impl PageCases {
     /// Only the first cases are on the page.
     pub(super) fn push(
         &mut self,
-        (kind, outside): (SpotKind, bool),
+        mark: (SpotKind, bool),
         words: String,
         scenario: impl FnOnce() -> Option<Value>,
+    ) {
+        let are_suites = self.are_suites;
+        self.push_text(mark, words, || {
+            let mut scenario = scenario()?;
+            if let Value::Object(tables) = &mut scenario {
+                tables.retain(|name, _| match &**name {
+                    "map" | "demand" | "verify" | "uncertain" => false,
+                    "suite" => are_suites,
+                    _ => true,
+                });
+            }
+            Some(toml_text(&scenario))
+        });
+    }
+
+    /// Adds a case of another page, with words before its own.
+    pub(super) fn push_copy(&mut self, before: &str, other: &Self, row: usize) {
+        let spot = other.spots.get(row);
+        let mark = spot.map_or((SpotKind::Unknown, false), |spot| (spot.kind, spot.outside));
+        let words = spot.map_or("a case without a mark", |spot| &spot.words);
+        self.push_text(mark, format!("{before}{words}"), || {
+            let CaseText { text, lines } = other.cases.get(row)?;
+            let mut all: Vec<&str> = other.texts[(*text)?].split('\n').collect();
+            for (index, line) in lines {
+                all[*index] = line;
+            }
+            Some(all.join("\n"))
+        });
+    }
+
+    fn push_text(
+        &mut self,
+        (kind, outside): (SpotKind, bool),
+        words: String,
+        text: impl FnOnce() -> Option<String>,
     ) {
         self.count += 1;
         if self.spots.len() == MOST_CASES {
@@ -147,16 +190,7 @@ impl PageCases {
             outside,
             words,
         });
-        let case = scenario().map(|mut scenario| {
-            if let Value::Object(tables) = &mut scenario {
-                tables.retain(|name, _| match &**name {
-                    "map" | "demand" | "verify" | "uncertain" => false,
-                    "suite" => self.are_suites,
-                    _ => true,
-                });
-            }
-            self.text(&toml_text(&scenario))
-        });
+        let case = text().map(|text| self.text(&text));
         self.cases.push(case.unwrap_or_default());
     }
 
@@ -292,6 +326,7 @@ impl Results {
         page.more = more.iter().map(|draw| draw(Figure::PHONE)).collect();
         page.all = cases.clone();
         self.files.insert(0, (name, render(&page).into_bytes()));
+        self.cases = page.all;
         self
     }
 }
