@@ -8,7 +8,7 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 use thiserror::Error;
 
-use super::page::PageCases;
+use super::page_cases::PageCases;
 use super::part::PartError;
 use super::{ModelAnswer, RunnerError, Study};
 use crate::SimulationError;
@@ -90,7 +90,7 @@ pub struct Results {
     /// The answer of a suite that may be quoted, for the comparison of models of motion.
     pub answer: Option<ModelAnswer>,
     /// The cases on the page.
-    pub(super) cases: PageCases,
+    pub(super) cases: Box<PageCases>,
 }
 
 impl Results {

@@ -37,8 +37,10 @@ impl<A> SamplePage<'_, A> {
     ) -> Results {
         let scenario = samples.scenario;
         let json = scenario.to_json();
-        let mut cases = PageCases::default();
-        cases.are_suites = self.command.starts_with("suite");
+        let mut cases = PageCases {
+            are_suites: self.command.starts_with("suite"),
+            ..PageCases::default()
+        };
         for (number, row) in samples.lines() {
             let case = match number {
                 0 => "the scenario itself".to_owned(),
