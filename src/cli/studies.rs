@@ -154,19 +154,18 @@ fn compute(
         let model = one[0].motion.kind;
         let folder = root.as_ref().map(|root| root.of_model(model, several));
         let found = job.compute_with_samples(kinds, one, folder.as_ref())?;
-        all.extend(found.map(|found| (model, folder, found)));
+        all.extend(found.map(|found| (&one[0], folder, found)));
     }
-    let models = all
-        .iter()
-        .map(|(model, _, found)| (model.label, &found.own));
-    let title = scenarios[0].title.as_deref();
-    let compared = job.compare(kinds[0], title, models, root.as_ref())?;
+    let models = all.iter().map(|(one, _, found)| (*one, &found.own));
+    let models: Vec<_> = models.collect();
+    let compared = job.compare(kinds[0], &models, root.as_ref())?;
     job.publish()?;
     if let (false, [(_, folder, found)]) = (several, &all[..]) {
         return show(found, kinds[0], folder.as_ref(), study.format);
     }
     let mut summaries = Vec::new();
-    for (model, folder, found) in &all {
+    for (one, folder, found) in &all {
+        let model = one.motion.kind;
         print_status(model.label);
         show(found, kinds[0], folder.as_ref(), Format::Text)?;
         summaries.push((model.option.to_owned(), found.summary(kinds[0])?));

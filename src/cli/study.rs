@@ -348,10 +348,7 @@ impl StudyJob<'_> {
         });
         match done? {
             Computation::Complete(mut results, part) => {
-                if self.options.run.no_report {
-                    results.files.retain(|(name, _)| !name.ends_with(".html"));
-                }
-                folder.map_or(Ok(()), |folder| results.write(folder))?;
+                folder.map_or(Ok(()), |folder| self.write(&mut results, folder))?;
                 self.finished_parts.extend(part);
                 Ok(Some(results))
             }
@@ -400,6 +397,10 @@ impl StudyJob<'_> {
                 "--shard computes a part of the samples of [uncertain], which the scenario lacks";
             return Err(message.into());
         }
+        if self.work.resume && !has_samples && !kind.has_parts && !kind.is_history {
+            let message = "--resume continues the samples of [uncertain], which the scenario lacks: leave it out";
+            return Err(message.into());
+        }
         if let Some(folder) = folder.filter(|_| !has_samples) {
             warn_of_rows(folder, samples);
         }
@@ -434,11 +435,13 @@ impl StudyJob<'_> {
             });
         let of_samples: Vec<SampleResults> = of_samples.collect();
         // Of the studies of samples, only that of histories has rotations.
-        let compared = of_samples.iter().filter(|_| kind.is_history);
-        let models = compared.map(|one| (one.model.label, &one.results));
-        let title = scenarios[0].title.as_deref();
+        let with_samples = scenarios.iter().filter(|one| one.uncertain.is_some());
+        let compared = with_samples.zip(&of_samples).filter(|_| kind.is_history);
+        let models: Vec<_> = compared
+            .map(|(scenario, one)| (scenario, &one.results))
+            .collect();
         Ok(Some(CommandResults {
-            compared: self.compare(kind, title, models, folder)?,
+            compared: self.compare(kind, &models, folder)?,
             samples: of_samples,
             own,
         }))
@@ -446,30 +449,35 @@ impl StudyJob<'_> {
 
     /// Compares the largest rotations of several models in the same cases, and prepares the comparison beside their folders. `None` for one model, or
     /// without a folder.
-    pub fn compare<'r>(
+    pub fn compare(
         &self,
         kind: StudyKind,
-        title: Option<&str>,
-        models: impl Iterator<Item = (&'r str, &'r Results)>,
+        models: &[(&Scenario, &Results)],
         folder: Option<&Folder>,
     ) -> Result<Option<Results>, Failure> {
-        let models = models.map(|(label, results)| (label, &results.largest_rotations_rad[..]));
-        let models: Vec<(&str, &[f64])> = models.collect();
         let (2.., Some(folder)) = (models.len(), folder) else {
             return Ok(None);
         };
-        let title = title.unwrap_or("Largest rotations of several models");
-        let results = peak_results(title, &models, self.style.figure);
-        let results = results.map_err(StudyError::from)?;
-        results.write(&comparison_folder(folder, kind))?;
+        let results = peak_results(models, self.style.figure);
+        let mut results = results.map_err(StudyError::from)?;
+        self.write(&mut results, &comparison_folder(folder, kind))?;
         Ok(Some(results))
+    }
+
+    /// Writes results into a folder, without their page if the user wants none.
+    fn write(&self, results: &mut Results, folder: &Folder) -> Result<(), Failure> {
+        if self.options.run.no_report {
+            results.files.retain(|(name, _)| !name.ends_with(".html"));
+        }
+        Ok(results.write(folder)?)
     }
 }
 
 /// Returns the folder for the comparison of models of motion: `models`, or another one if another command has compared models there.
 fn comparison_folder(folder: &Folder, kind: StudyKind) -> Folder {
     let models = folder.within("models");
-    match models.is_of_other_command(PEAKS_FILES[0]) {
+    let [.., seal] = PEAKS_FILES;
+    match models.is_of_other_command(seal) {
         true => folder.within(format!("models_{}", kind.name)),
         false => models,
     }

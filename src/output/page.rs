@@ -66,7 +66,7 @@ impl SpotKind {
 pub(crate) const OUTSIDE_MODEL: &str = "M-8-8H8V8H-8Z";
 
 /// A case in the picture of a page.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Spot {
     /// Number of its row in the table, from 0.
     pub(crate) row: usize,

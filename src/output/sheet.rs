@@ -222,8 +222,9 @@ impl Key {
 pub(crate) enum Sign {
     /// A line.
     Line(Stroke),
-    /// A line on an area of this colour, with the name of its mark. On dark pages both keep their colours.
-    LineOn(&'static str, &'static str, Stroke),
+    /// A square of this colour with the name of its hatching, which rises to the right if the last value is true. On dark pages both keep their
+    /// colours.
+    Hatched(&'static str, &'static str, Stroke, bool),
     /// An area of this colour and opacity.
     Band(&'static str, f64),
     /// A circle of this radius in pixels.
@@ -254,9 +255,33 @@ impl Sign {
         };
         match self {
             Self::Line(stroke) => drawing.curve("", ends, stroke),
-            Self::LineOn(fill, name, stroke) => {
-                drawing.band("key", &frame, fill, 1.0);
-                drawing.curve(&format!("key {name}"), ends, stroke);
+            Self::Hatched(fill, name, stroke, rises) => {
+                let side = frame.height;
+                let left = middle.x - 0.5 * side;
+                let square = Frame {
+                    left,
+                    width: side,
+                    ..frame
+                };
+                drawing.band("key", &square, fill, 1.0);
+                let at = |(x, y): (f64, f64)| {
+                    let y = if rises { 1.0 - y } else { y };
+                    Vector2::new(left + side * x, frame.top + side * y)
+                };
+                let gap = (f64::NAN, f64::NAN);
+                let (first, last) = ([(0.0, 0.5), (0.5, 1.0)], [(0.5, 0.0), (1.0, 0.5)]);
+                let lines = [
+                    first[0],
+                    first[1],
+                    gap,
+                    (0.0, 0.0),
+                    (1.0, 1.0),
+                    gap,
+                    last[0],
+                    last[1],
+                ];
+                drawing.curve(&format!("key {name}"), lines.map(at), stroke);
+                drawing.outline(&square, Stroke::new(color::GREY, 0.6, ""));
             }
             Self::Band(fill, opacity) => {
                 drawing.band("key", &frame, fill, opacity);

@@ -24,6 +24,7 @@ mod limit;
 pub mod map;
 mod outcome_colors;
 mod page;
+mod page_cases;
 mod part;
 mod peaks;
 mod pictures;

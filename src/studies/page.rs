@@ -10,18 +10,14 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::Results;
-use super::ending::{Ending, NoHistory, Verdict};
-use super::outcome_colors::OutcomeColor;
+use super::page_cases::MOST_CASES;
+pub(super) use super::page_cases::{PageCases, kind_of};
 use crate::argument::plain;
 use crate::output::caption::caption;
-use crate::output::page::{
-    BASE, OUTSIDE_MODEL, PROGRAM, STUDY, STYLE, Spot, SpotKind, script_safe,
-};
+use crate::output::page::{BASE, OUTSIDE_MODEL, PROGRAM, STUDY, STYLE, SpotKind, script_safe};
 use crate::output::{Figure, filters, render};
-use crate::scenario::{ModelKind, Scenario, toml_text};
+use crate::scenario::{ModelKind, Scenario};
 
-/// Largest number of cases on a page, and of rows in its first table.
-const MOST_CASES: usize = 1000;
 /// Largest number of rows of the other tables.
 const MOST_ROWS: usize = 100;
 
@@ -53,13 +49,6 @@ pub(super) struct Page {
     all: PageCases,
     words: String,
     tables: Vec<PageTable>,
-}
-
-/// The scenario of a case: an earlier text with some other lines. Texts without a number have no valid scenario.
-#[derive(Clone, Default, Serialize, Deserialize)]
-struct CaseText {
-    text: Option<usize>,
-    lines: Vec<(usize, String)>,
 }
 
 /// A table with rounded numbers.
@@ -101,6 +90,14 @@ impl Page {
         }
     }
 
+    /// Returns the name of all marks.
+    fn marked(&self) -> &'static str {
+        match self.command.starts_with("limit") {
+            true => "Hinges",
+            false => "Cases",
+        }
+    }
+
     /// Returns true if blanks align the words.
     fn is_aligned(&self) -> bool {
         let mut lines = self.words.lines().map(str::trim);
@@ -111,109 +108,6 @@ impl Page {
     fn has_files(&self) -> bool {
         let mut texts = self.all.texts.iter();
         texts.any(|text| text.contains("\nfile = "))
-    }
-}
-
-/// The cases of a page, in the order of the last table of its study.
-#[derive(Clone, Default, Serialize, Deserialize)]
-pub(super) struct PageCases {
-    #[serde(skip)]
-    pub(super) spots: Vec<Spot>,
-    /// True if the command of a case is a suite.
-    #[serde(skip)]
-    pub(super) are_suites: bool,
-    /// Number of all cases, also of those that are not on the page.
-    count: usize,
-    texts: Vec<String>,
-    cases: Vec<CaseText>,
-}
-
-impl PageCases {
-    /// Adds a case: its outcome, whether it is outside the model of four links, its words, and its scenario as JSON, unless it is not valid.
-    /// Only the first cases are on the page.
-    pub(super) fn push(
-        &mut self,
-        (kind, outside): (SpotKind, bool),
-        words: String,
-        scenario: impl FnOnce() -> Option<Value>,
-    ) {
-        self.count += 1;
-        if self.spots.len() == MOST_CASES {
-            return;
-        }
-        self.spots.push(Spot {
-            row: self.spots.len(),
-            kind,
-            outside,
-            words,
-        });
-        let case = scenario().map(|mut scenario| {
-            if let Value::Object(tables) = &mut scenario {
-                tables.retain(|name, _| match &**name {
-                    "map" | "demand" | "verify" | "uncertain" => false,
-                    "suite" => self.are_suites,
-                    _ => true,
-                });
-            }
-            self.text(&toml_text(&scenario))
-        });
-        self.cases.push(case.unwrap_or_default());
-    }
-
-    /// Adds the case of a history.
-    pub(super) fn push_history(
-        &mut self,
-        case: &str,
-        result: &Result<Ending, NoHistory>,
-        scenario: impl FnOnce() -> Option<Value>,
-    ) {
-        let words = match result {
-            Ok(ending) => match ending.doubt() {
-                Some(doubt) => format!("UNCERTAIN: {doubt}"),
-                None => OutcomeColor::of_result(result).label.to_owned(),
-            },
-            Err(reason) => format!("no verdict: {reason}"),
-        };
-        let ending = result.as_ref().ok();
-        let outside = ending.is_some_and(Ending::is_outside_model);
-        let beyond = match outside {
-            true => "; OUTSIDE the model of four links",
-            false => "",
-        };
-        self.push(
-            (kind_of(ending.map(Ending::verdict)), outside),
-            format!("{case}: {words}{beyond}"),
-            scenario,
-        );
-    }
-
-    /// Returns a text as the last one with other lines, or as a new one.
-    fn text(&mut self, text: &str) -> CaseText {
-        let last = self.texts.last().map_or("", |last| last);
-        let (old, new): (Vec<&str>, Vec<&str>) =
-            (last.split('\n').collect(), text.split('\n').collect());
-        if old.len() != new.len() || self.texts.is_empty() {
-            self.texts.push(text.to_owned());
-            return self.text(text);
-        }
-        let changed = new.iter().zip(old).enumerate();
-        let changed = changed.filter(|(_, (new, old))| *new != old);
-        CaseText {
-            text: Some(self.texts.len() - 1),
-            lines: changed
-                .map(|(index, (new, _))| (index, (*new).to_owned()))
-                .collect(),
-        }
-    }
-}
-
-/// Returns the mark of a verdict; `None` without a history.
-pub(super) const fn kind_of(verdict: Option<Verdict>) -> SpotKind {
-    match verdict {
-        Some(Verdict::Survives) => SpotKind::Survives,
-        Some(Verdict::Overturns) => SpotKind::Overturns,
-        Some(Verdict::Uncertain) => SpotKind::Uncertain,
-        _ => SpotKind::Unknown,
     }
 }
 
@@ -292,6 +186,7 @@ impl Results {
         page.more = more.iter().map(|draw| draw(Figure::PHONE)).collect();
         page.all = cases.clone();
         self.files.insert(0, (name, render(&page).into_bytes()));
+        self.cases = Box::new(page.all);
         self
     }
 }

@@ -7,9 +7,13 @@
 use askama::Template;
 use serde::{Deserialize, Serialize};
 
+use super::page::{Page, PageCases, input_in_words};
 use super::results::Results;
 use super::statistics::{ascending, fractile, shares_up_to};
+use crate::argument::fixed;
+use crate::output::page::Spot;
 use crate::output::{CURVES, Chart, Figure, Mark, OutputError, Scale, column, csv, filters};
+use crate::scenario::{ModelKind, Scenario};
 
 /// The name of a model in words, and the largest rotation of a body in each case, in radians, infinite if the case overturned.
 pub type ModelPeaks<'a> = (&'a str, &'a [f64]);
@@ -55,7 +59,7 @@ pub fn distance(one: ModelPeaks<'_>, other: ModelPeaks<'_>) -> Option<Distance> 
 }
 
 /// Names of the files, the seal last.
-pub const FILES: [&str; 3] = ["peaks.svg", "peaks.csv", "peaks.json"];
+pub const FILES: [&str; 4] = ["peaks.html", "peaks.svg", "peaks.csv", "peaks.json"];
 
 /// Comparison of models of motion by the distributions of their largest rotations in the same cases.
 #[derive(Serialize, Deserialize, Template)]
@@ -99,15 +103,21 @@ impl ModelSummary {
     }
 }
 
-/// Compares the distributions of several models of the same cases: report, table and picture.
+/// Compares the distributions of scenarios that differ only in their models of motion, from the results of their suites or samples: report, table,
+/// picture and page.
 ///
 /// # Errors
 /// When a value is not finite.
-pub fn results(
-    title: &str,
-    models: &[ModelPeaks<'_>],
-    figure: Figure,
-) -> Result<Results, OutputError> {
+pub fn results(all: &[(&Scenario, &Results)], figure: Figure) -> Result<Results, OutputError> {
+    let (scenario, _) = all[0];
+    let title = scenario.title.as_deref();
+    let title = title.unwrap_or("Largest rotations of several models");
+    let peaks = all.iter().map(|(scenario, found)| {
+        let known = found.largest_rotations_rad.iter().copied().flatten();
+        (scenario.motion.kind.label, known.collect::<Vec<f64>>())
+    });
+    let peaks: Vec<_> = peaks.collect();
+    let models: Vec<ModelPeaks<'_>> = peaks.iter().map(|(name, all)| (*name, &all[..])).collect();
     let distributions: Vec<Distribution<'_>> = models
         .iter()
         .map(|(name, peaks)| (*name, shares_up_to(peaks.iter().map(|peak| [*peak, 1.0]))))
@@ -130,18 +140,39 @@ pub fn results(
         .iter()
         .flat_map(|(model, all)| all.iter().map(|at| (*model, *at)))
         .collect();
-    let picture = draw(figure, title, &distributions);
-    Results::new(
-        &FILES,
-        &report,
-        [picture.into_bytes(), csv(columns, &rows)?],
-    )
+    let draw = |figure, spots: &[Spot]| draw(figure, title, &distributions, spots);
+    let others = [draw(figure, &[]).into_bytes(), csv(columns, &rows)?];
+    let results = Results::new(&FILES[1..], &report, others)?;
+    let mut cases = PageCases::default();
+    for ((_, found), (model, distribution)) in all.iter().zip(&distributions) {
+        let known = found.largest_rotations_rad.iter().enumerate();
+        let known = known.filter_map(|(row, peak)| Some(((*peak)?, row)));
+        let mut ranked: Vec<(f64, usize)> = known.collect();
+        ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for ((_, row), (_, share)) in ranked.iter().zip(distribution) {
+            let share = fixed(100.0 * share, 1);
+            let before = format!("{model}, {share} % of the cases up to here; ");
+            cases.push_copy(&before, &found.cases, *row);
+        }
+    }
+    let overturned = report.models.iter();
+    let overturned =
+        overturned.map(|one| format!("{}: {} of {}", one.model, one.overturned, one.cases));
+    let overturned = overturned.collect::<Vec<_>>().join(", ");
+    let own = format!("overturned cases count as infinite and have no mark ({overturned})");
+    let kinds: Vec<&ModelKind> = all.iter().map(|(one, _)| one.motion.kind).collect();
+    let still = scenario.with_ground(None);
+    let what = input_in_words(&[&still, &still]);
+    let page = Page::new(title, what, &[&own], &kinds);
+    let marked = |figure| draw(figure, &cases.spots);
+    Ok(results.with_page(FILES[0], page, &cases, (&marked, &[])))
 }
 
 /// Name of a model, and its finite rotations with the share of cases up to each.
 type Distribution<'a> = (&'a str, Vec<(f64, f64)>);
 
-fn draw(figure: Figure, title: &str, distributions: &[Distribution<'_>]) -> String {
+/// Draws the distributions; on a page with a mark for each row of the table.
+fn draw(figure: Figure, title: &str, distributions: &[Distribution<'_>], spots: &[Spot]) -> String {
     let peaks = distributions.iter().flat_map(|(_, all)| all);
     let largest = peaks.map(|at| at.0).fold(1e-3, f64::max);
     let x = Scale::exactly(0.0, 1.05 * largest, figure.ticks(8));
@@ -151,7 +182,11 @@ fn draw(figure: Figure, title: &str, distributions: &[Distribution<'_>]) -> Stri
     let label = "largest rotation (rad); overturned cases count as infinite";
     let y = Scale::exactly(0.0, 1.0, 5);
     let chart = Chart::new(405.0, (label, x), ("share with at most this rotation", y));
-    chart.with_named(curves.collect()).draw(figure, title)
+    let mut chart = chart.with_named(curves.collect());
+    let rows = distributions.iter().flat_map(|(_, all)| all);
+    let marks = rows.zip(spots).map(|(at, spot)| Mark::spot(spot, *at));
+    chart.marks.extend(marks);
+    chart.draw(figure, title)
 }
 
 #[cfg(test)]

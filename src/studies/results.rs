@@ -8,6 +8,7 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 use thiserror::Error;
 
+use super::page_cases::PageCases;
 use super::part::PartError;
 use super::{ModelAnswer, RunnerError, Study};
 use crate::SimulationError;
@@ -83,11 +84,13 @@ pub struct Results {
     pub words: String,
     /// The summary as JSON.
     pub summary: Value,
-    /// The largest rotation of each case of a suite or sample of a run, in radians, for the comparison of models of motion.
-    /// Infinite if the case overturned.
-    pub largest_rotations_rad: Vec<f64>,
+    /// The largest rotation of each case of a suite, or of the scenario itself and each sample of a run, in radians, for the comparison of models of
+    /// motion. Infinite if the case overturned; `None` for the scenario itself, and without a complete history.
+    pub largest_rotations_rad: Vec<Option<f64>>,
     /// The answer of a suite that may be quoted, for the comparison of models of motion.
     pub answer: Option<ModelAnswer>,
+    /// The cases on the page.
+    pub(super) cases: Box<PageCases>,
 }
 
 impl Results {
@@ -114,8 +117,7 @@ impl Results {
             files: names.iter().map(file).collect(),
             words: words_of(report),
             summary,
-            largest_rotations_rad: Vec::new(),
-            answer: None,
+            ..Self::default()
         })
     }
 

@@ -210,6 +210,85 @@ fn a_factor_on_a_page_is_run_by_its_command() {
     printed_without(at, &options, "threshold.html");
 }
 
+#[test]
+fn a_value_of_a_threshold_is_computed_by_its_command() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    write(at, &[COLUMN, PULSE]);
+    let options = [
+        "threshold",
+        "s.toml",
+        "--from=0.3",
+        "--to=2",
+        "--stride=0.1",
+    ];
+    // A column without width is no valid structure, and the widest survives all factors.
+    let along = [&options[..], &["--along", "column.width_m=0..1.8:4"]].concat();
+    let found = page(at, &along, "threshold_along.html", "threshold_along.csv");
+    assert_eq!(found.rows[0]["why_not"], "invalid");
+    assert!(found.data["cases"][0]["text"].is_null());
+    for row in [1, 3] {
+        let summary = &found.run(at, row, "--format json")["models"][0];
+        for (key, column) in [
+            ("lowest_factor", "overturns_from_factor"),
+            ("survives_up_to_factor", "survives_up_to_factor"),
+        ] {
+            match summary[key].as_f64() {
+                Some(factor) => {
+                    let known = found.rows[row].number(column);
+                    assert!((factor / known - 1.0).abs() < 2e-4, "{factor} {known}");
+                }
+                None => assert_eq!(found.rows[row][column], ""),
+            }
+        }
+    }
+    let marks = ["unknown", "overturns", "survives"];
+    let legend = marks.map(|mark| found.data["legend"].to_string().contains(mark));
+    assert_eq!(legend, [true; 3], "{}", found.data["legend"]);
+    let valid = [&options[..], &["--along", "column.width_m=0.6..1.8:3"]].concat();
+    let found = page(at, &valid, "threshold_along.html", "threshold_along.csv");
+    open_in_a_browser(&found, &at.join("o/threshold_along.html"));
+    printed_without(at, &along, "threshold_along.html");
+}
+
+/// The peaks of suites and of samples, each with the case that has it.
+#[test]
+fn a_peak_of_several_models_is_computed_by_its_command() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    write_suite(at, "");
+    let suite = ["suite", "s.toml", "--hinges", "four,free"];
+    let samples = ["run", "s.toml", "--hinges", "four,free"];
+    for (options, more) in [(&suite[..], ""), (&samples[..], UNCERTAIN)] {
+        if !more.is_empty() {
+            write(at, &[COLUMN, PULSE, more]);
+        }
+        let found = page(at, options, "models/peaks.html", "models/peaks.csv");
+        let models = found.one_of_each("model");
+        assert_eq!(models.len(), 2);
+        let last = found.rows.len() - 1;
+        for (row, table) in [
+            (0, "four_hinges"),
+            (models[1] - 1, "four_hinges"),
+            (last, "free_hinges"),
+        ] {
+            let summary = found.run(at, row, "--format json");
+            let peak_rad = summary["largest_peak_rotation_rad"].as_f64().unwrap();
+            let known_rad = found.rows[row].number("peak_rotation_rad");
+            assert!(
+                (peak_rad / known_rad - 1.0).abs() < 1e-6,
+                "{options:?} {row}: {peak_rad} {known_rad}"
+            );
+            let is_free = found.command(row).contains("[free_hinges]");
+            assert_eq!(is_free, table == "free_hinges");
+        }
+    }
+    fs::remove_dir_all(at.join("o")).unwrap();
+    let output = archrock(at, &[&samples[..], &["--out", "o", "--no-report"]].concat());
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(at.join("o/models/peaks.csv").exists() && !at.join("o/models/peaks.html").exists());
+}
+
 /// Moves over the cases of a page, on a wide and on a narrow screen, and prints it.
 fn open_in_a_browser(found: &Page, page: &Path) {
     let rows = 0..found.rows.len();

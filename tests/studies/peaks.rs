@@ -42,6 +42,24 @@ fn four(value: f64) -> [String; 2] {
     ]
 }
 
+/// A number with four digits that is not above the first, and the second with four digits, or with the digits by which they differ.
+fn edge([safe, first]: [f64; 2]) -> [String; 2] {
+    let ([_, below], [above, _]) = (four(safe), four(first));
+    let more = |digits: usize| {
+        let long = format!("{safe:.12}");
+        let point = long.find('.').unwrap();
+        [
+            long[..=point + digits].to_owned(),
+            format!("{first:.digits$}"),
+        ]
+    };
+    let digits = above.len() - above.find('.').map_or(above.len(), |point| point + 1);
+    let mut longer = [[below, above]]
+        .into_iter()
+        .chain((digits + 1..12).map(more));
+    longer.find(|[below, above]| below != above).unwrap()
+}
+
 /// The words that follow from the bands and gaps of `threshold.json`.
 fn words(threshold: &Value) -> String {
     let model = &threshold["models"][0];
@@ -53,8 +71,7 @@ fn words(threshold: &Value) -> String {
         safe < first && first < safe * (1.0 + 2e-4),
         "{safe} {first}"
     );
-    let [_, safe_g] = four(safe * peak_g);
-    let [first_g, _] = four(first * peak_g);
+    let [safe_g, first_g] = edge([safe, first].map(|factor| factor * peak_g));
     let ends = |from: &Value, to: &Value| {
         let [[from, _], [to, _]] = [from, to].map(|end| four(number(end)));
         format!("{from} to {to}")
@@ -69,7 +86,7 @@ fn words(threshold: &Value) -> String {
         none if none.is_empty() => none,
         gaps => format!(" (gaps above: {gaps})"),
     };
-    let ([_, safe], [first, _]) = (four(safe), four(first));
+    let [safe, first] = edge([safe, first]);
     format!("survives up to {safe} ({safe_g} g); overturns from {first} ({first_g} g){gaps}")
 }
 
@@ -209,11 +226,9 @@ fn a_suite_prints_a_line_per_record_and_draws_the_peaks() {
         let scale = edge.number("survives_up_to_scale");
         assert!(scale < edge.number("scale") && edge.number("scale") < 1.0021 * scale);
         let safe_g = scale * edge.number("peak_g") / edge.number("scale");
-        let mut expected = format!(
-            "  {record}: survives up to {} g; overturns from {} g",
-            four(safe_g)[1],
-            peak(edge)
-        );
+        let [safe_g, first_g] = self::edge([safe_g, edge.number("peak_g")]);
+        let mut expected =
+            format!("  {record}: survives up to {safe_g} g; overturns from {first_g} g");
         let again: Vec<String> = own[first..]
             .chunk_by(|a, b| (a["outcome"] == "overturned") == (b["outcome"] == "overturned"))
             .filter(|run| run[0]["outcome"] != "overturned")

@@ -658,6 +658,11 @@ fn a_scenario_without_a_threshold_is_refused() {
         (SCENARIO, "--stride 0", "`stride = 0.0` is not allowed"),
         (SCENARIO, "--from nan", "`from = NaN` is not allowed"),
         (SCENARIO, "--threads 0", "--threads"),
+        (
+            SCENARIO,
+            "--resume",
+            "which the scenario lacks: leave it out",
+        ),
     ] {
         file(folder, text);
         let arguments = format!("threshold s.toml {more}");

@@ -253,6 +253,7 @@ fn parts_threads_and_interruptions_change_nothing() {
         names,
         [
             "threshold_along.csv",
+            "threshold_along.html",
             "threshold_along.json",
             "threshold_along.svg"
         ]

@@ -54,6 +54,15 @@ fn given_blocks(folder: &Path) -> String {
     )
 }
 
+/// Spectra by points in a file in this folder. The largest displacement is between two points.
+fn by_points(folder: &Path) -> String {
+    let file = folder.join("points.csv");
+    let points = "period_s,acceleration_g\n0,0.29\n0.15,0.7\n0.5,0.7\n1,0.35\n2,0.06\n4,0.03\n";
+    std::fs::write(&file, points).unwrap();
+    let spectrum = format!("spectrum = '{}'\n", file.display());
+    format!("[demand.sld]\n{spectrum}[demand.slv]\n{spectrum}")
+}
+
 fn html_of(scenario: &Scenario) -> String {
     let check = verify(scenario).unwrap_or_else(|error| panic!("{error}"));
     Page::new(scenario, &check, Some("2025-01-31".to_owned())).html()
@@ -235,7 +244,8 @@ fn sums(links: &[Link], sign: f64) -> Sums {
     }
 }
 
-/// The hazard of a state as printed, with the spectrum of NTC 2018, § 3.2.3.2, on soil B.
+/// The hazard of a state as printed, with the spectrum of NTC 2018, § 3.2.3.2, on soil B, C or D.
+#[derive(Default)]
 struct Ground {
     ag_g: f64,
     f0: f64,
@@ -243,6 +253,7 @@ struct Ground {
     t_b: f64,
     t_c: f64,
     t_d: f64,
+    t_e: f64,
 }
 
 fn eta(percent: f64) -> f64 {
@@ -252,10 +263,27 @@ fn eta(percent: f64) -> f64 {
 impl Ground {
     fn of(row: &[String]) -> Self {
         let [ag_g, f0, tc_star] = [2, 3, 4].map(|cell| number(&row[cell]));
-        assert_eq!(row[1], "B");
-        let s_s = (1.40 - 0.40 * f0 * ag_g).clamp(1.0, 1.2);
+        // Tables 3.2.IV and 3.2.VIII.
+        let (s_s, c_c, t_e) = match &*row[1] {
+            "B" => (
+                (1.40 - 0.40 * f0 * ag_g).clamp(1.0, 1.2),
+                1.10 * tc_star.powf(-0.20),
+                5.0,
+            ),
+            "C" => (
+                (1.70 - 0.60 * f0 * ag_g).clamp(1.0, 1.5),
+                1.05 * tc_star.powf(-0.33),
+                6.0,
+            ),
+            "D" => (
+                (2.40 - 1.50 * f0 * ag_g).clamp(0.9, 1.8),
+                1.25 * tc_star.powf(-0.50),
+                6.0,
+            ),
+            soil => panic!("{soil}"),
+        };
         let s = s_s * number(&row[6]);
-        let t_c = 1.10 * tc_star.powf(-0.20) * tc_star;
+        let t_c = c_c * tc_star;
         let own = Self {
             ag_g,
             f0,
@@ -263,6 +291,7 @@ impl Ground {
             t_b: t_c / 3.0,
             t_c,
             t_d: 4.0 * ag_g + 1.6,
+            t_e,
         };
         let printed = [
             (5, s_s),
@@ -298,15 +327,36 @@ struct Mode {
     f: f64,
 }
 
-/// The spectrum at the place of the mechanism.
+/// The spectrum at the place of the mechanism. Without points it is that of the ground or of a floor.
 struct Spectrum {
     ground: Ground,
+    points: Vec<Vector2<f64>>,
+    /// Damping of the points.
+    points_percent: f64,
     modes: Vec<Mode>,
     a_z: f64,
 }
 
 impl Spectrum {
     fn new(html: &str, state: &str, percent: f64) -> Self {
+        if let Some((_, own)) = html.split_once(&format!("<p><b>{state}</b>: ")) {
+            let own = text_of(own.split_once("</p>").unwrap().0);
+            let (_, all) = own.split_once("S in g):").unwrap();
+            let points = points(all.split(" Limit:").next().unwrap());
+            // Points begin at period zero, with the peak of the ground.
+            let ground = Ground {
+                ag_g: points[0].y,
+                s: 1.0,
+                ..Ground::default()
+            };
+            return Self {
+                ground,
+                points,
+                points_percent: after(&own, "damping ").value,
+                modes: Vec::new(),
+                a_z: f64::NAN,
+            };
+        }
         let spectra = &tables(html, "spectra")[0];
         let ground = Ground::of(spectra.iter().find(|row| row[0] == state).unwrap());
         let of_modes = tables(html, "modes");
@@ -327,11 +377,24 @@ impl Spectrum {
         let squares: f64 = modes.iter().map(|mode| mode.a_z * mode.a_z).sum();
         let a_z = squares.sqrt().max(ground.ag_g * ground.s);
         printed_g.inspect(|printed| printed.is(a_z));
-        Self { ground, modes, a_z }
+        Self {
+            ground,
+            points: Vec::new(),
+            points_percent: 5.0,
+            modes,
+            a_z,
+        }
     }
 
     /// [C7.2.5] and [C7.2.6], or [3.2.2] on the ground.
     fn acceleration_g(&self, t: f64, percent: f64) -> f64 {
+        if !self.points.is_empty() {
+            let mut pairs = self.points.windows(2);
+            let pair = pairs.find(|pair| t <= pair[1].x).unwrap();
+            let part = (t - pair[0].x) / (pair[1].x - pair[0].x);
+            let own = pair[0].y + part * (pair[1].y - pair[0].y);
+            return own * eta(percent) / eta(self.points_percent);
+        }
         let squares = self.modes.iter().map(|mode| {
             let (low, high) = (t / (0.8 * mode.t), t / (1.1 * mode.t));
             let falls = match t {
@@ -345,12 +408,30 @@ impl Spectrum {
         own.max(self.ground.acceleration_g(t, percent))
     }
 
-    /// [C8.7.1.12], or S_De on the ground up to T_E of soil B.
+    /// Among many periods up to this one, the period of the largest displacement of points.
+    fn largest_at(&self, t: f64, percent: f64) -> f64 {
+        const PARTS: u32 = 200_000;
+        let periods = (0..=PARTS).map(|part| t * f64::from(part) / f64::from(PARTS));
+        let displacements = periods.map(|t| (self.acceleration_g(t, percent) * t * t, t));
+        displacements
+            .fold(
+                (0.0, 0.0),
+                |most, own| if own.0 > most.0 { own } else { most },
+            )
+            .1
+    }
+
+    /// [C8.7.1.12], or S_De on the ground up to T_E, or the largest displacement of points.
     fn displacement_m(&self, t: f64, percent: f64, g: f64) -> f64 {
         let at = |t: f64, a_g: f64| a_g * g * (t / (2.0 * PI)).powi(2);
+        if !self.points.is_empty() {
+            let t = self.largest_at(t, percent);
+            return at(t, self.acceleration_g(t, percent));
+        }
         let first = self.modes.iter().map(|mode| mode.t).fold(0.0, f64::max);
         if self.modes.is_empty() {
-            return at(t.min(5.0), self.acceleration_g(t.min(5.0), percent));
+            let t = t.min(self.ground.t_e);
+            return at(t, self.acceleration_g(t, percent));
         }
         let own = at(t, self.acceleration_g(t, percent));
         match t > 1.1 * first {
@@ -662,19 +743,21 @@ fn redo(text: &str) -> usize {
                 let t = factor * PI * (d / (a * g)).sqrt();
                 let demand = spectrum.displacement_m(t, percent, g);
                 after(own, &format!(" · {g})) = ")).is(t);
-                after(
-                    own,
-                    if spectrum.modes.is_empty() {
-                        "SDe = Se g T²/4π² = "
-                    } else {
-                        "; demand "
-                    },
-                )
-                .is(demand);
+                let mark = match (spectrum.points.is_empty(), spectrum.modes.is_empty()) {
+                    (false, _) => "up to T is ",
+                    (true, true) => "SDe = Se g T²/4π² = ",
+                    (true, false) => "; demand ",
+                };
+                after(own, mark).is(demand);
+                if !spectrum.points.is_empty() {
+                    after(own, "m, at T = ").is(spectrum.largest_at(t, percent));
+                }
                 ratios.push(("displacement", d / demand));
                 if let Some((_, crown)) = own.split_once("as control point d = ") {
                     let d = part * after(crown, " · ").value;
-                    let a = after(crown, "a/FC = ").value;
+                    // Points name no confidence factor, but the number that divides a.
+                    let (_, divided) = crown.split_once("a/").unwrap();
+                    let a = after(divided, " = ").value;
                     let t = factor * PI * (d / (a * g)).sqrt();
                     after(crown, " T = ").is(t);
                     ratios.push(("", d / spectrum.displacement_m(t, percent, g)));
@@ -723,6 +806,9 @@ fn the_check_is_redone_by_hand_from_the_printed_page() {
     let folder = tempfile::tempdir().unwrap();
     for (text, ratios) in [
         (format!("{ARCH}{DEMAND}"), 6),
+        (format!("{ARCH}{}", DEMAND.replace("'B'", "'C'")), 6),
+        (format!("{COLUMN}{}", DEMAND.replace("'B'", "'D'")), 6),
+        (format!("{COLUMN}{}", by_points(folder.path())), 3),
         (format!("{ARCH}{DEMAND}{HEIGHT}"), 6),
         (format!("{}{DEMAND}{HEIGHT}", on_piers()), 12),
         (format!("{}{DEMAND}", on_light_piers()), 12),

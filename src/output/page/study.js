@@ -10,7 +10,7 @@
   /** The command that computes a case: the text of its scenario follows from that of an earlier one by some lines. */
   function command(row) {
     const { text, lines } = data.cases[row];
-    if (text === null) return "There is no command: the values make no valid structure.";
+    if (text === null) return "There is no command: the values make no valid structure, or the page of the model has too many cases.";
     const all = data.texts[text].split("\n");
     for (const [index, line] of lines) all[index] = line;
     return `archrock ${data.command} <<'END'\n${all.join("\n")}END\n`;

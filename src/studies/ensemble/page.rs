@@ -37,8 +37,10 @@ impl<A> SamplePage<'_, A> {
     ) -> Results {
         let scenario = samples.scenario;
         let json = scenario.to_json();
-        let mut cases = PageCases::default();
-        cases.are_suites = self.command.starts_with("suite");
+        let mut cases = PageCases {
+            are_suites: self.command.starts_with("suite"),
+            ..PageCases::default()
+        };
         for (number, row) in samples.lines() {
             let case = match number {
                 0 => "the scenario itself".to_owned(),
@@ -48,7 +50,11 @@ impl<A> SamplePage<'_, A> {
             let (kind, outside, words) = match self.of(row) {
                 Ok((kind, outside, number)) => {
                     let number = number.map_or("beyond the axis".to_owned(), plain);
-                    (kind, outside, format!("{}; {label} {number}", kind.label()))
+                    let outcome = match kind {
+                        SpotKind::Point => String::new(),
+                        _ => format!("{}; ", kind.label()),
+                    };
+                    (kind, outside, format!("{outcome}{label} {number}"))
                 }
                 Err(why) => (SpotKind::Unknown, false, why.reason().to_owned()),
             };
@@ -70,7 +76,11 @@ impl<A> SamplePage<'_, A> {
             "numbers are independent, and distributed as [uncertain] says; {}",
             all.not_considered
         );
-        let what = input_in_words(&[scenario]);
+        // The records of a suite replace the ground motion of the scenario.
+        let what = match cases.are_suites {
+            true => input_in_words(&[&scenario.with_ground(None)]),
+            false => input_in_words(&[scenario]),
+        };
         let mut page = Page::new(self.title, what, &[&numbers], &[scenario.motion.kind]);
         page.command = self.command.clone();
         let influences = |figure| all.draw_influences(samples, figure);

@@ -1,6 +1,7 @@
 //! The history of every sample: ending, largest rotation and rotation over time.
 
 use std::collections::BTreeMap;
+use std::iter;
 use std::ops::ControlFlow;
 
 use askama::Template;
@@ -112,7 +113,9 @@ impl Question for Histories {
                 samples.influence(true, peak_rad),
             ),
         ];
-        let largest_rotations_rad: Vec<f64> = samples.answers().map(peak_rad).collect();
+        let of_samples = samples.rows.iter();
+        let of_samples = of_samples.map(|row| row.answer.as_ref().ok().map(peak_rad));
+        let largest_rotations_rad: Vec<_> = iter::once(None).chain(of_samples).collect();
         let outcomes = OUTCOMES.into_iter().filter_map(|name| {
             let share = samples.share(|answer| match name {
                 OVERTURNED => answer.overturned(),
@@ -127,7 +130,8 @@ impl Question for Histories {
             all: SampleSummary::new(samples, model, limits, influences),
             own: samples.own.as_ref().ok().map(OwnHistory::of),
             outcomes: outcomes.collect(),
-            peak_rotation_rad: each(band(largest_rotations_rad.clone(), fractile)).into(),
+            peak_rotation_rad: each(band(samples.answers().map(peak_rad).collect(), fractile))
+                .into(),
             followed_body: self.body,
         };
         let has_joints = samples.scenario.motion.kind.has_joints;

@@ -6,10 +6,9 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::influence::InfluencedAnswer;
-use super::page::{PageAnswer, SAMPLES, SamplePage};
+use super::page::{SAMPLES, SamplePage};
 use super::report::{self, Band, Line, SampleSummary, why_not};
 use super::{NoAnswer, Question, Samples};
-use crate::output::page::SpotKind;
 use crate::output::{
     Chart, Figure, Key, Mark, OutputError, Scale, Sign, Stroke, color, column, csv, each, list,
 };
@@ -155,14 +154,11 @@ impl Question for FirstEdges {
             report::table(samples, columns.into_iter().chain([why_not()]))?,
         ];
         let results = Results::new(&Self::FILES[1..], &report, others)?;
-        let (from, to, stride) = (self.factors.from, self.factors.to, self.factors.stride);
         let page = SamplePage {
             title: samples.title(TITLE),
             label: "first factor that overturns",
-            command: format!(
-                "threshold - --from {from:?} --to {to:?} --stride {stride:?} --out case"
-            ),
-            answer: &page_answer,
+            command: self.factors.command(),
+            answer: &|edge: &FirstEdge| (edge.spot_kind(), edge.is_outside_model(), edge.factor),
             picture: &|figure| draw(figure, samples, &probabilities),
         };
         Ok(page.add_to(results, samples, &report.all))
@@ -306,13 +302,3 @@ fn draw(
 }
 
 const TITLE: &str = "Probability of overturning";
-
-/// Returns the answer of a sample on its page: the first factor, beyond the axis if no factor overturns the sample.
-fn page_answer(edge: &FirstEdge) -> PageAnswer {
-    let kind = match (edge.factor, edge.uncertain_from) {
-        (_, Some(_)) => SpotKind::Uncertain,
-        (Some(_), None) => SpotKind::Overturns,
-        (None, None) => SpotKind::Survives,
-    };
-    (kind, edge.is_outside_model(), edge.factor)
-}

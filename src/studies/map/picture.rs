@@ -149,7 +149,7 @@ impl<'s> MapChart<'s> {
         } = cells;
         if outside.contains(&true) {
             let name = "outside-model";
-            let sign = Sign::LineOn(CELL, name, OUTSIDE);
+            let sign = Sign::Hatched(CELL, name, OUTSIDE, false);
             keys.push(Key::new("outside the model of four links", sign));
             marks.insert(0, self.hatch(name, OUTSIDE, [1, 0], outside));
         }
@@ -229,7 +229,7 @@ pub(super) fn drawn(
     style: Style,
 ) -> Drawn {
     let chart = MapChart::new(title, map, style);
-    let sign = Sign::LineOn(CELL, "doubtful", DOUBTFUL);
+    let sign = Sign::Hatched(CELL, "doubtful", DOUBTFUL, true);
     let key = Key::new("another outcome in a repetition", sign);
     let keys = map.repeat.then_some(key).into_iter().collect();
     let doubtful: Vec<bool> = rows.iter().map(CellRow::is_doubtful).collect();
@@ -237,7 +237,7 @@ pub(super) fn drawn(
     chart.draw(cells, keys, vec![hatch])
 }
 
-/// Background of lines in the legend: light, as most cells.
+/// Background of hatching in the legend: light, as most cells.
 const CELL: &str = "#ffffff";
 const DOUBTFUL: Stroke = Stroke::new(color::BLACK, 1.2, "");
 const OUTSIDE: Stroke = Stroke::new(color::BLACK, 0.8, "");

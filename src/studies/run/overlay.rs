@@ -9,6 +9,10 @@ use crate::{Sample, Sway};
 #[derive(Clone, Debug, Default)]
 pub struct Curves {
     rotation_rad: Envelope,
+    /// Times and largest rotations of samples before the first sway, whose sign is not known yet.
+    unsigned: Vec<(f64, f64)>,
+    /// The sign of the present or last sway.
+    sign: Option<f64>,
     energy_j: Envelope,
     end_s: f64,
 }
@@ -22,17 +26,38 @@ impl Curves {
             .rotations_rad
             .iter()
             .fold(0.0_f64, |most, rotation| most.max(rotation.abs()));
-        let rotation_rad = match sample.state.sway() {
-            Some(Sway::Right) => -largest_rad,
-            Some(Sway::Left) | None => largest_rad,
-        };
-        self.rotation_rad.push(time_s, rotation_rad);
+        if let Some(sway) = sample.state.sway() {
+            self.sign = Some(if sway == Sway::Right { -1.0 } else { 1.0 });
+        }
+        match self.sign {
+            Some(sign) => {
+                for (time_s, rad) in self.unsigned.drain(..) {
+                    self.rotation_rad.push(time_s, sign * rad);
+                }
+                self.rotation_rad.push(time_s, sign * largest_rad);
+            }
+            // Zero needs no sign.
+            None if largest_rad == 0.0 && self.unsigned.is_empty() => {
+                self.rotation_rad.push(time_s, 0.0);
+            }
+            None => self.unsigned.push((time_s, largest_rad)),
+        }
         self.energy_j.push(time_s, sample.energy_j);
+    }
+
+    /// Returns the rotations with their signs; they are positive if the structure never sways.
+    fn rotation_rad(&self) -> Envelope {
+        let mut all = self.rotation_rad.clone();
+        for (time_s, rad) in &self.unsigned {
+            all.push(*time_s, *rad);
+        }
+        all
     }
 }
 
 /// Draws named histories: the ground, the largest rotation of a body, and the energy. Rotations are positive (anticlockwise) while the structure
-/// sways left, and negative while it sways right. On a page each history has a mark: at its largest rotation, or at its end if it overturned.
+/// sways left, and negative while it sways right; elastic joints are open a little before the state names a sway, and then have the sign of the first
+/// one. On a page each history has a mark: at its largest rotation, or at its end if it overturned.
 pub fn draw(
     figure: Figure,
     subject: &Subject<'_>,
@@ -44,13 +69,13 @@ pub fn draw(
     let span_s = [start_s, ends_s.fold(start_s, f64::max)];
     let mut panels = Panels::new(figure, subject.title, span_s);
     panels.ground(110.0, subject, None);
-    let each = |quantity: fn(&Curves) -> &Envelope| -> Vec<Mark> {
+    let each = |quantity: fn(&Curves) -> Envelope| -> Vec<Mark> {
         let named = histories.iter().zip(CURVES);
         named
             .map(|((name, curves), stroke)| Mark::curve(*name, stroke, quantity(curves).points()))
             .collect()
     };
-    let mut rotations = each(|curves| &curves.rotation_rad);
+    let mut rotations = each(Curves::rotation_rad);
     panels.keys = rotations.iter().map(Mark::key).collect();
     let y = scale_around(&rotations, [], 6);
     let marks = rotations.iter().zip(spots).filter_map(|(curve, spot)| {
@@ -70,7 +95,12 @@ pub fn draw(
         None,
         rotations,
     );
-    panels.curves("Energy (J)", 120.0, each(|curves| &curves.energy_j), None);
+    panels.curves(
+        "Energy (J)",
+        120.0,
+        each(|curves| curves.energy_j.clone()),
+        None,
+    );
     panels.finish(false)
 }
 
@@ -92,5 +122,34 @@ mod tests {
             let drawn: Vec<(f64, f64)> = curves.rotation_rad.points().collect();
             assert_eq!(drawn, [(0.0, rotation_rad)]);
         }
+    }
+
+    /// Elastic joints open before the state names a sway, and stay open a little after it.
+    #[test]
+    fn rotations_before_the_first_sway_have_its_sign() {
+        let rest = (State::Rest, 0.0);
+        let right = State::Rocking(Sway::Right);
+        let states = [
+            (State::Rest, 1e-3),
+            (State::Rest, 3e-3),
+            (right, 4e-3),
+            (State::Rest, 1e-3),
+        ];
+        let drawn = |states: &[(State, f64)]| -> Vec<f64> {
+            let mut curves = Curves::default();
+            for (time_s, (state, rad)) in (0..).map(f64::from).zip(states) {
+                curves.push(&Sample {
+                    time_s,
+                    state: *state,
+                    rotations_rad: vec![0.5 * rad, *rad],
+                    ..Sample::default()
+                });
+            }
+            curves.rotation_rad().points().map(|(_, rad)| rad).collect()
+        };
+        assert_eq!(drawn(&states), [-1e-3, -3e-3, -4e-3, -1e-3]);
+        let all = [&[rest; 2][..], &states].concat();
+        assert_eq!(drawn(&all)[2..], drawn(&states));
+        assert_eq!(drawn(&states[..2]), [1e-3, 3e-3], "never sways");
     }
 }

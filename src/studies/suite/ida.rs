@@ -24,7 +24,13 @@ pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility, spots: 
     let largest = survived.map(peak).fold(least, f64::max);
     let x = Scale::exactly(0.0, largest / SURVIVED, figure.ticks(8));
     let (y_label, y) = heading.axis(results, figure);
-    let label = format!("{}; arrows: overturned", peak_in_words(over_critical));
+    // Marks of a page cover the arrows.
+    let sign = if spots.is_empty() {
+        "arrows"
+    } else {
+        "crosses"
+    };
+    let label = format!("{}; {sign}: overturned", peak_in_words(over_critical));
     let mut chart = Chart::new(480.0, (&label, x), (y_label, y));
     let critical = Mark::upright("critical", CRITICAL, 1.0, y);
     chart.marks.extend(over_critical.then_some(critical));
@@ -149,10 +155,12 @@ pub fn fractiles(results: &SuiteFragility) -> Vec<Fractiles> {
 const CRITICAL: Stroke = Stroke::new(color::GREY, 1.4, "6 4");
 const UNCERTAIN: Stroke = Stroke::new(color::GREEN, 1.6, "");
 
-/// Returns the largest rotation of each case with a complete history, in radians, infinite if the case overturned.
-pub(super) fn rotations_rad(cases: &[CaseRow]) -> Vec<f64> {
-    let endings = cases.iter().filter_map(CaseRow::complete);
-    endings.map(Ending::peak_or_infinite_rad).collect()
+/// Returns the largest rotation of each case, in radians, infinite if the case overturned; `None` without a complete history.
+pub(super) fn rotations_rad(cases: &[CaseRow]) -> Vec<Option<f64>> {
+    let endings = cases.iter().map(CaseRow::complete);
+    endings
+        .map(|ending| ending.map(Ending::peak_or_infinite_rad))
+        .collect()
 }
 
 /// Returns the distribution of the peaks of all cases that count: ascending finite peaks, as in [`Fractiles`], each with the share of cases up

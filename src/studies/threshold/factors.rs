@@ -44,6 +44,12 @@ impl Factors {
         })
     }
 
+    /// Returns the command that searches these factors for a scenario on standard input, without `archrock`.
+    pub(in crate::studies) fn command(&self) -> String {
+        let Self { from, to, stride } = self;
+        format!("threshold - --from {from:?} --to {to:?} --stride {stride:?} --out case")
+    }
+
     /// Returns all factors, ascending.
     pub fn values(&self) -> Vec<f64> {
         // Drops a last step that is due to rounding errors only.

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::factors::{EDGE_WIDTH, Factors};
 use crate::bisection::{Width, try_bisect};
 use crate::dynamics::MODEL_LIMIT;
+use crate::output::page::SpotKind;
 use crate::output::{Column, column};
 use crate::studies::ending::columns::yes;
 use crate::studies::ending::{Ending, NoAnswer, NoHistory, Verdict};
@@ -51,6 +52,15 @@ impl FirstEdge {
     pub fn is_outside_model(&self) -> bool {
         self.thrust_excess_ratio
             .is_some_and(|ratio| ratio > MODEL_LIMIT)
+    }
+
+    /// Returns the mark on a page.
+    pub(in crate::studies) const fn spot_kind(&self) -> SpotKind {
+        match (self.factor, self.uncertain_from) {
+            (_, Some(_)) => SpotKind::Uncertain,
+            (Some(_), None) => SpotKind::Overturns,
+            (None, None) => SpotKind::Survives,
+        }
     }
 
     /// Finds the first edge of a scenario that starts from rest, among these factors on its ground motion.

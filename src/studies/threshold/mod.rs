@@ -14,7 +14,7 @@ pub(crate) mod survival;
 mod varied;
 
 pub use along::{Along, AlongOptions, AlongRow, KeyRange, Summary as AlongSummary};
-pub(super) use digits::{rounded, rounded_down, rounded_range};
+pub(super) use digits::{rounded, rounded_down, rounded_edge, rounded_range};
 pub use factors::{EDGE_WIDTH, Factors};
 pub use picture::draw;
 pub use report::{FILES, Summary};

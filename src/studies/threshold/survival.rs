@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::Threshold;
-use super::digits::{rounded, rounded_down, rounded_range};
+use super::digits::{rounded, rounded_edge, rounded_range};
 use crate::studies::ending::Verdict;
 
 /// A range of tried strengths with one verdict.
@@ -116,16 +116,26 @@ fn listed(
 /// Returns the line of words: `survives up to 2.113; uncertain from there; certainly overturns from 2.401 (gaps above: 2.604 to 2.871)`. The unit
 /// of strengths may be empty. For factors, `peak_g` is the peak ground acceleration at factor 1.
 pub fn in_words(survival: &Survival, unit: &str, peak_g: Option<f64>) -> String {
-    let at = |strength: f64, rounded: fn(f64) -> String| match peak_g {
-        Some(peak_g) => format!("{} ({} g)", rounded(strength), rounded(strength * peak_g)),
-        None => rounded(strength) + unit,
+    let both = |strength: String, in_g: String| match peak_g {
+        Some(_) => format!("{strength} ({in_g} g)"),
+        None => strength + unit,
     };
+    let to_g = peak_g.unwrap_or(1.0);
+    let at = |strength: f64, rounded: fn(f64) -> String| {
+        both(rounded(strength), rounded(strength * to_g))
+    };
+    let ends = [survival.survives_up_to, survival.overturns_from];
+    let [own, in_g] = [1.0, to_g].map(|unit| rounded_edge(ends.map(|end| Some(end? * unit))));
+    let ([safe, overturns_from], [safe_g, from_g]) = (own, in_g);
+    let safe = safe.zip(safe_g).map(|(own, in_g)| both(own, in_g));
+    let overturns_from = overturns_from.zip(from_g);
+    let overturns_from = overturns_from.map(|(own, in_g)| both(own, in_g));
     let ranges = &survival.ranges[..];
     let Some(first) = ranges.first() else {
         return "no history".to_owned();
     };
-    let mut parts = vec![match survival.survives_up_to {
-        Some(safe) => format!("survives up to {}", at(safe, rounded_down)),
+    let mut parts = vec![match safe {
+        Some(safe) => format!("survives up to {safe}"),
         None => {
             let (what, from) = (word(first.verdict), at(first.from, rounded));
             format!("{what} at {from} already, the smallest tried")
@@ -143,9 +153,8 @@ pub fn in_words(survival: &Survival, unit: &str, peak_g: Option<f64>) -> String 
     }
     let certainly = if is_certain { "" } else { "certainly " };
     let known = below.iter().rfind(|range| range.verdict.is_some());
-    match (survival.overturns_from, known) {
+    match (overturns_from, known) {
         (Some(strength), _) if !below.is_empty() => {
-            let strength = at(strength, rounded);
             let from = if survival.at_most {
                 "at or below"
             } else {

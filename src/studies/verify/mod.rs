@@ -153,6 +153,9 @@ pub struct DisplacementCheck {
     pub period_s: f64,
     /// Displacement demand, in metres.
     pub demand_m: f64,
+    /// Period of the demand, in seconds; absent unless the spectrum is given by points, whose largest displacement up to `period_s` counts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub demand_period_s: Option<f64>,
     /// Lower bound of the demand, in metres; `None` unless the period exceeds that of resonance with a building.
     pub resonance_m: Option<f64>,
     /// Spectral acceleration at `period_s`, in g.
@@ -638,6 +641,12 @@ impl CheckInput<'_> {
             acceleration_g,
             period_s,
             demand_m,
+            demand_period_s: spectrum.demand_period_s(
+                period_s,
+                self.t0_s,
+                damping_percent,
+                gravity_m_s2,
+            ),
             resonance_m: spectrum.resonance_m(period_s, damping_percent, gravity_m_s2),
             demand_acceleration_g: spectrum.acceleration_g(period_s, damping_percent)?,
             by_displacement_ag_g: by_displacement.ag_capacity_g,

@@ -76,6 +76,11 @@ fn floor_spectrum(ground: &Ground, modes: &[FloorMode]) -> FloorSpectrum {
     }
 }
 
+/// Returns the first period at which a displacement of points counts, in seconds.
+fn points_from_s(points: &PointSpectrum, from_s: Option<f64>, period_s: f64) -> f64 {
+    from_s.unwrap_or(points.range_s()[0]).min(period_s)
+}
+
 impl Spectrum {
     /// Makes the spectrum of a limit state; `None` if the demand does not include that state.
     pub(super) fn of(
@@ -210,6 +215,22 @@ impl Spectrum {
         is_beyond.then(|| floor.resonance_m(damping_percent, gravity_m_s2))
     }
 
+    /// Returns the period of the largest displacement of points up to a period, in seconds (see [`Self::displacement_m`]); `None` for spectra by NTC 2018.
+    pub(super) fn demand_period_s(
+        &self,
+        period_s: f64,
+        from_s: Option<f64>,
+        damping_percent: f64,
+        gravity_m_s2: f64,
+    ) -> Option<f64> {
+        let Self::Points { points, .. } = self else {
+            return None;
+        };
+        let periods_s = [points_from_s(points, from_s, period_s), period_s];
+        let largest = points.largest_displacement(periods_s, damping_percent, gravity_m_s2);
+        Some(largest.ok()?.1)
+    }
+
     /// Computes the displacement demand on a mechanism whose period has lengthened to `period_s`, in metres. For points it is the largest demand
     /// between the periods `from_s` and `period_s`.
     ///
@@ -231,8 +252,7 @@ impl Spectrum {
                 floor.displacement_m(period_s, damping_percent, gravity_m_s2)
             }
             Self::Points { points, .. } => {
-                let from_s = from_s.unwrap_or(points.range_s()[0]).min(period_s);
-                let periods_s = [from_s, period_s];
+                let periods_s = [points_from_s(points, from_s, period_s), period_s];
                 let largest =
                     points.largest_displacement(periods_s, damping_percent, gravity_m_s2)?;
                 largest.0

@@ -1,6 +1,7 @@
 //! The picture of thresholds along a range.
 
 use super::Point;
+use crate::output::page::Spot;
 use crate::output::{CURVES, Chart, Figure, Mark, Shape};
 
 /// Function that returns a quantity of a point, in g.
@@ -12,8 +13,14 @@ const CURVES_OF: [(&str, Quantity); 3] = [
     ("overturns without impact", |point| point.no_impact_g),
 ];
 
-/// Draws the peak ground acceleration that overturns the structure against the values of a key.
-pub(super) fn draw(figure: Figure, title: &str, key: &str, points: &[Point]) -> String {
+/// Draws the peak ground acceleration that overturns the structure against the values of a key. On a page each value has a mark: where the structure
+/// first overturns, or where it survives the largest factor.
+pub(super) fn draw(
+    figure: Figure,
+    (title, key): (&str, &str),
+    points: &[Point],
+    spots: &[Spot],
+) -> String {
     let curves = CURVES_OF
         .into_iter()
         .zip(CURVES)
@@ -35,5 +42,10 @@ pub(super) fn draw(figure: Figure, title: &str, key: &str, points: &[Point]) -> 
     let labels = [key, "peak ground acceleration (g)"];
     let mut chart = Chart::around(figure, 405.0, labels, curves);
     chart.marks.extend(circles);
+    let spots = points.iter().zip(spots).map(|(point, spot)| {
+        let known_g = point.overturns_from_g.or(point.survives_up_to_g);
+        Mark::spot(spot, (point.value, known_g.unwrap_or(0.0)))
+    });
+    chart.marks.extend(spots);
     chart.draw(figure, title)
 }

@@ -5,8 +5,10 @@ use serde::{Deserialize, Serialize};
 
 use super::{Along, AlongOptions, AlongRow, KeyRange, Point, picture};
 use crate::argument::plain;
+use crate::output::page::SpotKind;
 use crate::output::{OutputError, column, csv, fields, filters};
-use crate::studies::threshold::{Factors, rounded, rounded_down};
+use crate::studies::page::{Page, PageCases, input_in_words};
+use crate::studies::threshold::{Factors, rounded, rounded_edge};
 use crate::studies::{
     CaseSummary, ModelCheck, NoAnswer, Remark, Remarks, ReportedStudy, Results, Style, no_verdict,
 };
@@ -32,7 +34,12 @@ pub struct Summary {
 const SUMMARY: &str = "threshold_along.json";
 
 impl ReportedStudy for Along<'_> {
-    const FILES: &'static [&'static str] = &["threshold_along.svg", SUMMARY, "threshold_along.csv"];
+    const FILES: &'static [&'static str] = &[
+        "threshold_along.html",
+        "threshold_along.svg",
+        SUMMARY,
+        "threshold_along.csv",
+    ];
 
     fn results(&self, rows: Vec<AlongRow>, style: Style) -> Result<Results, OutputError> {
         let incomplete = |row: &&AlongRow| row.edge == Err(NoAnswer::Incomplete);
@@ -62,9 +69,24 @@ impl ReportedStudy for Along<'_> {
         columns.push(column("why_not", |point: &Point| point.why_not.clone()));
         let title = self.scenario.title.as_deref();
         let title = title.unwrap_or("Threshold of overturning");
-        let picture = picture::draw(style.figure, title, key, &report.values);
-        let others = [picture.into_bytes(), csv(columns, &report.values)?];
-        Results::new(Self::FILES, &report, others)
+        let mut cases = PageCases::default();
+        for row in &rows {
+            self.add_case(&mut cases, row);
+        }
+        let draw = |figure, spots: &[_]| picture::draw(figure, (title, key), &report.values, spots);
+        let picture = draw(style.figure, &[]).into_bytes();
+        let others = [picture, csv(columns, &report.values)?];
+        let results = Results::new(&Self::FILES[1..], &report, others)?;
+        let factors = &report.factors;
+        let own = format!(
+            "{}. Stronger motions are not searched for",
+            factors.in_words()
+        );
+        let what = input_in_words(&[self.scenario]);
+        let mut page = Page::new(title, what, &[&own], &[self.scenario.motion.kind]);
+        page.command = factors.command();
+        let marked = |figure| draw(figure, &cases.spots);
+        Ok(results.with_page(Self::FILES[0], page, &cases, (&marked, &[])))
     }
 }
 
@@ -80,6 +102,29 @@ fn limits(
 }
 
 impl Along<'_> {
+    /// Adds the threshold of a value to a page.
+    fn add_case(&self, cases: &mut PageCases, row: &AlongRow) {
+        let (mark, words) = match &row.edge {
+            Ok(edge) => {
+                let [safe, first] = rounded_edge([edge.survives_up_to, edge.factor]);
+                let parts = [
+                    ("survives up to", safe),
+                    ("UNCERTAIN from", edge.uncertain_from.map(rounded)),
+                    ("certainly overturns from", first),
+                ];
+                let parts = parts.into_iter();
+                let parts = parts.filter_map(|(what, at)| Some(format!("{what} factor {}", at?)));
+                let words = parts.collect::<Vec<_>>().join("; ");
+                ((edge.spot_kind(), edge.is_outside_model()), words)
+            }
+            Err(why) => ((SpotKind::Unknown, false), why.reason().to_owned()),
+        };
+        let words = format!("{} {}: {words}", self.options.along.key, plain(row.value));
+        cases.push(mark, words, || {
+            Some(self.variant(row.value).ok()?.to_json())
+        });
+    }
+
     /// Returns the values without an answer, with the reasons.
     fn remarks(&self, rows: &[AlongRow]) -> Remarks {
         let edges = rows.iter().flat_map(|row| &row.edge);
@@ -104,50 +149,44 @@ impl Summary {
     fn ranges(&self) -> String {
         let points = &self.values;
         // The lowest and the highest acceleration, with their values.
-        let range = |what: &str, of: fn(&Point) -> Option<f64>, rounded: fn(f64) -> String| {
+        let ends = |of: fn(&Point) -> Option<f64>| {
             let known = points.iter();
             let known = known.filter_map(|point| Some((of(point)?, point.value)));
-            let least = known.clone().min_by(|a, b| a.0.total_cmp(&b.0))?;
-            let most = known.max_by(|a, b| a.0.total_cmp(&b.0))?;
-            let at = |end: &str, (g, value): (f64, f64)| {
-                format!("{} g ({end}, at {})", rounded(g), plain(value))
-            };
-            Some(format!(
-                "{what} {} and {}",
-                at("lowest", least),
-                at("highest", most)
-            ))
+            let least = known.clone().min_by(|a, b| a.0.total_cmp(&b.0));
+            [least, known.max_by(|a, b| a.0.total_cmp(&b.0))]
         };
+        let range =
+            |what: &str, ends: [Option<(f64, f64)>; 2], [low, high]: [Option<String>; 2]| {
+                let [least, most] = ends.map(|end| Some(plain(end?.1)));
+                let (least, most, low, high) = (least?, most?, low?, high?);
+                Some(format!(
+                    "{what} {low} g (lowest, at {least}) and {high} g (highest, at {most})"
+                ))
+            };
+        let safe = ends(|point| point.survives_up_to_g);
+        let first = ends(|point| point.overturns_from_g);
+        let edge = |end: usize| rounded_edge([safe, first].map(|ends| Some(ends[end]?.0)));
+        let ([safe_low, first_low], [safe_high, first_high]) = (edge(0), edge(1));
         let count = |what: &str, at: fn(&&Point) -> bool| {
             let count = points.iter().filter(at).count();
             let values = ["value", "values"][usize::from(count > 1)];
             (count > 0).then(|| format!("{what} at {count} {values}"))
         };
         let no_impact = || {
-            let ends = range(
-                "without impact overturns from",
-                |point| point.no_impact_g,
-                rounded,
-            );
-            ends.unwrap_or_else(|| "no factor overturns it without impact".to_owned())
+            let ends = ends(|point| point.no_impact_g);
+            let in_g = ends.map(|end| Some(rounded(end?.0)));
+            let words = range("without impact overturns from", ends, in_g);
+            words.unwrap_or_else(|| "no factor overturns it without impact".to_owned())
         };
         let parts = [
-            range(
-                "survives up to",
-                |point| point.survives_up_to_g,
-                rounded_down,
-            ),
+            range("survives up to", safe, [safe_low, safe_high]),
             count("not certain to survive the smallest factor", |point| {
                 point.tried_to_factor.is_some() && point.survives_up_to_g.is_none()
             }),
             count("uncertain above", |point| {
                 point.uncertain_from_factor.is_some()
             }),
-            range(
-                "certainly overturns from",
-                |point| point.overturns_from_g,
-                rounded,
-            ),
+            range("certainly overturns from", first, [first_low, first_high]),
             count("no factor certainly overturns it", |point| {
                 let reached = point.tried_to_factor.is_some() && !point.failed_beyond;
                 reached && point.overturns_from_g.is_none()
