@@ -18,8 +18,7 @@ use archrock::studies::{Computation, Options, RowSource, StudyKind, Style};
 use serde_json::{Value, json};
 
 use crate::common::browser::browser;
-use crate::common::program::skip_without;
-use crate::common::scenarios;
+use crate::common::program::scenarios;
 
 const SCRIPT: &str = include_str!("web.js");
 
