@@ -69,10 +69,8 @@
 //!
 //! "The paper" in this documentation is *Impacts analysis in the rocking of masonry circular arches*; it is
 //! quoted by its equation numbers. Where a result is derived here instead, the documentation says so.
-#![cfg_attr(
-    test,
-    allow(clippy::disallowed_methods, reason = "tests compare with tolerances")
-)]
+// Tests compare with tolerances.
+#![cfg_attr(test, allow(clippy::disallowed_methods))]
 
 #[macro_use]
 extern crate archrock_motion;

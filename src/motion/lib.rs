@@ -2,10 +2,8 @@
 //!
 //! - [`mechanics`]: pure functions of shapes, rigid bodies, joints and mechanisms.
 //! - [`dynamics`]: motion in time: the ground, models of motion and their histories.
-#![cfg_attr(
-    test,
-    allow(clippy::disallowed_methods, reason = "tests compare with tolerances")
-)]
+// Tests compare with tolerances.
+#![cfg_attr(test, allow(clippy::disallowed_methods))]
 
 #[macro_use]
 mod named;

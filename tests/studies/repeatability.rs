@@ -315,7 +315,7 @@ fn a_path_that_does_not_repeat_needs_more_repetitions() {
     let (spread, ending) = counts(
         "[arch]\nmean_radius_m = 13.5\nthickness_ratio = 0.2127\nembrace_deg = 144.9\n\
          joints_deg = [0.0, 7.5, 13.4, 30.8, 47.7, 61.3, 76.4, 94.0, 108.5, 117.3, 132.0, 144.9]\n\
-         [free_hinges]\nfriction_coefficient = 0.6\n[ground.one_cosine]\namplitude_g = 2.119\n\
+         [free_hinges]\nfriction_coefficient = 0.6\n[ground.one_cosine]\namplitude_g = 2.117\n\
          duration_s = 1.3577\nvertical_amplitude_g = -0.4685\n[simulation]\nduration_s = 10.0",
     );
     let survives = |outcome: &Outcome| Verdict::from(*outcome) == Verdict::Survives;

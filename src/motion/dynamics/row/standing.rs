@@ -209,8 +209,13 @@ impl RigidRow {
             (0..blocks).map(of_block).collect()
         };
         let unit_rates = link.mechanism.rotation_rates(initial.rotation_rad);
+        // Without rotation all joints are closed; rounding errors would open some, and end in an impact at once.
+        let rotations_rad = match initial.rotation_rad {
+            0.0 => [0.0; 3],
+            rotation_rad => link.mechanism.rotations(rotation_rad),
+        };
         Ok(Release {
-            rotations_rad: of_blocks(link.mechanism.rotations(initial.rotation_rad)),
+            rotations_rad: of_blocks(rotations_rad),
             rates_rad_s: of_blocks(unit_rates.map(|rate| rate * initial.rate_rad_s)),
         })
     }

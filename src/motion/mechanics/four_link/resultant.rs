@@ -6,10 +6,10 @@
 
 use std::sync::Arc;
 
-use nalgebra::{Matrix3, Vector2, Vector3};
+use nalgebra::{Matrix3, Vector3};
 
 use super::mechanism::{EDGES, FourLink, HingeSites};
-use crate::mechanics::{Edge, Field, Momentum, Profile, Twist};
+use crate::mechanics::{Field, Momentum, Profile, Twist};
 
 /// Tolerance for lines outside the ring, over the thickness: hinges are accurate to about 1e-8 rad, and the line touches the edges there.
 pub const EDGE_TOLERANCE: f64 = 1e-6;
@@ -169,18 +169,12 @@ impl ResultantLine {
         top(refined.chain(samples.iter().copied()))
     }
 
-    /// Returns the derivative with respect to the angle of the moment about the edge point `point` of the section, where the load is `local`. Zero
-    /// where the line touches the edge.
-    fn edge_moment_slope(
-        &self,
-        angle_rad: f64,
-        edge: Edge,
-        point: Vector2<f64>,
-        local: Twist,
-    ) -> f64 {
+    /// Returns the derivative with respect to the angle of the moment about a hinge, where the load is `local`. Zero where the line touches the edge.
+    fn edge_moment_slope(&self, mechanism: &FourLink, hinge: usize, local: Twist) -> f64 {
+        let angle_rad = mechanism.hinges_rad[hinge];
         let slice = local.momentum(&self.profile.slice(angle_rad));
-        let along_edge = self.profile.edge_slope(angle_rad, edge);
-        slice.about(point) - along_edge.perp(&self.at(angle_rad).linear)
+        let along_edge = self.profile.edge_slope(angle_rad, EDGES[hinge]);
+        slice.about(mechanism.points[hinge]) - along_edge.perp(&self.at(angle_rad).linear)
     }
 
     /// Returns the derivatives of the power of the load on `mechanism` (at `q' = 1`) by the sections of its hinges. The rotations change so that the
@@ -189,10 +183,8 @@ impl ResultantLine {
     /// A moved hinge changes the rotations at all four hinges, but the line has no moment there. Only the moment about the moved point itself
     /// contributes. `local` is the load at each hinge.
     pub(crate) fn power_gradient(&self, mechanism: &FourLink, local: [Twist; 4]) -> [f64; 4] {
-        let (hinges, points) = (mechanism.hinges_rad, mechanism.points);
         std::array::from_fn(|i| {
-            let slope = self.edge_moment_slope(hinges[i], EDGES[i], points[i], local[i]);
-            -mechanism.openings[i] * slope
+            -mechanism.openings[i] * self.edge_moment_slope(mechanism, i, local[i])
         })
     }
 }

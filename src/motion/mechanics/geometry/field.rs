@@ -5,6 +5,7 @@
 //! twice a kinetic energy for `v = w`, and a virtual power if one of the fields is a load per unit mass.
 
 use crate::mechanics::{MassMoments, Profile};
+use std::iter::zip;
 use std::mem;
 use std::ops::Add;
 
@@ -25,7 +26,7 @@ pub enum Side {
 pub struct Field {
     /// Sections where the field may jump, in radians, ascending.
     pub cuts_rad: Vec<f64>,
-    /// Mass moments before each cut, computed only once: most of the work of a search for an impact.
+    /// Mass moments of the profile before each cut. A search for an impact needs them again and again.
     before: Vec<MassMoments>,
     twists: Vec<Twist>,
 }
@@ -93,19 +94,11 @@ impl Field {
 
     /// Returns this field minus another: rigid on the sectors between the cuts of both.
     pub fn minus(&self, other: &Self) -> Self {
-        let mut cuts: Vec<(f64, MassMoments)> = [self, other]
-            .into_iter()
-            .flat_map(|field| {
-                field
-                    .cuts_rad
-                    .iter()
-                    .copied()
-                    .zip(field.before.iter().copied())
-            })
-            .collect();
-        cuts.sort_by(|a, b| a.0.total_cmp(&b.0));
-        cuts.dedup_by_key(|cut| cut.0);
-        let (cuts_rad, before): (Vec<f64>, _) = cuts.into_iter().unzip();
+        let cuts = zip(&self.cuts_rad, &self.before);
+        let mut cuts: Vec<_> = cuts.chain(zip(&other.cuts_rad, &other.before)).collect();
+        cuts.sort_by(|a, b| a.0.total_cmp(b.0));
+        cuts.dedup_by_key(|cut| *cut.0);
+        let (cuts_rad, before): (Vec<f64>, Vec<MassMoments>) = cuts.into_iter().unzip();
         let after = |cut: f64| self.at(cut, Side::After) - other.at(cut, Side::After);
         let starts = std::iter::once(f64::NEG_INFINITY).chain(cuts_rad.iter().copied());
         let twists = starts.map(after).collect();
