@@ -21,7 +21,9 @@ mod studies;
 mod study;
 mod threshold;
 
+use std::fs;
 use std::io::{self, Write};
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use archrock::output::{OutputError, pretty};
@@ -91,6 +93,12 @@ enum Command {
         /// The shell.
         #[arg(value_enum)]
         shell: clap_complete::Shell,
+    },
+    /// Write the manual pages of all commands, for packages of the program.
+    #[command(hide = true)]
+    Manual {
+        /// The folder.
+        folder: PathBuf,
     },
 }
 
@@ -190,6 +198,7 @@ pub fn main() -> ExitCode {
         Command::Merge(merge) => studies::merge(&merge),
         Command::Check(check) => check::check(&check),
         Command::Completions { shell } => completions(shell),
+        Command::Manual { folder } => manual(&folder),
     };
     let (code, message) = match result {
         Ok(()) | Err(Failure::ClosedPipe) => return ExitCode::SUCCESS,
@@ -258,6 +267,16 @@ fn completions(shell: clap_complete::Shell) -> Result<(), Failure> {
     let mut command = Arguments::command();
     clap_complete::generate(shell, &mut command, "archrock", &mut script);
     print(&String::from_utf8_lossy(&script))
+}
+
+/// Writes the manual pages of the program and of its commands into a folder.
+fn manual(folder: &Path) -> Result<(), Failure> {
+    let written = fs::create_dir_all(folder)
+        .and_then(|()| clap_mangen::generate_to(Arguments::command(), folder));
+    written.map_err(|error| {
+        let folder = folder.display();
+        Failure::Work(format!("cannot write manual pages into {folder}: {error}"))
+    })
 }
 
 /// Prints results: their summary as JSON, or in words.

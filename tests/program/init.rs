@@ -1,9 +1,9 @@
-//! Scenarios to start from, and shell completions.
+//! Scenarios to start from, shell completions, and manual pages.
 
 use std::f64::consts::PI;
 use std::fs;
 
-use crate::common::program::{archrock, stderr};
+use crate::common::program::{archrock, printed, stderr};
 use archrock::Scenario;
 
 /// Optional keys, which stand in comments with their defaults.
@@ -127,4 +127,35 @@ fn completions_name_every_command() {
             assert!(script.contains(word), "{shell} {word}");
         }
     }
+}
+
+/// The pages are not in the help: packages of the program contain them.
+#[test]
+fn manual_pages_describe_every_command() {
+    let folder = tempfile::tempdir().unwrap();
+    let help = printed(folder.path(), &["--help"]);
+    let (_, commands) = help.split_once("Commands:\n").unwrap();
+    let commands = commands
+        .lines()
+        .map_while(|line| line.split_whitespace().next());
+    let commands: Vec<&str> = commands.filter(|command| *command != "help").collect();
+    assert!(commands.len() > 12 && !commands.contains(&"manual"));
+    printed(folder.path(), &["manual", "man/man1"]);
+    let page = |name: &str| {
+        let page = fs::read_to_string(folder.path().join("man/man1").join(name)).unwrap();
+        page.replace("\\-", "-")
+    };
+    let main = page("archrock.1");
+    for command in commands {
+        assert!(
+            main.contains(&format!("archrock-{command}(1)")),
+            "{command}"
+        );
+        assert!(page(&format!("archrock-{command}.1")).contains(&format!("archrock {command}")));
+    }
+    assert!(page("archrock-run.1").contains("--hinges"));
+    fs::write(folder.path().join("file"), "").unwrap();
+    let output = archrock(folder.path(), &["manual", "file"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(stderr(&output).contains("cannot write manual pages into file: "));
 }
