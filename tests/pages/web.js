@@ -28,29 +28,36 @@ async function afterwards(act, what) {
   await until(() => page.answer, what);
 }
 
-function differences(one, other, path) {
-  if (Object.is(one, other)) return [];
-  if (typeof one !== "object" || typeof other !== "object" || !one || !other) return [`${path}: ${one} ${other}`];
+/** Rows of blocks have the same bits. Steps of four links and columns depend on `pow` of the machine, and their results in digits that are not printed. */
+const equal = (one, other, bits) => Object.is(one, other) || (!bits && Math.abs(one - other) <= 1e-9 + 1e-8 * Math.abs(other));
+
+function differences(one, other, bits, path) {
+  const apart = [`${path}: ${one} ${other}`];
+  if (typeof one !== typeof other) return apart;
+  if (typeof one === "number") return equal(one, other, bits) ? [] : apart;
+  if (typeof one !== "object" || !one || !other) return one === other ? [] : apart;
   const keys = new Set([...Object.keys(one), ...Object.keys(other)]);
-  return [...keys].flatMap((key) => differences(one[key], other[key], `${path}.${key}`));
+  return [...keys].flatMap((key) => differences(one[key], other[key], bits, `${path}.${key}`));
 }
+
+const cells = (table) => table.trim().split("\n").map((row) => row.split(",").map((cell) => (cell === "" || isNaN(cell) ? cell : Number(cell))));
 
 const PARTS = {
   async bits() {
+    let equalBits = 0;
     for (const { name, study, scenario, files, expected } of data) {
       const names = Object.keys(expected.tables);
       const answer = await page.ask({ study, scenario, files, names, no_repeat: study === "run" });
       const what = `${name} ${study}`;
       verify(answer.errors.length === 0, `${what}: ${JSON.stringify(answer.errors)}`);
       verify(answer.words === expected.words, `${what}: ${answer.words}\n${expected.words}`);
-      const found = differences(answer.summary, expected.summary, what);
+      const bits = Boolean(answer.scenario.free_hinges || answer.scenario.elastic_joints);
+      const found = differences(answer.summary, expected.summary, bits, what);
+      for (const table of names) found.push(...differences(cells(answer.files[table]), cells(expected.tables[table]), bits, `${what} ${table}`));
       verify(found.length === 0, found.slice(0, 5).join("; "));
-      for (const table of names) {
-        const rows = [answer.files[table], expected.tables[table]].map((text) => text.split("\n"));
-        const row = rows[1].findIndex((line, i) => line !== rows[0][i]);
-        verify(row < 0 && rows[0].length === rows[1].length, `${what} ${table} row ${row}: ${rows.map((all) => all[row])}`);
-      }
+      equalBits += bits;
     }
+    verify(equalBits === 7, `${equalBits} scenarios of rows of blocks`);
   },
 
   async readers() {

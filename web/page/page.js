@@ -74,8 +74,8 @@ function createQueue(module, status, bar, stop) {
       waiting?.resolve(null);
       waiting = { request, resolve };
       if (!work) begin(waiting);
-      // A reader who goes on does not wait for long work.
-      else if (performance.now() - work.began > 1000) halt(null);
+      // A reader who goes on waits neither for repetitions nor for long work.
+      else if (work.request.no_repeat === false || performance.now() - work.began > 1000) halt(null);
     });
   };
 }
@@ -89,9 +89,11 @@ function createFrames(holder, title) {
   const choices = {};
 
   /** Replaces the contents of the frame by those of a page with the same styles and libraries. */
-  function renew(html) {
+  async function renew(html) {
     const inside = frame.contentWindow;
     const next = new DOMParser().parseFromString(html, "text/html");
+    // The page answers its reader in between.
+    await new Promise((resolve) => setTimeout(resolve));
     const plays = inside.archrock.shown().playing;
     inside.archrock.leave();
     for (const part of ["header", "main", "#data"]) inside.document.querySelector(part).replaceWith(next.querySelector(part));
@@ -286,7 +288,7 @@ async function computeRun() {
   // The picture comes first, repetitions of rows of blocks after it.
   for (const no_repeat of [true, false]) {
     const answer = await askRun(request({ study: "run", no_repeat, names: ["report.html"] }));
-    if (!answer) return;
+    if (!answer || (!no_repeat && change !== changes)) return;
     if (answer.scenario) showScenario(answer.scenario);
     showErrors(answer.errors);
     if (answer.errors.length > 0) return;

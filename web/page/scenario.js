@@ -94,20 +94,19 @@ function withValue(text, key, value) {
   return all.join("\n");
 }
 
-/** Returns the text in which the first of some tables is replaced by another text, and the others are removed. */
+/** Returns the text in which the first of some tables is replaced by another one, and the others are removed. */
 function withTable(text, tables, replacement) {
-  let put = false;
+  const HERE = "# here";
   let now = text;
   for (const table of tables) {
     for (let found = tableLines(now, table); found; found = tableLines(now, table)) {
       const { all, from, to } = found;
-      all.splice(from, to - from, ...(put ? [] : replacement.trimEnd().split("\n")));
+      all.splice(from, to - from, ...(now.includes(HERE) ? [] : [HERE]));
       now = all.join("\n");
-      put = true;
-      if (header(replacement) === table) break;
     }
   }
-  return put || !replacement ? now.replace(/\n{3,}/g, "\n\n") : `${now.trimEnd()}\n\n${replacement}`;
+  if (!now.includes(HERE)) now = `${now.trimEnd()}\n\n${HERE}\n`;
+  return now.replace(HERE, replacement.trimEnd()).replace(/\n{3,}/g, "\n\n").trimEnd() + "\n";
 }
 
 /** Returns the names of the tables in a text. */
