@@ -85,6 +85,7 @@ function createQueue(module, status, bar, stop) {
 /** Shows pages in a holder. A page like the last one, as of the next history, is shown in its frame. */
 function createFrames(holder, title) {
   let frame = null;
+  let observer = null;
   /** The boxes that the reader has changed, with their states. */
   const choices = {};
 
@@ -120,9 +121,11 @@ function createFrames(holder, title) {
           root.style.overflow = "hidden";
           root.addEventListener("change", ({ target }) => target.type === "checkbox" && (choices[target.id] = target.checked));
           next.classList.remove("waiting");
+          observer?.disconnect();
           frame?.remove();
           frame = next;
-          new ResizeObserver(fit).observe(root);
+          observer = new ResizeObserver(fit);
+          observer.observe(root);
           resolve();
         };
       });
