@@ -33,7 +33,7 @@ pub struct Options {
     /// The control point of capacity curves, in metres.
     pub point_m: Option<Vector2<f64>>,
     /// The movements of a springing that `spread` follows.
-    #[serde(skip)]
+    #[serde(skip_serializing)]
     pub directions: Vec<Direction>,
     /// The files and pictures of a run.
     #[serde(skip)]

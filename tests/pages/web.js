@@ -158,6 +158,10 @@ const PARTS = {
     await afterwards(() => element("take").click(), "a cell");
     verify(/duration_s = 0\.0\d+/.test(text.value), text.value);
     verify(element("errors").children.length === 0, element("errors").textContent);
+    for (const study of ["spread", "capacity", "limit"]) {
+      await page.computeStudy(study);
+      verify(page.study.words.length > 50 && inside("study-page").document.getElementById("outcome").textContent.length > 10, study);
+    }
     await page.computeStudy("verify");
     verify(element("study-status").textContent.includes("[demand"), element("study-status").textContent);
 
@@ -179,6 +183,11 @@ const PARTS = {
   },
 
   async narrow() {
+    // A browser that refuses the module.
+    const old = Object.assign(document.createElement("iframe"), { src: `${address}old/` });
+    document.body.append(old);
+    await until(() => old.contentDocument?.getElementById("broken")?.hidden === false, "a refused module");
+    verify(old.contentDocument.getElementById("broken").textContent.includes("Update the browser"), old.contentDocument.getElementById("broken").textContent);
     const frame = Object.assign(document.createElement("iframe"), { src: `${address}page`, width: 390, height: 840 });
     document.body.append(frame);
     await until(() => frame.contentWindow.page?.answer, "the narrow page");

@@ -354,6 +354,7 @@ const STUDIES = [
   ["map", "Map of pulses", "Which pulses overturn it: a coarse map first, then a finer one. [map] in the text sets the axes."],
   ["limit", "First motion (limit analysis)", "The acceleration that starts the motion, and the hinges."],
   ["capacity", "Capacity curve", "The static push that the moving structure can carry."],
+  ["spread", "Movement of a springing", "How far may the right springing move outwards, inwards and down?"],
   ["verify", "Check by the Circolare 7/2019", "Needs the seismic demand in [demand]."],
   ["suite", "Suite of records", "Needs [suite] and its record files."],
   ["uncertain", "Histories of samples", "Needs [uncertain]; takes a minute or more."],
@@ -366,6 +367,7 @@ purpose();
 
 const studyFrames = createFrames(find("study-page"), "The study");
 let askStudy;
+const DIRECTIONS = [0, 180, 90].map((angle_deg) => ({ springing: "right", angle_deg }));
 /** Numbers of durations and of amplitudes of the maps, from coarse to fine; odd, so that the pulse of the history is the middle. */
 const GRIDS = [[13, 11], [49, 41]];
 
@@ -389,7 +391,7 @@ async function computeStudy(study) {
   for (const scenario of texts) {
     const name = study === "map" ? "map.html" : null;
     const names = [name ?? `${study}.html`, "samples.html"];
-    const answer = await askStudy({ scenario, files, study, names });
+    const answer = await askStudy({ scenario, files, study, names, options: study === "spread" ? { directions: DIRECTIONS } : {} });
     if (!answer) return;
     if (answer.errors.length > 0) {
       find("study-status").textContent = answer.errors.map(({ message }) => message).join("; ");
