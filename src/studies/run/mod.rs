@@ -271,17 +271,12 @@ impl<'a> Run<'a> {
         samples: Option<&Results>,
         watch: Watch<'_>,
     ) -> Result<ModelResults, StudyError> {
-        let folder = sinks.folder.as_ref();
-        let has_files = folder.is_some() || sinks.in_memory;
+        let has_files = sinks.folder.is_some() || sinks.in_memory;
         let (scenario, model) = (self.scenario, &*self.model);
         let (ground, request) = (scenario.ground_motion(), scenario.request());
         let mut drawings = Drawings::new(self, has_files);
         // Created before the history starts, so a folder that cannot be written costs no simulation.
-        let mut files = folder.map_or_else(|| Ok(Vec::new()), |folder| self.create(folder))?;
-        let mut in_memory: BTreeMap<&str, Vec<u8>> = match sinks.in_memory {
-            true => self.tables().map(|name| (name, Vec::new())).collect(),
-            false => BTreeMap::new(),
-        };
+        let mut files = self.create(&sinks)?;
         let repeats = !self.options.no_repeat && model.row().is_some();
         let repetitions = repeats.then(|| Repetitions::start(model, ground, &request));
         let variations = match self.options.no_repeat {
@@ -291,14 +286,9 @@ impl<'a> Run<'a> {
         let variations = Variations::start(variations, ground, &request);
         let duration_ms = (request.end_s * MILLISECONDS).round() as usize;
         let (history, rows) = {
-            let outputs = files.iter_mut();
-            let outputs = outputs.map(|(name, file)| (*name, boxed(&mut file.writer)));
-            let held = in_memory.iter_mut();
-            let held = held.map(|(name, bytes)| (*name, boxed(bytes)));
             let streamed = sinks.rotations.map(|output| (ROTATIONS, output));
-            let outputs = streamed.into_iter().chain(outputs).chain(held);
             let mut recorder = RunRecorder {
-                tables: Tables::new(self, outputs)?,
+                tables: Tables::new(self, streamed.into_iter().chain(files.outputs()))?,
                 drawings: &mut drawings,
                 watch: &mut *watch,
                 duration_ms,
@@ -326,23 +316,16 @@ impl<'a> Run<'a> {
             varied: &varied,
         });
         summary.points = drawings.points.peaks();
-        // [`summary`] omits the computing time, so that equal histories have equal summaries.
-        let longest_step = history.row().and_then(|row| row.longest_step);
-        summary.longest_step_us = longest_step.map(|step| (step.as_secs_f64() * 1e6).round());
-        if self.all_models.len() > 1 {
-            summary.to_quote = None;
-            summary.compared_models = self.all_models.to_vec();
-        }
-        summary.uncertain = samples.map(|samples| samples.summary.clone());
+        self.complete(&mut summary, &history, samples);
         let mut texts = BTreeMap::new();
         if has_files {
             let of_samples = samples.map_or("", |samples| &samples.words);
             texts = drawings.texts(self, &history, of_samples, &summary);
             texts.insert(SUMMARY, pretty(&summary_of(&summary)?));
         }
-        let files = folder.map(|folder| {
+        let named = sinks.folder.as_ref().map(|folder| {
             let film_pictures = drawings.add_film(self, folder)?;
-            self.write(folder, files.into_iter().collect(), &texts)?;
+            self.write(folder, mem::take(&mut files.on_disk), &texts)?;
             let snapshots = drawings.snapshots.as_ref();
             Ok::<_, OutputError>(Files {
                 folder: folder.path().to_owned(),
@@ -353,33 +336,43 @@ impl<'a> Run<'a> {
                     .map_or_else(Default::default, Snapshots::outside_times_s),
             })
         });
-        if sinks.in_memory {
-            in_memory.extend(
-                texts
-                    .into_iter()
-                    .map(|(name, text)| (name, text.into_bytes())),
-            );
-        }
         Ok(ModelResults {
             answer: summary.answer(scenario),
             summary,
             curves: drawings.curves,
-            files: files.transpose()?,
-            in_memory: in_memory.into_iter().collect(),
+            files: named.transpose()?,
+            in_memory: match sinks.in_memory {
+                true => files.with_texts(texts),
+                false => Vec::new(),
+            },
         })
     }
 
-    /// Creates its tables in a folder to which all its files can be written.
-    fn create(&self, folder: &Folder) -> Result<Vec<(&'static str, NewFile)>, OutputError> {
-        folder.check(&self.files())?;
-        let created = self.tables().map(|name| Ok((name, folder.create(name)?)));
-        created.collect()
+    /// Adds what a summary has of this computation and of the other models and samples.
+    fn complete(&self, summary: &mut Summary, history: &History, samples: Option<&Results>) {
+        // [`summary`] omits the computing time, so that equal histories have equal summaries.
+        let longest_step = history.row().and_then(|row| row.longest_step);
+        summary.longest_step_us = longest_step.map(|step| (step.as_secs_f64() * 1e6).round());
+        if self.all_models.len() > 1 {
+            summary.to_quote = None;
+            summary.compared_models = self.all_models.to_vec();
+        }
+        summary.uncertain = samples.map(|samples| samples.summary.clone());
     }
 
-    /// The tables that it writes.
-    fn tables(&self) -> impl Iterator<Item = &'static str> {
+    /// Creates its tables, on disk in a folder to which all its files can be written.
+    fn create(&self, sinks: &Sinks<'_>) -> Result<TableFiles, OutputError> {
         let names = self.files().into_iter();
-        names.filter(|name| name.ends_with(".csv"))
+        let tables = names.filter(|name| name.ends_with(".csv"));
+        let mut files = TableFiles::default();
+        if let Some(folder) = &sinks.folder {
+            folder.check(&self.files())?;
+            let created = tables.map(|name| Ok((name, folder.create(name)?)));
+            files.on_disk = created.collect::<Result<_, OutputError>>()?;
+        } else if sinks.in_memory {
+            files.in_memory = tables.map(|name| (name, Vec::new())).collect();
+        }
+        Ok(files)
     }
 
     /// Completes the tables and writes the other files, the seal last.
@@ -539,6 +532,29 @@ impl Drawings {
     }
 }
 
+/// The tables of a run while they are written, by their names.
+#[derive(Default)]
+struct TableFiles {
+    on_disk: BTreeMap<&'static str, NewFile>,
+    in_memory: BTreeMap<&'static str, Vec<u8>>,
+}
+
+impl TableFiles {
+    fn outputs(&mut self) -> impl Iterator<Item = (&'static str, Output<'_>)> {
+        let on_disk = self.on_disk.iter_mut();
+        let on_disk = on_disk.map(|(name, file)| (*name, boxed(&mut file.writer)));
+        let in_memory = self.in_memory.iter_mut();
+        on_disk.chain(in_memory.map(|(name, bytes)| (*name, boxed(bytes))))
+    }
+
+    /// Returns the tables in memory together with the other files.
+    fn with_texts(self, texts: BTreeMap<&'static str, String>) -> Vec<(&'static str, Vec<u8>)> {
+        let texts = texts.into_iter();
+        let texts = texts.map(|(name, text)| (name, text.into_bytes()));
+        self.in_memory.into_iter().chain(texts).collect()
+    }
+}
+
 /// The output of a table.
 type Output<'f> = Box<dyn io::Write + 'f>;
 
@@ -560,7 +576,7 @@ struct Tables<'f> {
 impl<'f> Tables<'f> {
     fn new(
         run: &Run<'_>,
-        outputs: impl Iterator<Item = (&'f str, Output<'f>)>,
+        outputs: impl Iterator<Item = (&'static str, Output<'f>)>,
     ) -> Result<Self, OutputError> {
         let model = &*run.model;
         let mut tables = Self::default();
