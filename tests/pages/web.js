@@ -72,7 +72,7 @@ const PARTS = {
     verify(text.value.includes("amplitude_g = -0.35\n"), text.value);
     verify(firstLine(page.answer.words) === firstLine(data.slider), `${page.answer.words}\n${data.slider}`);
     verify(verdictShown() === firstLine(data.slider), verdictShown());
-    verify(decodeURIComponent(location.hash.slice(1)) === text.value, location.hash);
+    await until(() => decodeURIComponent(location.hash.slice(1)) === text.value, "the address");
     verify([...document.querySelectorAll(".slider")].filter((row) => row.offsetParent).length === 6, "sliders of the arch and its pulse");
     const tasks = [];
     new PerformanceObserver((list) => list.getEntries().forEach(({ duration }) => tasks.push(duration))).observe({ type: "longtask" });
@@ -107,7 +107,7 @@ const PARTS = {
       event(element("model"), "change");
     }, "free hinges");
     await afterwards(() => document.querySelector(".switch input").click(), "slip");
-    verify(text.value.includes("friction_coefficient = 0.6"), text.value);
+    verify(text.value.includes("friction_coefficient = 0.8"), text.value);
     // The picture comes first, repetitions after it.
     await until(() => page.answer?.words.includes("repeated ("), "repetitions");
 
@@ -143,20 +143,24 @@ const PARTS = {
     verify(text.value === link && element("structure").value === "column", text.value);
     location.hash = "%E0%A4%A";
     await until(() => !element("broken").hidden, "a damaged link");
-    await until(() => page.answer && text.value.includes("[arch]"), "the first scenario");
+    verify(text.value === link, `a damaged link leaves the text: ${text.value}`);
 
     // Studies.
-    const start = text.value.replace(/amplitude_g = .*/, "amplitude_g = -0.35").replace(/^#.*\n/, "");
+    const start = data.start;
     await afterwards(() => page.edit(start), "the arch");
     await page.computeStudy("threshold");
     verify(page.study.words === data.threshold, `${page.study.words}\n${data.threshold}`);
     verify(inside("study-page").document.getElementById("points") !== null, "the page of the threshold");
     await page.computeStudy("map");
     const map = inside("study-page");
-    verify(map.document.getElementById("numbers").textContent.startsWith("pulse duration (s) 0.3, pulse amplitude (g) 0.35"), map.document.getElementById("numbers").textContent);
+    verify(map.document.getElementById("numbers").textContent.startsWith("pulse duration (s) 0.3, pulse amplitude (g) -0.35: comes to rest"), map.document.getElementById("numbers").textContent);
     map.archrock.show([3, 4]);
     await afterwards(() => element("take").click(), "a cell");
-    verify(/duration_s = 0\.0\d+/.test(text.value), text.value);
+    verify(/duration_s = 0\.0\d+/.test(text.value) && text.value.includes("amplitude_g = -"), text.value);
+    verify(text.value.split("\n").length === start.split("\n").length, "the text keeps its lines");
+    await afterwards(() => page.edit(start.replace(/\[ground[^]*/, '[ground.record]\nfile = "synthetic.at2"\n')), "the record again");
+    await page.computeStudy("map");
+    verify(page.study.words.includes("cells:"), page.study.words || element("study-status").textContent);
     verify(element("errors").children.length === 0, element("errors").textContent);
     for (const study of ["spread", "capacity", "limit"]) {
       await page.computeStudy(study);

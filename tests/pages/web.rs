@@ -246,6 +246,7 @@ fn the_page_answers_its_readers() {
     let record = file("synthetic.at2");
     let of_record = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 36\n\n[ground.record]\nfile = \"synthetic.at2\"\nscale = 1.0\n";
     let data = json!({
+        "start": text,
         "slider": computed("run", &text, &[], true)["words"],
         "record": record,
         "of_record": computed("run", of_record, &[("synthetic.at2", record.clone())], true)["words"],

@@ -17,8 +17,8 @@ async function compile() {
 
 const workerAddress = URL.createObjectURL(new Blob([find("worker").textContent], { type: "text/javascript" }));
 
-/** Makes a queue of one request at work and the newest one waiting. `status`, `bar` and `stop` show long work. */
-function createQueue(module, status, bar, stop) {
+/** Makes a queue of one request at work and the newest one waiting, with elements that show long work. `read` receives the scenario of a run before its result. */
+function createQueue(module, [status, bar, stop], read) {
   let worker = null;
   let work = null;
   let waiting = null;
@@ -39,12 +39,20 @@ function createQueue(module, status, bar, stop) {
     work.began = performance.now();
     if (!worker) {
       worker = new Worker(workerAddress);
-      worker.onmessage = ({ data }) => (data.answer ? finish(data.answer) : show(data));
+      worker.onmessage = ({ data }) => {
+        if (data.answer) finish(data.answer);
+        else if (data.scenario) read?.(data.scenario);
+        else show(data);
+      };
       worker.onerror = (event) => halt({ errors: [{ message: `the worker failed: ${event.message}` }], files: {} });
       worker.postMessage(module);
     }
     worker.postMessage(work.request);
-    work.timer = setTimeout(() => ((stop.hidden = false), (status.textContent = "Computing…")), 400);
+    work.timer = setTimeout(() => {
+      stop.hidden = false;
+      status.textContent = "Computing…";
+      if (read) markStale(true);
+    }, 400);
   }
 
   function show({ done, all }) {
@@ -86,7 +94,7 @@ function createQueue(module, status, bar, stop) {
 function createFrames(holder, title) {
   let frame = null;
   let observer = null;
-  /** The boxes that the reader has changed, with their states. */
+  /** The fields that the reader has changed, with their values. */
   const choices = {};
 
   /** Replaces the contents of the frame by those of a page with the same styles and libraries. */
@@ -99,15 +107,25 @@ function createFrames(holder, title) {
     inside.archrock.leave();
     for (const part of ["header", "main", "#data"]) inside.document.querySelector(part).replaceWith(next.querySelector(part));
     inside.eval([...next.scripts].at(-1).text);
-    for (const [id, checked] of Object.entries(choices)) {
-      const box = inside.document.getElementById(id);
-      if (box.checked !== checked) box.click();
+    for (const [id, value] of Object.entries(choices)) {
+      const field = inside.document.getElementById(id);
+      if (field.type === "checkbox") {
+        if (field.checked !== value) field.click();
+        continue;
+      }
+      field.value = value;
+      field.dispatchEvent(new Event("input"));
     }
     if (plays) inside.archrock.play(true);
   }
 
   return {
     inside: () => frame?.contentWindow,
+    clear() {
+      observer?.disconnect();
+      frame?.remove();
+      frame = null;
+    },
     show(html) {
       if (frame?.contentWindow.archrock?.leave) return renew(html);
       const next = document.createElement("iframe");
@@ -119,7 +137,11 @@ function createFrames(holder, title) {
           const root = next.contentDocument.documentElement;
           const fit = () => (next.style.height = `${Math.ceil(root.getBoundingClientRect().height) + 2}px`);
           root.style.overflow = "hidden";
-          root.addEventListener("change", ({ target }) => target.type === "checkbox" && (choices[target.id] = target.checked));
+          root.addEventListener("change", ({ target, isTrusted }) => {
+            if (target.type === "checkbox") choices[target.id] = target.checked;
+            else if (isTrusted && target.id !== "time") choices[target.id] = target.value;
+          });
+          takeDrops(next.contentDocument);
           next.classList.remove("waiting");
           observer?.disconnect();
           frame?.remove();
@@ -152,13 +174,15 @@ function createSlider([key, label, from, to, step]) {
   row.append(name, number, range);
   const change = (value) => value !== "" && edit(withValue(find("text").value, key, String(Number(value))));
   range.addEventListener("input", () => change((number.value = range.value)));
-  number.addEventListener("input", () => change((range.value = number.value)));
+  number.addEventListener("input", () => change(number.value));
+  row.hidden = true;
   return {
     row,
     key,
     show(scenario) {
       const value = valueOf(scenario, key);
-      row.hidden = value === undefined || value === null;
+      // A key of an inline table can be changed in the text alone.
+      row.hidden = typeof value !== "number" || !tableLines(find("text").value, key.slice(0, key.lastIndexOf(".")));
       if (row.hidden || row.contains(document.activeElement)) return;
       // A value beyond the range widens it.
       range.min = Math.min(from, value);
@@ -175,21 +199,26 @@ const sliders = Object.entries(SLIDERS).flatMap(([part, all]) => {
   return made;
 });
 
-const friction = Object.assign(document.createElement("label"), { className: "switch", textContent: " joints may slip" });
+find("form").addEventListener("focusout", () => setTimeout(() => sliders.forEach((slider) => slider.show(last.scenario))));
+
+const friction = Object.assign(document.createElement("label"), { className: "switch", textContent: " joints may slip", hidden: true });
 const slips = Object.assign(document.createElement("input"), { type: "checkbox" });
 friction.prepend(slips);
 document.querySelector('[data-part="model"]').append(friction);
-slips.addEventListener("change", () => edit(withValue(find("text").value, `${find("model").value}.friction_coefficient`, slips.checked ? 0.6 : null)));
+slips.addEventListener("change", () => edit(withValue(find("text").value, `${find("model").value}.friction_coefficient`, slips.checked ? 0.8 : null)));
 
 fill(find("structure"), STRUCTURES);
 fill(find("ground"), PULSES);
 fill(find("model"), MODELS);
-const onlyRead = (select, name) => {
-  const known = [...select.options].some((option) => option.value === name);
+
+/** Shows a choice, also one that the page does not offer. Tables that the text has in another form cannot be changed here. */
+function choose(select, name, label, canChange) {
   select.querySelector(".other")?.remove();
-  if (!known) select.append(Object.assign(new Option(name || "none", name), { className: "other" }));
+  const known = [...select.options].some((option) => option.value === name);
+  if (!known) select.append(Object.assign(new Option(label || "none", name), { className: "other" }));
   select.value = name;
-};
+  select.disabled = !canChange;
+}
 
 find("structure").addEventListener("change", () => {
   const [, , table] = STRUCTURES.find(([name]) => name === find("structure").value);
@@ -219,10 +248,14 @@ function showScenario(scenario) {
   last.ground = Object.keys(scenario.ground ?? {}).find((name) => name !== "right") ?? "";
   const has = (name) => scenario[name] !== undefined;
   const kinds = STRUCTURES.map(([name]) => name).concat("basket_arch", "blocks");
-  onlyRead(find("structure"), kinds.find(has) ?? "");
-  onlyRead(find("ground"), last.ground);
+  const names = tableNames(find("text").value);
+  const kind = kinds.find(has) ?? "";
+  choose(find("structure"), kind, kind, names.includes(kind));
+  const record = scenario.ground?.record?.file;
+  choose(find("ground"), last.ground, record ? `Record: ${record}` : last.ground, !scenario.ground || names.includes(`ground.${last.ground}`));
   const model = ["free_hinges", "elastic_joints"].find(has) ?? "";
-  onlyRead(find("model"), model);
+  choose(find("model"), model, model, !model || names.includes(model));
+  find("model").options[0].textContent = kind === "column" ? "One block" : MODELS[0][1];
   friction.hidden = !model;
   slips.checked = Boolean(model && scenario[model].friction_coefficient);
   for (const slider of sliders) slider.show(scenario);
@@ -230,26 +263,43 @@ function showScenario(scenario) {
 
 // Records.
 
-async function addRecord(file) {
-  if (!file) return;
-  if (file.size > MOST_BYTES) {
-    showErrors([{ message: `${file.name} has ${(file.size / 1048576).toFixed(0)} MB; this page takes records of at most 16 MB: use the program, or cut the file` }]);
-    return;
+/** Adds files. A single one becomes the ground motion, unless the scenario names files already. */
+async function addRecords(added) {
+  for (const file of added) {
+    if (file.size > MOST_BYTES) {
+      const size = (file.size / 1048576).toFixed(0);
+      return showErrors([{ message: `${file.name} has ${size} MB; this page takes records of at most 16 MB: use the program, or cut the file` }]);
+    }
+    const contents = await file.text();
+    if (contents.includes("\u0000")) return showErrors([{ message: `${file.name} is not a text, so no record that this page reads` }]);
+    // Scenarios of the repository name a folder.
+    files[file.name] = files[`records/${file.name}`] = contents;
   }
-  files[file.name] = await file.text();
   const text = find("text").value;
-  const old = tableNames(text).filter((name) => name.startsWith("ground"));
-  edit(withTable(text, old, `[ground.record]\nfile = ${JSON.stringify(file.name)}\nscale = 1.0\n`));
+  const names = tableNames(text);
+  const [first, ...others] = added;
+  if (!first || others.length > 0 || names.includes("suite") || text.includes("slv_records")) return computeRun();
+  const columns = /\.(csv|txt)$/i.test(first.name) ? 'unit = "g" # of the accelerations; see also the messages below\n' : "";
+  return edit(withTable(text, names.filter((name) => name.startsWith("ground")), `[ground.record]\nfile = ${JSON.stringify(first.name)}\n${columns}scale = 1.0\n`));
 }
 
-find("record").addEventListener("change", () => addRecord(find("record").files[0]));
-document.addEventListener("dragover", (event) => (event.preventDefault(), document.body.classList.add("over")));
-document.addEventListener("dragleave", () => document.body.classList.remove("over"));
-document.addEventListener("drop", (event) => {
-  event.preventDefault();
-  document.body.classList.remove("over");
-  addRecord(event.dataTransfer.files[0]);
-});
+find("record").addEventListener("change", () => addRecords(find("record").files));
+
+/** Takes files that are dropped on a document. */
+function takeDrops(on) {
+  const withFiles = (act) => (event) => {
+    if (!event.dataTransfer?.types.includes("Files")) return;
+    event.preventDefault();
+    act(event);
+  };
+  on.addEventListener("dragover", withFiles(() => document.body.classList.add("over")));
+  on.addEventListener("dragleave", () => document.body.classList.remove("over"));
+  on.addEventListener("drop", withFiles((event) => {
+    document.body.classList.remove("over");
+    addRecords(event.dataTransfer.files);
+  }));
+}
+takeDrops(document);
 
 // The history.
 
@@ -270,7 +320,16 @@ function showErrors(errors) {
     return item;
   });
   find("errors").replaceChildren(...items);
-  if (errors.length > 0) find("status").textContent = `The scenario has ${errors.length === 1 ? "an error" : `${errors.length} errors`}: see below the text. The picture is that of the last valid one.`;
+  markStale(errors.length > 0);
+  if (errors.length === 0) return;
+  const missing = errors.some(({ message }) => message.includes("no such file was given"));
+  const remedy = missing ? " (the address holds no records: choose the file again)" : "";
+  find("status").textContent = `${errors[0].message}${remedy}${errors.length > 1 ? `; ${errors.length - 1} more below the text` : ""}`;
+}
+
+/** Marks the picture as that of an earlier scenario. */
+function markStale(isStale) {
+  find("run").classList.toggle("stale", isStale);
 }
 
 const runFrames = createFrames(find("run"), "The structure in motion");
@@ -298,26 +357,35 @@ async function computeRun() {
     const [verdict] = answer.words.split("\n");
     find("answer").textContent = verdict;
     await runFrames.show(answer.files["report.html"]);
+    find("study-status").textContent = studied && studied !== find("text").value ? "The study below is of an earlier scenario." : "";
     page.answer = answer;
     const hasRow = last.scenario.free_hinges || last.scenario.elastic_joints;
     if (!hasRow || change !== changes) return;
   }
 }
 
+let kept;
+/** Keeps the text in the address, a moment later: browsers refuse many changes in a row. */
 function keepAddress() {
-  const text = find("text").value;
-  history.replaceState(null, "", text === START ? location.pathname : `#${encodeURIComponent(text)}`);
+  clearTimeout(kept);
+  kept = setTimeout(() => {
+    const text = find("text").value;
+    history.replaceState(null, "", text === START ? location.pathname : `#${encodeURIComponent(text)}`);
+  }, 200);
 }
+// Back returns to the scenario before a change.
+find("form").addEventListener("change", () => history.pushState(null, "", location.href));
 
-/** Returns the scenario in the address; the first scenario if there is none. A damaged address says so. */
+/** Returns the scenario in the address, the first scenario if there is none, or the present one if the address is damaged. */
 function textOfAddress() {
+  find("broken").hidden = true;
   if (location.hash.length < 2) return START;
   try {
     return decodeURIComponent(location.hash.slice(1));
   } catch {
-    find("broken").textContent = "The scenario in the address is damaged: this is the scenario that the page begins with.";
+    find("broken").textContent = "The scenario in the address is damaged: the text below is not that of the link.";
     find("broken").hidden = false;
-    return START;
+    return find("text").value || START;
   }
 }
 
@@ -326,7 +394,7 @@ find("text").addEventListener("input", () => {
   clearTimeout(typed);
   typed = setTimeout(computeRun, 250);
 });
-addEventListener("hashchange", () => edit(textOfAddress()));
+addEventListener("popstate", () => edit(textOfAddress()));
 
 // Files.
 
@@ -341,9 +409,9 @@ for (const button of document.querySelectorAll("[data-save]")) {
   button.addEventListener("click", async () => {
     const name = button.dataset.save;
     if (name.endsWith(".toml")) return save(name, find("text").value);
-    const answer = await askStudy(request({ study: "run", names: [name] }));
+    const answer = await askFile(request({ study: "run", names: [name] }));
     if (answer?.files[name]) save(name, answer.files[name]);
-    else if (answer) showErrors(answer.errors);
+    else if (answer) find("save-status").textContent = `Nothing is saved: ${answer.errors[0].message}`;
   });
 }
 
@@ -367,40 +435,58 @@ purpose();
 
 const studyFrames = createFrames(find("study-page"), "The study");
 let askStudy;
+let askFile;
+/** The text of the study that is shown. */
+let studied = null;
 const DIRECTIONS = [0, 180, 90].map((angle_deg) => ({ springing: "right", angle_deg }));
 /** Numbers of durations and of amplitudes of the maps, from coarse to fine; odd, so that the pulse of the history is the middle. */
 const GRIDS = [[13, 11], [49, 41]];
 
-/** Returns the texts of a map that gets finer, around the pulse of the scenario; a text with its own `[map]` is one map. */
+/** The key that says how thick a structure is. */
+const THICKNESSES = { arch: "thickness_ratio", pointed_arch: "thickness_m", elliptic_arch: "thickness_m", column: "width_m" };
+
+/** Returns values around one, in the middle, up to a factor; ascending, and of its sign. */
+function around(value, factor, count) {
+  const part = (index) => factor ** ((2 * index) / (count - 1) - 1);
+  const values = Array.from({ length: count }, (_, index) => Number((value * part(index)).toPrecision(6)));
+  return `[${values.sort((a, b) => a - b).join(", ")}]`;
+}
+
+/** Returns the texts of a map that gets finer, around the pulse or the record of the scenario; a text with its own `[map]` is one map. */
 function mapTexts() {
   const text = find("text").value;
   if (last.scenario.map) return [text];
   const motion = last.scenario.ground?.[last.ground];
-  const around = (value, by) => `{ from = ${Number((value / by).toPrecision(3))}, to = ${Number((value * by).toPrecision(3))}`;
+  const structure = find("structure").value;
+  const thickness = THICKNESSES[structure];
   return GRIDS.map(([columns, rows]) => {
-    const more = `count = ${rows}, spacing = "logarithmic" }`;
-    const axes = motion?.duration_s
-      ? `duration_s = ${around(motion.duration_s, 4)}, count = ${columns}, spacing = "logarithmic" }\namplitude_g = ${around(Math.abs(motion.amplitude_g), 4)}, ${more}`
-      : `scale = ${around(motion?.scale ?? 1, 4)}, ${more}`;
+    let axes = "";
+    if (motion?.duration_s) axes = `duration_s = ${around(motion.duration_s, 4, columns)}\namplitude_g = ${around(motion.amplitude_g, 4, rows)}`;
+    else if (motion && typeof last.scenario[structure]?.[thickness] === "number") {
+      axes = `"${structure}.${thickness}" = ${around(last.scenario[structure][thickness], 1.25, columns)}\nscale = ${around(motion.scale ?? 1, 4, rows)}`;
+    }
     return `${text.trimEnd()}\n\n[map]\n${axes}\n`;
   });
 }
 
 async function computeStudy(study) {
-  const texts = study === "map" ? mapTexts() : [find("text").value];
+  const text = find("text").value;
+  const texts = study === "map" ? mapTexts() : [text];
   for (const scenario of texts) {
     const name = study === "map" ? "map.html" : null;
     const names = [name ?? `${study}.html`, "samples.html"];
     const answer = await askStudy({ scenario, files, study, names, options: study === "spread" ? { directions: DIRECTIONS } : {} });
     if (!answer) return;
     if (answer.errors.length > 0) {
-      find("study-status").textContent = answer.errors.map(({ message }) => message).join("; ");
-      return;
+      find("study-status").textContent = answer.errors.map(({ message }) => message).join("\n");
+      find("take").hidden = true;
+      return studyFrames.clear();
     }
     const html = Object.values(answer.files)[0];
     page.study = answer;
+    studied = text;
     await studyFrames.show(html);
-    find("take").hidden = studyFrames.inside().document.getElementById("command") === null;
+    find("take").hidden = !studyFrames.inside().document.getElementById("command")?.textContent.startsWith("archrock run");
   }
 }
 
@@ -409,8 +495,10 @@ find("take").addEventListener("click", () => {
   const command = studyFrames.inside()?.document.getElementById("command").textContent ?? "";
   const scenario = command.match(/<<'END'\n([\s\S]*?)END\n?$/)?.[1];
   if (!scenario) return;
-  const values = command.split("\n")[0].matchAll(/--set ([\w.]+)=(\S+)/g);
-  edit([...values].reduce((text, [, key, value]) => withValue(text, key, value), scenario));
+  const values = [...command.split("\n")[0].matchAll(/--set ([\w."]+)=(\S+)/g)];
+  // The cell of a map differs in some values, so the text keeps its comments.
+  const text = values.length > 0 && studied === find("text").value ? studied : scenario;
+  edit(values.reduce((now, [, key, value]) => withValue(now, key.replaceAll('"', ""), value), text));
   find("result").scrollIntoView({ behavior: "smooth" });
 });
 
@@ -422,8 +510,10 @@ window.page = page;
 
 try {
   const module = await compile();
-  askRun = createQueue(module, find("status"), find("progress"), find("stop"));
-  askStudy = createQueue(module, find("study-status"), find("study-progress"), find("study-stop"));
+  const work = (part) => ["status", "progress", "stop"].map((name) => find(`${part}${name}`));
+  askRun = createQueue(module, work(""), showScenario);
+  askStudy = createQueue(module, work("study-"));
+  askFile = createQueue(module, work("save-"));
   await edit(textOfAddress());
 } catch (error) {
   find("status").textContent = "";

@@ -39,7 +39,10 @@ const MODELS = [
 const SLIDERS = {
   structure: [
     ["arch.mean_radius_m", "Mean radius (m)", 0.5, 20, 0.1],
-    ["arch.thickness_ratio", "Thickness / mean radius", 0.08, 0.4, 0.001],
+    ["arch.span_m", "Span (m)", 1, 30, 0.1],
+    ["arch.rise_m", "Rise (m)", 0.5, 25, 0.1],
+    ["arch.thickness_ratio", "Thickness / mean radius", 0.11, 0.4, 0.001],
+    ["arch.thickness_m", "Thickness (m)", 0.1, 4, 0.01],
     ["arch.embrace_deg", "Embrace angle (°)", 60, 180, 1],
     ["arch.voussoirs", "Voussoirs", 5, 80, 1],
     ...["pointed_arch", "elliptic_arch"].flatMap((table) => [
@@ -66,7 +69,7 @@ const SLIDERS = {
 };
 
 const lines = (text) => text.replace(/\n*$/, "\n").split("\n");
-const header = (line) => line.match(/^\s*\[+\s*([^\]]*?)\s*\]+/)?.[1];
+const header = (line) => line.match(/^\s*\[\[?\s*([\w.-]+)\s*\]\]?\s*(#.*)?$/)?.[1];
 
 /** Returns the interval of lines of a table with its header; null if there is none. */
 function tableLines(text, table) {
@@ -96,7 +99,7 @@ function withValue(text, key, value) {
 
 /** Returns the text in which the first of some tables is replaced by another one, and the others are removed. */
 function withTable(text, tables, replacement) {
-  const HERE = "# here";
+  const HERE = "\u0000";
   let now = text;
   for (const table of tables) {
     for (let found = tableLines(now, table); found; found = tableLines(now, table)) {
@@ -106,7 +109,7 @@ function withTable(text, tables, replacement) {
     }
   }
   if (!now.includes(HERE)) now = `${now.trimEnd()}\n\n${HERE}\n`;
-  return now.replace(HERE, replacement.trimEnd()).replace(/\n{3,}/g, "\n\n").trimEnd() + "\n";
+  return now.replace(HERE, () => replacement.trimEnd()).replace(/\n{3,}/g, "\n\n").trimEnd() + "\n";
 }
 
 /** Returns the names of the tables in a text. */

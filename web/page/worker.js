@@ -23,8 +23,17 @@ onmessage = ({ data }) => {
     start();
     return;
   }
-  const request = new TextEncoder().encode(JSON.stringify(data));
   told = performance.now();
+  // The scenario at once, for the controls; its history takes longer.
+  const { scenario } = data.study === "run" ? answerTo({ ...data, study: null }) : {};
+  if (scenario) postMessage({ scenario });
+  const answer = answerTo(data);
+  if (answer.errors.some(({ message }) => message.startsWith("internal error"))) start();
+  postMessage({ answer });
+};
+
+function answerTo(data) {
+  const request = new TextEncoder().encode(JSON.stringify(data));
   let length;
   try {
     const place = exports.room(request.length);
@@ -33,9 +42,7 @@ onmessage = ({ data }) => {
   } catch (error) {
     // A panic has left its message; without one the memory was not enough.
     length = exports.length();
-    if (length === 0) return postMessage({ answer: { errors: [{ message: `the computation failed: ${error.message}` }], files: {} } });
+    if (length === 0) return { errors: [{ message: `internal error: the computation failed: ${error.message}` }], files: {} };
   }
-  const answer = JSON.parse(new TextDecoder().decode(bytes(exports.answer(), length)));
-  if (answer.errors.some(({ message }) => message.startsWith("internal error"))) start();
-  postMessage({ answer });
-};
+  return JSON.parse(new TextDecoder().decode(bytes(exports.answer(), length)));
+}
