@@ -405,9 +405,11 @@ class Capacity(Results):
             The axes.
         """
         ax = _axes(ax)
-        for sway, line in (("right", "-"), ("left", "--")):
-            own = self.side(sway)
-            ax.plot(own["displacement_m"], own["acceleration_g"], line, label=f"to the {sway}")
+        for own, line, label in (
+            (self.side("right"), "-", "to the right"),
+            (self.side("left"), "--", "to the left"),
+        ):
+            ax.plot(own["displacement_m"], own["acceleration_g"], line, label=label)
         ax.set_xlabel("displacement of the control point (m)")
         ax.set_ylabel("acceleration (g)")
         ax.legend()
