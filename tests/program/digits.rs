@@ -1,4 +1,4 @@
-//! The same digits on every machine.
+//! Results do not depend on the machine, to the last digit.
 
 use crate::common::program::{printed, scenarios};
 

@@ -51,7 +51,8 @@ function createQueue(module, [status, bar, stop], read) {
     work.timer = setTimeout(() => {
       stop.hidden = false;
       status.textContent = "Computing…";
-      if (read) markStale(true);
+      // While a history is repeated, its picture is the present one.
+      if (work.request.no_repeat) markStale(true);
     }, 400);
   }
 
@@ -473,8 +474,7 @@ async function computeStudy(study) {
   const text = find("text").value;
   const texts = study === "map" ? mapTexts() : [text];
   for (const scenario of texts) {
-    const name = study === "map" ? "map.html" : null;
-    const names = [name ?? `${study}.html`, "samples.html"];
+    const names = [`${study}.html`, "samples.html"];
     const answer = await askStudy({ scenario, files, study, names, options: study === "spread" ? { directions: DIRECTIONS } : {} });
     if (!answer) return;
     if (answer.errors.length > 0) {

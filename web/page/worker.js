@@ -27,22 +27,21 @@ onmessage = ({ data }) => {
   // The scenario at once, for the controls; its history takes longer.
   const { scenario } = data.study === "run" ? answerTo({ ...data, study: null }) : {};
   if (scenario) postMessage({ scenario });
-  const answer = answerTo(data);
-  if (answer.errors.some(({ message }) => message.startsWith("internal error"))) start();
-  postMessage({ answer });
+  postMessage({ answer: answerTo(data) });
 };
 
 function answerTo(data) {
   const request = new TextEncoder().encode(JSON.stringify(data));
-  let length;
+  const answer = () => JSON.parse(new TextDecoder().decode(bytes(exports.answer(), exports.length())));
   try {
     const place = exports.room(request.length);
     bytes(place, request.length).set(request);
-    length = exports.compute();
+    exports.compute();
+    return answer();
   } catch (error) {
-    // A panic has left its message; without one the memory was not enough.
-    length = exports.length();
-    if (length === 0) return { errors: [{ message: `internal error: the computation failed: ${error.message}` }], files: {} };
+    // A panic has left its message; without one the memory was not enough. Both end the module.
+    const left = exports.length() > 0 ? answer() : { errors: [{ message: `the computation failed: ${error.message}` }], files: {} };
+    start();
+    return left;
   }
-  return JSON.parse(new TextDecoder().decode(bytes(exports.answer(), length)));
 }
