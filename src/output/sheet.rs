@@ -269,16 +269,15 @@ impl Sign {
                     Vector2::new(left + side * x, frame.top + side * y)
                 };
                 let gap = (f64::NAN, f64::NAN);
-                let (first, last) = ([(0.0, 0.5), (0.5, 1.0)], [(0.5, 0.0), (1.0, 0.5)]);
                 let lines = [
-                    first[0],
-                    first[1],
+                    (0.0, 0.5),
+                    (0.5, 1.0),
                     gap,
                     (0.0, 0.0),
                     (1.0, 1.0),
                     gap,
-                    last[0],
-                    last[1],
+                    (0.5, 0.0),
+                    (1.0, 0.5),
                 ];
                 drawing.curve(&format!("key {name}"), lines.map(at), stroke);
                 drawing.outline(&square, Stroke::new(color::GREY, 0.6, ""));
