@@ -7,6 +7,7 @@
 //! Reading also describes: with an empty text, [`describe`] collects all tables, keys, rules and defaults of `read`.
 
 use std::fmt::Display;
+use std::sync::LazyLock;
 
 use serde_json::{Value, json};
 
@@ -510,30 +511,39 @@ impl<'a> Table<'a> {
     fn descend<T>(
         &mut self,
         key: &str,
-        table: Option<(String, &Entries)>,
+        table: Option<(String, &'a Entries)>,
         read: impl Reader<T>,
     ) -> ReadResult<T> {
-        let empty = Entries::new();
+        let mut table = self.inner(key, table);
+        let value = read(&mut table);
+        self.close(key, table).and(value)
+    }
+
+    /// Opens the table with this path and these entries, or an empty one.
+    fn inner(&self, key: &str, table: Option<(String, &'a Entries)>) -> Self {
         let name = match self.name.strip_suffix(']') {
             Some(parent) => format!("{parent}.{key}]"),
             None => format!("[{key}]"),
         };
-        let (path, entries) = table.unwrap_or((String::new(), &empty));
-        let mut table = Table {
+        let (path, entries) = table.unwrap_or((String::new(), &NO_ENTRIES));
+        Self {
             place: self.place_of(&path).unwrap_or(self.place),
             path,
             outer: Some((self.path.clone(), self.entries)),
             description: self.description.as_ref().map(|_| an_object()),
-            ..Table::new(name, entries, self.document)
-        };
-        let value = read(&mut table);
+            ..Self::new(name, entries, self.document)
+        }
+    }
+
+    /// Takes over what a table in this one has recorded. Succeeds if that table is faultless.
+    fn close(&mut self, key: &str, mut table: Self) -> ReadResult<()> {
         table.reject_unknown_keys();
-        let value = table.check_faultless().and(value);
+        let faultless = table.check_faultless();
         self.faults.append(&mut table.faults);
         self.noted_files.append(&mut table.noted_files);
         self.is_partial |= table.is_partial;
         self.describe_key(key, || table.description.unwrap_or_default());
-        value
+        faultless
     }
 
     fn reject_unknown_keys(&mut self) {
@@ -561,6 +571,9 @@ impl<'a> Table<'a> {
         }
     }
 }
+
+/// Entries of a table that is not given.
+static NO_ENTRIES: LazyLock<Entries> = LazyLock::new(Entries::new);
 
 /// Keys of earlier versions: table, key, and message with the replacement.
 const REPLACED: [(&str, &str, &str); 2] = [

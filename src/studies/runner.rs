@@ -275,7 +275,7 @@ impl Runner {
             Ok(is_cancelled)
         };
         // Even with one thread for the cases, this thread reports the progress and can cancel while they are computed.
-        if thread::available_parallelism().is_ok() {
+        if HAS_THREADS {
             let pool = self.pool()?;
             let groups = in_groups(todo, family, pool.current_num_threads());
             on_threads(&pool, &groups, rows_of, &mut add)?;
@@ -287,6 +287,20 @@ impl Runner {
             true => Err(RunnerError::Cancelled(Progress { done, all })),
             false => Ok(()),
         }
+    }
+}
+
+/// Whether results may be computed on several threads: a browser has one. As a constant it leaves the code of threads out of its module.
+const HAS_THREADS: bool = !cfg!(target_family = "wasm");
+
+/// Computes a result for each item, in the order of the items.
+pub(super) fn in_parallel<T: Sync, R: Send>(
+    items: &[T],
+    compute: impl Fn(&T) -> R + Sync + Send,
+) -> Vec<R> {
+    match HAS_THREADS {
+        true => items.par_iter().with_max_len(1).map(compute).collect(),
+        false => items.iter().map(compute).collect(),
     }
 }
 

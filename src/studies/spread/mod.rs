@@ -5,14 +5,12 @@ mod report;
 
 use askama::Template;
 use nalgebra::Vector2;
-use rayon::iter::{
-    IndexedParallelIterator as _, IntoParallelRefIterator as _, ParallelIterator as _,
-};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 pub use self::report::{FILES, report};
 use super::results::StudyError;
+use super::runner::in_parallel;
 use crate::mechanics::settling::{HingeState, Movement, Pin, Snap};
 use crate::mechanics::{Follower, Movements, Parts as _, SettlingError, Sides};
 use crate::output::filters;
@@ -190,8 +188,8 @@ pub fn spread(scenario: &Scenario, directions: &[Direction]) -> Result<Summary, 
     let clear_span_m = across.norm();
     let settled = scenario.motion.supports().unwrap_or_default();
     let sizes = [clear_span_m, weight_n];
-    let paths = directions.par_iter().with_max_len(1);
-    let paths = paths.map(|direction| path(&row, settled, *direction, sizes));
+    let compute = |direction: &Direction| path(&row, settled, *direction, sizes);
+    let paths = in_parallel(directions, compute).into_iter();
     let paths = paths.collect::<Result<_, _>>();
     Ok(Summary {
         paths: paths.map_err(StudyError::scenario)?,
@@ -245,8 +243,9 @@ fn path(
         here_m = next_m;
     }
     // The pushes of one stage do not depend on those of another.
-    let stages = places.par_iter().with_max_len(1);
-    let stages = stages.map(|(follower, movement_m)| stage(follower, *movement_m, weight_n));
+    let compute =
+        |(follower, movement_m): &(Follower<'_>, f64)| stage(follower, *movement_m, weight_n);
+    let stages = in_parallel(&places, compute);
     let snaps = scout.snaps[before..].to_vec();
     let fall = falls_at_m.and(snaps.last());
     Ok(SpreadPath {
@@ -256,7 +255,7 @@ fn path(
         falls_by: fall.map_or_else(Vec::new, |fall| fall.causes.clone()),
         lost: lost.map(|error| error.to_string()),
         snaps,
-        stages: stages.collect(),
+        stages,
     })
 }
 

@@ -6,7 +6,6 @@
 
 use std::collections::BTreeMap;
 
-use rayon::iter::{IntoParallelIterator as _, ParallelIterator as _};
 use serde::{Deserialize, Serialize};
 
 use super::mechanism::Mechanism;
@@ -16,6 +15,7 @@ use crate::dynamics::demand::peak_displacement;
 use crate::mechanics::Sides;
 use crate::scenario::{LimitState, Series, StateRule};
 use crate::studies::remarks::ModelCheck;
+use crate::studies::runner::in_parallel;
 use crate::studies::statistics::{bootstrap, interval};
 use crate::{
     EventKind, FourLinkError, GroundMotion, MechanismModel, Outcome, Request, SimulationError,
@@ -181,10 +181,9 @@ pub(super) fn histories(
     if let Some(why) = mechanisms.values().find_map(|one| one.no_curve.clone()) {
         return Err(failed(why));
     }
-    let found: Result<Vec<RecordPeaks>, SimulationError> = records
-        .into_par_iter()
-        .map(|series| record_peaks(input, &*model, series, mechanisms))
-        .collect();
+    let compute = |series: &Series| record_peaks(input, &*model, series, mechanisms);
+    let found = in_parallel(records, compute).into_iter();
+    let found: Result<Vec<RecordPeaks>, SimulationError> = found.collect();
     let series = records;
     let records = found.map_err(|error| failed(error.to_string()))?;
     let results = mechanisms.iter().map(|(sway, mechanism)| {
@@ -236,8 +235,8 @@ fn record_peaks(
     mechanisms: &BTreeMap<Sway, Mechanism>,
 ) -> Result<RecordPeaks, SimulationError> {
     let scenario = input.scenario;
-    let both = [1.0, -1.0].into_par_iter().map(|sign| {
-        let ground = scenario.record_motion(series, sign);
+    let both = in_parallel(&[1.0, -1.0], |sign| {
+        let ground = scenario.record_motion(series, *sign);
         let request = scenario.request_on(&ground, &scenario.structure);
         let request = Request {
             end_s: request.end_s.max(ground.end_s() + AFTER_S),
@@ -246,6 +245,7 @@ fn record_peaks(
         };
         peaks(model, &ground, &request, mechanisms)
     });
+    let both = both.into_iter();
     let both = both.collect::<Result<Vec<(Sides<Peak>, Option<f64>)>, _>>()?;
     let larger = |sway: Sway| {
         let (one, other) = (both[0].0.to(sway), both[1].0.to(sway));
@@ -366,21 +366,19 @@ fn spectrum_ratios(
     [from_s, to_s]: [f64; 2],
     gravity_m_s2: f64,
 ) -> Option<[f64; 2]> {
-    let ratios: Option<Vec<f64>> = (0..=PERIODS)
-        .into_par_iter()
-        .map(|step| {
-            let part = f64::from(step) / f64::from(PERIODS);
-            let period_s = from_s * libm::pow(to_s / from_s, part);
-            let own_m = records
-                .iter()
-                .map(|samples| peak_displacement(samples, period_s, 5.0));
-            let mean_m = own_m.sum::<f64>() / records.len() as f64;
-            let circular = 2.0 * std::f64::consts::PI / period_s;
-            let demand_g = spectrum.acceleration_g(period_s, 5.0).ok()?;
-            Some(mean_m * circular * circular / gravity_m_s2 / demand_g)
-        })
-        .collect();
-    let ratios = ratios?;
+    let steps: Vec<u32> = (0..=PERIODS).collect();
+    let ratios = in_parallel(&steps, |step| {
+        let part = f64::from(*step) / f64::from(PERIODS);
+        let period_s = from_s * libm::pow(to_s / from_s, part);
+        let own_m = records
+            .iter()
+            .map(|samples| peak_displacement(samples, period_s, 5.0));
+        let mean_m = own_m.sum::<f64>() / records.len() as f64;
+        let circular = 2.0 * std::f64::consts::PI / period_s;
+        let demand_g = spectrum.acceleration_g(period_s, 5.0).ok()?;
+        Some(mean_m * circular * circular / gravity_m_s2 / demand_g)
+    });
+    let ratios = ratios.into_iter().collect::<Option<Vec<f64>>>()?;
     let least = ratios.iter().copied().fold(f64::INFINITY, f64::min);
     Some([least, ratios.into_iter().fold(0.0, f64::max)])
 }
