@@ -291,8 +291,12 @@ fn computed<S: ReportedStudy>(
 ) -> Result<Computation, StudyError> {
     let study = study.map_err(StudyError::Scenario)?;
     let (rows, part) = match rows {
-        RowSource::Merge(parts) => (part::merge(parts)?.1, None),
         RowSource::Compute(runner, None, watch) => (runner.rows(&study, watch)?, None),
+        // This arm leaves the code of parts out of the module for a browser.
+        _ if cfg!(target_family = "wasm") => {
+            return Err(StudyError::scenario("a browser keeps no parts of a study"));
+        }
+        RowSource::Merge(parts) => (part::merge(parts)?.1, None),
         RowSource::Compute(runner, Some(task), watch) => {
             match runner.rows_in(&study, task, watch)? {
                 (Some(rows), part) => (rows, Some(part)),
