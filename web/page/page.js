@@ -370,7 +370,10 @@ async function computeRun() {
     find("study-status").textContent = studied && studied !== find("text").value ? "The study below is of an earlier scenario." : "";
     page.answer = answer;
     const hasRow = last.scenario.free_hinges || last.scenario.elastic_joints;
-    if (!hasRow || change !== changes) return;
+    if (!hasRow || !no_repeat) return;
+    // Browsers let a stopped worker compute for some seconds: repetitions begin once the reader pauses.
+    await new Promise((resolve) => setTimeout(resolve, 1000));
+    if (change !== changes) return;
   }
 }
 
