@@ -73,6 +73,12 @@ function createPlayer(motion, addCurves) {
     seek(time);
   }
 
+  /** Makes the plots as wide as the page, which may have got a scroll bar. */
+  function fit() {
+    const width = find("plots").clientWidth;
+    for (const plot of plots) if (plot.width !== width) plot.setSize({ width, height: plot.height });
+  }
+
   async function addPlots() {
     for (const _ of addCurves(curves, stage, motion)) {
       // A page around this one answers its reader in between.
@@ -80,6 +86,7 @@ function createPlayer(motion, addCurves) {
       if (signal.aborted) return curves.remove();
     }
     curves.place();
+    fit();
     curves.showAll();
   }
 
@@ -124,8 +131,7 @@ function createPlayer(motion, addCurves) {
     }
   }, { signal });
   window.addEventListener("resize", () => {
-    const width = find("plots").clientWidth;
-    for (const plot of plots) if (plot.width !== width) plot.setSize({ width, height: plot.height });
+    fit();
     seek(time);
   }, { signal });
   // In print the page is one sheet: structure and plots share the space beside the words.
