@@ -66,7 +66,7 @@ pub fn checked(page: &Path, check: &str, data: &str, settings: &[&str]) -> Optio
         const error = console.error; console.error = (...words) => { verify(false, `console: ${words}`); };\
         </script>";
     let after = format!(
-        "<script>const check = async () => {{ const data = {data};\n{check}\n}};\
+        "<script>const check = async () => {{ await window.archrock?.ready; const data = {data};\n{check}\n}};\
          check().catch((error) => verify(false, `${{error}} ${{error.stack}}`)).then(() => {{\
          const verdict = document.createElement('pre'); verdict.id = 'verdict';\
          verdict.textContent = `${{passed}} passed\\n` + failures.join('\\n'); document.body.append(verdict);\

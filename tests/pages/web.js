@@ -83,7 +83,7 @@ const PARTS = {
     box.click();
     await afterwards(() => page.edit(text.value.replace("-0.36", "-0.35")), "the view");
     verify(inside("run").document.getElementById("sizes").checked === false, "dimensions stay hidden");
-    verify(Math.max(0, ...tasks) < 400, `tasks of ${tasks} ms`);
+    verify(Math.max(0, ...tasks) < 150, `tasks of ${tasks} ms`);
 
     // Other structures, pulses and models.
     for (const [id, value, table] of [

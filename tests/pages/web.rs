@@ -13,7 +13,7 @@ use std::time::Duration;
 use archrock::Runner;
 use archrock::output::Figure;
 use archrock::scenario::{Scenario, Source};
-use archrock::studies::run::Sinks;
+use archrock::studies::run::{FILES, Sinks};
 use archrock::studies::{Computation, Options, RowSource, StudyKind, Style};
 use serde_json::{Value, json};
 
@@ -69,8 +69,9 @@ fn computed(study: &str, text: &str, files: &[(&str, String)], no_repeat: bool) 
     let scenario = Scenario::of(&source, &Default::default()).unwrap();
     let mut options = Options::default();
     options.run.no_repeat = no_repeat;
+    let names = FILES.map(str::to_owned);
     let sinks = Sinks {
-        in_memory: true,
+        in_memory: &names,
         ..Sinks::default()
     };
     let watch = &mut |_| ControlFlow::Continue(());

@@ -8,11 +8,21 @@ const files = {};
 
 /** Compiles the module, which is inside this page or beside it. */
 async function compile() {
-  const inside = document.querySelector("#module");
-  if (!inside) return WebAssembly.compile(await (await fetch("archrock.wasm")).arrayBuffer());
-  const packed = Uint8Array.from(atob(inside.textContent.trim()), (c) => c.charCodeAt(0));
-  const plain = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
-  return WebAssembly.compile(await new Response(plain).arrayBuffer());
+  const inside = find("module");
+  return WebAssembly.compile(inside ? await unpack(inside.textContent) : await (await fetch("archrock.wasm")).arrayBuffer());
+}
+
+/** Unpacks the module in a worker, so that the page answers in between. */
+function unpack(packed) {
+  return new Promise((resolve, reject) => {
+    const worker = new Worker(workerAddress);
+    worker.onmessage = ({ data }) => {
+      worker.terminate();
+      if (data.error) reject(new Error(data.error));
+      else resolve(data);
+    };
+    worker.postMessage(packed);
+  });
 }
 
 const workerAddress = URL.createObjectURL(new Blob([find("worker").textContent], { type: "text/javascript" }));
@@ -98,16 +108,14 @@ function createFrames(holder, title) {
   /** The fields that the reader has changed, with their values. */
   const choices = {};
 
-  /** Replaces the contents of the frame by those of a page with the same styles and libraries. */
+  /** Replaces the words, the picture and the plots in the frame by those of a page of another history. */
   async function renew(html) {
     const inside = frame.contentWindow;
     const next = new DOMParser().parseFromString(html, "text/html");
     // The page answers its reader in between.
     await new Promise((resolve) => setTimeout(resolve));
-    const plays = inside.archrock.shown().playing;
-    inside.archrock.leave();
-    for (const part of ["header", "main", "#data"]) inside.document.querySelector(part).replaceWith(next.querySelector(part));
-    inside.eval([...next.scripts].at(-1).text);
+    for (const part of ["header", "section:last-of-type"]) inside.document.querySelector(part).replaceWith(next.querySelector(part));
+    const complete = inside.archrock.renew(JSON.parse(next.getElementById("data").textContent));
     for (const [id, value] of Object.entries(choices)) {
       const field = inside.document.getElementById(id);
       if (field.type === "checkbox") {
@@ -117,7 +125,7 @@ function createFrames(holder, title) {
       field.value = value;
       field.dispatchEvent(new Event("input"));
     }
-    if (plays) inside.archrock.play(true);
+    await complete;
   }
 
   return {
@@ -128,13 +136,13 @@ function createFrames(holder, title) {
       frame = null;
     },
     show(html) {
-      if (frame?.contentWindow.archrock?.leave) return renew(html);
+      if (frame?.contentWindow.archrock?.renew) return renew(html);
       const next = document.createElement("iframe");
       Object.assign(next, { className: "waiting", title, scrolling: "no", srcdoc: html });
       holder.querySelectorAll(".waiting").forEach((other) => other.remove());
       holder.append(next);
       return new Promise((resolve) => {
-        next.onload = () => {
+        next.onload = async () => {
           const root = next.contentDocument.documentElement;
           const fit = () => (next.style.height = `${Math.ceil(root.getBoundingClientRect().height) + 2}px`);
           root.style.overflow = "hidden";
@@ -149,6 +157,7 @@ function createFrames(holder, title) {
           frame = next;
           observer = new ResizeObserver(fit);
           observer.observe(root);
+          await next.contentWindow.archrock?.ready;
           resolve();
         };
       });
@@ -361,7 +370,10 @@ async function computeRun() {
     find("study-status").textContent = studied && studied !== find("text").value ? "The study below is of an earlier scenario." : "";
     page.answer = answer;
     const hasRow = last.scenario.free_hinges || last.scenario.elastic_joints;
-    if (!hasRow || change !== changes) return;
+    if (!hasRow || !no_repeat) return;
+    // Browsers let a stopped worker compute for some seconds: repetitions begin once the reader pauses.
+    await new Promise((resolve) => setTimeout(resolve, 1000));
+    if (change !== changes) return;
   }
 }
 

@@ -17,7 +17,17 @@ function report(done, all) {
 
 const bytes = (place, length) => new Uint8Array(exports.memory.buffer, place, length);
 
+async function unpack(packed) {
+  const { body } = await fetch(`data:;base64,${packed}`);
+  const bytes = await new Response(body.pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
+  postMessage(bytes, [bytes]);
+}
+
 onmessage = ({ data }) => {
+  if (typeof data === "string") {
+    unpack(data).catch((error) => postMessage({ error: error.message }));
+    return;
+  }
   if (data instanceof WebAssembly.Module) {
     module = data;
     start();
@@ -25,7 +35,7 @@ onmessage = ({ data }) => {
   }
   told = performance.now();
   // The scenario at once, for the controls; its history takes longer.
-  const { scenario } = data.study === "run" ? answerTo({ ...data, study: null }) : {};
+  const { scenario } = data.no_repeat ? answerTo({ ...data, study: null }) : {};
   if (scenario) postMessage({ scenario });
   postMessage({ answer: answerTo(data) });
 };

@@ -157,7 +157,7 @@ fn study(
     };
     let rows = RowSource::Compute(Runner::default(), None, &mut watch);
     let sinks = Sinks {
-        in_memory: true,
+        in_memory: names,
         ..Sinks::default()
     };
     let style = Style::of(Figure::SCREEN);

@@ -1,7 +1,7 @@
 // Plays a motion, with the controls of the page and the keys.
 
 /** Fills the page with a motion, as for `createStage`, that has `opens_s`, the time at which the page opens, and `fall_end`, the end of the fall in words
- * if there is one. `addCurves` adds the curves to the plots. */
+ * if there is one. `addCurves` adds the curves to the plots, and yields after each plot. */
 function createPlayer(motion, addCurves) {
   const canvas = find("stage");
   const slider = find("time");
@@ -10,13 +10,11 @@ function createPlayer(motion, addCurves) {
   const { frames } = motion;
   let time = start;
   let playing = false;
-  // A page may show one motion after another: the last one leaves.
+  // A page may show one motion after another: the last one leaves. Its plots stay until those of the next one are complete.
   const leaving = new AbortController();
   const { signal } = leaving;
   const curves = createPlots(find("plots"), { start, end: stage.historyEnd }, seek);
   const { plots } = curves;
-  addCurves(curves, stage);
-  curves.showAll();
   slider.min = start;
   slider.max = end;
   slider.step = "any";
@@ -72,16 +70,33 @@ function createPlayer(motion, addCurves) {
     find("exaggeration").value = to;
     find("times").textContent = find("exaggeration").value;
     find("drawn").textContent = `Displacements are drawn ${find("exaggeration").value} times as large as they are.`;
-    draw();
+    seek(time);
   }
 
-  find("play").addEventListener("click", () => play(!playing));
+  /** Makes the plots as wide as the page, which may have got a scroll bar. */
+  function fit() {
+    const width = find("plots").clientWidth;
+    for (const plot of plots) if (plot.width !== width) plot.setSize({ width, height: plot.height });
+  }
+
+  async function addPlots() {
+    for (const _ of addCurves(curves, stage, motion)) {
+      // A page around this one answers its reader in between.
+      if (window !== window.parent) await new Promise((resolve) => setTimeout(resolve));
+      if (signal.aborted) return curves.remove();
+    }
+    curves.place();
+    fit();
+    curves.showAll();
+  }
+
+  find("play").addEventListener("click", () => play(!playing), { signal });
   slider.addEventListener("input", () => {
     play(false);
     seek(Number(slider.value));
-  });
-  find("exaggeration").addEventListener("input", () => exaggerate(find("exaggeration").value));
-  for (const id of ["thrust", "ride", "sizes"]) find(id).addEventListener("change", draw);
+  }, { signal });
+  find("exaggeration").addEventListener("input", () => exaggerate(find("exaggeration").value), { signal });
+  for (const id of ["thrust", "ride", "sizes"]) find(id).addEventListener("change", draw, { signal });
   find("fall").hidden = !motion.fall_end;
   find("fall-from").textContent = Number(stage.historyEnd.toFixed(3));
   find("fall-end").textContent = motion.fall_end ?? "";
@@ -116,7 +131,7 @@ function createPlayer(motion, addCurves) {
     }
   }, { signal });
   window.addEventListener("resize", () => {
-    for (const plot of plots) plot.setSize({ width: plot.root.parentElement.clientWidth, height: plot.height });
+    fit();
     seek(time);
   }, { signal });
   // In print the page is one sheet: structure and plots share the space beside the words.
@@ -145,7 +160,7 @@ function createPlayer(motion, addCurves) {
   window.addEventListener("afterprint", () => {
     document.documentElement.classList.remove("print");
     canvas.style.height = document.body.style.zoom = "";
-    for (const plot of plots) plot.setSize({ width: plot.root.parentElement.clientWidth, height: plot.tall });
+    for (const plot of plots) plot.setSize({ width: find("plots").clientWidth, height: plot.tall });
     seek(time);
   }, { signal });
   window.matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
@@ -154,15 +169,23 @@ function createPlayer(motion, addCurves) {
   }, { signal });
 
   // The page opens at the time of overturning or of the largest rotation.
-  exaggerate(stage.visible(motion.opens_s));
-  seek(motion.opens_s);
+  time = motion.opens_s;
+  exaggerate(stage.visible(time));
 
   // Interface for scripts: state of the page, and functions that change it.
   window.archrock = {
     data: motion,
     seek,
     play,
-    leave: () => (play(false), leaving.abort(), plots.forEach((plot) => plot.destroy())),
+    renew(next) {
+      const plays = playing;
+      play(false);
+      leaving.abort();
+      createPlayer(next, addCurves);
+      if (plays) window.archrock.play(true);
+      return window.archrock.ready;
+    },
+    ready: addPlots(),
     times,
     hingesAt: stage.hingesAt,
     pressure: stage.pressure,

@@ -7,9 +7,13 @@ function curve(encoded) {
   return [Array.from(values.subarray(0, half)), Array.from(values.subarray(half))];
 }
 
-/** Makes empty plots in an element, over the times from `start` to `end`. `seek` receives the time that is clicked. */
+/** Removes the plots that the page shows. */
+let removePlots = () => {};
+
+/** Makes plots for an element, over the times from `start` to `end`. `seek` receives the time that is clicked. */
 function createPlots(parent, { start, end }, seek) {
   const plots = [];
+  const made = document.createDocumentFragment();
   let following = false;
   let shownTime = start;
 
@@ -26,12 +30,12 @@ function createPlots(parent, { start, end }, seek) {
     if (curves.every(({ values }) => farthest(values) === 0)) return;
     const holder = document.createElement("div");
     holder.className = "plot";
-    parent.append(holder);
+    made.append(holder);
     const axis = () => css("--ink");
     const look = { stroke: axis, grid: { stroke: () => css("--line"), width: 1 }, ticks: { stroke: axis, width: 1 } };
     const plot = new uPlot(
       {
-        width: holder.clientWidth || 800,
+        width: parent.clientWidth || 800,
         height: tall,
         title: label,
         legend: { show: false },
@@ -128,6 +132,14 @@ function createPlots(parent, { start, end }, seek) {
   }
 
   const showAll = () => plots[0]?.setScale("x", { min: start, max: end });
+  const remove = () => plots.forEach((plot) => plot.destroy());
 
-  return { plots, add, show, zoom, showAll };
+  /** Puts the plots into their element, in place of earlier ones. */
+  function place() {
+    removePlots();
+    removePlots = remove;
+    parent.replaceChildren(made);
+  }
+
+  return { plots, add, remove, place, show, zoom, showAll };
 }

@@ -112,8 +112,8 @@ pub type RotationsOutput<'w> = Option<Output<'w>>;
 pub struct Sinks<'w> {
     /// The folder; with several models of motion each has a folder inside it. `None`: no files are written.
     pub folder: Option<Folder>,
-    /// Whether the results of a single model without folder hold its files.
-    pub in_memory: bool,
+    /// The files that the results of a single model without folder hold, by name; no others are made.
+    pub in_memory: &'w [String],
     /// The output for the rotations in place of a file.
     pub rotations: RotationsOutput<'w>,
 }
@@ -173,7 +173,10 @@ pub fn results(
         let samples = options.samples.get(number);
         let sinks = Sinks {
             folder,
-            in_memory: sinks.in_memory && runs.len() == 1,
+            in_memory: match runs.len() {
+                1 => sinks.in_memory,
+                _ => &[],
+            },
             rotations: sinks.rotations.take(),
         };
         all.push(run.compute(sinks, samples, &mut *watch)?);
@@ -248,9 +251,12 @@ impl<'a> Run<'a> {
         })
     }
 
-    /// The files that it writes, the seal last.
-    fn files(&self) -> Vec<&'static str> {
-        let is_written = |file: &&str| match *file {
+    /// The files that it makes for the sinks, the seal last.
+    fn files(&self, sinks: &Sinks<'_>) -> Vec<&'static str> {
+        let is_made = |file: &&str| match *file {
+            _ if sinks.folder.is_none() && !sinks.in_memory.iter().any(|name| name == file) => {
+                false
+            }
             ROTATIONS => !self.options.no_rotations,
             REPORT => !self.options.no_report,
             SNAPSHOTS => !self.options.snapshots_s.is_empty(),
@@ -261,7 +267,7 @@ impl<'a> Run<'a> {
             OVERLAY => false,
             _ => true,
         };
-        FILES.into_iter().filter(is_written).collect()
+        FILES.into_iter().filter(is_made).collect()
     }
 
     /// Simulates the scenario and writes its files into the sinks. The page begins with the words about the samples of `[uncertain]`.
@@ -271,12 +277,12 @@ impl<'a> Run<'a> {
         samples: Option<&Results>,
         watch: Watch<'_>,
     ) -> Result<ModelResults, StudyError> {
-        let has_files = sinks.folder.is_some() || sinks.in_memory;
+        let names = self.files(&sinks);
         let (scenario, model) = (self.scenario, &*self.model);
         let (ground, request) = (scenario.ground_motion(), scenario.request());
-        let mut drawings = Drawings::new(self, has_files);
+        let mut drawings = Drawings::new(self, &names);
         // Created before the history starts, so a folder that cannot be written costs no simulation.
-        let mut files = self.create(&sinks)?;
+        let mut files = TableFiles::create(&sinks, &names)?;
         let repeats = !self.options.no_repeat && model.row().is_some();
         let repetitions = repeats.then(|| Repetitions::start(model, ground, &request));
         let variations = match self.options.no_repeat {
@@ -317,19 +323,18 @@ impl<'a> Run<'a> {
         });
         summary.points = drawings.points.peaks();
         self.complete(&mut summary, &history, samples);
-        let mut texts = BTreeMap::new();
-        if has_files {
-            let of_samples = samples.map_or("", |samples| &samples.words);
-            texts = drawings.texts(self, &history, of_samples, &summary);
+        let of_samples = samples.map_or("", |samples| &samples.words);
+        let mut texts = drawings.texts(self, &names, &history, of_samples, &summary);
+        if names.contains(&SUMMARY) {
             texts.insert(SUMMARY, pretty(&summary_of(&summary)?));
         }
         let named = sinks.folder.as_ref().map(|folder| {
             let film_pictures = drawings.add_film(self, folder)?;
-            self.write(folder, mem::take(&mut files.on_disk), &texts)?;
+            write(folder, &names, mem::take(&mut files.on_disk), &texts)?;
             let snapshots = drawings.snapshots.as_ref();
             Ok::<_, OutputError>(Files {
                 folder: folder.path().to_owned(),
-                names: self.files(),
+                names,
                 rows,
                 film_pictures,
                 outside_times_s: snapshots
@@ -341,9 +346,9 @@ impl<'a> Run<'a> {
             summary,
             curves: drawings.curves,
             files: named.transpose()?,
-            in_memory: match sinks.in_memory {
-                true => files.with_texts(texts),
-                false => Vec::new(),
+            in_memory: match sinks.folder {
+                Some(_) => Vec::new(),
+                None => files.with_texts(texts),
             },
         })
     }
@@ -360,35 +365,6 @@ impl<'a> Run<'a> {
         summary.uncertain = samples.map(|samples| samples.summary.clone());
     }
 
-    /// Creates its tables, on disk in a folder to which all its files can be written.
-    fn create(&self, sinks: &Sinks<'_>) -> Result<TableFiles, OutputError> {
-        let names = self.files().into_iter();
-        let tables = names.filter(|name| name.ends_with(".csv"));
-        let mut files = TableFiles::default();
-        if let Some(folder) = &sinks.folder {
-            folder.check(&self.files())?;
-            let created = tables.map(|name| Ok((name, folder.create(name)?)));
-            files.on_disk = created.collect::<Result<_, OutputError>>()?;
-        } else if sinks.in_memory {
-            files.in_memory = tables.map(|name| (name, Vec::new())).collect();
-        }
-        Ok(files)
-    }
-
-    /// Completes the tables and writes the other files, the seal last.
-    fn write(
-        &self,
-        folder: &Folder,
-        mut tables: BTreeMap<&str, NewFile>,
-        texts: &BTreeMap<&str, String>,
-    ) -> Result<(), OutputError> {
-        let mut names = self.files().into_iter();
-        names.try_for_each(|name| match tables.remove(name) {
-            Some(table) => folder.complete(table),
-            None => folder.write(name, texts[name].as_bytes()),
-        })
-    }
-
     /// The subject of the pictures.
     fn subject<'s>(&'s self, title: &'s str) -> Subject<'s> {
         let incipient_g = |sway| self.model.incipient_acceleration_g(sway);
@@ -399,6 +375,22 @@ impl<'a> Run<'a> {
             incipient_g: [Sway::Right, Sway::Left].map(incipient_g),
         }
     }
+}
+
+/// Completes the tables and writes the other files, the seal last.
+fn write(
+    folder: &Folder,
+    names: &[&'static str],
+    mut tables: BTreeMap<&'static str, NewFile>,
+    texts: &BTreeMap<&'static str, String>,
+) -> Result<(), OutputError> {
+    for name in names {
+        match tables.remove(name) {
+            Some(table) => folder.complete(table)?,
+            None => folder.write(name, texts[name].as_bytes())?,
+        }
+    }
+    Ok(())
 }
 
 /// One picture of several models of motion.
@@ -447,16 +439,18 @@ struct Drawings {
 }
 
 impl Drawings {
-    /// The page, the film and the snapshots are collected only if there are files.
-    fn new(run: &Run<'_>, has_files: bool) -> Self {
+    /// The page, the film and the snapshots are collected only for files.
+    fn new(run: &Run<'_>, files: &[&str]) -> Self {
         let (model, options) = (&*run.model, &run.options);
         let factor = options.exaggeration.unwrap_or(1.0);
         let snapshots = || Snapshots::new(scene(run.scenario, model), factor);
-        let film_rate_hz = options.film_rate_hz.filter(|_| has_files);
-        let times_s = Some(&options.snapshots_s).filter(|times_s| has_files && !times_s.is_empty());
+        let film_rate_hz = options.film_rate_hz.filter(|_| !files.is_empty());
+        let times_s = files.contains(&SNAPSHOTS).then_some(&options.snapshots_s);
         Self {
             timeline: Timeline::new(model),
-            report: (has_files && !options.no_report).then(|| Report::new(run.scenario, model)),
+            report: files
+                .contains(&REPORT)
+                .then(|| Report::new(run.scenario, model)),
             film: film_rate_hz.map(|rate_hz| snapshots().every(1.0 / rate_hz)),
             snapshots: times_s.map(|times_s| snapshots().at(times_s)),
             notable: NotableImpacts::default(),
@@ -483,17 +477,18 @@ impl Drawings {
         self.timeline.event(event);
     }
 
-    /// Makes the pictures, and the page with the words.
+    /// Makes those of the pictures, and of the page with the words, that are among the files.
     fn texts(
         &self,
         run: &Run<'_>,
+        files: &[&str],
         history: &History,
         uncertainty: &str,
         summary: &Summary,
     ) -> BTreeMap<&'static str, String> {
         let (figure, title) = (run.figure, title(run.scenario));
         let subject = run.subject(title);
-        let picture = self.timeline.draw(figure, &subject, history, &self.points);
+        let draw = || self.timeline.draw(figure, &subject, history, &self.points);
         let report = self.report.as_ref().map(|report| {
             let points = Some(&self.points);
             let opening = [uncertainty, &summary.verdict_line()];
@@ -508,7 +503,7 @@ impl Drawings {
         let snapshots = self.snapshots.as_ref();
         let snapshots = snapshots.map(|snapshots| snapshots.draw(figure, title));
         let texts = [
-            (PICTURE, Some(picture)),
+            (PICTURE, files.contains(&PICTURE).then(draw)),
             (REPORT, report),
             (SNAPSHOTS, snapshots),
         ];
@@ -540,6 +535,20 @@ struct TableFiles {
 }
 
 impl TableFiles {
+    /// Creates the tables among the files of these names, on disk in a folder to which all these files can be written.
+    fn create(sinks: &Sinks<'_>, names: &[&'static str]) -> Result<Self, OutputError> {
+        let tables = names.iter().filter(|name| name.ends_with(".csv"));
+        let mut files = Self::default();
+        if let Some(folder) = &sinks.folder {
+            folder.check(names)?;
+            let created = tables.map(|name| Ok((*name, folder.create(name)?)));
+            files.on_disk = created.collect::<Result<_, OutputError>>()?;
+        } else {
+            files.in_memory = tables.map(|name| (*name, Vec::new())).collect();
+        }
+        Ok(files)
+    }
+
     fn outputs(&mut self) -> impl Iterator<Item = (&'static str, Output<'_>)> {
         let on_disk = self.on_disk.iter_mut();
         let on_disk = on_disk.map(|(name, file)| (*name, boxed(&mut file.writer)));

@@ -1,7 +1,8 @@
 // The curves of a run.
-createPlayer(data, (plots, stage) => {
+function* addCurves(plots, stage, data) {
   const [groundT, groundY] = curve(data.curves.ground_g);
   plots.add("Ground acceleration (g)", 150, groundT, [{ name: "ground", color: "--ink", values: groundY }]);
+  yield;
   const bodies = data.bodies.length;
   const turns = data.bodies.map((_, body) => stage.turns(body));
   const most = data.largest_body;
@@ -19,17 +20,23 @@ createPlayer(data, (plots, stage) => {
   const turning = order.map((body) => ({ ...look(body), values: turns[body] }));
   const named = few ? turning : [{ ...look(most), values: turns[most] }, { ...look((most + 1) % bodies), name: "other blocks" }];
   plots.add("Rotation (rad, anticlockwise)", 230, Array.from(stage.times.subarray(0, stage.historyCount)), turning, named);
+  yield;
   for (const { curves } of data.points ?? []) {
     // Each curve is thinned separately, so their times differ.
     const [ts, ...values] = uPlot.join(curves.map(({ curve: encoded }) => curve(encoded)));
     const look = ({ name }, axis) => ({ name, color: `--curve-${axis + 1}`, dash: dashes[axis], values: values[axis] });
     plots.add("Displacement (mm)", 150, ts, curves.map(look));
+    yield;
   }
   const [energyT, energyY] = curve(data.curves.energy);
   plots.add(data.energy_label, 150, energyT, [{ name: "energy", color: "--ink", values: energyY }]);
+  yield;
   if (data.curves.excess) {
     const [excessT, excessY] = curve(data.curves.excess);
     const label = "Thrust line outside the arch (parts of the thickness, cut off at 1)";
     plots.add(label, 150, excessT, [{ name: "excess", color: "--ink", values: excessY }]);
+    yield;
   }
-});
+}
+
+createPlayer(data, addCurves);
