@@ -46,6 +46,8 @@ pub enum RowSource<'w> {
     Compute(Runner, Option<Task<'w>>, Watch<'w>),
     /// They are read from all parts.
     Merge(&'w [PathBuf]),
+    /// They are given as JSON, in the order of the cases.
+    Given(&'w [String]),
 }
 
 /// Chooses the style of merged results, from the scenario of the parts if that is read, or refuses options that do not fit the study.
@@ -78,7 +80,7 @@ impl<'w> RowSource<'w> {
     fn at_once(self) -> Result<(Runner, Watch<'w>), StudyError> {
         match self {
             Self::Compute(runner, _, watch) => Ok((runner, watch)),
-            Self::Merge(_) => Err(StudyError::scenario("this study has no parts")),
+            _ => Err(StudyError::scenario("this study has no parts")),
         }
     }
 }
@@ -292,6 +294,13 @@ fn computed<S: ReportedStudy>(
     let study = study.map_err(StudyError::Scenario)?;
     let (rows, part) = match rows {
         RowSource::Merge(parts) => (part::merge(parts)?.1, None),
+        RowSource::Given(rows) => {
+            let rows = rows.iter().map(|row| serde_json::from_str(row));
+            (
+                rows.collect::<Result<_, _>>().map_err(StudyError::failed)?,
+                None,
+            )
+        }
         RowSource::Compute(runner, None, watch) => (runner.rows(&study, watch)?, None),
         RowSource::Compute(runner, Some(task), watch) => {
             match runner.rows_in(&study, task, watch)? {

@@ -86,5 +86,14 @@
   show([Math.floor(xs.length / 2), Math.floor(ys.length / 2)]);
 
   // For scripts.
-  window.archrock = { data, show, chosen: () => chosen };
+  window.archrock = {
+    data,
+    show,
+    chosen: () => chosen,
+    stays: () => stays,
+    keep(cell) {
+      stays = true;
+      show(cell);
+    },
+  };
 })();
