@@ -88,7 +88,7 @@ function createQueue(module, [status, bar, stop], read) {
 
   stop.addEventListener("click", () => {
     halt(null);
-    status.textContent = "Stopped. Any change computes again.";
+    status.textContent = read ? "Stopped. Any change computes again." : "Stopped.";
   });
 
   /** Returns the answer to a request; null if a newer one has replaced it or it was stopped. */
