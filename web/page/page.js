@@ -354,7 +354,7 @@ function showErrors(errors) {
   if (errors.length === 0) return;
   const more = errors.length > 1 ? `; ${errors.length - 1} more below the text` : "";
   // A slider may have gone beyond the structures that stand.
-  const remedy = find("form").contains(document.activeElement) ? " (move the slider back, or change another one)" : "";
+  const remedy = document.activeElement.closest(".slider") ? " (move the slider back, or change another one)" : "";
   find("status").textContent = `${errors[0].message}${more}${remedy}`;
 }
 
