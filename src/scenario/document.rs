@@ -249,7 +249,7 @@ fn not_a_scenario(legible: &str, faults: &[Fault]) -> Option<Fault> {
     }
     let message = format!(
         "this is no scenario: {}. If it is a record, name it as `file` in [ground.record] of a scenario; if its extension \
-         is unknown, give `format` as well, to `check` by --set format=csv",
+         is unknown, give `format` as well, such as format=csv",
         first.message
     );
     Some(Fault::new(0, first.offset, message))

@@ -50,7 +50,7 @@ pub static ELASTIC_JOINTS: ModelKind = ModelKind {
     ignored: Some("[impact] is ignored: elastic joints have no impacts"),
     lacking: Some(
         "lacks [elastic_joints] with a stiffness: give `normal_stiffness_gpa_m` there, as in --set elastic_joints.normal_stiffness_gpa_m=10; \
-         docs/elastic-joints.md explains how to choose",
+         the document on elastic joints explains how to choose",
     ),
     read: |table| Ok(Arc::new(ElasticTable::read(table)?)),
 };
@@ -302,7 +302,7 @@ impl ModelOptions for ElasticTable {
 
 const NO_STIFFNESS: &str = "lacks a stiffness: give `normal_stiffness_gpa_m`, or `stone_modulus_gpa` from which it follows. \
                             Published discrete-element models of arches take about 10 GPa/m, tables of rock joints 50; \
-                            docs/elastic-joints.md explains how to choose";
+                            the document on elastic joints explains how to choose";
 const OF_MODULI: &str = "goes with `normal_stiffness_gpa_m`: from moduli both follow; leave it out";
 const OF_STONE: &str = "goes with `stone_modulus_gpa`, and `normal_stiffness_gpa_m` is that of the whole joint; leave it out";
 const OF_CRITICAL: &str = " beside it: it is a part of critical damping at a frequency";

@@ -44,7 +44,8 @@ impl Files {
     fn open(&self, path: &Path) -> Result<Box<dyn Read + '_>, String> {
         if let Some(in_memory) = &self.in_memory {
             let contents = in_memory.get(path);
-            let contents = contents.ok_or("cannot be read: no such file was given")?;
+            let contents = contents
+                .ok_or("is not among the given files: choose it, because a link holds no files")?;
             return Ok(Box::new(contents.as_slice()));
         }
         let is_file = fs::metadata(path).map_err(unreadable)?.is_file();

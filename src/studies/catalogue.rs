@@ -46,6 +46,8 @@ pub enum RowSource<'w> {
     Compute(Runner, Option<Task<'w>>, Watch<'w>),
     /// They are read from all parts.
     Merge(&'w [PathBuf]),
+    /// They are those of a map, given as JSON in the order of the cells.
+    Given(&'w [String]),
 }
 
 /// Chooses the style of merged results, from the scenario of the parts if that is read, or refuses options that do not fit the study.
@@ -78,7 +80,7 @@ impl<'w> RowSource<'w> {
     fn at_once(self) -> Result<(Runner, Watch<'w>), StudyError> {
         match self {
             Self::Compute(runner, _, watch) => Ok((runner, watch)),
-            Self::Merge(_) => Err(StudyError::scenario("this study has no parts")),
+            _ => Err(StudyError::scenario("this study has no parts")),
         }
     }
 }
@@ -127,7 +129,16 @@ pub const RUN: StudyKind = StudyKind {
 };
 /// The map of the pulses that overturn the structure, over two quantities.
 pub const MAP: StudyKind = StudyKind::of::<OverturningMap<'_>>(|scenarios, _, style, rows, _| {
-    computed(OverturningMap::of(&scenarios[0]), style, rows)
+    let map = OverturningMap::of(&scenarios[0]);
+    let RowSource::Given(rows) = rows else {
+        return computed(map, style, rows);
+    };
+    let rows = rows.iter().map(|row| serde_json::from_str(row));
+    let rows: Result<_, _> = rows.collect();
+    let map = map.map_err(StudyError::Scenario)?;
+    Ok(map
+        .results(rows.map_err(StudyError::failed)?, style)?
+        .into())
 });
 /// The records that overturn the structure.
 pub const SUITE: StudyKind = StudyKind::of::<RecordSuite<'_>>(|scenarios, _, style, rows, _| {
@@ -291,6 +302,9 @@ fn computed<S: ReportedStudy>(
 ) -> Result<Computation, StudyError> {
     let study = study.map_err(StudyError::Scenario)?;
     let (rows, part) = match rows {
+        RowSource::Given(_) => {
+            return Err(StudyError::scenario("only the rows of a map can be given"));
+        }
         RowSource::Compute(runner, None, watch) => (runner.rows(&study, watch)?, None),
         // This arm leaves the code of parts out of the module for a browser.
         _ if cfg!(target_family = "wasm") => {

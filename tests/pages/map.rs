@@ -108,7 +108,7 @@ data.rows.forEach((row, index) => {
   verify(text.includes(words), `${text} ${row}`);
   verify(text.includes(`impacts ${Number(row[4])}`), `${text} ${row}`);
   verify(text.includes('outside the model') === Number(row[9]) > data.limit, `${text} ${row}`);
-  verify(text.includes(`outcome_time_s ${Number(Number(row[6]).toPrecision(5))}`), `${text} ${row}`);
+  verify(text.includes(`outcome time (s) ${Number(Number(row[6]).toPrecision(5))}`), `${text} ${row}`);
   const command = document.getElementById('command').textContent;
   verify(command.includes(`duration_s=${Number(row[0])} `), `${command} ${row}`);
   verify(command.includes(`amplitude_g=${Number(row[1])} `), `${command} ${row}`);

@@ -28,6 +28,13 @@ async function afterwards(act, what) {
   await until(() => page.answer, what);
 }
 
+/** Makes a choice, and waits for the picture that follows. */
+const choose = (id, value) =>
+  afterwards(() => {
+    element(id).value = value;
+    event(element(id), "change");
+  }, `${id} ${value}`);
+
 /** Rows of blocks have the same bits. Steps of four links and columns depend on `pow` of the machine, and their results in digits that are not printed. */
 const equal = (one, other, bits) => Object.is(one, other) || (!bits && Math.abs(one - other) <= 1e-9 + 1e-8 * Math.abs(other));
 
@@ -85,6 +92,58 @@ const PARTS = {
     verify(inside("run").document.getElementById("sizes").checked === false, "dimensions stay hidden");
     verify(Math.max(0, ...tasks) < 150, `tasks of ${tasks} ms`);
 
+    // Sentences name no options of the program.
+    const free = text.value.trimEnd() + "\n[free_hinges]\n";
+    for (const scenario of [text.value, text.value.replace("-0.35", "-3"), free]) {
+      const run = await page.ask({ study: "run", scenario, files: {}, names: ["report.html"], no_repeat: true });
+      const threshold = scenario === free ? { words: "" } : await page.ask({ study: "threshold", scenario, files: {}, names: [] });
+      const said = run.words + run.files["report.html"].match(/<div class="words">[^]*?<\/div>/)[0] + threshold.words;
+      verify(said.length > 1000 && !/--[a-z]/.test(said) && !said.includes("was not repeated"), said);
+    }
+
+    // Keys of dotted and of inline tables have sliders and choices, too.
+    const before = text.value;
+    const both = "arch.mean_radius_m = 5\narch.thickness_ratio = 0.15\narch.embrace_deg = 180\n[ground]\nhalf_sine = { amplitude_g = -0.3, duration_s = 0.3 }\n";
+    await afterwards(() => page.edit(both), "dotted keys");
+    for (const [key, value] of [["arch.thickness_ratio", 0.2], ["ground.half_sine.amplitude_g", -0.4]]) {
+      await afterwards(() => {
+        slider(key).value = value;
+        event(slider(key), "input");
+      }, key);
+    }
+    await choose("ground", "one_sine");
+    verify(text.value === both.replace("ratio = 0.15", "ratio = 0.2").replace("half_sine = { amplitude_g = -0.3", "one_sine = { amplitude_g = -0.4"), text.value);
+    verify(await choose("structure", "column").then(() => !text.value.includes("arch") && text.value.includes("[ground]")), text.value);
+
+    // Choices keep the keys that both have, and return with their own.
+    const start_s = `${before.trimEnd()}\nstart_s = 0.5\n\n[impact]\nmodel = "prescribed"\nrestitution = 0.6\n`;
+    await afterwards(() => page.edit(start_s), "a start");
+    await choose("ground", "ricker");
+    await choose("model", "free_hinges");
+    verify(text.value.includes("start_s = 0.5") && !text.value.includes("[impact]"), text.value);
+    await choose("structure", "pointed_arch");
+    verify(text.value.includes("voussoirs = 36"), text.value);
+    await choose("structure", "arch");
+    await choose("model", "");
+    await choose("ground", "half_sine");
+    verify(text.value === start_s, `${text.value}\n${start_s}`);
+
+    // Ends of sliders are structures that stand.
+    for (const kind of ["pointed_arch", "elliptic_arch", "arch"]) {
+      await choose("structure", kind);
+      const whole = text.value;
+      for (const { nextSibling: range } of [...document.querySelectorAll("[data-part=structure] input[type=number]")].filter((field) => field.offsetParent)) {
+        for (const end of [range.min, range.max]) {
+          await afterwards(() => {
+            range.value = end;
+            event(range, "input");
+          }, `${range.previousSibling.id} ${end}: ${element("status").textContent}`);
+          await afterwards(() => page.edit(whole), "the middle");
+        }
+      }
+    }
+    await afterwards(() => page.edit(before), "the arch");
+
     // Other structures, pulses and models.
     for (const [id, value, table] of [
       ["ground", "one_cosine", "[ground.one_cosine]"],
@@ -95,17 +154,11 @@ const PARTS = {
       ["structure", "arch", "[arch]"],
       ["ground", "half_sine", "[ground.half_sine]"],
     ]) {
-      await afterwards(() => {
-        element(id).value = value;
-        event(element(id), "change");
-      }, `${id} ${value}`);
+      await choose(id, value);
       verify(text.value.includes(table) && element("errors").children.length === 0, `${value}: ${text.value} ${element("errors").textContent}`);
     }
     verify(!text.value.includes("[free_hinges]") && !text.value.includes("[column]"), text.value);
-    await afterwards(() => {
-      element("model").value = "free_hinges";
-      event(element("model"), "change");
-    }, "free hinges");
+    await choose("model", "free_hinges");
     await afterwards(() => document.querySelector(".switch input").click(), "slip");
     verify(text.value.includes("friction_coefficient = 0.8"), text.value);
     // The picture comes first, repetitions after it.
@@ -120,7 +173,8 @@ const PARTS = {
     verify(inside("run").document.getElementById("stage") !== null, "the last picture");
     element("errors").querySelector("button").click();
     verify(text.selectionStart > 0 && document.activeElement === text, "the cursor is at the error");
-    await afterwards(() => page.edit("[arch"), "").catch(() => {});
+    await page.edit("[arch");
+    verify(element("errors").textContent.includes("not valid TOML"), element("errors").textContent);
     await afterwards(() => page.edit(good), "a mended text");
     verify(element("errors").children.length === 0, element("errors").textContent);
 
@@ -154,6 +208,8 @@ const PARTS = {
     await page.computeStudy("map");
     const map = inside("study-page");
     verify(map.document.getElementById("numbers").textContent.startsWith("pulse duration (s) 0.3, pulse amplitude (g) -0.35: comes to rest"), map.document.getElementById("numbers").textContent);
+    verify(map.archrock.data.axes.map(({ values }) => values.length).join() === "49,33", "the finest map");
+    verify(getComputedStyle(map.document.getElementById("command")).display === "none", "a command of the program");
     map.archrock.show([3, 4]);
     await afterwards(() => element("take").click(), "a cell");
     verify(/duration_s = 0\.0\d+/.test(text.value) && text.value.includes("amplitude_g = -"), text.value);
@@ -162,18 +218,48 @@ const PARTS = {
     await page.computeStudy("map");
     verify(page.study.words.includes("cells:"), page.study.words || element("study-status").textContent);
     verify(element("errors").children.length === 0, element("errors").textContent);
+
+    // A map fills in from coarse to fine, and each cell is that of a map that is computed whole. A marked cell stays so.
+    const own = `${start.replace("36", "12")}[free_hinges]\n[map]\nduration_s = { from = 0.1, to = 0.9, count = 13 }\namplitude_g = { from = 0.1, to = 0.9, count = 9 }\n`;
+    await afterwards(() => page.edit(own), "an own map");
+    const levels = [];
+    const watch = setInterval(() => {
+      const { archrock } = inside("study-page");
+      const size = archrock.data.axes?.map(({ values }) => values.length).join();
+      if (size === "7,7" && !archrock.stays()) archrock.keep([6, 0]);
+      if (levels.at(-1) !== size) levels.push(size);
+    }, 5);
+    await page.computeStudy("map");
+    await wait(20);
+    clearInterval(watch);
+    verify(levels.slice(-2).join(" ") === "7,7 13,9", levels.join(" "));
+    verify(inside("study-page").archrock.chosen().join() === "12,0", inside("study-page").archrock.chosen().join());
+    const whole = await page.ask({ study: "map", scenario: own, files: {}, names: ["map.html"] });
+    verify(whole.words === page.study.words && whole.files["map.html"] === page.study.files["map.html"], `${whole.words}\n${page.study.words}`);
+    await afterwards(() => page.edit(start), "the arch again");
     for (const study of ["spread", "capacity", "limit"]) {
       await page.computeStudy(study);
       verify(page.study.words.length > 50 && inside("study-page").document.getElementById("outcome").textContent.length > 10, study);
     }
     await page.computeStudy("verify");
     verify(element("study-status").textContent.includes("[demand"), element("study-status").textContent);
+    page.study = null;
+    await afterwards(() => element("add").click(), "a table for the check");
+    await until(() => page.study, `the check: ${element("study-status").textContent}`);
+    verify(text.value.startsWith(start) && text.value.includes("[demand.slv]"), text.value);
+
+    // The case of a threshold changes numbers alone.
+    const commented = `# A comment\n${start.replace("duration_s", "# another\nduration_s")}`;
+    await afterwards(() => page.edit(commented), "comments");
+    await page.computeStudy("threshold");
+    await afterwards(() => element("take").click(), "a case");
+    verify(text.value.replace(/amplitude_g = .*/, "") === commented.replace(/amplitude_g = .*/, "") && text.value !== commented, text.value);
 
     // Long work shows its progress and stops.
     page.edit(`${link.replace("duration_s = 1", "duration_s = 3000\nstart_s = 1")}[simulation]\nduration_s = 900000\noutput_step_s = 1\n`);
     const many = "duration_s = { from = 0.1, to = 2, count = 400 }\namplitude_g = { from = 0.1, to = 2, count = 400 }\n";
     const long = page.ask({ study: "map", scenario: `${start}[map]\n${many}`, files: {} });
-    await until(() => !element("study-stop").hidden && element("study-status").textContent.includes("left"), "progress");
+    await until(() => !element("study-stop").hidden && /takes some \d+ .*left/.test(element("study-status").textContent), "an estimate");
     element("study-stop").click();
     verify((await long) === null && element("study-status").textContent.startsWith("Stopped"), "stopped");
     await afterwards(() => page.edit(start), "work after a stop");

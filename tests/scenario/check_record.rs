@@ -255,7 +255,7 @@ fn a_record_in_the_place_of_a_scenario_is_one_error() {
         fs::copy(folder.path().join("blanks.txt"), folder.path().join(&file)).unwrap();
         let said = refusal(&archrock(folder.path(), &["check", &file]));
         assert!(
-            said.contains("give `format` as well, to `check` by --set format=csv"),
+            said.contains("give `format` as well, such as format=csv"),
             "{said}"
         );
         let read = ["check", &file, "--set", "format=csv", "--set", "unit=g"];

@@ -70,7 +70,7 @@ fn names_of_files_in_memory_have_nothing_to_do_with_the_disk() {
 fn files_on_a_disk_are_not_read_with_files_in_memory() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios");
     for (name, wrong) in [
-        ("semicircle-record.toml", "no such file was given"),
+        ("semicircle-record.toml", "is not among the given files"),
         ("column-suite.toml", "matches no file"),
     ] {
         let text = fs::read_to_string(folder.join(name)).unwrap();

@@ -1,6 +1,8 @@
 // The page to try. The text of the scenario is its state: controls change it, and each change is computed in a worker.
 const find = (id) => document.getElementById(id);
 const MOST_BYTES = 16 << 20;
+/** Work that takes more seconds begins with its length. */
+const LONG_S = 10;
 /** Names and contents of the record files that the reader has added. */
 const files = {};
 
@@ -26,6 +28,15 @@ function unpack(packed) {
 }
 
 const workerAddress = URL.createObjectURL(new Blob([find("worker").textContent], { type: "text/javascript" }));
+
+/** Says how long work takes that has begun, and how long its rest. */
+function estimate(began, done, all) {
+  const passed_s = (performance.now() - began) / 1000;
+  const all_s = (passed_s * all) / Math.max(done, 1);
+  const words = (time_s) => (time_s < 90 ? `${Math.ceil(time_s)} s` : `${Math.ceil(time_s / 60)} min`);
+  const whole = all_s > LONG_S ? `this takes some ${words(all_s)}; ` : "";
+  return `Computing: ${whole}${Math.floor((100 * done) / all)} %, some ${words(all_s - passed_s)} left`;
+}
 
 /** Makes a queue of one request at work and the newest one waiting, with elements that show long work. `read` receives the scenario of a run before its result. */
 function createQueue(module, [status, bar, stop], read) {
@@ -67,12 +78,15 @@ function createQueue(module, [status, bar, stop], read) {
   }
 
   function show({ done, all }) {
-    if (!work || stop.hidden) return;
+    if (!work) return;
+    // Some studies have several rounds.
+    if (!(done >= work.done)) work.round = performance.now();
+    work.done = done;
+    if (stop.hidden) return;
     bar.hidden = false;
     bar.value = all > 0 ? done / all : 0;
-    const left = ((performance.now() - work.began) / 1000) * (all / Math.max(done, 1) - 1);
-    const rest = left < 90 ? `${Math.ceil(left)} s` : `${Math.ceil(left / 60)} min`;
-    status.textContent = done >= all ? "Repeating with other steps…" : `Computing: ${Math.floor((100 * done) / all)} %, some ${rest} left`;
+    const end = work.request.study === "run" ? "Repeating with other steps…" : "Drawing…";
+    status.textContent = done >= all ? end : estimate(work.round, done, all);
   }
 
   /** Ends the work with this answer; `null` means that nobody waits for it. */
@@ -84,7 +98,7 @@ function createQueue(module, [status, bar, stop], read) {
 
   stop.addEventListener("click", () => {
     halt(null);
-    status.textContent = "Stopped. Any change computes again.";
+    status.textContent = read ? "Stopped. Any change computes again." : "Stopped.";
   });
 
   /** Returns the answer to a request; null if a newer one has replaced it or it was stopped. */
@@ -191,12 +205,15 @@ function createSlider([key, label, from, to, step]) {
     key,
     show(scenario) {
       const value = valueOf(scenario, key);
-      // A key of an inline table can be changed in the text alone.
-      row.hidden = typeof value !== "number" || !tableLines(find("text").value, key.slice(0, key.lastIndexOf(".")));
+      // Keys of tables inside inline tables can be changed in the text alone.
+      const table = key.slice(0, key.lastIndexOf("."));
+      row.hidden = typeof value !== "number" || !hasTable(find("text").value, table);
       if (row.hidden || row.contains(document.activeElement)) return;
       // A value beyond the range widens it.
-      range.min = Math.min(from, value);
-      range.max = Math.max(to, value);
+      const inSteps = (place) => Number((step * Math.round(place / step)).toFixed(3));
+      const [low, high] = [from, to].map((end) => (typeof end === "function" ? inSteps(end(valueOf(scenario, table))) : end));
+      range.min = Math.min(low, value);
+      range.max = Math.max(high, value);
       range.value = number.value = value;
     },
   };
@@ -230,41 +247,54 @@ function choose(select, name, label, canChange) {
   select.disabled = !canChange;
 }
 
+/** The texts of tables that choices have removed, by the choice: they return with it. */
+const left = {};
+
+/** Replaces the tables of one choice by those of another one, to which it brings some keys that both have. */
+function exchange(text, tables, [from, to], replacement, keys) {
+  const { removed } = withoutTables(text, tables, "");
+  if (removed.startsWith("[")) left[from] = removed;
+  const given = keys.filter((key) => parsed(text).some(({ path }) => path === `${from}.${key}`));
+  const bring = (now, key) => withValue(now, `${to}.${key}`, JSON.stringify(valueOf(last.scenario, `${from}.${key}`)));
+  return withTable(text, tables, to ? given.reduce(bring, left[to] ?? replacement) : (left[to] ?? replacement));
+}
+
 find("structure").addEventListener("change", () => {
-  const [, , table] = STRUCTURES.find(([name]) => name === find("structure").value);
-  const old = STRUCTURES.map(([name]) => name).concat("basket_arch", "blocks", "piers", "piers.left", "piers.right", "fill", "load", "tie", "column.back");
-  edit(withTable(find("text").value, old, table));
+  const name = find("structure").value;
+  const isColumn = [name, last.kind].includes("column");
+  const old = KINDS.concat(isColumn ? ["piers", "fill", "load", "tie"] : []);
+  const [, , table] = STRUCTURES.find(([one]) => one === name);
+  edit(exchange(find("text").value, old, [last.kind, name], table, isColumn ? [] : ["voussoirs", "depth_m", "density_kg_m3"]));
 });
 find("ground").addEventListener("change", () => {
   const text = find("text").value;
-  const old = tableNames(text).filter((name) => name.startsWith("ground"));
-  const motion = valueOf(last.scenario, `ground.${last.ground}`) ?? {};
-  const { amplitude_g: amplitude = -0.3, duration_s: duration = 0.3 } = motion;
-  edit(withTable(text, old, `[ground.${find("ground").value}]\namplitude_g = ${amplitude}\nduration_s = ${duration}\n`));
+  const [from, to] = [last.ground, find("ground").value].map((name) => `ground.${name}`);
+  // Pulses have the same keys.
+  if (last.ground !== "record" && hasTable(text, from)) return edit(withName(text, from, find("ground").value));
+  edit(exchange(text, [from], [from, to], `[${to}]\namplitude_g = -0.3\nduration_s = 0.3\n`, ["start_s"]));
 });
 find("model").addEventListener("change", () => {
-  const [, , table] = MODELS.find(([name]) => name === find("model").value);
+  const [name, , table] = MODELS.find(([one]) => one === find("model").value);
   const text = find("text").value;
-  const needsBlocks = table && tableNames(text).includes("arch") && !last.scenario.arch?.voussoirs;
+  const needsBlocks = table && hasTable(text, "arch") && !last.scenario.arch?.voussoirs;
   const cut = needsBlocks ? withValue(text, "arch.voussoirs", 36) : text;
-  edit(withTable(cut, ["free_hinges", "elastic_joints", "impact"], table));
+  edit(exchange(cut, ["free_hinges", "elastic_joints", "impact"], [last.model, name], table, ["friction_coefficient", "longest_step_s"]));
 });
 
-/** The last valid scenario, and the name of its ground motion. */
-const last = { scenario: {}, ground: "" };
+/** The last valid scenario, and the names of its structure, ground motion and model. */
+const last = { scenario: {}, kind: "", ground: "", model: "" };
 
 function showScenario(scenario) {
   last.scenario = scenario;
   last.ground = Object.keys(scenario.ground ?? {}).find((name) => name !== "right") ?? "";
   const has = (name) => scenario[name] !== undefined;
-  const kinds = STRUCTURES.map(([name]) => name).concat("basket_arch", "blocks");
-  const names = tableNames(find("text").value);
-  const kind = kinds.find(has) ?? "";
-  choose(find("structure"), kind, kind, names.includes(kind));
+  const canChange = (name) => hasTable(find("text").value, name);
+  const kind = (last.kind = KINDS.find(has) ?? "");
+  choose(find("structure"), kind, kind, canChange(kind));
   const record = scenario.ground?.record?.file;
-  choose(find("ground"), last.ground, record ? `Record: ${record}` : last.ground, !scenario.ground || names.includes(`ground.${last.ground}`));
-  const model = ["free_hinges", "elastic_joints"].find(has) ?? "";
-  choose(find("model"), model, model, !model || names.includes(model));
+  choose(find("ground"), last.ground, record ? `Record: ${record}` : last.ground, !scenario.ground || canChange(`ground.${last.ground}`));
+  const model = (last.model = ["free_hinges", "elastic_joints"].find(has) ?? "");
+  choose(find("model"), model, model, !model || canChange(model));
   find("model").options[0].textContent = kind === "column" ? "One block" : MODELS[0][1];
   friction.hidden = !model;
   slips.checked = Boolean(model && scenario[model].friction_coefficient);
@@ -286,11 +316,10 @@ async function addRecords(added) {
     files[file.name] = files[`records/${file.name}`] = contents;
   }
   const text = find("text").value;
-  const names = tableNames(text);
   const [first, ...others] = added;
-  if (!first || others.length > 0 || names.includes("suite") || text.includes("slv_records")) return computeRun();
-  const columns = /\.(csv|txt)$/i.test(first.name) ? 'unit = "g" # of the accelerations; see also the messages below\n' : "";
-  return edit(withTable(text, names.filter((name) => name.startsWith("ground")), `[ground.record]\nfile = ${JSON.stringify(first.name)}\n${columns}scale = 1.0\n`));
+  if (!first || others.length > 0 || hasTable(text, "suite") || text.includes("slv_records")) return computeRun();
+  const columns = /\.(csv|tsv|txt|dat)$/i.test(first.name) ? COLUMNS : "";
+  return edit(withTable(text, ["ground"], `[ground.record]\nfile = ${JSON.stringify(first.name)}\n${columns}scale = 1.0\n`));
 }
 
 find("record").addEventListener("change", () => addRecords(find("record").files));
@@ -332,14 +361,21 @@ function showErrors(errors) {
   find("errors").replaceChildren(...items);
   markStale(errors.length > 0);
   if (errors.length === 0) return;
-  const missing = errors.some(({ message }) => message.includes("no such file was given"));
-  const remedy = missing ? " (the address holds no records: choose the file again)" : "";
-  find("status").textContent = `${errors[0].message}${remedy}${errors.length > 1 ? `; ${errors.length - 1} more below the text` : ""}`;
+  const more = errors.length > 1 ? `; ${errors.length - 1} more below the text` : "";
+  // A slider may have gone beyond the structures that stand.
+  const remedy = document.activeElement.closest(".slider") ? " (move the slider back, or change another one)" : "";
+  find("status").textContent = `${errors[0].message}${more}${remedy}`;
 }
 
 /** Marks the picture as that of an earlier scenario. */
 function markStale(isStale) {
   find("run").classList.toggle("stale", isStale);
+}
+
+/** Says that the study is of an earlier scenario, unless there is more to say about studies. */
+function markStudy() {
+  const status = find("study-status");
+  if (["", EARLIER].includes(status.textContent)) status.textContent = studied && studied !== find("text").value ? EARLIER : "";
 }
 
 const runFrames = createFrames(find("run"), "The structure in motion");
@@ -367,7 +403,7 @@ async function computeRun() {
     const [verdict] = answer.words.split("\n");
     find("answer").textContent = verdict;
     await runFrames.show(answer.files["report.html"]);
-    find("study-status").textContent = studied && studied !== find("text").value ? "The study below is of an earlier scenario." : "";
+    markStudy();
     page.answer = answer;
     const hasRow = last.scenario.free_hinges || last.scenario.elastic_joints;
     if (!hasRow || !no_repeat) return;
@@ -432,7 +468,7 @@ for (const button of document.querySelectorAll("[data-save]")) {
 
 const STUDIES = [
   ["threshold", "Smallest factor that overturns", "Factors on the ground motion: which overturn the structure?"],
-  ["map", "Map of pulses", "Which pulses overturn it: a coarse map first, then a finer one. [map] in the text sets the axes."],
+  ["map", "Map of pulses", "Which pulses overturn it: a coarse map first, then finer ones. [map] in the text sets the axes."],
   ["limit", "First motion (limit analysis)", "The acceleration that starts the motion, and the hinges."],
   ["capacity", "Capacity curve", "The static push that the moving structure can carry."],
   ["spread", "Movement of a springing", "How far may the right springing move outwards, inwards and down?"],
@@ -451,9 +487,13 @@ let askStudy;
 let askFile;
 /** The text of the study that is shown. */
 let studied = null;
+const EARLIER = "The study below is of an earlier scenario.";
 const DIRECTIONS = [0, 180, 90].map((angle_deg) => ({ springing: "right", angle_deg }));
-/** Numbers of durations and of amplitudes of the maps, from coarse to fine; odd, so that the pulse of the history is the middle. */
-const GRIDS = [[13, 11], [49, 41]];
+/** Numbers of durations and of amplitudes of the maps, from coarse to fine: each has all cells of the one before, and the pulse of the history in the middle. */
+const GRIDS = [[7, 5], [13, 9], [25, 17], [49, 33]];
+
+/** On this page a button takes the place of the command of a case. */
+const NO_COMMAND = "<style>p:has(+ #command), #command, #command + p { display: none; }</style>";
 
 /** The key that says how thick a structure is. */
 const THICKNESSES = { arch: "thickness_ratio", pointed_arch: "thickness_m", elliptic_arch: "thickness_m", column: "width_m" };
@@ -465,10 +505,15 @@ function around(value, factor, count) {
   return `[${values.sort((a, b) => a - b).join(", ")}]`;
 }
 
-/** Returns the texts of a map that gets finer, around the pulse or the record of the scenario; a text with its own `[map]` is one map. */
+/** Returns the texts of a map that gets finer, around the pulse or the record of the scenario, or with the axes of its own `[map]`. */
 function mapTexts() {
   const text = find("text").value;
-  if (last.scenario.map) return [text];
+  const own = Object.entries(last.scenario.map ?? {});
+  if (own.length > 0) {
+    const range = ({ from, to, spacing }, count) => `{ from = ${from}, to = ${to}, count = ${count}, spacing = "${spacing}" }`;
+    const coarser = (count) => (now, [key, axis]) => (axis.count > count && !key.includes(".") ? withValue(now, `map.${key}`, range(axis, count)) : now);
+    return [...new Set([...GRIDS.map(([columns]) => own.reduce(coarser(columns), text)), text])];
+  }
   const motion = last.scenario.ground?.[last.ground];
   const structure = find("structure").value;
   const thickness = THICKNESSES[structure];
@@ -482,35 +527,130 @@ function mapTexts() {
   });
 }
 
-async function computeStudy(study) {
-  const text = find("text").value;
-  const texts = study === "map" ? mapTexts() : [text];
+/** Queues of workers that compute cells of maps beside each other; they show nothing. */
+const helpers = [];
+
+function startHelpers(module) {
+  const count = Math.min(navigator.hardwareConcurrency || 1, 4);
+  for (let i = 0; i < count; i += 1) {
+    const hidden = ["span", "progress", "button"].map((name) => document.createElement(name));
+    helpers.push({ ask: createQueue(module, hidden), stop: () => hidden[2].click() });
+  }
+  find("study-stop").addEventListener("click", stopHelpers);
+}
+
+const stopHelpers = () => helpers.forEach(({ stop }) => stop());
+
+/** Computes a map and yields the answer of each level, from coarse to fine. Cells are computed once. */
+async function* mapAnswers(texts) {
+  const [status, bar, stop] = ["status", "progress", "stop"].map((name) => find(`study-${name}`));
+  const grids = [];
   for (const scenario of texts) {
-    const names = [`${study}.html`, "samples.html"];
-    const answer = await askStudy({ scenario, files, study, names, options: study === "spread" ? { directions: DIRECTIONS } : {} });
-    if (!answer) return;
+    const answer = await askStudy({ scenario, files, study: "map", cells: [] });
+    if (!answer?.axes) return yield answer;
+    const [xs, ys] = answer.axes;
+    grids.push({ scenario, size: `${xs.length} × ${ys.length}`, keys: xs.flatMap((x) => ys.map((y) => `${x} ${y}`)) });
+  }
+  const began = performance.now();
+  const all = new Set(grids.flatMap(({ keys }) => keys)).size;
+  const rows = new Map();
+  // Number of cells of one request.
+  let together = 8;
+  let shown = "";
+  const show = () => {
+    if (performance.now() - began < 400) return;
+    stop.hidden = bar.hidden = false;
+    bar.value = rows.size / all;
+    status.textContent = shown + estimate(began, rows.size, all);
+  };
+  for (const { scenario, size, keys } of grids) {
+    const todo = [...keys.keys()].filter((cell) => !rows.has(keys[cell]));
+    let failed = false;
+    const help = async ({ ask }) => {
+      while (todo.length > 0 && failed === false) {
+        const cells = todo.splice(0, Math.min(together, Math.ceil(todo.length / helpers.length)));
+        const asked = performance.now();
+        const answer = await ask({ scenario, files, study: "map", cells });
+        if (performance.now() - asked < 200) together *= 2;
+        if (!answer?.axes) return (failed = answer);
+        cells.forEach((cell, index) => rows.set(keys[cell], answer.rows[index]));
+        show();
+      }
+    };
+    await Promise.all(helpers.map(help));
+    if (failed !== false) {
+      stop.hidden = bar.hidden = true;
+      return yield failed;
+    }
+    // Levels that follow at once are not worth a picture.
+    if (scenario !== texts.at(-1) && shown && performance.now() - began < 400) continue;
+    shown = `The map shows ${size} of ${grids.at(-1).size} cells. `;
+    yield askStudy({ scenario, files, study: "map", names: ["map.html"], rows: keys.map((key) => rows.get(key)) });
+    show();
+  }
+  stop.hidden = bar.hidden = true;
+  status.textContent = "";
+}
+
+async function* studyAnswers(study, scenario) {
+  if (study === "map") return yield* mapAnswers(mapTexts());
+  const names = [`${study}.html`, "samples.html"];
+  yield askStudy({ scenario, files, study, names, options: study === "spread" ? { directions: DIRECTIONS } : {} });
+}
+
+let studies = 0;
+async function computeStudy(study) {
+  const own = ++studies;
+  stopHelpers();
+  find("study-status").textContent = "";
+  const text = find("text").value;
+  for await (const answer of studyAnswers(study, text)) {
+    if (!answer || own !== studies) return;
+    showStudyErrors(answer.errors);
     if (answer.errors.length > 0) {
-      find("study-status").textContent = answer.errors.map(({ message }) => message).join("\n");
-      find("take").hidden = true;
+      studied = null;
       return studyFrames.clear();
     }
-    const html = Object.values(answer.files)[0];
     page.study = answer;
     studied = text;
-    await studyFrames.show(html);
-    find("take").hidden = !studyFrames.inside().document.getElementById("command")?.textContent.startsWith("archrock run");
+    const mark = studyFrames.inside()?.archrock;
+    const kept = mark?.stays?.() && mark.data.axes.map(({ values }, i) => values[mark.chosen()[i]]);
+    await studyFrames.show(Object.values(answer.files)[0].replace("</head>", `${NO_COMMAND}</head>`));
+    const { archrock, document: shown } = studyFrames.inside();
+    // A cell that the reader has marked stays so on a finer map.
+    const places = kept && archrock.data.axes?.map(({ values }, i) => values.indexOf(kept[i]));
+    if (places && !places.includes(-1)) archrock.keep(places);
+    find("take").hidden = !shown.getElementById("command")?.textContent.startsWith("archrock run");
+    if (own !== studies) return;
   }
 }
 
+/** Shows why there is no study. A table that the scenario lacks can be added as the message gives it. */
+function showStudyErrors(errors) {
+  if (errors.length > 0) {
+    find("study-status").textContent = errors.map(({ message }) => message).join("\n");
+    find("take").hidden = true;
+  }
+  const [, table] = errors[0]?.message.match(/such as\n\n(\[[^]*)/) ?? [];
+  find("add").hidden = !table;
+  find("add").onclick = () => {
+    find("add").hidden = true;
+    edit(`${find("text").value.trimEnd()}\n\n${table.trimEnd()}\n`);
+    computeStudy(find("study").value);
+  };
+}
+
 find("compute").addEventListener("click", () => computeStudy(find("study").value));
-find("take").addEventListener("click", () => {
+find("take").addEventListener("click", async () => {
   const command = studyFrames.inside()?.document.getElementById("command").textContent ?? "";
   const scenario = command.match(/<<'END'\n([\s\S]*?)END\n?$/)?.[1];
   if (!scenario) return;
-  const values = [...command.split("\n")[0].matchAll(/--set ([\w."]+)=(\S+)/g)];
-  // The cell of a map differs in some values, so the text keeps its comments.
-  const text = values.length > 0 && studied === find("text").value ? studied : scenario;
-  edit(values.reduce((now, [, key, value]) => withValue(now, key.replaceAll('"', ""), value), text));
+  const set = [...command.split("\n")[0].matchAll(/--set ([\w."]+)=(\S+)/g)];
+  const changed = set.length > 0 ? null : await askFile({ scenario, files });
+  const numbers = set.length > 0 ? set.map(([, key, value]) => [key.replaceAll('"', ""), value]) : changed?.scenario && changedNumbers(page.study.scenario, changed.scenario);
+  // A case that differs in some numbers leaves the comments of the text.
+  const isOwn = numbers && studied === find("text").value;
+  edit((numbers ?? []).reduce((now, [key, value]) => withValue(now, key, value), isOwn ? studied : scenario));
   find("result").scrollIntoView({ behavior: "smooth" });
 });
 
@@ -526,6 +666,7 @@ try {
   askRun = createQueue(module, work(""), showScenario);
   askStudy = createQueue(module, work("study-"));
   askFile = createQueue(module, work("save-"));
+  startHelpers(module);
   await edit(textOfAddress());
 } catch (error) {
   find("status").textContent = "";

@@ -29,26 +29,37 @@ const PULSES = [
   ["ricker", "Ricker"],
   ["antisymmetric_ricker", "Antisymmetric Ricker"],
 ];
+/** All kinds of structures: the page offers the first ones. */
+/** Keys of a record that is a table of numbers; the comments are for the reader to complete. */
+const COLUMNS = `unit = "g" # of the accelerations; or "m/s2", "cm/s2"
+# time_column = 1
+# acceleration_column = 2
+# dt_s = 0.01 # if there is no column of times
+# skip_rows = 0
+`;
+const KINDS = STRUCTURES.map(([name]) => name).concat("basket_arch", "blocks");
 const MODELS = [
   ["", "Four links: hinges where they open first", ""],
   ["free_hinges", "Free hinges: any joint may open", "[free_hinges]\n"],
   ["elastic_joints", "Elastic joints", "[elastic_joints]\nnormal_stiffness_gpa_m = 10.0\n"],
 ];
 
-/** The sliders: key, label, range. A slider is shown if the scenario has its table. */
+/** The sliders: key, label, range. A slider is shown if the scenario has its table. Ends that depend on other keys of the table leave most arches standing. */
 const SLIDERS = {
   structure: [
     ["arch.mean_radius_m", "Mean radius (m)", 0.5, 20, 0.1],
-    ["arch.span_m", "Span (m)", 1, 30, 0.1],
-    ["arch.rise_m", "Rise (m)", 0.5, 25, 0.1],
+    ["arch.span_m", "Span (m)", (arch) => 2 * (arch.rise_m ?? 0.5), 30, 0.1],
+    ["arch.rise_m", "Rise (m)", (arch) => 0.2 * arch.span_m, (arch) => arch.span_m / 2, 0.1],
     ["arch.thickness_ratio", "Thickness / mean radius", 0.11, 0.4, 0.001],
-    ["arch.thickness_m", "Thickness (m)", 0.1, 4, 0.01],
-    ["arch.embrace_deg", "Embrace angle (°)", 60, 180, 1],
+    ["arch.thickness_m", "Thickness (m)", (arch) => 0.055 * (arch.span_m ?? 2 * arch.mean_radius_m), (arch) => 0.11 * (arch.span_m ?? 2 * arch.mean_radius_m), 0.01],
+    ["arch.embrace_deg", "Embrace angle (°)", 100, 180, 1],
     ["arch.voussoirs", "Voussoirs", 5, 80, 1],
+    ["pointed_arch.span_m", "Span (m)", (arch) => 6 * arch.thickness_m, (arch) => 2 * arch.rise_m, 0.1],
+    ["pointed_arch.rise_m", "Rise (m)", (arch) => arch.span_m / 2, (arch) => 2 * arch.span_m, 0.1],
+    ["elliptic_arch.span_m", "Span (m)", (arch) => 2 * arch.rise_m, (arch) => 4 * arch.rise_m, 0.1],
+    ["elliptic_arch.rise_m", "Rise (m)", (arch) => 0.25 * arch.span_m, (arch) => 0.75 * arch.span_m, 0.1],
     ...["pointed_arch", "elliptic_arch"].flatMap((table) => [
-      [`${table}.span_m`, "Span (m)", 1, 30, 0.1],
-      [`${table}.rise_m`, "Rise (m)", 0.5, 25, 0.1],
-      [`${table}.thickness_m`, "Thickness (m)", 0.1, 4, 0.01],
+      [`${table}.thickness_m`, "Thickness (m)", (arch) => 0.06 * arch.span_m, (arch) => 0.16 * arch.span_m, 0.01],
       [`${table}.voussoirs`, "Voussoirs", 5, 80, 1],
     ]),
     ["column.height_m", "Height (m)", 0.5, 20, 0.1],
@@ -68,49 +79,100 @@ const SLIDERS = {
   ],
 };
 
-const lines = (text) => text.replace(/\n*$/, "\n").split("\n");
-const header = (line) => line.match(/^\s*\[\[?\s*([\w.-]+)\s*\]\]?\s*(#.*)?$/)?.[1];
-
-/** Returns the interval of lines of a table with its header; null if there is none. */
-function tableLines(text, table) {
-  const all = lines(text);
-  const from = all.findIndex((line) => header(line) === table);
-  if (from < 0) return null;
-  let to = from + 1;
-  while (to < all.length && header(all[to]) === undefined) to += 1;
-  // Comments and empty lines before the next table belong to that.
-  while (/^\s*(#.*)?$/.test(all[to - 1])) to -= 1;
-  return { all, from, to };
+/** Returns the lines of a text, each with the path of its key or header, and the path of its table. An inline table is one line. */
+function parsed(text) {
+  let table = "";
+  return text.replace(/\n*$/, "\n").split("\n").map((line) => {
+    const header = line.match(/^\s*\[\[?\s*([\w.-]+)\s*\]\]?\s*(#.*)?$/)?.[1];
+    table = header ?? table;
+    const key = line.match(/^\s*([\w.-]+)\s*=/)?.[1];
+    return { line, table, isHeader: header !== undefined, path: header ?? (key && (table ? `${table}.${key}` : key)) };
+  });
 }
+
+/** Returns the text in which a table has another last name. */
+function withName(text, table, name) {
+  const rename = ({ line, path }) => (isWithin(path, table) ? line.replace(new RegExp(`\\b${table.split(".").at(-1)}\\b`), name) : line);
+  return parsed(text).map(rename).join("\n");
+}
+
+const isWithin = (path, table) => path === table || path?.startsWith(`${table}.`);
+
+/** Returns true if controls can change a table: the text has it as a table, with dotted keys or as an inline table. */
+const hasTable = (text, table) => parsed(text).some(({ path }) => isWithin(path, table));
 
 /** Returns the text in which a key, given with its table, has a value; without a value the key is removed. */
 function withValue(text, key, value) {
   const dot = key.lastIndexOf(".");
   const [table, name] = [key.slice(0, dot), key.slice(dot + 1)];
-  const found = tableLines(text, table);
-  if (!found) return value === null ? text : `${text.replace(/\n*$/, "\n")}\n[${table}]\n${name} = ${value}\n`;
-  const { all, from, to } = found;
-  const given = all.slice(from, to).findIndex((line) => line.match(/^\s*([\w-]+)\s*=/)?.[1] === name);
-  if (given >= 0 && value === null) all.splice(from + given, 1);
-  else if (given >= 0) all[from + given] = all[from + given].replace(/=\s*[^#]*?(\s*#.*)?$/, `= ${value}$1`);
-  else if (value !== null) all.splice(to, 0, `${name} = ${value}`);
-  return all.join("\n");
+  const all = parsed(text);
+  const given = all.findIndex(({ path, isHeader }) => path === key && !isHeader);
+  const inline = all.findIndex(({ path, isHeader }) => path === table && !isHeader);
+  const from = all.findIndex(({ path, isHeader }) => path === table && isHeader);
+  const dotted = all.findLastIndex(({ path, isHeader }) => isWithin(path, table) && !isHeader);
+  const now = all.map(({ line }) => line);
+  if (given >= 0 && value === null) now.splice(given, 1);
+  else if (given >= 0) now[given] = now[given].replace(/=\s*[^#]*?(\s*#.*)?$/, `= ${value}$1`);
+  else if (inline >= 0) {
+    const entry = new RegExp(`([{,]\\s*)${name}\\s*=[^,}]*`);
+    if (value === null) now[inline] = now[inline].replace(new RegExp(`,\\s*${name}\\s*=[^,}]*|${name}\\s*=[^,}]*,?`), "");
+    else if (entry.test(now[inline])) now[inline] = now[inline].replace(entry, `$1${name} = ${value} `).replace(/ +,/, ",");
+    else now[inline] = now[inline].replace(/,?\s*\}/, (end, at, line) => `${/\{\s*$/.test(line.slice(0, at)) ? " " : ", "}${name} = ${value} }`);
+  } else if (value === null) return text;
+  else if (from >= 0) {
+    let to = from + 1;
+    while (to < all.length && !all[to].isHeader) to += 1;
+    now.splice(endOfTable(all, to), 0, `${name} = ${value}`);
+  } else if (dotted >= 0) now.splice(dotted + 1, 0, now[dotted].replace(/[\w-]+\s*=.*/, `${name} = ${value}`));
+  else now.push(`[${table}]`, `${name} = ${value}`, "");
+  return now.join("\n");
 }
 
-/** Returns the text in which the first of some tables is replaced by another one, and the others are removed. */
+/** Returns the end of a table before the line `to`: comments and empty lines before the next table belong to that. */
+function endOfTable(all, to) {
+  let end = to;
+  while (end > 0 && /^\s*(#.*)?$/.test(all[end - 1].line)) end -= 1;
+  return end;
+}
+
+/** Returns the text without some tables and the tables in them, and the lines that were removed. `place` takes the place of the first one. */
+function withoutTables(text, tables, place) {
+  const all = parsed(text);
+  const isOld = (path) => tables.some((table) => isWithin(path, table));
+  const kept = [];
+  const removed = [];
+  all.forEach(({ line, table, path, isHeader }, index) => {
+    const next = all.findIndex((other, at) => at >= index && other.isHeader);
+    const isEnd = !isHeader && index >= endOfTable(all, next < 0 ? all.length : next);
+    if (isEnd || !(isOld(table) || isOld(path))) return kept.push(line);
+    if (isHeader && !kept.includes(place)) kept.push(place);
+    removed.push(line);
+  });
+  if (!kept.includes(place)) kept.push("", place);
+  return { text: kept.join("\n"), removed: removed.join("\n") };
+}
+
+/** Returns the text in which the first of some tables is replaced by another text, and the others are removed. */
 function withTable(text, tables, replacement) {
   const HERE = "\u0000";
-  let now = text;
-  for (const table of tables) {
-    for (let found = tableLines(now, table); found; found = tableLines(now, table)) {
-      const { all, from, to } = found;
-      all.splice(from, to - from, ...(now.includes(HERE) ? [] : [HERE]));
-      now = all.join("\n");
-    }
-  }
-  if (!now.includes(HERE)) now = `${now.trimEnd()}\n\n${HERE}\n`;
+  const now = withoutTables(text, tables, HERE).text;
   return now.replace(HERE, () => replacement.trimEnd()).replace(/\n{3,}/g, "\n\n").trimEnd() + "\n";
 }
 
-/** Returns the names of the tables in a text. */
-const tableNames = (text) => lines(text).map(header).filter((name) => name !== undefined);
+/** Returns the numbers of a scenario that another one has changed, as keys and values; null if they differ in more. Tables may be missing there. */
+function changedNumbers(from, to, inside = "") {
+  const changes = [];
+  for (const [name, value] of Object.entries(to)) {
+    const old = from[name];
+    if (value === old) continue;
+    if (typeof value === "number" && typeof old === "number") changes.push([inside + name, value]);
+    else if (!value || !old || typeof value !== "object" || Array.isArray(value)) {
+      if (JSON.stringify(value) !== JSON.stringify(old)) return null;
+    } else {
+      const deeper = changedNumbers(old, value, `${inside}${name}.`);
+      if (!deeper) return null;
+      changes.push(...deeper);
+    }
+  }
+  return changes;
+}

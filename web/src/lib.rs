@@ -10,11 +10,13 @@ use std::panic;
 use std::path::PathBuf;
 use std::slice;
 
-use archrock::Runner;
 use archrock::output::Figure;
 use archrock::scenario::{ReadOptions, Scenario, ScenarioErrors, Source};
 use archrock::studies::run::Sinks;
-use archrock::studies::{Computation, Options, Progress, RowSource, StudyError, StudyKind, Style};
+use archrock::studies::{
+    Computation, Options, Progress, RowSource, Study as _, StudyError, StudyKind, Style,
+};
+use archrock::{OverturningMap, Runner};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -37,6 +39,10 @@ struct Request {
     /// Names of the files to answer with.
     #[serde(default)]
     names: Vec<String>,
+    /// Cells of a map to compute alone; `None` for a whole study.
+    cells: Option<Vec<usize>>,
+    /// All rows of a study, which are computed already, as JSON.
+    rows: Option<Vec<String>>,
 }
 
 /// The answer to a request.
@@ -52,6 +58,12 @@ struct Answer {
     summary: Value,
     /// The files of the study that the request names.
     files: BTreeMap<&'static str, String>,
+    /// The values of x and y of a map whose cells are computed alone.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    axes: Option<[Vec<f64>; 2]>,
+    /// The rows of these cells, as JSON: numbers in JavaScript would lose the sign of zero.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    rows: Vec<String>,
     /// The errors; empty for a result.
     errors: Vec<PlacedError>,
 }
@@ -137,7 +149,11 @@ fn answer_to(request: Request) -> Answer {
         Some(Some(kind)) => {
             let mut options = request.options;
             options.run.no_repeat = request.no_repeat;
-            let computed = study(kind, &scenario, &options, &request.names);
+            let rows = request.rows.as_deref();
+            let computed = match request.cells {
+                Some(cells) => cells_of_map(&scenario, &cells),
+                None => study(kind, &scenario, &options, &request.names, rows),
+            };
             computed.unwrap_or_else(|error| Answer::of_error(error.to_string()))
         }
     };
@@ -145,17 +161,41 @@ fn answer_to(request: Request) -> Answer {
     answer
 }
 
+fn watch(Progress { done, all }: Progress) -> ControlFlow<()> {
+    progress(done, all);
+    ControlFlow::Continue(())
+}
+
+/// Computes some cells of a map.
+fn cells_of_map(scenario: &Scenario, cells: &[usize]) -> Result<Answer, StudyError> {
+    let map = OverturningMap::of(scenario).map_err(StudyError::Scenario)?;
+    let numbers = |group: &[usize]| group.iter().map(|index| cells[*index]).collect::<Vec<_>>();
+    let rows = Runner::default().each_of_families(
+        cells.len(),
+        |index| map.family(cells[index]),
+        |group| map.rows(&numbers(group)),
+        watch,
+    )?;
+    let json = rows.iter().map(serde_json::to_string);
+    Ok(Answer {
+        rows: json.filter_map(Result::ok).collect(),
+        axes: Some(map.values),
+        ..Answer::default()
+    })
+}
+
 fn study(
     kind: StudyKind,
     scenario: &Scenario,
     options: &Options,
     names: &[String],
+    rows: Option<&[String]>,
 ) -> Result<Answer, StudyError> {
-    let mut watch = |Progress { done, all }| {
-        progress(done, all);
-        ControlFlow::Continue(())
+    let mut watch = watch;
+    let rows = match rows {
+        Some(rows) => RowSource::Given(rows),
+        None => RowSource::Compute(Runner::default(), None, &mut watch),
     };
-    let rows = RowSource::Compute(Runner::default(), None, &mut watch);
     let sinks = Sinks {
         in_memory: names,
         ..Sinks::default()

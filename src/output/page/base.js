@@ -9,6 +9,8 @@ function buffer(text) {
 }
 const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const farthest = (values) => values.reduce((most, value) => Math.max(most, Math.abs(value ?? 0)), 0);
+/** The name of a column in words, with its unit. */
+const inWords = (column) => column.replace(/_(s|rad|deg|m|mm|g|hz|n|j|mpa)$/, " ($1)").replaceAll("_", " ");
 
 /** Copies the command of a page. */
 async function copyCommand() {

@@ -23,7 +23,7 @@
     const words = spots.find((spot) => Number(spot.dataset.row) === row)?.querySelector("title").textContent ?? "";
     const known = cells[row] ? [...cells[row].cells].map((cell, i) => [names[i], cell.textContent]) : [];
     find("case").textContent = words;
-    find("numbers").textContent = known.filter(([, cell]) => cell).map((pair) => pair.join(" ")).join(", ");
+    find("numbers").textContent = known.filter(([, cell]) => cell).map(([name, cell]) => `${inWords(name)} ${cell}`).join(", ");
     find("command").textContent = command(row);
     find("copy").textContent = "Copy";
   }

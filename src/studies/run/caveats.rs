@@ -32,7 +32,7 @@ pub(super) enum Caveat<'a> {
     FourLinks {
         thrust: Thrust,
         quality: FourLinkQuality,
-        /// True in words, false in warnings: these are one line, and name no options, because the Python package prints them too.
+        /// True in words, false in warnings, which are one line.
         in_words: bool,
         /// True if free hinges are compared already.
         is_compared: bool,

@@ -408,7 +408,7 @@ impl Summary {
             (Verdict::Incomplete, _) => Some("the run has no verdict".to_owned()),
             (Verdict::Uncertain, _) => Some("it is uncertain whether it overturns".to_owned()),
             _ if self.row.is_some() && self.repeatability.is_none() => {
-                Some("the run was not repeated".to_owned())
+                Some("the run is not repeated yet".to_owned())
             }
             (_, Some(change)) => Some(format!(
                 "THE OUTCOME DEPENDS ON JOINT STIFFNESS AND CONTACT: it {happens} this motion as given, and {change}"

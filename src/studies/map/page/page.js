@@ -37,7 +37,7 @@
     const numbers = columns
       .map(({ name, values }) => [name, values[index]])
       .filter(([, value]) => !Number.isNaN(value))
-      .map(([name, value]) => `${name} ${Number(value.toPrecision(5))}`);
+      .map(([name, value]) => `${inWords(name)} ${Number(value.toPrecision(5))}`);
     const place = data.axes.map(({ label }, i) => `${label} ${Number([xs[column], ys[line]][i].toPrecision(6))}`);
     const label = data.doubts[index] ? `uncertain: ${data.doubts[index]}` : data.labels[kinds[index]];
     const outside = data.outside.includes(index) ? ["outside the model of four links"] : [];
@@ -86,5 +86,14 @@
   show([Math.floor(xs.length / 2), Math.floor(ys.length / 2)]);
 
   // For scripts.
-  window.archrock = { data, show, chosen: () => chosen };
+  window.archrock = {
+    data,
+    show,
+    chosen: () => chosen,
+    stays: () => stays,
+    keep(cell) {
+      stays = true;
+      show(cell);
+    },
+  };
 })();
