@@ -40,9 +40,23 @@ function estimate(began, done, all) {
 
 /** Makes a queue of one request at work and the newest one waiting, with elements that show long work. `read` receives the scenario of a run before its result. */
 function createQueue(module, [status, bar, stop], read) {
-  let worker = null;
+  /** Repetitions have a worker of their own: they may be stopped, and a new worker is slow at first. */
+  const workers = new Map();
+  const repeats = () => work.request.no_repeat === false;
   let work = null;
   let waiting = null;
+
+  function createWorker() {
+    const worker = new Worker(workerAddress);
+    worker.onmessage = ({ data }) => {
+      if (data.answer) finish(data.answer);
+      else if (data.scenario) read?.(data.scenario);
+      else show(data);
+    };
+    worker.onerror = (event) => halt({ errors: [{ message: `the worker failed: ${event.message}` }], files: {} });
+    worker.postMessage(module);
+    return worker;
+  }
 
   function finish(answer) {
     clearTimeout(work.timer);
@@ -58,17 +72,8 @@ function createQueue(module, [status, bar, stop], read) {
     waiting = null;
     work = next;
     work.began = performance.now();
-    if (!worker) {
-      worker = new Worker(workerAddress);
-      worker.onmessage = ({ data }) => {
-        if (data.answer) finish(data.answer);
-        else if (data.scenario) read?.(data.scenario);
-        else show(data);
-      };
-      worker.onerror = (event) => halt({ errors: [{ message: `the worker failed: ${event.message}` }], files: {} });
-      worker.postMessage(module);
-    }
-    worker.postMessage(work.request);
+    if (!workers.has(repeats())) workers.set(repeats(), createWorker());
+    workers.get(repeats()).postMessage(work.request);
     work.timer = setTimeout(() => {
       stop.hidden = false;
       status.textContent = "Computing…";
@@ -91,9 +96,10 @@ function createQueue(module, [status, bar, stop], read) {
 
   /** Ends the work with this answer; `null` means that nobody waits for it. */
   function halt(answer) {
-    worker?.terminate();
-    worker = null;
-    if (work) finish(answer);
+    if (!work) return;
+    workers.get(repeats()).terminate();
+    workers.delete(repeats());
+    finish(answer);
   }
 
   stop.addEventListener("click", () => {
@@ -108,7 +114,7 @@ function createQueue(module, [status, bar, stop], read) {
       waiting = { request, resolve };
       if (!work) begin(waiting);
       // A reader who goes on waits neither for repetitions nor for long work.
-      else if (work.request.no_repeat === false || performance.now() - work.began > 1000) halt(null);
+      else if (repeats() || performance.now() - work.began > 1000) halt(null);
     });
   };
 }
