@@ -29,7 +29,6 @@ const PULSES = [
   ["ricker", "Ricker"],
   ["antisymmetric_ricker", "Antisymmetric Ricker"],
 ];
-/** All kinds of structures: the page offers the first ones. */
 /** Keys of a record that is a table of numbers; the comments are for the reader to complete. */
 const COLUMNS = `unit = "g" # of the accelerations; or "m/s2", "cm/s2"
 # time_column = 1
@@ -37,6 +36,7 @@ const COLUMNS = `unit = "g" # of the accelerations; or "m/s2", "cm/s2"
 # dt_s = 0.01 # if there is no column of times
 # skip_rows = 0
 `;
+/** All kinds of structures: the page offers the first ones. */
 const KINDS = STRUCTURES.map(([name]) => name).concat("basket_arch", "blocks");
 const MODELS = [
   ["", "Four links: hinges where they open first", ""],
