@@ -202,7 +202,10 @@ function createSlider([key, label, from, to, step]) {
   const name = Object.assign(document.createElement("label"), { htmlFor: number.id, textContent: label });
   range.setAttribute("aria-label", label);
   row.append(name, number, range);
-  const change = (value) => value !== "" && edit(withValue(find("text").value, key, String(Number(value))));
+  function change(value) {
+    const text = find("text").value;
+    if (value !== "" && hasTable(text, key.slice(0, key.lastIndexOf(".")))) edit(withValue(text, key, String(Number(value))));
+  }
   range.addEventListener("input", () => change((number.value = range.value)));
   number.addEventListener("input", () => change(number.value));
   row.hidden = true;
@@ -324,7 +327,7 @@ async function addRecords(added) {
   const text = find("text").value;
   const [first, ...others] = added;
   if (!first || others.length > 0 || hasTable(text, "suite") || text.includes("slv_records")) return computeRun();
-  const columns = /\.(csv|tsv|txt|dat)$/i.test(first.name) ? COLUMNS : "";
+  const columns = TABLE_FILE.test(first.name) ? COLUMNS : "";
   return edit(withTable(text, ["ground"], `[ground.record]\nfile = ${JSON.stringify(first.name)}\n${columns}scale = 1.0\n`));
 }
 
@@ -378,10 +381,11 @@ function markStale(isStale) {
   find("run").classList.toggle("stale", isStale);
 }
 
-/** Says that the study is of an earlier scenario, unless there is more to say about studies. */
+/** Marks a study of an earlier scenario. */
 function markStudy() {
-  const status = find("study-status");
-  if (["", EARLIER].includes(status.textContent)) status.textContent = studied && studied !== find("text").value ? EARLIER : "";
+  const isEarlier = studied !== null && studied !== find("text").value;
+  find("earlier").hidden = !isEarlier;
+  find("study-page").classList.toggle("stale", isEarlier);
 }
 
 const runFrames = createFrames(find("run"), "The structure in motion");
@@ -399,6 +403,9 @@ const request = (more) => ({ scenario: find("text").value, files, ...more });
 async function computeRun() {
   const change = ++changes;
   keepAddress();
+  markStudy();
+  // What was wrong with an earlier text.
+  for (const part of ["study-", "save-"]) if (find(`${part}stop`).hidden) find(`${part}status`).textContent = "";
   // The picture comes first, repetitions of rows of blocks after it.
   for (const no_repeat of [true, false]) {
     const answer = await askRun(request({ study: "run", no_repeat, names: ["report.html"] }));
@@ -409,7 +416,6 @@ async function computeRun() {
     const [verdict] = answer.words.split("\n");
     find("answer").textContent = verdict;
     await runFrames.show(answer.files["report.html"]);
-    markStudy();
     page.answer = answer;
     const hasRow = last.scenario.free_hinges || last.scenario.elastic_joints;
     if (!hasRow || !no_repeat) return;
@@ -493,7 +499,6 @@ let askStudy;
 let askFile;
 /** The text of the study that is shown. */
 let studied = null;
-const EARLIER = "The study below is of an earlier scenario.";
 const DIRECTIONS = [0, 180, 90].map((angle_deg) => ({ springing: "right", angle_deg }));
 /** Numbers of durations and of amplitudes of the maps, from coarse to fine: each has all cells of the one before, and the pulse of the history in the middle. */
 const GRIDS = [[7, 5], [13, 9], [25, 17], [49, 33]];
@@ -586,6 +591,7 @@ async function* mapAnswers(texts) {
     await Promise.all(helpers.map(help));
     if (failed !== false) {
       stop.hidden = bar.hidden = true;
+      if (status.textContent === "Stopped.") status.textContent = `${shown}Stopped.`;
       return yield failed;
     }
     // Levels that follow at once are not worth a picture.
@@ -615,10 +621,12 @@ async function computeStudy(study) {
     showStudyErrors(answer.errors);
     if (answer.errors.length > 0) {
       studied = null;
+      markStudy();
       return studyFrames.clear();
     }
     page.study = answer;
     studied = text;
+    markStudy();
     const mark = studyFrames.inside()?.archrock;
     const kept = mark?.stays?.() && mark.data.axes.map(({ values }, i) => values[mark.chosen()[i]]);
     await studyFrames.show(Object.values(answer.files)[0].replace("</head>", `${NO_COMMAND}</head>`));
@@ -641,7 +649,11 @@ function showStudyErrors(errors) {
   find("add").hidden = !table;
   find("add").onclick = () => {
     find("add").hidden = true;
-    edit(`${find("text").value.trimEnd()}\n\n${table.trimEnd()}\n`);
+    // A suite names the files that are here.
+    const here = Object.keys(files).filter((name) => !name.includes("/"));
+    const columns = here.some((name) => TABLE_FILE.test(name)) ? COLUMNS : "";
+    const ready = here.length > 0 ? table.replace('"records/*.at2"', `${JSON.stringify(here)}\n${columns.trimEnd()}`) : table;
+    edit(`${find("text").value.trimEnd()}\n\n${ready.trimEnd()}\n`);
     computeStudy(find("study").value);
   };
 }
@@ -656,7 +668,10 @@ find("take").addEventListener("click", async () => {
   const numbers = set.length > 0 ? set.map(([, key, value]) => [key.replaceAll('"', ""), value]) : changed?.scenario && changedNumbers(page.study.scenario, changed.scenario);
   // A case that differs in some numbers leaves the comments of the text.
   const isOwn = numbers && studied === find("text").value;
-  edit((numbers ?? []).reduce((now, [key, value]) => withValue(now, key, value), isOwn ? studied : scenario));
+  const text = (numbers ?? []).reduce((now, [key, value]) => withValue(now, key, value), isOwn ? studied : scenario);
+  // A map has the pulses of all its cells.
+  if (isOwn && set.length > 0) studied = text;
+  edit(text);
   find("result").scrollIntoView({ behavior: "smooth" });
 });
 

@@ -29,7 +29,9 @@ const PULSES = [
   ["ricker", "Ricker"],
   ["antisymmetric_ricker", "Antisymmetric Ricker"],
 ];
-/** Keys of a record that is a table of numbers; the comments are for the reader to complete. */
+/** Names of record files that are tables of numbers. */
+const TABLE_FILE = /\.(csv|tsv|txt|dat)$/i;
+/** Keys of such a record; the comments are for the reader to complete. */
 const COLUMNS = `unit = "g" # of the accelerations; or "m/s2", "cm/s2"
 # time_column = 1
 # acceleration_column = 2

@@ -497,6 +497,7 @@ impl Drawings {
                 history,
                 points,
                 opening,
+                run.scenario.unlikely_of(Some(&*run.model)),
                 &render(&Words { summary }),
             )
         });

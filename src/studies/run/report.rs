@@ -69,6 +69,7 @@ struct Page {
     title: String,
     uncertainty: String,
     verdict: String,
+    warnings: Vec<String>,
     what: String,
     words: String,
     scenario: String,
@@ -199,14 +200,15 @@ impl Report {
         self.fall_end = Some(end);
     }
 
-    /// Makes the page of a scenario. `uncertainty` is the text about the samples of `[uncertain]`, empty without samples; `verdict` and `words`
-    /// are printed by `run`.
+    /// Makes the page of a scenario. `uncertainty` is the text about the samples of `[uncertain]`, empty without samples; `verdict`,
+    /// `warnings` about unlikely numbers, and `words` are printed by `run`.
     pub fn page(
         &self,
         scenario: &Scenario,
         history: &History,
         points: Option<&ObservedPoints>,
         [uncertainty, verdict]: [&str; 2],
+        warnings: Vec<String>,
         words: &str,
     ) -> String {
         let ground = scenario.ground_motion();
@@ -244,6 +246,7 @@ impl Report {
             title: title(scenario).to_owned(),
             uncertainty: uncertainty.trim_end().to_owned(),
             verdict: verdict.trim_end().to_owned(),
+            warnings,
             what: format!("{structure}; {shaken}"),
             words: words.trim_end().to_owned(),
             scenario: scenario.to_toml(),
