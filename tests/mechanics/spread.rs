@@ -1410,7 +1410,7 @@ fn spread_refuses_structures_without_two_springings() {
     refused(
         folder.path(),
         &["spread", "column.toml"],
-        &["stands on one support alone"],
+        &["stands on one support"],
     );
     refused(
         folder.path(),

@@ -245,8 +245,21 @@ const PARTS = {
     verify(element("study-status").textContent.includes("[demand"), element("study-status").textContent);
     page.study = null;
     await afterwards(() => element("add").click(), "a table for the check");
-    await until(() => page.study, `the check: ${element("study-status").textContent}`);
+    await until(() => page.study?.files["verify.html"], `the check: ${element("study-status").textContent}`);
     verify(text.value.startsWith(start) && text.value.includes("[demand.slv]"), text.value);
+
+    verify(element("earlier").hidden, "the check is that of the text");
+    const changed = page.edit(start.replace("-0.35", "-0.36"));
+    verify(!element("earlier").hidden && element("study-page").classList.contains("stale"), "an earlier study is marked at once");
+    await changed;
+
+    // A suite begins with the files that were given; an unlikely unit is doubted beside the verdict.
+    page.files["given.csv"] = "t,a\n0,0\n0.1,4\n0.2,-4\n0.3,0\n";
+    await page.computeStudy("suite");
+    await afterwards(() => element("add").click(), "a suite");
+    await until(() => page.study.files["suite.html"]?.includes("given.csv"), `the suite: ${element("study-status").textContent}`);
+    await afterwards(() => page.edit(`${link.slice(0, link.indexOf("[ground"))}[ground.record]\nfile = "given.csv"\nunit = "g"\n`), "a record");
+    verify(inside("run").document.querySelector("header .warning").textContent.includes("is its unit"), "the unit is doubted");
 
     // The case of a threshold changes numbers alone.
     const commented = `# A comment\n${start.replace("duration_s", "# another\nduration_s")}`;

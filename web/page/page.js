@@ -618,7 +618,7 @@ async function computeStudy(study) {
   const text = find("text").value;
   for await (const answer of studyAnswers(study, text)) {
     if (!answer || own !== studies) return;
-    showStudyErrors(answer.errors);
+    showStudyErrors(study, answer.errors);
     if (answer.errors.length > 0) {
       studied = null;
       markStudy();
@@ -640,7 +640,7 @@ async function computeStudy(study) {
 }
 
 /** Shows why there is no study. A table that the scenario lacks can be added as the message gives it. */
-function showStudyErrors(errors) {
+function showStudyErrors(study, errors) {
   if (errors.length > 0) {
     find("study-status").textContent = errors.map(({ message }) => message).join("\n");
     find("take").hidden = true;
@@ -654,7 +654,7 @@ function showStudyErrors(errors) {
     const columns = here.some((name) => TABLE_FILE.test(name)) ? COLUMNS : "";
     const ready = here.length > 0 ? table.replace('"records/*.at2"', `${JSON.stringify(here)}\n${columns.trimEnd()}`) : table;
     edit(`${find("text").value.trimEnd()}\n\n${ready.trimEnd()}\n`);
-    computeStudy(find("study").value);
+    computeStudy(study);
   };
 }
 

@@ -7,6 +7,12 @@ function curve(encoded) {
   return [Array.from(values.subarray(0, half)), Array.from(values.subarray(half))];
 }
 
+/** Returns the short text of a value on an axis: the axis has room for eight characters. */
+function tick(value) {
+  const rounded = Number(value.toPrecision(6));
+  return rounded !== 0 && Math.abs(rounded) < 1e-3 ? rounded.toExponential() : String(rounded);
+}
+
 /** Removes the plots that the page shows. */
 let removePlots = () => {};
 
@@ -43,7 +49,7 @@ function createPlots(parent, { start, end }, seek) {
         cursor: { sync: { key: "archrock" }, drag: { x: true, y: false } },
         axes: [
           { ...look, size: 30, values: (_, splits) => splits.map((s) => `${Number(s.toPrecision(6))} s`) },
-          { ...look, size: 64, values: (_, splits) => splits.map((s) => Number(s.toPrecision(6))) },
+          { ...look, size: 64, values: (_, splits) => splits.map(tick) },
         ],
         series: [{ label: "time", value: (_, v) => (v == null ? "" : `${v.toFixed(3)} s`) }].concat(
           curves.map(({ name, color, dash, width: thick, beyond }) => ({

@@ -150,7 +150,7 @@ pub struct Snap {
 #[non_exhaustive]
 pub enum SettlingError {
     /// The row is a stack, with one support only.
-    #[error("the row stands on one support alone, and nothing moves against it")]
+    #[error("the structure stands on one support: a movement of a springing needs two")]
     OneSupport,
     /// The row carries constant forces.
     #[error(
