@@ -267,6 +267,10 @@ const PARTS = {
     await page.computeStudy("threshold");
     await afterwards(() => element("take").click(), "a case");
     verify(text.value.replace(/amplitude_g = .*/, "") === commented.replace(/amplitude_g = .*/, "") && text.value !== commented, text.value);
+    // The address follows a moment later.
+    await wait(300);
+    await afterwards(() => history.back(), "Back");
+    verify(text.value === commented, text.value);
 
     // Long work shows its progress and stops.
     page.edit(`${link.replace("duration_s = 1", "duration_s = 3000\nstart_s = 1")}[simulation]\nduration_s = 900000\noutput_step_s = 1\n`);

@@ -434,8 +434,9 @@ function keepAddress() {
     history.replaceState(null, "", text === START ? location.pathname : `#${encodeURIComponent(text)}`);
   }, 200);
 }
-// Back returns to the scenario before a change.
-find("form").addEventListener("change", () => history.pushState(null, "", location.href));
+/** Lets Back return to the present scenario after a change. */
+const remember = () => history.pushState(null, "", location.href);
+find("form").addEventListener("change", remember);
 
 /** Returns the scenario in the address, the first scenario if there is none, or the present one if the address is damaged. */
 function textOfAddress() {
@@ -649,6 +650,7 @@ function showStudyErrors(study, errors) {
   find("add").hidden = !table;
   find("add").onclick = () => {
     find("add").hidden = true;
+    remember();
     // A suite names the files that are here.
     const here = Object.keys(files).filter((name) => !name.includes("/"));
     const columns = here.some((name) => TABLE_FILE.test(name)) ? COLUMNS : "";
@@ -671,6 +673,7 @@ find("take").addEventListener("click", async () => {
   const text = (numbers ?? []).reduce((now, [key, value]) => withValue(now, key, value), isOwn ? studied : scenario);
   // A map has the pulses of all its cells.
   if (isOwn && set.length > 0) studied = text;
+  remember();
   edit(text);
   find("result").scrollIntoView({ behavior: "smooth" });
 });

@@ -497,7 +497,6 @@ impl Drawings {
                 history,
                 points,
                 opening,
-                run.scenario.unlikely_of(Some(&*run.model)),
                 &render(&Words { summary }),
             )
         });

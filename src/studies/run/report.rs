@@ -53,6 +53,8 @@ pub struct Report {
     scene: Scene,
     bodies: Vec<String>,
     gravity_m_s2: f64,
+    /// About unlikely numbers of the scenario.
+    warnings: Vec<String>,
     motion: Animation,
     /// The fall after the structure has overturned.
     fall: Animation,
@@ -170,6 +172,7 @@ impl Report {
             scene,
             bodies,
             gravity_m_s2: scenario.gravity_m_s2(),
+            warnings: scenario.unlikely_of(Some(model)),
             motion: Animation::new(most),
             fall: Animation::new(most / FALL_SHARE),
             fall_end: None,
@@ -200,15 +203,14 @@ impl Report {
         self.fall_end = Some(end);
     }
 
-    /// Makes the page of a scenario. `uncertainty` is the text about the samples of `[uncertain]`, empty without samples; `verdict`,
-    /// `warnings` about unlikely numbers, and `words` are printed by `run`.
+    /// Makes the page of a scenario. `uncertainty` is the text about the samples of `[uncertain]`, empty without samples; `verdict` and `words`
+    /// are printed by `run`.
     pub fn page(
         &self,
         scenario: &Scenario,
         history: &History,
         points: Option<&ObservedPoints>,
         [uncertainty, verdict]: [&str; 2],
-        warnings: Vec<String>,
         words: &str,
     ) -> String {
         let ground = scenario.ground_motion();
@@ -246,7 +248,7 @@ impl Report {
             title: title(scenario).to_owned(),
             uncertainty: uncertainty.trim_end().to_owned(),
             verdict: verdict.trim_end().to_owned(),
-            warnings,
+            warnings: self.warnings.clone(),
             what: format!("{structure}; {shaken}"),
             words: words.trim_end().to_owned(),
             scenario: scenario.to_toml(),
