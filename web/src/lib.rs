@@ -41,7 +41,7 @@ struct Request {
     names: Vec<String>,
     /// Cells of a map to compute alone; `None` for a whole study.
     cells: Option<Vec<usize>>,
-    /// All rows of a study, which are computed already, as JSON.
+    /// All rows of a map, which are computed already, as JSON; `None` to compute them.
     rows: Option<Vec<String>>,
 }
 
