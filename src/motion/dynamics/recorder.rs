@@ -26,6 +26,11 @@ pub trait Recorder {
         true
     }
 
+    /// Returns whether the recorder needs events, which take time to make.
+    fn wants_events(&self) -> bool {
+        true
+    }
+
     /// Returns whether samples need the thrust line, which takes time to compute.
     fn wants_thrust_line(&self) -> bool {
         false

@@ -87,6 +87,10 @@ impl Recorder for SafetyMonitor {
         false
     }
 
+    fn wants_events(&self) -> bool {
+        false
+    }
+
     fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
         let half_cycle_s = self.longest_half_cycle_s(sample);
         // A row that has slipped is lower than before, so its energy gives no information.

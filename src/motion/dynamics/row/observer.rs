@@ -332,6 +332,12 @@ impl<'a> MotionObserver<'a> {
         self.recorder.is_some()
     }
 
+    /// Returns whether there is a recorder that needs events.
+    pub fn reports_events(&self) -> bool {
+        let recorder = self.recorder.as_ref();
+        recorder.is_some_and(|recorder| recorder.wants_events())
+    }
+
     /// Records a release, with rotations of the blocks, potential and kinetic energy, and displacement of the centre of gravity times the mass.
     pub fn released(
         &mut self,
@@ -610,7 +616,7 @@ impl<'a> MotionObserver<'a> {
 
     /// Begins the phase of an impact that is reported after the next step, when its energy is known.
     pub fn await_impact(&mut self) {
-        if self.has_recorder() && !self.is_falling {
+        if self.reports_events() && !self.is_falling {
             self.phase += 1;
             self.pending_events = Some(Vec::new());
         }

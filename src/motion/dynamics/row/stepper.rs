@@ -68,7 +68,7 @@ pub trait Stepper<'a>: Sized {
         energy_j: f64,
         rotations_and_rates: (Vec<f64>, Vec<f64>),
     ) {
-        if !self.observer().has_recorder() {
+        if !self.observer().reports_events() {
             return;
         }
         let (rotations_rad, rates_rad_s) = rotations_and_rates;
@@ -91,7 +91,7 @@ pub trait Stepper<'a>: Sized {
         friction_j: Option<f64>,
     ) {
         let observer = self.observer();
-        if !observer.has_recorder() {
+        if !observer.reports_events() {
             return;
         }
         let opens_at_once = |joint: usize| {
@@ -135,7 +135,7 @@ pub trait Stepper<'a>: Sized {
     /// Reports events of ties in the last step.
     fn report_ties(&mut self, happened: Vec<(usize, EventKind)>) {
         for (tie, kind) in happened {
-            if self.observer().has_recorder() {
+            if self.observer().reports_events() {
                 let tie = Some(tie);
                 let event = self.event(kind, self.observer().moved);
                 self.observer_mut().report(&Event { tie, ..event });

@@ -219,8 +219,18 @@ impl SlipProgram {
                     column *= *scale;
                 }
             }
-            self.own[joint] =
-                gradients[0] * gradients[0].transpose() + gradients[1] * gradients[1].transpose();
+            // The compliance is symmetric.
+            let entry = |row: usize, column: usize| {
+                let part = |side: usize| {
+                    let g = &gradients[side];
+                    let product = |axis: usize| g[(row, axis)] * g[(column, axis)];
+                    product(0) + product(1) + product(2)
+                };
+                part(0) + part(1)
+            };
+            let (m12, m13, m23) = (entry(0, 1), entry(0, 2), entry(1, 2));
+            let (m11, m22, m33) = (entry(0, 0), entry(1, 1), entry(2, 2));
+            self.own[joint] = Matrix3::new(m11, m12, m13, m12, m22, m23, m13, m23, m33);
             if let Some(before) = before {
                 self.next[before] = self.gradients[before][1] * gradients[0].transpose();
             }
@@ -302,7 +312,7 @@ impl SlipProgram {
             self.balance();
             *count += 1;
             std::mem::swap(&mut self.impulses, &mut self.target);
-            self.find_rates();
+            self.find_free_rates();
             if self.correct_modes(one, tolerance) {
                 return true;
             }
@@ -427,6 +437,16 @@ impl SlipProgram {
         for joint in 0..self.rates.len() {
             let rate = self.drive[joint] + self.response(joint, &self.impulses);
             self.rates[joint] = rate + self.proximal_rates(joint);
+        }
+    }
+
+    /// Computes the rates of the joints that are open or slip. The modes of closed joints that stick depend on their impulses alone.
+    fn find_free_rates(&mut self) {
+        for joint in 0..self.rates.len() {
+            if self.modes[joint] != Mode::STICKING {
+                let rate = self.drive[joint] + self.response(joint, &self.impulses);
+                self.rates[joint] = rate + self.proximal_rates(joint);
+            }
         }
     }
 

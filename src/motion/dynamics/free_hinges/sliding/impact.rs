@@ -136,7 +136,7 @@ impl SlidingStepper<'_> {
         landing.dissipation.add(late);
         let (total_j, friction_j) = (landing.dissipation.total_j, landing.dissipation.friction_j);
         self.observer.row_summary.energy_taken_j += total_j - friction_j;
-        if !self.observer.has_recorder() {
+        if !self.observer.reports_events() {
             return;
         }
         let after = if alone {
