@@ -78,6 +78,9 @@ pub trait Model: Debug + Send + Sync {
     fn simulate_until(&self, until: EndCondition, case: &Case) -> Result<Summary, SimulationError> {
         let (ground, request) = case;
         let mut monitor = SafetyMonitor::new(until, ground, request);
+        if let (Some(monitor), Some(row)) = (&mut monitor, self.row()) {
+            monitor.watch(row);
+        }
         let recorder = monitor.as_mut().map(|recorder| recorder as _);
         let mut summary = self.simulate(ground, request, recorder)?;
         if monitor.is_some_and(|monitor| monitor.has_ended)

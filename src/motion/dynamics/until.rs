@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use super::recorder::Recorder;
 use super::request::Request;
 use crate::dynamics::{GroundMotion, Sample, State};
-use crate::mechanics::Sway;
+use crate::mechanics::{Joint, Row, Sway};
 
 /// End of the computation of a motion. A motion that is ended early has the outcome [`StillRocking`](super::history::Outcome::StillRocking).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,6 +25,9 @@ pub(super) const SAFE: f64 = 0.25;
 /// Fraction of the largest energy of the motion below which no block exceeds its largest rotation.
 const DECAYED: f64 = 0.1;
 
+/// Slip, over the thickness of the thinnest joint, up to which the barrier is that of the row before slip.
+const COMPARABLE_SLIP: f64 = 0.01;
+
 /// Number of durations of the last half cycle that must fit into the time left, so that a history comes to rest before its end. Half cycles shorten
 /// at least as fast as those of a block whose impacts leave 0.95 of the energy.
 const HALF_CYCLES_LEFT: f64 = 40.0;
@@ -42,6 +45,8 @@ pub(super) struct SafetyMonitor {
     half_cycle_s: f64,
     /// Largest energy up to now, over the barrier.
     largest_ratio: f64,
+    /// Largest slip with which energies are comparable with the barrier, in metres.
+    largest_slip_m: f64,
     /// True once the history is ended early.
     pub(super) has_ended: bool,
 }
@@ -63,6 +68,12 @@ impl SafetyMonitor {
             rest_by_s,
             ..Self::default()
         })
+    }
+
+    /// Sets the row whose slips end the comparison with its barrier.
+    pub(super) fn watch(&mut self, row: &Row) {
+        let thicknesses_m = row.joints.iter().map(Joint::thickness_m);
+        self.largest_slip_m = COMPARABLE_SLIP * thicknesses_m.fold(f64::INFINITY, f64::min);
     }
 
     /// Returns the longest duration of a half cycle from now on, in seconds.
@@ -93,8 +104,9 @@ impl Recorder for SafetyMonitor {
 
     fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
         let half_cycle_s = self.longest_half_cycle_s(sample);
-        // A row that has slipped is lower than before, so its energy gives no information.
-        let slips = !sample.offsets_m.is_empty();
+        // A row that has slipped far has another barrier.
+        let far = |offset_m: &f64| offset_m.abs() > self.largest_slip_m;
+        let slips = sample.offsets_m.iter().any(far);
         let ratio = sample.energy_ratio.unwrap_or(f64::INFINITY);
         self.largest_ratio = self.largest_ratio.max(ratio);
         let safe = ratio < SAFE;

@@ -63,6 +63,8 @@ pub struct MotionObserver<'a> {
     /// Joints that open in a step, with the edge about which they turn; `None` for parted joints.
     pub opened: Vec<Hinge>,
     pub impacts: usize,
+    /// Least potential energy up to now, in J.
+    least_potential_j: f64,
     pub cost: Cost,
     peak_rotations_rad: Vec<f64>,
     energy_defect_ratio: f64,
@@ -194,6 +196,7 @@ impl<'a> MotionObserver<'a> {
             thrust: ThrustRecord::default(),
             friction: FrictionDemands::default(),
             impacts: 0,
+            least_potential_j: 0.0,
             peak_rotations_rad: vec![0.0; row.blocks.len()],
             energy_defect_ratio: 0.0,
             cost: Cost::default(),
@@ -374,6 +377,7 @@ impl<'a> MotionObserver<'a> {
             self.highest_s = self.time;
         }
         self.potential = potential;
+        self.least_potential_j = self.least_potential_j.min(potential);
         self.kinetic = kinetic;
         if kinetic >= REST_ENERGY_RATIO * self.energy_unit {
             self.quiet_since_s = self.time;
@@ -576,7 +580,10 @@ impl<'a> MotionObserver<'a> {
         self.sample = sample;
         let sample = &mut self.sample;
         sample.energy_j = kinetic + self.potential;
-        let ratio = |barrier_j| sample.energy_j / barrier_j;
+        // A row that has slipped may rest lower than before.
+        let slips = self.row_summary.sliding.is_some();
+        let rest_j = if slips { self.least_potential_j } else { 0.0 };
+        let ratio = |barrier_j| (sample.energy_j - rest_j) / barrier_j;
         sample.energy_ratio = self.input.barrier_j.map(ratio);
         if self.is_falling {
             if let Some(recorder) = &mut self.recorder {
