@@ -77,6 +77,20 @@ pub struct Axis {
     pub sequence: Sequence,
 }
 
+impl Axis {
+    /// Returns the key of the scenario that the axis sets; `None` for strength and duration of the ground motion.
+    pub(crate) fn path(&self) -> Option<&str> {
+        match self.quantity {
+            Quantity::Other => Some(&self.key),
+            Quantity::MeanRadius => Some("arch.mean_radius_m"),
+            Quantity::ThicknessRatio => Some("arch.thickness_ratio"),
+            Quantity::Embrace => Some("arch.embrace_deg"),
+            Quantity::Restitution => Some("impact.restitution"),
+            _ => None,
+        }
+    }
+}
+
 /// The cells of a map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Map {

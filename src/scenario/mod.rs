@@ -122,6 +122,8 @@ pub struct ReadOptions<'a> {
     /// True for static analysis. If files of `[ground]` are missing or faulty, the ground does not move; drums and moved springings need no
     /// table of a model.
     pub statics: bool,
+    /// True if a circular arch need not stand: its model reports that.
+    pub unproved: bool,
 }
 
 /// A structure, its ground motion and the studies of it, with every default filled in.
@@ -294,7 +296,11 @@ impl Scenario {
         let simulated = simulation.as_ref().ok();
         let gravity_m_s2 = simulated.map(|it| it.gravity_m_s2);
         let lands = kind.has_joints && kind.is_rigid && !options.statics;
-        let built = Structure::read(table, (kind.has_joints, lands), gravity_m_s2);
+        let built = Structure::read(
+            table,
+            (kind.has_joints, lands, options.unproved),
+            gravity_m_s2,
+        );
         let structure = built.as_ref().ok().map(|(structure, _)| structure);
         let known = (known, gravity_m_s2, options.statics);
         let ground = GroundInput::read(table, known, options.statics);

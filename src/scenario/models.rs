@@ -64,19 +64,6 @@ impl MotionModel {
             .unwrap_or(ImpactModel::MaxRestitution.into())
     }
 
-    /// Returns four links with another prescribed restitution coefficient.
-    #[must_use]
-    pub fn with_restitution(&self, restitution: f64) -> Self {
-        let options = Arc::new(ImpactLaw {
-            model: ImpactModel::Prescribed { restitution },
-            ..self.impact()
-        });
-        Self {
-            options,
-            ..self.clone()
-        }
-    }
-
     /// Rejects options that do not fit a structure. `end_s` is the end of the history, if it is known.
     pub(super) fn check(
         &self,

@@ -13,6 +13,23 @@ impl Scenario {
     /// # Errors
     /// The fault of the keys or of the changed scenario.
     pub fn with_values(&self, values: &[(&str, f64)]) -> Result<Self, String> {
+        self.with_read_values(values, &ReadOptions::default())
+    }
+
+    /// As [`Scenario::with_values`]. A circular arch may be unable to stand: its model reports that.
+    pub(crate) fn with_unproved_values(&self, values: &[(&str, f64)]) -> Result<Self, String> {
+        let options = ReadOptions {
+            unproved: true,
+            ..ReadOptions::default()
+        };
+        self.with_read_values(values, &options)
+    }
+
+    fn with_read_values(
+        &self,
+        values: &[(&str, f64)],
+        options: &ReadOptions<'_>,
+    ) -> Result<Self, String> {
         let mut resolved = self.resolved();
         if let Value::Object(tables) = &mut resolved {
             tables.retain(|name, _| !STUDIES.contains(&name.as_str()));
@@ -34,8 +51,7 @@ impl Scenario {
         }
         update_dependent_values(&mut document.root, &keys);
         let known: Vec<Series> = self.series().cloned().collect();
-        let options = ReadOptions::default();
-        table::read_document(document, |table| Self::read_table(table, &known, &options))
+        table::read_document(document, |table| Self::read_table(table, &known, options))
             .map_err(|faults| shown(&faults[0].message))
     }
 }

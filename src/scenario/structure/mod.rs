@@ -59,12 +59,14 @@ impl Structure {
     /// Reads the structure with its ties, for a model of motion with joints or without. `lands` is true if its blocks are rigid and land on each other.
     pub(super) fn read(
         table: &mut Table<'_>,
-        (has_joints, lands): (bool, bool),
+        (has_joints, lands, unproved): (bool, bool, bool),
         gravity_m_s2: Option<f64>,
     ) -> ReadResult<(Self, Vec<TieTable>)> {
         let beside = Additions::read(table);
         let alone = beside.as_ref().is_ok_and(Additions::is_empty);
-        let arch = table.table("arch", |table| read_arch(table, has_joints, alone));
+        let arch = table.table("arch", |table| {
+            read_arch(table, has_joints, alone, unproved)
+        });
         let column = table.table("column", |table| read_column(table, has_joints));
         let shape = masonry::read_shapes(table).map(StructureTable::Shape);
         let [pointed, elliptic, basket, blocks] = masonry::SHAPES;
@@ -269,7 +271,12 @@ enum StructureTable {
 
 /// Reads `[arch]`. With `alone` the arch has no piers, fill, loads or ties; with equal voussoirs or none it must then start as four links. With
 /// free hinges it must have voussoirs and stand.
-fn read_arch(table: &mut Table<'_>, free_hinges: bool, alone: bool) -> ReadResult<StructureTable> {
+fn read_arch(
+    table: &mut Table<'_>,
+    free_hinges: bool,
+    alone: bool,
+    unproved: bool,
+) -> ReadResult<StructureTable> {
     let circular = Circular::read(table);
     let depth_m = table.or("depth_m", &MAGNITUDE, DEPTH_M);
     let density_kg_m3 = table.or("density_kg_m3", &MAGNITUDE, DENSITY_KG_M3);
@@ -300,6 +307,9 @@ fn read_arch(table: &mut Table<'_>, free_hinges: bool, alone: bool) -> ReadResul
             table.wrong(error.argument, wrong)
         });
         return Ok(StructureTable::Shape(Shape::Circular(arch?)));
+    }
+    if unproved {
+        return Ok(StructureTable::Arch(arch));
     }
     match arch.incipient() {
         Ok(_) => Ok(StructureTable::Arch(arch)),

@@ -17,13 +17,8 @@ pub use self::report::Summary as MapSummary;
 use super::ending::{Ending, NoHistory, answered};
 use super::runner::Study;
 use crate::dynamics::{OutcomeCount, Repetition};
-use crate::scenario::{
-    Axis, Ground, ModelError, MotionModel, Quantity, Scaling, Scenario, Structure,
-};
-use crate::{
-    Arch, ArgumentError, Case, FourLinkError, FourLinks, GroundMotion, Model, PulseShape,
-    SimulationError, Summary,
-};
+use crate::scenario::{Axis, Ground, ModelError, Quantity, Scaling, Scenario};
+use crate::{Case, GroundMotion, Model, PulseShape, SimulationError, Summary};
 
 /// A cell of a map.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -65,7 +60,7 @@ pub struct OverturningMap<'a> {
     /// True if the repetitions of each cell are computed, to count its outcomes.
     pub(super) repeat: bool,
     /// Models that several cells share.
-    structures: Shared<Result<Standing, ModelError>>,
+    models: Shared<Result<Arc<dyn Model>, ModelError>>,
     pulses: Shared<PulseShape>,
     /// The scenario, or a sample of it. `variants` are the scenarios with other values of keys outside `[map]`.
     base: Arc<Scenario>,
@@ -101,21 +96,9 @@ pub(super) fn described(axis: &Axis) -> Described<'_> {
     Described { label, table, keys }
 }
 
-/// The model of motion of a cell.
-#[derive(Clone, Debug)]
-enum Standing {
-    /// An arch of four links, of any size.
-    Arch(Arch, FourLinks),
-    Model(Arc<dyn Model>),
-}
-
-impl Standing {
-    fn model(&self) -> &dyn Model {
-        match self {
-            Self::Arch(_, links) => links,
-            Self::Model(model) => &**model,
-        }
-    }
+/// Returns true if a key of the scenario changes the ground motion alone.
+fn is_of_ground(key: &str) -> bool {
+    key.starts_with("ground.")
 }
 
 /// Values that depend on one axis or on none. Each value is computed at its first use.
@@ -186,25 +169,22 @@ impl<'a> OverturningMap<'a> {
         let axes = [&map.x, &map.y];
         let values = axes.map(|axis| axis.sequence.values());
         let counts = [values[0].len(), values[1].len()];
-        let depends = |on: &[Quantity]| axes.map(|axis| on.contains(&axis.quantity));
-        let mut shapes = vec![
-            Quantity::ThicknessRatio,
-            Quantity::Embrace,
-            Quantity::Restitution,
-            Quantity::Other,
-        ];
-        if scenario.motion.kind.has_joints {
-            shapes.push(Quantity::MeanRadius);
-        }
-        let durations = [Quantity::Duration, Quantity::Frequency, Quantity::Other];
-        let variants = depends(&[Quantity::Other]);
+        let depends = |on: fn(&Axis) -> bool| axes.map(on);
+        let pulses = depends(|axis| {
+            matches!(axis.quantity, Quantity::Duration | Quantity::Frequency)
+                || axis.path().is_some_and(is_of_ground)
+        });
+        let variants = depends(|axis| axis.path().is_some());
         let has_variants = variants.contains(&true);
         Some(Self {
             scenario,
             axes,
             repeat: map.repeat,
-            structures: Shared::new(counts, depends(&shapes)),
-            pulses: Shared::new(counts, depends(&durations)),
+            models: Shared::new(
+                counts,
+                depends(|axis| axis.path().is_some_and(|path| !is_of_ground(path))),
+            ),
+            pulses: Shared::new(counts, pulses),
             base: Arc::new(sample),
             variants: has_variants.then(|| Shared::new(counts, variants)),
             values,
@@ -219,11 +199,9 @@ impl<'a> OverturningMap<'a> {
         variants.get(self.place(index), || {
             let coordinates = self.coordinates(index);
             let values = self.axes.iter().zip(coordinates);
-            let values: Vec<_> = values
-                .filter(|(axis, _)| axis.quantity == Quantity::Other)
-                .map(|(axis, value)| (axis.key.as_str(), value))
-                .collect();
-            self.base.with_values(&values).map(Arc::new)
+            let values = values.filter_map(|(axis, value)| Some((axis.path()?, value)));
+            let values: Vec<_> = values.collect();
+            self.base.with_unproved_values(&values).map(Arc::new)
         })
     }
 
@@ -246,56 +224,12 @@ impl<'a> OverturningMap<'a> {
         Some(self.coordinates(index)[axis])
     }
 
-    /// Returns the model of motion of a cell.
-    fn standing(&self, index: usize, scenario: &Scenario) -> Result<Standing, ModelError> {
-        let make = || {
-            let structure = self.structure(index, scenario);
-            let structure = structure.map_err(FourLinkError::from)?;
-            let motion = self.motion_model(index, scenario);
-            Ok(match (motion.options.law(), structure) {
-                (Some(law), Structure::Arch(arch)) => {
-                    let links = FourLinks::of_arch(&arch, law)?;
-                    Standing::Arch(arch, links)
-                }
-                (_, structure) => Standing::Model(motion.model_for_many_cases(&structure)?.into()),
-            })
-        };
-        let standing = self.structures.get(self.place(index), make)?;
-        Ok(match (standing, self.value(index, Quantity::MeanRadius)) {
-            (Standing::Arch(arch, links), Some(mean_radius_m)) => {
-                let arch = arch.with_mean_radius_m(mean_radius_m);
-                let arch = arch.map_err(FourLinkError::from)?;
-                let links = links.with_size_of(&arch);
-                Standing::Arch(arch, links)
-            }
-            (standing, _) => standing,
+    /// Returns the model of motion of a cell, whose scenario has the values of keys outside `[map]`.
+    fn model(&self, index: usize, scenario: &Scenario) -> Result<Arc<dyn Model>, ModelError> {
+        self.models.get(self.place(index), || {
+            let model = scenario.motion.model_for_many_cases(&scenario.structure);
+            model.map(Arc::from)
         })
-    }
-
-    /// Returns the structure of a cell.
-    fn structure(&self, index: usize, scenario: &Scenario) -> Result<Structure, ArgumentError> {
-        let Some(mut arch) = scenario.structure.circular().cloned() else {
-            return Ok(scenario.structure.clone());
-        };
-        if let Some(thickness_ratio) = self.value(index, Quantity::ThicknessRatio) {
-            arch = arch.with_thickness_ratio(thickness_ratio)?;
-        }
-        if let Some(embrace_deg) = self.value(index, Quantity::Embrace) {
-            arch = arch.with_embrace_deg(embrace_deg)?;
-        }
-        // Arches of one shape use the same limit analysis.
-        if let Some(mean_radius_m) = self.value(index, Quantity::MeanRadius) {
-            arch = arch.with_mean_radius_m(mean_radius_m)?;
-        }
-        Ok(Structure::Arch(arch))
-    }
-
-    /// Returns the model of motion of a cell, with its restitution coefficient if the map varies it.
-    fn motion_model(&self, index: usize, scenario: &Scenario) -> MotionModel {
-        match self.value(index, Quantity::Restitution) {
-            Some(restitution) => scenario.motion.with_restitution(restitution),
-            None => scenario.motion.clone(),
-        }
     }
 
     /// Returns the ground motion of a cell.
@@ -331,14 +265,12 @@ impl<'a> OverturningMap<'a> {
     }
 
     /// Returns the model of a cell, with its ground motion and request.
-    fn case(&self, index: usize) -> Result<(Standing, Case), NoHistory> {
+    fn case(&self, index: usize) -> Result<(Arc<dyn Model>, Case), NoHistory> {
         let scenario = self.variant(index).map_err(NoHistory::Failed)?;
-        let standing = self.standing(index, &scenario)?;
+        let model = self.model(index, &scenario)?;
         let ground = self.motion(index, &scenario).map_err(NoHistory::Failed)?;
-        let structure = self.structure(index, &scenario);
-        let structure = structure.map_err(|error| ModelError::from(FourLinkError::from(error)))?;
-        let request = scenario.request_on(&ground, &structure);
-        Ok((standing, (ground, request)))
+        let request = scenario.request_on(&ground, &scenario.structure);
+        Ok((model, (ground, request)))
     }
 
     /// Computes the endings of cells with the same structure, and, if requested, the number of outcomes of each with its repetitions.
@@ -400,19 +332,19 @@ impl Study for OverturningMap<'_> {
     /// Returns the family of cells with the same structure; `None` unless their model computes several motions faster together.
     fn family(&self, index: usize) -> Option<usize> {
         let together = !self.scenario.motion.kind.is_rigid;
-        together.then(|| self.structures.place(self.place(index)))?
+        together.then(|| self.models.place(self.place(index)))?
     }
 
     fn rows(&self, indices: &[usize]) -> Vec<CellRow> {
-        let standing = OnceCell::new();
+        let shared = OnceCell::new();
         let cases = indices.iter().map(|index| {
-            let (structure, case) = self.case(*index)?;
-            standing.get_or_init(|| structure);
+            let (model, case) = self.case(*index)?;
+            shared.get_or_init(|| model);
             Ok(case)
         });
         let ended = answered(cases, |cases| {
-            let standing = standing.get();
-            standing.map_or(Vec::new(), |one| self.endings(one.model(), cases))
+            let model = shared.get();
+            model.map_or(Vec::new(), |model| self.endings(&**model, cases))
         });
         let row = |(index, ended): (&usize, Result<Ended, NoHistory>)| {
             let [x, y] = self.coordinates(*index);
