@@ -167,6 +167,8 @@ pub struct Scenario {
     /// Tables that keep the keys of the text, because resolved keys would replace an uncertain number.
     as_given: Entries,
     files: InputFiles,
+    /// The tables of the text with their own keys.
+    given: Entries,
     /// Keys of the text that give the shape of a circular arch; empty unless the text gives the span.
     given_shape: Entries,
     /// Motion of both feet.
@@ -349,6 +351,7 @@ impl Scenario {
                 place: table.files().clone(),
                 ..InputFiles::default()
             },
+            given: table.all_given(),
             given_shape,
             ground_motion: Arc::new(GroundMotion::still()),
         };
@@ -385,6 +388,14 @@ impl Scenario {
         };
         shaken.ground_motion = Arc::new(shaken.under_both_feet(left));
         shaken.ground = ground;
+        let ground = shaken.resolved().get("ground").cloned();
+        shaken
+            .given
+            .insert("ground".to_owned(), ground.unwrap_or_default());
+        shaken.given = given(Value::Object(shaken.given))
+            .as_object()
+            .cloned()
+            .unwrap_or_default();
         shaken
     }
 

@@ -265,6 +265,11 @@ impl<'a> Table<'a> {
         self.entries.get(key).cloned()
     }
 
+    /// Returns all entries as in the file.
+    pub(super) fn all_given(&self) -> Entries {
+        self.entries.clone()
+    }
+
     /// Returns true if the file has a table with this key.
     pub(super) fn gives_table(&self, key: &str) -> bool {
         self.entries.get(key).is_some_and(Value::is_object)

@@ -13,12 +13,17 @@ impl Scenario {
     /// # Errors
     /// The fault of the keys or of the changed scenario.
     pub fn with_values(&self, values: &[(&str, f64)]) -> Result<Self, String> {
-        self.with_read_values(values, &ReadOptions::default())
+        let options = ReadOptions {
+            model: Some(self.motion.kind),
+            ..ReadOptions::default()
+        };
+        self.with_read_values(values, &options)
     }
 
     /// As [`Scenario::with_values`]. A circular arch may be unable to stand: its model reports that.
     pub(crate) fn with_unproved_values(&self, values: &[(&str, f64)]) -> Result<Self, String> {
         let options = ReadOptions {
+            model: Some(self.motion.kind),
             unproved: true,
             ..ReadOptions::default()
         };
@@ -30,7 +35,7 @@ impl Scenario {
         values: &[(&str, f64)],
         options: &ReadOptions<'_>,
     ) -> Result<Self, String> {
-        let mut resolved = self.resolved();
+        let mut resolved = Value::Object(self.given.clone());
         if let Value::Object(tables) = &mut resolved {
             tables.retain(|name, _| !STUDIES.contains(&name.as_str()));
             if self.unread_ground.is_some() {
