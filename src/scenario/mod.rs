@@ -68,7 +68,7 @@ mod verify;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::dynamics::Variation;
+use crate::dynamics::{Direction, Directions, Variation};
 use crate::{
     FourLinkError, GroundMotion, Initial, MechanismModel, Model, Request, Row, RowModelError,
 };
@@ -399,8 +399,16 @@ impl Scenario {
         shaken
     }
 
-    /// Returns the motion of both feet for a motion of the left one.
+    /// Returns the motion of both feet for a motion of the left one, mirrored if only the mirrored direction is requested.
     pub(crate) fn under_both_feet(&self, left: GroundMotion) -> GroundMotion {
+        let as_given = self.under_both_feet_as_given(left);
+        match self.simulation.direction.first() {
+            Direction::AsGiven => as_given,
+            Direction::Mirrored => as_given.mirrored(),
+        }
+    }
+
+    fn under_both_feet_as_given(&self, left: GroundMotion) -> GroundMotion {
         let Some(right) = &self.right_foot else {
             return left;
         };
@@ -437,7 +445,32 @@ impl Scenario {
     /// When the structure has no such model.
     pub fn model(&self) -> Result<Box<dyn Model>, ModelError> {
         let MotionModel { options, site, .. } = &self.motion;
-        options.model(&self.structure, site)
+        Ok(self.repeated_mirrored(options.model(&self.structure, site)?))
+    }
+
+    /// Makes the model of the structure for a study of many cases: see [`FreeHinges::for_many_cases`](crate::FreeHinges::for_many_cases) and
+    /// [`ElasticJoints::for_many_cases`](crate::ElasticJoints::for_many_cases).
+    ///
+    /// # Errors
+    /// As [`Scenario::model`].
+    pub fn model_for_many_cases(&self) -> Result<Box<dyn Model>, ModelError> {
+        let MotionModel { options, site, .. } = &self.motion;
+        Ok(self.repeated_mirrored(options.model_for_many_cases(&self.structure, site)?))
+    }
+
+    /// Returns a model of motion whose first repetition is mirrored, if both directions are requested and the problem is symmetric.
+    fn repeated_mirrored(&self, mut model: Box<dyn Model>) -> Box<dyn Model> {
+        let is_alike = self.right_foot.is_none() && self.initial.is_none();
+        if self.simulation.direction == Directions::Both && is_alike {
+            model.repeat_mirrored();
+        }
+        model
+    }
+
+    /// Returns whether the motion of this scenario, by its own model, is also computed under the mirrored ground motion; see [`Directions::has_second`].
+    pub fn has_second_direction(&self, model: &dyn Model) -> bool {
+        let directions = self.simulation.direction;
+        directions.has_second(model, &self.ground_motion, &self.request())
     }
 
     /// Makes models of this structure with other stiffness and contact, and with rigid joints; empty unless joints are elastic.

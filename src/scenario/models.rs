@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::elastic_joints::ELASTIC_JOINTS;
 use super::free_hinges::FREE_HINGES;
 use super::impact::FOUR_LINKS;
-use super::model_kind::{AnyModel, ModelKind, ModelOptions, Site};
+use super::model_kind::{ModelKind, ModelOptions, Site};
 use super::prelude::*;
 use super::structure::{DRUM_KEYS, Structure};
 use super::{free_hinges, supports};
@@ -48,15 +48,6 @@ impl PartialEq for MotionModel {
 }
 
 impl MotionModel {
-    /// Makes the model of a structure for a study of many cases: see [`FreeHinges::for_many_cases`](crate::FreeHinges::for_many_cases) and
-    /// [`ElasticJoints::for_many_cases`](crate::ElasticJoints::for_many_cases).
-    ///
-    /// # Errors
-    /// If the structure cannot move by this model: see [`Scenario::model`](super::Scenario::model).
-    pub fn model_for_many_cases(&self, structure: &Structure) -> AnyModel {
-        self.options.model_for_many_cases(structure, &self.site)
-    }
-
     /// Returns the impact law of four links; the theoretical law for models without four links.
     pub fn impact(&self) -> ImpactLaw {
         self.options

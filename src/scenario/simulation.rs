@@ -2,6 +2,7 @@
 
 use super::prelude::*;
 use crate::Request;
+use crate::dynamics::Directions;
 
 /// Options of the computation of motion.
 ///
@@ -18,6 +19,8 @@ pub struct Simulation {
     pub rest_energy_ratio: f64,
     /// Acceleration of gravity in m/s2, from 0.001 to 1000.
     pub gravity_m_s2: f64,
+    /// Directions of the ground motion in which motions are computed.
+    pub direction: Directions,
 }
 
 impl Simulation {
@@ -41,6 +44,7 @@ impl Simulation {
             relative_tolerance: or("relative_tolerance", tolerance, default.relative_tolerance),
             rest_energy_ratio: or("rest_energy_ratio", rest_ratio, default.rest_energy_ratio),
             gravity_m_s2: or("gravity_m_s2", Request::GRAVITY_M_S2, default.gravity_m_s2),
+            direction: table.or("direction", &one_of(Directions::ALL), Directions::default()),
         })
     }
 

@@ -4,6 +4,7 @@ mod back_wall;
 mod back_wall_elastic;
 mod between_impacts;
 mod column;
+mod directions;
 mod elastic_joints;
 mod energy_balance;
 mod equivalent_block;

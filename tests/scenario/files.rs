@@ -2,7 +2,7 @@
 
 use crate::common::schema::violations;
 use crate::common::{ARCH, COLUMN};
-use archrock::dynamics::RowOptions;
+use archrock::dynamics::{Directions, RowOptions};
 use archrock::scenario::{
     FREE_HINGES, Ground, Quantity, Scenario, ScenarioErrors, Simulation, Source, Structure,
     TextPosition, shown, shown_lines,
@@ -94,6 +94,7 @@ fn defaults() {
             relative_tolerance: 1e-9,
             rest_energy_ratio: 1e-8,
             gravity_m_s2: 9.81,
+            direction: Directions::Both,
         }
     );
     assert_eq!(scenario.motion.impact(), ImpactModel::MaxRestitution.into());
@@ -293,6 +294,7 @@ amplitude_g = [1.0, 2.0]
         relative_tolerance: 1e-6,
         rest_energy_ratio: 0.1,
         gravity_m_s2: 1.62,
+        direction: Directions::Both,
     };
     assert_eq!(scenario.simulation, simulation);
     let map = scenario.map.as_ref().unwrap();

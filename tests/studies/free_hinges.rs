@@ -150,10 +150,7 @@ fn a_cell_counts_the_outcomes_of_all_repetitions() {
     let scenario = parsed(&text("repeat = true"));
     let map = OverturningMap::of(&scenario).unwrap();
     let request = scenario.request_on(scenario.ground_motion(), &scenario.structure);
-    let row = scenario
-        .motion
-        .model_for_many_cases(&scenario.structure)
-        .unwrap();
+    let row = scenario.model_for_many_cases().unwrap();
     let mut rows = Vec::new();
     for index in 0..map.count() {
         let [duration_s, amplitude_g] = map.coordinates(index);

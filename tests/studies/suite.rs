@@ -10,8 +10,8 @@ use crate::common::pairs;
 use crate::common::program::{done, refused, scenarios};
 use crate::common::prose::{golden, shows};
 use crate::common::results::{Row, Table, json, named, texts};
-use archrock::dynamics::Outcome;
 use archrock::dynamics::repeatability::OutcomeCount;
+use archrock::dynamics::{Direction, Outcome};
 use archrock::mechanics::Sway;
 use archrock::output::Figure;
 use archrock::scenario::{Format, Layout, Measure, Scenario};
@@ -560,6 +560,7 @@ fn results(rows: &[(&str, f64, Option<Outcome>)]) -> SuiteFragility {
         result: outcome
             .ok_or(NoHistory::Failed("it broke".to_owned()))
             .map(|outcome| Ending {
+                direction: Direction::AsGiven,
                 outcome,
                 outcome_time_s: 1.0,
                 impacts: Some(0),
@@ -602,6 +603,7 @@ fn levels_of(records: &[(&str, &str)]) -> Vec<CaseRow> {
                 safe_below_edge: None,
                 strength: None,
                 result: Ok(Ending {
+                    direction: Direction::AsGiven,
                     outcome,
                     outcome_time_s: 1.0,
                     impacts: Some(0),

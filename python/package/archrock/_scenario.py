@@ -333,6 +333,7 @@ def simulate(
     relative_tolerance: float = 1e-9,
     rest_energy_ratio: float = 1e-8,
     gravity_m_s2: float = 9.81,
+    direction: Literal["both", "as_given", "mirrored"] = "both",
     point: tuple[float, float] | None = None,
     memory_gb: float = MEMORY_GB,
 ) -> History:
@@ -376,6 +377,8 @@ def simulate(
         relative_tolerance: error that the integrator of four links may make in a step.
         rest_energy_ratio: the structure is at rest when its energy falls below this fraction of the energy barrier.
         gravity_m_s2: acceleration of gravity.
+        direction: directions of the horizontal ground motion. With ``"both"`` the history is that of the motion as given, and
+            :attr:`History.verdict` is the worse of both directions. ``"mirrored"`` gives all horizontal accelerations the opposite sign.
         point: a point of the undeformed structure, ``(x, y)`` in m, to observe: see :attr:`History.point`.
         memory_gb: memory that the history may take, in units of 1e9 bytes.
 
@@ -413,6 +416,7 @@ def simulate(
         relative_tolerance,
         rest_energy_ratio,
         gravity_m_s2,
+        direction,
     )
     if right is not None or supports is not None:
         settings = Settings(*key)._asdict()

@@ -45,6 +45,7 @@ class Settings(NamedTuple):
     relative_tolerance: float = 1e-9
     rest_energy_ratio: float = 1e-8
     gravity_m_s2: float = 9.81
+    direction: str = "both"
 
     def tables(self) -> Tables:
         """The tables of a scenario for these settings."""
@@ -56,6 +57,7 @@ class Settings(NamedTuple):
                 "relative_tolerance": self.relative_tolerance,
                 "rest_energy_ratio": self.rest_energy_ratio,
                 "gravity_m_s2": self.gravity_m_s2,
+                "direction": self.direction,
             }
         }
         if self.impact != "max_restitution" or self.restitution is not None:

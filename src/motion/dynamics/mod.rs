@@ -1,5 +1,6 @@
 //! Motion in time: ground motion, models of motion and their histories.
 pub mod demand;
+pub(crate) mod direction;
 pub(crate) mod elastic_joints;
 pub(crate) mod fall;
 pub(crate) mod free_hinges;
@@ -18,6 +19,7 @@ pub(crate) mod until;
 pub(crate) mod variation;
 
 pub use self::demand::{GroundSpectrum, Site};
+pub use self::direction::{Direction, Directions};
 pub use self::elastic_joints::ElasticJoints;
 pub use self::fall::FallEnd;
 pub use self::free_hinges::{DOUBTFUL_ENERGY_ERROR, FreeHinges, RowOptions};

@@ -5,6 +5,7 @@ use std::fmt::Debug;
 use std::ops::Range;
 use std::sync::Arc;
 
+use super::direction::MirroredModel;
 use super::history::JointPressure;
 pub use super::recorder::{Recorder, WithoutDemand};
 use super::recording::{History, MEMORY_BYTES, MemoryError, Recording};
@@ -37,10 +38,21 @@ pub trait Model: Debug + Send + Sync {
     }
 
     /// Returns copies of this model with other, equally valid numerical settings: if their results differ, the result is uncertain. Empty if the
-    /// settings do not affect the result.
+    /// settings do not affect the result. A model that [repeats motions mirrored](Model::repeat_mirrored) begins with itself under the mirrored
+    /// ground, in place of its first setting.
     fn repetitions(&self) -> Vec<Repetition> {
         Vec::new()
     }
+
+    /// Returns whether a motion from rest, on ground that moves alike under both feet, covers the mirrored ground as well. The structure is then its own
+    /// mirror image, and either the motion repeats to the last bit, or one of its [repetitions](Model::repetitions) is mirrored.
+    fn covers_mirrored(&self) -> bool {
+        false
+    }
+
+    /// Makes the first repetition of a motion the one under the mirrored ground, if the structure is its own mirror image, and its motions are
+    /// repeated. Its ground must move alike under both feet, and it must start from rest.
+    fn repeat_mirrored(&mut self) {}
 
     /// Computes the motion on moving ground. The recorder receives samples and events during the computation; without a recorder there are no
     /// samples, as in studies.
@@ -232,6 +244,19 @@ pub struct Repetition {
     pub name: &'static str,
     /// Copy of the model.
     pub model: Box<dyn Model>,
+}
+
+impl Repetition {
+    /// Name of the repetition under the mirrored ground.
+    pub const MIRRORED: &'static str = "mirrored";
+
+    /// Returns the repetition of a symmetric model under the mirrored ground.
+    pub(super) fn mirrored(model: impl Model + 'static) -> Self {
+        Self {
+            name: Self::MIRRORED,
+            model: Box::new(MirroredModel(model)),
+        }
+    }
 }
 
 /// Model that moves as a sequence of mechanisms with one degree of freedom, with the properties of such models.

@@ -17,8 +17,8 @@ use super::model::{Case, Job, Jobs};
 use super::until::EndCondition;
 use super::variation::{PendingMotion, start_motion};
 use crate::dynamics::{
-    Details, GroundMotion, HalfCycle, Model, Outcome, Repetition, Request, SimulationError,
-    Sliding, Summary,
+    Details, Directions, GroundMotion, HalfCycle, Model, Outcome, Repetition, Request,
+    SimulationError, Sliding, Summary,
 };
 
 /// Relative tolerance within which a peak is certain, and within which the half cycles of a path that repeats agree.
@@ -432,13 +432,50 @@ pub struct CheckedHistory {
 /// [`EndCondition::Settled`] count as come to rest.
 pub fn checked(model: &dyn Model, cases: &[Case], until: EndCondition) -> Vec<CheckedHistory> {
     let mut checks = Checks::new(model, cases);
-    checks.settles = until == EndCondition::Settled;
-    // Models without repetitions are faster up to the end: an early end needs samples.
-    let repeats = !checks.repetitions.is_empty();
-    let until = if repeats { until } else { EndCondition::End };
-    checks.waiting = (0..cases.len()).map(|case| Job::of(case, until)).collect();
-    model.work(cases, &mut checks);
-    checks.answers()
+    checks.compute(until, cases.len());
+    checks.answers().into_iter().flatten().collect()
+}
+
+/// History of a case, and the history under its mirrored ground motion.
+pub struct CheckedDirections {
+    /// History as given.
+    pub own: CheckedHistory,
+    /// History under the mirrored ground motion; `None` if the case has no [second direction](Directions::has_second), or if the history as given
+    /// decides, because it certainly overturns, or has no verdict.
+    pub mirrored: Option<CheckedHistory>,
+}
+
+/// Computes the histories of cases in all their directions, in their order, as [`checked`] does. The mirrored history of a case follows as soon as the
+/// history as given survives or is uncertain, in the same queue, so that models that compute several motions in parallel stay busy.
+pub fn checked_in(
+    directions: Directions,
+    model: &dyn Model,
+    cases: &[Case],
+    until: EndCondition,
+) -> Vec<CheckedDirections> {
+    let mut all = Vec::new();
+    let mut mirrored_cases = vec![None; cases.len()];
+    for (case, (ground, request)) in cases.iter().enumerate() {
+        if directions.has_second(model, ground, request) {
+            mirrored_cases[case] = Some(cases.len() + all.len());
+            all.push((ground.mirrored(), *request));
+        }
+    }
+    if !all.is_empty() {
+        all.splice(0..0, cases.iter().cloned());
+    }
+    let mut checks = Checks::new(model, if all.is_empty() { cases } else { &all });
+    checks.mirrored_cases.clone_from(&mirrored_cases);
+    checks.compute(until, cases.len());
+    let mut answers = checks.answers();
+    let mirrored: Vec<_> = mirrored_cases
+        .into_iter()
+        .map(|case| answers[case?].take())
+        .collect();
+    let own = answers.into_iter().flatten();
+    let both = own.zip(mirrored);
+    both.map(|(own, mirrored)| CheckedDirections { own, mirrored })
+        .collect()
 }
 
 /// Repeats known histories of cases where repetitions may change the verdict. Returns them in the order of the cases.
@@ -452,7 +489,7 @@ pub fn repeated(
         checks.store_result(case, own);
     }
     model.work(cases, &mut checks);
-    checks.answers()
+    checks.answers().into_iter().flatten().collect()
 }
 
 /// Queue of histories to compute, with the results up to now.
@@ -464,6 +501,10 @@ struct Checks<'a> {
     waiting: VecDeque<Job>,
     /// True if histories that were ended early count as come to rest.
     settles: bool,
+    /// Early end of the histories of the cases; their repetitions end as soon as the outcome is known.
+    until: EndCondition,
+    /// For each case the index of its mirrored case, which follows if the case survives or is uncertain.
+    mirrored_cases: Vec<Option<usize>>,
     results: Vec<CaseResults>,
 }
 
@@ -485,8 +526,22 @@ impl<'a> Checks<'a> {
             repetitions: repetitions.map(|repetition| repetition.name).collect(),
             waiting: VecDeque::new(),
             settles: false,
+            until: EndCondition::End,
+            mirrored_cases: Vec::new(),
             results: cases.iter().map(|_| CaseResults::default()).collect(),
         }
+    }
+
+    /// Computes the first `count` cases, with the early end `until`.
+    fn compute(&mut self, until: EndCondition, count: usize) {
+        self.settles = until == EndCondition::Settled;
+        // Models without repetitions are faster up to the end: an early end needs samples.
+        if !self.repetitions.is_empty() {
+            self.until = until;
+        }
+        self.waiting = (0..count).map(|case| Job::of(case, self.until)).collect();
+        let (model, cases) = (self.model, self.cases);
+        model.work(cases, self);
     }
 
     /// Stores the history of a case, and queues its first repetitions if they may change the verdict.
@@ -497,6 +552,21 @@ impl<'a> Checks<'a> {
             self.queue_repetitions(case, FIRST_REPETITIONS);
         }
         self.results[case].own = Some(own);
+        if self.results[case].repeated.is_empty() {
+            self.queue_mirrored(case);
+        }
+    }
+
+    /// Queues the mirrored case of a case whose verdict is known and does not decide. It goes to the front of the queue, as repetitions do.
+    fn queue_mirrored(&mut self, case: usize) {
+        let CaseResults { own, count, .. } = &self.results[case];
+        let Some(Ok(own)) = own else { return };
+        let verdict = Verdict::counted(own.outcome, count.as_ref());
+        if let Verdict::Survives | Verdict::Uncertain = verdict
+            && let Some(Some(mirrored)) = self.mirrored_cases.get(case)
+        {
+            self.waiting.push_front(Job::of(*mirrored, self.until));
+        }
     }
 
     /// Queues the repetitions of a case up to this number. They go to the front of the queue: the repetitions of a case follow each other, and at
@@ -531,15 +601,17 @@ impl<'a> Checks<'a> {
             let named = self.repetitions.iter().copied().zip(known);
             results.count = Some(OutcomeCount::new(own, named));
             results.repeated = Vec::new();
+            self.queue_mirrored(case);
         } else {
             self.queue_repetitions(case, all);
         }
     }
 
-    fn answers(self) -> Vec<CheckedHistory> {
+    /// Returns the results of all cases; `None` for mirrored cases that were not computed.
+    fn answers(self) -> Vec<Option<CheckedHistory>> {
         let each = self.results.into_iter().zip(self.cases);
         each.map(|(results, (_, request))| {
-            let mut own = results.own.expect("every case was a job");
+            let mut own = results.own?;
             let mut safe_from_s = None;
             if self.settles
                 && let Ok(own) = &mut own
@@ -551,11 +623,11 @@ impl<'a> Checks<'a> {
                     own.outcome = Outcome::Rest;
                 }
             }
-            CheckedHistory {
+            Some(CheckedHistory {
                 own,
                 safe_from_s,
                 count: results.count,
-            }
+            })
         })
         .collect()
     }

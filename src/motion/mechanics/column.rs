@@ -401,6 +401,11 @@ impl Column {
         0.5 * libm::hypot(self.height_m, self.width_m)
     }
 
+    /// Returns whether the column with its loads and ties is its own mirror image, without a wall behind it. See [`Row::is_symmetric`].
+    pub fn is_symmetric(&self) -> bool {
+        self.back.is_none() && self.row().is_ok_and(|row| row.is_symmetric())
+    }
+
     /// Returns its drums as a row of blocks, on ground that extends beyond the base, or on a pedestal.
     ///
     /// # Errors
@@ -488,6 +493,8 @@ pub struct RockingColumn {
     next: Sides<Option<Link<Tilting>>>,
     /// Side of the wall behind it, towards which it cannot sway.
     wall: Option<Sway>,
+    /// True if the column is its own mirror image.
+    is_symmetric: bool,
 }
 
 impl RockingColumn {
@@ -541,7 +548,13 @@ impl RockingColumn {
             first: Sides::of(|sway| link(sway, 1.0, 1.0)),
             next: Sides::of(next),
             wall,
+            is_symmetric: column.is_symmetric(),
         })
+    }
+
+    /// Returns whether the column is its own mirror image.
+    pub const fn is_symmetric(&self) -> bool {
+        self.is_symmetric
     }
 }
 

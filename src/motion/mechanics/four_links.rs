@@ -31,6 +31,8 @@ pub struct FourLinks {
     sections: Vec<f64>,
     /// Sequence of mechanisms for a first sway to each side; both are the same for a symmetric structure.
     chains: Sides<Arc<Chain>>,
+    /// True if the structure is its own mirror image.
+    is_symmetric: bool,
 }
 
 /// The units of a structure.
@@ -113,6 +115,7 @@ impl FourLinks {
             size: Size::of(arch),
             sections: arch.thrust_sections_rad(),
             chains: Sides::of(|_| chain.clone()),
+            is_symmetric: true,
         })
     }
 
@@ -163,7 +166,13 @@ impl FourLinks {
             size,
             sections,
             chains,
+            is_symmetric: row.is_symmetric(),
         })
+    }
+
+    /// Returns whether the structure is its own mirror image.
+    pub const fn is_symmetric(&self) -> bool {
+        self.is_symmetric
     }
 
     /// Returns the model of an arch with this shape and another size, which shares the sequences of mechanisms.

@@ -9,8 +9,8 @@ use thiserror::Error;
 
 pub use self::columns::outcome_name;
 pub use crate::dynamics::repeatability::Verdict;
-use crate::dynamics::repeatability::{CheckedHistory, checked};
-use crate::dynamics::{MODEL_LIMIT, OutcomeCount};
+use crate::dynamics::repeatability::{CheckedDirections, CheckedHistory, checked, checked_in};
+use crate::dynamics::{Direction, Directions, MODEL_LIMIT, OutcomeCount};
 use crate::mechanics::{LimitError, StabilityError};
 use crate::scenario::ModelError;
 use crate::{
@@ -32,6 +32,8 @@ pub struct Steps {
 // A row of a part file from another build is refused, not read in part.
 #[serde(deny_unknown_fields)]
 pub struct Ending {
+    /// Direction of the ground motion under which all numbers were computed: of two directions, the worse one.
+    pub direction: Direction,
     /// The outcome.
     pub outcome: Outcome,
     /// The time of the outcome, in seconds.
@@ -166,11 +168,65 @@ impl Ending {
         cases: &[Case],
         until: EndCondition,
     ) -> Vec<Result<Self, NoHistory>> {
-        let ending = |checked: CheckedHistory| {
-            Self::from_summary(&checked.own?, checked.safe_from_s, checked.count)
-        };
         let checked = checked(model, cases, until).into_iter();
-        checked.map(ending).collect()
+        checked.map(Self::of_checked).collect()
+    }
+
+    /// Simulates several cases as [`Ending::of_all`], in these directions of their ground motion, and returns the worse ending of each. The ground
+    /// motions of the cases are those of the [first direction](Directions::first); the second one is computed if the first survives or is uncertain.
+    pub fn of_all_in(
+        directions: Directions,
+        model: &dyn Model,
+        cases: &[Case],
+    ) -> Vec<Result<Self, NoHistory>> {
+        Self::checked_in(directions, model, cases, EndCondition::End)
+    }
+
+    /// Simulates several cases as [`Ending::until_safe`], in these directions of their ground motion, as [`Ending::of_all_in`] does.
+    pub fn until_safe_in(
+        directions: Directions,
+        model: &dyn Model,
+        cases: &[Case],
+    ) -> Vec<Result<Self, NoHistory>> {
+        Self::checked_in(directions, model, cases, EndCondition::Settled)
+    }
+
+    fn checked_in(
+        directions: Directions,
+        model: &dyn Model,
+        cases: &[Case],
+        until: EndCondition,
+    ) -> Vec<Result<Self, NoHistory>> {
+        let checked = checked_in(directions, model, cases, until).into_iter();
+        let worse = |CheckedDirections { own, mirrored }| {
+            let own = Self {
+                direction: directions.first(),
+                ..Self::of_checked(own)?
+            };
+            own.or_worse(mirrored.map(Self::of_checked))
+        };
+        checked.map(worse).collect()
+    }
+
+    fn of_checked(checked: CheckedHistory) -> Result<Self, NoHistory> {
+        Self::from_summary(&checked.own?, checked.safe_from_s, checked.count)
+    }
+
+    /// Returns the worse ending of this one and that under the mirrored ground motion, if there is one: the worse verdict counts, of equal verdicts the
+    /// larger peak.
+    ///
+    /// # Errors
+    /// If the mirrored history failed, and this one survives: the case then has no verdict.
+    pub fn or_worse(self, mirrored: Option<Result<Self, NoHistory>>) -> Result<Self, NoHistory> {
+        let severity = |ending: &Self| (ending.verdict(), ending.peak_or_infinite_rad());
+        match mirrored {
+            Some(Ok(mirrored)) if severity(&mirrored) > severity(&self) => Ok(Self {
+                direction: Direction::Mirrored,
+                ..mirrored
+            }),
+            Some(Err(reason)) if self.verdict() < Verdict::Uncertain => Err(reason.mirrored()),
+            _ => Ok(self),
+        }
     }
 
     /// Makes the ending of a history. `count` is the count of the history and its repetitions.
@@ -183,6 +239,7 @@ impl Ending {
         count: Option<OutcomeCount>,
     ) -> Result<Self, NoHistory> {
         let ending = Self {
+            direction: Direction::AsGiven,
             outcome: summary.outcome,
             outcome_time_s: summary.outcome_time_s,
             safe_from_s,
@@ -246,6 +303,18 @@ pub enum NoHistory {
     /// The history could not be computed.
     #[error("{0}")]
     Failed(String),
+}
+
+impl NoHistory {
+    /// Returns the reason for a history under the mirrored ground motion.
+    fn mirrored(self) -> Self {
+        let reason = |why: String| format!("with the mirrored ground motion: {why}");
+        match self {
+            Self::GroundFalls(why) => Self::GroundFalls(reason(why)),
+            Self::Failed(why) => Self::Failed(reason(why)),
+            other => other,
+        }
+    }
 }
 
 impl From<SimulationError> for NoHistory {

@@ -56,7 +56,7 @@ pub struct HistoryAnswer {
 
 /// Makes the model of a scenario for a study of many cases.
 fn many_cases(scenario: &Scenario) -> Result<Box<dyn Model>, String> {
-    let model = scenario.motion.model_for_many_cases(&scenario.structure);
+    let model = scenario.model_for_many_cases();
     model.map_err(|error| error.to_string())
 }
 

@@ -227,7 +227,7 @@ impl<'a> OverturningMap<'a> {
     /// Returns the model of motion of a cell, whose scenario has the values of keys outside `[map]`.
     fn model(&self, index: usize, scenario: &Scenario) -> Result<Arc<dyn Model>, ModelError> {
         self.models.get(self.place(index), || {
-            let model = scenario.motion.model_for_many_cases(&scenario.structure);
+            let model = scenario.model_for_many_cases();
             model.map(Arc::from)
         })
     }

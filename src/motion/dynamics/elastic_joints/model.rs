@@ -1,5 +1,6 @@
 //! Row of blocks with elastic joints as a model of motion.
 
+use std::cell::OnceCell;
 use std::ops::RangeInclusive;
 use std::sync::{Arc, OnceLock};
 
@@ -42,6 +43,8 @@ pub struct ElasticJoints {
     many_cases: bool,
     /// Factor on the longest step, for a repetition.
     steps_times: f64,
+    /// True if the first repetition is mirrored.
+    repeats_mirrored: bool,
 }
 
 /// Longest step over the largest stable one, without damping, and with the damping ratio [`DAMPED`]. Undamped vibration that opens and closes joints
@@ -141,6 +144,7 @@ impl ElasticJoints {
             barrier_j: Arc::default(),
             many_cases: false,
             steps_times: 1.0,
+            repeats_mirrored: false,
         })
     }
 
@@ -348,7 +352,13 @@ impl ElasticJoints {
         jobs: &mut dyn Jobs,
     ) {
         let repeated: Vec<Self> = self.other_steps().map(|(_, model)| model).into();
-        let model_of = |job: Job| job.repetition.map_or(self, |index| &repeated[index]);
+        let is_mirrored = |job: Job| self.repeats_mirrored && job.repetition == Some(0);
+        let model_of = |job: Job| match job.repetition {
+            Some(index) if !is_mirrored(job) => &repeated[index],
+            _ => self,
+        };
+        // Mirrored ground motions, made when first needed.
+        let mirrored: Vec<OnceCell<GroundMotion>> = vec![OnceCell::new(); cases.len()];
         let barrier_j = || self.elastic_barrier_j(gravity_m_s2);
         let start = (&self.structure, rest);
         let mut group = Group::<SIDE_BY_SIDE>::new(self.row(), start, gravity_m_s2, &barrier_j);
@@ -362,14 +372,22 @@ impl ElasticJoints {
                     let ended = ended.map_err(SimulationError::from);
                     let checked_summary =
                         |summary| model_of(job).checked_summary(summary, rest, gravity_m_s2);
-                    jobs.ended(job, ended.and_then(checked_summary));
+                    let mut summary = ended.and_then(checked_summary);
+                    if is_mirrored(job) {
+                        summary = summary.map(|summary| summary.mirrored(Some(self.row())));
+                    }
+                    jobs.ended(job, summary);
                     *running = None;
                 }
                 while may_begin
                     && running.is_none()
                     && let Some(job) = jobs.next()
                 {
-                    let (ground, request) = &cases[job.case];
+                    let (given, request) = &cases[job.case];
+                    let ground = match is_mirrored(job) {
+                        true => mirrored[job.case].get_or_init(|| given.mirrored()),
+                        false => given,
+                    };
                     match model_of(job).input(ground, request) {
                         Ok((input, velocities)) => {
                             group.begin(lane, (input, &velocities), job.until, None);
@@ -424,7 +442,19 @@ impl Model for ElasticJoints {
             name,
             model: Box::new(model),
         };
-        self.other_steps().map(repetition).into()
+        let mut others: Vec<Repetition> = self.other_steps().map(repetition).into();
+        if self.repeats_mirrored {
+            others[0] = Repetition::mirrored(self.clone());
+        }
+        others
+    }
+
+    fn covers_mirrored(&self) -> bool {
+        self.repeats_mirrored
+    }
+
+    fn repeat_mirrored(&mut self) {
+        self.repeats_mirrored = self.rigid.is_symmetric();
     }
 
     fn bodies(&self) -> Vec<String> {

@@ -29,6 +29,8 @@ pub struct FreeHinges {
     steps_times: f64,
     /// True if landings shortly after an impact are merged, for a repetition.
     merges_landings: bool,
+    /// True if the first repetition is mirrored.
+    repeats_mirrored: bool,
 }
 
 /// Options of the model.
@@ -112,6 +114,7 @@ impl FreeHinges {
             many_cases: false,
             steps_times: 1.0,
             merges_landings: false,
+            repeats_mirrored: false,
         })
     }
 
@@ -232,7 +235,19 @@ impl Model for FreeHinges {
                 ..self.clone()
             }),
         };
-        others.map(repetition).into()
+        let mut others: Vec<Repetition> = others.map(repetition).into();
+        if self.repeats_mirrored {
+            others[0] = Repetition::mirrored(self.clone());
+        }
+        others
+    }
+
+    fn covers_mirrored(&self) -> bool {
+        self.repeats_mirrored
+    }
+
+    fn repeat_mirrored(&mut self) {
+        self.repeats_mirrored = self.rigid.is_symmetric();
     }
 
     fn row(&self) -> Option<&Row> {

@@ -212,6 +212,12 @@ impl GroundMotion {
         ends.any(|end| end.y != 0.0) || self.right_foot().is_some_and(Self::has_vertical)
     }
 
+    /// Returns whether the ground ever moves horizontally, under either foot.
+    pub fn has_horizontal(&self) -> bool {
+        let mut ends = self.pieces.iter().flat_map(Piece::ends_m_s2);
+        ends.any(|end| end.x != 0.0) || self.right_foot().is_some_and(Self::has_horizontal)
+    }
+
     /// Returns the first time at which the ground accelerates downwards as fast as a free body, `g + a_v <= 0`, so that it no longer carries a
     /// structure; `None` if that does not happen. With two feet, the first time of either foot.
     pub fn free_fall_s(&self, gravity_m_s2: f64) -> Option<f64> {
@@ -261,6 +267,20 @@ impl GroundMotion {
             stops: self.stops,
             right: right.transpose()?.map(Arc::new),
         })
+    }
+
+    /// Returns the mirror image of this motion: the horizontal accelerations of both feet change sign. Vertical accelerations and delays stay.
+    #[must_use]
+    pub fn mirrored(&self) -> Self {
+        let pieces = self.pieces.iter().map(|piece| Piece {
+            formula: piece.formula.mirrored(),
+            ..*piece
+        });
+        Self {
+            pieces: pieces.collect(),
+            stops: self.stops,
+            right: self.right_foot().map(|right| Arc::new(right.mirrored())),
+        }
     }
 
     /// Returns this motion with additional corners at given times, where the integration begins a new step.

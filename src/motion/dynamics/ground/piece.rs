@@ -3,6 +3,7 @@
 use nalgebra::Vector2;
 
 use super::shape::Shape;
+use crate::mechanics::mirrored;
 
 /// One-sided formula of a piece in the time since its origin, for both components.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,6 +24,14 @@ impl Formula {
         match self {
             Self::Linear(at_origin, slope) => Self::Linear(at_origin * factor, slope * factor),
             Self::Shaped(amplitude, shape) => Self::Shaped(amplitude * factor, shape),
+        }
+    }
+
+    /// Returns the formula with the opposite horizontal acceleration.
+    pub fn mirrored(self) -> Self {
+        match self {
+            Self::Linear(at_origin, slope) => Self::Linear(mirrored(at_origin), mirrored(slope)),
+            Self::Shaped(amplitude, shape) => Self::Shaped(mirrored(amplitude), shape),
         }
     }
 

@@ -45,6 +45,10 @@ macro_rules! models {
                 first.map(|_| self.incipient_towards_g(sway))
             }
 
+            fn covers_mirrored(&self) -> bool {
+                self.is_symmetric()
+            }
+
             fn simulate(
                 &self,
                 ground: &GroundMotion,

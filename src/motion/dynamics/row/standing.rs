@@ -58,6 +58,11 @@ impl RigidRow {
         }
     }
 
+    /// Returns whether the row is its own mirror image, without moved supports and without a wall.
+    pub fn is_symmetric(&self) -> bool {
+        self.wall_behind.is_none() && !self.is_on_hinges() && self.row.is_symmetric()
+    }
+
     /// Returns the names of the blocks.
     pub fn bodies(&self) -> Vec<String> {
         let blocks = 1..=self.row.blocks.len();
