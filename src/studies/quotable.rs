@@ -3,9 +3,174 @@
 //! The model with the fewest assumptions decides; other models only show how the answer depends on the model. It answers with the largest strength
 //! up to which the structure certainly survives, over all computed stiffnesses and contacts of its joints, or with an outcome that is certain and
 //! the same for all of them. Four links of an arch are quoted only if their thrust line was followed, and inside their model.
+//!
+//! Rigid joints without a friction coefficient never slip. The answer then depends on the largest friction coefficient that its histories require,
+//! over all motions up to the quoted one and all repetitions ([`FrictionCondition`]).
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
 
 use crate::dynamics::MODEL_LIMIT;
-use crate::scenario::{FOUR_LINKS, FREE_HINGES, ModelKind};
+use crate::scenario::{FOUR_LINKS, FREE_HINGES, ModelKind, Scenario};
+
+/// Smallest and largest coefficient of friction of stone on stone. An answer has no condition up to the smallest one.
+pub(super) const STONE_FRICTION: [f64; 2] = [0.5, 0.8];
+
+/// Friction coefficient above which joints of stone may slip under weaker motions, so that the answer is not on the safe side.
+const SLIPS_ABOVE: f64 = 0.6;
+
+/// The part of a scenario that words about its friction need.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct SlipWords {
+    /// True for one rigid block, which slips on its base.
+    is_block: bool,
+    /// Options of a command that let joints slip, with a space before each; `None` if free hinges do not describe the structure.
+    options: Option<String>,
+}
+
+impl SlipWords {
+    /// Returns the words for a scenario.
+    pub(super) fn of(scenario: &Scenario) -> Self {
+        let (structure, motion) = (&scenario.structure, &scenario.motion);
+        let arch = structure.circular();
+        let is_continuous = arch.is_some_and(|arch| arch.voussoirs.is_none());
+        let has_free_hinges = structure.wall_behind().is_none() && !is_continuous;
+        let is_free = motion.kind == &FREE_HINGES && !motion.ignores_elastic_joints;
+        let hinges = if is_free { "" } else { " --hinges free" };
+        let options = format!("{hinges} --set free_hinges.friction_coefficient={SLIPS_ABOVE}");
+        Self {
+            is_block: motion.kind == &FOUR_LINKS && !structure.has_horizontal_thrust(),
+            options: has_free_hinges.then_some(options),
+        }
+    }
+
+    /// Returns the condition of an answer whose histories require this coefficient. `study` is the command of the study with its options, without
+    /// `archrock`. `None` if stone certainly has the coefficient, or without one: if joints slip or are elastic.
+    pub(super) fn condition(&self, demand: Option<f64>, study: &str) -> Option<FrictionCondition> {
+        let coefficient = demand.filter(|demand| *demand > STONE_FRICTION[0])?;
+        let options = self.options.as_ref();
+        Some(FrictionCondition {
+            coefficient,
+            surfaces: if self.is_block {
+                "its base has"
+            } else {
+                "its joints have"
+            },
+            command: options.map(|options| format!("archrock {study}{options}")),
+        })
+    }
+}
+
+/// Friction on which an answer depends.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrictionCondition {
+    /// Friction coefficient that the histories require.
+    coefficient: f64,
+    /// The surfaces that need it, with the verb.
+    surfaces: &'static str,
+    /// Command that computes the answer with slip; `None` if free hinges do not describe the structure.
+    command: Option<String>,
+}
+
+impl FrictionCondition {
+    /// Returns whether joints of stone may slip under weaker motions.
+    fn may_slip(&self) -> bool {
+        may_slip(self.coefficient)
+    }
+
+    /// Returns the words that follow an answer: `if its joints have a friction coefficient of 0.54`; empty if joints may slip.
+    fn clause(&self) -> String {
+        match self.may_slip() {
+            true => String::new(),
+            false => format!(
+                " if {} a friction coefficient of {}",
+                self.surfaces,
+                rounded_up(self.coefficient)
+            ),
+        }
+    }
+
+    /// Returns the condition in words; `need` is a verb with its subject.
+    fn in_words(&self, need: &str) -> String {
+        let condition = needed(self.coefficient, need);
+        if !self.may_slip() {
+            return condition;
+        }
+        let [low, high] = STONE_FRICTION;
+        let command = self.command.as_ref();
+        let command = command.map_or(String::new(), |command| format!("; run `{command}`"));
+        format!("{condition}, and stone has {low} to {high}{command}")
+    }
+}
+
+impl fmt::Display for FrictionCondition {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.in_words(NEEDS))
+    }
+}
+
+/// Verb for the friction that one history needs.
+pub(super) const NEEDS: &str = "needs a friction coefficient of";
+
+fn may_slip(coefficient: f64) -> bool {
+    coefficient > SLIPS_ABOVE
+}
+
+/// Returns a needed friction coefficient in words, and whether joints of stone may slip under weaker motions. `need` is a verb with its subject.
+fn needed(coefficient: f64, need: &str) -> String {
+    let before = if may_slip(coefficient) {
+        "joints may slip before: "
+    } else {
+        ""
+    };
+    format!("{before}{need} {}", rounded_up(coefficient))
+}
+
+/// Returns the friction coefficient that a history needs, in words; `None` if stone certainly has it.
+pub(super) fn condition_of(demand: Option<f64>) -> Option<String> {
+    let demand = demand.filter(|demand| *demand > STONE_FRICTION[0])?;
+    Some(needed(demand, NEEDS))
+}
+
+/// Returns a coefficient of friction as text, rounded up. Values above 10, which no stone has, occur at almost unloaded joints.
+fn rounded_up(coefficient: f64) -> String {
+    match coefficient > 10.0 {
+        true => "more than 10".to_owned(),
+        false => format!("{:.2}", (100.0 * coefficient - 1e-9).ceil() / 100.0),
+    }
+}
+
+/// Friction on which the survivors of a study depend.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct SurvivorFriction {
+    /// Largest friction coefficient that surviving histories and their repetitions require without slip; null if joints slip or are elastic, or if
+    /// nothing survives.
+    #[serde(default)]
+    pub(super) friction_demand: Option<f64>,
+    /// The condition on friction, in words; absent if all stone meets it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) friction_condition: Option<String>,
+}
+
+impl SurvivorFriction {
+    /// Makes the condition of survivors, in words such as `surviving cells`, that require these coefficients. `study` is the command, as in
+    /// [`SlipWords::condition`].
+    pub(super) fn of(
+        demands: impl IntoIterator<Item = Option<f64>>,
+        scenario: &Scenario,
+        (study, survivors): (&str, &str),
+    ) -> Self {
+        let friction_demand = demands.into_iter().flatten().reduce(f64::max);
+        let condition = SlipWords::of(scenario).condition(friction_demand, study);
+        Self {
+            friction_demand,
+            friction_condition: condition.map(|condition| {
+                condition.in_words(&format!("{survivors} need a friction coefficient of up to"))
+            }),
+        }
+    }
+}
 
 /// The answer of a model of motion.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,6 +180,8 @@ pub struct ModelAnswer {
     label: &'static str,
     /// The certain answer, in words; or the reason why there is none.
     answer: Result<String, String>,
+    /// Friction on which the answer depends; `None` without condition.
+    friction: Option<FrictionCondition>,
 }
 
 impl ModelAnswer {
@@ -34,7 +201,13 @@ impl ModelAnswer {
                 false => model.label,
             },
             answer: answer.and_then(|answer| outside.flatten().map_or(Ok(answer), Err)),
+            friction: None,
         }
+    }
+
+    /// Returns the answer with the friction on which it depends.
+    pub fn with_friction(self, friction: Option<FrictionCondition>) -> Self {
+        Self { friction, ..self }
     }
 }
 
@@ -59,8 +232,12 @@ pub fn in_words(answers: &[ModelAnswer]) -> Option<String> {
         model if model == &FOUR_LINKS && label == model.label => "; compare with free hinges",
         _ => "",
     };
+    let friction = best.friction.as_ref();
+    let clause = friction.map_or(String::new(), FrictionCondition::clause);
+    let slip = friction.filter(|friction| friction.may_slip());
+    let slip = slip.map_or(String::new(), |slip| format!("; {slip}"));
     Some(match &best.answer {
-        Ok(answer) => format!("to quote: {answer}, with {label}{more}"),
+        Ok(answer) => format!("to quote: {answer}{clause}, with {label}{more}{slip}"),
         Err(why) => format!("to quote: no answer with {label}: {why}"),
     })
 }

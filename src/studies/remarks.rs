@@ -10,6 +10,7 @@ use super::ending::columns::{
     CANNOT_STAND, FAILED, GROUND_FALLS, NOT_FOUR_LINKS, OVERTURNED, UNCERTAIN,
 };
 use super::ending::{Ending, NoHistory, Verdict, outcome_name};
+use super::quotable::SurvivorFriction;
 use crate::dynamics::{EXCESS_LEVELS, MODEL_LIMIT, OutcomeCount};
 use crate::{Outcome, Scenario};
 
@@ -246,6 +247,8 @@ pub(crate) struct CaseSummary {
     /// Number of cases.
     pub(crate) cases: usize,
     #[serde(flatten)]
+    pub(super) friction: SurvivorFriction,
+    #[serde(flatten)]
     pub(crate) remarks: Remarks,
 }
 
@@ -255,8 +258,11 @@ impl CaseSummary {
         scenario: &Scenario,
         cases: usize,
         remarks: Remarks,
+        friction: SurvivorFriction,
         warnings: impl IntoIterator<Item = String>,
     ) -> Self {
+        let warnings = warnings.into_iter();
+        let warnings = warnings.chain(friction.friction_condition.clone());
         Self {
             program: env!("CARGO_PKG_NAME").to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -264,6 +270,7 @@ impl CaseSummary {
             warnings: scenario.unlikely().into_iter().chain(warnings).collect(),
             record_checksums: scenario.record_checksums(),
             cases,
+            friction,
             remarks,
         }
     }

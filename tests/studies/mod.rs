@@ -4,6 +4,7 @@ mod capacity;
 mod elastic_joints;
 mod fragility;
 mod free_hinges;
+mod friction_demand;
 mod impact;
 mod limit;
 mod loads;

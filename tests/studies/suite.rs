@@ -556,6 +556,7 @@ fn results(rows: &[(&str, f64, Option<Outcome>)]) -> SuiteFragility {
         edge: None,
         edge_at_most: false,
         safe_below_edge: None,
+        friction_below_edge: None,
         strength: None,
         result: outcome
             .ok_or(NoHistory::Failed("it broke".to_owned()))
@@ -568,6 +569,7 @@ fn results(rows: &[(&str, f64, Option<Outcome>)]) -> SuiteFragility {
                 thrust_excess_ratio: None,
                 peak_rotation_rad: 0.1,
                 energy_defect_ratio: 0.0,
+                friction_demand: None,
                 steps: None,
                 safe_from_s: None,
                 count: None,
@@ -601,6 +603,7 @@ fn levels_of(records: &[(&str, &str)]) -> Vec<CaseRow> {
                 edge: None,
                 edge_at_most: false,
                 safe_below_edge: None,
+                friction_below_edge: None,
                 strength: None,
                 result: Ok(Ending {
                     direction: Direction::AsGiven,
@@ -611,6 +614,7 @@ fn levels_of(records: &[(&str, &str)]) -> Vec<CaseRow> {
                     thrust_excess_ratio: None,
                     peak_rotation_rad: 0.5,
                     energy_defect_ratio: 0.0,
+                    friction_demand: None,
                     steps: Some(Steps {
                         longest_s: 1e-4,
                         shortest_s: 1e-5,

@@ -218,6 +218,7 @@ impl Model for Rule {
             peak_rotations_rad: vec![0.0],
             energy_defect_ratio: 0.0,
             thrust: None,
+            friction: None,
             cost: Cost::default(),
             details: Details::Mechanisms(MechanismSummary::default()),
         })

@@ -6,7 +6,7 @@ use std::time::Duration;
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize, Serializer};
 
-use crate::dynamics::ThrustRecord;
+use crate::dynamics::{FrictionRecord, ThrustRecord};
 use crate::mechanics::{Demand, Hinge, Lanes, Pose, Sway, Tie, TieMemory};
 
 /// Outcome of a history.
@@ -475,6 +475,8 @@ pub struct Summary {
     /// Thrust record of all samples; `None` without samples. For a mechanism that overturns: of all samples before the last passage of the unstable
     /// equilibrium.
     pub thrust: Option<ThrustRecord>,
+    /// Friction that a motion without slip requires. If joints slip or are elastic: `None` without samples.
+    pub friction: Option<FrictionRecord>,
     /// Computational effort.
     pub cost: Cost,
     /// Results of one kind of model only.
@@ -538,6 +540,15 @@ impl Summary {
     /// Returns the largest potential energy over the barrier of the first mechanism, as in [`RowSummary`]; `None` for mechanisms.
     pub fn peak_potential_over_barrier(&self) -> Option<f64> {
         self.row()?.peak_potential_over_barrier
+    }
+
+    /// Returns the friction coefficient on which the history depends, because joints that slip would move otherwise. `None` if joints slip or are
+    /// elastic.
+    pub fn required_friction(&self) -> Option<f64> {
+        let rigid = self.elastic().is_none();
+        let slips = self.row().is_some_and(|row| row.sliding.is_some());
+        let friction = self.friction.filter(|_| rigid && !slips);
+        friction.map(|friction| friction.required())
     }
 
     /// Returns the largest rotation of any body, without sign, in radians.

@@ -43,6 +43,6 @@ pub use self::row::error::{RowModelError, RowMotionError};
 pub(crate) use self::row::input::MotionInput;
 pub(crate) use self::row::observer::MotionObserver;
 pub(crate) use self::row::stepper::Stepper;
-pub use self::thrust::{EXCESS_LEVELS, LASTING, MODEL_LIMIT, ThrustRecord};
+pub use self::thrust::{EXCESS_LEVELS, FrictionRecord, LASTING, MODEL_LIMIT, ThrustRecord};
 pub use self::until::EndCondition;
 pub use self::variation::{Variation, VariationResult, Variations};

@@ -143,6 +143,15 @@ pub struct Repeatability {
     pub largest_slip_m: Option<RepeatedValue>,
     /// Energy dissipated by friction, in J; `None` without slip, and if one of the motions overturns.
     pub friction_j: Option<RepeatedValue>,
+    /// Largest friction coefficient that the motion and its repetitions require without slip; `None` if joints slip or are elastic.
+    #[serde(skip)]
+    pub friction_demand: Option<f64>,
+}
+
+/// Returns the largest friction coefficient that these motions require; `None` if joints slip or are elastic.
+pub fn required_friction<'a>(motions: impl IntoIterator<Item = &'a Summary>) -> Option<f64> {
+    let required = motions.into_iter().filter_map(Summary::required_friction);
+    required.reduce(f64::max)
 }
 
 /// Returns the name of a repetition as a key in results.
@@ -236,6 +245,7 @@ impl Repeatability {
             friction_j: all_stand
                 .then(|| slid(&runs, |sliding| sliding.friction_j))
                 .flatten(),
+            friction_demand: required_friction(runs),
         }
     }
 
@@ -426,6 +436,9 @@ pub struct CheckedHistory {
     pub safe_from_s: Option<f64>,
     /// Count of the outcomes of the history and its repetitions; `None` without repetitions.
     pub count: Option<OutcomeCount>,
+    /// Largest friction coefficient that the history and its repetitions require without slip; `None` if joints slip or are elastic, or if there is
+    /// no history.
+    pub friction_demand: Option<f64>,
 }
 
 /// Computes the histories of cases, in their order, with repetitions where these may change the verdict. Histories with the early end
@@ -515,6 +528,8 @@ struct CaseResults {
     /// Known results of the repetitions, in their order; empty again once they are counted.
     repeated: Vec<Option<Result<Summary, SimulationError>>>,
     count: Option<OutcomeCount>,
+    /// Largest friction coefficient that the counted repetitions require.
+    friction_demand: Option<f64>,
 }
 
 impl<'a> Checks<'a> {
@@ -598,8 +613,9 @@ impl<'a> Checks<'a> {
         }
         let (all, request) = (self.repetitions.len(), &self.cases[case].1);
         if results.repeated.len() == all || suffice(self.model, request, own, known.clone()) {
-            let named = self.repetitions.iter().copied().zip(known);
+            let named = self.repetitions.iter().copied().zip(known.clone());
             results.count = Some(OutcomeCount::new(own, named));
+            results.friction_demand = required_friction(known.flatten());
             results.repeated = Vec::new();
             self.queue_mirrored(case);
         } else {
@@ -623,10 +639,15 @@ impl<'a> Checks<'a> {
                     own.outcome = Outcome::Rest;
                 }
             }
+            let own_demand = own.as_ref().ok().and_then(Summary::required_friction);
             Some(CheckedHistory {
                 own,
                 safe_from_s,
                 count: results.count,
+                friction_demand: own_demand
+                    .into_iter()
+                    .chain(results.friction_demand)
+                    .reduce(f64::max),
             })
         })
         .collect()

@@ -32,7 +32,14 @@ const COMPARABLE_SLIP: f64 = 0.01;
 /// at least as fast as those of a block whose impacts leave 0.95 of the energy.
 const HALF_CYCLES_LEFT: f64 = 40.0;
 
-/// Recorder that ends a history once the structure cannot overturn.
+/// Fraction of the largest energy of the motion below which no later half cycle has half of the largest peak.
+const FADED: f64 = 0.25;
+
+/// Peak of the current half cycle, over the largest one, below which the half cycle is not [strong](super::thrust::STRONG). Lower than that limit,
+/// because the peaks of samples are lower than those of steps.
+const WEAK: f64 = 0.4;
+
+/// Recorder that ends a history once the structure cannot overturn, and its friction demand is known.
 #[derive(Default)]
 pub(super) struct SafetyMonitor {
     /// Time from which on the ground is quiet, in seconds.
@@ -45,6 +52,8 @@ pub(super) struct SafetyMonitor {
     half_cycle_s: f64,
     /// Largest energy up to now, over the barrier.
     largest_ratio: f64,
+    /// Largest rotation of a block in the current half cycle, and up to now, in radians.
+    peaks_rad: [f64; 2],
     /// Largest slip with which energies are comparable with the barrier, in metres.
     largest_slip_m: f64,
     /// True once the history is ended early.
@@ -86,10 +95,21 @@ impl SafetyMonitor {
         if side != sway {
             self.half_cycle_s = now_s - since_s;
             self.sways = Some((sway, now_s));
+            self.peaks_rad[0] = 0.0;
         }
         // The current half cycle may be longer than the last one, which the ground affected.
         self.half_cycle_s
             .max(now_s - self.sways.map_or(now_s, |(_, since_s)| since_s))
+    }
+
+    /// Returns whether the friction demand cannot change any more. If joints slip it is not needed.
+    fn knows_demand(&mut self, sample: &Sample, ratio: f64) -> bool {
+        let rotations_rad = sample.rotations_rad.iter().map(|rotation| rotation.abs());
+        let largest_rad = rotations_rad.fold(0.0, f64::max);
+        self.peaks_rad = self.peaks_rad.map(|peak_rad| peak_rad.max(largest_rad));
+        let [current_rad, most_rad] = self.peaks_rad;
+        let has_faded = ratio < FADED * self.largest_ratio && current_rad < WEAK * most_rad;
+        has_faded || !sample.offsets_m.is_empty()
     }
 }
 
@@ -109,7 +129,7 @@ impl Recorder for SafetyMonitor {
         let slips = sample.offsets_m.iter().any(far);
         let ratio = sample.energy_ratio.unwrap_or(f64::INFINITY);
         self.largest_ratio = self.largest_ratio.max(ratio);
-        let safe = ratio < SAFE;
+        let safe = self.knows_demand(sample, ratio) && ratio < SAFE;
         if sample.time_s < self.quiet_from_s || !safe || slips {
             return ControlFlow::Continue(());
         }

@@ -226,18 +226,18 @@ pub trait MechanismChain: std::fmt::Debug + Send + Sync {
             *hinge = Vector2::new(sway.sign() * hinge.x, hinge.y) * self.length_m();
         }
     }
-    /// True if a thrust line runs through the structure, so that [`Self::excess_ratio`] is known.
+    /// True if a thrust line runs through the structure, so that its excess is known.
     const THRUSTS: bool;
-    /// Returns the largest excess of the thrust line of a mechanism in motion, over the thickness, after a number of impacts and a first sway to this
-    /// side. Faster than [`Self::demand`], and lower by some per cent for a continuous ring, whose sections are further apart.
-    fn excess_ratio(
+    /// Returns thrust excess and friction demand of a mechanism in motion, after a number of impacts and a first sway to this side. Faster than
+    /// [`Self::demand`], and lower by some per cent for a continuous ring, whose sections are further apart.
+    fn demand_at_sections(
         &self,
         _first: Sway,
         _impacts: usize,
-        _: &Self::Mechanism,
-        _: &MechanismState,
-    ) -> f64 {
-        0.0
+        mechanism: &Self::Mechanism,
+        motion: &MechanismState,
+    ) -> Demand {
+        self.demand(mechanism, motion)
     }
     /// Returns thrust excess and friction demand of a mechanism in motion.
     fn demand(&self, mechanism: &Self::Mechanism, motion: &MechanismState) -> Demand;

@@ -209,9 +209,11 @@ impl FourLinks {
         self.size.impulse_n_s_per_m
     }
 
-    fn thrust_at_rest(&self, body_force_g: Vector2<f64>) -> ThrustLine {
-        let (right, left) = (&self.chains.right.incipient, &self.chains.left.incipient);
-        ThrustLine::at_rest(right, left, self.chain().profile(0), body_force_g)
+    /// Returns the thrust line at rest, seen such that a push to this side is one to the right.
+    fn thrust_at_rest(&self, side: Sway, body_force_g: Vector2<f64>) -> ThrustLine {
+        let [towards, away] = [side, side.opposite()].map(|side| &self.chain_from(side).incipient);
+        let force_g = Vector2::new(side.sign() * body_force_g.x, body_force_g.y);
+        ThrustLine::at_rest(towards, away, self.chain_from(side).profile(0), force_g)
     }
 }
 
@@ -232,14 +234,14 @@ impl MechanismChain for FourLinks {
 
     const THRUSTS: bool = true;
 
-    fn excess_ratio(
+    fn demand_at_sections(
         &self,
         first: Sway,
         impacts: usize,
         mechanism: &Linkage,
         motion: &MechanismState,
-    ) -> f64 {
-        mechanism.excess_ratio(motion, self.chain_from(first).sections(impacts))
+    ) -> Demand {
+        mechanism.demand_at_sections(motion, self.chain_from(first).sections(impacts))
     }
 
     fn demand(&self, mechanism: &Linkage, motion: &MechanismState) -> Demand {
@@ -247,7 +249,12 @@ impl MechanismChain for FourLinks {
     }
 
     fn demand_at_rest(&self, body_force_g: Vector2<f64>) -> Demand {
-        let line = self.thrust_at_rest(body_force_g);
+        // A push to the left on a symmetric structure is the mirror image of one to the right, to the last bit.
+        let side = match body_force_g.x < 0.0 {
+            true => Sway::Left,
+            false => Sway::Right,
+        };
+        let line = self.thrust_at_rest(side, body_force_g);
         line.demand(self.chain().sites)
     }
 
@@ -261,7 +268,7 @@ impl MechanismChain for FourLinks {
     }
 
     fn eccentricity_ratios_at_rest(&self, body_force_g: Vector2<f64>) -> Vec<Option<f64>> {
-        let line = self.thrust_at_rest(body_force_g);
+        let line = self.thrust_at_rest(Sway::Right, body_force_g);
         line.eccentricity_ratios(&self.sections)
     }
 

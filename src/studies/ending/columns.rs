@@ -76,7 +76,7 @@ impl Ending {
 type NumberOf = fn(&Ending) -> Option<f64>;
 
 /// Numbers of an ending, by name.
-pub(crate) const NUMBERS: [(&str, NumberOf); 5] = [
+pub(crate) const NUMBERS: [(&str, NumberOf); 6] = [
     ("outcome_time_s", Ending::known_time_s),
     ("peak_rotation_over_critical", |ending| {
         ending.peak_over_critical
@@ -86,6 +86,7 @@ pub(crate) const NUMBERS: [(&str, NumberOf); 5] = [
         Some(ending.energy_defect_ratio)
     }),
     ("thrust_excess_ratio", |ending| ending.thrust_excess_ratio),
+    ("friction_demand", |ending| ending.friction_demand),
 ];
 
 /// Function that returns the ending of a row, or the outcome to report if the row has none.
@@ -111,7 +112,7 @@ pub(crate) fn columns<'a, R: 'a>(free_hinges: bool, ended: Ended<R>) -> Vec<Colu
             ending.certain_overturning_sway().and(ending.impacts)
         }),
     ];
-    columns.extend([0, 1, 3, 4].map(number));
+    columns.extend([0, 1, 3, 4, 5].map(number));
     if free_hinges {
         columns.push(number(2));
         columns.push(list(["overturns_in", "of"], move |row| {

@@ -15,7 +15,7 @@ use crate::mechanics::{LimitError, StabilityError};
 use crate::scenario::ModelError;
 use crate::{
     Case, EndCondition, FourLinkError, GroundMotion, Model, Outcome, Request, RowModelError,
-    SimulationError, Summary,
+    SimulationError,
 };
 
 /// The steps of a history.
@@ -54,6 +54,10 @@ pub struct Ending {
     pub thrust_excess_ratio: Option<f64>,
     /// Largest rotation of any body, in radians, for every model.
     pub peak_rotation_rad: f64,
+    /// Largest friction coefficient that the history and its repetitions require without slip, up to the last large half cycle: see
+    /// [`FrictionRecord`](crate::dynamics::FrictionRecord). `None` if joints slip or are elastic.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub friction_demand: Option<f64>,
     /// Time steps of the computation of a row of blocks; `None` for mechanisms, whose steps follow from a tolerance.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub steps: Option<Steps>,
@@ -124,11 +128,6 @@ impl Ending {
             (Verdict::Incomplete, _) => None,
             (verdict, _) => Some(f64::from(verdict == Verdict::Overturns)),
         }
-    }
-
-    /// Returns [`Ending::overturning_share`] and the thrust excess ratio.
-    pub(super) fn share_and_excess(&self) -> [Option<f64>; 2] {
-        [self.overturning_share(), self.thrust_excess_ratio]
     }
 
     /// Returns the ending of the mirrored case.
@@ -208,36 +207,45 @@ impl Ending {
         checked.map(worse).collect()
     }
 
-    fn of_checked(checked: CheckedHistory) -> Result<Self, NoHistory> {
-        Self::from_summary(&checked.own?, checked.safe_from_s, checked.count)
-    }
-
     /// Returns the worse ending of this one and that under the mirrored ground motion, if there is one: the worse verdict counts, of equal verdicts the
-    /// larger peak.
+    /// larger peak. Its friction demand is the larger one of both.
     ///
     /// # Errors
     /// If the mirrored history failed, and this one survives: the case then has no verdict.
     pub fn or_worse(self, mirrored: Option<Result<Self, NoHistory>>) -> Result<Self, NoHistory> {
         let severity = |ending: &Self| (ending.verdict(), ending.peak_or_infinite_rad());
         match mirrored {
-            Some(Ok(mirrored)) if severity(&mirrored) > severity(&self) => Ok(Self {
-                direction: Direction::Mirrored,
-                ..mirrored
-            }),
+            Some(Ok(mirrored)) => {
+                let demands = [self.friction_demand, mirrored.friction_demand];
+                let worse = match severity(&mirrored) > severity(&self) {
+                    true => Self {
+                        direction: Direction::Mirrored,
+                        ..mirrored
+                    },
+                    false => self,
+                };
+                Ok(Self {
+                    friction_demand: demands.into_iter().flatten().reduce(f64::max),
+                    ..worse
+                })
+            }
             Some(Err(reason)) if self.verdict() < Verdict::Uncertain => Err(reason.mirrored()),
             _ => Ok(self),
         }
     }
 
-    /// Makes the ending of a history. `count` is the count of the history and its repetitions.
+    /// Makes the ending of a history with its repetitions.
     ///
     /// # Errors
-    /// When a number is not finite.
-    pub(super) fn from_summary(
-        summary: &Summary,
-        safe_from_s: Option<f64>,
-        count: Option<OutcomeCount>,
-    ) -> Result<Self, NoHistory> {
+    /// The reason why there is no history, or a number is not finite.
+    pub(super) fn of_checked(checked: CheckedHistory) -> Result<Self, NoHistory> {
+        let summary = checked.own?;
+        let CheckedHistory {
+            safe_from_s,
+            count,
+            friction_demand,
+            ..
+        } = checked;
         let ending = Self {
             direction: Direction::AsGiven,
             outcome: summary.outcome,
@@ -248,6 +256,7 @@ impl Ending {
             peak_over_critical: summary.peak_over_critical(),
             thrust_excess_ratio: summary.thrust_excess_ratio(),
             peak_rotation_rad: summary.largest_rotation_rad(),
+            friction_demand,
             steps: summary.row().map(|row| Steps {
                 longest_s: row.longest_step_s,
                 shortest_s: row.shortest_step_s,
@@ -256,7 +265,8 @@ impl Ending {
         };
         let peak = ending.peak_over_critical.unwrap_or(0.0);
         let excess = ending.thrust_excess_ratio.unwrap_or(0.0);
-        check_finite(&[ending.peak_rotation_rad, peak, excess])?;
+        let friction = ending.friction_demand.unwrap_or(0.0);
+        check_finite(&[ending.peak_rotation_rad, peak, excess, friction])?;
         check_finite(&[ending.outcome_time_s, ending.energy_defect_ratio])?;
         Ok(ending)
     }

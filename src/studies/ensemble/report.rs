@@ -8,6 +8,7 @@ use super::samples::ReasonCounts;
 use super::{NoAnswer, SampleRow, Samples};
 use crate::output::{Cell, Column, Figure, OutputError, column, csv, list};
 use crate::studies::ModelCheck;
+use crate::studies::quotable::SurvivorFriction;
 use crate::studies::statistics::Share;
 
 /// A row of the table of samples: the number of the sample, from 1, or 0 for the scenario itself; and its values and answer.
@@ -72,6 +73,8 @@ pub(super) struct SampleSummary {
     pub(super) without: ReasonCounts,
     #[serde(flatten)]
     pub(super) model: ModelCheck,
+    #[serde(flatten)]
+    pub(super) friction: SurvivorFriction,
     /// The reason why the scenario itself has no answer; null if it has one.
     pub(super) own_without_answer: Option<String>,
     /// The samples without an answer.
@@ -98,11 +101,13 @@ impl SampleSummary {
     pub(super) fn new<A, const N: usize>(
         samples: &Samples<'_, A>,
         model: ModelCheck,
+        friction: SurvivorFriction,
         limits: [Option<String>; 2],
         influences: [(InfluencedAnswer, Option<Vec<NumberInfluence>>); N],
     ) -> Self {
         let scenario = samples.scenario;
-        let limits = limits.into_iter().flatten();
+        let condition = friction.friction_condition.clone();
+        let limits = limits.into_iter().flatten().chain(condition);
         let own = samples.own.as_ref().err();
         let without = samples.without().map(|(sample, why)| WithoutAnswer {
             sample,
@@ -118,6 +123,7 @@ impl SampleSummary {
             answered: samples.answers().count(),
             without: samples.reasons(),
             model,
+            friction,
             own_without_answer: own.map(|why| why.reason().to_owned()),
             without_answer: without.collect(),
             not_considered: NOT_CONSIDERED.to_owned(),

@@ -21,9 +21,10 @@ use crate::output::{
 use crate::scenario::{MotionModel, Scenario, Structure};
 use crate::studies::ending::columns::{self, OUTCOMES, OVERTURNED};
 use crate::studies::page::kind_of;
+use crate::studies::quotable::SurvivorFriction;
 use crate::studies::statistics::{Share, band, fractile, quantile};
 use crate::studies::{ModelCheck, Results};
-use crate::{Ending, Factors, Model, NoHistory, Sample, Verdict};
+use crate::{Ending, Factors, Model, Sample, Verdict};
 
 /// Largest number of times at which samples are compared.
 const MOST_TIMES: usize = 300;
@@ -125,9 +126,14 @@ impl Question for Histories {
         });
         let answers = samples.answers();
         let model = ModelCheck::of(answers.map(|answer| answer.ending.thrust_excess_ratio));
+        let survivors = samples.answers().map(|answer| &answer.ending);
+        let survivors = survivors.filter(|ending| ending.verdict() == Verdict::Survives);
+        let demands = survivors.map(|ending| ending.friction_demand);
+        let study = ("run FILE", "surviving samples");
+        let friction = SurvivorFriction::of(demands, samples.scenario, study);
         let limits = [model.in_words(CHECKED), samples.no_verdict()];
         let report = Summary {
-            all: SampleSummary::new(samples, model, limits, influences),
+            all: SampleSummary::new(samples, model, friction, limits, influences),
             own: samples.own.as_ref().ok().map(OwnHistory::of),
             outcomes: outcomes.collect(),
             peak_rotation_rad: each(band(samples.answers().map(peak_rad).collect(), fractile))
@@ -203,14 +209,15 @@ impl Histories {
         let case = (ground.clone(), request);
         let own = vec![model.simulate(ground, &request, Some(&mut record))];
         let checked = repeated(model, &[case], own).remove(0);
-        let summary = checked.own.map_err(NoHistory::from)?;
-        let ending = Ending::from_summary(&summary, None, checked.count)?;
+        let own = checked.own.as_ref().ok();
+        let potential_over_barrier = own.and_then(|own| own.peak_potential_over_barrier());
+        let ending = Ending::of_checked(checked)?;
         if ending.verdict() == Verdict::Incomplete {
             return Err(NoAnswer::Incomplete);
         }
         Ok(HistoryAnswer {
             ending,
-            potential_over_barrier: summary.peak_potential_over_barrier(),
+            potential_over_barrier,
             course_rad,
         })
     }

@@ -12,12 +12,13 @@ use super::{NoAnswer, Question, Samples};
 use crate::output::page::SpotKind;
 use crate::output::{Chart, Figure, Key, Mark, OutputError, Scale, Stroke, color, column, csv};
 use crate::scenario::{Measure, Scenario, Suite, shown};
+use crate::studies::quotable::SurvivorFriction;
 use crate::studies::statistics::{
     ascending_weighted, bootstrap, interval, shares_up_to, weighted_fractile,
 };
 use crate::studies::suite::case;
 use crate::studies::suite::strength::few;
-use crate::studies::threshold::first_edge::{FirstEdge, TREATMENTS, Treatment};
+use crate::studies::threshold::first_edge::{FirstEdge, TREATMENTS, Treatment, TriedHistory};
 use crate::studies::threshold::{Factors, rounded, rounded_range};
 use crate::studies::{Ending, ModelCheck, Results};
 
@@ -139,9 +140,12 @@ impl Question for Capacities {
         )];
         let edges = counted.of_samples();
         let model = ModelCheck::of(edges.clone().map(|edge| edge.thrust_excess_ratio));
+        let demands = edges.clone().map(|edge| edge.friction_demand);
+        let survivors = ("suite FILE", "surviving motions of samples");
+        let friction = SurvivorFriction::of(demands, samples.scenario, survivors);
         let limits = [model.in_words(CHECKED), samples.no_verdict()];
         let report = Summary {
-            all: SampleSummary::new(samples, model, limits, influences),
+            all: SampleSummary::new(samples, model, friction, limits, influences),
             intensity: self.suite.measure,
             quote: "both".to_owned(),
             first_intensity: StrengthBand::of(edges.clone()),
@@ -186,8 +190,7 @@ impl Question for Capacities {
             let (record, mirrored) = (shake / self.suite.signs(), shake % self.suite.signs() == 1);
             FirstEdge::among(&self.levels, WIDTH, |level: f64| {
                 let (ground, request) = case(scenario, &self.suite, record, level, mirrored);
-                let ending = Ending::of(&*model, &ground, &request)?;
-                Ok(ending.share_and_excess())
+                Ending::of(&*model, &ground, &request).map(TriedHistory::from)
             })
         });
         edges.collect()

@@ -13,6 +13,7 @@ use crate::output::{
     Chart, Figure, Key, Mark, OutputError, Scale, Sign, Stroke, color, column, csv, each, list,
 };
 use crate::scenario::Scenario;
+use crate::studies::quotable::SurvivorFriction;
 use crate::studies::statistics::{
     BAND, Share, ascending_weighted, band, fractile, weighted_fractile,
 };
@@ -119,11 +120,15 @@ impl Question for FirstEdges {
             samples.influence(false, strength),
         )];
         let model = ModelCheck::of(edges.clone().map(|edge| edge.thrust_excess_ratio));
+        let demands = edges.clone().map(|edge| edge.friction_demand);
+        let study = format!("threshold FILE{}", self.factors.options());
+        let survivors = (study.as_str(), "surviving motions of samples");
+        let friction = SurvivorFriction::of(demands, samples.scenario, survivors);
         let limits = [model.in_words(CHECKED), samples.no_verdict()];
         let own = samples.own.as_ref().ok();
         let count = |condition: fn(&&_) -> bool| edges.clone().filter(condition).count();
         let report = Summary {
-            all: SampleSummary::new(samples, model, limits, influences),
+            all: SampleSummary::new(samples, model, friction, limits, influences),
             survives_up_to_factor: each(band(
                 edges.clone().map(FirstEdge::safe_or_zero).collect(),
                 fractile,

@@ -16,6 +16,7 @@ pub use self::picture::draw;
 pub use self::report::Summary as MapSummary;
 use super::ending::{Ending, NoHistory, answered};
 use super::runner::Study;
+use crate::dynamics::repeatability::{CheckedHistory, required_friction};
 use crate::dynamics::{OutcomeCount, Repetition};
 use crate::scenario::{Axis, Ground, ModelError, Quantity, Scaling, Scenario};
 use crate::{Case, GroundMotion, Model, PulseShape, SimulationError, Summary};
@@ -303,13 +304,20 @@ fn all_outcomes(model: &dyn Model, cases: &[Case]) -> Vec<Result<Ended, NoHistor
         let own = own?;
         let others = || repeated.iter().map(|(name, all)| (*name, &all[index]));
         let computed = others().filter_map(|(_, other)| other.as_ref().ok());
-        let outcomes = computed.chain([&own]).map(|one| one.outcome.name());
+        let outcomes = computed.clone().chain([&own]);
+        let outcomes = outcomes.map(|one| one.outcome.name());
         let outcomes: BTreeSet<&str> = outcomes.collect();
         let count = OutcomeCount::new(&own, others());
         let failed = count.failed.first();
         let failed = failed.map(|failed| format!("with {failed}"));
         let outcomes = failed.map_or(Ok(outcomes.len()), Err);
-        let ending = Ending::from_summary(&own, None, Some(count))?;
+        let friction_demand = required_friction(computed.chain([&own]));
+        let ending = Ending::of_checked(CheckedHistory {
+            own: Ok(own),
+            safe_from_s: None,
+            count: Some(count),
+            friction_demand,
+        })?;
         Ok((ending, Some(outcomes)))
     };
     let own = model.simulate_all(cases).into_iter();

@@ -28,6 +28,9 @@ struct Page {
     scenario: String,
     /// The input in one line.
     what: String,
+    /// The condition on friction, in words; `None` without condition.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    friction: Option<String>,
     axes: [PageAxis; 2],
     /// The drawings for wide and for narrow screens.
     sheets: [PageSheet; 2],
@@ -77,14 +80,17 @@ pub fn page_of(picture: &str, data: &str) -> serde_json::Result<String> {
 pub(crate) type CellNumbers = (&'static str, Vec<Option<f64>>);
 
 impl ColoredCells {
-    /// Makes the page from a picture of any width, with reasons for uncertain cells and columns of numbers.
+    /// Makes the page from a picture of any width, with a condition on friction, reasons for uncertain cells, and columns of numbers.
     pub(crate) fn page(
         &self,
         title: &str,
         map: &OverturningMap<'_>,
         draw: impl Fn(Figure) -> Drawn,
-        doubts: BTreeMap<usize, String>,
-        columns: impl IntoIterator<Item = CellNumbers>,
+        friction: Option<String>,
+        (doubts, columns): (
+            BTreeMap<usize, String>,
+            impl IntoIterator<Item = CellNumbers>,
+        ),
     ) -> String {
         let index = |color| {
             let place = self.palette.iter().position(|known| known == color);
@@ -121,6 +127,7 @@ impl ColoredCells {
                 edges_px: drawn.edges_px.clone(),
             }),
             what: caption(map.scenario, &map.axes),
+            friction,
             kinds: BASE64_STANDARD.encode(kinds),
             doubts,
             outside: outside.collect(),

@@ -8,7 +8,9 @@ use super::{CellRow, NoHistory, OverturningMap, page};
 use crate::argument::plain;
 use crate::output::{Column, OutputError, column, csv};
 use crate::scenario::{Quantity, Scenario};
+use crate::studies::ending::Verdict;
 use crate::studies::ending::columns::{self, FAILED};
+use crate::studies::quotable::SurvivorFriction;
 use crate::studies::run::Scales;
 use crate::studies::{CaseSummary, OutcomeCounts, Remark, Remarks, ReportedStudy, Results, Style};
 
@@ -35,11 +37,15 @@ impl ReportedStudy for OverturningMap<'_> {
         let title = scenario.title.as_deref().unwrap_or("Overturning map");
         let remarks = remarks(self, &cells);
         let warnings = remarks.warnings("cells");
+        let survivors = cells.iter().filter_map(|cell| cell.result.as_ref().ok());
+        let survivors = survivors.filter(|ending| ending.verdict() == Verdict::Survives);
+        let demands = survivors.map(|ending| ending.friction_demand);
+        let friction = SurvivorFriction::of(demands, scenario, ("map FILE", "surviving cells"));
         let doubtful = cells.iter().filter(|cell| cell.is_doubtful());
         let report = Summary {
             outcomes: OutcomeCounts::of(cells.iter().map(|cell| &cell.result)),
             other_outcomes_in_repetitions: self.repeat.then(|| doubtful.count()),
-            all: CaseSummary::new(scenario, cells.len(), remarks, warnings),
+            all: CaseSummary::new(scenario, cells.len(), remarks, friction, warnings),
         };
         let colored = ColoredCells::of_outcomes(&cells, style);
         let picture = |style| picture::drawn(title, self, &cells, &colored, style);
@@ -48,8 +54,8 @@ impl ReportedStudy for OverturningMap<'_> {
             title,
             self,
             |figure| picture(style.with(figure)),
-            doubts,
-            columns,
+            report.all.friction.friction_condition.clone(),
+            (doubts, columns),
         );
         let others = [
             picture(style).picture.into_bytes(),

@@ -7,9 +7,7 @@ use crate::Verdict;
 use crate::dynamics::{EXCESS_LEVELS, OutcomeKind};
 use crate::output::filters;
 use crate::scenario::FREE_HINGES;
-
-/// Smallest and largest coefficient of friction of stone on stone.
-pub(super) const STONE_FRICTION: [f64; 2] = [0.5, 0.8];
+use crate::studies::quotable::condition_of;
 
 /// Returns a coefficient of friction as text. Values above 10, which no stone has, occur at almost unloaded joints.
 pub(super) fn coefficient(friction: &f64, decimals: usize) -> String {
@@ -26,8 +24,8 @@ pub(super) fn coefficient(friction: &f64, decimals: usize) -> String {
 pub(super) enum Caveat<'a> {
     /// The run ends too early for a verdict.
     NoVerdict(&'a Summary),
-    /// A motion without sliding needs this friction, which stone may not have.
-    Friction(f64),
+    /// A motion without slip needs more friction than stone may have.
+    Friction(String),
     /// The thrust line leaves the arch, which four links cannot follow.
     FourLinks {
         thrust: Thrust,
@@ -65,11 +63,9 @@ impl Summary {
         is_incomplete.then_some(Caveat::NoVerdict(self))
     }
 
-    /// Returns the friction that a motion without sliding needs; `None` if stone certainly has it.
+    /// Returns the friction that a motion without slip needs; `None` if stone certainly has it.
     pub(super) fn friction_condition(&self) -> Option<Caveat<'_>> {
-        let needed = self.friction?.required();
-        let condition = (needed > STONE_FRICTION[0]).then_some(Caveat::Friction(needed));
-        condition.filter(|_| self.friction_coefficient().is_none())
+        condition_of(self.friction_demand).map(Caveat::Friction)
     }
 
     /// Returns the limits of four links, or of a column on its toe; `None` for rows, if the structure did not rock, and for a column that never needs

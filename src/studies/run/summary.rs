@@ -15,7 +15,7 @@ use crate::mechanics::Sides;
 use crate::output::mechanisms::columns;
 use crate::output::{Named, OutputError, summary_of};
 use crate::scenario::{ELASTIC_JOINTS, Ground, ModelKind, Scenario};
-use crate::studies::quotable::{self, ModelAnswer};
+use crate::studies::quotable::{self, ModelAnswer, SlipWords};
 use crate::{MechanismModel, Model, Outcome, Summary as History, Sway, Verdict};
 
 /// A computed motion, with its repetitions and variations.
@@ -83,6 +83,9 @@ pub struct Summary {
     /// The friction that prevents sliding.
     #[serde(flatten)]
     pub friction: Option<FrictionDemand>,
+    /// Friction coefficient that the run and its repetitions require without slip: the condition of the answer. Null if joints slip or are elastic.
+    #[serde(default)]
+    pub friction_demand: Option<f64>,
     /// Number of steps.
     pub steps: u64,
     /// Results of four links and columns.
@@ -143,11 +146,11 @@ pub struct GroundSummary {
     pub pushes_g: Sides<f64>,
 }
 
-/// The friction that prevents sliding.
+/// The friction that prevents sliding, up to the end of the last half cycle whose peak is at least half of the largest, or up to overturning.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct FrictionDemand {
-    /// Largest coefficient of friction that a motion without sliding needs, over all steps outside impacts. Joints that carry less than a
-    /// hundredth of the weight do not count.
+    /// Largest coefficient of friction that a motion without sliding needs, over all steps outside impacts, up to the end of the last half cycle
+    /// whose peak is at least half of the largest. Joints that carry less than a hundredth of the weight do not count.
     pub largest_friction_demand: f64,
     /// Time of the largest friction demand, in seconds.
     pub largest_friction_demand_time_s: f64,
@@ -374,11 +377,15 @@ impl Summary {
             wall_behind: scenario.structure.wall_behind(),
             ground: GroundSummary::of(scenario, history),
             energy_defect_ratio: history.energy_defect_ratio,
-            friction: history.thrust.as_ref().map(|thrust| FrictionDemand {
-                largest_friction_demand: thrust.largest_friction.value,
-                largest_friction_demand_time_s: thrust.largest_friction.time_s,
-                lasting_friction_demand: thrust.lasting_friction,
+            friction: history.friction.map(|friction| FrictionDemand {
+                largest_friction_demand: friction.largest.value,
+                largest_friction_demand_time_s: friction.largest.time_s,
+                lasting_friction_demand: friction.lasting,
             }),
+            friction_demand: match computed.repeated {
+                Some(repeated) => repeated.friction_demand,
+                None => history.required_friction(),
+            },
             steps: history.cost.steps,
             mechanisms: model
                 .as_mechanisms()
@@ -420,12 +427,7 @@ impl Summary {
         };
         let samples = "with the given numbers: quote the probability of [uncertain] as well";
         let samples = scenario.uncertain.as_ref().map(|_| samples.to_owned());
-        let friction = self.friction_condition().map(|caveat| caveat.to_string());
-        let conditions: Vec<String> = friction.into_iter().chain(samples).collect();
-        let condition = match &conditions[..] {
-            [] => String::new(),
-            conditions => format!(" ({})", conditions.join("; ")),
-        };
+        let condition = samples.map_or(String::new(), |samples| format!(" ({samples})"));
         let answer = no_answer.map_or_else(|| Ok(format!("{happens} this motion{condition}")), Err);
         let excess_ratio = self
             .mechanisms
@@ -437,6 +439,7 @@ impl Summary {
             excess_ratio,
             answer,
         )
+        .with_friction(SlipWords::of(scenario).condition(self.friction_demand, "run FILE"))
     }
 }
 

@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 use serde::Deserialize as _;
 use serde_json::{Map, Value};
 
-use super::caveats::{Caveat, STONE_FRICTION, coefficient};
+use super::caveats::{Caveat, coefficient};
 use super::comparison::Comparison;
 use super::impacts::ImpactSummary;
 use super::points::place;
@@ -23,6 +23,7 @@ use crate::mechanics::Sides;
 use crate::output::mechanisms::by_body;
 use crate::output::{filters, range_ends, render};
 use crate::scenario::{ELASTIC_JOINTS, FREE_HINGES, ModelKind, Scenario, Series};
+use crate::studies::quotable::STONE_FRICTION;
 use crate::{Outcome, Verdict};
 
 /// Returns the heading of the words for the runs of scenarios that differ in their models: title, one line per record, and a note about an

@@ -9,6 +9,7 @@ use crate::output::caption::caption;
 use crate::output::{Figure, Scale};
 use crate::scenario::{Measure, ModelKind, Scenario, Spacing, Spectral, Suite};
 use crate::studies::page::under_factor;
+use crate::studies::quotable::SlipWords;
 
 /// The parts of a scenario that the report of its suite needs. Part files keep them, so that `merge` needs no record files.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -28,6 +29,9 @@ pub struct Heading {
     /// The scenario in one line.
     #[serde(default)]
     pub(super) what: String,
+    /// The words about its friction.
+    #[serde(default)]
+    pub(super) slip: SlipWords,
     /// The ground motion of each record with a peak of 1 g, by the name of the record.
     #[serde(default)]
     unit_grounds: Vec<(String, Value)>,
@@ -47,6 +51,7 @@ impl Heading {
             warnings: scenario.unlikely(),
             // The records of the suite replace the ground motion of the scenario.
             what: caption(&scenario.with_ground(None), &[]),
+            slip: SlipWords::of(scenario),
             unit_grounds: suite.unit_grounds(scenario.gravity_m_s2()),
         }
     }

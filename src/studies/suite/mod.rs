@@ -48,6 +48,10 @@ pub struct CaseRow {
     /// The largest level up to which the bisection of the edge found certain survival. `None` without an edge, or if the level below does not survive.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub safe_below_edge: Option<f64>,
+    /// Largest friction coefficient that the histories of the bisection up to `safe_below_edge` require without slip; `None` without such histories, or
+    /// if joints slip or are elastic.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub friction_below_edge: Option<f64>,
     /// Intensities of the unscaled record.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub strength: Option<Strength>,
@@ -195,9 +199,10 @@ impl Study for RecordSuite<'_> {
                 scale,
                 peak_g,
                 result: check_finite(&[scale, peak_g]).and(result),
-                edge: edge.map(|edge| edge.0),
-                edge_at_most: edge.is_some_and(|edge| edge.1),
-                safe_below_edge: edge.and_then(|edge| edge.2),
+                edge: edge.map(|edge| edge.lowest),
+                edge_at_most: edge.is_some_and(|edge| edge.at_most),
+                safe_below_edge: edge.and_then(|edge| edge.safe),
+                friction_below_edge: edge.and_then(|edge| edge.friction_demand),
                 strength: Some(self.strengths[record]),
             }
         };
@@ -247,9 +252,18 @@ fn overturns_certainly(result: &Result<Ending, NoHistory>) -> Option<bool> {
     complete(result).map(|ending| ending.verdict() == Verdict::Overturns)
 }
 
-/// The edge below a level that overturns: the lowest overturning level of the bisection; true if the edge may lie lower, because a level without a
-/// verdict counted as surviving; and the largest level of the bisection below all levels that do not certainly survive.
-type Edge = (f64, bool, Option<f64>);
+/// The edge below a level that overturns.
+#[derive(Clone, Copy)]
+struct Edge {
+    /// The lowest overturning level of the bisection.
+    lowest: f64,
+    /// True if the edge may lie lower, because a level without a verdict counted as surviving.
+    at_most: bool,
+    /// The largest level of the bisection below all levels that do not certainly survive.
+    safe: Option<f64>,
+    /// Largest friction coefficient that the histories of the bisection up to `safe` require.
+    friction_demand: Option<f64>,
+}
 
 /// Relative width to which bisection encloses an edge: much less than the scatter of records.
 const EDGE_WIDTH: f64 = 2e-3;
@@ -278,18 +292,32 @@ impl RecordSuite<'_> {
             return None;
         }
         let (mut at_most, mut safe, mut doubtful) = (false, None, level);
+        let mut demands = Vec::new();
         let (_, lowest) = bisect(below, level, Width::Relative(EDGE_WIDTH), |level| {
             let ending = ending(level);
             let answer = overturns_certainly(&ending);
             at_most |= answer.is_none();
             // A level above a doubtful one is not safe.
+            let demand = ending
+                .as_ref()
+                .ok()
+                .and_then(|ending| ending.friction_demand);
+            demands.extend(demand.map(|demand| (level, demand)));
             match ending.as_ref().map(Ending::verdict) {
                 Ok(Verdict::Survives) => safe = Some(level).filter(|_| level < doubtful).or(safe),
                 _ => doubtful = doubtful.min(level),
             }
             answer == Some(true)
         });
-        Some((lowest, at_most, safe))
+        let up_to_safe = demands
+            .into_iter()
+            .filter(|(level, _)| Some(*level) <= safe);
+        Some(Edge {
+            lowest,
+            at_most,
+            safe,
+            friction_demand: up_to_safe.map(|(_, demand)| demand).reduce(f64::max),
+        })
     }
 }
 

@@ -50,6 +50,10 @@ pub struct Summary {
     warnings: Vec<String>,
     /// The answer that may be quoted, in words.
     to_quote: Option<String>,
+    /// Largest friction coefficient that the surviving cases up to the quoted intensity and their repetitions require without slip; null if joints slip
+    /// or are elastic.
+    #[serde(default)]
+    friction_demand: Option<f64>,
     /// Number of all computed cases with each outcome.
     outcomes: OutcomeCounts,
     /// The measure of the intensities.
@@ -155,8 +159,11 @@ impl Heading {
         let results = SuiteFragility::new(self.measure, rows);
         let capacities = results.capacities();
         let remarks = self.remarks(&results);
-        let answer = self.answer(&results);
+        let (answer, friction_demand) = self.answer(&results);
+        let friction = self.slip.condition(friction_demand, "suite FILE");
         let limits = remarks.warnings("cases");
+        let limits = limits.chain(friction.as_ref().map(ToString::to_string));
+        let answer = answer.with_friction(friction.clone());
         let end = |end: usize| results.fits().nth(1 + end).map(Into::into);
         let ends = [results.levels.first(), results.levels.last()];
         let [from, to] = ends.map(|level| level.map_or(0.0, |level| level.intensity));
@@ -168,6 +175,7 @@ impl Heading {
             scenario: self.scenario.clone(),
             warnings: self.warnings.iter().cloned().chain(limits).collect(),
             to_quote: quotable::in_words(std::slice::from_ref(&answer)),
+            friction_demand,
             outcomes: OutcomeCounts::of(results.cases.iter().map(|case| &case.result)),
             intensity: self.measure,
             curve: (&results.fit).into(),
@@ -245,8 +253,9 @@ impl Heading {
         found.with_page(FILES[0], page, &cases, (&draw, &more))
     }
 
-    /// Returns the answer that may be quoted: the largest intensity that is safe under all records.
-    fn answer(&self, results: &SuiteFragility) -> ModelAnswer {
+    /// Returns the answer that may be quoted: the largest intensity that is safe under all records. Also returns the largest friction demand of the
+    /// surviving cases up to it.
+    fn answer(&self, results: &SuiteFragility) -> (ModelAnswer, Option<f64>) {
         let survivals = results.survivals().into_iter();
         let safe = |survival: &Survival| survival.survives_up_to.unwrap_or(0.0);
         let excess = |case: &CaseRow| case.result.as_ref().ok()?.thrust_excess_ratio;
@@ -259,6 +268,11 @@ impl Heading {
             let above = cases.iter().position(is_above);
             &cases[..above.map_or(cases.len(), |above| above + 1)]
         });
+        let survives = |case: &&CaseRow| case.verdict() == Some(Verdict::Survives);
+        let demand = |case: &CaseRow| case.result.as_ref().ok()?.friction_demand;
+        let demands = cases.clone().filter(survives).filter_map(demand);
+        let below_edges = cases.clone().filter_map(|case| case.friction_below_edge);
+        let friction_demand = demands.chain(below_edges).reduce(f64::max);
         let excess_ratio = cases.filter_map(excess).reduce(f64::max);
         let answer = lowest.map_or(Err("there are no cases".to_owned()), |(case, survival)| {
             let (record, unit) = (case.record_in_words(), self.measure.unit());
@@ -271,7 +285,8 @@ impl Heading {
                 )),
             }
         });
-        ModelAnswer::new(self.model, self.is_arch, excess_ratio, answer)
+        let answer = ModelAnswer::new(self.model, self.is_arch, excess_ratio, answer);
+        (answer, friction_demand)
     }
 
     /// Returns the failed and uncertain cases among those that count, with the reasons.

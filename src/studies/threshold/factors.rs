@@ -44,6 +44,15 @@ impl Factors {
         })
     }
 
+    /// Returns the options of a command that searches these factors, with a space before each; empty for the default.
+    pub(in crate::studies) fn options(&self) -> String {
+        let Self { from, to, stride } = self;
+        match *self == Self::default() {
+            true => String::new(),
+            false => format!(" --from {from} --to {to} --stride {stride}"),
+        }
+    }
+
     /// Returns the command that searches these factors for a scenario on standard input, without `archrock`.
     pub(in crate::studies) fn command(&self) -> String {
         let Self { from, to, stride } = self;

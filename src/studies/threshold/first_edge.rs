@@ -39,6 +39,31 @@ pub struct FirstEdge {
     /// models.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub thrust_excess_ratio: Option<f64>,
+    /// Largest friction coefficient that the histories at factors up to `survives_up_to` require without slip; `None` if joints slip or are elastic, or
+    /// without such a factor.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub friction_demand: Option<f64>,
+}
+
+/// The numbers of a history in the search for a first edge.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in crate::studies) struct TriedHistory {
+    /// Share of the repetitions that overturn; `None` if the history is incomplete.
+    pub(in crate::studies) overturning_share: Option<f64>,
+    /// Excess of the thrust line, as in [`Ending`].
+    pub(in crate::studies) thrust_excess_ratio: Option<f64>,
+    /// Friction demand, as in [`Ending`].
+    pub(in crate::studies) friction_demand: Option<f64>,
+}
+
+impl From<Ending> for TriedHistory {
+    fn from(ending: Ending) -> Self {
+        Self {
+            overturning_share: ending.overturning_share(),
+            thrust_excess_ratio: ending.thrust_excess_ratio,
+            friction_demand: ending.friction_demand,
+        }
+    }
 }
 
 /// Treatment of an uncertain factor: its probability to overturn the structure, from the fraction of the repetitions that overturn.
@@ -73,23 +98,22 @@ impl FirstEdge {
         Self::among(&factors.values(), EDGE_WIDTH, |factor: f64| {
             let ground = scenario.ground_motion().scaled(factor);
             let ground = ground.map_err(SimulationError::from)?;
-            let ending = Ending::of(&*model, &ground, &request)?;
-            Ok(ending.share_and_excess())
+            Ending::of(&*model, &ground, &request).map(TriedHistory::from)
         })
     }
 
     /// Finds the first edge. `strengths` are tried in ascending order, and bisection encloses the edge between two of them to this relative
-    /// width. `history` returns the share of the repetitions that overturn, `None` if the history is incomplete, and its thrust excess ratio.
+    /// width. `history` computes the history at a strength.
     pub(in crate::studies) fn among(
         strengths: &[f64],
         width: f64,
-        history: impl Fn(f64) -> Result<[Option<f64>; 2], NoHistory>,
+        history: impl Fn(f64) -> Result<TriedHistory, NoHistory>,
     ) -> Result<Self, NoAnswer> {
         let tried = RefCell::new(Vec::new());
         let known = |strength| {
-            let [share, excess_ratio] = history(strength)?;
-            let share = share.ok_or(NoAnswer::Incomplete)?;
-            tried.borrow_mut().push(([strength, share], excess_ratio));
+            let found = history(strength)?;
+            let share = found.overturning_share.ok_or(NoAnswer::Incomplete)?;
+            tried.borrow_mut().push(([strength, share], found));
             Ok(match share {
                 ..=0.0 => Verdict::Survives,
                 1.0.. => Verdict::Overturns,
@@ -150,7 +174,13 @@ impl FirstEdge {
         edge.factor = edge.factor.into_iter().chain(certain).reduce(f64::min);
         let last = edge.factor.unwrap_or(edge.tried_to);
         let of_last = tried.iter().find(|([strength, _], _)| *strength == last);
-        edge.thrust_excess_ratio = of_last.and_then(|(_, ratio)| *ratio);
+        edge.thrust_excess_ratio = of_last.and_then(|(_, found)| found.thrust_excess_ratio);
+        let safe = edge.survives_up_to;
+        let up_to_safe = tried
+            .iter()
+            .filter(|([strength, _], _)| Some(*strength) <= safe);
+        let demands = up_to_safe.filter_map(|(_, found)| found.friction_demand);
+        edge.friction_demand = demands.reduce(f64::max);
         let below = |[strength, share]: &[f64; 2]| *strength < edge.strength() && *share < 1.0;
         let shares = tried.into_iter().map(|(share, _)| share);
         edge.uncertain = ascending_weighted(shares.filter(below));
@@ -161,7 +191,7 @@ impl FirstEdge {
     pub(in crate::studies) fn columns<'a, R: 'a>(
         factor: &'static str,
         of: impl Fn(&R) -> Option<&Self> + Copy + 'a,
-    ) -> [Column<'a, R>; 6] {
+    ) -> [Column<'a, R>; 7] {
         [
             column("survives_up_to", move |row| of(row)?.survives_up_to),
             column(factor, move |row| of(row)?.factor),
@@ -171,6 +201,7 @@ impl FirstEdge {
             column("thrust_excess_ratio", move |row| {
                 of(row)?.thrust_excess_ratio
             }),
+            column("friction_demand", move |row| of(row)?.friction_demand),
         ]
     }
 
@@ -248,7 +279,10 @@ mod tests {
         share: impl Fn(f64) -> Result<Option<f64>, NoHistory>,
     ) -> Result<FirstEdge, NoAnswer> {
         FirstEdge::among(strengths, EDGE_WIDTH, |strength| {
-            Ok([share(strength)?, None])
+            Ok(TriedHistory {
+                overturning_share: share(strength)?,
+                ..TriedHistory::default()
+            })
         })
     }
 

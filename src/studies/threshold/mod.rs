@@ -92,6 +92,9 @@ pub struct Threshold {
     pub varied: Vec<VariedThreshold>,
     /// Largest excess of the thrust line of four links over the thickness at factors up to the largest safe one; `None` for other models.
     pub(crate) safe_excess_ratio: Option<f64>,
+    /// Largest friction coefficient that the histories at factors up to the largest safe one require without slip; `None` if joints slip or are
+    /// elastic, or without a safe factor.
+    pub friction_demand: Option<f64>,
 }
 
 impl Threshold {
@@ -175,7 +178,22 @@ impl Threshold {
             ranges,
             varied: Vec::new(),
             safe_excess_ratio: None,
+            friction_demand: None,
         }
+    }
+
+    /// Follows thrust line and friction demand up to the largest safe factor, in the samples and in these histories of bisections.
+    fn follow(&mut self, bisected: &[FactorSample]) {
+        let Some(safe) = self.survives_up_to() else {
+            return;
+        };
+        let up_to = self.samples.iter().chain(bisected);
+        let up_to = up_to.filter(|sample| sample.factor <= safe);
+        let endings = up_to.flat_map(|sample| &sample.result);
+        let largest =
+            |of: fn(&Ending) -> Option<f64>| endings.clone().filter_map(of).reduce(f64::max);
+        self.safe_excess_ratio = largest(|ending| ending.thrust_excess_ratio);
+        self.friction_demand = largest(|ending| ending.friction_demand);
     }
 }
 
@@ -220,24 +238,17 @@ pub fn threshold(
             all: sampled + progress.all,
         })
     })?;
-    let mut edges = Vec::new();
+    let (mut edges, mut tried) = (Vec::new(), Vec::new());
     for found in found.into_iter().flatten() {
         match found {
-            Ok(edge) => edges.push(edge),
-            Err(sample) => samples.push(sample),
+            Found::Edge(low, high) => edges.push((low, high)),
+            Found::Met(sample) => samples.push(*sample),
+            Found::Tried(sample) => tried.push(sample),
         }
     }
     samples.sort_by(|a, b| a.factor.total_cmp(&b.factor));
     let mut threshold = Threshold::new(name.to_owned(), samples, &edges);
-    if let (Some(_), Some(safe)) = (model.as_mechanisms(), threshold.survives_up_to()) {
-        // The largest safe factor is from a bisection, and is not among the samples.
-        let last = shaking.samples(&[safe]);
-        let below = threshold.samples.iter();
-        let below = below.filter(|sample| sample.factor <= safe);
-        let endings = below.chain(&last).flat_map(|sample| &sample.result);
-        let excesses = endings.filter_map(|ending| ending.thrust_excess_ratio);
-        threshold.safe_excess_ratio = excesses.reduce(f64::max);
-    }
+    threshold.follow(&tried);
     Ok(threshold)
 }
 
@@ -318,13 +329,14 @@ impl Shaking<'_> {
     }
 
     /// Finds the edge between neighbouring factors with different verdicts. If a history has a third verdict, returns this history and the edges
-    /// on both sides of it; if a history fails, returns that history.
+    /// on both sides of it; if a history fails, returns that history. The other histories come with it.
     fn search(&self, (below, above): Change<'_>) -> Vec<Found> {
         let width = Width::Relative(EDGE_WIDTH);
         let is_elastic = self.model.is_elastic();
         let steps = if is_elastic { STEPS_AHEAD } else { 1 };
         let (mut low, mut high) = (below.factor, above.factor);
         let mut ahead: Vec<FactorSample> = Vec::new();
+        let mut found = Vec::new();
         let edge = try_bisect(low, high, width, |factor| {
             let known = |ahead: &[FactorSample]| ahead.iter().position(|it| it.factor == factor);
             let place = known(&ahead).unwrap_or_else(|| {
@@ -332,28 +344,31 @@ impl Shaking<'_> {
                 // The first history ahead is the one that is needed now.
                 0
             });
-            match ahead[place].verdict() {
+            let sample = ahead.swap_remove(place);
+            let is_above = match sample.verdict() {
                 verdict if verdict == below.verdict() => {
                     low = factor;
-                    Ok(false)
+                    false
                 }
                 verdict if verdict == above.verdict() => {
                     high = factor;
-                    Ok(true)
+                    true
                 }
-                _ => Err(Box::new(ahead.swap_remove(place))),
-            }
+                _ => return Err(Box::new(sample)),
+            };
+            found.push(Found::Tried(sample));
+            Ok(is_above)
         });
-        let met = match edge {
-            Ok(edge) => return vec![Ok(edge)],
-            Err(met) => *met,
-        };
-        let mut found = Vec::new();
-        if met.verdict().is_some() {
-            found.extend(self.search((below, &met)));
-            found.extend(self.search((&met, above)));
+        match edge {
+            Ok((low, high)) => found.push(Found::Edge(low, high)),
+            Err(met) => {
+                if met.verdict().is_some() {
+                    found.extend(self.search((below, &*met)));
+                    found.extend(self.search((&*met, above)));
+                }
+                found.push(Found::Met(met));
+            }
         }
-        found.push(Err(met));
         found
     }
 }
@@ -361,5 +376,12 @@ impl Shaking<'_> {
 /// Neighbouring samples with different verdicts.
 type Change<'a> = (&'a FactorSample, &'a FactorSample);
 
-/// Two close factors with different verdicts, or a history between the factors.
-type Found = Result<(f64, f64), FactorSample>;
+/// Result of a search between neighbouring samples.
+enum Found {
+    /// Two close factors with different verdicts.
+    Edge(f64, f64),
+    /// A history between the samples that failed or has a third verdict.
+    Met(Box<FactorSample>),
+    /// Another history of the bisection.
+    Tried(FactorSample),
+}

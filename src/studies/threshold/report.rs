@@ -17,7 +17,7 @@ use crate::scenario::{Ground, ModelKind, Scenario};
 use crate::studies::ending::columns::{GROUND_FALLS, OVERTURNED};
 use crate::studies::ending::{NoHistory, Verdict, outcome_name};
 use crate::studies::page::{Page, PageCases, input_in_words, under_factor};
-use crate::studies::quotable::{self, ModelAnswer};
+use crate::studies::quotable::{self, FrictionCondition, ModelAnswer, SlipWords};
 use crate::studies::statistics::ascending;
 use crate::studies::{Remarks, Results};
 use crate::{Outcome, Sway};
@@ -69,6 +69,10 @@ struct ModelSummary {
     survives_up_to_factor: Option<f64>,
     /// The smallest factor that certainly overturns the structure; null if no factor does.
     lowest_factor: Option<f64>,
+    /// Largest friction coefficient that the histories up to `survives_up_to_factor` and their repetitions require without slip; null if joints slip or
+    /// are elastic, or if the structure does not survive the smallest factor.
+    #[serde(default)]
+    friction_demand: Option<f64>,
     /// All ranges of sampled factors with one verdict, ascending.
     ranges: Vec<VerdictRange>,
     /// Ranges of factors that overturn the structure, ascending.
@@ -149,6 +153,9 @@ struct HistorySummary {
     peak_rotation_rad: Option<f64>,
     /// Largest excess of the thrust line of four links, over the thickness; null for other models.
     thrust_excess_ratio: Option<f64>,
+    /// Friction coefficient that the history and its repetitions require without slip; null if joints slip or are elastic.
+    #[serde(default)]
+    friction_demand: Option<f64>,
 }
 
 /// Makes report and files of the thresholds of scenarios that differ only in their models of motion.
@@ -166,9 +173,18 @@ pub fn report(
     let title = title.unwrap_or("Threshold of overturning");
     let peak_g = peak_g(scenario);
     let models = thresholds.iter().zip(scenarios);
+    let study = format!("threshold FILE{}", factors.options());
+    let frictions = models
+        .clone()
+        .map(|(one, scenario)| SlipWords::of(scenario).condition(one.friction_demand, &study));
+    let frictions: Vec<_> = frictions.collect();
     let answers = models
         .clone()
-        .map(|(one, scenario)| one.answer(scenario, peak_g));
+        .zip(&frictions)
+        .map(|((one, scenario), friction)| {
+            let answer = one.answer(scenario, peak_g);
+            answer.with_friction(friction.clone())
+        });
     let answers = answers.collect::<Vec<_>>();
     let models: Vec<ModelSummary> = models
         .map(|(threshold, scenario)| threshold.summary(scenario, peak_g))
@@ -186,7 +202,7 @@ pub fn report(
         peak_acceleration_g: peak_g,
         factors: *factors,
         free_fall_factor: ground.free_fall_factor(gravity_m_s2).filter(|_| falls),
-        warnings: warnings(scenarios, &models),
+        warnings: warnings(scenarios, &models, frictions),
         to_quote: quotable::in_words(&answers),
         models,
     };
@@ -238,13 +254,18 @@ fn table(models: &[ModelSummary]) -> Result<Vec<u8>, OutputError> {
         }),
     ]);
     columns.extend(fields!(
-        |row: &Row<'_>| row.1.history? => peak_rotation_over_critical, peak_rotation_rad, thrust_excess_ratio
+        |row: &Row<'_>| row.1.history? => peak_rotation_over_critical, peak_rotation_rad, thrust_excess_ratio,
+        friction_demand
     ));
     csv(columns, &rows.collect::<Vec<_>>())
 }
 
-/// Returns the warnings of all models without duplicates, and histories without a verdict.
-fn warnings(scenarios: &[Scenario], models: &[ModelSummary]) -> Vec<String> {
+/// Returns the warnings of all models without duplicates, histories without a verdict, and conditions on friction.
+fn warnings(
+    scenarios: &[Scenario],
+    models: &[ModelSummary],
+    frictions: Vec<Option<FrictionCondition>>,
+) -> Vec<String> {
     let mut warnings: Vec<String> = Vec::new();
     for warning in scenarios.iter().flat_map(Scenario::unlikely) {
         if !warnings.contains(&warning) {
@@ -256,6 +277,8 @@ fn warnings(scenarios: &[Scenario], models: &[ModelSummary]) -> Vec<String> {
             .iter()
             .flat_map(|model| model.remarks.warnings("histories")),
     );
+    let frictions = frictions.into_iter().flatten();
+    warnings.extend(frictions.map(|friction| friction.to_string()));
     let varied = models.iter().flat_map(|model| &model.variations);
     warnings.extend(
         varied.filter_map(|varied| Some(format!("with {}: {}", varied.with, varied.no_verdict()?))),
@@ -294,6 +317,7 @@ impl Threshold {
             record_checksums: scenario.record_checksums(),
             survives_up_to_factor: self.survives_up_to(),
             lowest_factor: self.lowest_factor(),
+            friction_demand: self.friction_demand,
             ranges: Survival::of_threshold(self).ranges,
             bands: ranges(self.bands()),
             gaps: ranges(self.gaps()),
@@ -434,6 +458,7 @@ impl TriedFactor {
                 peak_rotation_over_critical: ending.peak_over_critical,
                 peak_rotation_rad: Some(ending.peak_rotation_rad),
                 thrust_excess_ratio: ending.thrust_excess_ratio,
+                friction_demand: ending.friction_demand,
             }),
             count: ending.ok().and_then(|ending| ending.count.clone()),
             reason: match ending {

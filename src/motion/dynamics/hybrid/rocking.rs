@@ -198,16 +198,22 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
         self.chain.demand(&swing.link.mechanism, &motion)
     }
 
-    /// Returns the excess of the thrust line of a moving mechanism, over the thickness: see [`MechanismChain::excess_ratio`].
-    pub fn excess_ratio(
+    /// Returns thrust excess and friction demand of a moving mechanism: see [`MechanismChain::demand_at_sections`].
+    pub fn demand_at_sections(
         &self,
         swing: Swing<'a, C::Mechanism>,
         now: &SystemState<'a, C::Mechanism>,
-    ) -> f64 {
+    ) -> Demand {
         let first = self.chain.sway_after(swing.sway, swing.impacts);
         let motion = self.motion(swing, now);
         let mechanism = &swing.link.mechanism;
-        (self.chain).excess_ratio(first, swing.impacts, mechanism, &motion)
+        (self.chain).demand_at_sections(first, swing.impacts, mechanism, &motion)
+    }
+
+    /// Returns the push of the ground to the right on a structure at rest, over gravity plus the vertical acceleration.
+    pub fn push_at_rest(&self, now: &SystemState<'a, C::Mechanism>) -> f64 {
+        let force_g = self.body_force_g(Sway::Right, now);
+        force_g.x / -force_g.y
     }
 
     /// Returns whether a motion on quiet ground has too little energy for a rotation of more than this multiple of the critical one.

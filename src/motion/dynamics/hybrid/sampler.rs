@@ -8,7 +8,7 @@ use nalgebra::Vector2;
 use super::engine::{HybridSystem, task};
 use super::integrator::{Step, integrate};
 use super::posture::{StructureState, posture, state};
-use super::rocking::{Phase, Rocking, RockingState, SystemState};
+use super::rocking::{Phase, Rocking, RockingState, Swing, SystemState};
 use crate::dynamics::recorder::Recorder;
 use crate::dynamics::{Cost, FallEnd, OpenHinge, Sample, State, ThrustRecord, fall};
 use crate::mechanics::{Mechanism, MechanismChain, Pose};
@@ -35,6 +35,17 @@ pub(super) struct Sampler<'r, 'a, C: MechanismChain> {
     /// Thrust record up to the last sample before the unstable equilibrium.
     pub(super) thrust_before_critical: ThrustRecord,
     pub(super) recorder: &'r mut dyn Recorder,
+}
+
+/// Returns the instants within a step at which the demand is computed; its ends are not among them.
+pub(super) fn instants<'a, C: MechanismChain>(
+    rocking: &Rocking<'a, C>,
+    swing: Swing<'a, C::Mechanism>,
+    step: &Step<3>,
+) -> impl Iterator<Item = f64> + use<C> {
+    let (start_s, span_s) = (step.start_s, step.end_s - step.start_s);
+    let parts = (span_s / (DEMAND_STEP_RATIO * rocking.fall_s(swing.link))).ceil();
+    (1..parts as usize).map(move |part| start_s + span_s * (part as f64 / parts))
 }
 
 impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
@@ -114,9 +125,7 @@ impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
         let Some(swing) = from.mode.swing().filter(|_| span_s > 0.0) else {
             return;
         };
-        let parts = (span_s / (DEMAND_STEP_RATIO * self.rocking.fall_s(swing.link))).ceil();
-        for part in 1..=(parts as usize) {
-            let time_s = step.start_s + span_s * (part as f64 / parts);
+        for time_s in instants(self.rocking, swing, step).chain([step.end_s]) {
             let now = from.at(time_s, &self.rocking.between(step, time_s));
             let sample = self.sample(&now, false);
             self.thrust.note_demand(time_s, &sample.demand);

@@ -5,13 +5,15 @@ use std::ops::ControlFlow;
 use super::engine::{
     EngineSettings, Finish, HybridSystem, Observer, Transition, falling_root, resume, simulate,
 };
+use super::friction::FrictionCollector;
 use super::integrator::Step;
 use super::posture::{StructureState, posture, seen_from_ground, state};
 use super::rocking::{Guard, Mode, Phase, Rocking, RockingState, Swing};
-use super::sampler::Sampler;
+use super::sampler::{Sampler, instants};
 use crate::dynamics::history::{Impact, MechanismSummary};
 use crate::dynamics::model::{Initial, Recorder, check};
 use crate::dynamics::request::later_end_s;
+use crate::dynamics::thrust::STRONG;
 use crate::dynamics::until::SAFE;
 use crate::dynamics::{
     Details, Event, EventKind, GroundMotion, MechanismModel, Model, Outcome, Request,
@@ -149,6 +151,7 @@ fn history_of<C: MechanismChain + MechanismModel>(
         last_rest_s: None,
         energy_without_work: mode.swing().map_or(0.0, energy),
         largest_defect: 0.0,
+        friction: FrictionCollector::new(),
     };
     collector.note_start(mode, state);
     let may_overturn = |now: &StructureState<'_, C>| match now.mode {
@@ -179,6 +182,8 @@ fn history_of<C: MechanismChain + MechanismModel>(
         _ => {}
     }
     let (peak_rotations_rad, peak_over_critical) = peaks;
+    let moves = matches!(now.mode, Phase::Rocking(_));
+    let friction = collector.friction.record(&rocking, outcome, moves);
     let sampler = collector.sampler.as_ref();
     let demanding = sampler.filter(|sampler| sampler.recorder.wants_demand());
     Ok(Summary {
@@ -192,6 +197,7 @@ fn history_of<C: MechanismChain + MechanismModel>(
             Outcome::Overturned(_) => sampler.thrust_before_critical,
             _ => sampler.thrust,
         }),
+        friction: Some(friction),
         cost: finish.cost,
         details: Details::Mechanisms(MechanismSummary {
             peak_over_critical,
@@ -378,12 +384,15 @@ struct SummaryCollector<'r, 'a, C: MechanismChain> {
     /// Initial energy minus the energy dissipated by impacts.
     energy_without_work: f64,
     largest_defect: f64,
+    friction: FrictionCollector<'a, C>,
 }
 
 impl<'a, C: MechanismChain> SummaryCollector<'_, 'a, C> {
     /// Records the state at the start, which may be a release.
     fn note_start(&mut self, mode: Mode<'a, C::Mechanism>, state: RockingState) {
-        self.note_excess(&StructureState::<'a, C>::start(mode, state));
+        if C::THRUSTS {
+            self.note_demand(&StructureState::<'a, C>::start(mode, state), true);
+        }
         self.note_peak(mode, &state);
     }
 
@@ -395,8 +404,10 @@ impl<'a, C: MechanismChain> SummaryCollector<'_, 'a, C> {
             for (peak, rotation) in peaks.iter_mut().zip(rotations.as_ref()) {
                 *peak = peak.max(rotation.abs());
             }
-            if state[0] / link.critical_rad > *over_critical {
-                *over_critical = state[0] / link.critical_rad;
+            let reached = state[0] / link.critical_rad;
+            self.friction.note_rotation(reached);
+            if reached > *over_critical {
+                *over_critical = reached;
                 self.excess_at_peak = self.excess_ratio;
             }
         }
@@ -410,13 +421,16 @@ impl<'a, C: MechanismChain> SummaryCollector<'_, 'a, C> {
         }
     }
 
-    /// Updates the largest excess of the thrust line.
-    fn note_excess(&mut self, now: &StructureState<'a, C>) {
-        if let Phase::Rocking(swing) = now.mode
-            && now.state[0] < swing.link.critical_rad
-        {
-            let excess_ratio = self.rocking.excess_ratio(swing, now);
-            self.excess_ratio = self.excess_ratio.max(excess_ratio);
+    /// Updates the largest friction demand and, if it `follows` the thrust line, the largest excess.
+    fn note_demand(&mut self, now: &StructureState<'a, C>, follows: bool) {
+        let Phase::Rocking(swing) = now.mode else {
+            return;
+        };
+        let is_below_critical = now.state[0] < swing.link.critical_rad;
+        let demand = self.rocking.demand_at_sections(swing, now);
+        (self.friction).note(now.time_s, demand.friction, is_below_critical);
+        if follows && is_below_critical {
+            self.excess_ratio = self.excess_ratio.max(demand.excess_ratio);
         }
     }
 
@@ -427,20 +441,24 @@ impl<'a, C: MechanismChain> SummaryCollector<'_, 'a, C> {
         }
     }
 
-    /// Records turning points, passages of the unstable equilibrium, and the excess of the thrust line in a step.
+    /// Records turning points, passages of the unstable equilibrium, and demands in a step.
     ///
-    /// The excess is largest near impacts, at corners of the ground motion, and where the ground pushes most. Steps begin and end there, and are short
-    /// compared with the motion between. After the largest rotation the excess does not count, so it is not computed once no larger one can follow.
+    /// The excess of the thrust line is largest near impacts, at corners of the ground motion, and where the ground pushes most. Steps begin and end
+    /// there, and are short compared with the motion between. After the largest rotation the excess does not count, so it is not computed once no
+    /// larger one can follow; the friction demand is not computed once no half cycle can reach half of it.
     fn note_step(&mut self, from: &StructureState<'a, C>, step: &Step<3>) {
         let mode = from.mode;
         let Phase::Rocking(swing @ Swing { link, .. }) = mode else {
+            self.note_rest(from, step);
             return;
         };
         let rocking = self.rocking;
         let start = from.at(step.start_s, &step.start);
-        let follows = C::THRUSTS && !rocking.stays_below(self.peaks.1, swing, &start);
-        if follows && step.start_s == from.time_s {
-            self.note_excess(&start);
+        let stays_below = |over_critical: f64| rocking.stays_below(over_critical, swing, &start);
+        let is_strong = !stays_below(STRONG * self.peaks.1);
+        let follows = C::THRUSTS && is_strong && !stays_below(self.peaks.1);
+        if is_strong && step.start_s == from.time_s {
+            self.note_demand(&start, follows);
         }
         // The first step after uplift starts at zero rate, and may contain a turning point.
         if step.start[1] >= 0.0 && step.end[1] <= 0.0 {
@@ -450,8 +468,8 @@ impl<'a, C: MechanismChain> SummaryCollector<'_, 'a, C> {
                 (rocking.between(step, time_s)[1], step.start_slope[1] + part)
             });
             let turned = from.at(turn_s, &rocking.between(step, turn_s));
-            if follows {
-                self.note_excess(&turned);
+            if is_strong {
+                self.note_demand(&turned, follows);
             }
             self.note_peak(mode, &turned.state);
             self.check_energy(mode, &step.end);
@@ -464,8 +482,21 @@ impl<'a, C: MechanismChain> SummaryCollector<'_, 'a, C> {
             self.note_peak(mode, &rocking.between(step, passage_s));
             self.last_passage = Some((passage_s, self.peaks.clone()));
         }
-        if follows {
-            self.note_excess(&from.at(step.end_s, &step.end));
+        if is_strong {
+            for time_s in instants(rocking, swing, step) {
+                self.note_demand(&from.at(time_s, &rocking.between(step, time_s)), false);
+            }
+            self.note_demand(&from.at(step.end_s, &step.end), follows);
+        }
+    }
+
+    /// Records the demand at rest, which is largest at an end of the step, or at an end of the piece of the ground motion.
+    fn note_rest(&mut self, from: &StructureState<'a, C>, step: &Step<3>) {
+        if let Phase::Rest = from.mode {
+            for (time_s, state) in [(step.start_s, &step.start), (step.end_s, &step.end)] {
+                self.friction
+                    .note_rest(self.rocking, &from.at(time_s, state));
+            }
         }
     }
 }
@@ -484,6 +515,10 @@ impl<'a, C: MechanismChain> Observer<Rocking<'a, C>, 3> for SummaryCollector<'_,
             let (before, after) = closing.energies();
             self.energy_without_work -= before - if rests { 0.0 } else { after };
             self.impacts += 1;
+            self.friction.end_half_cycle();
+        }
+        if let Phase::Rest = transition.from {
+            self.friction.end_rest(self.rocking);
         }
         if rests {
             self.last_rest_s = Some(transition.time_s);

@@ -5,7 +5,7 @@ use std::mem;
 use crate::dynamics::history::{ElasticSummary, RowSummary, Stress, TieSummary};
 use crate::dynamics::recorder::Recorder;
 use crate::dynamics::request::later_end_s;
-use crate::dynamics::thrust::FrictionDemands;
+use crate::dynamics::thrust::{FrictionDemands, Until};
 use crate::dynamics::until::SAFE;
 use crate::dynamics::{
     Cost, Details, Event, EventKind, HalfCycle, MotionInput, Outcome, RowMotionError, Sample,
@@ -117,8 +117,7 @@ struct PartialResults {
     half_cycles: usize,
     cycle: Option<HalfCycle>,
     thrust: ThrustRecord,
-    /// Number of steps with a friction demand, and their time in motion.
-    friction: (usize, f64),
+    friction: Until,
     largest_slips_m: Vec<f64>,
     largest_stress: Stress,
     ties: Vec<TieSummary>,
@@ -306,13 +305,20 @@ impl<'a> MotionObserver<'a> {
         friction
     }
 
-    /// Records the friction demand of a step that lasts so many seconds, for a recorder.
+    /// Records the friction demand of a step that lasts so many seconds. If joints slip or are elastic, it is not needed without a recorder.
     pub fn note_friction(&mut self, demand: f64, lasts_s: f64) {
-        if self.recorder.is_some() && !self.is_falling {
-            let moves = self.quiet_since_s == self.time;
-            self.friction.note(demand, lasts_s, moves);
-            self.thrust.largest_friction.note(demand, self.time);
+        let is_free_of_slip = self.has_rocked.is_none() && self.row_summary.sliding.is_none();
+        if self.is_falling || !(is_free_of_slip || self.wants_demand()) {
+            return;
         }
+        let moves = self.quiet_since_s == self.time;
+        (self.friction).note(demand, [self.time, lasts_s], moves);
+    }
+
+    /// Returns whether there is a recorder that needs friction demands.
+    pub fn wants_demand(&self) -> bool {
+        let recorder = self.recorder.as_ref();
+        recorder.is_some_and(|recorder| recorder.wants_demand())
     }
 
     /// Returns whether a row with small kinetic energy since `since_s` is at rest.
@@ -463,7 +469,7 @@ impl<'a> MotionObserver<'a> {
         before_fall.half_cycles = self.row_summary.half_cycles.len();
         before_fall.cycle = self.cycle;
         before_fall.thrust = self.thrust;
-        before_fall.friction = (self.friction.demands.len(), self.friction.moving_s);
+        before_fall.friction = self.friction.until_now();
         before_fall.largest_stress = self.elastic.largest_stress;
         if let Some(sliding) = &self.row_summary.sliding {
             let slips_m = &sliding.largest_offsets_m;
@@ -473,8 +479,7 @@ impl<'a> MotionObserver<'a> {
     }
 
     /// Resets the results to those at the last time at which the row could still return.
-    fn restore_results_before_fall(&mut self) {
-        let before_fall = mem::take(&mut self.before_fall);
+    fn restore_results(&mut self, before_fall: PartialResults) {
         self.peak_rotations_rad = before_fall.peak_rotations_rad;
         self.impacts = before_fall.impacts;
         self.row_summary
@@ -486,9 +491,6 @@ impl<'a> MotionObserver<'a> {
             self.row_summary.half_cycles.push(cycle);
         }
         self.thrust = before_fall.thrust;
-        let (steps, moving_s) = before_fall.friction;
-        self.friction.demands.truncate(steps);
-        self.friction.moving_s = moving_s;
         self.elastic.largest_stress = before_fall.largest_stress;
         if let Some(sliding) = &mut self.row_summary.sliding {
             sliding.largest_offsets_m = before_fall.largest_slips_m;
@@ -523,6 +525,7 @@ impl<'a> MotionObserver<'a> {
             let energies = energy.zip(self.cycle_energy);
             let ratio = energies.map(|(after, before)| after / before);
             cycle.energy_ratio = ratio.filter(|ratio| ratio.is_finite());
+            self.friction.end_half_cycle(cycle.peak_rad);
             self.row_summary.half_cycles.push(cycle);
             self.cycle_energy = energy;
         }
@@ -649,9 +652,15 @@ impl<'a> MotionObserver<'a> {
     pub fn end(&mut self, outcome: Outcome, outcome_time_s: f64) -> Summary {
         self.row_summary.half_cycles_with_fall =
             self.row_summary.half_cycles.len() + usize::from(self.cycle.is_some());
-        if let Outcome::Overturned(_) = outcome {
-            self.restore_results_before_fall();
-        }
+        let before_fall = match outcome {
+            Outcome::Overturned(_) => {
+                let before_fall = mem::take(&mut self.before_fall);
+                let friction = before_fall.friction;
+                self.restore_results(before_fall);
+                Some(friction)
+            }
+            _ => None,
+        };
         self.end_cycle(None);
         let outcome = match outcome {
             Outcome::Overturned(_) | Outcome::Rest => outcome,
@@ -663,7 +672,6 @@ impl<'a> MotionObserver<'a> {
         self.row_summary.peak_potential_over_barrier = self.known_barrier_j().map(over);
         self.row_summary.energy_error = self.energy_error(self.input.energy_scale_j);
         let row = Box::new(self.row_summary.clone());
-        self.thrust.lasting_friction = Some(self.friction.lasting());
         let summary = Summary {
             outcome,
             outcome_time_s,
@@ -672,6 +680,7 @@ impl<'a> MotionObserver<'a> {
             peak_rotations_rad: self.peak_rotations_rad.clone(),
             energy_defect_ratio: self.energy_defect_ratio,
             thrust: self.recorder.is_some().then_some(self.thrust),
+            friction: self.friction.record(before_fall),
             cost: self.cost,
             details: match self.has_rocked {
                 None => Details::Rigid(row),

@@ -11,11 +11,11 @@ use std::sync::Arc;
 use nalgebra::Vector2;
 
 use super::mechanism::FourLink;
-use super::thrust::{Load, Part, Section, ThrustLine, largest_excess_ratio};
+use super::thrust::{Load, Part, Section, ThrustLine, demand_at_sections};
 use crate::mechanics::chain::{Coefficients, MechanismState};
 use crate::mechanics::geometry::field::turned;
 use crate::mechanics::geometry::pose::product;
-use crate::mechanics::{MassMoments, Mechanism, Momentum, Pose, Profile};
+use crate::mechanics::{Demand, MassMoments, Mechanism, Momentum, Pose, Profile};
 
 /// A body of the linkage, about the pivot at which its bar begins.
 #[derive(Clone, Copy, Debug)]
@@ -163,9 +163,13 @@ impl Linkage {
         ThrustLine::new(&*self.profile, self.parts(motion).to_vec())
     }
 
-    /// Returns the largest excess of the thrust line in motion at these sections of the profile, over the thickness; zero inside.
-    pub(crate) fn excess_ratio(&self, motion: &MechanismState, sections: &[Section]) -> f64 {
-        largest_excess_ratio(&self.parts(motion), sections)
+    /// Returns thrust excess and friction demand in motion at these sections of the profile.
+    pub(crate) fn demand_at_sections(
+        &self,
+        motion: &MechanismState,
+        sections: &[Section],
+    ) -> Demand {
+        demand_at_sections(&self.parts(motion), sections)
     }
 
     /// Returns the parts of the thrust line in motion.

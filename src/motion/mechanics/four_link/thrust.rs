@@ -102,10 +102,11 @@ impl Section {
     }
 }
 
-/// Returns the largest excess of the thrust line over these parts at sections in ascending order, over the thickness; zero inside.
-pub(crate) fn largest_excess_ratio(parts: &[Part], sections: &[Section]) -> f64 {
+/// Returns thrust excess and friction demand over these parts, at sections in ascending order.
+pub(crate) fn demand_at_sections(parts: &[Part], sections: &[Section]) -> Demand {
     let weight = sections.last().map_or(0.0, |section| section.before.mass);
-    let (mut parts, mut largest) = (parts, ROUNDING);
+    let least = LEAST_LOAD * weight;
+    let (mut parts, mut largest, mut friction) = (parts, ROUNDING, 0.0_f64);
     for section in sections {
         while let [part, _, ..] = parts
             && part.end_rad < section.place
@@ -119,10 +120,17 @@ pub(crate) fn largest_excess_ratio(parts: &[Part], sections: &[Section]) -> f64 
         let normal = resultant.linear.dot(&section.onward);
         // As in `SectionResultant`; the sign does not matter.
         let moment = resultant.about(section.middle);
-        let least = LEAST_LOAD * weight;
         largest = largest.max(excess_ratio(normal, moment, section.thickness, least));
+        if normal >= least {
+            // The components along the section and along the axis are perpendicular.
+            let tangential = resultant.linear.perp(&section.onward);
+            friction = friction.max(tangential.abs() / normal);
+        }
     }
-    if largest > ROUNDING { largest } else { 0.0 }
+    Demand {
+        excess_ratio: if largest > ROUNDING { largest } else { 0.0 },
+        friction,
+    }
 }
 
 /// Load per unit mass `c + alpha k x r + kappa r` on a part of the ring, in the frame of its material.

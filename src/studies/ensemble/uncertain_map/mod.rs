@@ -15,11 +15,12 @@ use crate::scenario::{Axis, Scenario, Uncertain, UncertainKey};
 use crate::studies::ending::columns::OUTCOMES;
 use crate::studies::map::{OverturningMap, described};
 use crate::studies::statistics::Share;
-use crate::studies::{Ending, NoHistory, ReportedStudy, Results, Study, Style};
+use crate::studies::{Ending, NoHistory, ReportedStudy, Results, Study, Style, Verdict};
 
 /// The outcome of a cell of a sample, as an index of [`OUTCOMES`], plus [`OUTSIDE`] for a history outside the model of four links, and its
-/// probability of overturning, in parts of [`PARTS`]; or the reason why there is none. Rows are small, because all must fit into memory.
-type CellRow = Result<(u8, u8), NoAnswer>;
+/// probability of overturning, in parts of [`PARTS`], and of a survivor the friction demand; or the reason why there is none. Rows are small, because
+/// all must fit into memory.
+type CellRow = Result<(u8, u8, Option<f32>), NoAnswer>;
 
 /// Number of parts of a probability: fractions of 2, 3, 5, 6 and 7 repetitions are exact, others almost.
 const PARTS: f64 = 210.0;
@@ -37,7 +38,13 @@ fn cell_row(result: Result<Ending, NoHistory>) -> CellRow {
         0
     };
     let both = place.zip(ending.overturning_share());
-    let both = both.map(|(place, share)| (place as u8 + outside, (PARTS * share).round() as u8));
+    let survives = ending.verdict() == Verdict::Survives;
+    let demand = ending.friction_demand.filter(|_| survives);
+    let demand = demand.map(|demand| demand as f32);
+    let both = both.map(|(place, share)| {
+        let parts = (PARTS * share).round() as u8;
+        (place as u8 + outside, parts, demand)
+    });
     both.ok_or(NoAnswer::Incomplete)
 }
 
@@ -195,14 +202,14 @@ struct CellCounts {
 impl CellCounts {
     fn of<'r>(at: [f64; 2], rows: impl Iterator<Item = &'r CellRow> + Clone) -> Self {
         let (mut outcomes, mut outside) = ([0; OUTCOMES.len()], 0);
-        for (outcome, _) in rows.clone().flatten() {
+        for (outcome, ..) in rows.clone().flatten() {
             outside += usize::from(*outcome >= OUTSIDE);
             outcomes[usize::from(*outcome % OUTSIDE)] += 1;
         }
         let without = ReasonCounts::of(rows.clone().filter_map(|row| row.as_ref().err()));
         let samples = outcomes.iter().sum();
         let chances = rows.filter_map(|row| match row {
-            Ok((_, parts)) => Some(Some(f64::from(*parts) / PARTS)),
+            Ok((_, parts, _)) => Some(Some(f64::from(*parts) / PARTS)),
             Err(NoAnswer::Invalid(_)) => None,
             Err(_) => Some(None),
         });

@@ -14,6 +14,7 @@ use crate::studies::ensemble::samples::ReasonCounts;
 use crate::studies::map::page::CellNumbers;
 use crate::studies::map::picture::{ColoredCells, Drawn, MapChart};
 use crate::studies::outcome_colors::OutcomeColor;
+use crate::studies::quotable::SurvivorFriction;
 use crate::studies::runner::Study as _;
 use crate::studies::statistics::{Share, band, quantile};
 use crate::studies::{ModelCheck, Results, Style, rounded};
@@ -116,6 +117,12 @@ pub(super) fn report(
         model.in_words(CHECKED),
         reasons.no_verdict(rows.len(), CHECKED),
     ];
+    let demands = rows
+        .iter()
+        .flatten()
+        .map(|(.., demand)| demand.map(f64::from));
+    let survivors = ("map FILE", "surviving cells of samples");
+    let friction = SurvivorFriction::of(demands, study.scenario, survivors);
     let influence = samples.influence(false, |share: &Share| share.share);
     let influences = [(InfluencedAnswer::PartThatOverturns, influence)];
     let at_least = |level: f64| {
@@ -124,7 +131,7 @@ pub(super) fn report(
     };
     let parts = samples.answers().map(|part| part.share);
     let report = Summary {
-        all: SampleSummary::new(samples, model, limits, influences),
+        all: SampleSummary::new(samples, model, friction, limits, influences),
         axes: study.map.axes.map(|axis| axis.key.clone()),
         cells,
         cells_at_levels: LEVELS.map(|level| at_least(level).count()),
@@ -145,7 +152,13 @@ pub(super) fn report(
     };
     let picture = |style| draw(title, study, &colored, &crossings, style);
     let (on_page, columns) = (|figure| picture(style.with(figure)), page_columns(&counts));
-    let page = colored.page(title, &study.map, on_page, BTreeMap::new(), columns);
+    let page = colored.page(
+        title,
+        &study.map,
+        on_page,
+        report.all.friction.friction_condition.clone(),
+        (BTreeMap::new(), columns),
+    );
     let others = [
         picture(style).picture.into_bytes(),
         page.into_bytes(),
@@ -163,7 +176,7 @@ pub(super) fn report(
 fn survived_in_doubt(counts: &[CellCounts], own: &[CellRow]) -> usize {
     let survives = |row: &CellRow| {
         row.as_ref()
-            .is_ok_and(|(outcome, _)| *outcome % OUTSIDE > 0)
+            .is_ok_and(|(outcome, ..)| *outcome % OUTSIDE > 0)
     };
     let in_doubt = |(cell, own): &(&CellCounts, &CellRow)| {
         survives(own) && cell.probability() >= Some(LEVELS[0])

@@ -6,6 +6,7 @@ mod report;
 
 pub use self::report::Summary;
 
+use std::fmt;
 use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
@@ -40,6 +41,19 @@ impl KeyRange {
             spacing: Spacing::Linear,
         };
         range.values()
+    }
+}
+
+impl fmt::Display for KeyRange {
+    /// Writes the text that [`KeyRange::from_str`] parses.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            key,
+            from,
+            to,
+            count,
+        } = self;
+        write!(f, "{key}={from}..{to}:{count}")
     }
 }
 
@@ -159,6 +173,10 @@ struct Point {
     no_impact_g: Option<f64>,
     /// Largest excess of the thrust line of four links at `overturns_from_factor`, or at the largest tried factor without it; null for other models.
     thrust_excess_ratio: Option<f64>,
+    /// Largest friction coefficient that the histories up to `survives_up_to_factor` and their repetitions require without slip; null if joints slip or
+    /// are elastic.
+    #[serde(default)]
+    friction_demand: Option<f64>,
     /// Reason why the threshold is unknown.
     why_not: Option<String>,
 }
@@ -183,6 +201,7 @@ impl Point {
             no_impact_factor,
             no_impact_g: in_g(no_impact_factor),
             thrust_excess_ratio: edge.and_then(|edge| edge.thrust_excess_ratio),
+            friction_demand: edge.and_then(|edge| edge.friction_demand),
             why_not: row.edge.as_ref().err().map(|why| why.name().to_owned()),
         }
     }

@@ -8,6 +8,7 @@ use crate::argument::plain;
 use crate::output::page::SpotKind;
 use crate::output::{OutputError, column, csv, fields, filters};
 use crate::studies::page::{Page, PageCases, input_in_words};
+use crate::studies::quotable::SurvivorFriction;
 use crate::studies::threshold::{Factors, rounded, rounded_edge};
 use crate::studies::{
     CaseSummary, ModelCheck, NoAnswer, Remark, Remarks, ReportedStudy, Results, Style, no_verdict,
@@ -51,8 +52,13 @@ impl ReportedStudy for Along<'_> {
             factors,
             no_impact,
         } = self.options.clone();
+        let edges = rows.iter().filter_map(|row| row.edge.as_ref().ok());
+        let demands = edges.map(|edge| edge.friction_demand);
+        let study = format!("threshold FILE --along {along}{}", factors.options());
+        let survivors = (study.as_str(), "surviving motions");
+        let friction = SurvivorFriction::of(demands, self.scenario, survivors);
         let report = Summary {
-            all: CaseSummary::new(self.scenario, rows.len(), remarks, limits),
+            all: CaseSummary::new(self.scenario, rows.len(), remarks, friction, limits),
             values_without_verdict,
             along,
             factors,
@@ -64,7 +70,7 @@ impl ReportedStudy for Along<'_> {
         columns.extend(fields!(
             |point: &Point| point => survives_up_to_factor, survives_up_to_g, overturns_from_factor,
             overturns_from_g, at_most, uncertain_from_factor, tried_to_factor, failed_beyond, no_impact_factor, no_impact_g,
-            thrust_excess_ratio
+            thrust_excess_ratio, friction_demand
         ));
         columns.push(column("why_not", |point: &Point| point.why_not.clone()));
         let title = self.scenario.title.as_deref();
