@@ -63,6 +63,17 @@ def test_any_structure_is_checked() -> None:
     assert verify(Column(4.0, 0.8), SITE).zeta_e == pytest.approx(0.97616, abs=5e-6)
 
 
+def test_joints_that_slide_first_have_no_ratio() -> None:
+    found = verify(Column(4.0, 2.8), SITE)
+    assert found.zeta_e is None and "0.577" in found.no_zeta_e_because
+    assert found.verdict == {"sld": "no_answer", "slv": "no_answer"}
+    sliding = found.summary["states"]["slv"]["right"]["sliding"]
+    assert sliding["bound_g"] == pytest.approx(0.577, abs=1e-7) and sliding["verdict"] == "no_answer"
+    assert "0.5770 g is an upper bound" in found.page and "never passed" in found.page
+    needed = Column(4.0, 2.8).limit().friction_demand
+    assert needed["right"] == pytest.approx(0.7, abs=1e-6)
+
+
 def test_spectra_and_records_are_held_in_memory() -> None:
     column = Column(4.0, 0.8)
     periods = [0.0, 0.15, 0.5, 1.0, 2.0, 2.6, 4.0]

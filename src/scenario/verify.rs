@@ -176,6 +176,14 @@ const RECORDS: [(LimitState, &str); 2] = [
 const LEAST_RECORDS: usize = 3;
 
 impl Records {
+    /// Returns the keys of the limit states that have records.
+    pub fn keys(&self) -> Vec<&'static str> {
+        let given = RECORDS
+            .iter()
+            .filter(|(state, _)| !self.of(*state).is_empty());
+        given.map(|(_, key)| *key).collect()
+    }
+
     /// Returns the records of a limit state.
     pub fn of(&self, state: LimitState) -> &[Series] {
         self.0.get(&state).map_or(&[], Vec::as_slice)

@@ -6,8 +6,10 @@
 use std::fs;
 
 use crate::common;
-use crate::common::program::printed;
-use crate::common::{Random, assert_hinges, climb, ring};
+use crate::common::program::{printed, scenarios};
+use crate::common::prose::shows;
+use crate::common::{Random, assert_hinges, climb, parsed, ring};
+use archrock::Sway;
 use archrock::mechanics::Ring;
 use archrock::mechanics::four_link::carries_its_weight;
 use archrock::mechanics::four_link::{
@@ -21,6 +23,7 @@ use clarabel::solver::{
     DefaultSettings, DefaultSolver, IPSolver as _, NonnegativeConeT, SolverStatus,
 };
 use proptest::prelude::*;
+use serde_json::Value;
 
 /// `row . x <= bound`.
 type Constraint = (Vec<f64>, f64);
@@ -613,4 +616,100 @@ fn statics_do_not_depend_on_the_vertical_ground() {
         assert!(words[0] == words[1] && words[1] == words[2], "{words:#?}");
         assert!(!words[0].is_empty());
     }
+}
+
+/// The numbers of `limit`.
+fn numbers_of(text: &str) -> Value {
+    let found = archrock::studies::limit(&parsed(text)).unwrap_or_else(|error| panic!("{error}"));
+    found.json
+}
+
+/// A coefficient slightly above the one that `limit` names lets the structure start at the same push, and no joint slides with a clearly larger
+/// one. Slightly below it joints slide at a smaller push. A semicircle of voussoirs (four links), a pointed arch on piers, a column, drums, a leaning stack with a tie.
+#[test]
+fn limit_names_the_friction_coefficient_that_its_mechanism_needs() {
+    let semicircle =
+        "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.2\nembrace_deg = 180\nvoussoirs = 20\n";
+    let on_piers = fs::read_to_string(scenarios().join("pointed-arch-on-piers.toml")).unwrap();
+    let on_piers = on_piers
+        .split_once("[free_hinges]")
+        .map_or(&*on_piers, |(text, _)| text);
+    let loaded = "[column]\nheight_m = 2\nwidth_m = 1\n[[load]]\nmass_kg = 1500\nx_m = -0.3\n";
+    let tied = "[column]\nheight_m = 4\nwidth_m = 0.8\ndrums = 4\n[[tie]]\nfrom_m = [0.0, 3.5]\nto_m = [-4.0, 3.5]\n\
+                stiffness_n_m = 1e6\nprestress_n = 5000\nto_block = 0\n";
+    for (text, known) in [
+        (semicircle, [None; 2]),
+        (on_piers, [None; 2]),
+        ("[column]\nheight_m = 4\nwidth_m = 0.8\n", [Some(0.2); 2]),
+        (
+            "[column]\nheight_m = 4\nwidth_m = 0.8\ndrums = 5\n",
+            [Some(0.2); 2],
+        ),
+        (loaded, [None; 2]),
+        (tied, [None; 2]),
+    ] {
+        let rigid = numbers_of(&format!("{text}[free_hinges]\n"));
+        for (sway, known) in ["right", "left"].into_iter().zip(known) {
+            let needed = rigid["friction_demand"][sway].as_f64().unwrap();
+            let push_g = rigid["incipient_acceleration_g"][sway].as_f64().unwrap();
+            if let Some(known) = known {
+                // The push is computed to 1e-7 of gravity, the coefficient to 1e-7 more.
+                assert!(f64::abs(needed - known) < 1e-6, "{needed} {text}");
+            }
+            let with = |coefficient: f64| {
+                let own = format!("{text}[free_hinges]\nfriction_coefficient = {coefficient:?}\n");
+                let side = &numbers_of(&own)["friction"][sway];
+                let push_g = side["incipient_acceleration_g"].as_f64().unwrap();
+                (push_g, side["sliding_governs"].as_bool().unwrap())
+            };
+            let (above_g, _) = with(needed + 1e-4);
+            assert!(
+                f64::abs(above_g - push_g) < 1e-6,
+                "{above_g} {push_g} {sway} {text}"
+            );
+            assert!(!with(needed + 0.05).1, "{sway} {text}");
+            let (below_g, slides) = with(needed - 1e-3);
+            assert!(
+                slides && below_g < push_g - 1e-5,
+                "{below_g} {push_g} {sway} {text}"
+            );
+        }
+    }
+}
+
+/// The coefficient is the largest ratio of shear to normal force over the joints of the mechanism, whose forces follow from equilibrium. Without
+/// joints an arch may slide at any section, and many voussoirs come close to that.
+#[test]
+fn the_friction_of_four_links_is_that_of_their_thrust_line() {
+    let arch = |voussoirs: &str| {
+        format!("[arch]\nmean_radius_m = 5\nthickness_ratio = 0.2\nembrace_deg = 180\n{voussoirs}")
+    };
+    let needed = |text: &str| {
+        let both = &numbers_of(text)["friction_demand"];
+        ["right", "left"].map(|sway| both[sway].as_f64().unwrap())
+    };
+    let of_line = |text: &str| {
+        let scenario = parsed(text);
+        let model = scenario.mechanisms().unwrap();
+        [Sway::Right, Sway::Left].map(|sway| model.displaced(sway, 0.0).unwrap().friction)
+    };
+    for count in [12, 20, 33] {
+        let text = arch(&format!("voussoirs = {count}\n"));
+        for (own, line) in needed(&text).into_iter().zip(of_line(&text)) {
+            assert!(f64::abs(own - line) < 1e-5, "{own} {line} {count}");
+        }
+    }
+    let continuous = needed(&arch(""));
+    assert_eq!(continuous, of_line(&arch("")));
+    let many = needed(&arch("voussoirs = 160\n[free_hinges]\n"));
+    assert!(
+        f64::abs(many[0] - continuous[0]) < 0.01,
+        "{many:?} {continuous:?}"
+    );
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("s.toml"), arch("")).unwrap();
+    let said = printed(folder.path(), &["limit", "s.toml"]);
+    let line = said.lines().find(|line| line.contains("friction")).unwrap();
+    shows(line, &[continuous[0]]);
+    assert!(line.contains("to either side"), "{line}");
 }

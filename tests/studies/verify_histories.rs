@@ -611,7 +611,7 @@ fn commands_print_the_output_shown_in_docs_verify() {
     std::os::unix::fs::symlink(scenarios(), folder.path().join("scenarios")).unwrap();
     assert_eq!(
         assert_shown_output_is_printed("docs/verify.md", folder.path()),
-        5
+        6
     );
     let json = folder.path().join("results/semicircle-verify/verify.json");
     let json: Value = serde_json::from_str(&fs::read_to_string(json).unwrap()).unwrap();

@@ -542,8 +542,9 @@ class ProbabilityMap(_Plane):
 class Check(Files):
     """A check by the Circolare 7/2019: its numbers, and the page to be filed.
 
-    ``zeta_e`` is the ratio of capacity to demand, the least of all limit states checked; ``verdict`` has ``passed``, ``not_passed`` or
-    ``not_checked`` for each limit state.
+    ``zeta_e`` is the ratio of capacity to demand, the least of all limit states checked; ``verdict`` has ``passed``, ``not_passed``,
+    ``no_answer`` or ``not_checked`` for each limit state. If joints slide before a mechanism without sliding forms, ``zeta_e`` is ``None``,
+    ``no_zeta_e_because`` has the reason, and no limit state is ``passed``.
     """
 
     __slots__ = ()

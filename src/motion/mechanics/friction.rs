@@ -20,6 +20,8 @@ const LEAST_RATE: f64 = 1e-4;
 const COEFFICIENT_TOLERANCE: f64 = 1e-7;
 /// Coefficient of friction that is assumed to prevent all slip.
 const LARGEST_COEFFICIENT: f64 = 100.0;
+/// Part of a push, or of gravity if the push is smaller, by which a computed push may be too small.
+const PUSH_TOLERANCE: f64 = 1e-7;
 /// Excess of friction over its bound, over the weight, that counts as zero.
 const FRICTION_EXCESS_TOLERANCE: f64 = 1e-8;
 
@@ -152,6 +154,45 @@ pub fn least_coefficient(row: &Row) -> Result<f64, FrictionError> {
         stands(row, coefficient)
     })?;
     Ok(least)
+}
+
+/// Returns the least coefficient of friction with which an undeformed row carries its weight and a push, in multiples of gravity, with a tolerance
+/// of 1e-7; `None` if none is found. With the push that starts the row without slip, this is the coefficient with which no joint slips before. It
+/// is the largest ratio of shear to normal force over all joints; if the joint forces are not unique, the least of these ratios.
+///
+/// # Errors
+/// If the row falls with any coefficient, or a linear program is not solved.
+pub fn demand(row: &Row, push_g: f64, sway: Sway) -> Result<Option<f64>, FrictionError> {
+    demand_at(row, &RowState::undeformed(row), push_g, sway)
+}
+
+/// Returns the least coefficient of friction with which a row in a given state carries its weight and a push; see [`demand`].
+///
+/// # Errors
+/// Those of [`demand`].
+pub fn demand_at(
+    row: &Row,
+    stance: &RowState,
+    push_g: f64,
+    sway: Sway,
+) -> Result<Option<f64>, FrictionError> {
+    let carries = |coefficient: f64| match onset_at(row, stance, coefficient, sway) {
+        Ok(onset) => {
+            let least_g = push_g - PUSH_TOLERANCE * push_g.abs().max(1.0);
+            Ok(onset.is_none_or(|onset| onset.acceleration_g >= least_g))
+        }
+        Err(FrictionError::CannotStand(_)) => Ok(false),
+        Err(error) => Err(error),
+    };
+    // A stone structure rarely needs a coefficient above one.
+    for largest in [1.0, LARGEST_COEFFICIENT] {
+        if carries(largest)? {
+            let width = Width::Absolute(COEFFICIENT_TOLERANCE);
+            let (_, least) = try_bisect(0.0, largest, width, carries)?;
+            return Ok(Some(least));
+        }
+    }
+    Ok(None)
 }
 
 /// Objective of a linear program.

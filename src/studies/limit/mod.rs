@@ -15,7 +15,8 @@ use crate::mechanics::stability::{limit_with_yielding_ties, onset, onset_at};
 use crate::mechanics::{Follower, FrictionError, Movements, RowOnset, Sides, StabilityError};
 use crate::{FourLinkError, Row, RowModelError, Scenario, Sway};
 
-/// Computes the onset of motion of the structure of a scenario, to both sides; with slipping joints, also for their coefficient of friction.
+/// Computes the onset of motion of the structure of a scenario, to both sides, and the coefficient of friction that it needs; with slipping joints,
+/// also the onset for their coefficient of friction.
 /// With moved springings, also the hinges on which the structure stands, and the push at which it collapses.
 ///
 /// # Errors
@@ -52,11 +53,31 @@ fn summary(scenario: &Scenario) -> Result<Summary, StudyError> {
             }
         }
     };
+    summary.friction_demand = match scenario.structure.row() {
+        Ok(row) => friction_demand(&summary, |push_g, sway| {
+            friction::demand(&row, push_g, sway)
+        }),
+        // An arch without joints may slide at any section.
+        Err(_) => {
+            let model = scenario.mechanisms().map_err(StudyError::scenario)?;
+            Sides::of(|sway| Some(model.displaced(sway, 0.0)?.friction))
+        }
+    };
     if let Some(coefficient) = coefficient {
         summary.friction = Some(with_friction(&row()?, coefficient, summary.wall_behind)?);
     }
     summary.warnings = scenario.unlikely();
     Ok(summary)
+}
+
+/// Returns the coefficients of friction with which no joint of a row slides before it starts. `demand` computes that for a push. A coefficient that
+/// is not found is no error.
+fn friction_demand(
+    summary: &Summary,
+    demand: impl Fn(f64, Sway) -> Result<Option<f64>, FrictionError>,
+) -> Sides<Option<f64>> {
+    let starts_g = &summary.incipient_acceleration_g;
+    Sides::of(|sway| demand((*starts_g.to(sway))?, sway).ok().flatten())
 }
 
 /// Computes the onset of an undeformed row by the static theorem of limit analysis.
@@ -180,6 +201,9 @@ fn of_moved_row(
     summary.capacity_g = Some(capacity.map(|found| found.as_ref().ok().copied().flatten()));
     summary.capacity_not_found =
         Some(capacity.map(|found| found.as_ref().err().map(ToString::to_string)));
+    summary.friction_demand = friction_demand(&summary, |push_g, sway| {
+        friction::demand_at(row, stance, push_g, sway)
+    });
     let hinges = follower.hinges.as_ref().map(|pins| pins.hinges.clone());
     summary.hinges = Some(hinges.unwrap_or_default());
     if !row.bars().is_empty() {

@@ -25,6 +25,9 @@ pub struct Summary {
     pub incipient_acceleration_m_s2: Sides<Option<f64>>,
     /// Hinges of the mechanism that starts, from left to right.
     pub mechanism: Sides<Vec<MechanismHinge>>,
+    /// Smallest coefficient of friction with which no joint slides before this mechanism starts; null if no push starts the structure, or the
+    /// coefficient was not found.
+    pub friction_demand: Sides<Option<f64>>,
     /// Rotations of the bodies at the unstable equilibrium of the first mechanism to the right, or to the only side to which it moves, in radians;
     /// absent unless the structure moves as four links or as a column.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -232,8 +235,30 @@ impl Summary {
             let [right, left] = Sides::of(|sway| friction.starts(&sway)).into();
             format!("{}: {right}; {left}", friction.heading())
         });
-        let all: Vec<String> = self.pushes().into_iter().chain(friction).collect();
-        all.join("; ")
+        let all = self.pushes().into_iter();
+        let all = all.chain(self.needs_friction()).chain(friction);
+        all.collect::<Vec<_>>().join("; ")
+    }
+
+    /// Returns the coefficients of friction that the mechanisms need in words; `None` if none is known.
+    fn needs_friction(&self) -> Option<String> {
+        let needs = self.friction_demand.iter().filter_map(|(sway, needed)| {
+            let needed = fixed((*needed)?, 4);
+            Some((needed, sway.name()))
+        });
+        let needs: Vec<(String, &str)> = needs.collect();
+        let needs = match &needs[..] {
+            [] => return None,
+            [(right, _), (left, _)] if right == left => format!("{right} to either side"),
+            sides => {
+                let sides = sides.iter();
+                let sides = sides.map(|(needed, side)| format!("{needed} to the {side}"));
+                sides.collect::<Vec<_>>().join(" and ")
+            }
+        };
+        Some(format!(
+            "it needs a friction coefficient of {needs}; with a smaller one joints slide first"
+        ))
     }
 
     /// Returns the pushes that start the structure and those at which it falls in words, without slip.

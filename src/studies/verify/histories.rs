@@ -155,7 +155,7 @@ fn all_pass(
     }
 }
 
-/// Computes the histories of a limit state; `None` if it has no records.
+/// Computes the histories of a limit state; `None` if it has no records, or joints slide first to a side: the histories do not slide.
 pub(super) fn histories(
     input: &CheckInput<'_>,
     (state, rule, spectrum): (LimitState, &StateRule, &Spectrum),
@@ -164,7 +164,8 @@ pub(super) fn histories(
 ) -> Result<Option<Histories>, VerifyError> {
     let (scenario, gravity_m_s2) = (input.scenario, input.gravity_m_s2);
     let records = input.settings.records.of(state);
-    if records.is_empty() {
+    let slides = mechanisms.values().any(|one| one.sliding.is_some());
+    if records.is_empty() || slides {
         return Ok(None);
     }
     let failed = |why: String| VerifyError::Histories { state, why };

@@ -97,6 +97,16 @@ impl ConstantForce {
     }
 }
 
+/// Joints that slide before the mechanism without sliding forms.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Sliding {
+    /// Friction coefficient of the joints.
+    pub coefficient: f64,
+    /// Upper bound of the acceleration at which joints slide, in g, by associated limit analysis; zero if they slide under the weight of the
+    /// structure.
+    pub bound_g: f64,
+}
+
 /// The mechanism at a displacement of its capacity curve.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Position {
@@ -169,6 +179,9 @@ pub struct Mechanism {
     pub positions: Vec<Position>,
     /// The reason why there is no capacity curve.
     pub no_curve: Option<String>,
+    /// Joints that slide before this mechanism forms, so that it does not count; absent unless they do.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sliding: Option<Sliding>,
     /// The body to which each block of a row belongs; for pictures of a mechanism without a curve.
     #[serde(skip)]
     pub body_of_block: Vec<Option<usize>>,
@@ -278,9 +291,13 @@ impl CapacityCurves {
 }
 
 impl Mechanism {
-    fn new(found: VirtualMechanism, input: &CheckInput<'_>) -> Self {
+    /// Makes the mechanism without sliding. If joints slide first, it has no capacity curve.
+    fn new(mut found: VirtualMechanism, sliding: Option<Sliding>, input: &CheckInput<'_>) -> Self {
+        if sliding.is_some() {
+            found.curves = Err(SLIDES_FIRST.to_owned());
+        }
         let weight_kn = |mass_kg: f64| mass_kg * input.gravity_m_s2 / 1000.0;
-        let alpha0 = load_multiplier(&found.bodies, &found.ties, &found.forces);
+        let alpha0 = found.alpha0();
         let participation = Participation::of_bodies(&found.bodies);
         let scale = per_displacement_of_centre(&found.bodies);
         let bodies = found.bodies.iter().enumerate().map(|(index, body)| Body {
@@ -350,6 +367,7 @@ impl Mechanism {
             friction: curves.map(|curves| curves.friction_up_to(furthest_part)),
             curve_m_g: curves.map(CapacityCurves::points_m_g),
             no_curve: found.curves.as_ref().err().cloned(),
+            sliding,
             body_of_block: found.body_of_block,
             curves: found.curves.ok(),
         }
@@ -357,6 +375,11 @@ impl Mechanism {
 }
 
 impl VirtualMechanism {
+    /// Computes the load multiplier [C8.7.1.1].
+    fn alpha0(&self) -> f64 {
+        load_multiplier(&self.bodies, &self.ties, &self.forces)
+    }
+
     /// Returns the numbers of the first and the last block of a body, from 1; `None` for a ring.
     fn blocks_of(&self, body: usize) -> Option<[usize; 2]> {
         let of_body = |of: &Option<usize>| *of == Some(body);
@@ -486,23 +509,45 @@ impl VirtualMechanism {
 /// Number of voussoirs into which an arch without joints is cut to find its sliding mechanism.
 const CUT: usize = 60;
 
-/// Computes the acceleration in g at which the joints of a row slide to one side, by the associated bound, if this is below the load multiplier
-/// `alpha0` of the mechanism without sliding. Zero if the joints slide under the weight of the row.
-fn slides_at_g(row: &Row, coefficient: f64, sway: Sway, alpha0: f64) -> Option<f64> {
-    match friction::onset(row, coefficient, sway) {
+/// Reason why a mechanism has no capacity curve if joints slide first.
+pub(super) const SLIDES_FIRST: &str =
+    "joints slide before it forms, and the displacements of sliding joints are not computed";
+
+/// Relative difference of two bounds that is due to the linear program.
+const BOUND_TOLERANCE: f64 = 1e-6;
+
+/// Finds the slide of the joints of a row to one side, if its bound is below the load multiplier `alpha0` of the mechanism without sliding.
+fn sliding(row: &Row, coefficient: f64, sway: Sway, alpha0: f64) -> Option<Sliding> {
+    let bound_g = match friction::onset(row, coefficient, sway) {
         Ok(Some(onset)) => {
             let governs = onset.sliding_governs() && onset.acceleration_g < alpha0;
-            governs.then_some(onset.acceleration_g)
+            governs.then_some(onset.acceleration_g)?
         }
-        Err(FrictionError::CannotStand(_)) => Some(0.0),
-        Ok(None) | Err(_) => None,
+        Err(FrictionError::CannotStand(_)) => 0.0,
+        Ok(None) | Err(_) => return None,
+    };
+    Some(Sliding {
+        coefficient,
+        bound_g,
+    })
+}
+
+/// Gives both sides the larger of two bounds that differ only by the tolerance of the linear program.
+fn equalise(mechanisms: &mut BTreeMap<Sway, Mechanism>) {
+    let slides = mechanisms.values_mut();
+    let mut slides: Vec<&mut Sliding> = slides.filter_map(|one| one.sliding.as_mut()).collect();
+    if let [one, other] = &mut slides[..] {
+        let larger_g = one.bound_g.max(other.bound_g);
+        if (one.bound_g - other.bound_g).abs() <= BOUND_TOLERANCE * larger_g {
+            (one.bound_g, other.bound_g) = (larger_g, larger_g);
+        }
     }
 }
 
-/// Finds the mechanisms of a structure to the checked sides.
+/// Finds the mechanisms of a structure to the checked sides, and the sides to which joints slide first.
 ///
 /// # Errors
-/// When the structure cannot stand, no acceleration moves it to a side, or joints slide first.
+/// When the structure cannot stand, or no acceleration moves it to a side.
 pub(super) fn mechanisms(input: &CheckInput<'_>) -> Result<BTreeMap<Sway, Mechanism>, VerifyError> {
     let structure = &input.scenario.structure;
     let coefficient = input.allowed_friction;
@@ -531,23 +576,17 @@ pub(super) fn mechanisms(input: &CheckInput<'_>) -> Result<BTreeMap<Sway, Mechan
             let found = found.ok_or_else(|| none(sway))?;
             VirtualMechanism::of_onset(row, sway, &found, input)
         };
-        let mechanism = Mechanism::new(found, input);
-        let alpha0 = mechanism.alpha0;
         let joints = row.as_ref().ok().or(cut.as_ref());
-        match joints.and_then(|row| slides_at_g(row, coefficient, sway, alpha0)) {
-            Some(at_g) => Err(VerifyError::Slides {
-                sway,
-                coefficient,
-                at_g,
-                alpha0,
-            }),
-            None => Ok((sway, mechanism)),
-        }
+        let slides = joints.and_then(|row| sliding(row, coefficient, sway, found.alpha0()));
+        Ok((sway, Mechanism::new(found, slides, input)))
     };
     let checked = match input.settings.sides {
         CheckedSides::Both => Sway::ALL,
         CheckedSides::Right => &[Sway::Right],
         CheckedSides::Left => &[Sway::Left],
     };
-    checked.iter().copied().map(of).collect()
+    let mechanisms = checked.iter().copied().map(of);
+    let mut mechanisms = mechanisms.collect::<Result<BTreeMap<Sway, Mechanism>, VerifyError>>()?;
+    equalise(&mut mechanisms);
+    Ok(mechanisms)
 }

@@ -31,7 +31,7 @@ use crate::scenario::{
 };
 pub use geometry::{FillGeometry, Geometry, LoadAt, PlacedBlock, RingGeometry};
 pub use histories::{ComparedPeak, Histories, HistorySide, MeanSpectrum, Peak, RecordPeaks};
-pub use mechanism::{Body, CapacityCurves, HeldTie, Mechanism, PlacedHinge, Position};
+pub use mechanism::{Body, CapacityCurves, HeldTie, Mechanism, PlacedHinge, Position, Sliding};
 pub use report::{FILES, Page, SidePictures, page_of, report, words};
 pub use spectrum::{FloorMode, FloorOrdinates, Ground, Spectrum};
 
@@ -51,23 +51,6 @@ pub enum VerifyError {
     /// There is no mechanism to one side, for this reason.
     #[error("there is no mechanism to check: {0}")]
     NoMechanism(String),
-    /// Sliding has a smaller load multiplier than the mechanism without sliding.
-    #[error(
-        "no check is possible to the {}: with a friction coefficient of {coefficient} joints slide at {at_g:.4} g at most (associated \
-         bound), before a mechanism without sliding forms at {alpha0:.4} g, and the least multiplier counts. Check the other \
-         side alone with `sides`, or another structure",
-        .sway.name()
-    )]
-    Slides {
-        /// The side.
-        sway: Sway,
-        /// The friction coefficient.
-        coefficient: f64,
-        /// The acceleration at which joints slide, in g.
-        at_g: f64,
-        /// Load multiplier of the mechanism without sliding.
-        alpha0: f64,
-    },
     /// There is no capacity curve, for this reason: only the simplified check is possible, and it was not requested.
     #[error(
         "no check is possible: {0}. Without a capacity curve there are the damage limit state and the simplified check of SLV \
@@ -188,11 +171,41 @@ impl DisplacementCheck {
     }
 }
 
+/// The comparison of the demand with the acceleration at which joints slide, if they slide before a mechanism without sliding forms.
+///
+/// Associated limit analysis gives an upper bound of that acceleration, because stone joints do not open as they slip. A demand above the bound
+/// is not passed. A smaller demand has no answer.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SlidingCheck {
+    /// Upper bound of the acceleration at which joints slide, in g.
+    pub bound_g: f64,
+    /// Acceleration demanded, in g: that of the check of the onset of motion, with the spectrum of the limit state.
+    pub demand_g: f64,
+    /// `not_passed` if the demand exceeds the bound, `no_answer` otherwise.
+    pub verdict: Verdict,
+}
+
+impl SlidingCheck {
+    fn new(bound_g: f64, demand_g: f64) -> Self {
+        Self {
+            bound_g,
+            demand_g,
+            verdict: match demand_g > bound_g {
+                true => Verdict::NotPassed,
+                false => Verdict::NoAnswer,
+            },
+        }
+    }
+}
+
 /// The checks of a limit state to one side.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SideCheck {
-    /// The governing result; `None` if the state cannot be checked.
+    /// The governing result; `None` if the state cannot be checked, or joints slide first.
     pub zeta_e: Option<f64>,
+    /// The comparison with the slide of joints; absent unless they slide first. There is no other check then.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sliding: Option<SlidingCheck>,
     /// The onset of motion, for SLD.
     pub activation: Option<ActivationCheck>,
     /// The simplified check, for SLV.
@@ -213,6 +226,8 @@ named! {
         Simplified = "simplified",
         /// By displacements (C8.7.1.2.1.8).
         Displacement = "displacement",
+        /// The demand is compared with the acceleration at which joints slide.
+        Sliding = "sliding",
     }
 }
 
@@ -242,10 +257,60 @@ impl SideCheck {
         results.into_iter().flatten()
     }
 
-    /// Returns the governing method and result; `None` if the side cannot be checked.
+    /// Returns the governing method and result; `None` if the side cannot be checked, or joints slide first.
     pub fn governing(&self) -> Option<(Method, Margin)> {
         let (method, margin, _) = self.results().next()?;
         Some((method, margin))
+    }
+
+    /// Returns the verdict to this side.
+    pub fn verdict(&self) -> Verdict {
+        self.outcome()
+            .map_or(Verdict::NotChecked, |outcome| outcome.verdict)
+    }
+
+    /// Returns the governing method with its verdict; `None` if the side cannot be checked.
+    fn outcome(&self) -> Option<SideOutcome> {
+        if let Some(sliding) = self.sliding {
+            return Some(SideOutcome {
+                method: Method::Sliding,
+                verdict: sliding.verdict,
+                ratio: sliding.bound_g / sliding.demand_g,
+            });
+        }
+        let (method, margin) = self.governing()?;
+        Some(SideOutcome {
+            method,
+            verdict: match margin.passed {
+                true => Verdict::Passed,
+                false => Verdict::NotPassed,
+            },
+            ratio: margin.zeta_e,
+        })
+    }
+}
+
+/// The governing method of a side with its verdict.
+#[derive(Clone, Copy)]
+struct SideOutcome {
+    method: Method,
+    verdict: Verdict,
+    /// The ratio of capacity to demand; an upper bound if joints slide first.
+    ratio: f64,
+}
+
+impl SideOutcome {
+    /// Returns true if this side decides rather than another: a side that fails, then a side without an answer, then the smaller ratio.
+    fn is_worse_than(&self, other: &Self) -> bool {
+        let severity = |verdict| match verdict {
+            Verdict::NotPassed => 3,
+            Verdict::NoAnswer => 2,
+            Verdict::NotChecked => 1,
+            Verdict::Passed => 0,
+        };
+        let [own, others] = [self, other].map(|one| severity(one.verdict));
+        let is_smaller = self.ratio < other.ratio && !alike(self.ratio, other.ratio);
+        own > others || (own == others && is_smaller)
     }
 }
 
@@ -257,6 +322,8 @@ named! {
         Passed = "passed",
         /// The capacity is less than the demand.
         NotPassed = "not_passed",
+        /// Joints slide first, and only an upper bound of the capacity is known, which the demand does not exceed.
+        NoAnswer = "no_answer",
         /// There is no capacity curve.
         NotChecked = "not_checked",
     }
@@ -279,7 +346,7 @@ named! {
 pub struct StateCheck {
     /// The verdict.
     pub verdict: Verdict,
-    /// The governing result; `None` if the state cannot be checked.
+    /// The governing result; `None` if the state cannot be checked, or joints slide first to a side.
     pub zeta_e: Option<f64>,
     /// The governing side.
     pub side: Option<GoverningSide>,
@@ -331,8 +398,11 @@ pub struct Summary {
     pub scenario_sha256: String,
     /// Files from which the scenario was read.
     pub files: Vec<InputFile>,
-    /// The smallest `zeta_E` of the limit states with a result.
-    pub zeta_e: f64,
+    /// The smallest `zeta_E` of the limit states with a result; `None` if joints slide first to a side.
+    pub zeta_e: Option<f64>,
+    /// The reason why there is no `zeta_E`; absent if there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub no_zeta_e_because: Option<String>,
     /// The verdict on each limit state of the demand.
     pub verdict: BTreeMap<LimitState, Verdict>,
     /// Confidence factor FC, by which accelerations are divided.
@@ -441,7 +511,8 @@ pub fn verify(scenario: &Scenario) -> Result<Summary, VerifyError> {
         formulas: by_the_code.then(|| formulas.into()),
         scenario_sha256: sha256(scenario.to_resolved_toml().as_bytes()),
         files: scenario.files().to_vec(),
-        zeta_e: results.fold(f64::INFINITY, f64::min),
+        zeta_e: results.reduce(f64::min),
+        no_zeta_e_because: None,
         verdict: verdicts.collect(),
         confidence_factor: input.settings.confidence_factor,
         behaviour_factor: input.settings.behaviour_factor,
@@ -467,7 +538,11 @@ pub fn verify(scenario: &Scenario) -> Result<Summary, VerifyError> {
         free_standing: input.settings.free_standing,
         language: input.settings.language,
     };
-    report::add_notes(&mut summary, scenario.unlikely());
+    let unused = match summary.zeta_e {
+        Some(_) => Vec::new(),
+        None => input.settings.records.keys(),
+    };
+    report::add_notes(&mut summary, scenario.unlikely(), &unused);
     Ok(summary)
 }
 
@@ -521,6 +596,14 @@ impl CheckInput<'_> {
         let spectrum = Spectrum::of(&self.demand, state, rule.as_ref(), self.gravity_m_s2);
         let spectrum = spectrum.expect("the demand has this state");
         let sides = mechanisms.iter().map(|(sway, mechanism)| {
+            if let Some(sliding) = mechanism.sliding {
+                let demand_g = self.onset_demand_g(&spectrum)?;
+                let side = SideCheck {
+                    sliding: Some(SlidingCheck::new(sliding.bound_g, demand_g)),
+                    ..SideCheck::default()
+                };
+                return Ok((*sway, side));
+            }
             let start_ag_g = sld.and_then(|sld| sld.sides[sway].activation?.margin.ag_capacity_g);
             let activation = match state {
                 LimitState::Sld => Some(self.activation(mechanism, &spectrum)?),
@@ -538,6 +621,7 @@ impl CheckInput<'_> {
             };
             let mut side = SideCheck {
                 zeta_e: None,
+                sliding: None,
                 floor: self.floor(&spectrum, displacement.as_ref(), rule.as_ref()),
                 activation,
                 simplified: both_g.map(|(start_g, ag_g)| self.simplified(start_g, ag_g)),
@@ -553,15 +637,13 @@ impl CheckInput<'_> {
             None => None,
         };
         let governing = governing(&sides);
+        let slides = sides.values().any(|side| side.sliding.is_some());
+        let outcome = governing.map(|(_, outcome)| outcome);
         Ok(StateCheck {
-            verdict: match governing {
-                Some((.., margin)) if margin.passed => Verdict::Passed,
-                Some(_) => Verdict::NotPassed,
-                None => Verdict::NotChecked,
-            },
-            zeta_e: governing.map(|(.., margin)| margin.zeta_e),
-            side: governing.map(|(side, ..)| side),
-            method: governing.map(|(_, method, _)| method),
+            verdict: outcome.map_or(Verdict::NotChecked, |outcome| outcome.verdict),
+            zeta_e: outcome.filter(|_| !slides).map(|outcome| outcome.ratio),
+            side: governing.map(|(side, _)| side),
+            method: outcome.map(|outcome| outcome.method),
             demand: spectrum,
             rule,
             histories,
@@ -595,15 +677,21 @@ impl CheckInput<'_> {
         spectrum: &Spectrum,
     ) -> Result<ActivationCheck, PeriodOutOfRange> {
         let capacity_g = mechanism.a0_over_fc_g;
-        let demand_g = match self.t0_s {
-            None => spectrum.peak_g()?,
-            Some(t0_s) => spectrum.acceleration_g(t0_s, 5.0)?,
-        };
+        let demand_g = self.onset_demand_g(spectrum)?;
         Ok(ActivationCheck {
             capacity_g,
             demand_g,
             margin: Margin::new(capacity_g / demand_g, spectrum.ag_g()),
         })
+    }
+
+    /// Returns the acceleration with which the onset of motion is compared, in g: the peak if walls hold the structure, and the spectral
+    /// acceleration at its period if it is free to vibrate.
+    fn onset_demand_g(&self, spectrum: &Spectrum) -> Result<f64, PeriodOutOfRange> {
+        match self.t0_s {
+            None => spectrum.peak_g(),
+            Some(t0_s) => spectrum.acceleration_g(t0_s, 5.0),
+        }
     }
 
     /// Checks SLV by C8.7.1.2.1.7, from activation and demand as `a_g`, in g.
@@ -708,26 +796,33 @@ impl CheckInput<'_> {
     }
 }
 
-/// Returns the governing side, its method and its result; `None` if a side cannot be checked.
-fn governing(sides: &BTreeMap<Sway, SideCheck>) -> Option<(GoverningSide, Method, Margin)> {
-    let checked = sides.iter().map(|(sway, side)| {
-        let (method, margin) = side.governing()?;
-        Some((*sway, method, margin))
-    });
-    let checked = checked.collect::<Option<Vec<_>>>()?;
-    let worse = |worst: (_, _, Margin), one: (_, _, Margin)| {
-        let is_worse = one.2.zeta_e < worst.2.zeta_e && !alike(one.2.zeta_e, worst.2.zeta_e);
-        if is_worse { one } else { worst }
+/// Returns the governing side with its outcome. `None` if a side cannot be checked, unless joints slide first to the other side.
+fn governing(sides: &BTreeMap<Sway, SideCheck>) -> Option<(GoverningSide, SideOutcome)> {
+    let checked = sides
+        .iter()
+        .map(|(sway, side)| Some((*sway, side.outcome()?)));
+    let checked: Vec<(Sway, SideOutcome)> = match sides.values().any(|side| side.sliding.is_some())
+    {
+        true => checked.flatten().collect(),
+        false => checked.collect::<Option<_>>()?,
     };
-    let (sway, method, margin) = checked.iter().copied().reduce(worse)?;
-    let equals =
-        |(_, own, one): &(Sway, Method, Margin)| *own == method && alike(one.zeta_e, margin.zeta_e);
+    let worse = |worst: (Sway, SideOutcome), one: (Sway, SideOutcome)| match one
+        .1
+        .is_worse_than(&worst.1)
+    {
+        true => one,
+        false => worst,
+    };
+    let (sway, outcome) = checked.iter().copied().reduce(worse)?;
+    let equals = |(_, one): &(Sway, SideOutcome)| {
+        one.method == outcome.method && alike(one.ratio, outcome.ratio)
+    };
     let side = match sway {
         _ if checked.len() > 1 && checked.iter().all(equals) => GoverningSide::Either,
         Sway::Right => GoverningSide::Right,
         Sway::Left => GoverningSide::Left,
     };
-    Some((side, method, margin))
+    Some((side, outcome))
 }
 
 /// Finds the smallest `a_g`, in g, whose spectrum reaches the capacity, with `S_S` and `T_D` as functions of `a_g`; `None` beyond the range of

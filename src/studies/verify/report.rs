@@ -10,10 +10,11 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::histories::{FOR_THE_MEAN, SPECTRUM_MARGIN};
+use super::mechanism::SLIDES_FIRST;
 use super::{
     ComparedPeak, Decision, FRICTION, FloorMode, FloorOrdinates, GoverningSide, HighestPoint,
-    Histories, Mechanism, Method, PlacedHinge, Spectrum, StateCheck, Summary, Verdict, alike,
-    picture,
+    Histories, Mechanism, Method, PlacedHinge, SlidingCheck, Spectrum, StateCheck, Summary,
+    Verdict, alike, picture,
 };
 use crate::clock;
 use crate::dynamics::MODEL_LIMIT;
@@ -165,10 +166,17 @@ impl StateCheck {
         let side = self.side.map_or("", super::GoverningSide::name);
         self.method.as_ref() == Some(method) && ["either", sway.name()].contains(&side)
     }
+
+    /// Returns the comparison with the slide of joints, if it governs.
+    fn sliding(&self) -> Option<SlidingCheck> {
+        let mut sides = self.sides.iter();
+        let governs = |(sway, _): &(&Sway, _)| self.governs(sway, &Method::Sliding);
+        sides.find(governs)?.1.sliding
+    }
 }
 
 /// Words of numbers and states that stand alone, in English and in Italian.
-const WORDS: [[&str; 2]; 9] = [
+const WORDS: [[&str; 2]; 10] = [
     ["right", "destra"],
     ["left", "sinistra"],
     ["crown", "chiave"],
@@ -180,6 +188,10 @@ const WORDS: [[&str; 2]; 9] = [
     [
         "the forces of ties change as the structure moves; this check does not follow them, quasi-static capacity does",
         "le forze delle catene variano durante il moto; questa verifica non le segue",
+    ],
+    [
+        SLIDES_FIRST,
+        "i giunti scorrono prima che si formi; gli spostamenti di giunti che scorrono non sono calcolati",
     ],
 ];
 
@@ -268,6 +280,12 @@ impl Summary {
         }
     }
 
+    /// Returns the printed sides to which joints slide first.
+    pub(super) fn sliding(&self) -> Vec<(&Sway, &Mechanism)> {
+        let printed = self.mechanisms.iter().take(self.printed_sides());
+        printed.filter(|(_, one)| one.sliding.is_some()).collect()
+    }
+
     /// Returns the limit states with this verdict.
     pub(super) fn with(&self, verdict: Verdict) -> Vec<(&LimitState, &StateCheck)> {
         let states = self.states.iter();
@@ -287,6 +305,16 @@ impl Summary {
     }
 }
 
+/// The reason why there is no `zeta_E`.
+#[derive(Template)]
+#[template(
+    source = "{% import \"studies/verify/sentence.txt\" as verdict %}{% call verdict::because(check) %}{% endcall %}",
+    ext = "txt"
+)]
+struct NoRatio<'a> {
+    check: &'a Summary,
+}
+
 /// The notes, one per line, in four paragraphs.
 #[derive(Template)]
 #[template(
@@ -296,6 +324,8 @@ impl Summary {
 )]
 struct Notes<'a> {
     check: &'a Summary,
+    /// Keys of records whose histories are not computed, because joints slide first.
+    unused_records: &'a [&'static str],
 }
 
 impl Notes<'_> {
@@ -313,15 +343,32 @@ impl Notes<'_> {
         mechanisms.any(|one| !one.forces.is_empty())
     }
 
+    fn slides(&self) -> bool {
+        !self.check.sliding().is_empty()
+    }
+
     fn has_histories(&self) -> bool {
         let mut states = self.check.states.values();
         states.any(|one| one.histories.is_some())
     }
 }
 
-/// Adds decisions, assumptions, gaps and warnings to a check. `unlikely` are warnings about the scenario.
-pub(super) fn add_notes(check: &mut Summary, unlikely: Vec<String>) {
-    let text = render_in(&Notes { check }, check.language);
+/// Adds decisions, assumptions, gaps and warnings to a check, and the reason if it has no `zeta_E`. `unlikely` are warnings about the scenario,
+/// `unused_records` the keys of records whose histories are not computed.
+pub(super) fn add_notes(
+    check: &mut Summary,
+    unlikely: Vec<String>,
+    unused_records: &[&'static str],
+) {
+    if check.zeta_e.is_none() {
+        let why = render_in(&NoRatio { check }, check.language);
+        check.no_zeta_e_because = Some(why.trim().to_owned());
+    }
+    let notes = Notes {
+        check,
+        unused_records,
+    };
+    let text = render_in(&notes, check.language);
     let mut parts = text.split("\n\n").map(|part| {
         let lines = part.lines().skip(1).map(str::to_owned);
         lines.collect::<Vec<String>>()
