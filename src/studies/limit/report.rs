@@ -25,7 +25,7 @@ pub struct Summary {
     pub incipient_acceleration_m_s2: Sides<Option<f64>>,
     /// Hinges of the mechanism that starts, from left to right.
     pub mechanism: Sides<Vec<MechanismHinge>>,
-    /// Smallest coefficient of friction with which no joint slides before this mechanism starts; null if no push starts the structure, or the
+    /// Smallest coefficient of friction with which no joint slides at rest, or before this mechanism starts; null if no push starts the structure, or the
     /// coefficient was not found.
     pub friction_demand: Sides<Option<f64>>,
     /// Rotations of the bodies at the unstable equilibrium of the first mechanism to the right, or to the only side to which it moves, in radians;
