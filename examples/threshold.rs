@@ -5,6 +5,7 @@
 
 use std::ops::ControlFlow;
 
+use archrock::dynamics::Directions;
 use archrock::{
     Column, Factors, FreeHinges, ImpactModel, Model, Pulse, Request, RockingColumn, Runner,
     threshold,
@@ -22,7 +23,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for model in models {
         let found = threshold(
             model,
-            &ground,
+            (Directions::Both, &ground),
             &request,
             &factors,
             &Runner::default(),

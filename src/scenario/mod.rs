@@ -329,6 +329,8 @@ impl Scenario {
         initial::check_structure(table, !ties.is_empty(), motion.supports().is_some())?;
         let (given_shape, ground) = (Circular::given(table), ground?);
         let (initial, blow) = initial?.unzip();
+        let suite = suite?;
+        let simulation = suite::with_direction(table, simulation?, suite.as_ref())?;
         let mut certain = Self {
             title: title.map(|title| shown(&title)),
             structure,
@@ -340,9 +342,9 @@ impl Scenario {
             right_foot: ground.right_foot,
             initial,
             blow: blow.flatten(),
-            simulation: simulation?,
+            simulation,
             map: map?,
-            suite: suite?,
+            suite,
             demand,
             verify,
             uncertain: None,
@@ -401,23 +403,30 @@ impl Scenario {
 
     /// Returns the motion of both feet for a motion of the left one, mirrored if only the mirrored direction is requested.
     pub(crate) fn under_both_feet(&self, left: GroundMotion) -> GroundMotion {
-        let as_given = self.under_both_feet_as_given(left);
-        match self.simulation.direction.first() {
+        self.under_both_feet_in(self.simulation.direction.first(), left)
+    }
+
+    /// Returns the motion of both feet in a direction, for a motion of the left one as given.
+    pub(crate) fn under_both_feet_in(
+        &self,
+        direction: Direction,
+        left: GroundMotion,
+    ) -> GroundMotion {
+        let as_given = match &self.right_foot {
+            None => left,
+            Some(right) => {
+                let row = self.structure.row();
+                let apart_m = row.map_or(0.0, |row| {
+                    let [from_m, to_m] = row.feet_m();
+                    to_m.x - from_m.x
+                });
+                right.with_left_foot(left, apart_m, self.simulation.gravity_m_s2)
+            }
+        };
+        match direction {
             Direction::AsGiven => as_given,
             Direction::Mirrored => as_given.mirrored(),
         }
-    }
-
-    fn under_both_feet_as_given(&self, left: GroundMotion) -> GroundMotion {
-        let Some(right) = &self.right_foot else {
-            return left;
-        };
-        let row = self.structure.row();
-        let apart_m = row.map_or(0.0, |row| {
-            let [from_m, to_m] = row.feet_m();
-            to_m.x - from_m.x
-        });
-        right.with_left_foot(left, apart_m, self.simulation.gravity_m_s2)
     }
 
     /// Returns one scenario for each record of the suite, by its name, with the record at level 1 as ground motion and without other studies.

@@ -4,7 +4,6 @@
 //! [suite]
 //! records = ["records/*.at2", "north.csv"]   # files or patterns of files, relative to the scenario file
 //! scales = { from = 0.2, to = 3.0, count = 20, spacing = "logarithmic" }   # or peaks_g
-//! both_signs = true                          # every record mirrored as well
 //! time_column = 1                            # of the CSV files, as in [ground.record]
 //! acceleration_column = 2
 //! unit = "cm/s2"
@@ -25,6 +24,7 @@ use super::prelude::*;
 use super::record::{self, Component, Format, Record, Scaling, Series};
 use super::sequence::Sequence;
 use super::simulation::Simulation;
+use crate::dynamics::Directions;
 
 named! {
     /// The measure of the levels of a suite, by its name in results.
@@ -84,8 +84,8 @@ pub struct Suite {
     pub measure: Measure,
     /// The levels to which each record is scaled, above 0.
     pub levels: Sequence,
-    /// True if every record is also applied mirrored, so that it acts to the other side.
-    pub both_signs: bool,
+    /// Older name of `direction` in `[simulation]`: true is "both", false is "as_given". `None` if it is not given.
+    both_signs: Option<bool>,
     /// The oscillator whose spectral acceleration is a measure of intensity.
     pub spectral: Spectral,
 }
@@ -133,7 +133,7 @@ impl Suite {
             Some((measure, levels))
         });
         let levels: Vec<_> = levels.collect();
-        let both_signs = table.or("both_signs", &switch(), true);
+        let both_signs = table.optional("both_signs", &switch());
         let spectral = Spectral::read(table);
         let strongest = levels.first().and_then(|(measure, levels)| {
             let level = levels.values().last().copied();
@@ -157,7 +157,10 @@ impl Suite {
         related.and(table.check_faultless())?;
         let (measure, levels) = levels.into_iter().next().ok_or(FaultRecorded)?;
         let (count, files) = (levels.values().len(), listing.len() + entries.len());
-        let cases = files * (1 + usize::from(both_signs)) * count;
+        let own = directions_of(both_signs);
+        let directions = own.or(simulation.map(|simulation| simulation.direction));
+        let signs = 1 + usize::from(directions == Some(Directions::Both));
+        let cases = files * signs * count;
         let wrong = format!(
             "has {cases} cases, {files} records at {count} levels; at most {MAX_CASES} are allowed"
         );
@@ -191,11 +194,6 @@ impl Suite {
         })
     }
 
-    /// Number of signs with which each record acts.
-    pub(crate) const fn signs(&self) -> usize {
-        1 + self.both_signs as usize
-    }
-
     /// Returns the ground motion of each record with a peak of 1 g, as the table `[ground]`, by the name of the record.
     pub(crate) fn unit_grounds(&self, gravity_m_s2: f64) -> Vec<(String, Value)> {
         let records = self.records.iter();
@@ -209,10 +207,9 @@ impl Suite {
         unit.collect()
     }
 
-    /// Returns a record scaled to a level, mirrored if `mirrored`.
-    pub(crate) fn shake(&self, record: usize, level: f64, mirrored: bool) -> Record {
-        let signed = if mirrored { -level } else { level };
-        scaled_record(&self.records[record], self.measure.scaling(signed))
+    /// Returns a record scaled to a level.
+    pub(crate) fn shake(&self, record: usize, level: f64) -> Record {
+        scaled_record(&self.records[record], self.measure.scaling(level))
     }
 }
 
@@ -224,7 +221,6 @@ impl Serialize for Suite {
         };
         let own = [
             (self.measure.key(), json!(self.levels)),
-            ("both_signs", json!(self.both_signs)),
             (SPECTRAL_PERIOD_S, json!(self.spectral.period_s)),
             (
                 SPECTRAL_DAMPING_PERCENT,
@@ -234,6 +230,37 @@ impl Serialize for Suite {
         let own = own.map(|(key, value)| (key.to_owned(), value));
         serializer.collect_map(records.into_iter().chain(own))
     }
+}
+
+/// Returns the directions that `both_signs` names; `None` if it is not given.
+fn directions_of(both_signs: Option<bool>) -> Option<Directions> {
+    both_signs.map(|both| match both {
+        true => Directions::Both,
+        false => Directions::AsGiven,
+    })
+}
+
+/// Returns the settings of a simulation with the directions that `both_signs` of a suite names.
+pub(super) fn with_direction(
+    table: &mut Table<'_>,
+    mut simulation: Simulation,
+    suite: Option<&Suite>,
+) -> ReadResult<Simulation> {
+    if let Some(named) = directions_of(suite.and_then(|suite| suite.both_signs)) {
+        let (given, own) = (
+            table.gives_in("simulation", "direction"),
+            simulation.direction,
+        );
+        if given && own != named {
+            let (own, named) = (own.name(), named.name());
+            let wrong = format!(
+                "is `direction = \"{named}\"` of [simulation] by an older name, and [simulation] gives \"{own}\"; leave `both_signs` out"
+            );
+            return Err(table.wrong_in(&["suite"], "both_signs", wrong));
+        }
+        simulation.direction = named;
+    }
+    Ok(simulation)
 }
 
 const RECORDS: &str = "records";

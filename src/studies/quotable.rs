@@ -11,7 +11,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::dynamics::MODEL_LIMIT;
+use crate::dynamics::{Directions, MODEL_LIMIT};
 use crate::scenario::{FOUR_LINKS, FREE_HINGES, ModelKind, Scenario};
 
 /// Smallest and largest coefficient of friction of stone on stone. An answer has no condition up to the smallest one.
@@ -208,6 +208,15 @@ impl ModelAnswer {
     /// Returns the answer with the friction on which it depends.
     pub fn with_friction(self, friction: Option<FrictionCondition>) -> Self {
         Self { friction, ..self }
+    }
+}
+
+/// Returns the directions of the ground motion for which an answer holds, in words that follow the answer.
+pub(super) const fn directions_in_words(directions: Directions) -> &'static str {
+    match directions {
+        Directions::Both => " in both directions",
+        Directions::AsGiven => " in the direction as given only",
+        Directions::Mirrored => " in the mirrored direction only",
     }
 }
 

@@ -4,6 +4,7 @@ use std::fs;
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 
+use archrock::dynamics::Directions;
 use archrock::studies::map::OverturningMap;
 use archrock::studies::suite::RecordSuite;
 use archrock::studies::threshold::{EDGE_WIDTH, Factors, threshold};
@@ -164,7 +165,15 @@ fn thresholds_equal_those_of_single_runs() {
         };
         let model = ("elastic", &*model);
         let go_on = |_| ControlFlow::Continue(());
-        threshold(model, ground, &request, &factors, &runner, go_on).unwrap()
+        threshold(
+            model,
+            (Directions::AsGiven, ground),
+            &request,
+            &factors,
+            &runner,
+            go_on,
+        )
+        .unwrap()
     });
     assert_eq!(found[0], found[1]);
     let falls = |factor: f64| {

@@ -10,7 +10,7 @@ use crate::common::program::{done, files, refused, scenarios};
 use crate::common::prose::golden;
 use crate::common::results::Table;
 use archrock::dynamics::repeatability::Repeatability;
-use archrock::dynamics::{FreeHinges, RowOptions};
+use archrock::dynamics::{Directions, FreeHinges, RowOptions};
 use archrock::output::Figure;
 use archrock::scenario::{
     FOUR_LINKS, FREE_HINGES, ModelKind, ReadOptions, Scenario, ScenarioErrors, Source,
@@ -274,8 +274,17 @@ fn a_block_under_a_step_pair_has_one_band_without_gaps() {
     let factors = Factors::new(0.655, 0.658, 5e-4).unwrap();
     let runner = Runner::default();
     let go_on = |_| ControlFlow::Continue(());
-    let found =
-        models.map(|model| threshold(model, &ground, &request, &factors, &runner, go_on).unwrap());
+    let found = models.map(|model| {
+        threshold(
+            model,
+            (Directions::AsGiven, &ground),
+            &request,
+            &factors,
+            &runner,
+            go_on,
+        )
+        .unwrap()
+    });
     for threshold in &found {
         let verdicts: Vec<_> = threshold.ranges.iter().map(|range| range.verdict).collect();
         let expected = [Verdict::Survives, Verdict::Overturns].map(Some);

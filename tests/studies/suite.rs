@@ -1,15 +1,15 @@
 //! Suites of records: rows compared with runs of the same scenario, parts with the whole, and the messages if
 //! there is no curve.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::PI;
 use std::fs;
 use std::path::Path;
 
-use crate::common::pairs;
 use crate::common::program::{done, refused, scenarios};
 use crate::common::prose::{golden, shows};
 use crate::common::results::{Row, Table, json, named, texts};
+use crate::common::{ON_A_PIER, UNEVEN_ARCH, pairs};
 use archrock::dynamics::repeatability::OutcomeCount;
 use archrock::dynamics::{Direction, Outcome};
 use archrock::mechanics::Sway;
@@ -148,48 +148,56 @@ fn samples_of(folder: &Path, file: &str) -> Vec<(f64, f64)> {
     lines.map(|cells| (cells[0], cells[2])).collect()
 }
 
+/// In both directions a suite has the rows of each, unless a motion and its mirror image repeat to the last bit. The older key `both_signs` names the
+/// same directions.
 #[test]
-fn a_mirrored_record_moves_the_structure_to_the_other_side() {
+fn a_suite_in_both_directions_has_the_rows_of_each() {
     let folder = folder();
     let folder = folder.path();
-    for structure in [COLUMN, ARCH] {
-        let text = format!(
-            "{structure}[suite]\nrecords = 'records/*.at2'\nscales = [0.5, 1.5, 3.0, 6.0]\n"
-        );
-        write(folder, "s.toml", &text);
-        done(folder, &["suite", "s.toml", "--out", "both", "--quiet"]);
-        let both = rows(&folder.join("both"));
+    let uneven = format!("{UNEVEN_ARCH}{ON_A_PIER}[simulation]\nduration_s = 30.0\n");
+    for (structure, has_second) in [(COLUMN, false), (ARCH, false), (&*uneven, true)] {
+        let rows_of = |name: &str, [direction, signs]: [&str; 2]| {
+            let text = format!(
+                "{structure}{direction}[suite]\nrecords = 'records/*.at2'\nscales = [0.5, 1.5, 3.0, 6.0]\n{signs}"
+            );
+            write(folder, "s.toml", &text);
+            let out = format!("{name}-{}", structure.len());
+            done(folder, &["suite", "s.toml", "--out", &out, "--quiet"]);
+            rows(&folder.join(out))
+        };
+        let [both, given, mirrored] = ["both", "as_given", "mirrored"]
+            .map(|name| rows_of(name, [&format!("direction = '{name}'\n"), ""]));
+        assert_eq!(rows_of("default", ["", ""]), both);
+        assert_eq!(rows_of("signs", ["", "both_signs = true\n"]), both);
+        assert_eq!(rows_of("sign", ["", "both_signs = false\n"]), given);
+        let signs = |rows: &[Row]| -> BTreeSet<String> {
+            rows.iter().map(|row| row["sign"].clone()).collect()
+        };
+        assert_eq!(signs(&mirrored), BTreeSet::from(["-1".to_owned()]));
+        if has_second {
+            let of = |sign: &str| -> Vec<Row> {
+                let rows = both.iter().filter(|row| row["sign"] == sign);
+                rows.cloned().collect()
+            };
+            assert_eq!((of("1"), of("-1")), (given.clone(), mirrored.clone()));
+            assert!(
+                pairs(&given, &mirrored).any(|(one, other)| one["outcome"] != other["outcome"])
+            );
+            continue;
+        }
+        assert_eq!(both, given);
         let mut overturned = 0;
-        for record in both.chunks(8) {
-            for (row, mirrored) in record[..4].iter().zip(&record[4..]) {
-                assert_eq!([&row["sign"], &mirrored["sign"]], ["1", "-1"]);
-                // They agree to the last bit: no step distinguishes left from right.
-                for column in [0, 2, 3, 4, 6, 7, 8, 9, 10] {
-                    assert_eq!(row[column], mirrored[column]);
-                }
-                if row[4] == "overturned" {
-                    overturned += 1;
-                    assert_ne!(row[5], mirrored[5]);
-                }
+        for (row, mirrored) in pairs(&given, &mirrored) {
+            // They agree to the last bit: no step distinguishes left from right.
+            for column in [0, 2, 3, 4, 6, 7, 8, 9, 10] {
+                assert_eq!(row[column], mirrored[column]);
+            }
+            if row[4] == "overturned" {
+                overturned += 1;
+                assert_ne!(row[5], mirrored[5]);
             }
         }
         assert!(overturned > 0);
-
-        write(folder, "s.toml", &format!("{text}both_signs = false\n"));
-        done(folder, &["suite", "s.toml", "--out", "one", "--quiet"]);
-        let one: Vec<_> = both.iter().filter(|row| row[1] == "1").cloned().collect();
-        assert_eq!(rows(&folder.join("one")), one);
-        // Mirror images add no evidence.
-        let levels = |out: &str| read(&folder.join(out).join("fragility.csv"));
-        assert_eq!(levels("both"), levels("one"));
-        let fragility = |out: &str| {
-            let mut fragility = json(&folder.join(out).join("fragility.json"));
-            for key in ["scenario", "outcomes"] {
-                fragility.as_object_mut().unwrap().remove(key);
-            }
-            fragility
-        };
-        assert_eq!(fragility("both"), fragility("one"));
     }
 }
 
@@ -769,23 +777,10 @@ fn upper_bounds_rank_no_measure() {
     }
 }
 
-/// A mirrored record whose results are exactly mirrored adds no evidence; otherwise it does, as the same record.
+/// A mirrored record counts as the same record.
 #[test]
-fn mirrored_records_count_unless_results_are_mirror_images() {
+fn mirrored_records_count_as_their_record() {
     let own = [("a", "..xx"), ("b", ".x.x"), ("c", ".xxx")];
-    let alone = SuiteFragility::new(Measure::Scale, levels_of(&own));
-    let images = [
-        own[0],
-        ("-a", "..xx"),
-        own[1],
-        ("-b", ".x.x"),
-        own[2],
-        ("-c", ".xxx"),
-    ];
-    let images = SuiteFragility::new(Measure::Scale, levels_of(&images));
-    assert!(!images.mirrored_count);
-    assert_eq!((&images.fit, &images.levels), (&alone.fit, &alone.levels));
-
     let other = [
         own[0],
         ("-a", "..x."),
@@ -795,7 +790,6 @@ fn mirrored_records_count_unless_results_are_mirror_images() {
         ("-c", ".xxx"),
     ];
     let other = SuiteFragility::new(Measure::Scale, levels_of(&other));
-    assert!(other.mirrored_count);
     assert_eq!((other.record_count(), other.levels[0].counts.cases), (3, 6));
     // Each sign is a case; both belong to one record, which the errors by record treat as dependent. So these errors
     // are larger than for the same cases of six records.

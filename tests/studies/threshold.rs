@@ -13,7 +13,7 @@ use crate::common::prose::{golden, shows, skeleton};
 use crate::common::pulse;
 use crate::common::results::{Row, Table, named};
 use crate::common::{GRAVITY, pairs, request, semicircle, seven_voussoirs};
-use archrock::dynamics::{Cost, Details, MechanismSummary, Repetition};
+use archrock::dynamics::{Cost, Details, Directions, MechanismSummary, Repetition};
 use archrock::output::Figure;
 use archrock::scenario::{MODELS, ReadOptions, Source};
 use archrock::studies::threshold::{
@@ -32,7 +32,7 @@ fn found(model: &dyn Model, ground: &GroundMotion, end_s: f64, factors: &Factors
     let go_on = |_| ControlFlow::Continue(());
     threshold(
         ("model", model),
-        ground,
+        (Directions::AsGiven, ground),
         &request(end_s),
         factors,
         &Runner::default(),
@@ -373,7 +373,15 @@ fn bands_and_gaps_of_any_models_side_by_side() {
             last = Some((progress.done, progress.all));
             ControlFlow::Continue(())
         };
-        let found = threshold(model, &unit_pulse(), &request(1.0), &all, &runner, watch).unwrap();
+        let found = threshold(
+            model,
+            (Directions::AsGiven, &unit_pulse()),
+            &request(1.0),
+            &all,
+            &runner,
+            watch,
+        )
+        .unwrap();
         let edges = if model.0 == "islands" { 3 } else { 0 };
         let cases = all.values().len() + edges;
         assert_eq!(last, Some((cases, cases)));
@@ -496,14 +504,22 @@ fn a_threshold_can_be_cancelled_and_refuses_invalid_requests() {
     let all = factors(1.0, 8.0, 0.001);
     let runner = Runner::default();
     let stop = |_: Progress| ControlFlow::Break(());
-    let error = threshold(model, &unit_pulse(), &request(1.0), &all, &runner, stop).unwrap_err();
+    let error = threshold(
+        model,
+        (Directions::AsGiven, &unit_pulse()),
+        &request(1.0),
+        &all,
+        &runner,
+        stop,
+    )
+    .unwrap_err();
     let StudyError::Runner(RunnerError::Cancelled(progress)) = error else {
         panic!("{error}");
     };
     assert!(progress.done < 1000 && progress.all == all.values().len());
     let error = threshold(
         model,
-        &unit_pulse(),
+        (Directions::AsGiven, &unit_pulse()),
         &request(f64::NAN),
         &all,
         &runner,

@@ -693,7 +693,7 @@ def suite_scenario(
     *,
     peaks_g: Values = None,
     scales: Values = None,
-    both_signs: bool = True,
+    both_signs: bool | None = None,
     **settings: Any,
 ) -> Scenario:
     """The scenario of the suite that :func:`suite` computes, to be computed in parts.
@@ -708,7 +708,7 @@ def suite_scenario(
         **own,
         "peaks_g": peaks_g,
         "scales": scales,
-        "both_signs": both_signs,
+        **({} if both_signs is None else {"both_signs": both_signs}),
     }
     return Scenario.of(structure, suite=table, files=files, **settings)
 
@@ -732,7 +732,7 @@ def suite(
         peaks_g: increasing peak accelerations to which each record is scaled; or give ``scales``, which multiply the
             scaling of the records.
         scales: increasing factors on each record.
-        both_signs: whether every record is also run mirrored; ``None``: yes.
+        both_signs: older name of ``direction``: true is ``"both"``, false is ``"as_given"``; ``None``: as ``direction``.
         threads: as for :func:`overturning_map`.
         progress: as for :func:`overturning_map`.
         settings: as for :func:`simulate`.
@@ -751,7 +751,7 @@ def suite(
         records or (),
         peaks_g=peaks_g,
         scales=scales,
-        both_signs=both_signs is not False,
+        both_signs=both_signs,
         **settings,
     )
     return _warned(Suite(_study("suite", scenario, threads, progress)))

@@ -123,6 +123,13 @@ pub(crate) fn columns<'a, R: 'a>(free_hinges: bool, ended: Ended<R>) -> Vec<Colu
     columns
 }
 
+/// Returns the column of the direction of the ground motion to which the numbers of a row belong; empty without a history.
+pub(crate) fn direction<'a, R: 'a>(ended: Ended<R>) -> Column<'a, R> {
+    column("direction", move |row| {
+        Some(ended(row).ok()?.direction.name())
+    })
+}
+
 /// Returns a truth value for the cell of a table.
 pub(crate) const fn yes(is_true: bool) -> &'static str {
     if is_true { "yes" } else { "no" }

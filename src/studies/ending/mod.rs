@@ -130,15 +130,6 @@ impl Ending {
         }
     }
 
-    /// Returns the ending of the mirrored case.
-    pub(super) fn mirrored(&self) -> Self {
-        let mut mirrored = self.clone();
-        if let Outcome::Overturned(sway) = &mut mirrored.outcome {
-            *sway = sway.opposite();
-        }
-        mirrored
-    }
-
     /// Simulates a structure, repeats the history if that may matter, and returns the ending.
     ///
     /// # Errors

@@ -11,8 +11,8 @@ use super::influence::{InfluencedAnswer, percent};
 use super::page::{PageAnswer, SAMPLES, SamplePage};
 use super::report::{self, Band, Line, SampleSummary, of_answer};
 use super::{NoAnswer, Question, Samples};
-use crate::dynamics::WithoutDemand;
-use crate::dynamics::repeatability::repeated;
+use crate::dynamics::repeatability::{CheckedHistory, checked, repeated};
+use crate::dynamics::{Direction, EndCondition, WithoutDemand};
 use crate::output::panels::{MAIN, scale_around};
 use crate::output::{
     Figure, Key, Mark, OutputError, Panels, Scale, Sign, Stroke, Subject, color, column, csv, each,
@@ -24,7 +24,7 @@ use crate::studies::page::kind_of;
 use crate::studies::quotable::SurvivorFriction;
 use crate::studies::statistics::{Share, band, fractile, quantile};
 use crate::studies::{ModelCheck, Results};
-use crate::{Ending, Factors, Model, Sample, Verdict};
+use crate::{Ending, Factors, Model, NoHistory, Sample, Verdict};
 
 /// Largest number of times at which samples are compared.
 const MOST_TIMES: usize = 300;
@@ -46,13 +46,15 @@ pub struct Histories {
 /// Rotation over time and ending of the history of a sample.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HistoryAnswer {
-    /// Outcome of the history.
+    /// Ending of the history in the worse direction of the ground motion.
     pub ending: Ending,
     /// Largest potential energy of a row of blocks over the barrier; `None` if the barrier is unknown.
     pub potential_over_barrier: Option<f64>,
-    /// Recorded rotations of the body, in radians, until the end of the history. After it the rotation is constant, or the sample has
-    /// overturned.
+    /// Recorded rotations of the body under the ground motion as given, in radians, until the end of the history. After it the rotation is constant,
+    /// or the sample has overturned.
     pub course_rad: Vec<f32>,
+    /// True if the recorded history overturns.
+    pub course_overturns: bool,
 }
 
 /// Makes the model of a scenario for a study of many cases.
@@ -147,6 +149,10 @@ impl Question for Histories {
         });
         let potential = |one: &HistoryAnswer| one.potential_over_barrier;
         let rotation = |one: &HistoryAnswer| one.ending.peak_rotation_rad;
+        columns.push(columns::direction(|(_, row): &Line<'_, HistoryAnswer>| {
+            let answer = row.answer.as_ref();
+            answer.map(|answer| &answer.ending).map_err(NoAnswer::name)
+        }));
         columns.push(match has_joints {
             true => of_answer("peak_potential_over_barrier", potential),
             false => of_answer("peak_rotation_rad", rotation),
@@ -189,7 +195,7 @@ impl Question for Histories {
 }
 
 impl Histories {
-    /// Computes the history of a scenario.
+    /// Computes the history of a scenario, and under the mirrored ground motion if that may be worse.
     fn history(&self, scenario: &Scenario, model: &dyn Model) -> Result<HistoryAnswer, NoAnswer> {
         let (ground, mut request) = (scenario.ground_motion(), scenario.request());
         // Output times do not affect mechanisms, but steps of rows may end at output times.
@@ -209,9 +215,9 @@ impl Histories {
         let case = (ground.clone(), request);
         let own = vec![model.simulate(ground, &request, Some(&mut record))];
         let checked = repeated(model, &[case], own).remove(0);
-        let own = checked.own.as_ref().ok();
-        let potential_over_barrier = own.and_then(|own| own.peak_potential_over_barrier());
-        let ending = Ending::of_checked(checked)?;
+        let given = ended(checked)?;
+        let course_overturns = given.0.overturned_itself();
+        let (ending, potential_over_barrier) = worse(given, scenario, model)?;
         if ending.verdict() == Verdict::Incomplete {
             return Err(NoAnswer::Incomplete);
         }
@@ -219,6 +225,7 @@ impl Histories {
             ending,
             potential_over_barrier,
             course_rad,
+            course_overturns,
         })
     }
 
@@ -294,6 +301,41 @@ impl Histories {
     }
 }
 
+/// The ending of a history, and its largest potential energy over the barrier.
+type Ended = (Ending, Option<f64>);
+
+fn ended(checked: CheckedHistory) -> Result<Ended, NoHistory> {
+    let own = checked.own.as_ref().ok();
+    let potential = own.and_then(|own| own.peak_potential_over_barrier());
+    Ok((Ending::of_checked(checked)?, potential))
+}
+
+/// Returns the history of a scenario in its first direction, or the history under the mirrored ground motion if that is worse. The mirrored history is
+/// computed if the first survives or is uncertain.
+fn worse(
+    (mut ending, potential): Ended,
+    scenario: &Scenario,
+    model: &dyn Model,
+) -> Result<Ended, NoHistory> {
+    ending.direction = scenario.simulation.direction.first();
+    let is_open = matches!(ending.verdict(), Verdict::Survives | Verdict::Uncertain);
+    if !(is_open && scenario.has_second_direction(model)) {
+        return Ok((ending, potential));
+    }
+    let case = (scenario.ground_motion().mirrored(), scenario.request());
+    let (mirrored, of_mirrored) = match ended(checked(model, &[case], EndCondition::End).remove(0))
+    {
+        Ok((ending, potential)) => (Ok(ending), potential),
+        Err(reason) => (Err(reason), None),
+    };
+    let worse = ending.or_worse(Some(mirrored))?;
+    let potential = match worse.direction {
+        Direction::AsGiven => potential,
+        Direction::Mirrored => of_mirrored,
+    };
+    Ok((worse, potential))
+}
+
 impl HistoryAnswer {
     /// Returns the weight of the sample as overturned: 1 or 0, or the fraction of its repetitions that overturn.
     pub fn overturned(&self) -> f64 {
@@ -306,7 +348,7 @@ impl HistoryAnswer {
         let last = self.course_rad.last().copied().map_or(0.0, f64::from);
         match self.course_rad.get(time) {
             Some(rotation_rad) => f64::from(*rotation_rad),
-            None if self.ending.overturned_itself() => f64::INFINITY.copysign(last),
+            None if self.course_overturns => f64::INFINITY.copysign(last),
             None => last,
         }
     }

@@ -9,6 +9,7 @@ use super::page::{SAMPLES, SamplePage};
 use super::report::{self, SampleSummary, of_answer, why_not};
 use super::uncertain_threshold::{StrengthBand, first_strength};
 use super::{NoAnswer, Question, Samples};
+use crate::dynamics::{Direction, Directions};
 use crate::output::page::SpotKind;
 use crate::output::{Chart, Figure, Key, Mark, OutputError, Scale, Stroke, color, column, csv};
 use crate::scenario::{Measure, Scenario, Suite, shown};
@@ -16,8 +17,8 @@ use crate::studies::quotable::SurvivorFriction;
 use crate::studies::statistics::{
     ascending_weighted, bootstrap, interval, shares_up_to, weighted_fractile,
 };
-use crate::studies::suite::case;
 use crate::studies::suite::strength::few;
+use crate::studies::suite::{case, directions};
 use crate::studies::threshold::first_edge::{FirstEdge, TREATMENTS, Treatment, TriedHistory};
 use crate::studies::threshold::{Factors, rounded, rounded_range};
 use crate::studies::{Ending, ModelCheck, Results};
@@ -30,16 +31,27 @@ const WIDTH: f64 = 2e-3;
 #[derive(Clone, Debug)]
 pub struct Capacities {
     suite: Suite,
+    directions: Directions,
     levels: Vec<f64>,
 }
 
-/// The first edge of a sample under each record; with both signs, the mirrored record follows its record.
+/// The first edge of a sample under each record; in both directions, the mirrored record follows its record. A sample without a second direction has
+/// the same edge twice.
 type Edges = Vec<FirstEdge>;
 
 impl Capacities {
+    /// Number of edges of each record.
+    fn signs(&self) -> usize {
+        1 + usize::from(self.directions == Directions::Both)
+    }
+
     /// Returns the name and the sign of each record, in the order of the answers.
     fn shakes(&self) -> impl Iterator<Item = (&str, &'static str)> {
-        let signs = &["1", "-1"][..self.suite.signs()];
+        let signs: &[_] = match self.directions {
+            Directions::Both => &["1", "-1"],
+            Directions::AsGiven => &["1"],
+            Directions::Mirrored => &["-1"],
+        };
         let records = self.suite.records.iter();
         records.flat_map(move |series| signs.iter().map(|sign| (series.name.as_str(), *sign)))
     }
@@ -119,6 +131,7 @@ impl Question for Capacities {
         Ok(Self {
             levels: suite.levels.values(),
             suite: suite.clone(),
+            directions: scenario.simulation.direction,
         })
     }
 
@@ -186,14 +199,26 @@ impl Question for Capacities {
 
     fn answer(&self, scenario: &Scenario) -> Result<Edges, NoAnswer> {
         let model = scenario.model().map_err(NoAnswer::invalid)?;
-        let edges = (0..self.suite.records.len() * self.suite.signs()).map(|shake| {
-            let (record, mirrored) = (shake / self.suite.signs(), shake % self.suite.signs() == 1);
+        let edge = |record: usize, direction: Direction| {
             FirstEdge::among(&self.levels, WIDTH, |level: f64| {
-                let (ground, request) = case(scenario, &self.suite, record, level, mirrored);
-                Ending::of(&*model, &ground, &request).map(TriedHistory::from)
+                let (ground, request) = case(scenario, &self.suite, record, level, direction);
+                let ending = Ending::of(&*model, &ground, &request)?;
+                Ok(TriedHistory::from(Ending {
+                    direction,
+                    ..ending
+                }))
             })
-        });
-        edges.collect()
+        };
+        let mut edges = Edges::new();
+        for record in 0..self.suite.records.len() {
+            for direction in directions(scenario, &self.suite, &*model) {
+                edges.push(edge(record, *direction)?);
+            }
+            while edges.len() % self.signs() > 0 {
+                edges.extend(edges.last().cloned());
+            }
+        }
+        Ok(edges)
     }
 }
 
@@ -281,8 +306,7 @@ fn distribution(intensities: impl IntoIterator<Item = [f64; 2]>) -> [Option<f64>
     [median, dispersion]
 }
 
-/// The edges that count. Mirrored records do not count if all have exactly the edges of the original records, as with four links of a symmetric
-/// structure.
+/// The edges that count. Mirrored records do not count if no sample has a second direction.
 struct Counted<'a> {
     question: &'a Capacities,
     /// The edges of each record, for the scenario itself; `samples` has them for each sample.
@@ -297,16 +321,12 @@ impl<'a> Counted<'a> {
         let own = samples.own.as_ref().ok();
         let mut all = own.into_iter().chain(samples.answers());
         let is_symmetric = all.all(|edges| {
-            let mut records = edges.chunks(question.suite.signs());
+            let mut records = edges.chunks(question.signs());
             records.all(|signs| signs.iter().all(|edge| *edge == signs[0]))
         });
-        let signs = if is_symmetric {
-            1
-        } else {
-            question.suite.signs()
-        };
+        let signs = if is_symmetric { 1 } else { question.signs() };
         let counted = |edges: &'a Edges| -> Vec<&'a [FirstEdge]> {
-            let records = edges.chunks(question.suite.signs());
+            let records = edges.chunks(question.signs());
             records.map(|edges| &edges[..signs]).collect()
         };
         Self {

@@ -152,11 +152,14 @@ impl Question for FirstEdges {
         let columns = FirstEdge::columns("first_factor", |(_, row): &Line<'_, FirstEdge>| {
             row.answer.as_ref().ok()
         });
+        let direction =
+            FirstEdge::direction_column(|(_, row): &Line<'_, FirstEdge>| row.answer.as_ref().ok());
+        let columns = columns.into_iter().chain([direction, why_not()]);
         let others = [
             draw(figure, samples, &probabilities).into_bytes(),
             report.all.draw_influences(samples, figure).into_bytes(),
             csv(shares, &probabilities)?,
-            report::table(samples, columns.into_iter().chain([why_not()]))?,
+            report::table(samples, columns)?,
         ];
         let results = Results::new(&Self::FILES[1..], &report, others)?;
         let page = SamplePage {

@@ -14,10 +14,10 @@ use serde::{Deserialize, Serialize};
 pub use self::page::page_of;
 pub use self::picture::draw;
 pub use self::report::Summary as MapSummary;
-use super::ending::{Ending, NoHistory, answered};
+use super::ending::{Ending, NoHistory, Verdict, answered};
 use super::runner::Study;
 use crate::dynamics::repeatability::{CheckedHistory, required_friction};
-use crate::dynamics::{OutcomeCount, Repetition};
+use crate::dynamics::{Direction, Directions, OutcomeCount, Repetition};
 use crate::scenario::{Axis, Ground, ModelError, Quantity, Scaling, Scenario};
 use crate::{Case, GroundMotion, Model, PulseShape, SimulationError, Summary};
 
@@ -28,9 +28,9 @@ pub struct CellRow {
     pub x: f64,
     /// Value along y.
     pub y: f64,
-    /// Ending of the history, or the reason why there is none.
+    /// Ending of the history in the worse direction of the ground motion, or the reason why there is none.
     pub result: Result<Ending, NoHistory>,
-    /// Number of different outcomes of the history and all its repetitions: one if the outcome does not depend on the computation. Overturning
+    /// Number of different outcomes of this history and all its repetitions: one if the outcome does not depend on the computation. Overturning
     /// to either side is one outcome; rest and still rocking are two. The error is the failure of a repetition. `None` if repetitions were not
     /// requested, or there is no history.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -41,6 +41,17 @@ impl CellRow {
     /// Returns true if the history is outside the model of four links.
     pub(super) fn is_outside_model(&self) -> bool {
         self.result.as_ref().is_ok_and(Ending::is_outside_model)
+    }
+
+    /// Returns the ending, or the outcome to report without one.
+    fn ended(&self) -> Result<&Ending, &'static str> {
+        self.result.as_ref().map_err(NoHistory::name)
+    }
+
+    /// Returns true if the numbers are those of the mirrored ground motion.
+    pub(super) fn is_mirrored(&self) -> bool {
+        let direction = self.result.as_ref().map(|ending| ending.direction);
+        direction == Ok(Direction::Mirrored)
     }
 
     /// Returns true if the outcome depends on the computation.
@@ -274,12 +285,14 @@ impl<'a> OverturningMap<'a> {
         Ok((model, (ground, request)))
     }
 
-    /// Computes the endings of cells with the same structure, and, if requested, the number of outcomes of each with its repetitions.
+    /// Computes the endings of cells with the same structure in the worse direction of their ground motion, and, if requested, the number of outcomes
+    /// of each with its repetitions.
     fn endings(&self, model: &dyn Model, cases: &[Case]) -> Vec<Result<Ended, NoHistory>> {
+        let directions = self.base.simulation.direction;
         let ended = match self.repeat {
-            true => all_outcomes(model, cases),
+            true => all_outcomes_in(directions, model, cases),
             false => {
-                let ended = Ending::until_safe(model, cases).into_iter();
+                let ended = Ending::until_safe_in(directions, model, cases).into_iter();
                 ended.map(|ending| Ok((ending?, None))).collect()
             }
         };
@@ -294,6 +307,47 @@ impl<'a> OverturningMap<'a> {
 
 /// The ending of the history of a cell, and, if requested, the number of outcomes with its repetitions, or the reason why it is unknown.
 type Ended = (Ending, Option<Result<usize, String>>);
+
+/// Computes the endings of histories in the worse of these directions, and the number of outcomes of each with its repetitions. The second direction is
+/// computed if the first survives or is uncertain.
+fn all_outcomes_in(
+    directions: Directions,
+    model: &dyn Model,
+    cases: &[Case],
+) -> Vec<Result<Ended, NoHistory>> {
+    let mut all = all_outcomes(model, cases);
+    for (ending, _) in all.iter_mut().flatten() {
+        ending.direction = directions.first();
+    }
+    let is_open = |index: &usize| {
+        let (ground, request) = &cases[*index];
+        let verdict = all[*index].as_ref().map(|(ending, _)| ending.verdict());
+        matches!(verdict, Ok(Verdict::Survives | Verdict::Uncertain))
+            && directions.has_second(model, ground, request)
+    };
+    let open: Vec<usize> = (0..cases.len()).filter(is_open).collect();
+    let mirrored = open.iter().map(|index| {
+        let (ground, request) = &cases[*index];
+        (ground.mirrored(), *request)
+    });
+    let mirrored = all_outcomes(model, &mirrored.collect::<Vec<_>>());
+    for (index, mirrored) in open.into_iter().zip(mirrored) {
+        let (mirrored, of_mirrored) = match mirrored {
+            Ok((ending, outcomes)) => (Ok(ending), outcomes),
+            Err(reason) => (Err(reason), None),
+        };
+        let worse = |(given, outcomes): Ended| {
+            let worse = given.or_worse(Some(mirrored))?;
+            let outcomes = match worse.direction {
+                Direction::AsGiven => outcomes,
+                Direction::Mirrored => of_mirrored,
+            };
+            Ok((worse, outcomes))
+        };
+        all[index] = all[index].clone().and_then(worse);
+    }
+    all
+}
 
 /// Computes the endings of histories, and the number of outcomes of each with its repetitions. All histories run to their end.
 fn all_outcomes(model: &dyn Model, cases: &[Case]) -> Vec<Result<Ended, NoHistory>> {

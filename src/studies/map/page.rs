@@ -40,6 +40,9 @@ struct Page {
     doubts: BTreeMap<usize, String>,
     /// Cells outside the model of four links.
     outside: Vec<usize>,
+    /// Cells with the numbers of the mirrored ground motion.
+    #[serde(default)]
+    mirrored: Vec<usize>,
     labels: Vec<String>,
     columns: Vec<PageColumn>,
     command: String,
@@ -115,7 +118,9 @@ impl ColoredCells {
             label: described(map.axes[i]).label.to_owned(),
             values: map.values[i].clone(),
         };
-        let outside = (0..self.outside.len()).filter(|index| self.outside[*index]);
+        let are = |cells: &[bool]| -> Vec<usize> {
+            (0..cells.len()).filter(|index| cells[*index]).collect()
+        };
         let labels = self.palette.iter().map(|color| color.label.to_owned());
         render(&Page {
             title: title.to_owned(),
@@ -130,7 +135,8 @@ impl ColoredCells {
             friction,
             kinds: BASE64_STANDARD.encode(kinds),
             doubts,
-            outside: outside.collect(),
+            outside: are(&self.outside),
+            mirrored: are(&self.mirrored),
             labels: labels.collect(),
             columns: columns.collect(),
             command: command(map),

@@ -18,6 +18,8 @@ pub(crate) struct ColoredCells {
     pub(crate) colors: Vec<OutcomeColor>,
     /// True for cells outside the model of four links.
     pub(crate) outside: Vec<bool>,
+    /// True for cells with the numbers of the mirrored ground motion.
+    pub(crate) mirrored: Vec<bool>,
 }
 
 impl ColoredCells {
@@ -27,6 +29,7 @@ impl ColoredCells {
             palette: &OutcomeColor::ALL,
             colors: rows.iter().map(|row| color_of(row, style)).collect(),
             outside: rows.iter().map(CellRow::is_outside_model).collect(),
+            mirrored: rows.iter().map(CellRow::is_mirrored).collect(),
         }
     }
 }
@@ -146,6 +149,7 @@ impl<'s> MapChart<'s> {
             palette,
             colors,
             outside,
+            ..
         } = cells;
         if outside.contains(&true) {
             let name = "outside-model";

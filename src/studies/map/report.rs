@@ -4,7 +4,7 @@ use askama::Template;
 use serde::{Deserialize, Serialize};
 
 use super::picture::{self, ColoredCells};
-use super::{CellRow, NoHistory, OverturningMap, page};
+use super::{CellRow, OverturningMap, page};
 use crate::argument::plain;
 use crate::output::{Column, OutputError, column, csv};
 use crate::scenario::{Quantity, Scenario};
@@ -24,6 +24,9 @@ pub struct Summary {
     all: CaseSummary,
     /// Number of cells with each outcome.
     outcomes: OutcomeCounts,
+    /// Number of cells whose numbers are those of the mirrored ground motion.
+    #[serde(default)]
+    mirrored: usize,
     /// Number of cells with another outcome in a repetition, including rest instead of still rocking; absent unless cells are repeated.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     other_outcomes_in_repetitions: Option<usize>,
@@ -44,6 +47,7 @@ impl ReportedStudy for OverturningMap<'_> {
         let doubtful = cells.iter().filter(|cell| cell.is_doubtful());
         let report = Summary {
             outcomes: OutcomeCounts::of(cells.iter().map(|cell| &cell.result)),
+            mirrored: cells.iter().filter(|cell| cell.is_mirrored()).count(),
             other_outcomes_in_repetitions: self.repeat.then(|| doubtful.count()),
             all: CaseSummary::new(scenario, cells.len(), remarks, friction, warnings),
         };
@@ -75,9 +79,8 @@ impl OverturningMap<'_> {
             column(y, |row: &CellRow| row.y),
         ];
         let has_joints = self.scenario.motion.kind.has_joints;
-        all.extend(columns::columns(has_joints, |row: &CellRow| {
-            row.result.as_ref().map_err(NoHistory::name)
-        }));
+        all.extend(columns::columns(has_joints, CellRow::ended));
+        all.push(columns::direction(CellRow::ended));
         if self.repeat {
             all.push(column("outcomes", |row: &CellRow| {
                 let outcomes = row.outcomes.as_ref();

@@ -1,10 +1,11 @@
 //! The parts of a scenario that the report of its suite needs.
 
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use super::{CaseRow, SuiteFragility};
 use crate::argument::plain;
+use crate::dynamics::{Direction, Directions};
 use crate::output::caption::caption;
 use crate::output::{Figure, Scale};
 use crate::scenario::{Measure, ModelKind, Scenario, Spacing, Spectral, Suite};
@@ -23,6 +24,9 @@ pub struct Heading {
     /// The measure of the intensities.
     pub measure: Measure,
     spacing: Spacing,
+    /// True if each record acts in both directions, in cases of their own.
+    has_both: bool,
+    pub(super) directions: Directions,
     pub(super) spectral: Spectral,
     /// Warnings about the scenario.
     pub(super) warnings: Vec<String>,
@@ -38,8 +42,8 @@ pub struct Heading {
 }
 
 impl Heading {
-    /// Makes the heading of a scenario with this suite.
-    pub fn new(scenario: &Scenario, suite: &Suite) -> Self {
+    /// Makes the heading of a scenario with this suite. `has_both` is true if each record acts in both directions, in cases of their own.
+    pub(super) fn new(scenario: &Scenario, suite: &Suite, has_both: bool) -> Self {
         Self {
             title: scenario.title.clone(),
             scenario: scenario.to_json(),
@@ -47,6 +51,8 @@ impl Heading {
             is_arch: scenario.structure.has_horizontal_thrust(),
             measure: suite.measure,
             spacing: suite.levels.spacing(),
+            has_both,
+            directions: scenario.simulation.direction,
             spectral: suite.spectral,
             warnings: scenario.unlikely(),
             // The records of the suite replace the ground motion of the scenario.
@@ -83,11 +89,6 @@ impl Heading {
     pub(super) fn scenario_of(&self, case: &CaseRow) -> Option<Value> {
         let mut known = self.unit_grounds.iter();
         let (_, unit) = known.find(|(name, _)| *name == case.record)?;
-        let factor = if case.mirrored {
-            -case.peak_g
-        } else {
-            case.peak_g
-        };
         let mut ground = unit.clone();
         // The right foot follows with its delay.
         if let Some(right) = self.scenario["ground"].get("right") {
@@ -95,7 +96,14 @@ impl Heading {
         }
         let mut scenario = self.scenario.clone();
         scenario["ground"] = ground;
-        Some(under_factor(&scenario, factor))
+        if self.has_both {
+            let direction = match case.mirrored {
+                true => Direction::Mirrored,
+                false => Direction::AsGiven,
+            };
+            scenario["simulation"]["direction"] = json!(direction);
+        }
+        Some(under_factor(&scenario, case.peak_g))
     }
 
     /// Returns the level of a case in words.

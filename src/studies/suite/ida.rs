@@ -14,7 +14,7 @@ const NAMED: usize = CURVES.len();
 const SURVIVED: f64 = 0.94;
 
 /// Draws the intensity against the peak rotation, relative to the critical rotation if that is known. Every record has a curve, and a second one
-/// for the mirrored record if mirrored cases count. Overturned cases are at the right end; the position of an uncertain case shows the outcome
+/// for the mirrored record. Overturned cases are at the right end; the position of an uncertain case shows the outcome
 /// of its own history. On a page every case has a mark.
 pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility, spots: &[Spot]) -> String {
     let over_critical = are_over_critical(results.cases.iter().map(|case| &case.result));
@@ -45,7 +45,7 @@ pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility, spots: 
         chart.marks.extend(of_record(&name, stroke, cases, results));
     }
     if !are_named {
-        let both = match results.mirrored_count {
+        let both = match results.has_both_signs() {
             true => ", also mirrored",
             false => "",
         };
@@ -137,7 +137,10 @@ fn peak(ending: &Ending) -> f64 {
 
 /// Computes the fractiles of the peaks at each level (Vamvatsikos and Cornell, Earthquake Engineering and Structural Dynamics 31, 2002).
 pub fn fractiles(results: &SuiteFragility) -> Vec<Fractiles> {
-    let levels = by_intensity(results.evidence(), |case| case.level(results.measure)).into_iter();
+    let levels = by_intensity(results.cases.iter().collect(), |case: &CaseRow| {
+        case.level(results.measure)
+    })
+    .into_iter();
     levels
         .map(|(intensity, cases)| {
             let peaks = ascending(cases.into_iter().filter_map(beyond));
@@ -163,10 +166,10 @@ pub(super) fn rotations_rad(cases: &[CaseRow]) -> Vec<Option<f64>> {
         .collect()
 }
 
-/// Returns the distribution of the peaks of all cases that count: ascending finite peaks, as in [`Fractiles`], each with the share of cases up
+/// Returns the distribution of the peaks of all cases: ascending finite peaks, as in [`Fractiles`], each with the share of cases up
 /// to the peak. The last share is below 1 if cases overturned.
 pub fn peaks(results: &SuiteFragility) -> Vec<(f64, f64)> {
-    let peaks = results.evidence().into_iter().filter_map(beyond);
+    let peaks = results.cases.iter().filter_map(beyond);
     shares_up_to(peaks.map(|peak| [peak, 1.0]))
 }
 

@@ -21,6 +21,7 @@ use super::ending::{Ending, NoHistory, Verdict, check_finite};
 use super::threshold::survival::{Survival, VerdictRange};
 use super::{ReportedStudy, Results, Study, Style};
 use crate::bisection::{Width, bisect};
+use crate::dynamics::Direction;
 use crate::output::OutputError;
 use crate::scenario::{Measure, Scenario, Suite};
 use crate::{Case, Model, Outcome};
@@ -110,12 +111,15 @@ impl CaseRow {
     }
 }
 
-/// The cases of a suite. Their order: the levels of a record, the levels of the mirrored record, then the next record.
+/// The cases of a suite. Their order: the levels of a record, the levels of the mirrored record, then the next record. There are no mirrored records if
+/// the structure has no second direction: see [`Directions::has_second`](crate::dynamics::Directions::has_second).
 #[derive(Debug)]
 pub struct RecordSuite<'a> {
     scenario: &'a Scenario,
     suite: &'a Suite,
     model: Box<dyn Model>,
+    /// The directions in which each record acts.
+    directions: &'static [Direction],
     levels: Vec<f64>,
     /// Intensities of each unscaled record.
     strengths: Vec<Strength>,
@@ -136,10 +140,12 @@ impl<'a> RecordSuite<'a> {
         )?;
         let (records, gravity_m_s2) = (suite.records.iter(), scenario.gravity_m_s2());
         let strengths = records.map(|series| Strength::of(series, suite.spectral, gravity_m_s2));
+        let model = scenario.model().map_err(|error| error.to_string())?;
         Ok(Self {
             scenario,
             suite,
-            model: scenario.model().map_err(|error| error.to_string())?,
+            directions: directions(scenario, suite, &*model),
+            model,
             levels: suite.levels.values(),
             strengths: strengths.collect(),
         })
@@ -156,11 +162,11 @@ impl Study for RecordSuite<'_> {
     }
 
     fn options(&self) -> Value {
-        json!(Heading::new(self.scenario, self.suite))
+        json!(self.heading())
     }
 
     fn count(&self) -> usize {
-        self.suite.records.len() * self.suite.signs() * self.levels.len()
+        self.suite.records.len() * self.directions.len() * self.levels.len()
     }
 
     /// Returns the index of the record, with its sign: a level needs the result of the level below to know whether it has an edge.
@@ -170,8 +176,8 @@ impl Study for RecordSuite<'_> {
 
     fn rows(&self, indices: &[usize]) -> Vec<CaseRow> {
         let cases = indices.iter().map(|index| {
-            let (level, record, mirrored) = self.place(*index);
-            case(self.scenario, self.suite, record, level, mirrored)
+            let (level, record, direction) = self.place(*index);
+            case(self.scenario, self.suite, record, level, direction)
         });
         let cases: Vec<Case> = cases.collect();
         let results = Ending::of_all(&*self.model, &cases);
@@ -186,7 +192,7 @@ impl Study for RecordSuite<'_> {
         };
         let edges: Vec<Option<Edge>> = (0..indices.len()).map(edge).collect();
         let row = |((index, result), edge): ((&usize, _), Option<Edge>)| {
-            let (level, record, mirrored) = self.place(*index);
+            let (level, record, direction) = self.place(*index);
             let series = &self.suite.records[record];
             let own_g = series.peak_g(self.scenario.gravity_m_s2());
             let (scale, peak_g) = match self.suite.measure {
@@ -195,10 +201,15 @@ impl Study for RecordSuite<'_> {
             };
             CaseRow {
                 record: series.name.clone(),
-                mirrored,
+                mirrored: direction == Direction::Mirrored,
                 scale,
                 peak_g,
-                result: check_finite(&[scale, peak_g]).and(result),
+                result: check_finite(&[scale, peak_g])
+                    .and(result)
+                    .map(|ending| Ending {
+                        direction,
+                        ..ending
+                    }),
                 edge: edge.map(|edge| edge.lowest),
                 edge_at_most: edge.is_some_and(|edge| edge.at_most),
                 safe_below_edge: edge.and_then(|edge| edge.safe),
@@ -215,7 +226,24 @@ impl ReportedStudy for RecordSuite<'_> {
     const FILES: &'static [&'static str] = &report::FILES;
 
     fn results(&self, rows: Vec<CaseRow>, style: Style) -> Result<Results, OutputError> {
-        Heading::new(self.scenario, self.suite).report(rows, style.figure)
+        self.heading().report(rows, style.figure)
+    }
+}
+
+/// Returns the directions in which each record of a suite acts: the second one only if its histories are not mirror images.
+pub(super) fn directions(
+    scenario: &Scenario,
+    suite: &Suite,
+    model: &dyn Model,
+) -> &'static [Direction] {
+    let directions = scenario.simulation.direction;
+    let first = directions.first();
+    let level = suite.levels.values().first().copied().unwrap_or(1.0);
+    let (ground, request) = case(scenario, suite, 0, level, first);
+    match (directions.has_second(model, &ground, &request), first) {
+        (true, _) => Direction::ALL,
+        (false, Direction::AsGiven) => &[Direction::AsGiven],
+        (false, Direction::Mirrored) => &[Direction::Mirrored],
     }
 }
 
@@ -225,10 +253,11 @@ pub(super) fn case(
     suite: &Suite,
     record: usize,
     level: f64,
-    mirrored: bool,
+    direction: Direction,
 ) -> Case {
-    let shake = suite.shake(record, level, mirrored);
-    let ground = scenario.under_both_feet(shake.ground_motion(scenario.gravity_m_s2()));
+    let shake = suite.shake(record, level);
+    let shake = shake.ground_motion(scenario.gravity_m_s2());
+    let ground = scenario.under_both_feet_in(direction, shake);
     let request = scenario.request_on(&ground, &scenario.structure);
     (ground, request)
 }
@@ -269,22 +298,27 @@ struct Edge {
 const EDGE_WIDTH: f64 = 2e-3;
 
 impl RecordSuite<'_> {
-    /// Returns the level of a case, the index of its record, and whether the record is mirrored.
-    fn place(&self, index: usize) -> (f64, usize, bool) {
-        let level = self.levels[index % self.levels.len()];
-        let shake = index / self.levels.len();
+    fn heading(&self) -> Heading {
+        let has_both = self.directions.len() > 1;
+        Heading::new(self.scenario, self.suite, has_both)
+    }
+
+    /// Returns the level of a case, the index of its record, and the direction in which the record acts.
+    fn place(&self, index: usize) -> (f64, usize, Direction) {
+        let (shake, level) = (index / self.levels.len(), index % self.levels.len());
+        let all = self.directions.len();
         (
-            level,
-            shake / self.suite.signs(),
-            shake % self.suite.signs() == 1,
+            self.levels[level],
+            shake / all,
+            self.directions[shake % all],
         )
     }
 
     /// Finds the edge between the level of a case that overturns and the level with index `below`; `None` if that level overturns as well.
     fn edge(&self, index: usize, below: usize, survives_below: bool) -> Option<Edge> {
-        let (level, record, mirrored) = self.place(index);
+        let (level, record, direction) = self.place(index);
         let ending = |level: f64| {
-            let (ground, request) = case(self.scenario, self.suite, record, level, mirrored);
+            let (ground, request) = case(self.scenario, self.suite, record, level, direction);
             Ending::of(&*self.model, &ground, &request)
         };
         let below = self.levels[below];
@@ -401,17 +435,13 @@ impl FragilityRow {
 /// The results of a suite. Cases that are still rocking count as survived, and uncertain ones by the fraction of their repetitions that overturn.
 /// If cases are doubtful (uncertain, incomplete or failed), there are two more curves: one counts them as survived, the other as overturned.
 ///
-/// Both signs of a record count as cases of one record, which are not independent. If every mirrored case is exactly the mirror image of the
-/// original, as with four links on a symmetric structure, mirrored cases add no evidence and do not count. With free hinges rounding errors and
-/// the order of almost simultaneous impacts break the symmetry.
+/// Both signs of a record count as cases of one record, which are not independent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SuiteFragility {
     /// The measure of the intensities.
     pub measure: Measure,
     /// All cases.
     pub cases: Vec<CaseRow>,
-    /// True if mirrored cases count.
-    pub mirrored_count: bool,
     /// The intensities, lowest first.
     pub levels: Vec<FragilityRow>,
     /// The curve with uncertain cases counted by their fractions, or the reason why there is none.
@@ -423,12 +453,10 @@ pub struct SuiteFragility {
 impl SuiteFragility {
     /// Computes the results of these cases.
     pub fn new(measure: Measure, cases: Vec<CaseRow>) -> Self {
-        let mirrored_count = !mirrored_are_images(&cases);
-        let evidence: Vec<&CaseRow> = shakes(&cases, mirrored_count).flatten().collect();
         let indices: BTreeMap<&str, usize> = names(&cases).into_iter().zip(0..).collect();
         // Each curve counts a share of 0 to 1 in its own way; `None` does not count.
         let fit_of = |overturned: fn(Option<f64>) -> Option<f64>| {
-            let known = evidence.iter().filter_map(|case| {
+            let known = cases.iter().filter_map(|case| {
                 Some(Observation {
                     intensity: case.level(measure),
                     overturned: overturned(case.overturning_share())?,
@@ -447,7 +475,7 @@ impl SuiteFragility {
             let (low, high) = fit.band(intensity);
             Some([fit.probability(intensity), low, high])
         };
-        let levels = by_intensity(evidence, |case| case.level(measure));
+        let levels = by_intensity(cases.iter().collect(), |case: &CaseRow| case.level(measure));
         let levels = levels.into_iter().map(|(intensity, cases)| {
             let others = ends.iter().filter_map(|fit| curve(fit, intensity));
             let widened =
@@ -463,7 +491,6 @@ impl SuiteFragility {
             levels: levels.collect(),
             fit,
             ends,
-            mirrored_count,
             cases,
         }
     }
@@ -484,7 +511,7 @@ impl SuiteFragility {
     /// results differ. The first overturning intensity is found by bisection, the others are levels of the suite.
     pub fn survivals(&self) -> Vec<(&CaseRow, Survival)> {
         let mut survivals: Vec<(&CaseRow, Survival)> = Vec::new();
-        for cases in self.cases.chunk_by(CaseRow::has_shake_of) {
+        for cases in self.shakes() {
             let survival = self.survival(cases);
             let case = &cases[0];
             let last = survivals.last();
@@ -524,14 +551,16 @@ impl SuiteFragility {
         survival
     }
 
-    /// Returns the cases that count.
-    fn evidence(&self) -> Vec<&CaseRow> {
-        self.shakes().flatten().collect()
+    /// Returns the cases, grouped by record and sign, the weakest first.
+    fn shakes(&self) -> impl Iterator<Item = &[CaseRow]> + Clone {
+        self.cases.chunk_by(CaseRow::has_shake_of)
     }
 
-    /// Returns the cases that count, grouped by record and sign, the weakest first.
-    fn shakes(&self) -> impl Iterator<Item = &[CaseRow]> {
-        shakes(&self.cases, self.mirrored_count)
+    /// Returns true if records act with both signs.
+    fn has_both_signs(&self) -> bool {
+        let mut signs = self.cases.iter().map(|case| case.mirrored);
+        let first = signs.next();
+        signs.any(|mirrored| Some(mirrored) != first)
     }
 
     /// Returns the number of records.
@@ -550,24 +579,6 @@ impl SuiteFragility {
         let alike = alike.into_iter().filter(|(_, alike)| *alike);
         alike.map(|(record, _)| record).collect()
     }
-}
-
-/// Returns the cases that count, all or those whose record is not mirrored, grouped by record and sign.
-fn shakes(cases: &[CaseRow], mirrored_count: bool) -> impl Iterator<Item = &[CaseRow]> {
-    let shakes = cases.chunk_by(CaseRow::has_shake_of);
-    shakes.filter(move |cases| mirrored_count || !cases[0].mirrored)
-}
-
-/// Returns true if every mirrored case is exactly the mirror image of the original case.
-fn mirrored_are_images(cases: &[CaseRow]) -> bool {
-    let key = |case: &CaseRow| (case.record.clone(), case.scale.to_bits());
-    let own = cases.iter().filter(|case| !case.mirrored);
-    let own: BTreeMap<_, &CaseRow> = own.map(|case| (key(case), case)).collect();
-    let mut mirrored = cases.iter().filter(|case| case.mirrored);
-    mirrored.all(|case| {
-        let (own, image) = (own.get(&key(case)), case.result.as_ref().ok());
-        own.is_some_and(|own| image.map(Ending::mirrored).as_ref() == own.result.as_ref().ok())
-    })
 }
 
 /// Returns the names of the records.

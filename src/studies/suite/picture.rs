@@ -76,7 +76,7 @@ fn curves(results: &SuiteFragility) -> Vec<(&Fragility, CurveStyle)> {
 
 /// Returns the legend.
 fn keys(results: &SuiteFragility, curves: &[(&Fragility, CurveStyle)]) -> Vec<Key> {
-    let cases = Counts::of(&results.evidence()).cases;
+    let cases = Counts::of(&results.cases.iter().collect::<Vec<_>>()).cases;
     let text = format!(
         "fraction of {}, {cases} cases",
         records_in_words(results.record_count())

@@ -15,7 +15,7 @@ use crate::output::{Column, Figure, OutputError, column, csv, each, fields, list
 use crate::scenario::{Measure, Spectral, shown};
 use crate::studies::ending::columns::{self, FAILED, yes};
 use crate::studies::page::{DrawPicture, Page, PageCases};
-use crate::studies::quotable::{self, ModelAnswer};
+use crate::studies::quotable::{self, ModelAnswer, directions_in_words};
 use crate::studies::threshold::survival::{self, Survival};
 use crate::studies::{OutcomeCounts, Remarks, Results, Verdict, rounded, rounded_down};
 
@@ -70,13 +70,13 @@ pub struct Summary {
     survivals: Vec<RecordSurvival>,
     /// The oscillator of the spectral acceleration.
     spectral: Spectral,
-    /// Number of capacities: the lowest overturning intensities of the records, with both signs if mirrored records count.
+    /// Number of capacities: the lowest overturning intensities of the records, with each sign.
     capacities: usize,
     /// Number of capacities that are upper bounds.
     capacities_at_most: usize,
     /// Measures of intensity, the most efficient first.
     intensity_measures: Vec<Efficiency>,
-    /// True if mirrored records count because their results are not mirror images.
+    /// True if records act with both signs. Otherwise only one direction is requested, or the results of mirrored records are mirror images.
     mirrored_cases_count: bool,
     /// Records that never overturn the structure.
     records_that_never_overturn: Vec<String>,
@@ -180,7 +180,7 @@ impl Heading {
             intensity: self.measure,
             curve: (&results.fit).into(),
             records: results.record_count(),
-            counts: Counts::of(&results.evidence()),
+            counts: Counts::of(&results.cases.iter().collect::<Vec<_>>()),
             levels: Levels {
                 count: results.levels.len(),
                 from,
@@ -196,7 +196,7 @@ impl Heading {
             capacities: capacities.len(),
             capacities_at_most: capacities.iter().filter(|one| one.at_most).count(),
             intensity_measures: efficiencies(&capacities),
-            mirrored_cases_count: results.mirrored_count,
+            mirrored_cases_count: results.has_both_signs(),
             records_that_never_overturn: owned(results.always(Verdict::Survives)),
             records_that_always_overturn: owned(results.always(Verdict::Overturns)),
             with_uncertain_as_survived: end(0),
@@ -262,8 +262,7 @@ impl Heading {
         let lowest = survivals.min_by(|(_, a), (_, b)| safe(a).total_cmp(&safe(b)));
         let quoted = lowest.as_ref().map_or(0.0, |(_, survival)| safe(survival));
         // The quoted intensity may lie between two levels. The thrust line is then followed up to the upper one, which is on the safe side.
-        let records = results.cases.chunk_by(CaseRow::has_shake_of);
-        let cases = records.flat_map(|cases| {
+        let cases = results.shakes().flat_map(|cases| {
             let is_above = |case: &CaseRow| case.level(self.measure) >= quoted;
             let above = cases.iter().position(is_above);
             &cases[..above.map_or(cases.len(), |above| above + 1)]
@@ -278,7 +277,8 @@ impl Heading {
             let (record, unit) = (case.record_in_words(), self.measure.unit());
             match survival.survives_up_to.map(rounded_down) {
                 Some(safe) => Ok(format!(
-                    "survives all records up to {safe}{unit} ({record})"
+                    "survives all records up to {safe}{unit} ({record}){}",
+                    directions_in_words(self.directions)
                 )),
                 None => Err(format!(
                     "the lowest level of {record} is not certainly survived"
@@ -289,10 +289,10 @@ impl Heading {
         (answer, friction_demand)
     }
 
-    /// Returns the failed and uncertain cases among those that count, with the reasons.
+    /// Returns the failed and uncertain cases with the reasons.
     fn remarks(&self, results: &SuiteFragility) -> Remarks {
         let mut remarks = Remarks::default();
-        for case in results.evidence() {
+        for case in &results.cases {
             let name = || format!("{}, {}", case.record_in_words(), self.level(case));
             remarks.note(name, &case.result);
         }

@@ -85,7 +85,7 @@ pub struct Efficiency {
 }
 
 impl SuiteFragility {
-    /// Computes the capacity under each record; under mirrored records only if they count.
+    /// Computes the capacity under each record and each mirrored record.
     pub fn capacities(&self) -> Vec<Capacity<'_>> {
         self.shakes().map(|levels| self.capacity(levels)).collect()
     }

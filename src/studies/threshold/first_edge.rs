@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::factors::{EDGE_WIDTH, Factors};
 use crate::bisection::{Width, try_bisect};
-use crate::dynamics::MODEL_LIMIT;
+use crate::dynamics::{Direction, MODEL_LIMIT};
 use crate::output::page::SpotKind;
 use crate::output::{Column, column};
 use crate::studies::ending::columns::yes;
@@ -43,9 +43,12 @@ pub struct FirstEdge {
     /// without such a factor.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub friction_demand: Option<f64>,
+    /// Worse direction of the ground motion at the first factor that is not certainly survived, or at `tried_to` without it.
+    #[serde(default)]
+    pub direction: Direction,
 }
 
-/// The numbers of a history in the search for a first edge.
+/// The numbers of a history in the search for a first edge, in the worse direction of the ground motion.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::studies) struct TriedHistory {
     /// Share of the repetitions that overturn; `None` if the history is incomplete.
@@ -54,6 +57,8 @@ pub(in crate::studies) struct TriedHistory {
     pub(in crate::studies) thrust_excess_ratio: Option<f64>,
     /// Friction demand, as in [`Ending`].
     pub(in crate::studies) friction_demand: Option<f64>,
+    /// Direction of the ground motion, as in [`Ending`].
+    pub(in crate::studies) direction: Direction,
 }
 
 impl From<Ending> for TriedHistory {
@@ -62,6 +67,7 @@ impl From<Ending> for TriedHistory {
             overturning_share: ending.overturning_share(),
             thrust_excess_ratio: ending.thrust_excess_ratio,
             friction_demand: ending.friction_demand,
+            direction: ending.direction,
         }
     }
 }
@@ -88,7 +94,8 @@ impl FirstEdge {
         }
     }
 
-    /// Finds the first edge of a scenario that starts from rest, among these factors on its ground motion.
+    /// Finds the first edge of a scenario that starts from rest, among these factors on its ground motion. At every factor the worse direction of the
+    /// ground motion counts.
     ///
     /// # Errors
     /// The reason why there is no answer.
@@ -98,7 +105,9 @@ impl FirstEdge {
         Self::among(&factors.values(), EDGE_WIDTH, |factor: f64| {
             let ground = scenario.ground_motion().scaled(factor);
             let ground = ground.map_err(SimulationError::from)?;
-            Ending::of(&*model, &ground, &request).map(TriedHistory::from)
+            let directions = scenario.simulation.direction;
+            let ending = Ending::of_all_in(directions, &*model, &[(ground, request)]).remove(0);
+            ending.map(TriedHistory::from)
         })
     }
 
@@ -173,8 +182,13 @@ impl FirstEdge {
         let certain = certain.map(|(own, _)| own[0]);
         edge.factor = edge.factor.into_iter().chain(certain).reduce(f64::min);
         let last = edge.factor.unwrap_or(edge.tried_to);
-        let of_last = tried.iter().find(|([strength, _], _)| *strength == last);
-        edge.thrust_excess_ratio = of_last.and_then(|(_, found)| found.thrust_excess_ratio);
+        let at = |wanted: f64| {
+            let mut all = tried.iter();
+            let known = all.find(|([strength, _], _)| *strength == wanted);
+            known.map(|(_, found)| *found).unwrap_or_default()
+        };
+        edge.thrust_excess_ratio = at(last).thrust_excess_ratio;
+        edge.direction = at(edge.uncertain_from.unwrap_or(last)).direction;
         let safe = edge.survives_up_to;
         let up_to_safe = tried
             .iter()
@@ -203,6 +217,13 @@ impl FirstEdge {
             }),
             column("friction_demand", move |row| of(row)?.friction_demand),
         ]
+    }
+
+    /// Returns the column of the worse direction at an edge.
+    pub(in crate::studies) fn direction_column<'a, R: 'a>(
+        of: impl Fn(&R) -> Option<&Self> + Copy + 'a,
+    ) -> Column<'a, R> {
+        column("direction", move |row| Some(of(row)?.direction.name()))
     }
 
     /// Returns the largest safe factor; 0 if the smallest tried factor is not safe.

@@ -28,6 +28,7 @@ use serde::{Deserialize, Serialize};
 use super::ending::{Ending, NoHistory, Verdict, answered};
 use super::{Progress, Results, Runner, StudyError, Watch};
 use crate::bisection::{Width, next_middles, try_bisect};
+use crate::dynamics::{Direction, Directions};
 use crate::output::Figure;
 use crate::{GroundMotion, Model, Request, Scenario, SimulationError};
 
@@ -78,11 +79,16 @@ pub struct FactorRange {
     pub to_end: RangeEnd,
 }
 
-/// The threshold of a model of motion.
+/// The threshold of a model of motion in a direction of the ground motion, with that under the mirrored ground motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Threshold {
     /// Name of the model.
     pub model: String,
+    /// Direction of the ground motion of the samples and ranges.
+    pub direction: Direction,
+    /// The threshold under the mirrored ground motion, up to the first factor that certainly overturns the structure in the first direction; `None`
+    /// without a [second direction](Directions::has_second).
+    pub mirrored: Option<Box<Self>>,
     /// The histories for all factors, ascending. They include the last history of a bisection that failed or met the third verdict.
     pub samples: Vec<FactorSample>,
     /// All ranges of tried factors, ascending.
@@ -121,14 +127,30 @@ impl Threshold {
         gaps
     }
 
-    /// Returns the largest factor up to which the structure certainly survives all sampled factors; `None` if it does not survive the smallest.
-    pub fn survives_up_to(&self) -> Option<f64> {
-        survival::Survival::of_threshold(self).survives_up_to
+    /// Returns this threshold, then that under the mirrored ground motion.
+    pub fn directions(&self) -> impl Iterator<Item = &Self> {
+        [self].into_iter().chain(self.mirrored.as_deref())
     }
 
-    /// Returns the smallest factor that certainly overturns the structure; `None` if no factor does.
+    /// Returns the threshold in the direction that survives less: its safe factors end first.
+    pub fn governing(&self) -> &Self {
+        let safe = |one: &Self| Survival::of_threshold(one).survives_up_to.unwrap_or(0.0);
+        let mirrored = self.mirrored.as_deref();
+        mirrored
+            .filter(|mirrored| safe(mirrored) < safe(self))
+            .unwrap_or(self)
+    }
+
+    /// Returns the largest factor up to which the structure certainly survives all sampled factors in all directions; `None` if it does not survive the
+    /// smallest.
+    pub fn survives_up_to(&self) -> Option<f64> {
+        Survival::of_threshold(self.governing()).survives_up_to
+    }
+
+    /// Returns the smallest factor that certainly overturns the structure in any direction; `None` if no factor does.
     pub fn lowest_factor(&self) -> Option<f64> {
-        self.bands().first().map(|band| band.from)
+        let lowest = |one: &Self| one.bands().first().map(|band| band.from);
+        self.directions().filter_map(lowest).reduce(f64::min)
     }
 
     /// Returns an error if no history could be computed.
@@ -174,6 +196,8 @@ impl Threshold {
         }
         Self {
             model,
+            direction: Direction::AsGiven,
+            mirrored: None,
             samples,
             ranges,
             varied: Vec::new(),
@@ -182,42 +206,80 @@ impl Threshold {
         }
     }
 
-    /// Follows thrust line and friction demand up to the largest safe factor, in the samples and in these histories of bisections.
+    /// Follows thrust line and friction demand up to the largest safe factor, in the samples of all directions and in these histories of bisections.
     fn follow(&mut self, bisected: &[FactorSample]) {
         let Some(safe) = self.survives_up_to() else {
             return;
         };
-        let up_to = self.samples.iter().chain(bisected);
+        let samples = self.directions().flat_map(|one| &one.samples);
+        let up_to = samples.chain(bisected);
         let up_to = up_to.filter(|sample| sample.factor <= safe);
-        let endings = up_to.flat_map(|sample| &sample.result);
-        let largest =
-            |of: fn(&Ending) -> Option<f64>| endings.clone().filter_map(of).reduce(f64::max);
-        self.safe_excess_ratio = largest(|ending| ending.thrust_excess_ratio);
-        self.friction_demand = largest(|ending| ending.friction_demand);
+        let endings: Vec<&Ending> = up_to.flat_map(|sample| &sample.result).collect();
+        let largest = |of: fn(&Ending) -> Option<f64>| {
+            let known = endings.iter().filter_map(|ending| of(ending));
+            known.reduce(f64::max)
+        };
+        let excess_ratio = largest(|ending| ending.thrust_excess_ratio);
+        let friction_demand = largest(|ending| ending.friction_demand);
+        self.safe_excess_ratio = excess_ratio;
+        self.friction_demand = friction_demand;
     }
 }
 
-/// Computes the factors on the ground motion by which a model, given with its name, overturns.
+/// Computes the factors on the ground motion by which a model, given with its name, overturns in these directions. The ground motion is that of the
+/// first one. The second one is searched up to the first factor that certainly overturns the model in the first direction.
 ///
-/// `watch` receives the progress as in [`Runner::rows`]: first over all factors, then over the edges as well.
+/// `watch` receives the progress as in [`Runner::rows`], for each direction: first over all factors, then over the edges as well.
 ///
 /// # Errors
 /// When `watch` returns `Break`, threads cannot be started, or the request is not valid. Failed histories are part of the results.
 pub fn threshold(
     (name, model): (&str, &dyn Model),
-    ground: &GroundMotion,
+    (directions, ground): (Directions, &GroundMotion),
     request: &Request,
     factors: &Factors,
     runner: &Runner,
     mut watch: impl FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<Threshold, StudyError> {
     request.check(ground).map_err(StudyError::scenario)?;
-    let factors = factors.values();
     let shaking = Shaking {
         model,
         ground,
         request,
     };
+    let mut factors = factors.values();
+    let (mut threshold, mut bisected) = in_direction(name, shaking, &factors, runner, &mut watch)?;
+    threshold.direction = directions.first();
+    if directions.has_second(model, ground, request) {
+        let overturns = |sample: &&FactorSample| sample.verdict() == Some(Verdict::Overturns);
+        if let Some(first) = threshold.samples.iter().find(overturns) {
+            let below = factors.partition_point(|factor| *factor < first.factor);
+            factors.truncate(below + 1);
+        }
+        let shaking = Shaking {
+            ground: &ground.mirrored(),
+            ..shaking
+        };
+        let (mirrored, of_mirrored) = in_direction(name, shaking, &factors, runner, &mut watch)?;
+        bisected.extend(of_mirrored);
+        threshold.mirrored = Some(Box::new(Threshold {
+            direction: Direction::Mirrored,
+            ..mirrored
+        }));
+    }
+    threshold.follow(&bisected);
+    Ok(threshold)
+}
+
+/// Computes the threshold in the direction of a ground motion, among these factors, and the other histories of the bisections.
+fn in_direction(
+    name: &str,
+    shaking: Shaking<'_>,
+    factors: &[f64],
+    runner: &Runner,
+    mut watch: impl FnMut(Progress) -> ControlFlow<()>,
+) -> Result<(Threshold, Vec<FactorSample>), StudyError> {
+    let model = shaking.model;
     let family = |_| model.is_elastic().then_some(0);
     let samples_of = |indices: &[usize]| {
         let of_them = indices.iter().map(|index| factors[*index]);
@@ -247,9 +309,7 @@ pub fn threshold(
         }
     }
     samples.sort_by(|a, b| a.factor.total_cmp(&b.factor));
-    let mut threshold = Threshold::new(name.to_owned(), samples, &edges);
-    threshold.follow(&tried);
-    Ok(threshold)
+    Ok((Threshold::new(name.to_owned(), samples, &edges), tried))
 }
 
 /// Checks that a scenario has a ground motion to scale, and starts from rest.
@@ -293,12 +353,15 @@ pub fn results(
         .map_err(StudyError::scenario)?;
     let mut found = Vec::new();
     for (scenario, model) in scenarios.iter().zip(&models) {
-        let model = (scenario.model_name(), &**model);
-        let mut threshold = threshold(model, ground, &request, factors, runner, &mut *watch)?;
+        let named = (scenario.model_name(), &**model);
+        let directions = scenario.simulation.direction;
+        let shaken = (directions, ground);
+        let mut threshold = threshold(named, shaken, &request, factors, runner, &mut *watch)?;
         threshold.check_known()?;
         if threshold.lowest_factor().is_some() {
             let variations = scenario.variations().map_err(StudyError::failed)?;
-            let case = (ground, &request);
+            let has_second = threshold.mirrored.is_some();
+            let case = (ground, &request, has_second);
             threshold.varied = vary(&variations, factors, case, runner, &mut *watch)?;
         }
         found.push(threshold);

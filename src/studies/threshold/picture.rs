@@ -49,10 +49,11 @@ pub(super) fn drawn(
     (factors, thresholds): (&Factors, &[Threshold]),
     spots: &[Spot],
 ) -> String {
+    let thresholds: Vec<&Threshold> = thresholds.iter().flat_map(Threshold::directions).collect();
     let samples = thresholds.iter().flat_map(|threshold| &threshold.samples);
     let results = samples.map(|sample| &sample.result);
     let kinds: Vec<OutcomeColor> = results.clone().map(OutcomeColor::of_result).collect();
-    let names = thresholds.iter().map(|one| one.model.replace('_', " "));
+    let names = thresholds.iter().map(|one| one.name_in_words());
     let names: Vec<String> = names.collect();
     let over_critical = are_over_critical(results);
     let peak = |sample: &FactorSample| sample.peak(over_critical);
@@ -73,16 +74,16 @@ pub(super) fn drawn(
         true => Scale::exactly(first, last, figure.ticks(8)),
         false => Scale::logarithmic(first, last),
     };
-    let y = scale(thresholds, least, peak);
+    let y = scale(&thresholds, least, peak);
     let mut sheet = Sheet::new(figure, title);
     // A page has these words beside the picture.
-    for (threshold, name) in thresholds.iter().zip(&names).filter(|_| spots.is_empty()) {
+    for (&threshold, name) in thresholds.iter().zip(&names).filter(|_| spots.is_empty()) {
         let words = survival::in_words(&Survival::of_threshold(threshold), "", Some(peak_g));
         sheet.caption(16.0, &format!("{name}: {words}"));
     }
     sheet.legend(LEFT_PX, keys);
     let (mut spots, mut on_curves) = (spots.iter(), Vec::new());
-    for (threshold, name) in thresholds.iter().zip(&names) {
+    for (&threshold, name) in thresholds.iter().zip(&names) {
         // Histories without a peak are marked on the strip.
         let mut on_strip = Vec::new();
         for (sample, spot) in threshold.samples.iter().zip(&mut spots) {
@@ -105,12 +106,12 @@ pub(super) fn drawn(
     let ends = [first, last].map(|factor| (factor, 1.0));
     let critical = over_critical.then(|| Mark::curve("", CRITICAL, ends));
     let mut marks = Vec::from_iter(critical);
-    for (threshold, stroke) in thresholds.iter().zip(curves()) {
+    for (&threshold, stroke) in thresholds.iter().zip(curves()) {
         let faint = Stroke::new(stroke.color, 0.5, "2 3");
         marks.extend(edges(threshold).map(|edge| Mark::upright("", faint, edge, y)));
         let points = threshold.samples.iter();
         let points = points.map(|sample| (sample.factor, peak(sample).unwrap_or(f64::NAN)));
-        let name = format!("{} peak", threshold.model);
+        let name = format!("{} peak", threshold.name());
         marks.push(Mark::curve(name, stroke, points));
     }
     let peak_g = rounded(peak_g);
@@ -148,7 +149,7 @@ fn curves() -> impl Iterator<Item = Stroke> {
 
 /// Returns the scale up to the largest rotation of a history that did not overturn.
 fn scale(
-    thresholds: &[Threshold],
+    thresholds: &[&Threshold],
     least: f64,
     peak: impl Fn(&FactorSample) -> Option<f64>,
 ) -> Scale {
@@ -216,7 +217,7 @@ fn strip(drawing: &mut Drawing, axes: &Axes, threshold: &Threshold) {
     // Narrow bands are drawn last, over their neighbours.
     bands.sort_by(|a, b| b.0.total_cmp(&a.0));
     for (_, frame, kind, verdict) in bands {
-        let name = format!("{} {}", threshold.model, kind.name);
+        let name = format!("{} {}", threshold.name(), kind.name);
         drawing.band(&name, &frame, kind.fill, 1.0);
         if verdict == Some(Verdict::Uncertain) {
             hatch(drawing, &frame);

@@ -2,7 +2,7 @@
 
 use askama::Template;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use super::digits::{rounded, rounded_down};
 use super::survival::{self, Survival, VerdictRange};
@@ -11,13 +11,15 @@ use super::{
     picture,
 };
 use crate::argument::plain;
-use crate::dynamics::{MODEL_LIMIT, OutcomeCount};
+use crate::dynamics::{Direction, Directions, MODEL_LIMIT, OutcomeCount};
 use crate::output::{Figure, OutputError, column, csv, fields};
 use crate::scenario::{Ground, ModelKind, Scenario};
 use crate::studies::ending::columns::{GROUND_FALLS, OVERTURNED};
 use crate::studies::ending::{NoHistory, Verdict, outcome_name};
 use crate::studies::page::{Page, PageCases, input_in_words, under_factor};
-use crate::studies::quotable::{self, FrictionCondition, ModelAnswer, SlipWords};
+use crate::studies::quotable::{
+    self, FrictionCondition, ModelAnswer, SlipWords, directions_in_words,
+};
 use crate::studies::statistics::ascending;
 use crate::studies::{Remarks, Results};
 use crate::{Outcome, Sway};
@@ -65,14 +67,32 @@ struct ModelSummary {
     scenario: Value,
     /// Name and checksum of each record file.
     record_checksums: Vec<String>,
-    /// The largest factor up to which the structure certainly survives all sampled factors; null if it does not survive the smallest.
+    /// The largest factor up to which the structure certainly survives all sampled factors in all directions; null if it does not survive the smallest.
     survives_up_to_factor: Option<f64>,
-    /// The smallest factor that certainly overturns the structure; null if no factor does.
+    /// The smallest factor that certainly overturns the structure in any direction; null if no factor does.
     lowest_factor: Option<f64>,
     /// Largest friction coefficient that the histories up to `survives_up_to_factor` and their repetitions require without slip; null if joints slip or
     /// are elastic, or if the structure does not survive the smallest factor.
     #[serde(default)]
     friction_demand: Option<f64>,
+    /// The direction of the ground motion in which the structure survives less.
+    direction: Direction,
+    #[serde(flatten)]
+    given: DirectionSummary,
+    /// The ranges and histories under the mirrored ground motion, up to the first factor that certainly overturns the structure as given; absent without
+    /// a second direction.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    mirrored: Option<DirectionSummary>,
+    #[serde(flatten)]
+    remarks: Remarks,
+    /// The lowest factors of structures with other stiffness and contact, and with rigid joints; absent unless joints are elastic.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    variations: Vec<VariedSummary>,
+}
+
+/// Ranges and histories in a direction of the ground motion: as given, unless only the mirrored direction is requested.
+#[derive(Serialize, Deserialize)]
+struct DirectionSummary {
     /// All ranges of sampled factors with one verdict, ascending.
     ranges: Vec<VerdictRange>,
     /// Ranges of factors that overturn the structure, ascending.
@@ -83,11 +103,6 @@ struct ModelSummary {
     uncertain: Vec<RangeSummary>,
     /// Ranges whose histories end too early for a verdict.
     incomplete: Vec<RangeSummary>,
-    #[serde(flatten)]
-    remarks: Remarks,
-    /// The lowest factors of structures with other stiffness and contact, and with rigid joints; absent unless joints are elastic.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    variations: Vec<VariedSummary>,
     /// All histories, in order of ascending factors.
     samples: Vec<TriedFactor>,
 }
@@ -190,7 +205,8 @@ pub fn report(
         .map(|(threshold, scenario)| threshold.summary(scenario, peak_g))
         .collect();
     let falls = |sample: &FactorSample| matches!(sample.result, Err(NoHistory::GroundFalls(_)));
-    let falls = thresholds.iter().flat_map(|one| &one.samples).any(falls);
+    let all = thresholds.iter().flat_map(Threshold::directions);
+    let falls = all.flat_map(|one| &one.samples).any(falls);
     let (ground, gravity_m_s2) = (scenario.ground_motion(), scenario.gravity_m_s2());
     let report = Summary {
         program: env!("CARGO_PKG_NAME").to_owned(),
@@ -211,12 +227,18 @@ pub fn report(
     let results = Results::new(&FILES[1..], &report, others)?;
     let mut cases = PageCases::default();
     for (threshold, model) in thresholds.iter().zip(&report.models) {
-        for sample in &threshold.samples {
-            let (name, factor) = (model.model.replace('_', " "), sample.factor);
-            let case = format!("{name}, factor {}", at(&factor, &peak_g));
-            cases.push_history(&case, &sample.result, || {
-                Some(under_factor(&model.scenario, factor))
-            });
+        for one in threshold.directions() {
+            for sample in &one.samples {
+                let (name, factor) = (one.name_in_words(), sample.factor);
+                let case = format!("{name}, factor {}", at(&factor, &peak_g));
+                cases.push_history(&case, &sample.result, || {
+                    let mut scenario = under_factor(&model.scenario, factor);
+                    if threshold.mirrored.is_some() {
+                        scenario["simulation"]["direction"] = json!(one.direction);
+                    }
+                    Some(scenario)
+                });
+            }
         }
     }
     let draw = |figure| {
@@ -234,12 +256,15 @@ pub fn report(
     Ok(results.with_page(FILES[0], page, &cases, (&draw, &[])))
 }
 
-/// Makes the table of the samples, ordered by model, then by factor.
+/// Makes the table of the samples, ordered by model and direction, then by factor.
 fn table(models: &[ModelSummary]) -> Result<Vec<u8>, OutputError> {
-    type Row<'a> = (&'a str, &'a TriedFactor);
+    type Row<'a> = (&'a str, &'a TriedFactor, Direction);
     let rows = models.iter().flat_map(|model| {
-        let samples = model.samples.iter();
-        samples.map(|sample| (&*model.model, sample))
+        let all = model.directions();
+        all.flat_map(move |(direction, of)| {
+            let samples = of.samples.iter();
+            samples.map(move |sample| (&*model.model, sample, direction))
+        })
     });
     let mut columns = vec![column("model", |row: &Row<'_>| row.0.to_owned())];
     columns.extend([
@@ -257,6 +282,7 @@ fn table(models: &[ModelSummary]) -> Result<Vec<u8>, OutputError> {
         |row: &Row<'_>| row.1.history? => peak_rotation_over_critical, peak_rotation_rad, thrust_excess_ratio,
         friction_demand
     ));
+    columns.push(column("direction", |row: &Row<'_>| row.2.name()));
     csv(columns, &rows.collect::<Vec<_>>())
 }
 
@@ -287,7 +313,20 @@ fn warnings(
 }
 
 impl Threshold {
-    fn summary(&self, scenario: &Scenario, peak_g: f64) -> ModelSummary {
+    /// Returns the name of the model, with "mirrored" under the mirrored ground motion.
+    pub(super) fn name(&self) -> String {
+        match self.direction {
+            Direction::AsGiven => self.model.clone(),
+            Direction::Mirrored => format!("{}_mirrored", self.model),
+        }
+    }
+
+    /// Returns [`Threshold::name`] in words.
+    pub(super) fn name_in_words(&self) -> String {
+        self.name().replace('_', " ")
+    }
+
+    fn of_direction(&self, peak_g: f64) -> DirectionSummary {
         let ranges = |ranges: Vec<FactorRange>| {
             let ranges = ranges.into_iter().map(|range| RangeSummary {
                 from_peak_g: range.from * peak_g,
@@ -296,6 +335,17 @@ impl Threshold {
             });
             ranges.collect()
         };
+        DirectionSummary {
+            ranges: Survival::of_threshold(self).ranges,
+            bands: ranges(self.bands()),
+            gaps: ranges(self.gaps()),
+            uncertain: ranges(self.of(Verdict::Uncertain)),
+            incomplete: ranges(self.of(Verdict::Incomplete)),
+            samples: self.samples.iter().map(TriedFactor::of).collect(),
+        }
+    }
+
+    fn summary(&self, scenario: &Scenario, peak_g: f64) -> ModelSummary {
         let from_end = |factor| match self.is_first(factor) {
             true => RangeEnd::Sampled,
             false => RangeEnd::Edge,
@@ -318,14 +368,11 @@ impl Threshold {
             survives_up_to_factor: self.survives_up_to(),
             lowest_factor: self.lowest_factor(),
             friction_demand: self.friction_demand,
-            ranges: Survival::of_threshold(self).ranges,
-            bands: ranges(self.bands()),
-            gaps: ranges(self.gaps()),
-            uncertain: ranges(self.of(Verdict::Uncertain)),
-            incomplete: ranges(self.of(Verdict::Incomplete)),
+            direction: self.governing().direction,
+            given: self.of_direction(peak_g),
+            mirrored: self.mirrored.as_ref().map(|one| one.of_direction(peak_g)),
             remarks: self.remarks(),
             variations: varied.collect(),
-            samples: self.samples.iter().map(TriedFactor::of).collect(),
         }
     }
 
@@ -363,7 +410,8 @@ impl Threshold {
                 } else {
                     format!(" to {most}")
                 };
-                Ok(format!("survives up to {least}{most}{over}"))
+                let directions = self.directions_in_words(scenario);
+                Ok(format!("survives up to {least}{most}{over}{directions}"))
             }
             _ => Err("the smallest factor tried is not certainly survived".to_owned()),
         };
@@ -374,10 +422,24 @@ impl Threshold {
         ModelAnswer::new(model, is_arch, self.safe_excess_ratio, answer)
     }
 
+    /// Returns the directions of the answer, in words that follow it.
+    fn directions_in_words(&self, scenario: &Scenario) -> &'static str {
+        let has_horizontal = scenario.ground_motion().has_horizontal();
+        match (scenario.simulation.direction, self.governing().direction) {
+            _ if !has_horizontal => "",
+            (Directions::Both, Direction::AsGiven) => directions_in_words(Directions::Both),
+            (Directions::Both, Direction::Mirrored) => {
+                " in both directions (the mirrored one governs)"
+            }
+            (only, _) => directions_in_words(only),
+        }
+    }
+
     /// Returns the remarks on the histories.
     fn remarks(&self) -> Remarks {
         let mut remarks = Remarks::default();
-        for ending in self.samples.iter().flat_map(|sample| &sample.result) {
+        let samples = self.directions().flat_map(|one| &one.samples);
+        for ending in samples.flat_map(|sample| &sample.result) {
             remarks.note_history(ending);
         }
         remarks
@@ -391,17 +453,34 @@ impl Threshold {
 }
 
 impl ModelSummary {
-    /// Returns the factors that are survived, and those that are not, in words.
-    fn strengths(&self, peak_g: &f64) -> String {
-        let survival = Survival::of_ranges(self.ranges.clone());
-        survival::in_words(&survival, "", Some(*peak_g))
+    /// Returns the summaries of all directions.
+    fn directions(&self) -> impl Iterator<Item = (Direction, &DirectionSummary)> {
+        // Without a second direction, the only one is the governing one.
+        let first = match self.mirrored {
+            Some(_) => Direction::AsGiven,
+            None => self.direction,
+        };
+        let mirrored = self.mirrored.iter().map(|one| (Direction::Mirrored, one));
+        [(first, &self.given)].into_iter().chain(mirrored)
+    }
+
+    /// Returns the factors that are survived, and those that are not, in words: a line for each direction, with the direction if there are two.
+    fn strengths(&self, peak_g: &f64) -> Vec<String> {
+        let in_words = |(direction, of): (Direction, &DirectionSummary)| {
+            let survival = Survival::of_ranges(of.ranges.clone());
+            let words = survival::in_words(&survival, "", Some(*peak_g));
+            match &self.mirrored {
+                Some(_) => format!("{}: {words}", direction.name().replace('_', " ")),
+                None => words,
+            }
+        };
+        self.directions().map(in_words).collect()
     }
 
     /// Returns the samples with a history on ground that does not fall.
     fn histories(&self) -> impl Iterator<Item = &TriedFactor> {
-        self.samples
-            .iter()
-            .filter(|sample| sample.outcome != GROUND_FALLS)
+        let samples = self.directions().flat_map(|(_, of)| &of.samples);
+        samples.filter(|sample| sample.outcome != GROUND_FALLS)
     }
 
     /// Returns the number of uncertain or failed histories, and the first of them, in words; `None` if there are none.
@@ -429,8 +508,9 @@ impl ModelSummary {
 
     /// Returns true if the first history that overturns the structure is outside the model of four links.
     fn overturns_outside_model(&self) -> bool {
-        let mut samples = self.samples.iter();
-        let first = samples.find(|sample| sample.outcome == OVERTURNED);
+        let samples = self.histories();
+        let overturned = samples.filter(|sample| sample.outcome == OVERTURNED);
+        let first = overturned.min_by(|a, b| a.factor.total_cmp(&b.factor));
         let excess = first.and_then(|first| first.history?.thrust_excess_ratio);
         excess.is_some_and(|ratio| ratio > MODEL_LIMIT)
     }

@@ -15,7 +15,7 @@ use crate::{Case, EndCondition, GroundMotion, Model, Request, SimulationError, S
 pub struct VariedThreshold {
     /// The changed property, in words that follow "with".
     pub name: String,
-    /// The lowest factor that overturns the structure with this property, searched among the sampled factors of the structure itself; the first
+    /// The lowest factor that overturns the structure with this property in any direction, searched among the sampled factors of the structure itself; the first
     /// factor if it already overturns the structure, `None` if no factor does. The error is the reason why the factor is unknown.
     pub factor: Result<Option<f64>, String>,
     /// Number of histories of the search that ended too early for a verdict.
@@ -25,24 +25,38 @@ pub struct VariedThreshold {
 /// Number of histories that are computed together; some models are faster that way.
 const TOGETHER: usize = 4;
 
-/// Computes the thresholds of variations under a ground motion. Histories are not repeated, and stop once they can no longer overturn.
+/// Computes the thresholds of variations under a ground motion, and under the mirrored one if `has_second` is true. Histories are not repeated, and stop once they can no longer overturn.
 ///
 /// # Errors
 /// When `watch` returns `Break`, or threads cannot be started.
 pub fn vary(
     variations: &[Variation],
     factors: &Factors,
-    case: (&GroundMotion, &Request),
+    (ground, request, has_second): (&GroundMotion, &Request, bool),
     runner: &Runner,
     watch: impl FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<Vec<VariedThreshold>, RunnerError> {
     let factors = factors.values();
+    let mirrored = has_second.then(|| ground.mirrored());
     let search = |index: usize| {
         let Variation { name, model } = &variations[index];
         let incomplete = Cell::new(0);
         let factor = match model {
-            Ok(model) => lowest_factor_of(&**model, case, &factors, &incomplete)
-                .map_err(|error| error.to_string()),
+            Ok(model) => {
+                let lowest = |ground: &GroundMotion, factors: &[f64]| {
+                    lowest_factor_of(&**model, (ground, request), factors, &incomplete)
+                        .map_err(|error| error.to_string())
+                };
+                lowest(ground, &factors).and_then(|first| {
+                    let Some(mirrored) = &mirrored else {
+                        return Ok(first);
+                    };
+                    let below = |factor: &f64| first.is_none_or(|first| *factor < first);
+                    let end = factors.partition_point(below) + 1;
+                    let second = lowest(mirrored, &factors[..end.min(factors.len())])?;
+                    Ok(first.into_iter().chain(second).reduce(f64::min))
+                })
+            }
             Err(reason) => Err(reason.clone()),
         };
         VariedThreshold {

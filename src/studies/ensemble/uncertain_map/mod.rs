@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 pub use self::report::Summary;
 use super::samples::ReasonCounts;
 use super::{NoAnswer, SampleRow, Samples, uncertain};
+use crate::dynamics::Direction;
 use crate::output::OutputError;
 use crate::scenario::{Axis, Scenario, Uncertain, UncertainKey};
 use crate::studies::ending::columns::OUTCOMES;
@@ -17,9 +18,9 @@ use crate::studies::map::{OverturningMap, described};
 use crate::studies::statistics::Share;
 use crate::studies::{Ending, NoHistory, ReportedStudy, Results, Study, Style, Verdict};
 
-/// The outcome of a cell of a sample, as an index of [`OUTCOMES`], plus [`OUTSIDE`] for a history outside the model of four links, and its
-/// probability of overturning, in parts of [`PARTS`], and of a survivor the friction demand; or the reason why there is none. Rows are small, because
-/// all must fit into memory.
+/// The outcome of a cell of a sample, as an index of [`OUTCOMES`], plus [`OUTSIDE`] for a history outside the model of four links, plus
+/// [`MIRRORED`] for a history under the mirrored ground motion, its probability of overturning, in parts of [`PARTS`], and of a survivor the friction
+/// demand; or the reason why there is none. Rows are small, because all must fit into memory.
 type CellRow = Result<(u8, u8, Option<f32>), NoAnswer>;
 
 /// Number of parts of a probability: fractions of 2, 3, 5, 6 and 7 repetitions are exact, others almost.
@@ -28,22 +29,27 @@ const PARTS: f64 = 210.0;
 /// Added to the index of the outcome of a history outside the model of four links.
 const OUTSIDE: u8 = 100;
 
+/// Added to the index of the outcome of a history under the mirrored ground motion.
+const MIRRORED: u8 = 50;
+
+/// Returns the index of the outcome of a history, without its additions.
+const fn outcome_of(place: u8) -> usize {
+    (place % MIRRORED) as usize
+}
+
 fn cell_row(result: Result<Ending, NoHistory>) -> CellRow {
     let ending = result?;
     let outcome = ending.outcome_name();
     let place = OUTCOMES.iter().position(|name| *name == outcome);
-    let outside = if ending.is_outside_model() {
-        OUTSIDE
-    } else {
-        0
-    };
+    let outside = OUTSIDE * u8::from(ending.is_outside_model());
+    let mirrored = MIRRORED * u8::from(ending.direction == Direction::Mirrored);
     let both = place.zip(ending.overturning_share());
     let survives = ending.verdict() == Verdict::Survives;
     let demand = ending.friction_demand.filter(|_| survives);
     let demand = demand.map(|demand| demand as f32);
     let both = both.map(|(place, share)| {
-        let parts = (PARTS * share).round() as u8;
-        (place as u8 + outside, parts, demand)
+        let place = place as u8 + outside + mirrored;
+        (place, (PARTS * share).round() as u8, demand)
     });
     both.ok_or(NoAnswer::Incomplete)
 }
@@ -195,16 +201,20 @@ struct CellCounts {
     outcomes: [usize; OUTCOMES.len()],
     /// Number of samples with a history outside the model of four links.
     outside: usize,
+    /// Number of samples with the numbers of the mirrored ground motion.
+    mirrored: usize,
     /// Numbers of samples without an outcome.
     without: ReasonCounts,
 }
 
 impl CellCounts {
     fn of<'r>(at: [f64; 2], rows: impl Iterator<Item = &'r CellRow> + Clone) -> Self {
-        let (mut outcomes, mut outside) = ([0; OUTCOMES.len()], 0);
+        let mut outcomes = [0; OUTCOMES.len()];
+        let (mut outside, mut mirrored) = (0, 0);
         for (outcome, ..) in rows.clone().flatten() {
             outside += usize::from(*outcome >= OUTSIDE);
-            outcomes[usize::from(*outcome % OUTSIDE)] += 1;
+            mirrored += usize::from(*outcome % OUTSIDE >= MIRRORED);
+            outcomes[outcome_of(*outcome)] += 1;
         }
         let without = ReasonCounts::of(rows.clone().filter_map(|row| row.as_ref().err()));
         let samples = outcomes.iter().sum();
@@ -219,6 +229,7 @@ impl CellCounts {
             overturned: Share::of_chances(chances),
             outcomes,
             outside,
+            mirrored,
             without,
         }
     }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use askama::Template;
 use serde::{Deserialize, Serialize};
 
-use super::{CellCounts, CellRow, CellsOfSamples, Crossing, LEVELS, OUTSIDE, Samples};
+use super::{CellCounts, CellRow, CellsOfSamples, Crossing, LEVELS, Samples, outcome_of};
 use crate::output::{Key, Mark, OutputError, Stroke, color, column, csv, each, list};
 use crate::studies::ending::columns::{OUTCOMES, yes};
 use crate::studies::ensemble::influence::{InfluencedAnswer, percent};
@@ -149,6 +149,7 @@ pub(super) fn report(
         palette: &PALETTE,
         colors: counts.iter().map(color_of).collect(),
         outside: counts.iter().map(CellCounts::is_outside_model).collect(),
+        mirrored: Vec::new(),
     };
     let picture = |style| draw(title, study, &colored, &crossings, style);
     let (on_page, columns) = (|figure| picture(style.with(figure)), page_columns(&counts));
@@ -176,7 +177,7 @@ pub(super) fn report(
 fn survived_in_doubt(counts: &[CellCounts], own: &[CellRow]) -> usize {
     let survives = |row: &CellRow| {
         row.as_ref()
-            .is_ok_and(|(outcome, ..)| *outcome % OUTSIDE > 0)
+            .is_ok_and(|(outcome, ..)| outcome_of(*outcome) > 0)
     };
     let in_doubt = |(cell, own): &(&CellCounts, &CellRow)| {
         survives(own) && cell.probability() >= Some(LEVELS[0])
@@ -237,6 +238,7 @@ fn table(study: &CellsOfSamples<'_>, counts: &[CellCounts]) -> Result<Vec<u8>, O
         column("failed", |cell: &CellCounts| cell.without.failed),
         column("incomplete", |cell: &CellCounts| cell.without.incomplete),
         column("outside_model", |cell: &CellCounts| cell.outside),
+        column("mirrored", |cell: &CellCounts| cell.mirrored),
     ];
     csv(columns, counts)
 }

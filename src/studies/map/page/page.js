@@ -41,7 +41,8 @@
     const place = data.axes.map(({ label }, i) => `${label} ${Number([xs[column], ys[line]][i].toPrecision(6))}`);
     const label = data.doubts[index] ? `uncertain: ${data.doubts[index]}` : data.labels[kinds[index]];
     const outside = data.outside.includes(index) ? ["outside the model of four links"] : [];
-    find("numbers").textContent = `${place.join(", ")}: ${[label, ...outside, ...numbers].join(", ")}`;
+    const mirrored = data.mirrored.includes(index) ? ["under the mirrored ground motion"] : [];
+    find("numbers").textContent = `${place.join(", ")}: ${[label, ...mirrored, ...outside, ...numbers].join(", ")}`;
     find("command").textContent = command(column, line);
   }
 

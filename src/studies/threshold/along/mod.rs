@@ -15,6 +15,7 @@ use self::no_impact::least_without_impact;
 use super::check;
 use super::factors::Factors;
 use super::first_edge::FirstEdge;
+use crate::dynamics::Direction;
 use crate::scenario::{Scenario, Sequence, Spacing};
 use crate::studies::{NoAnswer, Study};
 
@@ -177,6 +178,9 @@ struct Point {
     /// are elastic.
     #[serde(default)]
     friction_demand: Option<f64>,
+    /// Worse direction of the ground motion at the first factor that is not certainly survived, or at the largest tried factor without it; null without
+    /// a threshold.
+    direction: Option<Direction>,
     /// Reason why the threshold is unknown.
     why_not: Option<String>,
 }
@@ -202,6 +206,7 @@ impl Point {
             no_impact_g: in_g(no_impact_factor),
             thrust_excess_ratio: edge.and_then(|edge| edge.thrust_excess_ratio),
             friction_demand: edge.and_then(|edge| edge.friction_demand),
+            direction: edge.map(|edge| edge.direction),
             why_not: row.edge.as_ref().err().map(|why| why.name().to_owned()),
         }
     }

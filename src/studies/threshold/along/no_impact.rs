@@ -4,6 +4,7 @@
 //! there is only one edge. Under a motion with lobes to both sides, narrow ranges of the factor may overturn the structure: one lobe just
 //! overturns it and the next lobe does not stop it. So the search for the edge uses small strides, followed by bisection.
 
+use crate::GroundMotion;
 use crate::scenario::{Ground, Scenario};
 use crate::studies::threshold::factors::Factors;
 use crate::studies::threshold::first_edge::lowest;
@@ -19,19 +20,24 @@ const ONE_SIDED_STRIDE: f64 = 1.5;
 /// Relative width to which bisection encloses the edge: about the accuracy of the integration at the default tolerance.
 const RESOLUTION: f64 = 1e-9;
 
-/// Finds the smallest of these factors on the ground motion of a scenario that overturns a mechanism without impact; `None` if no factor does.
+/// Finds the smallest of these factors on the ground motion of a scenario that overturns a mechanism without impact, in any of its
+/// directions; `None` if no factor does.
 pub(super) fn least_without_impact(
     scenario: &Scenario,
     factors: &Factors,
 ) -> Result<Option<f64>, String> {
     let model = scenario.mechanisms().map_err(|error| error.to_string())?;
     let request = scenario.request_on(scenario.ground_motion(), &scenario.structure);
+    let has_second = scenario.has_second_direction(&*model);
     let overturns = |factor: f64| {
         let ground = scenario.ground_motion().scaled(factor);
         let ground = ground.map_err(|error| error.to_string())?;
-        let sway = model.overturns_without_impact(&ground, &request);
-        sway.map(|sway| sway.is_some())
-            .map_err(|error| error.to_string())
+        let falls = |ground: &GroundMotion| {
+            let sway = model.overturns_without_impact(ground, &request);
+            sway.map(|sway| sway.is_some())
+                .map_err(|error| error.to_string())
+        };
+        Ok(falls(&ground)? || has_second && falls(&ground.mirrored())?)
     };
     let one_sided =
         matches!(scenario.ground.as_ref(), Some(Ground::Pulse(pulse)) if pulse.kind.is_one_sided());

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Along, AlongOptions, AlongRow, KeyRange, Point, picture};
 use crate::argument::plain;
+use crate::dynamics::Direction;
 use crate::output::page::SpotKind;
 use crate::output::{OutputError, column, csv, fields, filters};
 use crate::studies::page::{Page, PageCases, input_in_words};
@@ -72,6 +73,9 @@ impl ReportedStudy for Along<'_> {
             overturns_from_g, at_most, uncertain_from_factor, tried_to_factor, failed_beyond, no_impact_factor, no_impact_g,
             thrust_excess_ratio, friction_demand
         ));
+        columns.push(column("direction", |point: &Point| {
+            point.direction.map(Direction::name)
+        }));
         columns.push(column("why_not", |point: &Point| point.why_not.clone()));
         let title = self.scenario.title.as_deref();
         let title = title.unwrap_or("Threshold of overturning");
@@ -121,6 +125,10 @@ impl Along<'_> {
                 let parts = parts.into_iter();
                 let parts = parts.filter_map(|(what, at)| Some(format!("{what} factor {}", at?)));
                 let words = parts.collect::<Vec<_>>().join("; ");
+                let words = match edge.direction {
+                    Direction::AsGiven => words,
+                    Direction::Mirrored => words + "; under the mirrored ground motion",
+                };
                 ((edge.spot_kind(), edge.is_outside_model()), words)
             }
             Err(why) => ((SpotKind::Unknown, false), why.reason().to_owned()),
@@ -201,6 +209,9 @@ impl Summary {
                 "not known beyond the factor from which on the ground falls freely or the model fails,",
                 |point| point.failed_beyond,
             ),
+            count("the mirrored ground motion governs", |point| {
+                point.direction == Some(Direction::Mirrored)
+            }),
             count("no verdict", |point| point.why_not.is_some()),
             self.no_impact.then(no_impact),
         ];
