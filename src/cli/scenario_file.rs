@@ -163,7 +163,6 @@ impl Input<'_> {
             model,
             set: self.set,
             statics,
-            ..ReadOptions::default()
         };
         let name = self.source.name().to_owned();
         let waiting = format!("still reading {name}, and finding the equilibrium of its structure");

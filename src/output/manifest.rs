@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::OutputError;
-use crate::scenario::{self, Scenario};
+use crate::scenario::{self, STUDY_TABLES, Scenario};
 
 /// Name of the list.
 pub(super) const MANIFEST: &str = "archrock.json";
@@ -137,10 +137,6 @@ pub(super) fn command_line(name: &str) -> &str {
     }
 }
 
-/// Tables that may differ between results of several commands: the title, and tables of studies. Tables of models of motion are handled
-/// separately.
-const OF_SOME: [&str; 6] = ["title", "map", "suite", "demand", "verify", "uncertain"];
-
 impl Origin {
     /// Returns the origin of results that this scenario will have.
     pub fn of(scenario: &Scenario) -> Self {
@@ -199,7 +195,9 @@ impl Origin {
             let mut models = scenario::MODELS.iter();
             let of_model = models.any(|one| one.table == table.as_str());
             let in_both = own.contains_key(*table) && others.contains_key(*table);
-            !OF_SOME.contains(&table.as_str()) && (!of_model || in_both)
+            // The title and the tables of studies may differ, and models of motion may have different tables.
+            let of_some = *table == "title" || STUDY_TABLES.contains(&table.as_str());
+            !of_some && (!of_model || in_both)
         });
         if let Some(table) = of_both.find(|table| own.get(*table) != others.get(*table)) {
             return Some(format!("[{table}] differs"));

@@ -9,6 +9,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::assignment::Assignment;
+use super::change;
 use super::error::{Fault, excerpt};
 use super::files::Files;
 use super::toml_text::inline;
@@ -173,8 +174,9 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// Applies all assignments. A fault is recorded if a name is not an entry of a list.
+    /// Applies all assignments; other values [follow](change::follow). A fault is recorded if a name is not an entry of a list.
     pub(super) fn assign(&mut self, assignments: &'a [Assignment]) {
+        let mut paths = Vec::new();
         for assignment in assignments {
             self.texts.push(&assignment.text);
             let (text, spans) = (self.texts.len() - 1, Spans::new());
@@ -182,34 +184,52 @@ impl<'a> Document<'a> {
             let mut parser = Parser { text, spans };
             let value = Value::Object(parser.table("", value.into_inner()));
             match self.insert(value, assignment.depth) {
-                Ok([path, new_path]) => {
+                Ok([path, new_path, key_path]) => {
                     let spans = parser.spans.into_iter().filter_map(|(inner, span)| {
                         let inner = inner.strip_prefix(&new_path)?;
                         Some((format!("{path}{inner}"), span))
                     });
                     self.spans.extend(spans);
+                    paths.push(key_path);
                 }
                 Err(message) => self.faults.push(Fault::new(text, 0, message)),
             }
         }
+        change::follow(&mut self.root, &paths);
     }
 
-    /// Inserts the only value of `new` at the depth of `depth` tables, as [`replace`].
+    /// Inserts the only value of `new` at the depth of `depth` tables, as [`replace`]. Returns the paths of the replaced value, of its replacement
+    /// in `new`, and of the key.
     ///
     /// # Errors
     /// When a name is not an entry of a list.
-    pub(super) fn insert(&mut self, new: Value, depth: usize) -> Result<[String; 2], String> {
+    pub(super) fn insert(&mut self, new: Value, depth: usize) -> Result<[String; 3], String> {
+        let mut names = vec![];
+        let mut value = &new;
+        while names.len() < depth
+            && let Some((name, inner)) = value.as_object().and_then(|table| table.iter().next())
+        {
+            names.push(name.clone());
+            value = inner;
+        }
         let mut root = Value::Object(mem::take(&mut self.root));
         let replaced = replace(&mut root, new, depth);
         if let Value::Object(root) = root {
             self.root = root;
         }
-        replaced
+        let [path, new_path] = replaced?;
+        // The tables of the key that did not exist are within the replacement.
+        let new_names = names.iter().skip(new_path.matches('/').count());
+        let inner: String = new_names.map(|name| format!("/{name}")).collect();
+        let key_path = format!("{path}{inner}");
+        Ok([path, new_path, key_path])
     }
 
     /// Returns the text of a value for messages.
     pub(super) fn quote(&self, path: &str, value: &Value) -> String {
-        match self.spans.get(path) {
+        // The text of a list lacks the entries that assignments have replaced.
+        let span = self.spans.get(path);
+        match span.filter(|_| self.assigned(path).is_none()) {
             Some(span) => excerpt(&self.texts[span.text][span.range.clone()]),
             None => excerpt(&inline(value)),
         }

@@ -21,7 +21,7 @@ const CYCLES: Number = within(&(1.0..=100.0));
 /// Reason why the motion of a checked pulse is always valid.
 const IN_RANGE: &str = "the ranges of the keys are those of a ground motion";
 /// Kind of ground motion that is read from files.
-const RECORD: &str = "record";
+pub(super) const RECORD: &str = "record";
 
 /// Ground motion of a scenario.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,6 +48,14 @@ impl Ground {
             ground.map(|(ground, _)| ground).ok_or(FaultRecorded)
         })
         .map_err(|faults| ScenarioErrors::placed((&source.text, &source.name), &[], faults))
+    }
+
+    /// Returns the name of the table `[ground.<kind>]`.
+    pub(crate) const fn kind(&self) -> &'static str {
+        match self {
+            Self::Pulse(pulse) => pulse.kind.name(),
+            Self::Record(_) => RECORD,
+        }
     }
 
     /// Returns the motion under a gravity from 0.001 to 1000 m/s2.
@@ -90,8 +98,8 @@ impl Serialize for Ground {
     /// Writes a table named after the kind.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match self {
-            Self::Pulse(pulse) => serializer.collect_map([(pulse.kind.name(), pulse)]),
-            Self::Record(record) => serializer.collect_map([(RECORD, record)]),
+            Self::Pulse(pulse) => serializer.collect_map([(self.kind(), pulse)]),
+            Self::Record(record) => serializer.collect_map([(self.kind(), record)]),
         }
     }
 }

@@ -10,7 +10,7 @@
 //! key: `"column.width_m" = [0.6, 0.8]`. With free hinges, `repeat = true` repeats every cell with half and with double steps, to check whether
 //! its outcome depends on the steps.
 
-use super::ground::{AMPLITUDE_G, DURATION_S, FREQUENCY_HZ, Ground, PulseGround};
+use super::ground::{AMPLITUDE_G, DURATION_S, FREQUENCY_HZ, Ground, PulseGround, RECORD};
 use super::impact::RESTITUTION;
 use super::model_kind::ModelKind;
 use super::models::MotionModel;
@@ -19,6 +19,7 @@ use super::record::{PEAK_G, SCALE};
 use super::sequence::Sequence;
 use super::simulation::Simulation;
 use super::structure::Structure;
+use super::variant::parts;
 use crate::ImpactModel;
 
 named! {
@@ -78,16 +79,42 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// Returns the key of the scenario that the axis sets; `None` for strength and duration of the ground motion.
-    pub(crate) fn path(&self) -> Option<&str> {
+    /// Returns the key of the scenario that the axis sets; the values of a frequency set its reciprocal.
+    pub(crate) fn path(&self, ground: Option<&Ground>) -> String {
+        let of_ground = |key: &str| {
+            let kind = ground.map_or(RECORD, Ground::kind);
+            format!("ground.{kind}.{key}")
+        };
         match self.quantity {
-            Quantity::Other => Some(&self.key),
-            Quantity::MeanRadius => Some("arch.mean_radius_m"),
-            Quantity::ThicknessRatio => Some("arch.thickness_ratio"),
-            Quantity::Embrace => Some("arch.embrace_deg"),
-            Quantity::Restitution => Some("impact.restitution"),
-            _ => None,
+            Quantity::Other => self.key.clone(),
+            Quantity::Duration | Quantity::Frequency => of_ground(DURATION),
+            Quantity::Amplitude | Quantity::Scale | Quantity::PeakG => of_ground(&self.key),
+            Quantity::MeanRadius | Quantity::ThicknessRatio | Quantity::Embrace => {
+                format!("arch.{}", self.key)
+            }
+            Quantity::Restitution => format!("impact.{}", self.key),
         }
+    }
+
+    /// Returns the quantity of the ground motion that the axis sets, also by table and key; otherwise its own.
+    pub(crate) fn quantity_under(&self, ground: &Ground) -> Quantity {
+        let by_key = Quantity::ALL.iter().copied().find(|quantity| {
+            let axis = Self {
+                quantity: *quantity,
+                key: quantity.name().to_owned(),
+                sequence: self.sequence.clone(),
+            };
+            let is_of_ground = match ground {
+                Ground::Pulse(_) => matches!(quantity, Quantity::Duration | Quantity::Amplitude),
+                Ground::Record(_) => matches!(quantity, Quantity::Scale | Quantity::PeakG),
+            };
+            is_of_ground && parts(&axis.path(Some(ground))) == parts(&self.key)
+        });
+        let is_allowed = |quantity: &Quantity| {
+            let values = self.sequence.values();
+            values.iter().all(|value| quantity.range().contains(*value))
+        };
+        by_key.filter(is_allowed).unwrap_or(self.quantity)
     }
 }
 
@@ -233,3 +260,5 @@ impl Serialize for Map {
 }
 
 const REPEAT: &str = "repeat";
+/// Key of the duration of a pulse.
+const DURATION: &str = "duration_s";

@@ -244,12 +244,12 @@ impl Additions {
         table.wrong(key, wrong)
     }
 
-    /// Makes the arch with its additions and ties. A fault is recorded if it cannot stand.
+    /// Makes the arch with its additions and ties. A fault is recorded if it cannot stand, unless that is `unproved`.
     pub fn complete(
         self,
         table: &mut Table<'_>,
         shape: Shape,
-        gravity_m_s2: f64,
+        (gravity_m_s2, unproved): (f64, bool),
     ) -> ReadResult<Masonry> {
         let key = shape.name();
         let loads = load::on_arch(table, &self.loads)?;
@@ -267,6 +267,9 @@ impl Additions {
         let constant = |load: &PlacedLoad| load.constant_force_n(gravity_m_s2) != Vector2::zeros();
         let is_pushed = masonry.loads.iter().any(constant);
         table.refuse(is_tied && is_pushed, "tie", NO_CONSTANT_FORCES)?;
+        if unproved {
+            return Ok(masonry);
+        }
         match collapse_mechanism(&masonry.row) {
             Ok(None) => Ok(masonry),
             Ok(Some(_)) if stands_without_ties(&masonry) => Err(table.wrong("tie", PULLS_OVER)),
@@ -321,6 +324,9 @@ fn stands_without_ties(masonry: &Masonry) -> bool {
     !row.bars().is_empty() && matches!(collapse_mechanism(&row.clone().without_ties()), Ok(None))
 }
 
+/// Keys of a pier.
+const PIER_KEYS: [&str; 5] = ["height_m", "width_m", "density_kg_m3", "blocks", "pedestal"];
+
 /// Reads `[piers]`. Its keys hold for both piers; `[piers.left]` and `[piers.right]` may override them.
 fn read_piers(table: &mut Table<'_>) -> ReadResult<Piers> {
     let both = ["height_m", "width_m", "density_kg_m3"].map(|key| {
@@ -347,6 +353,13 @@ fn read_piers(table: &mut Table<'_>) -> ReadResult<Piers> {
         })
     };
     let (left, right) = (table.table("left", one), table.table("right", one));
+    for key in PIER_KEYS {
+        let is_unused = ["left", "right"]
+            .iter()
+            .all(|side| table.gives_in(side, key));
+        let wrong = "has no effect: [piers.left] and [piers.right] give their own; leave it out, or change it in these tables";
+        let _ = table.refuse(is_unused && table.gives(key), key, wrong);
+    }
     table.check_faultless()?;
     // If `[piers]` itself has values, both piers exist.
     let has_values = blocks.is_some() || both.iter().any(Option::is_some);

@@ -28,11 +28,13 @@
 mod assignment;
 mod back_wall;
 mod bounds;
+mod change;
 mod document;
 mod elastic_joints;
 mod error;
 mod files;
 mod free_hinges;
+mod given;
 mod ground;
 mod impact;
 mod initial;
@@ -77,6 +79,8 @@ use document::Entries;
 pub use elastic_joints::ELASTIC_JOINTS;
 pub use error::{ScenarioError, ScenarioErrors, TextPosition};
 pub use free_hinges::FREE_HINGES;
+use given::Given;
+pub(crate) use given::STUDY_TABLES;
 pub use ground::{Ground, PulseGround};
 pub use impact::FOUR_LINKS;
 use initial::Blow;
@@ -97,13 +101,13 @@ pub use sequence::{Sequence, Spacing};
 pub use shown::{shown, shown_lines};
 pub use simulation::Simulation;
 pub use source::Source;
-use span::Circular;
 pub use structure::{Dimension, DimensionSide, ModelError, Structure, metres};
 pub(crate) use structure::{forces_in_words, load_in_words};
 pub use suite::{Measure, Spectral, Suite};
 pub use tie::{TieEnds, TieTable};
 pub(crate) use toml_text::toml_text;
 pub use uncertain::{Distribution, DistributionForm, MAX_DEVIATIONS, Uncertain, UncertainKey};
+pub(crate) use variant::replaces;
 pub use verify::{
     BEHAVIOUR_FACTOR, Building, BuildingMode, ByState, CONFIDENCE_FACTOR, CheckedSides, CodeDemand,
     Demand, FreeStanding, Language, LimitState, ModeState, PointDemand, Records, SiteTopography,
@@ -122,8 +126,6 @@ pub struct ReadOptions<'a> {
     /// True for static analysis. If files of `[ground]` are missing or faulty, the ground does not move; drums and moved springings need no
     /// table of a model.
     pub statics: bool,
-    /// True if a circular arch need not stand: its model reports that.
-    pub unproved: bool,
 }
 
 /// A structure, its ground motion and the studies of it, with every default filled in.
@@ -164,13 +166,9 @@ pub struct Scenario {
     pub verify: Option<Verify>,
     /// The uncertain numbers of the scenario; `None` without `[uncertain]`.
     pub uncertain: Option<Uncertain>,
-    /// Tables that keep the keys of the text, because resolved keys would replace an uncertain number.
-    as_given: Entries,
+    /// The tables with the keys that were given.
+    given: Given,
     files: InputFiles,
-    /// The tables of the text with their own keys.
-    given: Entries,
-    /// Keys of the text that give the shape of a circular arch; empty unless the text gives the span.
-    given_shape: Entries,
     /// Motion of both feet.
     ground_motion: Arc<GroundMotion>,
 }
@@ -210,7 +208,6 @@ impl Scenario {
     pub fn without_uncertain(self) -> Self {
         Self {
             uncertain: None,
-            as_given: Entries::new(),
             ..self
         }
     }
@@ -254,16 +251,21 @@ impl Scenario {
 
     /// Returns the JSON schema of scenarios for editors: all tables and keys with their meanings, rules and defaults.
     pub fn schema() -> Value {
+        let (mut schema, _) = Self::describe();
+        schema["$schema"] = "http://json-schema.org/draft-07/schema#".into();
+        schema["title"] = "Scenario of archrock".into();
+        meanings::add(&mut schema, "");
+        schema
+    }
+
+    /// Returns the JSON schema of all tables without meanings, and the keys that exclude or need each other.
+    fn describe() -> (Value, Vec<relation::KeyGroup>) {
         // With a set model, tables of several models are allowed together.
         let options = ReadOptions {
             model: Some(&FOUR_LINKS),
             ..ReadOptions::default()
         };
-        let mut schema = table::describe(|table| Self::read_table(table, &[], &options));
-        schema["$schema"] = "http://json-schema.org/draft-07/schema#".into();
-        schema["title"] = "Scenario of archrock".into();
-        meanings::add(&mut schema, "");
-        schema
+        table::describe(|table| Self::read_table(table, &[], &options, false))
     }
 
     /// Reads a scenario with options.
@@ -275,7 +277,7 @@ impl Scenario {
     pub fn of(source: &Source, options: &ReadOptions<'_>) -> Result<Self, ScenarioErrors> {
         let text = &source.text;
         table::read_text((text, &source.files), options.set, |table| {
-            let mut scenario = Self::read_table(table, &[], options)?;
+            let mut scenario = Self::read_table(table, &[], options, false)?;
             let mut files = vec![InputFile::of_scenario(&source.name, text)];
             files.append(&mut table.noted_files);
             let place = source.files.clone();
@@ -285,11 +287,13 @@ impl Scenario {
         .map_err(|faults| ScenarioErrors::placed((text, &source.name), options.set, faults))
     }
 
-    /// Reads a scenario. `known` are records that need not be read from their files again.
+    /// Reads a scenario. `known` are records that need not be read from their files again. If `unproved`, the structure need not be able to stand:
+    /// its model reports that.
     fn read_table(
         table: &mut Table<'_>,
         known: &[Series],
         options: &ReadOptions<'_>,
+        unproved: bool,
     ) -> ReadResult<Self> {
         let title = table.optional("title", &text());
         let motion = models::Tables::read(table, options.model, options.statics);
@@ -298,11 +302,7 @@ impl Scenario {
         let simulated = simulation.as_ref().ok();
         let gravity_m_s2 = simulated.map(|it| it.gravity_m_s2);
         let lands = kind.has_joints && kind.is_rigid && !options.statics;
-        let built = Structure::read(
-            table,
-            (kind.has_joints, lands, options.unproved),
-            gravity_m_s2,
-        );
+        let built = Structure::read(table, (kind.has_joints, lands, unproved), gravity_m_s2);
         let structure = built.as_ref().ok().map(|(structure, _)| structure);
         let known = (known, gravity_m_s2, options.statics);
         let ground = GroundInput::read(table, known, options.statics);
@@ -315,8 +315,8 @@ impl Scenario {
         let map = table.given_table("map", |table| Map::read(table, structure, moved));
         let suite = table.given_table("suite", |table| Suite::read(table, simulated));
         let verify = table.given_table("verify", |table| Verify::read(table, gravity_m_s2));
-        let options = verify.as_ref().ok().cloned().flatten().unwrap_or_default();
-        let demand = Demand::read_given(table, &options);
+        let checked = verify.as_ref().ok().cloned().flatten().unwrap_or_default();
+        let demand = Demand::read_given(table, &checked);
         let uncertain = table.given_table("uncertain", Uncertain::read);
         let (verify, demand, ()) = (verify?, demand?, right_foot_fits?);
         if let Some(verify) = &verify {
@@ -325,9 +325,11 @@ impl Scenario {
         let ((motion, ignores_impact), (structure, ties)) = (motion?, built?);
         let shaken_s = ground.as_ref().map_or(0.0, |it| it.motion.end_s());
         let end_s = simulated.map(|it| it.end_s(shaken_s, structure.size_m()));
-        motion.check(table, &structure, end_s)?;
+        if !(unproved && kind.has_joints) {
+            motion.check(table, &structure, end_s)?;
+        }
         initial::check_structure(table, !ties.is_empty(), motion.supports().is_some())?;
-        let (given_shape, ground) = (Circular::given(table), ground?);
+        let ground = ground?;
         let (initial, blow) = initial?.unzip();
         let suite = suite?;
         let simulation = suite::with_direction(table, simulation?, suite.as_ref())?;
@@ -348,25 +350,23 @@ impl Scenario {
             demand,
             verify,
             uncertain: None,
-            as_given: Entries::new(),
+            given: Given {
+                tables: table.all_given(),
+                model: options.model,
+                statics: options.statics,
+            },
             files: InputFiles {
                 place: table.files().clone(),
                 ..InputFiles::default()
             },
-            given: table.all_given(),
-            given_shape,
             ground_motion: Arc::new(GroundMotion::still()),
         };
         certain.ground_motion = Arc::new(certain.under_both_feet(ground.motion));
         let end_s = certain.request().end_s;
         certain.simulation.check_default_end(table, end_s)?;
-        let uncertain = uncertain?.map(|uncertain| {
-            let resolved = certain.resolved();
-            certain.as_given = uncertain.as_given(table, &resolved);
-            match certain.unread_ground {
-                Some(_) => Ok(uncertain),
-                None => uncertain.check(table, &certain, &resolved),
-            }
+        let uncertain = uncertain?.map(|uncertain| match certain.unread_ground {
+            Some(_) => Ok(uncertain),
+            None => uncertain.check(table, &certain),
         });
         Ok(Self {
             uncertain: uncertain.transpose()?,
@@ -391,13 +391,9 @@ impl Scenario {
         shaken.ground_motion = Arc::new(shaken.under_both_feet(left));
         shaken.ground = ground;
         let ground = shaken.resolved().get("ground").cloned();
-        shaken
-            .given
-            .insert("ground".to_owned(), ground.unwrap_or_default());
-        shaken.given = given(Value::Object(shaken.given))
-            .as_object()
-            .cloned()
-            .unwrap_or_default();
+        let tables = &mut shaken.given.tables;
+        tables.shift_remove("ground");
+        tables.extend(ground.map(|ground| ("ground".to_owned(), ground)));
         shaken
     }
 
@@ -602,9 +598,19 @@ impl Scenario {
         toml_text(&self.to_json())
     }
 
-    /// Returns the scenario as TOML text as [`Scenario::to_toml`] does, with `duration_s` always written.
+    /// Returns the scenario as TOML text as [`Scenario::to_toml`] does, with a default `duration_s` as a comment: a default in the text would no
+    /// longer follow the ground motion and the structure.
     pub fn to_resolved_toml(&self) -> String {
-        toml_text(&self.to_resolved_json())
+        let text = self.to_toml();
+        match self.simulation.duration_s {
+            Some(_) => text,
+            None => {
+                let end_s = self.request().end_s;
+                format!(
+                    "# default duration_s of [simulation], from the ground motion and the size of the structure: {end_s:.4} s\n{text}"
+                )
+            }
+        }
     }
 
     /// Returns the scenario as JSON as [`Scenario::to_json`] does, with `duration_s` always written, to the nanosecond.
@@ -617,12 +623,10 @@ impl Scenario {
         json
     }
 
-    /// Returns the scenario as JSON with the keys of the file and all defaults. A default `duration_s` is omitted, because it depends on the
-    /// ground motion.
+    /// Returns the scenario as JSON with the given keys and all defaults. A default `duration_s` is omitted, because it depends on the ground
+    /// motion.
     pub fn to_json(&self) -> Value {
-        let mut table = self.resolved();
-        Circular::put_given(&mut table, &self.given_shape, &self.as_given);
-        table
+        self.given.with_defaults(self.resolved())
     }
 
     /// Returns the scenario as JSON. A circular arch has mean radius, thickness ratio and embrace angle, regardless of the keys in the file.
@@ -661,11 +665,6 @@ impl Scenario {
         all.extend(loads.map(|loads| ("load".to_owned(), json!(load::with_defaults(loads)))));
         let tables = tables.into_iter();
         all.extend(tables.map(|(key, table)| (key.to_owned(), table)));
-        for (key, table) in all.iter_mut().filter(|(_, table)| !table.is_null()) {
-            if let Some(given) = self.as_given.get(key) {
-                table.clone_from(given);
-            }
-        }
         given(Value::Object(all))
     }
 }

@@ -81,8 +81,9 @@ impl MotionModel {
 }
 
 /// Relations between the tables of different models of motion.
-const ALONE: &[Relation<'_>] = &[
-    Excludes("elastic_joints", "free_hinges", ONE_MODEL),
+const ONE_TABLE: &[Relation<'_>] = &[Excludes("elastic_joints", "free_hinges", ONE_MODEL)];
+/// Relations of an impact law that is not the default.
+const NO_IMPACT: &[Relation<'_>] = &[
     Excludes("elastic_joints", "impact", ELASTIC_IMPACT),
     Excludes("free_hinges", "impact", FREE_IMPACT),
 ];
@@ -144,8 +145,15 @@ impl Tables {
     ) -> ReadResult<(MotionModel, bool)> {
         let kind = self.kind;
         let links = table.table_or_defaults(FOUR_LINKS.table, FOUR_LINKS.read);
+        // The default law beside a model with joints says nothing that the model ignores.
+        let is_default = links
+            .as_ref()
+            .is_ok_and(|links| links.law() == Some(ImpactModel::MaxRestitution.into()));
         if !self.is_set {
-            table.apply_relations(ALONE)?;
+            table.apply_relations(ONE_TABLE)?;
+        }
+        if !self.is_set && !is_default {
+            table.apply_relations(NO_IMPACT)?;
         }
         let (links, joints, supports) = (links?, self.options?, self.supports?);
         let law = links.law();

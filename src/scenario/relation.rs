@@ -5,6 +5,16 @@ use serde_json::{Value, json};
 use super::error::ensure;
 use super::table::{FaultRecorded, ReadResult, Table};
 
+/// Keys of a table that a new value of one of them affects.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct KeyGroup {
+    /// Names of the tables around the keys, the outermost first; without numbers of list entries.
+    pub(super) tables: Vec<String>,
+    pub(super) keys: Vec<String>,
+    /// True: the keys are alternatives, so each replaces the others. False: each needs all others.
+    pub(super) are_alternatives: bool,
+}
+
 /// A relation between the given keys of a table.
 pub(super) enum Relation<'a> {
     /// Exactly one of these keys. The text replaces the message for a missing key.
@@ -44,6 +54,20 @@ impl Relation<'_> {
             Requires(key, other, _) => json!({ "dependencies": { *key: [other] } }),
             Excludes(key, other, _) => json!({ "not": { "required": [key, other] } }),
         }
+    }
+
+    /// Returns the keys that exclude or need each other, for a table at the outermost level; `None` for other relations.
+    fn group(&self) -> Option<KeyGroup> {
+        let (keys, are_alternatives) = match self {
+            OneOf(keys, _) | AtMostOne(keys, _) => (keys, true),
+            Together(keys) => (keys, false),
+            SomeOf(..) | Requires(..) | Excludes(..) => return None,
+        };
+        Some(KeyGroup {
+            tables: Vec::new(),
+            keys: keys.iter().map(|key| (*key).to_owned()).collect(),
+            are_alternatives,
+        })
     }
 
     /// Records faults of keys that violate the relation.
@@ -110,6 +134,9 @@ impl Table<'_> {
         let before = self.faults();
         for relation in relations {
             self.describe("allOf", || relation.schema());
+            if self.describes() {
+                self.groups.extend(relation.group());
+            }
             relation.check(self);
         }
         ensure(self.faults() == before, || FaultRecorded)

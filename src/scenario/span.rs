@@ -8,24 +8,10 @@
 //! measured_at = "intrados"    # the line whose span and rise these are: "intrados", "mean" or "extrados"
 //! ```
 
-use std::mem;
-
 use super::document::Entries;
 use super::prelude::*;
 use crate::mechanics::MeasuredAt;
 
-/// Tables of shapes with `measured_at`.
-const TABLES: [&str; 4] = ["arch", "pointed_arch", "elliptic_arch", "basket_arch"];
-/// Keys of the shape, as given and in a resolved scenario.
-const SHAPE: [&str; 7] = [
-    "mean_radius_m",
-    "thickness_ratio",
-    "thickness_m",
-    "embrace_deg",
-    "span_m",
-    "rise_m",
-    "measured_at",
-];
 const LINES: &str = " beside it: \"intrados\", \"mean\" or \"extrados\"";
 const POSITIVE: Number = between(Excluded(0.0), Unbounded);
 /// Range of spans and rises, which may be smaller than any radius.
@@ -98,36 +84,34 @@ impl Circular {
             measured_at,
         })
     }
+}
 
-    /// Returns the keys of the shape as in the file; empty if the file does not give the line of the span.
-    pub(super) fn given(table: &Table<'_>) -> Entries {
-        let mut shapes = TABLES.iter();
-        let measured = shapes.find(|name| table.gives_in(name, "measured_at"));
-        let given = measured.and_then(|name| table.as_given(name));
-        // A length may be written as an integer.
-        let length = |value: &Value| value.as_f64().map_or(value.clone(), Value::from);
-        let given = given.iter().filter_map(Value::as_object).flatten();
-        let shape = given.filter(|(key, _)| SHAPE.contains(&key.as_str()));
-        shape
-            .map(|(key, value)| (key.clone(), length(value)))
-            .collect()
+/// Returns the embrace angle of the given arch, in degrees; `None` if the table gives none.
+pub(super) fn given_embrace_deg(arch: &Entries) -> Option<f64> {
+    let number = |key: &str| arch.get(key).and_then(Value::as_f64);
+    let measured = number("span_m").zip(number("rise_m"));
+    let measured_deg = measured.map(|(span_m, rise_m)| embrace_deg(span_m, rise_m));
+    measured_deg.or(number("embrace_deg"))
+}
+
+/// Writes the embrace angle in place of the rise, if a new mean radius replaces the span.
+pub(super) fn keep_embrace_angle(arch: &mut Entries, is_new: impl Fn(&str) -> bool) {
+    let is_kept = |key| arch.contains_key(key) && !is_new(key);
+    if !is_new("mean_radius_m") || !is_kept("span_m") {
+        return;
     }
-
-    /// Replaces the resolved keys of the shape by the given ones, unless its table is already as in the file.
-    pub(super) fn put_given(tables: &mut Value, given: &Entries, as_given: &Entries) {
-        let is_resolved = |name: &&str| !given.is_empty() && !as_given.contains_key(*name);
-        for name in TABLES.into_iter().filter(is_resolved) {
-            if let Some(Value::Object(resolved)) = tables.get_mut(name) {
-                resolved.retain(|key, _| !SHAPE.contains(&key.as_str()));
-                let others = mem::take(resolved);
-                *resolved = given.clone().into_iter().chain(others).collect();
-            }
-        }
+    let embrace_deg = given_embrace_deg(arch).filter(|_| is_kept("rise_m"));
+    if !is_new("measured_at") {
+        arch.shift_remove("measured_at");
+    }
+    if let Some(embrace_deg) = embrace_deg.filter(|_| !is_new("embrace_deg")) {
+        arch.shift_remove("rise_m");
+        arch.insert("embrace_deg".to_owned(), Value::from(embrace_deg));
     }
 }
 
 /// Returns the embrace angle of an arc with this span and rise, in degrees.
-pub(super) fn embrace_deg(span_m: f64, rise_m: f64) -> f64 {
+fn embrace_deg(span_m: f64, rise_m: f64) -> f64 {
     let half_m = 0.5 * span_m;
     // The angle between chord and tangent at the crown is a quarter of the embrace angle.
     4.0 * libm::atan(rise_m / half_m).to_degrees()

@@ -16,6 +16,7 @@ use super::document::{Document, Entries, Span, kind};
 use super::error::{Fault, ensure, excerpt};
 use super::files::Files;
 use super::input_file::InputFile;
+use super::relation::KeyGroup;
 use super::rule::{Rule, did_you_mean};
 
 /// Error of a value that could not be read; its reason is recorded as a [`Fault`].
@@ -57,14 +58,14 @@ pub(super) fn read_document<T>(
     }
 }
 
-/// Returns the JSON schema of all texts that `read` reads.
-pub(super) fn describe<T>(read: impl Reader<T>) -> Value {
+/// Returns the JSON schema of all texts that `read` reads, and the groups of keys in all tables.
+pub(super) fn describe<T>(read: impl Reader<T>) -> (Value, Vec<KeyGroup>) {
     let document = Document::default();
     let mut table = Table::new(String::new(), &document.root, &document);
     table.description = Some(an_object());
     // An empty text is not a valid scenario, but the collected keys are complete.
     let _ = read(&mut table);
-    table.description.unwrap_or_default()
+    (table.description.unwrap_or_default(), table.groups)
 }
 
 /// Returns the JSON schema of a table without keys.
@@ -97,6 +98,8 @@ pub struct Table<'a> {
     is_partial: bool,
     /// JSON schema of the keys that were read; `None` unless they are collected.
     description: Option<Value>,
+    /// Groups of keys in this table and in the tables in it; empty unless they are collected.
+    pub(super) groups: Vec<KeyGroup>,
 }
 
 impl<'a> Table<'a> {
@@ -114,6 +117,7 @@ impl<'a> Table<'a> {
             noted_files: Vec::new(),
             is_partial: false,
             description: None,
+            groups: Vec::new(),
         }
     }
 
@@ -547,6 +551,10 @@ impl<'a> Table<'a> {
         self.faults.append(&mut table.faults);
         self.noted_files.append(&mut table.noted_files);
         self.is_partial |= table.is_partial;
+        for mut group in table.groups.drain(..) {
+            group.tables.insert(0, key.to_owned());
+            self.groups.push(group);
+        }
         self.describe_key(key, || table.description.unwrap_or_default());
         faultless
     }

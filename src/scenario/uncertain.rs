@@ -14,7 +14,7 @@
 use super::Scenario;
 use super::prelude::*;
 use super::sequence::Spacing;
-use super::variant::{number, parts, value};
+use super::variant::{number, parts};
 use crate::bisection::{Width, bisect, middle};
 
 named! {
@@ -196,44 +196,14 @@ impl Uncertain {
         })
     }
 
-    /// Returns the tables with uncertain numbers that resolved keys would replace, such as span and rise of an arch. These tables keep the keys
-    /// of the file, so that the other given numbers stay constant while the uncertain numbers vary.
-    pub(super) fn as_given(&self, table: &Table<'_>, resolved: &Value) -> Map<String, Value> {
-        let mut kept = Map::new();
-        for key in &self.keys {
-            let name = parts(&key.key).swap_remove(0);
-            // Only strength and start of a record may vary; the resolved scenario has both.
-            let Some(given) = table.as_given(name).filter(|_| name != "ground") else {
-                continue;
-            };
-            if lacks(resolved.get(name), &given) {
-                kept.insert(name.to_owned(), given);
-            }
-        }
-        // Entries of lists that the file does not give are only in the resolved table.
-        let tables = Value::Object(kept.clone());
-        for key in &self.keys {
-            let parts = parts(&key.key);
-            let is_entry = parts.iter().any(|part| part.parse::<usize>().is_ok());
-            if is_entry && value(&tables, &key.key).is_none() {
-                kept.shift_remove(parts[0]);
-            }
-        }
-        kept
-    }
-
     /// Adds the values in the scenario, and rejects keys and values that the scenario does not allow. The faults are recorded in the table that
     /// contains `[uncertain]`.
-    pub(super) fn check(
-        mut self,
-        table: &mut Table<'_>,
-        scenario: &Scenario,
-        resolved: &Value,
-    ) -> ReadResult<Self> {
+    pub(super) fn check(mut self, table: &mut Table<'_>, scenario: &Scenario) -> ReadResult<Self> {
         let mut faulty = Ok(());
+        let known = [scenario.to_resolved_json(), scenario.resolved()];
         for index in 0..self.keys.len() {
             let (before, others) = self.keys.split_at_mut(index);
-            if let Err(wrong) = others[0].complete(before, resolved, scenario) {
+            if let Err(wrong) = others[0].complete(before, &known) {
                 faulty = Err(table.wrong_in(&[TABLE], &self.keys[index].key, wrong));
             }
         }
@@ -310,40 +280,21 @@ impl Uncertain {
     }
 }
 
-/// Returns true if a table of the file gives a number that the resolved table does not have.
-fn lacks(resolved: Option<&Value>, given: &Value) -> bool {
-    match given {
-        Value::Object(given) => {
-            let mut given = given.iter();
-            given.any(|(key, given)| lacks(resolved.and_then(|table| table.get(key)), given))
-        }
-        Value::Number(_) => resolved.is_none(),
-        _ => false,
-    }
-}
-
 /// Fractions of the distribution at which keys are tried: the smallest value, the largest value, and one that is not a whole number.
 const PROBED: [f64; 3] = [0.0, 1.0, 0.381_966];
 
 impl UncertainKey {
-    /// Adds the value in the scenario. Rejects a key that is not a number, or is one of the previous keys.
-    fn complete(
-        &mut self,
-        before: &[Self],
-        resolved: &Value,
-        scenario: &Scenario,
-    ) -> Result<(), String> {
+    /// Adds the value in the scenario. Rejects a key that is not a number, or is one of the previous keys. `known` is the scenario with the given
+    /// keys, and with resolved ones.
+    fn complete(&mut self, before: &[Self], known: &[Value; 2]) -> Result<(), String> {
         let mut before = before.iter();
         let is_known = before.any(|other| parts(&other.key) == parts(&self.key));
         let wrong = "is the same as a key before it; leave one out";
         ensure(!is_known, || wrong)?;
-        // If the file gives other keys, a length may be written as an integer.
-        let resolved = number(resolved, &self.key);
-        let is_given = resolved.is_none();
-        let given = || value(&scenario.to_resolved_json(), &self.key).cloned();
-        let own = resolved.or_else(given).unwrap_or_default();
+        let own = known.iter().find_map(|known| number(known, &self.key));
+        let own = own.unwrap_or_default();
         self.own = own.as_f64();
-        ensure(is_given || !own.is_i64() && !own.is_u64(), || {
+        ensure(!own.is_i64() && !own.is_u64(), || {
             format!(
                 "is the whole number {own} in the scenario; only numbers that may have a fraction are uncertain"
             )

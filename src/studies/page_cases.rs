@@ -6,7 +6,7 @@ use serde_json::Value;
 use super::ending::{Ending, NoHistory, Verdict};
 use super::outcome_colors::OutcomeColor;
 use crate::output::page::{Spot, SpotKind};
-use crate::scenario::toml_text;
+use crate::scenario::{STUDY_TABLES, toml_text};
 
 /// Largest number of cases on a page, and of rows in its first table.
 pub(super) const MOST_CASES: usize = 1000;
@@ -45,10 +45,9 @@ impl PageCases {
         self.push_text(mark, words, || {
             let mut scenario = scenario()?;
             if let Value::Object(tables) = &mut scenario {
-                tables.retain(|name, _| match &**name {
-                    "map" | "demand" | "verify" | "uncertain" => false,
-                    "suite" => are_suites,
-                    _ => true,
+                tables.retain(|name, _| {
+                    let is_of_suites = are_suites && name == "suite";
+                    is_of_suites || !STUDY_TABLES.contains(&name.as_str())
                 });
             }
             Some(toml_text(&scenario))

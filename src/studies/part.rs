@@ -100,11 +100,17 @@ impl FromStr for Shard {
     }
 }
 
+/// Number of the format of headers and rows. It changes with the meaning of the rows, so that rows of other programs are refused.
+pub(super) const ROW_FORMAT: u32 = 1;
+
 /// Identifies the study to which the rows of a file belong. The headers of the shards of one study differ only in the shard.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Header {
     /// Name of the program.
     pub(super) program: String,
+    /// [`ROW_FORMAT`] of the program that wrote the file; 0 before version 0.3.0.
+    #[serde(default)]
+    pub(super) row_format: u32,
     /// Version of the program.
     pub version: String,
     /// The study: [`NAME`](super::runner::Study::NAME).
@@ -269,8 +275,20 @@ impl<'p> Lines<'p> {
     fn header(&self) -> Result<Option<Header>, PartError> {
         let first = self.text.lines().next();
         let header = first.map(|first| match serde_json::from_str::<Header>(first) {
-            Ok(header) if header.program == env!("CARGO_PKG_NAME") => Ok(header),
-            _ => Err(unusable(self.path, NO_PART)),
+            Ok(header) if header.program != env!("CARGO_PKG_NAME") => {
+                Err(unusable(self.path, NO_PART))
+            }
+            Ok(header) if header.row_format != ROW_FORMAT => {
+                let (version, format) = (&header.version, header.row_format);
+                Err(unusable(
+                    self.path,
+                    format!(
+                        "was written by archrock {version}, with rows of format {format}, and this version reads format {ROW_FORMAT}: delete                          the file and compute the part again, or use archrock {version}"
+                    ),
+                ))
+            }
+            Ok(header) => Ok(header),
+            Err(_) => Err(unusable(self.path, NO_PART)),
         });
         header.transpose()
     }

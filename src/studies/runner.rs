@@ -19,7 +19,7 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 use thiserror::Error;
 
-use super::part::{Header, PartError, PartErrorKind, PartFile, Rows, Shard};
+use super::part::{Header, PartError, PartErrorKind, PartFile, ROW_FORMAT, Rows, Shard};
 use crate::clock;
 use crate::scenario::Scenario;
 
@@ -70,6 +70,7 @@ impl Header {
     pub fn new<S: Study>(study: &S, shard: Shard) -> Self {
         Self {
             program: env!("CARGO_PKG_NAME").to_owned(),
+            row_format: ROW_FORMAT,
             version: env!("CARGO_PKG_VERSION").to_owned(),
             study: S::NAME.to_owned(),
             cases: study.count(),

@@ -231,7 +231,7 @@ fn every_key() {
 
 [arch]
 mean_radius_m = 10.0
-thickness_ratio = 0.15
+thickness_m = 1.5
 embrace_deg = 157.5
 depth_m = 2.0
 density_kg_m3 = 2000.0
@@ -259,6 +259,7 @@ output_step_s = 20.0
 relative_tolerance = 1e-6
 rest_energy_ratio = 0.1
 gravity_m_s2 = 1.62
+direction = "both"
 
 [map]
 duration_s = { from = 0.1, to = 1.0, count = 3, spacing = "linear" }

@@ -534,11 +534,11 @@ fn every_relation_between_keys_is_checked() {
             "table `free_hinges` cannot be combined with [elastic_joints]",
         ),
         (
-            format!("[impact]\n{elastic}"),
+            format!("[impact]\nmodel = 'mirrored'\n{elastic}"),
             "table `impact` cannot be combined with [elastic_joints]",
         ),
         (
-            "[impact]\n[free_hinges]\n".to_owned(),
+            "[impact]\nmodel = 'mirrored'\n[free_hinges]\n".to_owned(),
             "table `impact` cannot be combined with [free_hinges]",
         ),
     ] {

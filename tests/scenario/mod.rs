@@ -1,5 +1,6 @@
 //! Scenario files and records: their contents and errors.
 
+mod changes;
 mod check_record;
 mod corrections;
 mod files;

@@ -282,6 +282,20 @@ fn parts_that_do_not_belong_together_are_refused() {
         &["4 parts instead of 2"],
     );
     refused(path, &["merge", one, "s.toml"], &["s.toml: ", "not a part"]);
+    // Before version 0.3.0, headers had no number of the row format.
+    let rows = fs::read_to_string(path.join(two)).unwrap();
+    let older = rows.replacen("\"row_format\":1,", "", 1);
+    let older = older.replacen("\"version\":\"0.3.0\"", "\"version\":\"0.2.0\"", 1);
+    assert_ne!(older, rows);
+    fs::write(path.join(two), &older).unwrap();
+    let words = [
+        "archrock 0.2.0",
+        "compute the part again, or use archrock 0.2.0",
+    ];
+    refused(path, &["merge", one, two], &words);
+    let resume = ["map", "s.toml", "--shard", "2/2", "--out", "a", "--resume"];
+    refused(path, &resume, &words);
+    fs::write(path.join(two), &rows).unwrap();
     refused(
         path,
         &["merge", one, "nowhere"],

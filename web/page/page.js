@@ -507,8 +507,8 @@ const GRIDS = [[7, 5], [13, 9], [25, 17], [49, 33]];
 /** On this page a button takes the place of the command of a case. */
 const NO_COMMAND = "<style>p:has(+ #command), #command, #command + p { display: none; }</style>";
 
-/** The key that says how thick a structure is. */
-const THICKNESSES = { arch: "thickness_ratio", pointed_arch: "thickness_m", elliptic_arch: "thickness_m", column: "width_m" };
+/** Keys that give the thickness of a structure; a scenario has one of them. */
+const THICKNESSES = ["thickness_ratio", "thickness_m", "width_m"];
 
 /** Returns values around one, in the middle, up to a factor; ascending, and of its sign. */
 function around(value, factor, count) {
@@ -528,11 +528,11 @@ function mapTexts() {
   }
   const motion = last.scenario.ground?.[last.ground];
   const structure = find("structure").value;
-  const thickness = THICKNESSES[structure];
+  const thickness = THICKNESSES.find((key) => typeof last.scenario[structure]?.[key] === "number");
   return GRIDS.map(([columns, rows]) => {
     let axes = "";
     if (motion?.duration_s) axes = `duration_s = ${around(motion.duration_s, 4, columns)}\namplitude_g = ${around(motion.amplitude_g, 4, rows)}`;
-    else if (motion && typeof last.scenario[structure]?.[thickness] === "number") {
+    else if (motion && thickness) {
       axes = `"${structure}.${thickness}" = ${around(last.scenario[structure][thickness], 1.25, columns)}\nscale = ${around(motion.scale ?? 1, 4, rows)}`;
     }
     return `${text.trimEnd()}\n\n[map]\n${axes}\n`;

@@ -228,7 +228,8 @@ class Scenario(Described):
         return self._native == other._native
 
     def __hash__(self) -> int:
-        return hash(self._text)
+        # Equal scenarios may be given by different keys, but all have the same keys of [simulation].
+        return hash(to_toml({"simulation": self._tables["simulation"]}))
 
     def __repr__(self) -> str:
         title = self._tables.get("title")

@@ -94,7 +94,7 @@ impl Structure {
                 return Err(beside.refused(table, "applies to an arch, not to a column"));
             }
             StructureTable::Shape(shape) => {
-                let masonry = beside.complete(table, shape, gravity_m_s2)?;
+                let masonry = beside.complete(table, shape, (gravity_m_s2, unproved))?;
                 Self::Masonry(Box::new(masonry))
             }
         };

@@ -74,43 +74,52 @@ pub struct OverturningMap<'a> {
     /// Models that several cells share.
     models: Shared<Result<Arc<dyn Model>, ModelError>>,
     pulses: Shared<PulseShape>,
+    /// The quantities and the keys of the axes. An axis that is named by a key of the ground has the quantity of that key.
+    quantities: [Quantity; 2],
+    paths: [String; 2],
     /// The scenario, or a sample of it. `variants` are the scenarios with other values of keys outside `[map]`.
     base: Arc<Scenario>,
     variants: Option<Shared<Result<Arc<Scenario>, String>>>,
 }
 
-/// The keys of an axis in a scenario, and its label in pictures.
-pub(super) struct Described<'a> {
-    /// Label of the axis.
-    pub(super) label: &'a str,
-    /// The table whose keys set the quantity; `ground` stands for the table of the pulse or record.
-    pub(super) table: &'static str,
-    /// The keys in that table; empty for a quantity that is named by its key.
-    pub(super) keys: &'static [&'static str],
+/// Returns the label of an axis in pictures.
+pub(super) fn label(axis: &Axis) -> &str {
+    match axis.quantity {
+        Quantity::Duration => "pulse duration (s)",
+        Quantity::Frequency => "pulse frequency (Hz)",
+        Quantity::Amplitude => "pulse amplitude (g)",
+        Quantity::Scale => "factor on the record",
+        Quantity::PeakG => "peak ground acceleration (g)",
+        Quantity::MeanRadius => "mean radius R (m)",
+        Quantity::ThicknessRatio => "t / R",
+        Quantity::Embrace => "embrace angle (deg)",
+        Quantity::Restitution => "restitution coefficient r",
+        Quantity::Other => &axis.key,
+    }
 }
 
-/// Returns the keys and the label of an axis.
-pub(super) fn described(axis: &Axis) -> Described<'_> {
-    const PULSE: &[&str] = &["duration_s", "frequency_hz"];
-    const RECORD: &[&str] = &["scale", "peak_g"];
-    let (label, table, keys): (_, _, &[_]) = match axis.quantity {
-        Quantity::Duration => ("pulse duration (s)", "ground", PULSE),
-        Quantity::Frequency => ("pulse frequency (Hz)", "ground", PULSE),
-        Quantity::Amplitude => ("pulse amplitude (g)", "ground", &["amplitude_g"]),
-        Quantity::Scale => ("factor on the record", "ground", RECORD),
-        Quantity::PeakG => ("peak ground acceleration (g)", "ground", RECORD),
-        Quantity::MeanRadius => ("mean radius R (m)", "arch", &["mean_radius_m"]),
-        Quantity::ThicknessRatio => ("t / R", "arch", &["thickness_ratio", "thickness_m"]),
-        Quantity::Embrace => ("embrace angle (deg)", "arch", &["embrace_deg"]),
-        Quantity::Restitution => ("restitution coefficient r", "impact", &["restitution"]),
-        Quantity::Other => (&*axis.key, "", &[]),
-    };
-    Described { label, table, keys }
+/// What the values of an axis change.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Changes {
+    /// The amplitude or the scaling of the ground motion.
+    Strength,
+    /// The duration of the pulse.
+    Duration,
+    /// Other keys of the ground motion.
+    Ground,
+    /// Keys of other tables, on which the model depends.
+    Model,
 }
 
-/// Returns true if a key of the scenario changes the ground motion alone.
-fn is_of_ground(key: &str) -> bool {
-    key.starts_with("ground.")
+impl Changes {
+    fn of(quantity: Quantity, path: &str) -> Self {
+        match quantity {
+            Quantity::Amplitude | Quantity::Scale | Quantity::PeakG => Self::Strength,
+            Quantity::Duration | Quantity::Frequency => Self::Duration,
+            _ if path.starts_with("ground.") => Self::Ground,
+            _ => Self::Model,
+        }
+    }
 }
 
 /// Values that depend on one axis or on none. Each value is computed at its first use.
@@ -175,29 +184,28 @@ impl<'a> OverturningMap<'a> {
 
     /// Makes the map of a scenario whose other values are those of `sample`. `None` if the scenario has no map or no ground motion.
     pub(super) fn of_sample(scenario: &'a Scenario, sample: Scenario) -> Option<Self> {
-        let (Some(map), Some(_)) = (&scenario.map, scenario.ground.as_ref()) else {
+        let (Some(map), Some(ground)) = (&scenario.map, scenario.ground.as_ref()) else {
             return None;
         };
         let axes = [&map.x, &map.y];
         let values = axes.map(|axis| axis.sequence.values());
         let counts = [values[0].len(), values[1].len()];
-        let depends = |on: fn(&Axis) -> bool| axes.map(on);
-        let pulses = depends(|axis| {
-            matches!(axis.quantity, Quantity::Duration | Quantity::Frequency)
-                || axis.path().is_some_and(is_of_ground)
-        });
-        let variants = depends(|axis| axis.path().is_some());
+        let quantities = axes.map(|axis| axis.quantity_under(ground));
+        let paths = axes.map(|axis| axis.path(Some(ground)));
+        let changes = [0, 1].map(|axis| Changes::of(quantities[axis], &paths[axis]));
+        let depends = |on: &[Changes]| changes.map(|change| on.contains(&change));
+        let variants = depends(&[Changes::Ground, Changes::Model]);
         let has_variants = variants.contains(&true);
+        let base = Self::with_constant_ratio(&quantities, &sample).unwrap_or(sample);
         Some(Self {
             scenario,
             axes,
             repeat: map.repeat,
-            models: Shared::new(
-                counts,
-                depends(|axis| axis.path().is_some_and(|path| !is_of_ground(path))),
-            ),
-            pulses: Shared::new(counts, pulses),
-            base: Arc::new(sample),
+            models: Shared::new(counts, depends(&[Changes::Model])),
+            pulses: Shared::new(counts, depends(&[Changes::Ground, Changes::Duration])),
+            quantities,
+            paths,
+            base: Arc::new(base),
             variants: has_variants.then(|| Shared::new(counts, variants)),
             values,
         })
@@ -210,11 +218,27 @@ impl<'a> OverturningMap<'a> {
         };
         variants.get(self.place(index), || {
             let coordinates = self.coordinates(index);
-            let values = self.axes.iter().zip(coordinates);
-            let values = values.filter_map(|(axis, value)| Some((axis.path()?, value)));
-            let values: Vec<_> = values.collect();
+            let values = coordinates.into_iter().enumerate();
+            let changes = values.filter(|(axis, _)| self.is_of_variant(*axis));
+            let values: Vec<_> = changes
+                .map(|(axis, value)| (&*self.paths[axis], value))
+                .collect();
             self.base.with_unproved_values(&values).map(Arc::new)
         })
+    }
+
+    /// Returns true if an axis sets a key by another reading of the scenario; strength and duration of the ground motion change without it.
+    fn is_of_variant(&self, axis: usize) -> bool {
+        let changes = Changes::of(self.quantities[axis], &self.paths[axis]);
+        matches!(changes, Changes::Ground | Changes::Model)
+    }
+
+    /// Returns the scenario with the thickness ratio of its arch, which is constant under a mean radius; `None` without that axis.
+    fn with_constant_ratio(quantities: &[Quantity; 2], sample: &Scenario) -> Option<Scenario> {
+        let arch = sample.structure.circular();
+        let arch = arch.filter(|_| quantities.contains(&Quantity::MeanRadius))?;
+        let ratio = ("arch.thickness_ratio", arch.thickness_ratio);
+        sample.with_unproved_values(&[ratio]).ok()
     }
 
     /// Returns the indices of a cell along x and y.
@@ -231,8 +255,8 @@ impl<'a> OverturningMap<'a> {
 
     /// Returns the value of a quantity in a cell; `None` if no axis varies the quantity.
     fn value(&self, index: usize, quantity: Quantity) -> Option<f64> {
-        let mut axes = self.axes.iter();
-        let axis = axes.position(|axis| axis.quantity == quantity)?;
+        let mut quantities = self.quantities.iter();
+        let axis = quantities.position(|known| *known == quantity)?;
         Some(self.coordinates(index)[axis])
     }
 

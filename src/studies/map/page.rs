@@ -9,11 +9,11 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::picture::{ColoredCells, Drawn};
-use super::{CellRow, Described, OverturningMap, described};
+use super::{CellRow, OverturningMap, label};
 use crate::output::caption::caption;
 use crate::output::page::{BASE, PROGRAM, STYLE, script_safe};
 use crate::output::{Figure, filters, render};
-use crate::scenario::{Ground, Quantity, toml_text};
+use crate::scenario::{Quantity, STUDY_TABLES, toml_text};
 use crate::studies::ending::columns::NUMBERS;
 
 const SCRIPT: &str = include_str!("page/page.js");
@@ -115,7 +115,7 @@ impl ColoredCells {
         });
         let pictures: Vec<String> = pictures.collect();
         let axis = |i: usize| PageAxis {
-            label: described(map.axes[i]).label.to_owned(),
+            label: label(map.axes[i]).to_owned(),
             values: map.values[i].clone(),
         };
         let are = |cells: &[bool]| -> Vec<usize> {
@@ -168,35 +168,18 @@ pub(super) fn columns(rows: &[CellRow]) -> impl Iterator<Item = CellNumbers> {
 /// Returns the command that runs a cell, with placeholders for its two values. The command contains the whole scenario, so it depends neither on
 /// the location of the page nor on the keys of the scenario file.
 fn command(map: &OverturningMap<'_>) -> String {
-    let scenario = map.scenario;
-    // A command of one cell has no samples.
-    let mut table = scenario.clone().without_uncertain().resolved();
-    let mut remove = |outer: &str, key: &str| {
-        let inner = table.pointer_mut(outer).and_then(Value::as_object_mut);
-        inner.and_then(|inner| inner.shift_remove(key));
-    };
-    for study in ["map", "suite", "demand", "verify"] {
-        remove("", study);
+    // A command of one cell has no samples and no other studies.
+    let mut table = map.base.to_json();
+    if let Value::Object(tables) = &mut table {
+        tables.retain(|name, _| !STUDY_TABLES.contains(&name.as_str()));
     }
-    let ground = match scenario.ground.as_ref() {
-        Some(Ground::Pulse(pulse)) => pulse.kind.name(),
-        _ => "record",
-    };
-    let set = map.axes.into_iter().zip(["cell.x", "cell.y"]);
-    let set = set.map(|(axis, place)| {
-        let Described { table, keys, .. } = described(axis);
-        let table = match table {
-            "ground" => format!("ground.{ground}"),
-            table => table.to_owned(),
+    let set = map.axes.iter().zip(&map.paths);
+    let set = set.zip(["cell.x", "cell.y"]).map(|((axis, path), place)| {
+        let of_value = match axis.quantity {
+            Quantity::Frequency => "1/",
+            _ => "",
         };
-        for key in keys {
-            remove(&format!("/{}", table.replace('.', "/")), key);
-        }
-        match axis.quantity {
-            Quantity::Other => format!(" --set {}={{{place}}}", axis.key),
-            Quantity::Frequency => format!(" --set {table}.duration_s={{1/{place}}}"),
-            quantity => format!(" --set {table}.{}={{{place}}}", quantity.name()),
-        }
+        format!(" --set {path}={{{of_value}{place}}}")
     });
     let set: String = set.collect();
     let text = toml_text(&table);

@@ -12,9 +12,9 @@ use super::samples::ReasonCounts;
 use super::{NoAnswer, SampleRow, Samples, uncertain};
 use crate::dynamics::Direction;
 use crate::output::OutputError;
-use crate::scenario::{Axis, Scenario, Uncertain, UncertainKey};
+use crate::scenario::{Scenario, Uncertain, replaces};
 use crate::studies::ending::columns::OUTCOMES;
-use crate::studies::map::{OverturningMap, described};
+use crate::studies::map::OverturningMap;
 use crate::studies::statistics::Share;
 use crate::studies::{Ending, NoHistory, ReportedStudy, Results, Study, Style, Verdict};
 
@@ -84,7 +84,8 @@ impl<'a> CellsOfSamples<'a> {
         let uncertain = uncertain(scenario)?;
         for axis in map.axes {
             let mut keys = uncertain.keys.iter();
-            if let Some(key) = keys.find(|key| sets_the_quantity_of(axis, key)) {
+            let path = axis.path(scenario.ground.as_ref());
+            if let Some(key) = keys.find(|key| replaces(&path, &key.key)) {
                 return Err(format!(
                     "`{}` of [map] and \"{}\" of [uncertain] contradict: leave one of them out",
                     axis.key, key.key
@@ -139,18 +140,6 @@ impl<'a> CellsOfSamples<'a> {
         let cells = self.map.count();
         [index / cells, index % cells]
     }
-}
-
-/// Returns true if an uncertain key sets the quantity of an axis.
-fn sets_the_quantity_of(axis: &Axis, key: &UncertainKey) -> bool {
-    let parts =
-        |key: &str| -> Vec<String> { key.split('.').map(|part| part.trim().to_owned()).collect() };
-    let (own, axis_of) = (parts(&key.key), described(axis));
-    if axis_of.keys.is_empty() {
-        return own == parts(&axis.key);
-    }
-    let ends = own.first().zip(own.last());
-    ends.is_some_and(|(table, key)| table == axis_of.table && axis_of.keys.contains(&&**key))
 }
 
 impl Study for CellsOfSamples<'_> {
