@@ -75,7 +75,7 @@
 #[macro_use]
 extern crate archrock_motion;
 
-use archrock_motion::{argument, bisection};
+use archrock_motion::{argument, bisection, work};
 
 mod clock;
 pub mod output;

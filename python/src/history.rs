@@ -8,11 +8,13 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
 use archrock::dynamics::repeatability::Repeatability;
-use archrock::dynamics::{FallEnd, Summary};
+use archrock::dynamics::{Direction, Directions, FallEnd, Summary};
 use archrock::dynamics::{Recording, Samples};
 use archrock::mechanics::Demand;
 use archrock::output::{FilmFormat, Scene, StructurePoint, check_named_file, write_named_file};
-use archrock::studies::run::{self, ComputedRun, Film, FilmOptions, OutcomeSummary, Report};
+use archrock::studies::run::{
+    self, ComputedRun, Film, FilmOptions, MirroredSummary, OutcomeSummary, Report, ReportPage,
+};
 use archrock::{Event, GroundMotion, Model, Recorder, Sample, SimulationError, State};
 use numpy::{Element, PyArray1, PyArrayMethods as _, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyKeyError;
@@ -138,6 +140,8 @@ pub struct History {
     summary: Summary,
     /// The comparison with its repetitions, which is made when first needed; `None` if the model has none.
     repeated: OnceLock<Repeated>,
+    /// The result under the mirrored ground motion, which is computed when first needed; `None` without a second direction.
+    mirrored: OnceLock<Option<MirroredSummary>>,
     events: Vec<Event>,
     /// Number of samples, of bodies, of joints with gaps, of joints that slip, of joints with contact forces, and of ties.
     counts: [usize; 6],
@@ -305,11 +309,25 @@ impl History {
         Ok(self.repeated.get().unwrap_or(&None))
     }
 
-    /// The history in a scenario, with its repetitions if they are given.
+    /// The result under the mirrored ground motion, with its repetitions.
+    fn mirrored(&self, py: Python<'_>) -> PyResult<Option<&MirroredSummary>> {
+        if self.mirrored.get().is_none() {
+            let (scenario, model) = (self.shaken(), Arc::clone(&self.model));
+            let found = watched(py, None, move |_| {
+                Ok(MirroredSummary::computed(&scenario, &*model, true))
+            })?;
+            // Another thread may have computed it meanwhile, with the same result.
+            let _ = self.mirrored.set(found);
+        }
+        Ok(self.mirrored.get().and_then(Option::as_ref))
+    }
+
+    /// The history in a scenario, with its repetitions and the mirrored ground motion if they are given.
     fn computed<'a>(
         &'a self,
         scenario: &'a archrock::Scenario,
         repeated: Option<&'a Repeated>,
+        mirrored: Option<&MirroredSummary>,
     ) -> ComputedRun<'a> {
         ComputedRun {
             scenario,
@@ -318,7 +336,28 @@ impl History {
             impacts: self.events.iter().collect(),
             repeated: repeated.and_then(Option::as_ref),
             varied: &[],
+            mirrored: mirrored.cloned(),
         }
+    }
+
+    /// Simulates a scenario in one direction again, and makes its page with this verdict.
+    fn page(
+        &self,
+        py: Python<'_>,
+        scenario: &archrock::Scenario,
+        verdict: &str,
+    ) -> PyResult<ReportPage> {
+        let mut filming = Filming {
+            report: Report::new(scenario, &*self.model),
+            signals: Signals::new(),
+        };
+        let motion = scenario.ground_motion();
+        let model = &*self.model;
+        let history = simulate(py, model, scenario, motion, &mut filming, |filming| {
+            filming.signals.raised.take()
+        })?;
+        let report = &filming.report;
+        Ok(py.detach(|| report.page(scenario, &history, None, ["", verdict], "")))
     }
 
     /// The scenario with the ground on which it was simulated.
@@ -384,7 +423,10 @@ impl History {
     ) -> PyResult<Self> {
         let inner = scenario.moving()?;
         let motion = |ground: &Ground| ground.motion(inner.gravity_m_s2());
-        let other = ground.map(motion).transpose()?;
+        let mut other = ground.map(motion).transpose()?;
+        if inner.simulation.direction.first() == Direction::Mirrored {
+            other = other.map(|as_given| Arc::new(as_given.mirrored()));
+        }
         let motion = match &other {
             Some(motion) => motion,
             None => {
@@ -422,6 +464,7 @@ impl History {
             model: Arc::clone(model),
             summary,
             repeated: OnceLock::new(),
+            mirrored: OnceLock::new(),
             events,
             counts: [
                 count,
@@ -489,13 +532,14 @@ impl History {
     fn summary_json(&self, py: Python<'_>, repeat: bool) -> PyResult<String> {
         let scenario = self.shaken();
         let repeated = repeat.then(|| self.repeated(py)).transpose()?;
-        let summary = run::summary(&self.computed(&scenario, repeated));
+        let mirrored = repeat.then(|| self.mirrored(py)).transpose()?.flatten();
+        let summary = run::summary(&self.computed(&scenario, repeated, mirrored));
         Ok(summary.map_err(not_written)?.to_string())
     }
 
     /// `warnings` of `summary.json`.
     fn warnings(&self, py: Python<'_>) -> Vec<String> {
-        py.detach(|| run::Summary::of(&self.computed(&self.shaken(), None)).warnings)
+        py.detach(|| run::Summary::of(&self.computed(&self.shaken(), None, None)).warnings)
     }
 
     /// Writes a film; `factors` are its speed and that on the displacements. Simulates the history again, with the line of thrust.
@@ -528,28 +572,25 @@ impl History {
         write_named_file(&path, &film).map_err(not_written)
     }
 
-    /// `report.html` with the verdict on it. Simulates the history again, with the line of thrust.
+    /// `report.html` with the verdict on it, which opens with the worse direction. Simulates the history again, with the line of thrust.
     fn report(&self, py: Python<'_>) -> PyResult<String> {
         let scenario = self.shaken();
-        let verdict =
-            run::Summary::of(&self.computed(&scenario, Some(self.repeated(py)?))).verdict_line();
-        let mut filming = Filming {
-            report: Report::new(&scenario, &*self.model),
-            signals: Signals::new(),
+        let (repeated, mirrored) = (self.repeated(py)?, self.mirrored(py)?);
+        let summary = run::Summary::of(&self.computed(&scenario, Some(repeated), mirrored));
+        let verdict = summary.verdict_line();
+        let own = self.page(py, &scenario, &verdict)?;
+        let computed = mirrored.filter(|mirrored| mirrored.failed.is_none());
+        let page = match computed {
+            None => own,
+            Some(_) => {
+                let turned = scenario.in_directions(Directions::Mirrored);
+                let other = self.page(py, &turned, &verdict)?;
+                match summary.worse_mirrored() {
+                    Some(_) => other.beside(own),
+                    None => own.beside(other),
+                }
+            }
         };
-        let motion = scenario.ground_motion();
-        simulate(
-            py,
-            &*self.model,
-            &scenario,
-            motion,
-            &mut filming,
-            |filming| filming.signals.raised.take(),
-        )?;
-        Ok(py.detach(|| {
-            filming
-                .report
-                .page(&scenario, &self.summary, None, ["", &verdict], "")
-        }))
+        Ok(py.detach(|| page.html()))
     }
 }

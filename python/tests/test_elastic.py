@@ -25,7 +25,7 @@ def test_joint_forces_at_rest_equal_the_weight() -> None:
     assert history.joint_contacts.min() < 0.5
     # Elastic contact lasts, so impacts are not counted.
     assert repr(history) == f"<History: still rocking at 1.0000 s; {len(history)} samples>"
-    assert "survives, the same with other steps" in history.report_html()
+    assert "survives, the same mirrored and with other steps" in history.report_html()
 
 
 def test_a_row_that_only_vibrates_says_so_as_the_program_does() -> None:

@@ -204,6 +204,7 @@ def test_absurd_arguments_raise_exceptions(arch: Arch, pulse: Pulse) -> None:
                 "impact": "mirrored",
                 "restitution": None,
                 "gravity_m_s2": 9.81,
+                "direction": "as_given",
                 "initial_sway": None,
                 "memory_gb": 1.0,
             },

@@ -12,7 +12,9 @@ use nalgebra::Vector2;
 use super::figure::{FigureOption, PanelsOption};
 use super::models::ModelsOption;
 use super::parsers::{number, point_m};
-use super::scenario_file::{Destination, ScenarioTask, SetOption, SuiteOption, check_distinct};
+use super::scenario_file::{
+    Destination, DirectionOption, ScenarioTask, SetOption, SuiteOption, check_distinct,
+};
 use super::study::{StudyJob, WorkOptions};
 use super::{Failure, Format, check_no_errors, collect_input_error, print, print_all};
 
@@ -43,6 +45,8 @@ pub struct Arguments {
     dimensionless: bool,
     #[command(flatten)]
     models: ModelsOption,
+    #[command(flatten)]
+    direction: DirectionOption,
     /// Do not repeat a run with free hinges or elastic joints in other steps, nor elastic joints with other stiffness and contact.
     #[arg(long)]
     no_repeat: bool,
@@ -242,7 +246,7 @@ impl Arguments {
 
     /// Reads the scenarios of a file.
     fn read(&self, path: &Path, options: &RunOptions) -> Result<FileTasks, Failure> {
-        let input = self.set.open(path)?;
+        let input = self.set.open(path)?.in_direction(self.direction);
         let models = self.models.read(&input)?;
         if models.len() > 1 && self.to_stdout() {
             return Err(input.input_error("--rotations - takes one model; choose with --hinges"));

@@ -4,8 +4,10 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::{env, io};
 
+use archrock::dynamics::Directions;
 use archrock::output::{Folder, Origin, PictureFormat};
 use archrock::scenario::{Assignment, ModelKind, ReadOptions, Scenario, Source};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 
 use super::progress::with_notice;
 use super::{Failure, check_no_errors};
@@ -52,10 +54,35 @@ impl SetOption {
         Ok(Input {
             path,
             source,
-            set: &self.set,
+            set: self.set.clone(),
             no_uncertain: self.no_uncertain,
         })
     }
+}
+
+/// The option for the direction of the ground motion.
+#[derive(clap::Args, Clone, Copy)]
+pub struct DirectionOption {
+    /// Direction of the horizontal ground motion, in place of `direction` in [simulation] [default: both].
+    #[arg(long, value_name = "DIRECTION", value_parser = directions())]
+    direction: Option<Directions>,
+}
+
+impl DirectionOption {
+    /// Returns the direction as a value of the scenario.
+    fn assignment(self) -> Option<Assignment> {
+        let assignment = format!("simulation.direction={}", self.direction?.name());
+        assignment.parse().ok()
+    }
+}
+
+fn directions() -> impl TypedValueParser<Value = Directions> {
+    let names = Directions::ALL.iter().map(|direction| direction.name());
+    PossibleValuesParser::new(names).map(|name| {
+        let mut all = Directions::ALL.iter().copied();
+        let named = all.find(|direction| direction.name() == name);
+        named.unwrap_or_default()
+    })
 }
 
 /// The option to run the records of the suite.
@@ -139,11 +166,17 @@ pub fn is_stdin(path: &Path) -> bool {
 pub struct Input<'a> {
     path: &'a Path,
     source: Source,
-    set: &'a [Assignment],
+    set: Vec<Assignment>,
     no_uncertain: bool,
 }
 
 impl Input<'_> {
+    /// Returns the scenario in the directions of the option.
+    pub fn in_direction(mut self, option: DirectionOption) -> Self {
+        self.set.extend(option.assignment());
+        self
+    }
+
     /// Reads the scenario with this model of motion; `None` if the tables of the scenario choose the model.
     pub fn read(&self, model: Option<&'static ModelKind>) -> Result<Scenario, Failure> {
         self.read_for(model, false)
@@ -161,7 +194,7 @@ impl Input<'_> {
     ) -> Result<Scenario, Failure> {
         let options = ReadOptions {
             model,
-            set: self.set,
+            set: &self.set,
             statics,
         };
         let name = self.source.name().to_owned();

@@ -111,7 +111,7 @@ impl MapOption {
 
 pub fn map(arguments: &MapArguments) -> Result<(), Failure> {
     let study = &arguments.study;
-    let input = study.scenario.open()?;
+    let input = study.open()?;
     let scenario = study.models.read_one(&input, "map")?;
     warn_of(slice::from_ref(&scenario));
     OverturningMap::of(&scenario).map_err(|message| input.input_error(message))?;
@@ -124,7 +124,7 @@ pub fn map(arguments: &MapArguments) -> Result<(), Failure> {
 }
 
 pub fn suite(study: &StudyArguments) -> Result<(), Failure> {
-    let input = study.scenario.open()?;
+    let input = study.open()?;
     let scenarios = study.models.read(&input)?;
     warn_of(&scenarios);
     let style = Style::of(study.figure.get()?);

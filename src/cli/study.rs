@@ -26,7 +26,7 @@ use super::progress::{
     Display, INTERRUPTED, INTERRUPTED_CODE, listen_to_interrupts, print_always, print_status,
     progress_text, remaining_time,
 };
-use super::scenario_file::{Input, ScenarioFile};
+use super::scenario_file::{DirectionOption, Input, ScenarioFile};
 use super::{Failure, Format, show};
 
 /// Options of every study of many histories.
@@ -39,6 +39,8 @@ pub struct StudyArguments {
     pub out: Option<PathBuf>,
     #[command(flatten)]
     pub models: ModelsOption,
+    #[command(flatten)]
+    direction: DirectionOption,
     #[command(flatten)]
     pub figure: FigureOption,
     #[command(flatten)]
@@ -105,6 +107,11 @@ impl WorkOptions {
 }
 
 impl StudyArguments {
+    /// Reads the text of the scenario.
+    pub fn open(&self) -> Result<Input<'_>, Failure> {
+        Ok(self.scenario.open()?.in_direction(self.direction))
+    }
+
     /// Locks the folder for the results of a study, and prepares the computation.
     pub fn job<'s>(
         &self,

@@ -42,7 +42,7 @@ pub fn threshold(arguments: &Arguments) -> Result<(), Failure> {
     let study = &arguments.study;
     let factors = Factors::new(arguments.from, arguments.to, arguments.stride)
         .map_err(|error| format!("--from, --to, --stride: {error}"))?;
-    let input = study.scenario.open()?;
+    let input = study.open()?;
     let along = arguments.along.clone();
     let options = Options {
         factors,

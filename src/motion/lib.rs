@@ -11,7 +11,7 @@ pub mod argument;
 pub mod bisection;
 pub mod dynamics;
 pub mod mechanics;
-mod work;
+pub mod work;
 
 /// Parts below the models of motion, for tests and benchmarks. They are not for users, and may change with any release.
 #[cfg(feature = "internals")]

@@ -4,7 +4,7 @@ use std::panic;
 use std::thread::{self, JoinHandle};
 
 /// Computation whose result is awaited later.
-pub(crate) enum Pending<T> {
+pub enum Pending<T> {
     /// It runs on a thread. The thread ends with the program if nobody waits for the result.
     Running(JoinHandle<T>),
     /// It runs when its result is awaited.
@@ -13,7 +13,7 @@ pub(crate) enum Pending<T> {
 
 impl<T: Send + 'static> Pending<T> {
     /// Starts a computation on a thread. With a single processor, and where threads are missing, the computation is deferred.
-    pub(crate) fn start(compute: impl FnOnce() -> T + Send + 'static) -> Self {
+    pub fn start(compute: impl FnOnce() -> T + Send + 'static) -> Self {
         match thread::available_parallelism() {
             Ok(processors) if processors.get() > 1 => Self::Running(thread::spawn(compute)),
             _ => Self::Deferred(Box::new(compute)),
@@ -21,7 +21,7 @@ impl<T: Send + 'static> Pending<T> {
     }
 
     /// Waits for the result. A panic of the thread continues in the caller.
-    pub(crate) fn wait(self) -> T {
+    pub fn wait(self) -> T {
         match self {
             Self::Running(thread) => thread.join().unwrap_or_else(|it| panic::resume_unwind(it)),
             Self::Deferred(compute) => compute(),

@@ -1,6 +1,7 @@
 //! A line with the input of a picture: structure, ground motion and model of motion.
 
 use crate::ImpactModel;
+use crate::dynamics::Direction;
 use crate::scenario::{
     Axis, Ground, Quantity, Record, RightFoot, Scaling, Scenario, Series, Structure,
 };
@@ -96,6 +97,14 @@ pub fn ground_in_words(scenario: &Scenario) -> String {
 }
 
 fn ground(scenario: &Scenario, varies: Varies<'_>) -> Option<String> {
+    let as_given = ground_as_given(scenario, varies)?;
+    Some(match scenario.simulation.direction.first() {
+        Direction::AsGiven => as_given,
+        Direction::Mirrored => format!("{as_given}, mirrored"),
+    })
+}
+
+fn ground_as_given(scenario: &Scenario, varies: Varies<'_>) -> Option<String> {
     let left = of_left_foot(scenario, varies)?;
     let right = match &scenario.right_foot {
         None => return Some(left),

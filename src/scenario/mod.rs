@@ -397,6 +397,26 @@ impl Scenario {
         shaken
     }
 
+    /// Returns this scenario with other directions of its ground motion.
+    #[must_use]
+    pub fn in_directions(&self, directions: Directions) -> Self {
+        let mut turned = self.clone();
+        if directions.first() != self.simulation.direction.first() {
+            turned.ground_motion = Arc::new(self.ground_motion.mirrored());
+        }
+        turned.simulation.direction = directions;
+        let given = &mut turned.given.tables;
+        let simulation = given.entry("simulation").or_insert_with(|| json!({}));
+        if let Value::Object(keys) = simulation {
+            keys.insert("direction".to_owned(), json!(directions));
+        }
+        // The older name of the key.
+        if let Some(Value::Object(suite)) = given.get_mut("suite") {
+            suite.shift_remove("both_signs");
+        }
+        turned
+    }
+
     /// Returns the motion of both feet for a motion of the left one, mirrored if only the mirrored direction is requested.
     pub(crate) fn under_both_feet(&self, left: GroundMotion) -> GroundMotion {
         self.under_both_feet_in(self.simulation.direction.first(), left)

@@ -116,9 +116,7 @@ fn symmetric_scenarios_cover_the_mirrored_ground() {
         assert_eq!(second, !model.covers_mirrored(), "{structure}");
         !second
     };
-    let load = |x_m: f64| {
-        format!("[[load]]\nx_m = {x_m:?}\nheight_m = 0.5\nwidth_m = 0.2\nmass_kg = 500.0\n")
-    };
+    let load = |x_m: f64| format!("[[load]]\nx_m = {x_m:?}\nheight_m = 0.5\nmass_kg = 500.0\n");
     let voussoirs = format!("{ARCH}voussoirs = 9\n");
     let circular_pier = |sides: &str| format!("{voussoirs}{sides}");
     let (left, right) = (

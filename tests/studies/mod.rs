@@ -1,6 +1,7 @@
 //! Studies: their results, compared with single histories, parts with the whole, and published numbers.
 
 mod capacity;
+mod directions;
 mod elastic_joints;
 mod fragility;
 mod free_hinges;

@@ -759,6 +759,7 @@ fn repeatability_includes_other_outcomes() {
         impacts: Default::default(),
         repeated: Some(&spread),
         varied: &[],
+        mirrored: None,
     })
     .unwrap();
     let spread = &summary["repeatability"];

@@ -168,7 +168,8 @@ function createFrames(holder, title) {
           root.style.overflow = "hidden";
           root.addEventListener("change", ({ target, isTrusted }) => {
             if (target.type === "checkbox") choices[target.id] = target.checked;
-            else if (isTrusted && target.id !== "time") choices[target.id] = target.value;
+            // Each history opens with the worse direction.
+            else if (isTrusted && !["time", "direction"].includes(target.id)) choices[target.id] = target.value;
           });
           takeDrops(next.contentDocument);
           next.classList.remove("waiting");

@@ -280,10 +280,20 @@ class History(Summarised):
     def verdict(self) -> str:
         """The program's verdict: ``"survives"``, ``"overturns"``, ``"uncertain"`` or ``"incomplete"``.
 
-        It is uncertain if the repetitions of :meth:`repeatability` disagree.
+        It is uncertain if the repetitions of :meth:`repeatability` disagree. If the motion was computed in both directions, it is the worse
+        verdict of this history and of :attr:`mirrored`.
         """
         verdict: str = self.summary["verdict"]
         return verdict
+
+    @property
+    def mirrored(self) -> Summary | None:
+        """The result under the mirrored ground motion, as ``mirrored`` of :attr:`summary`: its own ``verdict``, ``outcome``, largest rotation and
+        ``certainty``. ``None`` without a second direction, as for a symmetric structure, or with ``direction="as_given"``. The columns of
+        this history are those of the motion as given.
+        """
+        mirrored: Summary | None = self.summary.get("mirrored")
+        return mirrored
 
     @property
     def to_quote(self) -> str:

@@ -21,6 +21,16 @@ named! {
     }
 }
 
+impl Direction {
+    /// Returns the direction in words.
+    pub const fn in_words(self) -> &'static str {
+        match self {
+            Self::AsGiven => "as given",
+            Self::Mirrored => "mirrored",
+        }
+    }
+}
+
 named! {
     /// Directions of the horizontal ground motion in which motions are computed.
     #[derive(Default)]

@@ -87,7 +87,7 @@ impl Summary {
 
     /// Returns the opposite outcome and the properties with which it occurs; `None` if no property changes the outcome.
     pub(super) fn changed_outcome(&self) -> Option<Caveat<'_>> {
-        let opposite = match Verdict::from(self.outcome.with_side()) {
+        let opposite = match self.verdict_without_repetitions() {
             Verdict::Overturns => Verdict::Survives,
             Verdict::Survives => Verdict::Overturns,
             _ => return None,

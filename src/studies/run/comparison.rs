@@ -65,7 +65,7 @@ impl Comparison {
             let both_survive = [best, other]
                 .iter()
                 .all(|one| one.verdict == Verdict::Survives);
-            are_known && !(both_survive && best.largest_peak_rotation_rad == 0.0)
+            are_known && !(both_survive && best.worse().largest_peak_rotation_rad == 0.0)
         };
         pairs.filter(differs).collect()
     }

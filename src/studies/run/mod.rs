@@ -10,6 +10,7 @@
 mod animation;
 mod caveats;
 mod comparison;
+mod directions;
 mod feet;
 mod film;
 mod impacts;
@@ -29,35 +30,38 @@ use std::collections::BTreeMap;
 use std::io;
 use std::mem;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 use std::time::Duration;
 
 use nalgebra::Vector2;
 
 use self::comparison::Comparison;
+pub use self::directions::MirroredSummary;
+use self::directions::{MirroredPage, MirroredRun};
 pub use self::film::{Film, FilmOptions};
 pub use self::impacts::NotableImpacts;
 use self::overlay::Curves;
 use self::picture::Timeline;
 pub use self::points::MAX_POINTS;
 use self::points::ObservedPoints;
-pub use self::report::{Report, page_of};
+pub use self::report::{Report, ReportPage, page_of};
 pub use self::scales::Scales;
 use self::snapshots::Snapshots;
-pub use self::summary::{ComputedRun, OutcomeSummary, Summary, summary};
+pub use self::summary::{ComputedRun, OutcomeSummary, Summary, VariedRun, summary};
 use self::words::{Files, Printed, Words};
 pub use self::words::{heading, words_of};
 use super::quotable::{self, ModelAnswer};
 use super::{Progress, Results, RunnerError, StudyError, Watch};
 use crate::clock;
 use crate::dynamics::repeatability::Repetitions;
-use crate::dynamics::{FallEnd, Repeatability, Variations};
+use crate::dynamics::{Directions, FallEnd, Repeatability, Variations};
 use crate::output::page::Spot;
 use crate::output::{
     Figure, Folder, Named, NewFile, OutputError, Scene, Subject, TableWriter, pretty, render,
     summary_of,
 };
 use crate::scenario::{ModelKind, Scenario};
-use crate::{Event, Model, OpenHinge, Pose, Recorder, Sample, Summary as History, Sway};
+use crate::{Event, Model, OpenHinge, Pose, Recorder, Request, Sample, Summary as History, Sway};
 
 const ROTATIONS: &str = "rotations.csv";
 const REPORT: &str = "report.html";
@@ -132,7 +136,9 @@ struct ModelResults {
 /// A scenario to run.
 struct Run<'a> {
     scenario: &'a Scenario,
-    model: Box<dyn Model>,
+    /// The scenario in the mirrored direction alone; `None` without a second direction.
+    mirrored: Option<Scenario>,
+    model: Arc<dyn Model>,
     options: &'a RunOptions,
     figure: Figure,
     /// The models of motion of all runs whose words are printed together.
@@ -240,9 +246,11 @@ impl<'a> Run<'a> {
             None => None,
         };
         let points = ObservedPoints::new(scene(scenario, &*model), &options.points_m)?;
+        let has_second = scenario.has_second_direction(&*model);
         Ok(Self {
             scenario,
-            model,
+            mirrored: has_second.then(|| scenario.in_directions(Directions::Mirrored)),
+            model: Arc::from(model),
             options,
             figure,
             all_models,
@@ -283,13 +291,18 @@ impl<'a> Run<'a> {
         let mut drawings = Drawings::new(self, &names);
         // Created before the history starts, so a folder that cannot be written costs no simulation.
         let mut files = TableFiles::create(&sinks, &names)?;
-        let repeats = !self.options.no_repeat && model.row().is_some();
-        let repetitions = repeats.then(|| Repetitions::start(model, ground, &request));
-        let variations = match self.options.no_repeat {
-            true => Vec::new(),
-            false => scenario.variations().map_err(StudyError::failed)?,
-        };
-        let variations = Variations::start(variations, ground, &request);
+        let repetitions = self
+            .repeats()
+            .then(|| Repetitions::start(model, ground, &request));
+        let mirrored = self.mirrored.as_ref();
+        let mirrored_request = mirrored.map(Scenario::request);
+        let mirrored = mirrored.zip(mirrored_request.as_ref());
+        let mirrored = mirrored.map(|(turned, request)| {
+            let has_page = names.contains(&REPORT);
+            MirroredRun::start(self, (turned, request), has_page)
+        });
+        let mirrored = mirrored.transpose()?;
+        let variations = self.variations(scenario, &request)?;
         let duration_ms = (request.end_s * MILLISECONDS).round() as usize;
         let (history, rows) = {
             let streamed = sinks.rotations.map(|output| (ROTATIONS, output));
@@ -312,7 +325,13 @@ impl<'a> Run<'a> {
             });
             repetitions.compare(&history)
         });
-        let varied = variations.wait();
+        let mirrored = mirrored.map(MirroredRun::finish);
+        let varied_mirrored = mirrored.iter().flat_map(|run| run.varied.iter().cloned());
+        let mut varied_mirrored = varied_mirrored.map(Some);
+        let varied = variations.wait().into_iter();
+        let varied: Vec<VariedRun> = varied
+            .map(|own| (own, varied_mirrored.next().flatten()))
+            .collect();
         let mut summary = Summary::of(&ComputedRun {
             scenario,
             model,
@@ -320,11 +339,13 @@ impl<'a> Run<'a> {
             impacts: mem::take(&mut drawings.notable),
             repeated: repeated.as_ref(),
             varied: &varied,
+            mirrored: mirrored.as_ref().map(|run| run.summary.clone()),
         });
         summary.points = drawings.points.peaks();
         self.complete(&mut summary, &history, samples);
         let of_samples = samples.map_or("", |samples| &samples.words);
-        let mut texts = drawings.texts(self, &names, &history, of_samples, &summary);
+        let other = mirrored.and_then(|run| run.page);
+        let mut texts = drawings.texts(self, &names, &history, (of_samples, other), &summary);
         if names.contains(&SUMMARY) {
             texts.insert(SUMMARY, pretty(&summary_of(&summary)?));
         }
@@ -342,7 +363,7 @@ impl<'a> Run<'a> {
             })
         });
         Ok(ModelResults {
-            answer: summary.answer(scenario),
+            answer: summary.answer(scenario, model),
             summary,
             curves: drawings.curves,
             files: named.transpose()?,
@@ -351,6 +372,21 @@ impl<'a> Run<'a> {
                 None => files.with_texts(texts),
             },
         })
+    }
+
+    /// Returns whether its motions are repeated.
+    fn repeats(&self) -> bool {
+        !self.options.no_repeat && self.model.row().is_some()
+    }
+
+    /// Starts the motions with other properties, in the direction of a scenario.
+    fn variations(&self, scenario: &Scenario, request: &Request) -> Result<Variations, StudyError> {
+        let variations = match self.options.no_repeat {
+            true => Vec::new(),
+            false => scenario.variations().map_err(StudyError::failed)?,
+        };
+        let ground = scenario.ground_motion();
+        Ok(Variations::start(variations, ground, request))
     }
 
     /// Adds what a summary has of this computation and of the other models and samples.
@@ -459,46 +495,44 @@ impl Drawings {
         }
     }
 
-    fn sample(&mut self, sample: &Sample) {
-        self.timeline.sample(sample);
-        if let Some(report) = &mut self.report {
-            report.push(sample);
-        }
-        for snapshots in self.film.iter_mut().chain(&mut self.snapshots) {
-            snapshots.push(sample);
-        }
-        let placed = (&sample.poses[..], &sample.hinges[..]);
-        self.points.push(sample.time_s, placed, true);
-        self.curves.push(sample);
+    /// Makes the page of a history, with these words about samples, and the verdict; `None` without page.
+    fn page(
+        &self,
+        scenario: &Scenario,
+        history: &History,
+        opening: [&str; 2],
+        summary: &Summary,
+    ) -> Option<ReportPage> {
+        let points = Some(&self.points);
+        let words = render(&Words { summary });
+        let report = self.report.as_ref()?;
+        Some(report.page(scenario, history, points, opening, &words))
     }
 
-    fn event(&mut self, event: &Event) {
-        self.notable.note(event);
-        self.timeline.event(event);
-    }
-
-    /// Makes those of the pictures, and of the page with the words, that are among the files.
+    /// Makes those of the pictures, and of the page with the words, that are among the files. `other` is the history under the mirrored ground
+    /// motion; the page opens with the worse one.
     fn texts(
         &self,
         run: &Run<'_>,
         files: &[&str],
         history: &History,
-        uncertainty: &str,
+        (uncertainty, other): (&str, Option<MirroredPage>),
         summary: &Summary,
     ) -> BTreeMap<&'static str, String> {
         let (figure, title) = (run.figure, title(run.scenario));
         let subject = run.subject(title);
         let draw = || self.timeline.draw(figure, &subject, history, &self.points);
-        let report = self.report.as_ref().map(|report| {
-            let points = Some(&self.points);
-            let opening = [uncertainty, &summary.verdict_line()];
-            report.page(
-                run.scenario,
-                history,
-                points,
-                opening,
-                &render(&Words { summary }),
-            )
+        let opening = [uncertainty, &summary.verdict_line()];
+        let own = self.page(run.scenario, history, opening, summary);
+        let other = other.and_then(|other| {
+            let (history, summary) = (&other.history, &other.summary);
+            let drawings = &other.drawings;
+            drawings.page(run.mirrored.as_ref()?, history, opening, summary)
+        });
+        let report = own.map(|own| match (other, summary.worse_mirrored()) {
+            (Some(other), Some(_)) => other.beside(own).html(),
+            (Some(other), None) => own.beside(other).html(),
+            (None, _) => own.html(),
         });
         let snapshots = self.snapshots.as_ref();
         let snapshots = snapshots.map(|snapshots| snapshots.draw(figure, title));
@@ -524,6 +558,56 @@ impl Drawings {
             folder.add(&name, picture.as_bytes())?;
         }
         Ok(Some(pictures.len()))
+    }
+}
+
+impl Recorder for Drawings {
+    fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
+        self.timeline.sample(sample);
+        if let Some(report) = &mut self.report {
+            report.push(sample);
+        }
+        for snapshots in self.film.iter_mut().chain(&mut self.snapshots) {
+            snapshots.push(sample);
+        }
+        let placed = (&sample.poses[..], &sample.hinges[..]);
+        self.points.push(sample.time_s, placed, true);
+        self.curves.push(sample);
+        ControlFlow::Continue(())
+    }
+
+    fn event(&mut self, event: &Event) -> ControlFlow<()> {
+        self.notable.note(event);
+        self.timeline.event(event);
+        ControlFlow::Continue(())
+    }
+
+    fn wants_thrust_line(&self) -> bool {
+        self.report.is_some() || self.film.is_some() || self.snapshots.is_some()
+    }
+
+    fn step(&mut self, time_s: f64, poses: &[Pose], hinges: &[OpenHinge]) {
+        self.points.push(time_s, (poses, hinges), false);
+    }
+
+    fn wants_fall(&self) -> bool {
+        self.report.is_some() || self.film.is_some()
+    }
+
+    fn fall(&mut self, sample: &Sample) -> ControlFlow<()> {
+        if let Some(report) = &mut self.report {
+            report.push_fall(sample);
+        }
+        if let Some(film) = &mut self.film {
+            film.push(sample);
+        }
+        ControlFlow::Continue(())
+    }
+
+    fn fell(&mut self, end: FallEnd) {
+        if let Some(report) = &mut self.report {
+            report.end_fall(end);
+        }
     }
 }
 
@@ -668,7 +752,7 @@ impl Recorder for RunRecorder<'_, '_> {
         let (done, all) = ((sample.time_s * MILLISECONDS) as usize, self.duration_ms);
         let done = done.min(all.saturating_sub(1));
         let progress = Progress { done, all };
-        self.drawings.sample(sample);
+        let _ = self.drawings.sample(sample);
         self.status = match (self.watch)(progress) {
             ControlFlow::Continue(()) => self.tables.sample(sample).map_err(StudyError::from),
             ControlFlow::Break(()) => Err(RunnerError::Cancelled(progress).into()),
@@ -677,7 +761,7 @@ impl Recorder for RunRecorder<'_, '_> {
     }
 
     fn event(&mut self, event: &Event) -> ControlFlow<()> {
-        self.drawings.event(event);
+        let _ = self.drawings.event(event);
         // If a failed table ended the history, that end is not an event.
         if self.status.is_ok() {
             self.status = self.tables.event(event).map_err(StudyError::from);
@@ -686,9 +770,7 @@ impl Recorder for RunRecorder<'_, '_> {
     }
 
     fn wants_thrust_line(&self) -> bool {
-        let drawings = &self.drawings;
-        let shows_structure = drawings.film.is_some() || drawings.snapshots.is_some();
-        drawings.report.is_some() || shows_structure
+        self.drawings.wants_thrust_line()
     }
 
     fn clock(&self) -> Option<Duration> {
@@ -696,26 +778,18 @@ impl Recorder for RunRecorder<'_, '_> {
     }
 
     fn step(&mut self, time_s: f64, poses: &[Pose], hinges: &[OpenHinge]) {
-        self.drawings.points.push(time_s, (poses, hinges), false);
+        self.drawings.step(time_s, poses, hinges);
     }
 
     fn wants_fall(&self) -> bool {
-        self.drawings.report.is_some() || self.drawings.film.is_some()
+        self.drawings.wants_fall()
     }
 
     fn fall(&mut self, sample: &Sample) -> ControlFlow<()> {
-        if let Some(report) = &mut self.drawings.report {
-            report.push_fall(sample);
-        }
-        if let Some(film) = &mut self.drawings.film {
-            film.push(sample);
-        }
-        ControlFlow::Continue(())
+        self.drawings.fall(sample)
     }
 
     fn fell(&mut self, end: FallEnd) {
-        if let Some(report) = &mut self.drawings.report {
-            report.end_fall(end);
-        }
+        self.drawings.fell(end);
     }
 }

@@ -36,7 +36,7 @@ pub(super) fn layouts<'a>(
 }
 
 /// The body and the outline of a piece, in units of the page.
-#[derive(Serialize, Deserialize)]
+#[derive(Debug, Serialize, Deserialize)]
 pub(super) struct DrawnPiece {
     body: i64,
     outline: Vec<i64>,

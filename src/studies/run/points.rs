@@ -184,13 +184,13 @@ impl ObservedPoints {
 }
 
 /// The position of a point, and its encoded displacements.
-#[derive(Serialize, Deserialize)]
+#[derive(Debug, Serialize, Deserialize)]
 pub(super) struct PointCurves {
     at_m: Vector2<f64>,
     curves: [NamedCurve; 2],
 }
 
-#[derive(Serialize, Deserialize)]
+#[derive(Debug, Serialize, Deserialize)]
 struct NamedCurve {
     name: String,
     curve: String,

@@ -16,7 +16,7 @@ use super::packed::{
 use super::picture::LARGEST_EXCESS;
 use super::points::{ObservedPoints, PointCurves};
 use super::title;
-use crate::dynamics::{FallEnd, GroundVelocity};
+use crate::dynamics::{Direction, FallEnd, GroundVelocity};
 use crate::mechanics::{BodyPoint, Edge};
 use crate::output::caption::ground_in_words;
 use crate::output::ground::curve_g;
@@ -65,9 +65,14 @@ pub struct Report {
 }
 
 /// The page: its words, and all data that it draws. Encoded numbers are in base 64.
-#[derive(Serialize, Deserialize, Template)]
+#[derive(Debug, Serialize, Deserialize, Template)]
 #[template(path = "studies/run/report/page.html")]
 struct Page {
+    /// Direction of the ground motion.
+    direction: Direction,
+    /// The history in the other direction, which is not worse; absent without a second direction.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    other: Option<Box<Self>>,
     title: String,
     uncertainty: String,
     verdict: String,
@@ -99,11 +104,29 @@ struct Page {
     curves: Curves,
 }
 
+/// A page of a run, in one or both directions of its ground motion.
+#[derive(Debug)]
+pub struct ReportPage(Page);
+
+impl ReportPage {
+    /// Returns a page that opens with this one, and has the history of the other direction beside it.
+    #[must_use]
+    pub fn beside(mut self, other: Self) -> Self {
+        self.0.other = Some(Box::new(other.0));
+        self
+    }
+
+    /// Returns the page as HTML.
+    pub fn html(&self) -> String {
+        render(&self.0)
+    }
+}
+
 /// The number of a body, and a position.
 type Point = (i64, f64, f64);
 
 /// A dimension of the structure.
-#[derive(Serialize, Deserialize)]
+#[derive(Debug, Serialize, Deserialize)]
 struct Size {
     ends_m: [f64; 4],
     side: DimensionSide,
@@ -111,7 +134,7 @@ struct Size {
 }
 
 /// Outlines and hinges while the same hinges are open.
-#[derive(Serialize, Deserialize)]
+#[derive(Debug, Serialize, Deserialize)]
 struct Layout {
     pieces: Vec<DrawnPiece>,
     fill: Vec<DrawnPiece>,
@@ -123,7 +146,7 @@ struct Layout {
 }
 
 /// Encoded numbers of all frames, as multiples of a unit where there is one.
-#[derive(Serialize, Deserialize)]
+#[derive(Debug, Serialize, Deserialize)]
 struct Frames {
     times_s: String,
     rotations: String,
@@ -144,7 +167,7 @@ struct Frames {
 }
 
 /// Encoded curves over time.
-#[derive(Serialize, Deserialize)]
+#[derive(Debug, Serialize, Deserialize)]
 struct Curves {
     ground_g: String,
     energy: String,
@@ -212,7 +235,7 @@ impl Report {
         points: Option<&ObservedPoints>,
         [uncertainty, verdict]: [&str; 2],
         words: &str,
-    ) -> String {
+    ) -> ReportPage {
         let ground = scenario.ground_motion();
         let mut frames = self.motion.frames();
         let fall_from = frames.len();
@@ -244,7 +267,9 @@ impl Report {
         let fall_end = self.fall_end.as_ref();
         let fall_end = fall_end.filter(|end| falls || **end != FallEnd::Turned);
         let (structure, shaken) = (scenario.structure.described(), ground_in_words(scenario));
-        render(&Page {
+        ReportPage(Page {
+            direction: scenario.simulation.direction.first(),
+            other: None,
             title: title(scenario).to_owned(),
             uncertainty: uncertainty.trim_end().to_owned(),
             verdict: verdict.trim_end().to_owned(),

@@ -4,12 +4,13 @@ use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 
 use super::Scales;
+use super::directions::MirroredSummary;
 use super::feet::FeetApart;
 use super::impacts::{ImpactSummary, NotableImpacts};
 use crate::dynamics::repeatability::key;
 use crate::dynamics::{
-    EXCESS_LEVELS, ElasticSummary, HalfCycle, MODEL_LIMIT, OutcomeKind, Repeatability, RowSummary,
-    ThrustRecord, VariationResult,
+    Directions, EXCESS_LEVELS, ElasticSummary, HalfCycle, MODEL_LIMIT, OutcomeKind, Repeatability,
+    Repetition, RowSummary, ThrustRecord, VariationResult,
 };
 use crate::mechanics::Sides;
 use crate::output::mechanisms::columns;
@@ -31,8 +32,13 @@ pub struct ComputedRun<'a> {
     /// The comparison with its repetitions; `None` if the history was not repeated.
     pub repeated: Option<&'a Repeatability>,
     /// The histories with other stiffness and contact, and with rigid joints.
-    pub varied: &'a [VariationResult],
+    pub varied: &'a [VariedRun],
+    /// The result under the mirrored ground motion; `None` without a second direction.
+    pub mirrored: Option<MirroredSummary>,
 }
+
+/// A history with other properties, and that under the mirrored ground motion; `None` without a second direction.
+pub type VariedRun = (VariationResult, Option<VariationResult>);
 
 /// The summary of a run: `summary.json`. Largest rotations of the bodies have keys such as `peak_rotation_left_rad`, `peak_rotation_1_rad` for
 /// the first block of a row, or `peak_rotation_rad` for a column.
@@ -48,13 +54,17 @@ pub struct Summary {
     pub scenario: Value,
     /// Checksums of the records.
     pub record_checksums: Vec<String>,
-    /// Verdict on overturning; uncertain if the repetitions disagree.
+    /// Verdict on overturning; uncertain if the repetitions disagree. The worse one if the motion was computed in both directions.
     pub verdict: Verdict,
     /// Warnings about unlikely numbers of the scenario, and about limits of its history.
     pub warnings: Vec<String>,
     /// Outcome of the motion.
     #[serde(flatten)]
     pub outcome: OutcomeSummary,
+    /// The result under the mirrored ground motion, whose horizontal accelerations have the opposite sign; absent without a second direction. All
+    /// other results are those of the motion as given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mirrored: Option<MirroredSummary>,
     /// Time at which the simulation ended, in seconds.
     pub end_s: f64,
     /// Number of impacts; null with elastic joints, whose contact is continuous.
@@ -83,7 +93,8 @@ pub struct Summary {
     /// The friction that prevents sliding.
     #[serde(flatten)]
     pub friction: Option<FrictionDemand>,
-    /// Friction coefficient that the run and its repetitions require without slip: the condition of the answer. Null if joints slip or are elastic.
+    /// Friction coefficient that the run and its repetitions require without slip, in both directions: the condition of the answer. Null if joints slip
+    /// or are elastic.
     #[serde(default)]
     pub friction_demand: Option<f64>,
     /// Number of steps.
@@ -285,6 +296,9 @@ pub struct VariationSummary {
     /// The end of the history.
     #[serde(flatten)]
     pub end: VariationOutcome,
+    /// The end of the history under the mirrored ground motion; absent without a second direction.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mirrored: Option<VariationOutcome>,
 }
 
 /// The end of a history with other properties, or the reason why there is none.
@@ -357,16 +371,16 @@ impl Summary {
         let names = columns(&model.bodies(), "peak_rotation", "rad");
         let peaks_rad = history.peak_rotations_rad.iter().copied();
         let [first_impact, hardest_impact] = computed.impacts.before_the_end(history);
-        let count = computed.repeated.map(|repeated| &repeated.count);
         let mut summary = Self {
             program: env!("CARGO_PKG_NAME").to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             model: scenario.motion.kind,
             scenario: scenario.to_json(),
             record_checksums: scenario.record_checksums(),
-            verdict: Verdict::counted(history.outcome, count),
+            verdict: Verdict::Incomplete,
             warnings: scenario.unlikely_of(Some(model)),
             outcome: OutcomeSummary::of(history),
+            mirrored: computed.mirrored.clone(),
             end_s: history.end_s,
             impacts: history.known_impacts(),
             first_impact,
@@ -382,10 +396,7 @@ impl Summary {
                 largest_friction_demand_time_s: friction.largest.time_s,
                 lasting_friction_demand: friction.lasting,
             }),
-            friction_demand: match computed.repeated {
-                Some(repeated) => repeated.friction_demand,
-                None => history.required_friction(),
-            },
+            friction_demand: friction_demand(computed),
             steps: history.cost.steps,
             mechanisms: model
                 .as_mechanisms()
@@ -400,17 +411,17 @@ impl Summary {
             uncertain: None,
             longest_step_us: None,
         };
+        let own = summary.own_verdict();
+        let mirrored = summary.mirrored.as_ref();
+        summary.verdict = mirrored.map_or(own, |mirrored| own.max(mirrored.verdict));
         summary.warnings.extend(summary.caveats());
-        summary.to_quote = quotable::in_words(&[summary.answer(scenario)]);
+        summary.to_quote = quotable::in_words(&[summary.answer(scenario, model)]);
         summary
     }
 
     /// Returns the answer that may be quoted: a certain outcome that does not depend on the stiffness and contact of its joints.
-    pub(super) fn answer(&self, scenario: &Scenario) -> ModelAnswer {
-        let happens = match self.outcome.outcome {
-            OutcomeKind::Overturned => "overturns under",
-            _ => "survives",
-        };
+    pub(super) fn answer(&self, scenario: &Scenario, model: &dyn Model) -> ModelAnswer {
+        let [happens, direction] = self.happens(only_direction(scenario, model));
         let no_answer = match (self.verdict, self.changed_outcome()) {
             (Verdict::Incomplete, _) => Some("the run has no verdict".to_owned()),
             (Verdict::Uncertain, _) => Some("it is uncertain whether it overturns".to_owned()),
@@ -418,7 +429,7 @@ impl Summary {
                 Some("the run is not repeated yet".to_owned())
             }
             (_, Some(change)) => Some(format!(
-                "THE OUTCOME DEPENDS ON JOINT STIFFNESS AND CONTACT: it {happens} this motion as given, and {change}"
+                "THE OUTCOME DEPENDS ON JOINT STIFFNESS AND CONTACT: it {happens} this motion{direction} with the given joints, and {change}"
             )),
             _ if *self.model == ELASTIC_JOINTS && self.variations.is_empty() => {
                 Some("the dependence of the outcome on joint stiffness is unknown".to_owned())
@@ -428,11 +439,18 @@ impl Summary {
         let samples = "with the given numbers: quote the probability of [uncertain] as well";
         let samples = scenario.uncertain.as_ref().map(|_| samples.to_owned());
         let condition = samples.map_or(String::new(), |samples| format!(" ({samples})"));
-        let answer = no_answer.map_or_else(|| Ok(format!("{happens} this motion{condition}")), Err);
+        let answer = no_answer.map_or_else(
+            || Ok(format!("{happens} this motion{direction}{condition}")),
+            Err,
+        );
         let excess_ratio = self
             .mechanisms
             .as_ref()
             .and_then(|own| own.thrust_excess_ratio);
+        let mirrored = self.mirrored.as_ref();
+        let mirrored_ratio = mirrored.and_then(|mirrored| mirrored.thrust_excess_ratio);
+        // A ratio that was not followed as given is not known from the mirrored motion.
+        let excess_ratio = excess_ratio.map(|ratio| ratio.max(mirrored_ratio.unwrap_or(0.0)));
         ModelAnswer::new(
             self.model,
             scenario.structure.has_horizontal_thrust(),
@@ -441,6 +459,31 @@ impl Summary {
         )
         .with_friction(SlipWords::of(scenario).condition(self.friction_demand, "run FILE"))
     }
+}
+
+/// Returns the friction coefficient that the motion, its repetitions and the mirrored motion require without slip.
+fn friction_demand(computed: &ComputedRun<'_>) -> Option<f64> {
+    let own = match computed.repeated {
+        Some(repeated) => repeated.friction_demand,
+        None => computed.history.required_friction(),
+    };
+    let mirrored = computed.mirrored.as_ref();
+    let mirrored = mirrored.and_then(|mirrored| mirrored.friction_demand);
+    own.into_iter().chain(mirrored).reduce(f64::max)
+}
+
+/// Returns the only direction in which a motion is computed, in words, if the other direction is another problem; otherwise `None`.
+fn only_direction(scenario: &Scenario, model: &dyn Model) -> Option<&'static str> {
+    let directions = scenario.simulation.direction;
+    let (ground, request) = (scenario.ground_motion(), scenario.request());
+    let words = match directions {
+        Directions::Both => return None,
+        Directions::AsGiven => " as given",
+        Directions::Mirrored => " mirrored",
+    };
+    Directions::Both
+        .has_second(model, ground, &request)
+        .then_some(words)
 }
 
 impl GroundSummary {
@@ -549,6 +592,12 @@ impl RepeatabilitySummary {
             .collect()
     }
 
+    /// Returns whether one of the repetitions is that under the mirrored ground motion.
+    pub(super) fn is_mirrored(&self) -> bool {
+        let mut repeated = self.repeated().into_iter();
+        repeated.any(|name| name == Repetition::MIRRORED)
+    }
+
     /// Returns the opposite side of overturning, with the names of the repetitions that overturn to it; `None` if all overturn to one side.
     pub(super) fn other_side(&self) -> Option<(Sway, String)> {
         let mut others = self.other_outcomes().into_iter();
@@ -587,27 +636,46 @@ fn first_peak_rad(history: &History) -> Option<f64> {
 }
 
 impl VariationSummary {
-    fn of(VariationResult { name, result }: &VariationResult) -> Self {
+    fn of((own, mirrored): &VariedRun) -> Self {
         Self {
-            with: name.clone(),
-            end: match result {
-                Ok(history) => VariationOutcome::Computed {
-                    outcome: OutcomeSummary::of(history),
-                    first_peak_rad: first_peak_rad(history),
-                    largest_peak_rotation_rad: history.largest_rotation_rad(),
-                },
-                Err(failed) => VariationOutcome::Failed {
-                    failed: failed.clone(),
-                },
+            with: own.name.clone(),
+            end: VariationOutcome::of(own),
+            mirrored: mirrored.as_ref().map(VariationOutcome::of),
+        }
+    }
+
+    /// Returns the worse verdict of all directions; incomplete if a history failed.
+    pub(super) fn verdict(&self) -> Verdict {
+        let own = self.end.verdict();
+        let mirrored = self.mirrored.as_ref();
+        mirrored.map_or(own, |mirrored| own.max(mirrored.verdict()))
+    }
+
+    /// Returns the ends in all directions, with their names.
+    pub(super) fn ends(&self) -> impl Iterator<Item = (&'static str, &VariationOutcome)> {
+        let mirrored = self.mirrored.iter().map(|end| ("; mirrored: ", end));
+        [("", &self.end)].into_iter().chain(mirrored)
+    }
+}
+
+impl VariationOutcome {
+    fn of(VariationResult { result, .. }: &VariationResult) -> Self {
+        match result {
+            Ok(history) => Self::Computed {
+                outcome: OutcomeSummary::of(history),
+                first_peak_rad: first_peak_rad(history),
+                largest_peak_rotation_rad: history.largest_rotation_rad(),
+            },
+            Err(failed) => Self::Failed {
+                failed: failed.clone(),
             },
         }
     }
 
-    /// Returns the verdict; incomplete if the history failed.
-    pub(super) fn verdict(&self) -> Verdict {
-        match &self.end {
-            VariationOutcome::Computed { outcome, .. } => outcome.with_side().into(),
-            VariationOutcome::Failed { .. } => Verdict::Incomplete,
+    fn verdict(&self) -> Verdict {
+        match self {
+            Self::Computed { outcome, .. } => outcome.with_side().into(),
+            Self::Failed { .. } => Verdict::Incomplete,
         }
     }
 }

@@ -39,4 +39,14 @@ function* addCurves(plots, stage, data) {
   }
 }
 
+// The page has the histories of both directions of the ground motion, and shows one of them.
+document.addEventListener("change", ({ target }) => {
+  const shown = window.archrock.data;
+  if (target.id !== "direction" || !shown.other || target.value === shown.direction) return;
+  const { other } = shown;
+  other.other = shown;
+  find("happened").textContent = other.words;
+  window.archrock.renew(other);
+});
+
 createPlayer(data, addCurves);

@@ -1,0 +1,286 @@
+//! The history under the mirrored ground motion, which is computed beside the history as given.
+
+use std::mem;
+use std::sync::Arc;
+
+use askama::Template;
+use serde::{Deserialize, Serialize};
+
+use super::summary::{ComputedRun, OutcomeSummary, Summary};
+use super::{Drawings, NotableImpacts, REPORT, Run, StudyError, repeat};
+use crate::dynamics::repeatability::Repetitions;
+use crate::dynamics::{Directions, OutcomeCount, OutcomeKind, VariationResult, Variations};
+use crate::output::filters;
+use crate::scenario::Scenario;
+use crate::work::Pending;
+use crate::{Model, Request, SimulationError, Summary as History, Verdict};
+
+/// The result under the mirrored ground motion.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct MirroredSummary {
+    /// Verdict on overturning under the mirrored ground motion alone; `incomplete` if its history failed.
+    pub verdict: Verdict,
+    /// Outcome of the motion; absent if its history failed.
+    #[serde(flatten)]
+    pub outcome: Option<OutcomeSummary>,
+    /// Largest rotation of any body, in radians; null if its history failed.
+    pub largest_peak_rotation_rad: Option<f64>,
+    /// Largest rotation over that at the unstable equilibrium; absent for rows of blocks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub peak_rotation_over_critical: Option<f64>,
+    /// Largest potential energy over the barrier of the first mechanism; absent for mechanisms, and if the barrier is unknown.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub peak_potential_over_barrier: Option<f64>,
+    /// Largest excess of the thrust line of four links up to the largest rotation, over the thickness; absent for other models.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub thrust_excess_ratio: Option<f64>,
+    /// Friction coefficient that the motion and its repetitions require without slip; absent if joints slip or are elastic.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub friction_demand: Option<f64>,
+    /// Count of the outcomes of the motion and its repetitions; absent if it was not repeated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub certainty: Option<OutcomeCount>,
+    /// Reason why its history failed; absent if it was computed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub failed: Option<String>,
+}
+
+impl MirroredSummary {
+    /// Returns the result of a history, from the summary of the scenario in this direction alone.
+    pub fn of(summary: &Summary) -> Self {
+        let mechanisms = summary.mechanisms.as_ref();
+        let row = summary.row.as_ref();
+        let repeated = summary.repeatability.as_ref();
+        Self {
+            verdict: summary.own_verdict(),
+            outcome: Some(summary.outcome),
+            largest_peak_rotation_rad: Some(summary.largest_peak_rotation_rad),
+            peak_rotation_over_critical: mechanisms.and_then(|own| own.peak_rotation_over_critical),
+            peak_potential_over_barrier: row.and_then(|row| row.row.peak_potential_over_barrier),
+            thrust_excess_ratio: mechanisms.and_then(|own| own.thrust_excess_ratio),
+            friction_demand: summary.friction_demand,
+            certainty: repeated.map(|all| all.repeatability.count.clone()),
+            failed: None,
+        }
+    }
+
+    /// Returns the result of a history that failed.
+    pub fn failed(reason: impl ToString) -> Self {
+        Self {
+            verdict: Verdict::Incomplete,
+            outcome: None,
+            largest_peak_rotation_rad: None,
+            peak_rotation_over_critical: None,
+            peak_potential_over_barrier: None,
+            thrust_excess_ratio: None,
+            friction_demand: None,
+            certainty: None,
+            failed: Some(reason.to_string()),
+        }
+    }
+
+    /// Computes a scenario under its mirrored ground motion, and its repetitions if they are requested; `None` if it has no
+    /// [second direction](Scenario::has_second_direction).
+    pub fn computed(scenario: &Scenario, model: &dyn Model, repeats: bool) -> Option<Self> {
+        if !scenario.has_second_direction(model) {
+            return None;
+        }
+        let turned = scenario.in_directions(Directions::Mirrored);
+        let history = model.simulate(turned.ground_motion(), &turned.request(), None);
+        Some(match history {
+            Ok(history) => {
+                let repeated = repeats.then(|| repeat(&turned, model, &history)).flatten();
+                Self::of(&Summary::of(&ComputedRun {
+                    scenario: &turned,
+                    model,
+                    history: &history,
+                    impacts: NotableImpacts::default(),
+                    repeated: repeated.as_ref(),
+                    varied: &[],
+                    mirrored: None,
+                }))
+            }
+            Err(error) => Self::failed(error),
+        })
+    }
+}
+
+/// The end of a history in one direction.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct DirectionEnd {
+    /// True under the mirrored ground motion.
+    pub is_mirrored: bool,
+    pub verdict: Verdict,
+    pub outcome: OutcomeSummary,
+    pub largest_peak_rotation_rad: f64,
+}
+
+/// A run under the mirrored ground motion, computed in parallel with the motion as given. It makes no tables.
+pub(super) struct MirroredRun<'a> {
+    scenario: &'a Scenario,
+    model: &'a dyn Model,
+    motion: Pending<(Result<History, SimulationError>, Option<Box<Drawings>>)>,
+    repetitions: Option<Repetitions<'a>>,
+    variations: Variations,
+}
+
+/// The results of a run under the mirrored ground motion.
+pub(super) struct FinishedMirrored {
+    pub summary: MirroredSummary,
+    /// Results with other properties.
+    pub varied: Vec<VariationResult>,
+    /// The page; `None` if no page is made, or the history failed.
+    pub page: Option<MirroredPage>,
+}
+
+/// A history for its page.
+pub(super) struct MirroredPage {
+    pub history: History,
+    pub summary: Summary,
+    pub drawings: Box<Drawings>,
+}
+
+impl<'a> MirroredRun<'a> {
+    /// Starts the motion of a run, its repetitions and its variations, for the scenario in the mirrored direction, with its request. The frames of
+    /// a page are collected with `has_page`.
+    pub(super) fn start(
+        run: &'a Run<'_>,
+        (scenario, request): (&'a Scenario, &'a Request),
+        has_page: bool,
+    ) -> Result<Self, StudyError> {
+        let (ground, model) = (scenario.ground_motion(), &*run.model);
+        let mut drawings = has_page.then(|| Box::new(Drawings::new(run, &[REPORT])));
+        let (moved, own_ground, own_request) = (Arc::clone(&run.model), ground.clone(), *request);
+        let motion = Pending::start(move || {
+            let recorder = drawings.as_deref_mut().map(|drawings| drawings as _);
+            let history = moved.simulate(&own_ground, &own_request, recorder);
+            (history, drawings)
+        });
+        let repeats = run.repeats();
+        Ok(Self {
+            scenario,
+            model,
+            motion,
+            repetitions: repeats.then(|| Repetitions::start(model, ground, request)),
+            variations: run.variations(scenario, request)?,
+        })
+    }
+
+    /// Waits for the results.
+    pub(super) fn finish(self) -> FinishedMirrored {
+        let (history, mut drawings) = self.motion.wait();
+        let history = match history {
+            Ok(history) => history,
+            Err(error) => {
+                return FinishedMirrored {
+                    summary: MirroredSummary::failed(error),
+                    varied: self.variations.wait(),
+                    page: None,
+                };
+            }
+        };
+        let repetitions = self.repetitions;
+        let repeated = repetitions.map(|repetitions| repetitions.compare(&history));
+        let notable = drawings
+            .as_mut()
+            .map(|drawings| mem::take(&mut drawings.notable));
+        let mut summary = Summary::of(&ComputedRun {
+            scenario: self.scenario,
+            model: self.model,
+            history: &history,
+            impacts: notable.unwrap_or_default(),
+            repeated: repeated.as_ref(),
+            varied: &[],
+            mirrored: None,
+        });
+        // The answer is that of both directions.
+        summary.to_quote = None;
+        FinishedMirrored {
+            summary: MirroredSummary::of(&summary),
+            varied: self.variations.wait(),
+            page: drawings.map(|drawings| MirroredPage {
+                history,
+                summary,
+                drawings,
+            }),
+        }
+    }
+}
+
+/// The result under the mirrored ground motion in words, beside the verdict as given.
+#[derive(Template)]
+#[template(path = "studies/run/words/mirrored.txt")]
+pub(super) struct MirroredWords<'a> {
+    mirrored: &'a MirroredSummary,
+}
+
+impl Summary {
+    /// Returns the verdict of the motion itself, with its repetitions; [`Summary::verdict`] is the worse one of both directions.
+    pub fn own_verdict(&self) -> Verdict {
+        let repeated = self.repeatability.as_ref();
+        let count = repeated.map(|all| &all.repeatability.count);
+        Verdict::counted(self.outcome.with_side(), count)
+    }
+
+    /// Returns the worse verdict of both directions without repetitions, with which variations are compared.
+    pub(super) fn verdict_without_repetitions(&self) -> Verdict {
+        let mirrored = self.mirrored.as_ref().and_then(|mirrored| mirrored.outcome);
+        let own = Verdict::from(self.outcome.with_side());
+        mirrored.map_or(own, |mirrored| own.max(mirrored.with_side().into()))
+    }
+
+    /// Returns the result under the mirrored ground motion if its verdict is worse than that of the motion as given, or the same with a larger
+    /// rotation. Overturned structures have no largest rotation.
+    pub fn worse_mirrored(&self) -> Option<&MirroredSummary> {
+        let mirrored = self.mirrored.as_ref()?;
+        let own = self.own_verdict();
+        let has_overturned = self.outcome.outcome == OutcomeKind::Overturned;
+        let is_larger = mirrored.largest_peak_rotation_rad > Some(self.largest_peak_rotation_rad);
+        let is_worse =
+            mirrored.verdict > own || mirrored.verdict == own && is_larger && !has_overturned;
+        is_worse.then_some(mirrored)
+    }
+
+    /// Returns the end of the worse direction.
+    pub(super) fn worse(&self) -> DirectionEnd {
+        let mirrored = self.worse_mirrored().and_then(|mirrored| {
+            Some(DirectionEnd {
+                is_mirrored: true,
+                verdict: mirrored.verdict,
+                outcome: mirrored.outcome?,
+                largest_peak_rotation_rad: mirrored.largest_peak_rotation_rad?,
+            })
+        });
+        mirrored.unwrap_or(DirectionEnd {
+            is_mirrored: false,
+            verdict: self.own_verdict(),
+            outcome: self.outcome,
+            largest_peak_rotation_rad: self.largest_peak_rotation_rad,
+        })
+    }
+
+    /// Returns the words about the mirrored ground motion, and whether they precede the verdict as given, because they are worse; `None` without a
+    /// second direction.
+    pub(super) fn mirrored_words(&self) -> Option<(MirroredWords<'_>, bool)> {
+        let mirrored = self.mirrored.as_ref()?;
+        let is_worse = mirrored.verdict > self.own_verdict();
+        Some((MirroredWords { mirrored }, is_worse))
+    }
+
+    /// Returns the outcome in words that precede "this motion", with the direction in words that follow it.
+    pub(super) fn happens(&self, direction: Option<&'static str>) -> [&'static str; 2] {
+        let overturns = |verdict| verdict == Verdict::Overturns;
+        let mirrored = self.mirrored.as_ref().map(|mirrored| mirrored.verdict);
+        let direction = direction.unwrap_or_default();
+        match (overturns(self.own_verdict()), mirrored) {
+            (false, Some(mirrored)) if overturns(mirrored) => ["overturns under", " mirrored"],
+            (false, Some(_)) => ["survives", " in both directions"],
+            (true, Some(mirrored)) if overturns(mirrored) => {
+                ["overturns under", " in both directions"]
+            }
+            (true, Some(_)) => ["overturns under", " as given"],
+            (true, None) => ["overturns under", direction],
+            (false, None) => ["survives", direction],
+        }
+    }
+}
