@@ -86,7 +86,7 @@ impl FrictionCondition {
             false => format!(
                 " if {} a friction coefficient of {}",
                 self.surfaces,
-                rounded_up(self.coefficient)
+                in_digits(self.coefficient)
             ),
         }
     }
@@ -119,12 +119,16 @@ fn may_slip(coefficient: f64) -> bool {
 
 /// Returns a needed friction coefficient in words, and whether joints of stone may slip under weaker motions. `need` is a verb with its subject.
 fn needed(coefficient: f64, need: &str) -> String {
+    let need = match coefficient > MOST {
+        true => need.trim_end_matches(" up to"),
+        false => need,
+    };
     let before = if may_slip(coefficient) {
         "joints may slip before: "
     } else {
         ""
     };
-    format!("{before}{need} {}", rounded_up(coefficient))
+    format!("{before}{need} {}", in_digits(coefficient))
 }
 
 /// Returns the friction coefficient that a history needs, in words; `None` if stone certainly has it.
@@ -133,19 +137,22 @@ pub(super) fn condition_of(demand: Option<f64>) -> Option<String> {
     Some(needed(demand, NEEDS))
 }
 
-/// Returns a coefficient of friction as text, rounded up. Values above 10, which no stone has, occur at almost unloaded joints.
-fn rounded_up(coefficient: f64) -> String {
-    match coefficient > 10.0 {
-        true => "more than 10".to_owned(),
-        false => format!("{:.2}", (100.0 * coefficient - 1e-9).ceil() / 100.0),
+/// Coefficient of friction above which values are not printed. No stone has them; they occur at almost unloaded joints.
+const MOST: f64 = 10.0;
+
+/// Returns a coefficient of friction as text.
+fn in_digits(coefficient: f64) -> String {
+    match coefficient > MOST {
+        true => format!("more than {MOST}"),
+        false => format!("{coefficient:.2}"),
     }
 }
 
 /// Friction on which the survivors of a study depend.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct SurvivorFriction {
-    /// Largest friction coefficient that surviving histories and their repetitions require without slip; null if joints slip or are elastic, or if
-    /// nothing survives.
+    /// Largest friction coefficient that surviving histories inside their model and their repetitions require without slip; null if joints slip or are
+    /// elastic, or if nothing survives.
     #[serde(default)]
     pub(super) friction_demand: Option<f64>,
     /// The condition on friction, in words; absent if all stone meets it.

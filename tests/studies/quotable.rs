@@ -119,7 +119,7 @@ fn thresholds_and_runs_end_with_their_answer() {
     }
     let arch = scenarios().join("semicircle-pulse.toml");
     let said = printed(at, &["run", arch.to_str().unwrap(), "--out", "o"]);
-    let quoted = "to quote: survives this motion (needs a friction coefficient of 0.54), with four links; compare with free hinges";
+    let quoted = "to quote: survives this motion if its joints have a friction coefficient of 0.51, with four links; compare with free hinges";
     assert!(
         said.contains(quoted) && said.contains("peak rotation 45 % of overturning"),
         "{said}"

@@ -72,7 +72,7 @@ fn read(path: &Path) -> String {
 fn rows(folder: &Path) -> Vec<Row> {
     let table = Table::read(folder.join("suite.csv"));
     let columns = "record,sign,scale,peak_g,outcome,overturning_sway,impacts,impacts_before_overturning,\
-                   outcome_time_s,peak_rotation_over_critical,energy_defect_ratio,thrust_excess_ratio";
+                   outcome_time_s,peak_rotation_over_critical,energy_defect_ratio,thrust_excess_ratio,friction_demand";
     assert_eq!(table.header.join(","), columns);
     table.rows
 }

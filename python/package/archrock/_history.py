@@ -55,7 +55,8 @@ class History(Summarised):
     """The motion of a structure: samples as arrays, events, and a summary.
 
     The keys of :attr:`summary` are attributes too, such as ``outcome``, ``outcome_time_s``, ``overturning_sway`` and
-    ``largest_friction_demand``. Those of the same name come first: :attr:`impacts` are the impacts, and ``summary.impacts`` is their number.
+    ``largest_friction_demand``. Those of the same name come first: :attr:`impacts` are the impacts, and ``summary.impacts`` is their number;
+    :attr:`friction_demand` is that of the samples, and ``summary.friction_demand`` that of the run and its repetitions.
     ``outcome`` is the end of this history alone; :attr:`verdict` compares it with repetitions.
 
     Arrays use the memory of the history itself, without copies, and cannot be written to: copy an array to change it. In

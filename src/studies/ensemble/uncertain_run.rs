@@ -129,7 +129,8 @@ impl Question for Histories {
         let answers = samples.answers();
         let model = ModelCheck::of(answers.map(|answer| answer.ending.thrust_excess_ratio));
         let survivors = samples.answers().map(|answer| &answer.ending);
-        let survivors = survivors.filter(|ending| ending.verdict() == Verdict::Survives);
+        let survivors = survivors
+            .filter(|ending| ending.verdict() == Verdict::Survives && !ending.is_outside_model());
         let demands = survivors.map(|ending| ending.friction_demand);
         let study = ("run FILE", "surviving samples");
         let friction = SurvivorFriction::of(demands, samples.scenario, study);

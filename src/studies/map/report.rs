@@ -41,7 +41,8 @@ impl ReportedStudy for OverturningMap<'_> {
         let remarks = remarks(self, &cells);
         let warnings = remarks.warnings("cells");
         let survivors = cells.iter().filter_map(|cell| cell.result.as_ref().ok());
-        let survivors = survivors.filter(|ending| ending.verdict() == Verdict::Survives);
+        let survivors = survivors
+            .filter(|ending| ending.verdict() == Verdict::Survives && !ending.is_outside_model());
         let demands = survivors.map(|ending| ending.friction_demand);
         let friction = SurvivorFriction::of(demands, scenario, ("map FILE", "surviving cells"));
         let doubtful = cells.iter().filter(|cell| cell.is_doubtful());

@@ -44,8 +44,8 @@ fn cell_row(result: Result<Ending, NoHistory>) -> CellRow {
     let outside = OUTSIDE * u8::from(ending.is_outside_model());
     let mirrored = MIRRORED * u8::from(ending.direction == Direction::Mirrored);
     let both = place.zip(ending.overturning_share());
-    let survives = ending.verdict() == Verdict::Survives;
-    let demand = ending.friction_demand.filter(|_| survives);
+    let is_known = ending.verdict() == Verdict::Survives && !ending.is_outside_model();
+    let demand = ending.friction_demand.filter(|_| is_known);
     let demand = demand.map(|demand| demand as f32);
     let both = both.map(|(place, share)| {
         let place = place as u8 + outside + mirrored;
