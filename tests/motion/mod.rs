@@ -7,6 +7,7 @@ mod column;
 mod directions;
 mod elastic_joints;
 mod energy_balance;
+mod energy_decides;
 mod equivalent_block;
 mod free_hinges;
 mod ground;

@@ -122,7 +122,7 @@ fn an_elastic_row_at_rest_hardly_moves() {
     let mut outcomes = Vec::new();
     for text in [
         &format!("{column}1e-4{gabor}"),
-        &format!("{column}1e-3{gabor}"),
+        &format!("{column}1e-3{gabor}[simulation]\nduration_s = 12.0\n"),
         arch,
         slips,
         pointed,

@@ -422,18 +422,13 @@ fn a_stack_has_one_foot() {
     let elastic = |drums: usize| {
         ElasticJoints::new(stack(drums), ElasticProperties::of_stiffness(1e9)).unwrap()
     };
-    // Models with slip are never known to be safe early.
-    let models: [(&dyn Model, bool); 4] = [
-        (&rigid, true),
-        (&rigid.clone().with_options(slipping).unwrap(), false),
-        (&elastic(1), true),
-        (&elastic(2), true),
-    ];
+    let slips = rigid.clone().with_options(slipping).unwrap();
+    let models: [&dyn Model; 4] = [&rigid, &slips, &elastic(1), &elastic(2)];
     let left = pulse(Pulse::OneSine, 0.6, 0.4);
     let both = left
         .clone()
         .with_right_foot(pulse(Pulse::HalfSine, -0.8, 0.4));
-    for (model, ends_early) in models {
+    for model in models {
         let [end_s, safe_s] = [EndCondition::End, EndCondition::Safe].map(|until| {
             let of = |ground: &GroundMotion| {
                 let case = (ground.clone(), sampled(1.0, 0.01));
@@ -444,7 +439,7 @@ fn a_stack_has_one_foot() {
             assert_eq!(of(&both), alone, "{until:?}");
             alone.end_s
         });
-        assert_eq!(safe_s < end_s, ends_early, "{safe_s} {end_s}");
+        assert!(safe_s < end_s, "{safe_s} {end_s}");
     }
 }
 

@@ -9,7 +9,7 @@ use archrock::studies::map::OverturningMap;
 use archrock::studies::suite::RecordSuite;
 use archrock::studies::threshold::{EDGE_WIDTH, Factors, threshold};
 use archrock::studies::{Ending, Runner, Study};
-use archrock::{Outcome, Scenario, Summary};
+use archrock::{EndCondition, Outcome, Pulse, Scenario, Summary, Verdict};
 
 use crate::common::parsed;
 use crate::common::program::{printed, scenarios};
@@ -238,4 +238,50 @@ fn variations_count_histories_without_a_verdict() {
         assert!(words.contains(&counted), "{words}");
         assert!(said.contains(words), "{said}");
     }
+}
+
+/// Cells stop once their energy is small and decays. So a longer duration changes neither verdicts and peaks nor the number of steps of histories and
+/// repetitions. Only the prediction that a row comes to rest depends on the duration, and costs some steps.
+#[test]
+fn cells_cost_the_same_for_every_duration() {
+    let arch = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 14\n\
+                [elastic_joints]\nnormal_stiffness_gpa_m = 10.0\n[ground.one_cosine]\namplitude_g = 0.3\nduration_s = 0.3\n";
+    let axes = "[map]\nduration_s = [0.15, 0.3, 0.6]\namplitude_g = [0.2, 0.35, 0.5]\n";
+    let cells_and_steps = |duration_s: f64| {
+        let simulation = format!("[simulation]\nduration_s = {duration_s}\n");
+        let scenario = Scenario::parse(&format!("{arch}{axes}{simulation}"), "s.toml").unwrap();
+        let map = OverturningMap::of(&scenario).unwrap();
+        let cells = rows(&map, 2).into_iter();
+        let cells: Vec<Ending> = cells.map(|row| row.result.unwrap()).collect();
+        let model = scenario.model_for_many_cases().unwrap();
+        let cases: Vec<_> = (0..map.count())
+            .map(|index| {
+                let [duration_s, amplitude_g] = map.coordinates(index);
+                let pulse = Pulse::OneCosine.lasting_s(duration_s);
+                let ground = pulse.horizontal_m_s2(amplitude_g * scenario.gravity_m_s2());
+                (ground.unwrap(), scenario.request())
+            })
+            .collect();
+        let steps = |until| -> u64 {
+            let answers = model.simulate_all_until(until, &cases).into_iter();
+            answers.map(|answer| answer.unwrap().cost.steps).sum()
+        };
+        let steps = [EndCondition::Settled, EndCondition::Safe, EndCondition::End].map(steps);
+        (cells, steps)
+    };
+    let [short, middle, long] = [30.0, 100.0, 300.0].map(cells_and_steps);
+    for (cells, steps) in [&middle, &long] {
+        for (cell, due) in cells.iter().zip(&short.0) {
+            assert_eq!(cell.verdict(), due.verdict());
+            assert_eq!(cell.peak_of_row_rad(), due.peak_of_row_rad());
+        }
+        for until in [0, 1] {
+            let ratio = steps[until] as f64 / short.1[until] as f64;
+            assert!((0.8..1.25).contains(&ratio), "{steps:?} {:?}", short.1);
+        }
+    }
+    // Complete histories of survivors that vibrate take much longer.
+    assert!(short.1[2] > 2 * short.1[0], "{:?}", short.1);
+    let survives = |cell: &&Ending| cell.verdict() == Verdict::Survives;
+    assert!(short.0.iter().filter(survives).count() >= 3);
 }

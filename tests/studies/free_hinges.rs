@@ -49,7 +49,7 @@ fn single(row: &FreeHinges, map: &OverturningMap<'_>, amplitude_g: f64, duration
         .scenario
         .request_on(map.scenario.ground_motion(), &map.scenario.structure);
     let case = [(ground, request)];
-    let mut endings = Ending::until_safe(&row.clone().for_many_cases(), &case);
+    let mut endings = Ending::of_all(&row.clone().for_many_cases(), &case);
     endings.remove(0).unwrap()
 }
 

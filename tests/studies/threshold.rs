@@ -214,6 +214,7 @@ impl Model for Rule {
             outcome,
             outcome_time_s: 1.0,
             end_s: 1.0,
+            is_cut: false,
             impacts: 0,
             peak_rotations_rad: vec![0.0],
             energy_defect_ratio: 0.0,

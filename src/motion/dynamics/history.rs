@@ -12,10 +12,13 @@ use crate::mechanics::{Demand, Hinge, Lanes, Pose, Sway, Tie, TieMemory};
 /// Outcome of a history.
 ///
 /// A history is complete if the structure has overturned. It is also complete if the ground is quiet from then on, and the remaining energy above
-/// rest is at most a quarter of the energy barrier. The energy is kinetic plus potential energy, the barrier that of the first mechanism. The barrier
-/// or the energy at rest may be unknown: for joints that have slipped, feet that move differently, ties, and moved supports. The criterion then
-/// compares the largest kinetic energy of the last part of the history with the barrier of the undeformed structure with rigid joints and without
-/// ties. That is the barrier of the first mechanism if known, otherwise the least barrier to overturn the part above a joint as one block.
+/// rest is at most a quarter of the energy barrier. The energy is kinetic plus potential energy, the barrier that of the first mechanism. A history of
+/// four links, or of a column of one block, is also complete on quiet ground if the energy is below the barriers of the moving mechanism and of all that
+/// may follow it: [such a structure cannot overturn](crate::mechanics::MechanismChain::least_barrier_from).
+///
+/// The barrier of a row or its energy at rest may be unknown: for joints that have slipped, feet that move differently, ties, and moved supports. The
+/// criterion then compares the largest kinetic energy of the last part of the history with the barrier of the undeformed structure with rigid joints and
+/// without ties. That is the barrier of the first mechanism if known, otherwise the least barrier to overturn the part above a joint as one block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
@@ -32,8 +35,8 @@ pub enum Outcome {
     Overturned(Sway),
     /// Still moving at the end of a complete history: the structure survives, but has not come to rest.
     StillRocking,
-    /// The history ended too early to decide: the ground still moved, or more than a quarter of the energy barrier was left. It counts neither as
-    /// survived nor as overturned.
+    /// The history ended too early to decide: the ground still moved, or so much energy was left that the structure may overturn. It counts neither
+    /// as survived nor as overturned.
     Incomplete,
 }
 
@@ -465,6 +468,8 @@ pub struct Summary {
     pub outcome_time_s: f64,
     /// Time at which the simulation ended, in seconds.
     pub end_s: f64,
+    /// True if the simulation ended early, at an [`EndCondition`](super::EndCondition): the structure may still move afterwards.
+    pub is_cut: bool,
     /// Number of impacts.
     pub impacts: usize,
     /// Largest rotations of the bodies, without sign, in radians.
@@ -491,6 +496,9 @@ pub struct MechanismSummary {
     /// Largest excess of the thrust line up to the largest rotation, or up to overturning, over the thickness. It is computed at every step below the
     /// critical rotation, at the joints or at 49 sections of a continuous ring. `None` for a column.
     pub thrust_excess_ratio: Option<f64>,
+    /// Energy at the end over the least energy barrier of the moving mechanism and of all that may follow it, if it is below 1: the structure cannot
+    /// overturn any more. `None` for other outcomes than [`Outcome::StillRocking`], and below a quarter of the barrier.
+    pub remaining_over_barrier: Option<f64>,
 }
 
 /// Results of one kind of model only.
@@ -525,6 +533,14 @@ impl Summary {
     pub const fn peak_over_critical(&self) -> Option<f64> {
         match self.details {
             Details::Mechanisms(of) => Some(of.peak_over_critical),
+            Details::Rigid(_) | Details::Elastic(..) => None,
+        }
+    }
+
+    /// Returns the remaining energy over the barrier that it cannot pass any more, as in [`MechanismSummary`]; `None` for other models.
+    pub const fn remaining_over_barrier(&self) -> Option<f64> {
+        match self.details {
+            Details::Mechanisms(of) => of.remaining_over_barrier,
             Details::Rigid(_) | Details::Elastic(..) => None,
         }
     }

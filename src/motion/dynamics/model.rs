@@ -95,10 +95,14 @@ pub trait Model: Debug + Send + Sync {
         }
         let recorder = monitor.as_mut().map(|recorder| recorder as _);
         let mut summary = self.simulate(ground, request, recorder)?;
-        if monitor.is_some_and(|monitor| monitor.has_ended)
-            && summary.outcome == Outcome::Incomplete
-        {
-            summary.outcome = Outcome::StillRocking;
+        if monitor.is_some_and(|monitor| monitor.has_ended) {
+            summary.is_cut = true;
+            if let Outcome::Incomplete | Outcome::StillRocking = summary.outcome {
+                summary.outcome = match until {
+                    EndCondition::Settled => Outcome::Rest,
+                    _ => Outcome::StillRocking,
+                };
+            }
         }
         Ok(summary)
     }

@@ -128,7 +128,8 @@ pub struct Repeatability {
     /// Outcome of the motion itself, then those of the repetitions.
     #[serde(skip)]
     pub outcomes: Vec<Outcome>,
-    /// Half cycles of the motion itself with a peak of at least a hundredth of its largest peak.
+    /// Half cycles of the motion itself with a peak of at least a hundredth of its largest peak, up to the earliest end of a repetition that was
+    /// ended early.
     pub half_cycles: Vec<RepeatedHalfCycle>,
     /// Number of half cycles, from the first on, that are certain.
     pub same_until_half_cycle: usize,
@@ -223,6 +224,10 @@ impl Repeatability {
                 peak_rad,
             }
         };
+        // A repetition that was ended early lacks the last half cycles.
+        let cuts_s = others.iter().filter(|other| other.is_cut);
+        let until_s = cuts_s.fold(f64::INFINITY, |until_s, other| until_s.min(other.end_s));
+        cycles.retain(|cycle| cycle.start_s + cycle.duration_s < until_s);
         let half_cycles: Vec<_> = cycles.iter().copied().map(beside).collect();
         let differs = |cycle: &RepeatedHalfCycle| !cycle.is_certain();
         let parts = half_cycles.iter().position(differs);
@@ -365,7 +370,11 @@ fn started(
     ground: &GroundMotion,
     request: &Request,
 ) -> Vec<(&'static str, PendingMotion)> {
-    let start = |Repetition { name, model }| (name, start_motion(model, ground, request));
+    let case = (ground, request);
+    let start = |Repetition { name, model }| {
+        let motion = start_motion(model, EndCondition::Calm, case);
+        (name, motion)
+    };
     repetitions.into_iter().map(start).collect()
 }
 
@@ -431,9 +440,6 @@ impl Verdict {
 pub struct CheckedHistory {
     /// Summary of the history.
     pub own: Result<Summary, SimulationError>,
-    /// Time in seconds at which the history was ended early, because the structure cannot overturn and comes to rest in time; `None` for complete
-    /// histories.
-    pub safe_from_s: Option<f64>,
     /// Count of the outcomes of the history and its repetitions; `None` without repetitions.
     pub count: Option<OutcomeCount>,
     /// Largest friction coefficient that the history and its repetitions require without slip; `None` if joints slip or are elastic, or if there is
@@ -441,8 +447,7 @@ pub struct CheckedHistory {
     pub friction_demand: Option<f64>,
 }
 
-/// Computes the histories of cases, in their order, with repetitions where these may change the verdict. Histories with the early end
-/// [`EndCondition::Settled`] count as come to rest.
+/// Computes the histories of cases, in their order, with repetitions where these may change the verdict.
 pub fn checked(model: &dyn Model, cases: &[Case], until: EndCondition) -> Vec<CheckedHistory> {
     let mut checks = Checks::new(model, cases);
     checks.compute(until, cases.len());
@@ -512,8 +517,6 @@ struct Checks<'a> {
     /// Names of the repetitions.
     repetitions: Vec<&'static str>,
     waiting: VecDeque<Job>,
-    /// True if histories that were ended early count as come to rest.
-    settles: bool,
     /// Early end of the histories of the cases; their repetitions end as soon as the outcome is known.
     until: EndCondition,
     /// For each case the index of its mirrored case, which follows if the case survives or is uncertain.
@@ -540,7 +543,6 @@ impl<'a> Checks<'a> {
             cases,
             repetitions: repetitions.map(|repetition| repetition.name).collect(),
             waiting: VecDeque::new(),
-            settles: false,
             until: EndCondition::End,
             mirrored_cases: Vec::new(),
             results: cases.iter().map(|_| CaseResults::default()).collect(),
@@ -549,7 +551,6 @@ impl<'a> Checks<'a> {
 
     /// Computes the first `count` cases, with the early end `until`.
     fn compute(&mut self, until: EndCondition, count: usize) {
-        self.settles = until == EndCondition::Settled;
         // Models without repetitions are faster up to the end: an early end needs samples.
         if !self.repetitions.is_empty() {
             self.until = until;
@@ -625,24 +626,12 @@ impl<'a> Checks<'a> {
 
     /// Returns the results of all cases; `None` for mirrored cases that were not computed.
     fn answers(self) -> Vec<Option<CheckedHistory>> {
-        let each = self.results.into_iter().zip(self.cases);
-        each.map(|(results, (_, request))| {
-            let mut own = results.own?;
-            let mut safe_from_s = None;
-            if self.settles
-                && let Ok(own) = &mut own
-                && let Outcome::StillRocking | Outcome::Vibrates = own.outcome
-                && own.end_s < request.end_s
-            {
-                safe_from_s = Some(own.end_s);
-                if own.outcome == Outcome::StillRocking {
-                    own.outcome = Outcome::Rest;
-                }
-            }
+        let each = self.results.into_iter();
+        each.map(|results| {
+            let own = results.own?;
             let own_demand = own.as_ref().ok().and_then(Summary::required_friction);
             Some(CheckedHistory {
                 own,
-                safe_from_s,
                 count: results.count,
                 friction_demand: own_demand
                     .into_iter()

@@ -17,7 +17,7 @@ pub struct Request {
     /// Latest end in seconds, from 1e-6 to 1e6. A history ends earlier if the structure overturns, or rests on quiet ground.
     pub end_s: f64,
     /// Latest end of a history that would be incomplete at `end_s`, in seconds: the time after the ground motion is doubled until the outcome is known.
-    /// `None`: all histories end at `end_s`.
+    /// A history with elastic joints then also ends once its energy is small and decays. `None`: all histories end at `end_s`.
     pub outcome_by_s: Option<f64>,
     /// Interval of the samples in seconds, from 1e-6 to 1e6, for at most 1e7 samples. Some models end their steps at samples.
     pub output_step_s: f64,

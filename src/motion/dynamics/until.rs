@@ -7,12 +7,15 @@ use super::request::Request;
 use crate::dynamics::{GroundMotion, Sample, State};
 use crate::mechanics::{Joint, Row, Sway};
 
-/// End of the computation of a motion. A motion that is ended early has the outcome [`StillRocking`](super::history::Outcome::StillRocking).
+/// End of the computation of a motion. A motion that is ended early has the outcome [`Rest`](super::history::Outcome::Rest) if it is predicted to
+/// come to rest before its regular end, otherwise [`StillRocking`](super::history::Outcome::StillRocking).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EndCondition {
     /// The regular end of the history.
     End,
-    /// The structure cannot overturn, no block exceeds its largest rotation, and it comes to rest before the end of the history.
+    /// A row with elastic joints rests or only vibrates: its energy is small and decays. Other models continue to the regular end.
+    Calm,
+    /// The structure cannot overturn, and no block exceeds its largest rotation. With rigid joints it also comes to rest before the end of the history.
     Settled,
     /// The structure cannot overturn.
     Safe,
@@ -27,6 +30,12 @@ const DECAYED: f64 = 0.1;
 
 /// Slip, over the thickness of the thinnest joint, up to which the barrier is that of the row before slip.
 const COMPARABLE_SLIP: f64 = 0.01;
+
+/// Returns the slip, in metres, up to which the barrier of a row is that before slip.
+pub(super) fn comparable_slip_m(row: &Row) -> f64 {
+    let thicknesses_m = row.joints.iter().map(Joint::thickness_m);
+    COMPARABLE_SLIP * thicknesses_m.fold(f64::INFINITY, f64::min)
+}
 
 /// Number of durations of the last half cycle that must fit into the time left, so that a history comes to rest before its end. Half cycles shorten
 /// at least as fast as those of a block whose impacts leave 0.95 of the energy.
@@ -68,7 +77,7 @@ impl SafetyMonitor {
         request: &Request,
     ) -> Option<Self> {
         let rest_by_s = match until {
-            EndCondition::End => return None,
+            EndCondition::End | EndCondition::Calm => return None,
             EndCondition::Settled => request.end_s,
             EndCondition::Safe => f64::INFINITY,
         };
@@ -81,8 +90,7 @@ impl SafetyMonitor {
 
     /// Sets the row whose slips end the comparison with its barrier.
     pub(super) fn watch(&mut self, row: &Row) {
-        let thicknesses_m = row.joints.iter().map(Joint::thickness_m);
-        self.largest_slip_m = COMPARABLE_SLIP * thicknesses_m.fold(f64::INFINITY, f64::min);
+        self.largest_slip_m = comparable_slip_m(row);
     }
 
     /// Returns the longest duration of a half cycle from now on, in seconds.

@@ -1,5 +1,6 @@
 //! Variations of a motion, with other values of uncertain properties.
 
+use super::until::EndCondition;
 use crate::dynamics::{GroundMotion, Model, Request, SimulationError, Summary};
 use crate::work::Pending;
 
@@ -24,14 +25,14 @@ pub struct VariationResult {
 /// Motion whose summary is awaited later.
 pub(super) type PendingMotion = Pending<Result<Summary, SimulationError>>;
 
-/// Starts the computation of a motion.
+/// Starts the computation of a motion, with the early end `until`.
 pub(super) fn start_motion(
     model: Box<dyn Model>,
-    ground: &GroundMotion,
-    request: &Request,
+    until: EndCondition,
+    (ground, request): (&GroundMotion, &Request),
 ) -> PendingMotion {
-    let (ground, request) = (ground.clone(), *request);
-    Pending::start(move || model.simulate(&ground, &request, None))
+    let case = (ground.clone(), *request);
+    Pending::start(move || model.simulate_until(until, &case))
 }
 
 /// Motions of variations that are being computed.
@@ -40,7 +41,7 @@ pub struct Variations(Vec<(String, Result<PendingMotion, String>)>);
 impl Variations {
     /// Starts the computations.
     pub fn start(variations: Vec<Variation>, ground: &GroundMotion, request: &Request) -> Self {
-        let running = |model| start_motion(model, ground, request);
+        let running = |model| start_motion(model, EndCondition::End, (ground, request));
         let start = |variation: Variation| (variation.name, variation.model.map(running));
         Self(variations.into_iter().map(start).collect())
     }

@@ -270,6 +270,36 @@ pub trait MechanismChain: std::fmt::Debug + Send + Sync {
     fn link(&self, impacts: usize) -> Option<&Link<Self::Mechanism>> {
         self.link_from(Sway::Right, impacts)
     }
+    /// Returns the number of impacts, after a first sway to this side, from which on the mechanisms repeat in pairs; `None` while it is not known.
+    fn repeats_from(&self, first: Sway) -> Option<usize>;
+    /// Returns whether the energy barriers of the mechanisms are all that prevents overturning on quiet ground: false for a column that may turn over
+    /// the top of a lower wall behind it, which no mechanism describes.
+    fn barriers_decide(&self) -> bool {
+        true
+    }
+    /// Returns the least energy barrier of the mechanism after a number of impacts and a first sway to this side, and of all mechanisms that may follow
+    /// it, in the unit of [`Link::barrier`]. `None` if [barriers do not decide](Self::barriers_decide), or without such a mechanism.
+    ///
+    /// **On quiet ground, a structure with less energy, whose mechanism is not beyond its unstable equilibrium `q_c`, cannot overturn.** Quiet ground does no work, so kinetic plus potential energy is constant between
+    /// impacts. All mechanisms have the potential energy zero at `q = 0`, where impacts happen, and an impact leaves at most the kinetic energy before it
+    /// (restitution coefficients are at most 1). So the energy never grows. A mechanism that overturns passes `q_c`, where its potential energy is its
+    /// barrier, so its energy is at least that barrier. The mechanisms that may follow are those of the sequence after the present one, up to the end of
+    /// the sequence or its repeating pair. At rest, the ground does not push, and the structure stays.
+    ///
+    /// The links that are not known yet are computed.
+    fn least_barrier_from(&self, first: Sway, impacts: usize) -> Option<f64> {
+        let link = |index: usize| self.link_from(first, index).map(|link| link.barrier);
+        let mut least = link(impacts).filter(|_| self.barriers_decide())?;
+        for index in impacts + 1.. {
+            let Some(barrier) = link(index) else { break };
+            least = least.min(barrier);
+            // Both mechanisms of the pair have been compared.
+            if self.repeats_from(first).is_some_and(|pair| index > pair) {
+                break;
+            }
+        }
+        Some(least)
+    }
     /// Returns the hinges of the mechanism after a number of impacts, from left to right, for a sway to the given side; empty without such a
     /// mechanism.
     fn hinges(&self, impacts: usize, sway: Sway) -> Vec<Hinge>;

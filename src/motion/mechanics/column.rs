@@ -493,6 +493,8 @@ pub struct RockingColumn {
     next: Sides<Option<Link<Tilting>>>,
     /// Side of the wall behind it, towards which it cannot sway.
     wall: Option<Sway>,
+    /// True if there is a wall behind it, lower than the column, over whose top it may turn.
+    wall_is_low: bool,
     /// True if the column is its own mirror image.
     is_symmetric: bool,
 }
@@ -548,6 +550,9 @@ impl RockingColumn {
             first: Sides::of(|sway| link(sway, 1.0, 1.0)),
             next: Sides::of(next),
             wall,
+            wall_is_low: column
+                .wall()
+                .is_some_and(|(_, height_m)| height_m < column.height_m),
             is_symmetric: column.is_symmetric(),
         })
     }
@@ -631,6 +636,14 @@ impl MechanismChain for RockingColumn {
             0 => Some(self.first.to(first)),
             _ => self.next.to(self.sway_after(first, impacts)).as_ref(),
         }
+    }
+
+    fn repeats_from(&self, _: Sway) -> Option<usize> {
+        Some(1)
+    }
+
+    fn barriers_decide(&self) -> bool {
+        !self.wall_is_low
     }
 
     fn hinges(&self, impacts: usize, sway: Sway) -> Vec<Hinge> {

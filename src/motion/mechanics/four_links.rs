@@ -277,6 +277,10 @@ impl MechanismChain for FourLinks {
         link.map(|link| &link.link)
     }
 
+    fn repeats_from(&self, first: Sway) -> Option<usize> {
+        self.chain_from(first).repeats_from()
+    }
+
     fn hinges(&self, impacts: usize, sway: Sway) -> Vec<Hinge> {
         let chain = self.chain_from(sway.after(impacts));
         chain.link(impacts).map_or(Vec::new(), |link| {

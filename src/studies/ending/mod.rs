@@ -38,8 +38,8 @@ pub struct Ending {
     pub outcome: Outcome,
     /// The time of the outcome, in seconds.
     pub outcome_time_s: f64,
-    /// Time, in seconds, from which the structure can no longer overturn and will come to rest. The history was stopped at this time, so later
-    /// impacts and the time of rest are unknown. `None` if the history was computed to its end.
+    /// Time, in seconds, from which the structure can no longer overturn, and no body exceeds its largest rotation. The history was stopped at this
+    /// time, so later impacts and the time of rest are unknown. `None` if the history was computed to its end.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub safe_from_s: Option<f64>,
     /// Number of impacts; of an overturned structure, those before overturning. `None` for elastic joints, which have no impacts.
@@ -143,22 +143,9 @@ impl Ending {
     }
 
     /// Simulates several cases and returns their endings in order. A case without a history, or with a number that is not finite, has the reason
-    /// instead.
+    /// instead. A history of a row of blocks stops once it can no longer overturn and no block exceeds its largest rotation.
     pub fn of_all(model: &dyn Model, cases: &[Case]) -> Vec<Result<Self, NoHistory>> {
-        Self::checked(model, cases, EndCondition::End)
-    }
-
-    /// Simulates several cases. A history stops once it can no longer overturn and has enough time to come to rest.
-    pub fn until_safe(model: &dyn Model, cases: &[Case]) -> Vec<Result<Self, NoHistory>> {
-        Self::checked(model, cases, EndCondition::Settled)
-    }
-
-    fn checked(
-        model: &dyn Model,
-        cases: &[Case],
-        until: EndCondition,
-    ) -> Vec<Result<Self, NoHistory>> {
-        let checked = checked(model, cases, until).into_iter();
+        let checked = checked(model, cases, EndCondition::Settled).into_iter();
         checked.map(Self::of_checked).collect()
     }
 
@@ -169,25 +156,7 @@ impl Ending {
         model: &dyn Model,
         cases: &[Case],
     ) -> Vec<Result<Self, NoHistory>> {
-        Self::checked_in(directions, model, cases, EndCondition::End)
-    }
-
-    /// Simulates several cases as [`Ending::until_safe`], in these directions of their ground motion, as [`Ending::of_all_in`] does.
-    pub fn until_safe_in(
-        directions: Directions,
-        model: &dyn Model,
-        cases: &[Case],
-    ) -> Vec<Result<Self, NoHistory>> {
-        Self::checked_in(directions, model, cases, EndCondition::Settled)
-    }
-
-    fn checked_in(
-        directions: Directions,
-        model: &dyn Model,
-        cases: &[Case],
-        until: EndCondition,
-    ) -> Vec<Result<Self, NoHistory>> {
-        let checked = checked_in(directions, model, cases, until).into_iter();
+        let checked = checked_in(directions, model, cases, EndCondition::Settled).into_iter();
         let worse = |CheckedDirections { own, mirrored }| {
             let own = Self {
                 direction: directions.first(),
@@ -232,7 +201,6 @@ impl Ending {
     pub(super) fn of_checked(checked: CheckedHistory) -> Result<Self, NoHistory> {
         let summary = checked.own?;
         let CheckedHistory {
-            safe_from_s,
             count,
             friction_demand,
             ..
@@ -241,7 +209,7 @@ impl Ending {
             direction: Direction::AsGiven,
             outcome: summary.outcome,
             outcome_time_s: summary.outcome_time_s,
-            safe_from_s,
+            safe_from_s: summary.is_cut.then_some(summary.end_s),
             impacts: summary.known_impacts(),
             energy_defect_ratio: summary.energy_defect_ratio,
             peak_over_critical: summary.peak_over_critical(),

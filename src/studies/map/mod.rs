@@ -316,7 +316,7 @@ impl<'a> OverturningMap<'a> {
         let ended = match self.repeat {
             true => all_outcomes_in(directions, model, cases),
             false => {
-                let ended = Ending::until_safe_in(directions, model, cases).into_iter();
+                let ended = Ending::of_all_in(directions, model, cases).into_iter();
                 ended.map(|ending| Ok((ending?, None))).collect()
             }
         };
@@ -392,7 +392,6 @@ fn all_outcomes(model: &dyn Model, cases: &[Case]) -> Vec<Result<Ended, NoHistor
         let friction_demand = required_friction(computed.chain([&own]));
         let ending = Ending::of_checked(CheckedHistory {
             own: Ok(own),
-            safe_from_s: None,
             count: Some(count),
             friction_demand,
         })?;

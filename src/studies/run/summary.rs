@@ -185,6 +185,10 @@ pub struct MechanismResults {
     pub peak_rotation_over_critical: Option<f64>,
     /// Largest excess of the thrust line of four links up to the largest rotation, or up to overturning, over the thickness; null for a column.
     pub thrust_excess_ratio: Option<f64>,
+    /// Energy at the end over the least energy barrier of the moving mechanism and of all that may follow it, if more than a quarter of the barrier is
+    /// left on quiet ground: below 1 the structure cannot overturn any more. Absent otherwise.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub remaining_energy_over_barrier: Option<f64>,
     /// Dimensionless numbers; absent without an unstable equilibrium.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub dimensionless: Option<Dimensionless>,
@@ -531,6 +535,7 @@ impl MechanismResults {
         Self {
             peak_rotation_over_critical: history.peak_over_critical(),
             thrust_excess_ratio: history.thrust_excess_ratio(),
+            remaining_energy_over_barrier: history.remaining_over_barrier(),
             dimensionless: Scales::new(model, scenario.gravity_m_s2()).map(dimensionless),
             thrust: history.thrust.as_ref().map(thrust),
             evaluations: history.cost.evaluations,

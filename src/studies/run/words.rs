@@ -166,6 +166,11 @@ impl Summary {
         self.row.as_ref()?.row.peak_potential_over_barrier
     }
 
+    /// Returns the remaining energy over the barrier that it cannot pass any more; `None` if the verdict does not depend on it.
+    fn remaining_over_barrier(&self) -> Option<f64> {
+        self.mechanisms.as_ref()?.remaining_energy_over_barrier
+    }
+
     fn peak_over_critical(&self) -> Option<f64> {
         self.mechanisms.as_ref()?.peak_rotation_over_critical
     }

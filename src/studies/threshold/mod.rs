@@ -385,7 +385,7 @@ impl Shaking<'_> {
             let ground = self.ground.scaled(*factor);
             Ok((ground.map_err(SimulationError::from)?, *self.request))
         });
-        let endings = answered(cases, |cases| Ending::until_safe(self.model, cases));
+        let endings = answered(cases, |cases| Ending::of_all(self.model, cases));
         let samples = factors.iter().copied().zip(endings);
         let sample = |(factor, result)| FactorSample { factor, result };
         samples.map(sample).collect()

@@ -15,7 +15,7 @@ use crate::dynamics::repeatability::LARGEST_LOSS_RATIO;
 use crate::dynamics::row::clock::Marks;
 use crate::dynamics::row::observer::{OVERTURNED_RAD, OVERTURNED_RATIO, REST_ENERGY_RATIO};
 use crate::dynamics::row::stepper::{equal_step, open_hinge};
-use crate::dynamics::until::EndCondition;
+use crate::dynamics::until::{EndCondition, comparable_slip_m};
 use crate::dynamics::{
     EventKind, GroundVelocity, MotionInput, MotionObserver, RowMotionError, Sample, Sliding,
     Stepper, Summary, TieSample,
@@ -34,6 +34,11 @@ const SAFE: f64 = 0.5;
 const DECAYED: f64 = 0.25;
 /// Factor by which energy is assumed to decay more slowly than up to now.
 const SLOWER: f64 = 4.0;
+/// Longest observation of a row that cannot overturn, to predict whether it comes to rest, over the duration of small energy at rest.
+const OBSERVED_RESTS: f64 = 8.0;
+/// Duration of vibration alone after which a motion is calm, over the duration of small energy at rest. A row that comes to rest soon has then done
+/// so.
+const CALM_RESTS: f64 = 4.0;
 /// Sway, over the mean displacement under self-weight, below which the side of the motion does not change.
 const SIDE_RATIO: f64 = 0.1;
 /// Part of a joint in contact below which the joint is drawn as a hinge.
@@ -269,37 +274,65 @@ impl<'a> Lane<'a> {
         self.lasts(since_s).then_some(since_s)
     }
 
-    /// Returns whether the outcome is certain at this energy. On quiet ground a structure gains no energy.
-    fn is_decided(&mut self, energy_j: f64, barrier_j: impl FnOnce() -> Option<f64>) -> bool {
-        // With feet that move apart, the barrier is unknown.
-        if self.feet.is_some() {
-            return false;
+    /// Ends the motion early if its end condition holds at this energy. On quiet ground a structure gains no energy.
+    fn end_early(&mut self, energy_j: f64, barrier_j: impl Fn() -> Option<f64>) {
+        if self.observer.time < self.quiet_from_s {
+            return;
         }
-        // A row beyond its barrier falls to that side, with any damping.
-        if self.until == EndCondition::End
-            || self.observer.time < self.quiet_from_s
-            || !self.monitor.moves_back
-        {
-            return false;
-        }
-        let (quiet_from_s, quiet_j) = *self
+        let (from_s, quiet_j) = *self
             .monitor
             .quiet
             .get_or_insert((self.observer.time, energy_j));
-        if self.until == EndCondition::Settled {
-            // Assume that the energy decays `SLOWER` times more slowly from now on.
-            let rate = libm::log(quiet_j / energy_j) / (self.observer.time - quiet_from_s);
-            let rests_s = SLOWER * libm::log(energy_j / self.stillness.limit_j).max(0.0) / rate;
-            let rested_s = self.observer.time + rests_s + self.observer.rest_time_s();
-            let rests = rate > 0.0 && rested_s < self.observer.input.settings.end_s;
-            if !(self.observer.moved && rests && energy_j < DECAYED * self.monitor.largest_j) {
-                return false;
-            }
+        let (observed_s, rest_s) = (self.observer.time - from_s, self.observer.rest_time_s());
+        // Assume that the energy decays `SLOWER` times more slowly from now on.
+        let rate = libm::log(quiet_j / energy_j) / observed_s;
+        let rests_s = SLOWER * libm::log(energy_j / self.stillness.limit_j).max(0.0) / rate;
+        let rested_s = self.observer.time + rests_s + rest_s;
+        let settles = self.until == EndCondition::Settled;
+        let rests = settles && rate > 0.0 && rested_s < self.observer.input.settings.end_s;
+        if self.is_calm() && barrier_j().is_some_and(|barrier_j| self.keeps_barrier(barrier_j)) {
+            self.observer.decide(rests);
+            return;
         }
+        // With feet that move apart, the barrier is unknown. A row beyond its barrier falls to that side, with any damping.
+        if self.feet.is_some() || !self.monitor.moves_back {
+            return;
+        }
+        let decayed = energy_j < DECAYED * self.monitor.largest_j;
+        let ends = match self.until {
+            EndCondition::End | EndCondition::Calm => false,
+            EndCondition::Settled => {
+                self.observer.moved && decayed && (rests || observed_s > OBSERVED_RESTS * rest_s)
+            }
+            EndCondition::Safe => true,
+        };
         let gone_j = self.observer.elastic.friction_j + self.observer.elastic.crushed_j;
-        barrier_j().is_some_and(|barrier_j| {
-            energy_j < SAFE * barrier_j && gone_j < LARGEST_LOSS_RATIO * barrier_j
-        })
+        let is_safe =
+            |barrier_j: f64| energy_j < SAFE * barrier_j && gone_j < LARGEST_LOSS_RATIO * barrier_j;
+        if ends && barrier_j().is_some_and(is_safe) {
+            self.observer.decide(rests);
+        }
+    }
+
+    /// Returns whether the motion ends because the row has only vibrated for some time, if its barrier is that of the row before.
+    fn is_calm(&self) -> bool {
+        let ends = self.until != EndCondition::End || self.observer.input.settings.ends_calm();
+        let calm_s = CALM_RESTS * self.observer.rest_time_s();
+        let since_s = self.quiet_since_s.max(self.quiet_from_s);
+        let has_lasted = self.observer.time - since_s > calm_s;
+        // A row that stands lower than before may be falling slowly.
+        let is_low = self.observer.potential < -self.monitor.vibration_j;
+        ends && has_lasted && !is_low && self.feet.is_none() && self.at_rest_since_s().is_none()
+    }
+
+    /// Returns whether crushing and slip have hardly changed the barrier. A row that has crushed may continue to crush, and fall without much energy.
+    fn keeps_barrier(&self, barrier_j: f64) -> bool {
+        let (row, summary) = (self.observer.input.row, &self.observer.row_summary);
+        let slips_little = |sliding: &Sliding| sliding.largest_m() < comparable_slip_m(row);
+        let lost_j = LARGEST_LOSS_RATIO * barrier_j;
+        self.observer.elastic.crushed_j < lost_j
+            && (self.observer.elastic.friction_j < lost_j
+                || summary.sliding.as_ref().is_none_or(slips_little))
     }
 }
 
@@ -488,9 +521,7 @@ impl<'a, const L: usize> Group<'a, L> {
         let scale_j = || *known_j.get_or_insert_with(|| barrier_j().unwrap_or(0.0));
         observer.halve_unbalanced_steps(rigid_j, scale_j);
         lane.monitor.largest_j = lane.monitor.largest_j.max(kinetic + potential);
-        if lane.is_decided(kinetic + potential, barrier_j) {
-            lane.observer.decide();
-        }
+        lane.end_early(kinetic + potential, barrier_j);
     }
 
     /// Continues a lane, or returns the result of its motion if it has ended. The lane then steps without interruption up to the next mark of its

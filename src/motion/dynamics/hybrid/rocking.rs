@@ -144,6 +144,24 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
         self.barrier_of(swing.link).min(next)
     }
 
+    /// Returns the energy on quiet ground over the least energy barrier of the moving mechanism and of all that may follow it; below 1 the structure cannot
+    /// overturn ([`MechanismChain::least_barrier_from`]). `defect` is the largest error of the energy up to now, which counts as energy. `None` if
+    /// barriers do not decide, or if the moving mechanism is beyond its unstable equilibrium, or has the energy to pass it.
+    pub fn energy_over_barriers(
+        &self,
+        swing: Swing<'a, C::Mechanism>,
+        state: &RockingState,
+        defect: f64,
+    ) -> Option<f64> {
+        let energy = self.energy(swing.link, state) + defect;
+        if state[0] >= swing.link.critical_rad || energy >= self.barrier_of(swing.link) {
+            return None;
+        }
+        let first = self.chain.sway_after(swing.sway, swing.impacts);
+        let least = self.chain.least_barrier_from(first, swing.impacts)?;
+        Some(energy / (self.gravity_m_s2 / self.chain.length_m() * least))
+    }
+
     /// Returns the sum of kinetic and potential energy of a mechanism.
     pub fn energy(&self, link: &Link<C::Mechanism>, state: &RockingState) -> f64 {
         let kinetic = 0.5 * link.mechanism.coefficients(state[0]).inertia * state[1] * state[1];

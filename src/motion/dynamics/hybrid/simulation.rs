@@ -154,16 +154,8 @@ fn history_of<C: MechanismChain + MechanismModel>(
         friction: FrictionCollector::new(),
     };
     collector.note_start(mode, state);
-    let may_overturn = |now: &StructureState<'_, C>| match now.mode {
-        Phase::Rocking(swing) => {
-            rocking.energy(swing.link, &now.state) > SAFE * rocking.barrier_ahead(swing)
-        }
-        Phase::Rest | Phase::Overturned(_) => false,
-    };
-    let finish = simulate_lengthened(mode, state, &mut settings, &mut collector, |now, end_s| {
-        let later_s = later_end_s(request.outcome_by_s, ground, end_s);
-        later_s.filter(|_| may_overturn(now))
-    })?;
+    let start = (mode, state);
+    let finish = simulate_lengthened(start, &mut settings, &mut collector, request.outcome_by_s)?;
     let now = &finish.now;
     if let Some(sampler) = collector.sampler.as_mut().filter(|_| !finish.stopped) {
         // The history ends here in any case.
@@ -172,7 +164,9 @@ fn history_of<C: MechanismChain + MechanismModel>(
     }
     collector.note_peak(now.mode, &now.state);
     collector.check_energy(now.mode, &now.state);
-    let is_incomplete = now.time_s < ground.end_s() || may_overturn(now);
+    let is_shaken = now.time_s < ground.end_s();
+    let is_incomplete = is_shaken || collector.may_overturn(now);
+    let remaining_over_barrier = collector.remaining_over_barrier(now);
     let outcome = outcome_of(now.mode, is_incomplete, collector.last_rest_s.is_some());
     let excess_ratio = collector.excess_of(outcome);
     let (mut outcome_time_s, mut peaks) = (now.time_s, collector.peaks);
@@ -190,6 +184,7 @@ fn history_of<C: MechanismChain + MechanismModel>(
         outcome,
         outcome_time_s,
         end_s: now.time_s,
+        is_cut: false,
         impacts: collector.impacts,
         peak_rotations_rad,
         energy_defect_ratio: collector.largest_defect / rocking.barrier,
@@ -202,6 +197,7 @@ fn history_of<C: MechanismChain + MechanismModel>(
         details: Details::Mechanisms(MechanismSummary {
             peak_over_critical,
             thrust_excess_ratio: C::THRUSTS.then_some(excess_ratio),
+            remaining_over_barrier: remaining_over_barrier.filter(|_| !is_incomplete),
         }),
     })
 }
@@ -217,19 +213,19 @@ const fn outcome_of<M>(mode: Mode<'_, M>, is_incomplete: bool, has_rested: bool)
     }
 }
 
-/// Runs a motion up to the end in the settings. `longer_s` returns a later end in seconds, `None` if the motion ends there.
+/// Runs a motion up to the end in the settings, and longer while it may overturn, up to `outcome_by_s` in seconds.
 fn simulate_lengthened<'a, C: MechanismChain>(
-    mode: Mode<'a, C::Mechanism>,
-    state: RockingState,
+    (mode, state): (Mode<'a, C::Mechanism>, RockingState),
     settings: &mut EngineSettings,
     collector: &mut SummaryCollector<'_, 'a, C>,
-    longer_s: impl Fn(&StructureState<'a, C>, f64) -> Option<f64>,
+    outcome_by_s: Option<f64>,
 ) -> Result<Finish<Mode<'a, C::Mechanism>, 3>, SimulationError> {
     let rocking = collector.rocking;
     let mut finish = simulate(rocking, mode, state, settings, collector)
         .map_err(SimulationError::computation)?;
     while !finish.stopped
-        && let Some(end_s) = longer_s(&finish.now, settings.end_s)
+        && collector.may_overturn(&finish.now)
+        && let Some(end_s) = later_end_s(outcome_by_s, rocking.ground, settings.end_s)
     {
         let cost = finish.cost;
         settings.end_s = end_s;
@@ -419,6 +415,32 @@ impl<'a, C: MechanismChain> SummaryCollector<'_, 'a, C> {
             Outcome::Overturned(_) => self.excess_ratio,
             _ => self.excess_at_peak,
         }
+    }
+
+    /// Returns the mechanism of a structure that rocks with more than a quarter of the energy barrier, or beyond its unstable equilibrium.
+    fn energetic_swing(&self, now: &StructureState<'a, C>) -> Option<Swing<'a, C::Mechanism>> {
+        let rocking = self.rocking;
+        let rocks = |swing: &Swing<'a, C::Mechanism>| {
+            now.state[0] >= swing.link.critical_rad
+                || rocking.energy(swing.link, &now.state) > SAFE * rocking.barrier_ahead(*swing)
+        };
+        match now.mode {
+            Phase::Rocking(swing) => Some(swing).filter(rocks),
+            Phase::Rest | Phase::Overturned(_) => None,
+        }
+    }
+
+    /// Returns [`Rocking::energy_over_barriers`] of a structure that rocks with more than a quarter of the energy barrier.
+    fn remaining_over_barrier(&self, now: &StructureState<'a, C>) -> Option<f64> {
+        let (swing, defect) = (self.energetic_swing(now)?, self.largest_defect);
+        self.rocking.energy_over_barriers(swing, &now.state, defect)
+    }
+
+    /// Returns whether a structure may still overturn on quiet ground: it rocks with more than a quarter of the energy barrier, and the barriers of
+    /// the mechanisms that may follow do not prevent it.
+    fn may_overturn(&self, now: &StructureState<'a, C>) -> bool {
+        let remaining = || self.remaining_over_barrier(now);
+        self.energetic_swing(now).is_some() && remaining().is_none_or(|ratio| ratio >= 1.0)
     }
 
     /// Updates the largest friction demand and, if it `follows` the thrust line, the largest excess.

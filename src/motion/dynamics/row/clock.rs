@@ -28,6 +28,11 @@ pub struct Settings {
 }
 
 impl Settings {
+    /// Returns whether a motion ends once elastic joints only vibrate: if its end is not given.
+    pub const fn ends_calm(&self) -> bool {
+        self.outcome_by_s.is_some()
+    }
+
     /// Returns these settings.
     ///
     /// # Errors

@@ -92,8 +92,10 @@ pub struct MotionObserver<'a> {
     /// Largest kinetic energies in the last two periods, the earlier one first, and the start of the later one.
     recent_j: [f64; 2],
     recent_from_s: f64,
-    /// True once the row certainly cannot overturn.
+    /// True once the row certainly cannot overturn and its motion is ended early.
     is_safe: bool,
+    /// True if a motion that is ended early counts as come to rest.
+    counts_as_rest: bool,
     /// True once the recorder has stopped the history.
     pub(super) stopped: bool,
     /// True once the history is complete and the fall is computed.
@@ -187,6 +189,7 @@ impl<'a> MotionObserver<'a> {
             recent_j: [0.0; 2],
             recent_from_s: start_s,
             is_safe: false,
+            counts_as_rest: false,
             stopped: false,
             is_falling: false,
             sample: Sample::default(),
@@ -217,8 +220,12 @@ impl<'a> MotionObserver<'a> {
         at_rest_since_s: impl FnOnce() -> Option<f64>,
     ) -> Option<(Outcome, f64)> {
         let closed = self.outcome_with_closed_joints();
-        let still = (closed.unwrap_or(Outcome::StillRocking), self.time);
-        if self.stopped {
+        let moving = match self.counts_as_rest {
+            true => Outcome::Rest,
+            false => Outcome::StillRocking,
+        };
+        let still = (closed.unwrap_or(moving), self.time);
+        if self.stopped || self.is_safe {
             return Some(still);
         }
         if let Some(time_s) = overturned_s {
@@ -236,7 +243,9 @@ impl<'a> MotionObserver<'a> {
     /// Lengthens a motion that would end with this outcome, if it is incomplete. Returns its new end in seconds, `None` if it ends.
     pub fn lengthened_s(&mut self, outcome: Outcome) -> Option<f64> {
         let settings = &self.input.settings;
-        let is_known = self.stopped || matches!(outcome, Outcome::Overturned(_) | Outcome::Rest);
+        let is_known = self.stopped
+            || self.is_safe
+            || matches!(outcome, Outcome::Overturned(_) | Outcome::Rest);
         if is_known || !self.is_incomplete() {
             return None;
         }
@@ -561,10 +570,10 @@ impl<'a> MotionObserver<'a> {
         }
     }
 
-    /// Ends the motion: the row cannot overturn.
-    pub const fn decide(&mut self) {
+    /// Ends the motion early: the row cannot overturn. `rests` is true if it is predicted to come to rest.
+    pub const fn decide(&mut self, rests: bool) {
         self.is_safe = true;
-        self.stopped = true;
+        self.counts_as_rest = rests;
     }
 
     /// Returns a sample without data of blocks and joints, and whether the recorder needs the thrust line.
@@ -676,6 +685,7 @@ impl<'a> MotionObserver<'a> {
             outcome,
             outcome_time_s,
             end_s: self.time,
+            is_cut: self.is_safe,
             impacts: self.impacts,
             peak_rotations_rad: self.peak_rotations_rad.clone(),
             energy_defect_ratio: self.energy_defect_ratio,

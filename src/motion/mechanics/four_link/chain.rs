@@ -99,6 +99,11 @@ impl Chain {
         &self.sections[impacts % 2]
     }
 
+    /// Returns the index of the first link of the pair that repeats; `None` while it is not known.
+    pub fn repeats_from(&self) -> Option<usize> {
+        self.pair.get().copied()
+    }
+
     /// Returns the mechanism after `index` impacts. `None` if an earlier impact stops the ring, because no admissible mechanism can follow.
     pub fn link(&self, index: usize) -> Option<&ArchLink> {
         for known in 0..MAX_CHAIN_LENGTH {
