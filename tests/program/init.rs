@@ -12,7 +12,7 @@ const OPTIONAL: [&str; 12] = [
     "density_kg_m3",
     "start_s",
     "vertical_amplitude_g",
-    "both_signs",
+    "direction",
     "time_column",
     "wrapped",
     "format",

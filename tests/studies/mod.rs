@@ -1,5 +1,6 @@
 //! Studies: their results, compared with single histories, parts with the whole, and published numbers.
 
+mod both_directions;
 mod capacity;
 mod directions;
 mod elastic_joints;

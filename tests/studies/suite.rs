@@ -777,6 +777,44 @@ fn upper_bounds_rank_no_measure() {
     }
 }
 
+/// A contradiction between `both_signs` and `direction` is refused, with the place of the older key.
+#[test]
+fn both_signs_may_not_contradict_the_direction() {
+    let folder = folder();
+    let folder = folder.path();
+    let suite = "[suite]\nrecords = 'records/*.at2'\nscales = [1.0]\nboth_signs = ";
+    let named = |direction: &str, signs: bool| {
+        let direction = format!("direction = '{direction}'\n");
+        write(
+            folder,
+            "s.toml",
+            &format!("{COLUMN}{direction}{suite}{signs}\n"),
+        );
+        Scenario::read(&folder.join("s.toml"))
+    };
+    for (direction, signs) in [("both", false), ("mirrored", false), ("as_given", true)] {
+        let errors = named(direction, signs).unwrap_err();
+        let place = errors.0[0].place.unwrap();
+        assert_eq!(
+            (errors.0.len(), place.line),
+            (1, COLUMN.lines().count() + 5)
+        );
+        let said = errors.to_string();
+        assert!(
+            said.contains(&format!("gives \"{direction}\"; leave `both_signs` out")),
+            "{said}"
+        );
+    }
+    for (direction, signs) in [("both", true), ("as_given", false)] {
+        let scenario = named(direction, signs).unwrap();
+        assert_eq!(scenario.simulation.direction.name(), direction);
+        // The directions are written by their newer name.
+        write(folder, "again.toml", &scenario.to_toml());
+        let again = Scenario::read(&folder.join("again.toml")).unwrap();
+        assert_eq!(again.simulation, scenario.simulation);
+    }
+}
+
 /// A mirrored record counts as the same record.
 #[test]
 fn mirrored_records_count_as_their_record() {

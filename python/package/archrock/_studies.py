@@ -210,6 +210,11 @@ class OverturningMap(_Plane):
         return self._plane("outcome")
 
     @property
+    def direction(self) -> npt.NDArray[np.str_]:
+        """The direction of the ground motion to which the numbers of each cell belong, ``as_given`` or ``mirrored``, shape ``(len(x), len(y))``."""
+        return self._plane("direction")
+
+    @property
     def uncertain(self) -> npt.NDArray[np.bool_]:
         """Whether overturning is uncertain, for each cell, shape ``(len(x), len(y))``."""
         return np.asarray(self.outcome == "uncertain")
@@ -335,7 +340,9 @@ class Threshold(Results):
     """Factors on a ground motion that overturn a structure: bands, safe gaps between them, and uncertain ranges.
 
     The keys of the first of ``models`` in ``threshold.json`` are attributes: ``lowest_factor``, ``None`` if no factor overturns, and the lists
-    ``bands``, ``gaps``, ``uncertain`` and ``incomplete``, whose ranges have ``from`` and ``to``.
+    ``bands``, ``gaps``, ``uncertain`` and ``incomplete``, whose ranges have ``from`` and ``to``. ``lowest_factor`` and ``survives_up_to_factor``
+    are the lower ones of both directions of the ground motion, ``direction`` is the one that governs; the lists are those of the motion as given.
+    ``mirrored`` has the lists of the mirrored motion, if the structure has a second direction.
     """
 
     __slots__ = ()
@@ -364,10 +371,16 @@ class Threshold(Results):
         ratio, rad = table["peak_rotation_over_critical"], table["peak_rotation_rad"]
         known = bool(np.isfinite(ratio).any())
         peak = np.where(table["outcome"] == "overturned", np.nan, ratio if known else rad)
-        ax.plot(table["factor"], peak, color="k", label="largest rotation")
+        mirrored = self.summary.models[0].get("mirrored") or {}
+        for direction, style, name in (("as_given", "-", ""), ("mirrored", "--", ", mirrored")):
+            rows = table["direction"] == direction
+            if rows.any():
+                ax.plot(table["factor"][rows], peak[rows], style, color="k", label=f"largest rotation{name}")
         looks: tuple[tuple[list[dict[str, Any]], str, str, str | None], ...] = (
             (self.bands, "overturns", "C3", None),
             (self.uncertain, "uncertain", "C2", "//"),
+            (mirrored.get("bands", []), "overturns, mirrored", "C1", None),
+            (mirrored.get("uncertain", []), "uncertain, mirrored", "C0", "\\\\"),
         )
         for ranges, label, color, hatch in looks:
             for index, band in enumerate(ranges):
