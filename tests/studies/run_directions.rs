@@ -1,0 +1,167 @@
+//! A run in both directions of its ground motion: summary, words and page, for all models.
+
+use std::fs;
+
+use crate::common::program::{archrock, printed, scenarios, stdout};
+use crate::common::results::{data_of, json};
+use crate::common::{COLUMN, ON_A_PIER, UNEVEN_ARCH};
+use archrock::studies::run::{page_of, words_of};
+use serde_json::Value;
+
+/// Keys of `mirrored` that are also keys of the summary in that direction alone.
+const COMMON: [&str; 7] = [
+    "outcome",
+    "outcome_time_s",
+    "overturning_sway",
+    "largest_peak_rotation_rad",
+    "peak_rotation_over_critical",
+    "peak_potential_over_barrier",
+    "thrust_excess_ratio",
+];
+
+/// The summary of a run of the scenario in the file `s.toml`.
+fn run(folder: &std::path::Path, more: &[&str]) -> Value {
+    let arguments = [&["run", "s.toml", "--format", "json"], more].concat();
+    let output = archrock(folder, &arguments);
+    assert!(output.status.success(), "{output:?}");
+    serde_json::from_str(&stdout(&output)).unwrap()
+}
+
+/// The mirrored result of `both` is the result in that direction alone; the other numbers are those of the motion as given; and the verdict is the
+/// worse one. Returns the verdicts as given and mirrored.
+fn assert_both_are_the_runs_alone(folder: &std::path::Path, more: &[&str]) -> [String; 2] {
+    let alone = |direction: &str| run(folder, &[more, &["--direction", direction]].concat());
+    let (given, turned) = (alone("as_given"), alone("mirrored"));
+    assert!(given.get("mirrored").is_none() && turned.get("mirrored").is_none());
+    let both = run(folder, more);
+    let mirrored = &both["mirrored"];
+    assert_eq!(mirrored["verdict"], turned["verdict"]);
+    for key in COMMON {
+        if let Some(value) = mirrored.get(key) {
+            assert_eq!(value, &turned[key], "{key}");
+        }
+        assert_eq!(both.get(key), given.get(key), "{key}");
+    }
+    let demand = |summary: &Value| summary["friction_demand"].as_f64();
+    assert_eq!(demand(mirrored), demand(&turned));
+    let demands = [demand(&given), demand(&turned)];
+    assert_eq!(
+        demand(&both),
+        demands.into_iter().flatten().reduce(f64::max)
+    );
+    let count = |summary: &Value| ["overturns_in", "of"].map(|key| summary[key].clone());
+    if let Some(certainty) = mirrored.get("certainty") {
+        assert_eq!(count(certainty), count(&turned["repeatability"]));
+    }
+    assert_eq!(both.get("repeatability"), given.get("repeatability"));
+    let order = ["survives", "incomplete", "uncertain", "overturns"];
+    let severity = |summary: &Value| order.iter().position(|one| summary["verdict"] == *one);
+    let verdicts = [&given, &turned].map(severity);
+    assert_eq!(severity(&both), *verdicts.iter().max().unwrap());
+    assert!(verdicts.iter().all(Option::is_some));
+    for (alone, direction) in [(&given, " as given"), (&turned, " mirrored")] {
+        if alone["verdict"] == "survives" || alone["verdict"] == "overturns" {
+            let quote = alone["to_quote"].as_str().unwrap();
+            assert!(
+                quote.contains(&format!("this motion{direction}")) || quote.contains("no answer"),
+                "{quote}"
+            );
+        }
+    }
+    [given, turned].map(|alone| alone["verdict"].as_str().unwrap().to_owned())
+}
+
+/// The scenario of the issue: as given it survives, mirrored it overturns. A negated pulse exchanges the directions.
+#[test]
+fn an_arch_on_piers_overturns_under_the_mirrored_motion() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = fs::read_to_string(scenarios().join("pointed-arch-on-piers.toml")).unwrap();
+    fs::write(folder.path().join("s.toml"), &text).unwrap();
+    let verdicts = assert_both_are_the_runs_alone(folder.path(), &["--no-repeat"]);
+    assert_eq!(verdicts, ["survives", "overturns"]);
+    assert!(text.contains("amplitude_g = -0.35"));
+    let negated = ["--set", "ground.half_sine.amplitude_g=0.35", "--no-repeat"];
+    let [own, other] = [&["--no-repeat"][..], &negated].map(|more| run(folder.path(), more));
+    assert_eq!(own["mirrored"]["outcome_time_s"], other["outcome_time_s"]);
+    assert_eq!(other["mirrored"]["outcome_time_s"], own["outcome_time_s"]);
+    assert_eq!([&own["verdict"], &other["verdict"]], ["overturns"; 2]);
+}
+
+#[test]
+fn the_verdict_of_a_run_is_that_of_the_worse_direction() {
+    let ground =
+        "[ground.one_sine]\namplitude_g = 0.35\nvertical_amplitude_g = 0.1\nduration_s = 0.6\n";
+    let load = "[[load]]\nx_m = 0.25\nheight_m = 4.0\nmass_kg = 4000.0\n";
+    let elastic = "[elastic_joints]\nnormal_stiffness_gpa_m = 5.0\n";
+    for (structure, model) in [
+        (format!("{UNEVEN_ARCH}{ON_A_PIER}"), ""),
+        (format!("{UNEVEN_ARCH}{ON_A_PIER}"), "[free_hinges]\n"),
+        (format!("{COLUMN}{load}"), ""),
+        (format!("{COLUMN}{load}"), elastic),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("s.toml");
+        fs::write(&path, format!("{structure}{model}{ground}")).unwrap();
+        assert_both_are_the_runs_alone(folder.path(), &[]);
+        if model == elastic {
+            let summary = run(folder.path(), &[]);
+            let variations = summary["variations"].as_array().unwrap();
+            assert_eq!(variations.len(), 4);
+            let turned = run(folder.path(), &["--direction", "mirrored"]);
+            for (both, alone) in variations
+                .iter()
+                .zip(turned["variations"].as_array().unwrap())
+            {
+                assert_eq!(both["mirrored"]["outcome_time_s"], alone["outcome_time_s"]);
+            }
+        }
+    }
+}
+
+/// The page opens with the worse direction and has the other one; both have the frames of the runs in one direction.
+#[test]
+fn the_page_has_both_directions() {
+    let folder = tempfile::tempdir().unwrap();
+    let ground = "[ground.one_sine]\namplitude_g = 0.3\nduration_s = 0.6\n";
+    let scenario = format!("{UNEVEN_ARCH}{ON_A_PIER}{ground}");
+    fs::write(folder.path().join("s.toml"), scenario).unwrap();
+    let page = |out: &str, direction: &str| {
+        let arguments = ["run", "s.toml", "--out", out, "--direction", direction];
+        let words = printed(folder.path(), &arguments);
+        let page = fs::read_to_string(folder.path().join(out).join("report.html")).unwrap();
+        (words, data_of(&page), page)
+    };
+    let [(_, given, alone), (_, turned, _)] = ["as_given", "mirrored"].map(|name| page(name, name));
+    let (words, both, html) = page("both", "both");
+    assert!(alone.matches("id=\"direction\"").count() == 0);
+    assert!(html.matches("id=\"direction\"").count() == 1);
+    let is_mirrored = both["direction"] == "mirrored";
+    let (first, second) = match is_mirrored {
+        true => (&turned, &given),
+        false => (&given, &turned),
+    };
+    for key in ["frames", "curves", "end_s", "opens_s", "layouts"] {
+        assert_eq!(both[key], first[key], "{key}");
+        assert_eq!(both["other"][key], second[key], "{key}");
+    }
+    let summary = json(&folder.path().join("both").join("summary.json"));
+    let larger = summary["mirrored"]["largest_peak_rotation_rad"]
+        .as_f64()
+        .unwrap()
+        > summary["largest_peak_rotation_rad"].as_f64().unwrap();
+    let verdicts = [&summary["mirrored"]["verdict"], &summary["verdict"]];
+    assert!(
+        verdicts[0] != verdicts[1] || is_mirrored == larger,
+        "{words}"
+    );
+    assert_eq!(page_of(&both.to_string()).unwrap(), html);
+    let rendered = words_of(&summary).unwrap();
+    assert!(
+        words.starts_with(rendered.trim_end()),
+        "{words}\n{rendered}"
+    );
+    assert!(
+        words.lines().next().unwrap().contains("mirrored: "),
+        "{words}"
+    );
+}
