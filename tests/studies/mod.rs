@@ -19,7 +19,6 @@ mod quotable;
 mod rendered_again;
 mod repeatability;
 mod run_column;
-mod run_directions;
 mod run_drawing_data;
 mod run_elastic_joints;
 mod run_free_hinges;
