@@ -115,7 +115,7 @@ pub fn study<'py>(
     };
     let done = compute(py, progress, kind, scenario, options, (runner, None))?;
     match done {
-        Computation::Complete(results, _) => Ok(to_python(py, results)),
+        Computation::Complete(results, _) => Ok(to_python(py, *results)),
         Computation::Partial { .. } => unreachable!("a computation in memory is no part"),
     }
 }

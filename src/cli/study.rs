@@ -357,7 +357,7 @@ impl StudyJob<'_> {
             Computation::Complete(mut results, part) => {
                 folder.map_or(Ok(()), |folder| self.write(&mut results, folder))?;
                 self.finished_parts.extend(part);
-                Ok(Some(results))
+                Ok(Some(*results))
             }
             Computation::Partial { part, cases, all } => {
                 let path = part.path().display();

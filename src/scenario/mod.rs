@@ -331,8 +331,7 @@ impl Scenario {
         initial::check_structure(table, !ties.is_empty(), motion.supports().is_some())?;
         let ground = ground?;
         let (initial, blow) = initial?.unzip();
-        let suite = suite?;
-        let simulation = suite::with_direction(table, simulation?, suite.as_ref())?;
+        let (simulation, (suite, named)) = (simulation?, suite?.unzip());
         let mut certain = Self {
             title: title.map(|title| shown(&title)),
             structure,
@@ -361,6 +360,10 @@ impl Scenario {
             },
             ground_motion: Arc::new(GroundMotion::still()),
         };
+        if let Some(named) = named.flatten() {
+            suite::check_directions(table, certain.simulation.direction, named)?;
+            certain = certain.in_directions(named);
+        }
         certain.ground_motion = Arc::new(certain.under_both_feet(ground.motion));
         let end_s = certain.request().end_s;
         certain.simulation.check_default_end(table, end_s)?;
@@ -412,7 +415,7 @@ impl Scenario {
         }
         // The older name of the key.
         if let Some(Value::Object(suite)) = given.get_mut("suite") {
-            suite.shift_remove("both_signs");
+            suite.shift_remove(suite::BOTH_SIGNS);
         }
         turned
     }

@@ -84,8 +84,6 @@ pub struct Suite {
     pub measure: Measure,
     /// The levels to which each record is scaled, above 0.
     pub levels: Sequence,
-    /// Older name of `direction` in `[simulation]`: true is "both", false is "as_given". `None` if it is not given.
-    both_signs: Option<bool>,
     /// The oscillator whose spectral acceleration is a measure of intensity.
     pub spectral: Spectral,
 }
@@ -124,8 +122,11 @@ impl Spectral {
 const MAX_CASES: usize = 1_000_000;
 
 impl Suite {
-    /// Reads `[suite]` with its records. `simulation` is `None` if `[simulation]` is faulty.
-    pub(super) fn read(table: &mut Table<'_>, simulation: Option<&Simulation>) -> ReadResult<Self> {
+    /// Reads `[suite]` with its records. Also returns the directions that `both_signs` names. `simulation` is `None` if `[simulation]` is faulty.
+    pub(super) fn read(
+        table: &mut Table<'_>,
+        simulation: Option<&Simulation>,
+    ) -> ReadResult<(Self, Option<Directions>)> {
         let patterns = table.optional(RECORDS, &one_or_more(&text()));
         let format = Format::read(table);
         let levels = Measure::ALL.iter().filter_map(|&measure| {
@@ -133,7 +134,7 @@ impl Suite {
             Some((measure, levels))
         });
         let levels: Vec<_> = levels.collect();
-        let both_signs = table.optional("both_signs", &switch());
+        let named = table.optional(BOTH_SIGNS, &switch()).map(directions_of);
         let spectral = Spectral::read(table);
         let strongest = levels.first().and_then(|(measure, levels)| {
             let level = levels.values().last().copied();
@@ -157,8 +158,7 @@ impl Suite {
         related.and(table.check_faultless())?;
         let (measure, levels) = levels.into_iter().next().ok_or(FaultRecorded)?;
         let (count, files) = (levels.values().len(), listing.len() + entries.len());
-        let own = directions_of(both_signs);
-        let directions = own.or(simulation.map(|simulation| simulation.direction));
+        let directions = named.or(simulation.map(|simulation| simulation.direction));
         let signs = 1 + usize::from(directions == Some(Directions::Both));
         let cases = files * signs * count;
         let wrong = format!(
@@ -184,14 +184,14 @@ impl Suite {
             table.fault_of_table(wrong);
         }
         table.check_faultless()?;
-        Ok(Self {
+        let suite = Self {
             records,
             has_entries,
             measure,
             levels,
-            both_signs,
             spectral,
-        })
+        };
+        Ok((suite, named))
     }
 
     /// Returns the ground motion of each record with a peak of 1 g, as the table `[ground]`, by the name of the record.
@@ -232,35 +232,31 @@ impl Serialize for Suite {
     }
 }
 
-/// Returns the directions that `both_signs` names; `None` if it is not given.
-fn directions_of(both_signs: Option<bool>) -> Option<Directions> {
-    both_signs.map(|both| match both {
+/// Older name of `direction` in `[simulation]`.
+pub(super) const BOTH_SIGNS: &str = "both_signs";
+
+/// Returns the directions that `both_signs` names.
+const fn directions_of(both_signs: bool) -> Directions {
+    match both_signs {
         true => Directions::Both,
         false => Directions::AsGiven,
-    })
+    }
 }
 
-/// Returns the settings of a simulation with the directions that `both_signs` of a suite names.
-pub(super) fn with_direction(
+/// Rejects directions that `both_signs` of a suite names, if `[simulation]` gives others.
+pub(super) fn check_directions(
     table: &mut Table<'_>,
-    mut simulation: Simulation,
-    suite: Option<&Suite>,
-) -> ReadResult<Simulation> {
-    if let Some(named) = directions_of(suite.and_then(|suite| suite.both_signs)) {
-        let (given, own) = (
-            table.gives_in("simulation", "direction"),
-            simulation.direction,
-        );
-        if given && own != named {
-            let (own, named) = (own.name(), named.name());
-            let wrong = format!(
-                "is `direction = \"{named}\"` of [simulation] by an older name, and [simulation] gives \"{own}\"; leave `both_signs` out"
-            );
-            return Err(table.wrong_in(&["suite"], "both_signs", wrong));
-        }
-        simulation.direction = named;
+    own: Directions,
+    named: Directions,
+) -> ReadResult<()> {
+    if own == named || !table.gives_in("simulation", "direction") {
+        return Ok(());
     }
-    Ok(simulation)
+    let (own, named) = (own.name(), named.name());
+    let wrong = format!(
+        "is `direction = \"{named}\"` of [simulation] by an older name, and [simulation] gives \"{own}\"; leave `both_signs` out"
+    );
+    Err(table.wrong_in(&["suite"], BOTH_SIGNS, wrong))
 }
 
 const RECORDS: &str = "records";

@@ -57,7 +57,7 @@ pub type ChooseStyle<'l> = &'l mut dyn FnMut(StudyKind, Option<&Scenario>) -> Re
 #[derive(Debug)]
 pub enum Computation {
     /// All cases, and the file that keeps their rows until the results are written; `None` if the rows are in memory.
-    Complete(Results, Option<PartFile>),
+    Complete(Box<Results>, Option<PartFile>),
     /// A part of the cases.
     Partial {
         /// The file that keeps their rows.
@@ -71,7 +71,7 @@ pub enum Computation {
 
 impl From<Results> for Computation {
     fn from(results: Results) -> Self {
-        Self::Complete(results, None)
+        Self::Complete(Box::new(results), None)
     }
 }
 
@@ -322,7 +322,8 @@ fn computed<S: ReportedStudy>(
             }
         }
     };
-    Ok(Computation::Complete(study.results(rows, style)?, part))
+    let results = Box::new(study.results(rows, style)?);
+    Ok(Computation::Complete(results, part))
 }
 
 /// Joins the parts of a study. The scenario is `given`, or is read from the parts; a suite needs none, because its records
@@ -373,7 +374,7 @@ pub fn merge(
         RowSource::Merge(parts),
         Sinks::default(),
     )? {
-        Computation::Complete(results, _) => Ok((kind, results)),
+        Computation::Complete(results, _) => Ok((kind, *results)),
         Computation::Partial { .. } => unreachable!("all parts are joined"),
     }
 }

@@ -321,10 +321,11 @@ fn printed_without(folder: &Path, options: &[&str], page: &str) {
 fn a_case_of_a_suite_is_run_by_its_command() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
-    write_suite(at, "");
+    // A load beside the axis: mirrored records are cases of their own.
+    write_suite(at, "[[load]]\nmass_kg = 800.0\nx_m = 0.2\n");
     let found = page(at, &["suite", "s.toml"], "suite.html", "suite.csv");
     found.assert_histories(at);
-    // A mirrored record falls to the other side.
+    // The column falls to the other side under a mirrored record.
     let falls = |sign: &str| {
         let mut rows = found.rows.iter().enumerate();
         let own = rows.find(|(_, row)| row["sign"] == sign && row["outcome"] == "overturned");

@@ -7,6 +7,7 @@ mod documents;
 mod init;
 mod long_work;
 mod names;
+mod one_answer;
 mod paper;
 mod proposals;
 mod public_api;

@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::slice;
 
 use archrock::scenario::{Assignment, ReadOptions, Scenario, Source};
 use serde_json::Value;
@@ -42,8 +43,8 @@ fn other_texts() -> Vec<String> {
         format!("[basket_arch]\n{measured}[fill]\nabove_crown_m = 0.2\ndensity_kg_m3 = 1500\n"),
         format!("[elliptic_arch]\n{measured}").replace("intrados", "extrados"),
         format!("[pointed_arch]\n{measured}").replace("rise_m = 2", "rise_m = 4"),
-        format!("[arch]\nmean_radius_m = 3\nthickness_m = 0.6\nembrace_deg = 150\njoints_deg = [0.0, 20.0, 50.0, 75.0, 100.0, 150.0]\n[free_hinges]\n"),
-        format!("[arch]\nspan_m = 6\nembrace_deg = 160\nthickness_ratio = 0.15\nmeasured_at = 'extrados'\n[impact]\nmodel = 'prescribed'\nrestitution = 0.8\n"),
+        String::from("[arch]\nmean_radius_m = 3\nthickness_m = 0.6\nembrace_deg = 150\njoints_deg = [0.0, 20.0, 50.0, 75.0, 100.0, 150.0]\n[free_hinges]\n"),
+        String::from("[arch]\nspan_m = 6\nembrace_deg = 160\nthickness_ratio = 0.15\nmeasured_at = 'extrados'\n[impact]\nmodel = 'prescribed'\nrestitution = 0.8\n"),
         format!("{drums}drum_heights_m = [1.0, 1.0, 2.0]\n[free_hinges]\n"),
         format!("{drums}drums = 4\ntop_width_m = 0.7\n[elastic_joints]\nnormal_stiffness_gpa_m = 10\ndamping_ratio = 0.05\ndamping_frequency_hz = 10\n"),
         format!("{drums}drums = 4\n[elastic_joints]\nstone_modulus_gpa = 20.0\nmortar_modulus_gpa = 2.0\nmortar_thickness_m = 0.01\n"),
@@ -166,8 +167,8 @@ fn check(text: &Text, written: &Text, scenario: &Scenario, (key, own): (&str, &V
         true => set,
         false => set.replace(".0", ""),
     };
-    let by_set = text.read(&[set.clone()]);
-    let on_written = written.read(&[set]);
+    let by_set = text.read(slice::from_ref(&set));
+    let on_written = written.read(slice::from_ref(&set));
     let by_axis = scenario.with_values(&[(key, value)]);
     match by_set {
         Ok(by_set) => {

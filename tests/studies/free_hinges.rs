@@ -314,7 +314,7 @@ fn results_do_not_depend_on_threads_and_parts() {
     let whole = files(&path.join("one"));
     let table = String::from_utf8(whole["map.csv"].clone()).unwrap();
     let header = table.lines().next().unwrap();
-    assert!(header.ends_with("peak_rotation_rad,overturns_in,of,outcomes"));
+    assert!(header.ends_with("friction_demand,peak_rotation_rad,overturns_in,of,direction,outcomes"));
 
     done(path, &["map", "s.toml", "--threads", "3", "--out", "three"]);
     assert_eq!(files(&path.join("three")), whole);

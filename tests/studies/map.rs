@@ -220,7 +220,8 @@ fn threads_and_parts_do_not_change_a_bit() {
     assert_eq!(table.lines().count(), 170);
     assert!(table.starts_with(
         "duration_s,amplitude_g,outcome,overturning_sway,impacts,impacts_before_overturning,\
-         outcome_time_s,peak_rotation_over_critical,energy_defect_ratio,thrust_excess_ratio,friction_demand\n0.1,0.1,never_moved,,0,,"
+         outcome_time_s,peak_rotation_over_critical,energy_defect_ratio,thrust_excess_ratio,friction_demand,direction\n\
+         0.1,0.1,never_moved,,0,,"
     ));
 
     done(

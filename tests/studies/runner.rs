@@ -238,6 +238,6 @@ fn failed_cells_keep_their_reason() {
     let table = lines("map.csv");
     assert_eq!(
         (&*table[2], &*table[5]),
-        ("0.3,0.4,failed,,,,,,,", "0.6,0.4,failed,,,,,,,")
+        ("0.3,0.4,failed,,,,,,,,,", "0.6,0.4,failed,,,,,,,,,")
     );
 }

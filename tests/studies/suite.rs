@@ -85,18 +85,25 @@ fn mixed(levels: &str) -> String {
     )
 }
 
+/// Mirrored records of a column beside a wall are records with negative factors. A column alone is symmetric and has no such rows.
 #[test]
 fn rows_of_a_suite_equal_single_runs() {
     let folder = folder();
     let folder = folder.path();
-    for levels in ["scales = [0.5, 1.5, 4.0]", "peaks_g = [0.15, 0.45, 1.2]"] {
-        write(folder, "s.toml", &mixed(levels));
+    let wall = "[column.back]\nside = 'left'\nheight_m = 4.0\n";
+    for (levels, more, signs) in [
+        ("scales = [0.5, 1.5, 4.0]", "", 1),
+        ("peaks_g = [0.15, 0.45, 1.2]", "", 1),
+        ("scales = [0.5, 1.5, 4.0]", wall, 2),
+        ("peaks_g = [0.15, 0.45, 1.2]", wall, 2),
+    ] {
+        write(folder, "s.toml", &format!("{}{more}", mixed(levels)));
         done(folder, &["suite", "s.toml", "--out", "o", "--quiet"]);
         let rows = rows(&folder.join("o"));
-        assert_eq!(rows.len(), 3 * 2 * 3);
+        assert_eq!(rows.len(), 3 * signs * 3);
         assert!(rows.iter().any(|row| row["outcome"] == "overturned"));
         assert!(rows.iter().any(|row| row["outcome"] == "rest"));
-        for row in rows.iter().step_by(5).chain(rows.last()) {
+        for row in rows.iter().step_by(4).chain(rows.last()) {
             let signed = row.number(1) * row.number(2);
             let table = if row[0].ends_with(".csv") {
                 "acceleration_column = 'a'\nunit = 'g'\nstart_s = 1.0\n"
@@ -104,8 +111,9 @@ fn rows_of_a_suite_equal_single_runs() {
                 ""
             };
             let file = &row[0];
-            let text =
-                format!("{COLUMN}[ground.record]\nfile = '{file}'\nscale = {signed:?}\n{table}");
+            let text = format!(
+                "{COLUMN}direction = 'as_given'\n[ground.record]\nfile = '{file}'\nscale = {signed:?}\n{table}{more}"
+            );
             write(folder, "run.toml", &text);
             done(folder, &["run", "run.toml", "--out", "r", "--quiet"]);
             let run = json(&folder.join("r/summary.json"));
@@ -212,7 +220,7 @@ fn the_curve_is_the_fit_of_the_rows() {
     let levels = Table::read(results.join("fragility.csv"));
     assert_eq!(levels.header[0], "peak_g");
     let levels = levels.rows;
-    assert_eq!((rows.len(), levels.len()), (320, 20));
+    assert_eq!((rows.len(), levels.len()), (160, 20));
     let median = fragility["median"].as_f64().unwrap();
     let mut log_likelihood = 0.0;
     for level in &levels {
@@ -251,7 +259,7 @@ fn the_curve_is_the_fit_of_the_rows() {
         let value = fragility[key].as_f64().unwrap();
         assert!(plain > 0.0 && by_record > 0.0 && plain < value && by_record < value);
     }
-    shows(&said, &[320.0, fragility["median"].as_f64().unwrap()]);
+    shows(&said, &[160.0, fragility["median"].as_f64().unwrap()]);
     golden("suite", &said);
     // The printed output has the edges of capacities.csv, and states where no edge was searched for.
     let capacities = Table::read(results.join("capacities.csv")).rows;
@@ -368,7 +376,7 @@ fn patterns_and_lists_are_the_same_suite() {
             );
         }
     }
-    assert_eq!(rows(&folder.join("o0")).len(), 3 * 2 * 2);
+    assert_eq!(rows(&folder.join("o0")).len(), 3 * 2);
 
     // The same files under other names count once.
     let records = "['records/*.at2', 'records/../records/*.at2']";
@@ -811,8 +819,33 @@ fn both_signs_may_not_contradict_the_direction() {
         // The directions are written by their newer name.
         write(folder, "again.toml", &scenario.to_toml());
         let again = Scenario::read(&folder.join("again.toml")).unwrap();
-        assert_eq!(again.simulation, scenario.simulation);
+        assert_eq!(again, scenario);
     }
+}
+
+/// Samples have the directions of their scenario, also by the older name `both_signs`.
+#[test]
+fn samples_have_the_directions_of_both_signs() {
+    let folder = folder();
+    let folder = folder.path();
+    let capacities = |direction: &str, signs: &str| {
+        let text = format!(
+            "{COLUMN}{direction}[suite]\nrecords = 'records/wave-[12].at2'\nscales = [0.5, 1.5, 4.0]\n{signs}\
+             [column.back]\nside = 'left'\nheight_m = 4.0\n\
+             [uncertain]\nsamples = 2\n'column.width_m' = {{ from = 0.7, to = 0.9 }}\n"
+        );
+        write(folder, "s.toml", &text);
+        done(folder, &["suite", "s.toml", "--out", "o", "--quiet"]);
+        Table::read(folder.join("o/uncertain_suite/capacities.csv")).rows
+    };
+    let given = capacities("direction = 'as_given'\n", "");
+    assert_eq!(given, capacities("", "both_signs = false\n"));
+    let both = capacities("", "both_signs = true\n");
+    assert_eq!(both, capacities("", ""));
+    // Two records shake the scenario and both samples.
+    assert_eq!((given.len(), both.len()), (3 * 2, 3 * 2 * 2));
+    let own: Vec<Row> = both.into_iter().filter(|row| row["sign"] == "1").collect();
+    assert_eq!(given, own);
 }
 
 /// A mirrored record counts as the same record.
@@ -867,7 +900,7 @@ fn heading() -> Heading {
 fn heading_of(model: &str) -> Heading {
     let heading = serde_json::json!({
         "title": null, "scenario": {}, "model": model, "is_arch": true, "measure": "scale", "spacing": "linear",
-        "spectral": { "period_s": 1.0, "damping_percent": 5.0 }, "warnings": [],
+        "has_both": false, "directions": "both", "spectral": { "period_s": 1.0, "damping_percent": 5.0 }, "warnings": [],
     });
     serde_json::from_value(heading).unwrap()
 }

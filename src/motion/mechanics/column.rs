@@ -403,7 +403,7 @@ impl Column {
 
     /// Returns whether the column with its loads and ties is its own mirror image, without a wall behind it. See [`Row::is_symmetric`].
     pub fn is_symmetric(&self) -> bool {
-        self.back.is_none() && self.row().is_ok_and(|row| row.is_symmetric())
+        self.wall().is_none() && self.row().is_ok_and(|row| row.is_symmetric())
     }
 
     /// Returns its drums as a row of blocks, on ground that extends beyond the base, or on a pedestal.

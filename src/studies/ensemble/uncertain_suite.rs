@@ -214,7 +214,7 @@ impl Question for Capacities {
             for direction in directions(scenario, &self.suite, &*model) {
                 edges.push(edge(record, *direction)?);
             }
-            while edges.len() % self.signs() > 0 {
+            while !edges.len().is_multiple_of(self.signs()) {
                 edges.extend(edges.last().cloned());
             }
         }

@@ -167,7 +167,7 @@ impl<'s> MapChart<'s> {
         let figure = style.figure;
         let [x_label, y_label] = match style.factors {
             Some(_) => ["p t_p", "a / A_L"],
-            None => map.axes.map(|axis| label(axis)),
+            None => map.axes.map(label),
         };
         let mut chart = Chart::new(560.0, (x_label, x), (y_label, y));
         // The stroke closes gaps between cells.

@@ -115,11 +115,14 @@ pub(super) struct DirectionEnd {
     pub largest_peak_rotation_rad: f64,
 }
 
+/// A history, and its drawings if a page is made.
+type DrawnHistory = (Result<History, SimulationError>, Option<Box<Drawings>>);
+
 /// A run under the mirrored ground motion, computed in parallel with the motion as given. It makes no tables.
 pub(super) struct MirroredRun<'a> {
     scenario: &'a Scenario,
     model: &'a dyn Model,
-    motion: Pending<(Result<History, SimulationError>, Option<Box<Drawings>>)>,
+    motion: Pending<DrawnHistory>,
     repetitions: Option<Repetitions<'a>>,
     variations: Variations,
 }
