@@ -232,7 +232,7 @@ fn all_ways_to_change_a_number_agree() {
         }
     });
     let [agree, refused] = counts.into_inner().unwrap();
-    assert!(agree > 250 && refused > 100, "{agree} {refused}");
+    assert!(agree > 250 && refused > 30, "{agree} {refused}");
 }
 
 /// Checks all keys of a text. Returns the number of changes that are allowed and refused.
@@ -251,7 +251,11 @@ fn check_text(text: &Text) -> [usize; 2] {
             numbers(name, table, &mut keys);
         }
     }
-    for (key, value) in ALTERNATIVES {
+    let has_table = |key: &str| {
+        let name = key.split('.').next().unwrap();
+        scenario.to_json().get(name).is_some()
+    };
+    for (key, value) in ALTERNATIVES.into_iter().filter(|(key, _)| has_table(key)) {
         let is_whole = ["voussoirs", "drums", "blocks", "contact_points"];
         let value = match is_whole.iter().any(|end| key.ends_with(end)) {
             true => Value::from(value as i64),

@@ -19,7 +19,7 @@ use super::runner::Study;
 use crate::dynamics::repeatability::{CheckedHistory, required_friction};
 use crate::dynamics::{Direction, Directions, OutcomeCount, Repetition};
 use crate::scenario::{Axis, Ground, ModelError, Quantity, Scaling, Scenario};
-use crate::{Case, GroundMotion, Model, PulseShape, SimulationError, Summary};
+use crate::{Case, FourLinks, GroundMotion, Model, PulseShape, SimulationError, Summary};
 
 /// A cell of a map.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -71,6 +71,8 @@ pub struct OverturningMap<'a> {
     pub values: [Vec<f64>; 2],
     /// True if the repetitions of each cell are computed, to count its outcomes.
     pub(super) repeat: bool,
+    /// Four links of the arch of `base`; `None` inside if it has none.
+    links: OnceLock<Option<FourLinks>>,
     /// Models that several cells share.
     models: Shared<Result<Arc<dyn Model>, ModelError>>,
     pulses: Shared<PulseShape>,
@@ -205,6 +207,7 @@ impl<'a> OverturningMap<'a> {
             pulses: Shared::new(counts, depends(&[Changes::Ground, Changes::Duration])),
             quantities,
             paths,
+            links: OnceLock::new(),
             base: Arc::new(base),
             variants: has_variants.then(|| Shared::new(counts, variants)),
             values,
@@ -263,9 +266,32 @@ impl<'a> OverturningMap<'a> {
     /// Returns the model of motion of a cell, whose scenario has the values of keys outside `[map]`.
     fn model(&self, index: usize, scenario: &Scenario) -> Result<Arc<dyn Model>, ModelError> {
         self.models.get(self.place(index), || {
+            if let Some(links) = self.links_of_size(scenario) {
+                return Ok(Arc::new(links) as Arc<dyn Model>);
+            }
             let model = scenario.model_for_many_cases();
             model.map(Arc::from)
         })
+    }
+
+    /// Returns the four links of an arch that differs from that of the scenario in size only: they share the sequence of mechanisms. `None` for
+    /// other structures and models.
+    fn links_of_size(&self, scenario: &Scenario) -> Option<FourLinks> {
+        let shape = |scenario: &Scenario| {
+            let law = scenario.motion.options.law()?;
+            let arch = scenario.structure.circular()?;
+            Some((arch.thickness_ratio, arch.embrace_deg, arch.voussoirs, law))
+        };
+        let (own, other) = (shape(&self.base)?, shape(scenario)?);
+        if own != other {
+            return None;
+        }
+        let links = self.links.get_or_init(|| {
+            let arch = self.base.structure.circular()?;
+            FourLinks::of_arch(arch, own.3).ok()
+        });
+        let arch = scenario.structure.circular()?;
+        Some(links.as_ref()?.with_size_of(arch))
     }
 
     /// Returns the ground motion of a cell.
