@@ -5,10 +5,9 @@
 
 use std::ops::ControlFlow;
 
-use archrock::dynamics::Directions;
 use archrock::{
-    Column, Factors, FreeHinges, ImpactModel, Model, Pulse, Request, RockingColumn, Runner,
-    threshold,
+    Column, Directions, Factors, FreeHinges, ImpactModel, Model, Pulse, Request, RockingColumn,
+    Runner, threshold,
 };
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -87,10 +87,10 @@ pub use archrock_motion::{dynamics, mechanics};
 
 pub use argument::ArgumentError;
 pub use dynamics::{
-    Case, ElasticJoints, EndCondition, Event, EventKind, FreeHinges, GroundError, GroundMotion,
-    History, Impact, Initial, Job, Jobs, MEMORY_BYTES, MechanismModel, MemoryError, Model,
-    OpenHinge, Outcome, Pulse, PulseShape, Recorder, Request, RowModelError, RowMotionError,
-    RowOptions, Sample, Samples, SimulationError, State, Summary, WaveTrain,
+    Case, Direction, Directions, ElasticJoints, EndCondition, Event, EventKind, FreeHinges,
+    GroundError, GroundMotion, History, Impact, Initial, Job, Jobs, MEMORY_BYTES, MechanismModel,
+    MemoryError, Model, OpenHinge, Outcome, Pulse, PulseShape, Recorder, Request, RowModelError,
+    RowMotionError, RowOptions, Sample, Samples, SimulationError, State, Summary, WaveTrain,
 };
 pub use mechanics::elastic_joint::{
     Contact, ElasticProperties, JointStiffness, Materials, Stiffness,

@@ -6,9 +6,8 @@
 use std::mem;
 use std::sync::LazyLock;
 
-use super::document::Entries;
+use super::document::{Entries, KeyGroup};
 use super::prelude::*;
-use super::relation::KeyGroup;
 use super::{Scenario, span};
 
 /// The JSON schema of all tables of a scenario, and the keys that exclude or need each other.

@@ -9,7 +9,6 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::assignment::Assignment;
-use super::change;
 use super::error::{Fault, excerpt};
 use super::files::Files;
 use super::toml_text::inline;
@@ -31,6 +30,16 @@ pub(super) const NOT_FINITE: char = '\0';
 
 /// The entries of a table in the order of the file. A number that is not finite is kept as text, and a date, which no key allows, as null.
 pub(super) type Entries = Map<String, Value>;
+
+/// Keys of a table that a new value of one of them affects.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct KeyGroup {
+    /// Names of the tables around the keys, the outermost first; without numbers of list entries.
+    pub(super) tables: Vec<String>,
+    pub(super) keys: Vec<String>,
+    /// True: the keys are alternatives, so each replaces the others. False: each needs all others.
+    pub(super) are_alternatives: bool,
+}
 
 /// Largest depth of nested values. Deeper values are ignored, because no key has this depth.
 const DEEPEST: usize = 16;
@@ -174,8 +183,8 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// Applies all assignments; other values [follow](change::follow). A fault is recorded if a name is not an entry of a list.
-    pub(super) fn assign(&mut self, assignments: &'a [Assignment]) {
+    /// Applies all assignments, and returns the paths of the keys that they set. A fault is recorded if a name is not an entry of a list.
+    pub(super) fn assign(&mut self, assignments: &'a [Assignment]) -> Vec<String> {
         let mut paths = Vec::new();
         for assignment in assignments {
             self.texts.push(&assignment.text);
@@ -195,7 +204,7 @@ impl<'a> Document<'a> {
                 Err(message) => self.faults.push(Fault::new(text, 0, message)),
             }
         }
-        change::follow(&mut self.root, &paths);
+        paths
     }
 
     /// Inserts the only value of `new` at the depth of `depth` tables, as [`replace`]. Returns the paths of the replaced value, of its replacement

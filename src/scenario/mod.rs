@@ -259,7 +259,7 @@ impl Scenario {
     }
 
     /// Returns the JSON schema of all tables without meanings, and the keys that exclude or need each other.
-    fn describe() -> (Value, Vec<relation::KeyGroup>) {
+    fn describe() -> (Value, Vec<document::KeyGroup>) {
         // With a set model, tables of several models are allowed together.
         let options = ReadOptions {
             model: Some(&FOUR_LINKS),
@@ -367,13 +367,22 @@ impl Scenario {
         certain.ground_motion = Arc::new(certain.under_both_feet(ground.motion));
         let end_s = certain.request().end_s;
         certain.simulation.check_default_end(table, end_s)?;
-        let uncertain = uncertain?.map(|uncertain| match certain.unread_ground {
+        certain.with_uncertain(table, uncertain?)
+    }
+
+    /// Returns this scenario with uncertain numbers, checked against it. Without its ground motion they cannot be checked.
+    fn with_uncertain(
+        self,
+        table: &mut Table<'_>,
+        uncertain: Option<Uncertain>,
+    ) -> ReadResult<Self> {
+        let checked = uncertain.map(|uncertain| match self.unread_ground {
             Some(_) => Ok(uncertain),
-            None => uncertain.check(table, &certain),
+            None => uncertain.check(table, &self),
         });
         Ok(Self {
-            uncertain: uncertain.transpose()?,
-            ..certain
+            uncertain: checked.transpose()?,
+            ..self
         })
     }
 

@@ -2,18 +2,9 @@
 
 use serde_json::{Value, json};
 
+use super::document::KeyGroup;
 use super::error::ensure;
 use super::table::{FaultRecorded, ReadResult, Table};
-
-/// Keys of a table that a new value of one of them affects.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct KeyGroup {
-    /// Names of the tables around the keys, the outermost first; without numbers of list entries.
-    pub(super) tables: Vec<String>,
-    pub(super) keys: Vec<String>,
-    /// True: the keys are alternatives, so each replaces the others. False: each needs all others.
-    pub(super) are_alternatives: bool,
-}
 
 /// A relation between the given keys of a table.
 pub(super) enum Relation<'a> {

@@ -12,11 +12,11 @@ use std::sync::LazyLock;
 use serde_json::{Value, json};
 
 use super::assignment::Assignment;
-use super::document::{Document, Entries, Span, kind};
+use super::change;
+use super::document::{Document, Entries, KeyGroup, Span, kind};
 use super::error::{Fault, ensure, excerpt};
 use super::files::Files;
 use super::input_file::InputFile;
-use super::relation::KeyGroup;
 use super::rule::{Rule, did_you_mean};
 
 /// Error of a value that could not be read; its reason is recorded as a [`Fault`].
@@ -38,7 +38,8 @@ pub(super) fn read_text<T>(
     read: impl Reader<T>,
 ) -> Result<T, Vec<Fault>> {
     let mut document = Document::parse(text, files)?;
-    document.assign(set);
+    let set = document.assign(set);
+    change::follow(&mut document.root, &set);
     read_document(document, read)
 }
 

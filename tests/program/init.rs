@@ -7,12 +7,14 @@ use crate::common::program::{archrock, printed, stderr};
 use archrock::Scenario;
 
 /// Optional keys, which stand in comments with their defaults.
-const OPTIONAL: [&str; 12] = [
+const OPTIONAL: [&str; 14] = [
     "depth_m",
     "density_kg_m3",
     "start_s",
     "vertical_amplitude_g",
     "direction",
+    "output_step_s",
+    "gravity_m_s2",
     "time_column",
     "wrapped",
     "format",

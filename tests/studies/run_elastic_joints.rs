@@ -506,18 +506,22 @@ fn the_verdict_names_repetitions_that_overturn_to_the_other_side() {
     fs::write(folder.path().join("s.toml"), text).unwrap();
     let words = printed(folder.path(), &["run", "s.toml", "--no-report"]);
     assert!(
-        words.contains("DIFFERENT OUTCOME, overturned to the right with half steps"),
+        words.contains("DIFFERENT OUTCOME, overturned to the right with quarter steps"),
         "{words}"
     );
     assert!(
-        words.contains("overturns to the left, and to the right with half steps"),
+        words.contains("overturns to the left, and to the right with quarter steps"),
         "{words}"
     );
+    // The mirrored repetition is mirrored back: it overturns to the side of the motion as given.
+    let summary = json(&folder.path().join("results/s/summary.json"));
+    let sways = &summary["repeatability"]["overturning_sways"];
+    assert_eq!([&sways["own"], &sways["mirrored"]], ["left"; 2]);
     assert!(!words.contains("the same with other steps"), "{words}");
 }
 
 /// The block on three contact points slips a little at each impact, and more with shorter steps. The printed range is that of the repetitions,
-/// here computed again with half steps.
+/// here computed again with two thirds of the steps.
 #[test]
 fn the_largest_slip_has_the_range_of_its_repetitions() {
     let scenario = "[column]\nheight_m = 5.44\nwidth_m = 1.922\n[elastic_joints]\nnormal_stiffness_gpa_m = 100\n\
@@ -536,15 +540,15 @@ fn the_largest_slip_has_the_range_of_its_repetitions() {
         1e3 * most_m
     );
     assert!(words.contains(&ends), "{words}");
-    let half_s = 0.5 * summary["longest_step_s"].as_f64().unwrap();
-    let half = format!("elastic_joints.longest_step_s={half_s}");
+    let finer_s = 2.0 / 3.0 * summary["longest_step_s"].as_f64().unwrap();
+    let finer = format!("elastic_joints.longest_step_s={finer_s}");
     printed(
         folder.path(),
         &[
             "run",
             "s.toml",
             "--set",
-            &half,
+            &finer,
             "--no-repeat",
             "--out",
             "finer",

@@ -459,7 +459,7 @@ fn differences_of_repetitions_are_printed_and_written() {
     let results = Results::of(&free(SEVEN), &[]);
     let summary = results.summary();
     let spread = &summary["repeatability"];
-    for which in ["own", "double_steps", "landings_merged"] {
+    for which in ["own", "mirrored", "landings_merged"] {
         assert_eq!(spread["outcomes"][which], "rest");
     }
     let same = spread["same_until_half_cycle"].as_u64().unwrap();
@@ -706,13 +706,20 @@ fn a_failed_repetition_keeps_the_history_and_its_reason() {
         }
         summary
     };
+    let differs = ["friction_demand", "longest_step_us", "to_quote"];
     assert_eq!(
         without(
-            &["repeatability", "longest_step_us", "to_quote"],
+            &[&["repeatability"], &differs[..]].concat(),
             results.summary()
         ),
-        without(&["longest_step_us", "to_quote"], alone.summary())
+        without(&differs, alone.summary())
     );
+    // The friction demand is the largest of the history and its repetitions.
+    let demands = [results.summary(), alone.summary()]
+        .map(|summary| summary["friction_demand"].as_f64().unwrap());
+    assert!(demands[0] >= demands[1], "{demands:?}");
+    let own = &alone.summary()["lasting_friction_demand"];
+    assert_eq!(own.as_f64(), Some(demands[1]));
 }
 
 #[test]

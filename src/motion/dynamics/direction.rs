@@ -5,7 +5,9 @@
 //! Feet are not exchanged, and an initial rotation keeps its side, so with two feet or an initial rotation the second direction is another problem
 //! even for a symmetric structure.
 
-use crate::dynamics::{Case, Model, Outcome, Recorder, Request, SimulationError, Summary};
+use crate::dynamics::{
+    Case, Model, Outcome, Recorder, Repetition, Request, SimulationError, Summary,
+};
 use crate::dynamics::{Details, EndCondition, GroundMotion, Job, Jobs, RowSummary};
 use crate::mechanics::{Row, Sway};
 
@@ -194,6 +196,19 @@ impl RowSummary {
             && self.ties.len() == opposite.len()
         {
             self.ties = opposite.iter().map(|tie| self.ties[*tie]).collect();
+        }
+    }
+}
+
+impl Repetition {
+    /// Name of the repetition under the mirrored ground.
+    pub const MIRRORED: &'static str = "mirrored";
+
+    /// Returns the repetition of a symmetric model under the mirrored ground.
+    pub(super) fn mirrored(model: impl Model + 'static) -> Self {
+        Self {
+            name: Self::MIRRORED,
+            model: Box::new(MirroredModel(model)),
         }
     }
 }

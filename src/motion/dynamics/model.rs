@@ -5,7 +5,6 @@ use std::fmt::Debug;
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::direction::MirroredModel;
 use super::history::JointPressure;
 pub use super::recorder::{Recorder, WithoutDemand};
 use super::recording::{History, MEMORY_BYTES, MemoryError, Recording};
@@ -248,19 +247,6 @@ pub struct Repetition {
     pub name: &'static str,
     /// Copy of the model.
     pub model: Box<dyn Model>,
-}
-
-impl Repetition {
-    /// Name of the repetition under the mirrored ground.
-    pub const MIRRORED: &'static str = "mirrored";
-
-    /// Returns the repetition of a symmetric model under the mirrored ground.
-    pub(super) fn mirrored(model: impl Model + 'static) -> Self {
-        Self {
-            name: Self::MIRRORED,
-            model: Box::new(MirroredModel(model)),
-        }
-    }
 }
 
 /// Model that moves as a sequence of mechanisms with one degree of freedom, with the properties of such models.

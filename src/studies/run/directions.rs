@@ -4,46 +4,15 @@ use std::mem;
 use std::sync::Arc;
 
 use askama::Template;
-use serde::{Deserialize, Serialize};
 
-use super::summary::{ComputedRun, OutcomeSummary, Summary};
+use super::summary::{ComputedRun, MirroredSummary, OutcomeSummary, Summary, VariedRun};
 use super::{Drawings, NotableImpacts, REPORT, Run, StudyError, repeat};
 use crate::dynamics::repeatability::Repetitions;
-use crate::dynamics::{Directions, OutcomeCount, OutcomeKind, VariationResult, Variations};
+use crate::dynamics::{Directions, OutcomeKind, VariationResult, Variations};
 use crate::output::filters;
 use crate::scenario::Scenario;
 use crate::work::Pending;
 use crate::{Model, Request, SimulationError, Summary as History, Verdict};
-
-/// The result under the mirrored ground motion.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct MirroredSummary {
-    /// Verdict on overturning under the mirrored ground motion alone; `incomplete` if its history failed.
-    pub verdict: Verdict,
-    /// Outcome of the motion; absent if its history failed.
-    #[serde(flatten)]
-    pub outcome: Option<OutcomeSummary>,
-    /// Largest rotation of any body, in radians; null if its history failed.
-    pub largest_peak_rotation_rad: Option<f64>,
-    /// Largest rotation over that at the unstable equilibrium; absent for rows of blocks.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub peak_rotation_over_critical: Option<f64>,
-    /// Largest potential energy over the barrier of the first mechanism; absent for mechanisms, and if the barrier is unknown.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub peak_potential_over_barrier: Option<f64>,
-    /// Largest excess of the thrust line of four links up to the largest rotation, over the thickness; absent for other models.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub thrust_excess_ratio: Option<f64>,
-    /// Friction coefficient that the motion and its repetitions require without slip; absent if joints slip or are elastic.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub friction_demand: Option<f64>,
-    /// Count of the outcomes of the motion and its repetitions; absent if it was not repeated.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub certainty: Option<OutcomeCount>,
-    /// Reason why its history failed; absent if it was computed.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub failed: Option<String>,
-}
 
 impl MirroredSummary {
     /// Returns the result of a history, from the summary of the scenario in this direction alone.
@@ -105,6 +74,17 @@ impl MirroredSummary {
     }
 }
 
+/// Returns each result with other properties, with that under the mirrored ground motion if there is one.
+pub(super) fn in_pairs(
+    own: Vec<VariationResult>,
+    mirrored: Option<&FinishedMirrored>,
+) -> Vec<VariedRun> {
+    let mut turned = mirrored
+        .into_iter()
+        .flat_map(|run| run.varied.iter().cloned());
+    own.into_iter().map(|own| (own, turned.next())).collect()
+}
+
 /// The end of a history in one direction.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DirectionEnd {
@@ -144,13 +124,16 @@ pub(super) struct MirroredPage {
 }
 
 impl<'a> MirroredRun<'a> {
-    /// Starts the motion of a run, its repetitions and its variations, for the scenario in the mirrored direction, with its request. The frames of
-    /// a page are collected with `has_page`.
+    /// Starts the motion of a run in the mirrored direction, its repetitions and its variations; `None` without that direction. `request` is that of
+    /// the mirrored scenario. The frames of a page are collected with `has_page`.
     pub(super) fn start(
         run: &'a Run<'_>,
-        (scenario, request): (&'a Scenario, &'a Request),
+        request: Option<&'a Request>,
         has_page: bool,
-    ) -> Result<Self, StudyError> {
+    ) -> Result<Option<Self>, StudyError> {
+        let Some((scenario, request)) = run.mirrored.as_ref().zip(request) else {
+            return Ok(None);
+        };
         let (ground, model) = (scenario.ground_motion(), &*run.model);
         let mut drawings = has_page.then(|| Box::new(Drawings::new(run, &[REPORT])));
         let (moved, own_ground, own_request) = (Arc::clone(&run.model), ground.clone(), *request);
@@ -160,13 +143,13 @@ impl<'a> MirroredRun<'a> {
             (history, drawings)
         });
         let repeats = run.repeats();
-        Ok(Self {
+        Ok(Some(Self {
             scenario,
             model,
             motion,
             repetitions: repeats.then(|| Repetitions::start(model, ground, request)),
             variations: run.variations(scenario, request)?,
-        })
+        }))
     }
 
     /// Waits for the results.

@@ -4,13 +4,12 @@ use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
 
 use super::Scales;
-use super::directions::MirroredSummary;
 use super::feet::FeetApart;
 use super::impacts::{ImpactSummary, NotableImpacts};
 use crate::dynamics::repeatability::key;
 use crate::dynamics::{
-    Directions, EXCESS_LEVELS, ElasticSummary, HalfCycle, MODEL_LIMIT, OutcomeKind, Repeatability,
-    Repetition, RowSummary, ThrustRecord, VariationResult,
+    Directions, EXCESS_LEVELS, ElasticSummary, HalfCycle, MODEL_LIMIT, OutcomeCount, OutcomeKind,
+    Repeatability, Repetition, RowSummary, ThrustRecord, VariationResult,
 };
 use crate::mechanics::Sides;
 use crate::output::mechanisms::columns;
@@ -278,6 +277,36 @@ pub struct RowResults {
     pub slipped_joints: Vec<usize>,
     /// Number of systems of equations that were solved.
     pub iterations: u64,
+}
+
+/// The result under the mirrored ground motion.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct MirroredSummary {
+    /// Verdict on overturning under the mirrored ground motion alone; `incomplete` if its history failed.
+    pub verdict: Verdict,
+    /// Outcome of the motion; absent if its history failed.
+    #[serde(flatten)]
+    pub outcome: Option<OutcomeSummary>,
+    /// Largest rotation of any body, in radians; null if its history failed.
+    pub largest_peak_rotation_rad: Option<f64>,
+    /// Largest rotation over that at the unstable equilibrium; absent for rows of blocks.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub peak_rotation_over_critical: Option<f64>,
+    /// Largest potential energy over the barrier of the first mechanism; absent for mechanisms, and if the barrier is unknown.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub peak_potential_over_barrier: Option<f64>,
+    /// Largest excess of the thrust line of four links up to the largest rotation, over the thickness; absent for other models.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub thrust_excess_ratio: Option<f64>,
+    /// Friction coefficient that the motion and its repetitions require without slip; absent if joints slip or are elastic.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub friction_demand: Option<f64>,
+    /// Count of the outcomes of the motion and its repetitions; absent if it was not repeated.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub certainty: Option<OutcomeCount>,
+    /// Reason why its history failed; absent if it was computed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub failed: Option<String>,
 }
 
 /// The comparison of a motion with its repetitions.

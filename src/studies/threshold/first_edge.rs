@@ -176,29 +176,33 @@ impl FirstEdge {
                 break;
             }
         }
-        let tried = tried.into_inner();
+        Ok(edge.with_tried(tried.into_inner()))
+    }
+
+    /// Returns the edge with the results of all tried strengths, each with its share of repetitions that overturn.
+    fn with_tried(mut self, tried: Vec<([f64; 2], TriedHistory)>) -> Self {
         // The bisection of the first doubt may meet a strength that certainly overturns below one that is uncertain.
         let certain = tried.iter().filter(|(own, _)| own[1] == 1.0);
         let certain = certain.map(|(own, _)| own[0]);
-        edge.factor = edge.factor.into_iter().chain(certain).reduce(f64::min);
-        let last = edge.factor.unwrap_or(edge.tried_to);
+        self.factor = self.factor.into_iter().chain(certain).reduce(f64::min);
+        let last = self.factor.unwrap_or(self.tried_to);
         let at = |wanted: f64| {
             let mut all = tried.iter();
             let known = all.find(|([strength, _], _)| *strength == wanted);
             known.map(|(_, found)| *found).unwrap_or_default()
         };
-        edge.thrust_excess_ratio = at(last).thrust_excess_ratio;
-        edge.direction = at(edge.uncertain_from.unwrap_or(last)).direction;
-        let safe = edge.survives_up_to;
+        self.thrust_excess_ratio = at(last).thrust_excess_ratio;
+        self.direction = at(self.uncertain_from.unwrap_or(last)).direction;
+        let safe = self.survives_up_to;
         let up_to_safe = tried
             .iter()
             .filter(|([strength, _], _)| Some(*strength) <= safe);
         let demands = up_to_safe.filter_map(|(_, found)| found.friction_demand);
-        edge.friction_demand = demands.reduce(f64::max);
-        let below = |[strength, share]: &[f64; 2]| *strength < edge.strength() && *share < 1.0;
+        self.friction_demand = demands.reduce(f64::max);
+        let below = |[strength, share]: &[f64; 2]| *strength < self.strength() && *share < 1.0;
         let shares = tried.into_iter().map(|(share, _)| share);
-        edge.uncertain = ascending_weighted(shares.filter(below));
-        Ok(edge)
+        self.uncertain = ascending_weighted(shares.filter(below));
+        self
     }
 
     /// Returns the columns of an edge in a table; the name of the factor depends on the table.
