@@ -243,6 +243,7 @@ pub fn threshold(
 ) -> Result<Threshold, StudyError> {
     request.check(ground).map_err(StudyError::scenario)?;
     let shaking = Shaking {
+        direction: directions.first(),
         model,
         ground,
         request,
@@ -257,6 +258,7 @@ pub fn threshold(
             factors.truncate(below + 1);
         }
         let shaking = Shaking {
+            direction: Direction::Mirrored,
             ground: &ground.mirrored(),
             ..shaking
         };
@@ -369,9 +371,10 @@ pub fn results(
     Ok(report::report(scenarios, factors, &found, figure)?)
 }
 
-/// The model, the ground motion and the request.
+/// The model, the ground motion in a direction, and the request.
 #[derive(Clone, Copy)]
 struct Shaking<'a> {
+    direction: Direction,
     model: &'a dyn Model,
     ground: &'a GroundMotion,
     request: &'a Request,
@@ -387,7 +390,14 @@ impl Shaking<'_> {
         });
         let endings = answered(cases, |cases| Ending::of_all(self.model, cases));
         let samples = factors.iter().copied().zip(endings);
-        let sample = |(factor, result)| FactorSample { factor, result };
+        let direction = self.direction;
+        let sample = |(factor, result): (f64, Result<Ending, NoHistory>)| FactorSample {
+            factor,
+            result: result.map(|ending| Ending {
+                direction,
+                ..ending
+            }),
+        };
         samples.map(sample).collect()
     }
 

@@ -290,7 +290,10 @@ impl<'a> Lane<'a> {
         let rested_s = self.observer.time + rests_s + rest_s;
         let settles = self.until == EndCondition::Settled;
         let rests = settles && rate > 0.0 && rested_s < self.observer.input.settings.end_s;
-        if self.is_calm() && barrier_j().is_some_and(|barrier_j| self.keeps_barrier(barrier_j)) {
+        // A calm row may still exceed its largest rotation a little, if that is as small.
+        let decayed = energy_j < DECAYED * self.monitor.largest_j;
+        let may_end = self.is_calm() && (decayed || !settles);
+        if may_end && barrier_j().is_some_and(|barrier_j| self.keeps_barrier(barrier_j)) {
             self.observer.decide(rests);
             return;
         }
@@ -298,7 +301,6 @@ impl<'a> Lane<'a> {
         if self.feet.is_some() || !self.monitor.moves_back {
             return;
         }
-        let decayed = energy_j < DECAYED * self.monitor.largest_j;
         let ends = match self.until {
             EndCondition::End | EndCondition::Calm => false,
             EndCondition::Settled => {
