@@ -78,13 +78,14 @@ def test_four_links_are_a_rough_guide(arch: Arch, pulse: Pulse) -> None:
     found = []
     for study in studies:
         found.append(issued(lambda: study(arch)))
-        assert all(GUIDE in one or OUTSIDE in one for one in found[-1])
+        assert all(GUIDE in one or OUTSIDE in one or "friction coefficient" in one for one in found[-1])
         assert study(arch).summary["warnings"] == found[-1]
         assert issued(lambda: study(column)) == []
-    assert GUIDE in found[0][0]
+    assert any(GUIDE in one for one in found[0])
     unknown = {"samples": 2, "arch.thickness_ratio": {"deviation": 0.001}}
     strong = Pulse.rectangular(amplitude_g=-0.6, duration_s=0.8)
-    (warned,) = issued(lambda: ensemble(Scenario.of(arch, strong, uncertain=unknown)))
+    (warned, *others) = issued(lambda: ensemble(Scenario.of(arch, strong, uncertain=unknown)))
+    assert all("friction coefficient" in one for one in others)
     assert GUIDE in warned or OUTSIDE in warned
 
 

@@ -372,10 +372,10 @@ class Threshold(Results):
         known = bool(np.isfinite(ratio).any())
         peak = np.where(table["outcome"] == "overturned", np.nan, ratio if known else rad)
         mirrored = self.summary.models[0].get("mirrored") or {}
-        for direction, style, name in (("as_given", "-", ""), ("mirrored", "--", ", mirrored")):
+        for direction, style, which in (("as_given", "-", ""), ("mirrored", "--", ", mirrored")):
             rows = table["direction"] == direction
             if rows.any():
-                ax.plot(table["factor"][rows], peak[rows], style, color="k", label=f"largest rotation{name}")
+                ax.plot(table["factor"][rows], peak[rows], style, color="k", label=f"largest rotation{which}")
         looks: tuple[tuple[list[dict[str, Any]], str, str, str | None], ...] = (
             (self.bands, "overturns", "C3", None),
             (self.uncertain, "uncertain", "C2", "//"),
@@ -717,12 +717,11 @@ def suite_scenario(
     entries, files = _record_files(records)
     layout = _one_layout(entries)
     own = {"record": entries} if layout is None else {"records": sorted(files), **layout}
-    table = {
-        **own,
-        "peaks_g": peaks_g,
-        "scales": scales,
-        **({} if both_signs is None else {"both_signs": both_signs}),
-    }
+    table = {**own, "peaks_g": peaks_g, "scales": scales}
+    if both_signs is not None:
+        direction = "both" if both_signs else "as_given"
+        if settings.setdefault("direction", direction) != direction:
+            raise ValueError(f"`both_signs` is the older name of direction={direction!r}: leave it out")
     return Scenario.of(structure, suite=table, files=files, **settings)
 
 
