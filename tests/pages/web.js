@@ -36,18 +36,26 @@ const choose = (id, value) =>
   }, `${id} ${value}`);
 
 /** Rows of blocks have the same bits. Steps of four links and columns depend on `pow` of the machine, and their results in digits that are not printed. */
-const equal = (one, other, bits) => Object.is(one, other) || (!bits && Math.abs(one - other) <= 1e-9 + 1e-8 * Math.abs(other));
+const equal = (one, other, bits, ratio) => Object.is(one, other) || (!bits && Math.abs(one - other) <= 1e-9 + ratio * Math.abs(other));
+
+/** A friction coefficient is a ratio to the force in a joint, which may be almost unloaded: its error is as many times larger, here up to 50. */
+const ratioOf = (path) => (path.includes("friction") ? 1e-6 : 1e-8);
 
 function differences(one, other, bits, path) {
   const apart = [`${path}: ${one} ${other}`];
   if (typeof one !== typeof other) return apart;
-  if (typeof one === "number") return equal(one, other, bits) ? [] : apart;
+  if (typeof one === "number") return equal(one, other, bits, ratioOf(path)) ? [] : apart;
   if (typeof one !== "object" || !one || !other) return one === other ? [] : apart;
   const keys = new Set([...Object.keys(one), ...Object.keys(other)]);
   return [...keys].flatMap((key) => differences(one[key], other[key], bits, `${path}.${key}`));
 }
 
-const cells = (table) => table.trim().split("\n").map((row) => row.split(",").map((cell) => (cell === "" || isNaN(cell) ? cell : Number(cell))));
+/** The rows of a table, with their cells by the names of the columns. */
+function cells(table) {
+  const [header, ...rows] = table.trim().split("\n").map((row) => row.split(","));
+  const value = (cell) => (cell === "" || isNaN(cell) ? cell : Number(cell));
+  return rows.map((row) => Object.fromEntries(row.map((cell, index) => [header[index] ?? index, value(cell)])));
+}
 
 const PARTS = {
   async bits() {
@@ -97,8 +105,10 @@ const PARTS = {
     for (const scenario of [text.value, text.value.replace("-0.35", "-3"), free]) {
       const run = await page.ask({ study: "run", scenario, files: {}, names: ["report.html"], no_repeat: true });
       const threshold = scenario === free ? { words: "" } : await page.ask({ study: "threshold", scenario, files: {}, names: [] });
-      const said = run.words + run.files["report.html"].match(/<div class="words">[^]*?<\/div>/)[0] + threshold.words;
-      verify(said.length > 1000 && !/--[a-z]/.test(said) && !said.includes("was not repeated"), said);
+      const said = run.words + run.files["report.html"].match(/<div class="words"[^>]*>[^]*?<\/div>/)[0] + threshold.words;
+      // Only commands between backquotes have options.
+      const sentences = said.replaceAll(/`archrock [^`]*`/g, "");
+      verify(said.length > 1000 && !/--[a-z]/.test(sentences) && !said.includes("was not repeated"), said);
     }
 
     // Keys of dotted and of inline tables have sliders and choices, too.
