@@ -100,7 +100,7 @@ pub(super) fn label(axis: &Axis) -> &str {
     }
 }
 
-/// What the values of an axis change.
+/// The parts of a case that an axis changes, and that cells may share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Changes {
     /// The amplitude or the scaling of the ground motion.
