@@ -211,4 +211,15 @@ impl Repetition {
             model: Box::new(MirroredModel(model)),
         }
     }
+
+    /// Returns these repetitions; the first one is mirrored if the model [covers](Model::covers_mirrored) the mirrored ground by repetitions.
+    pub(super) fn first_mirrored(
+        mut repetitions: Vec<Self>,
+        model: &(impl Model + Clone + 'static),
+    ) -> Vec<Self> {
+        if model.covers_mirrored() {
+            repetitions[0] = Self::mirrored(model.clone());
+        }
+        repetitions
+    }
 }

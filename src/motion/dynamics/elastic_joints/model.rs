@@ -442,11 +442,7 @@ impl Model for ElasticJoints {
             name,
             model: Box::new(model),
         };
-        let mut others: Vec<Repetition> = self.other_steps().map(repetition).into();
-        if self.repeats_mirrored {
-            others[0] = Repetition::mirrored(self.clone());
-        }
-        others
+        Repetition::first_mirrored(self.other_steps().map(repetition).into(), self)
     }
 
     fn covers_mirrored(&self) -> bool {

@@ -235,11 +235,7 @@ impl Model for FreeHinges {
                 ..self.clone()
             }),
         };
-        let mut others: Vec<Repetition> = others.map(repetition).into();
-        if self.repeats_mirrored {
-            others[0] = Repetition::mirrored(self.clone());
-        }
-        others
+        Repetition::first_mirrored(others.map(repetition).into(), self)
     }
 
     fn covers_mirrored(&self) -> bool {

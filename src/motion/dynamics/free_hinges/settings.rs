@@ -72,6 +72,13 @@ impl Settings {
         }
     }
 
+    /// Returns the shortest time, in seconds, over which forces are the means of impulses. In a shorter time the rounding errors of the velocities exceed
+    /// the effect of the forces. Steps also end at output times.
+    pub(super) fn shortest_mean_s(&self) -> f64 {
+        let output_s = self.output_step_s.unwrap_or(f64::INFINITY);
+        self.shortest_step_s.min(SHORTEST_STEP_RATIO * output_s)
+    }
+
     /// Returns these settings with landings merged within four shortest steps after an impact. Real impacts take time, and the order of landings in
     /// that time is unknown.
     pub(super) fn with_landings_merged(&self) -> Self {

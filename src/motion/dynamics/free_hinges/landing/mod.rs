@@ -458,8 +458,8 @@ impl<'a> LandingStepper<'a> {
         let mean = (before + momentum(&self.next_pieces)) * 0.5;
         self.observer.row_summary.ground_j -= self.impulse(from_s, to_s).1.dot(&mean);
         self.note_right_support(to_s - from_s);
-        // In a shorter time the rounding errors of the velocities exceed the effect of the forces.
-        if step.merged || to_s - from_s < self.observer.input.settings.shortest_step_s {
+        let is_short = to_s - from_s < self.observer.input.settings.shortest_mean_s();
+        if step.merged || is_short {
             return;
         }
         self.program.joint_impulses(&mut self.shares);
