@@ -88,7 +88,7 @@ pub fn study<'py>(
     py: Python<'py>,
     scenario: &Scenario,
     kind: &str,
-    factors: Option<(f64, f64, f64)>,
+    factors: Option<(Option<f64>, Option<f64>, f64)>,
     along: Option<(String, bool)>,
     threads: Option<u16>,
     progress: Option<Py<PyAny>>,

@@ -17,13 +17,13 @@ pub struct Arguments {
     study: StudyArguments,
     #[command(flatten)]
     suite: SuiteOption,
-    /// Smallest factor on the ground motion.
-    #[arg(long, value_name = "FACTOR", default_value_t = Factors::default().from)]
-    from: f64,
-    /// Largest factor.
-    #[arg(long, value_name = "FACTOR", default_value_t = Factors::default().to)]
-    to: f64,
-    /// Relative step from one factor to the next; narrower bands and gaps may be missed.
+    /// Smallest factor on the ground motion. Default: the onset of motion, or 0.1 where it is unknown.
+    #[arg(long, value_name = "FACTOR")]
+    from: Option<f64>,
+    /// Largest factor. Default: the first one that certainly overturns the structure.
+    #[arg(long, value_name = "FACTOR")]
+    to: Option<f64>,
+    /// Relative step from one factor to the next, up to the first edge; below it the steps are finer.
     #[arg(long, value_name = "PART", default_value_t = Factors::default().stride)]
     stride: f64,
     /// Find the least factor that overturns for each value of a key, such as --along arch.mean_radius_m=4..6:5.
@@ -91,7 +91,7 @@ pub fn threshold(arguments: &Arguments) -> Result<(), Failure> {
         Format::Text => {
             let words = all.iter().map(|(found, _)| found.words("  ") + "\n");
             let words: String = words.collect();
-            print(&format!("{title}{words}  {}\n", factors.in_words()))
+            print(&format!("{title}{words}"))
         }
     }
 }

@@ -684,7 +684,7 @@ fn needs_no_repetition(model: &dyn Model, request: &Request, own: &Summary) -> b
 }
 
 /// Returns the largest potential energy of a motion over the energy barrier of the first mechanism; `None` if the barrier is not known.
-fn energy_over_barrier(model: &dyn Model, request: &Request, own: &Summary) -> Option<f64> {
+pub fn energy_over_barrier(model: &dyn Model, request: &Request, own: &Summary) -> Option<f64> {
     match &own.details {
         Details::Mechanisms(_) => None,
         Details::Rigid(row) => row.peak_potential_over_barrier,

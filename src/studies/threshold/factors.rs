@@ -1,34 +1,42 @@
-//! The factors on a ground motion that the search for thresholds tries.
+//! Factors on a ground motion that a search for thresholds tries.
 
 use serde::{Deserialize, Serialize};
 
-use crate::argument::{ArgumentError, above, within};
+use crate::argument::{ArgumentError, above, plain, within};
+use crate::dynamics::Directions;
+use crate::{GroundMotion, Model, Request, Sway};
 
-/// Relative width to which bisection encloses an edge: far less than the uncertainty of a ground motion, and more than the integration error.
+/// Relative width to which bisection encloses the edge between neighbouring factors with different certain verdicts.
 pub const EDGE_WIDTH: f64 = 1e-4;
+/// Relative width of an edge beside an uncertain factor, whose histories are all repeated six times.
+pub(super) const UNCERTAIN_EDGE_WIDTH: f64 = 1e-2;
 
-/// A geometric sequence of factors: each is larger than the previous one by a stride; the last step may be shorter.
-#[readonly::make]
+/// Factors on a ground motion that a search tries, as given: a default depends on the model and on the ground motion.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Factors {
-    /// The first factor.
-    pub from: f64,
-    /// The last factor.
-    pub to: f64,
+    /// The first factor; `None`: the onset of motion, or 0.1 where the onset is unknown.
+    pub from: Option<f64>,
+    /// The last factor; `None`: the first one that certainly overturns the structure.
+    pub to: Option<f64>,
     /// The relative step between factors.
     pub stride: f64,
 }
 
 impl Default for Factors {
-    /// Returns factors from 0.1 to 10 in strides of 2 %.
+    /// Returns factors from the onset to the first certain collapse in strides of 2 %.
     fn default() -> Self {
         Self {
-            from: 0.1,
-            to: 10.0,
+            from: None,
+            to: None,
             stride: 0.02,
         }
     }
 }
+
+/// Largest factor of a search that no collapse ends, if the onset is below 1; otherwise over the onset.
+const MOST: f64 = 10.0;
+/// First factor where the onset is unknown.
+const LEAST: f64 = 0.1;
 
 impl Factors {
     /// Makes factors from `from`, at least 1e-6, to `to`, which is larger and at most 1e6. Each step is `stride` times the factor; `stride` is
@@ -36,29 +44,74 @@ impl Factors {
     ///
     /// # Errors
     /// When a number is not allowed.
-    pub fn new(from: f64, to: f64, stride: f64) -> Result<Self, ArgumentError> {
-        Ok(Self {
-            from: within("from", from, 1e-6..=1e6)?,
-            to: above("to", to, from, 1e6)?,
-            stride: within("stride", stride, 1e-4..=1.0)?,
-        })
+    pub fn new(from: Option<f64>, to: Option<f64>, stride: f64) -> Result<Self, ArgumentError> {
+        if let Some(from) = from {
+            within("from", from, 1e-6..=1e6)?;
+        }
+        if let Some(to) = to {
+            above("to", to, from.unwrap_or(1e-6), 1e6)?;
+        }
+        let stride = within("stride", stride, 1e-4..=1.0)?;
+        Ok(Self { from, to, stride })
     }
 
     /// Returns the options of a command that searches these factors, with a space before each; empty for the default.
     pub(in crate::studies) fn options(&self) -> String {
-        let Self { from, to, stride } = self;
-        match *self == Self::default() {
-            true => String::new(),
-            false => format!(" --from {from} --to {to} --stride {stride}"),
-        }
+        let given = [("--from", self.from), ("--to", self.to)];
+        let given = given.into_iter().filter_map(|(name, at)| Some((name, at?)));
+        let own = Self::default().stride != self.stride;
+        let stride = own.then_some(("--stride", self.stride));
+        let all = given.chain(stride);
+        all.map(|(name, value)| format!(" {name} {value:?}"))
+            .collect()
     }
 
     /// Returns the command that searches these factors for a scenario on standard input, without `archrock`.
     pub(in crate::studies) fn command(&self) -> String {
-        let Self { from, to, stride } = self;
-        format!("threshold - --from {from:?} --to {to:?} --stride {stride:?} --out case")
+        format!("threshold -{} --out case", self.options())
     }
 
+    /// Returns the factors of a search for a structure that never moves below its [onset](onset_factor), if that is known.
+    ///
+    /// # Errors
+    /// If the last factor is not above the first.
+    pub fn searched(&self, onset: Option<f64>) -> Result<SearchedFactors, String> {
+        let start = onset.map(|onset| onset * (1.0 - EDGE_WIDTH));
+        let from = self.from.or(start).unwrap_or(LEAST);
+        let to = self.to.unwrap_or(MOST * from.max(1.0));
+        if to <= from {
+            return Err(format!(
+                "--to {}: the structure does not move below the factor {}: give a larger one",
+                plain(to),
+                plain(from)
+            ));
+        }
+        Ok(SearchedFactors {
+            from,
+            to,
+            stride: self.stride,
+            lower_not_tried: start.is_none_or(|start| from > start),
+            ends_at_collapse: self.to.is_none(),
+        })
+    }
+}
+
+/// Factors on a ground motion that a search tries, for one model.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SearchedFactors {
+    /// The first factor.
+    pub from: f64,
+    /// The last factor.
+    pub to: f64,
+    /// The relative step between factors.
+    pub stride: f64,
+    /// True if factors below the first one may overturn the structure: the first one is above the onset of motion, or the onset is unknown.
+    pub lower_not_tried: bool,
+    /// True if the search ends at the first factor that certainly overturns the structure.
+    pub ends_at_collapse: bool,
+}
+
+impl SearchedFactors {
     /// Returns all factors, ascending.
     pub fn values(&self) -> Vec<f64> {
         // Drops a last step that is due to rounding errors only.
@@ -72,12 +125,39 @@ impl Factors {
     }
 }
 
+/// Returns the factor on a ground motion below which a structure at rest never moves, in any of these directions: the largest push of the ground is
+/// that of incipient motion. `None` where it is unknown: with elastic joints, with vertical motion, with feet that move apart,
+/// and for a motion that does not start from rest.
+pub fn onset_factor(
+    model: &dyn Model,
+    directions: Directions,
+    (ground, request): (&GroundMotion, &Request),
+) -> Option<f64> {
+    let moves_otherwise = ground.has_vertical() || ground.right_foot().is_some();
+    if model.is_elastic() || moves_otherwise || request.initial.is_some() {
+        return None;
+    }
+    let starts_g = [Sway::Right, Sway::Left].map(|sway| model.incipient_acceleration_g(sway));
+    let [right, left] = ground.pushes_m_s2(f64::INFINITY);
+    let mirrored = (directions == Directions::Both).then_some([left, right]);
+    let over = [right, left]
+        .into_iter()
+        .chain(mirrored.into_iter().flatten());
+    let starts_g = starts_g.into_iter().cycle();
+    let over = over
+        .zip(starts_g)
+        .filter_map(|(push_m_s2, start_g)| Some(push_m_s2 / (start_g? * request.gravity_m_s2)));
+    let factor = 1.0 / over.reduce(f64::max)?;
+    (factor.is_finite() && factor > 0.0).then_some(factor)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn values(from: f64, to: f64, stride: f64) -> Vec<f64> {
-        Factors::new(from, to, stride).unwrap().values()
+        let factors = Factors::new(Some(from), Some(to), stride).unwrap();
+        factors.searched(None).unwrap().values()
     }
 
     #[test]
@@ -85,13 +165,35 @@ mod tests {
         assert_eq!(values(1.0, 8.0, 1.0), [1.0, 2.0, 4.0, 8.0]);
         assert_eq!(values(1.0, 5.0, 1.0), [1.0, 2.0, 4.0, 5.0]);
         assert_eq!(values(1.0, 1.02, 0.02), [1.0, 1.02]);
-        let default = Factors::default().values();
+        let default = Factors::default().searched(None).unwrap().values();
         assert_eq!((default.len(), default[0]), (234, 0.1));
         assert!(
             default
                 .windows(2)
                 .all(|pair| pair[1] <= pair[0] * 1.0200001)
         );
+    }
+
+    /// A default search begins at the onset; one that begins above it leaves out factors that may overturn the structure.
+    #[test]
+    fn a_search_knows_whether_lower_factors_may_overturn() {
+        let search = |from, onset| {
+            Factors::new(from, None, 0.02)
+                .unwrap()
+                .searched(onset)
+                .unwrap()
+        };
+        let own = search(None, Some(0.4));
+        assert!(own.from < 0.4 && own.from > 0.3999 && !own.lower_not_tried);
+        assert!(search(None, None).lower_not_tried);
+        assert!(search(Some(0.5), Some(0.4)).lower_not_tried);
+        assert!(!search(Some(0.3), Some(0.4)).lower_not_tried);
+        assert_eq!(
+            search(None, Some(3.0)).to,
+            10.0 * search(None, Some(3.0)).from
+        );
+        let below = Factors::new(None, Some(0.3), 0.02).unwrap();
+        assert!(below.searched(Some(0.4)).is_err());
     }
 
     #[test]
@@ -104,7 +206,7 @@ mod tests {
             (1.0, 2.0, 0.0, "stride"),
             (1.0, 2.0, f64::NAN, "stride"),
         ] {
-            let error = Factors::new(from, to, stride).unwrap_err();
+            let error = Factors::new(Some(from), Some(to), stride).unwrap_err();
             assert_eq!(error.argument, argument);
         }
     }

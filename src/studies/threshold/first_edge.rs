@@ -4,7 +4,8 @@ use std::cell::RefCell;
 
 use serde::{Deserialize, Serialize};
 
-use super::factors::{EDGE_WIDTH, Factors};
+use super::below::{Closeness, LowestHit, below_edge, unrepeated};
+use super::factors::{EDGE_WIDTH, Factors, UNCERTAIN_EDGE_WIDTH, onset_factor};
 use crate::bisection::{Width, try_bisect};
 use crate::dynamics::{Direction, MODEL_LIMIT};
 use crate::output::page::SpotKind;
@@ -12,7 +13,7 @@ use crate::output::{Column, column};
 use crate::studies::ending::columns::yes;
 use crate::studies::ending::{Ending, NoAnswer, NoHistory, Verdict};
 use crate::studies::statistics::ascending_weighted;
-use crate::{Scenario, SimulationError};
+use crate::{GroundMotion, Scenario, SimulationError};
 
 /// The strengths of a ground motion that a structure certainly survives, and the smallest one that overturns it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -29,6 +30,9 @@ pub struct FirstEdge {
     pub tried_to: f64,
     /// The smallest factor below `factor` with an uncertain verdict; `None` without uncertain verdicts.
     pub uncertain_from: Option<f64>,
+    /// True if factors below the smallest tried one may overturn the structure.
+    #[serde(default)]
+    pub lower_not_tried: bool,
     /// True if the history at the factor after `tried_to` failed, so that nothing is known of stronger motions.
     #[serde(default)]
     pub failed_beyond: bool,
@@ -101,13 +105,40 @@ impl FirstEdge {
     /// The reason why there is no answer.
     pub fn of(scenario: &Scenario, factors: &Factors) -> Result<Self, NoAnswer> {
         let model = scenario.model().map_err(NoAnswer::invalid)?;
-        let request = scenario.request_on(scenario.ground_motion(), &scenario.structure);
-        Self::among(&factors.values(), EDGE_WIDTH, |factor: f64| {
-            let ground = scenario.ground_motion().scaled(factor);
-            let ground = ground.map_err(SimulationError::from)?;
-            let directions = scenario.simulation.direction;
+        let ground = scenario.ground_motion();
+        let request = scenario.request_on(ground, &scenario.structure);
+        let directions = scenario.simulation.direction;
+        let onset = onset_factor(&*model, directions, (ground, &request));
+        let searched = factors.searched(onset).map_err(NoAnswer::Invalid)?;
+        let history = |factor: f64| {
+            let ground = ground.scaled(factor).map_err(SimulationError::from)?;
             let ending = Ending::of_all_in(directions, &*model, &[(ground, request)]).remove(0);
             ending.map(TriedHistory::from)
+        };
+        let has_second = directions.has_second(&*model, ground, &request);
+        let mirrored = has_second.then(|| ground.mirrored());
+        let closeness = |factors: &[f64]| {
+            let under = |ground: &GroundMotion| {
+                let grounds = factors.iter().map(|factor| ground.scaled(*factor));
+                unrepeated(&*model, &request, grounds)
+                    .into_iter()
+                    .map(|(close, _)| close)
+            };
+            let own = under(ground);
+            Ok::<_, NoAnswer>(match &mirrored {
+                None => own.collect(),
+                Some(mirrored) => {
+                    let both = own.zip(under(mirrored));
+                    both.map(|(one, other)| Closeness(one.0.max(other.0)))
+                        .collect()
+                }
+            })
+        };
+        let below = |safe| below_edge(safe, searched.from, closeness);
+        let edge = Self::search(&searched.values(), EDGE_WIDTH, history, below)?;
+        Ok(Self {
+            lower_not_tried: searched.lower_not_tried,
+            ..edge
         })
     }
 
@@ -117,6 +148,16 @@ impl FirstEdge {
         strengths: &[f64],
         width: f64,
         history: impl Fn(f64) -> Result<TriedHistory, NoHistory>,
+    ) -> Result<Self, NoAnswer> {
+        Self::search(strengths, width, history, |_| Ok(None))
+    }
+
+    /// Finds the first edge as [`FirstEdge::among`]. `below` finds the lowest strength below the safe one whose history does not survive.
+    fn search(
+        strengths: &[f64],
+        width: f64,
+        history: impl Fn(f64) -> Result<TriedHistory, NoHistory>,
+        below: impl FnOnce(f64) -> Result<Option<LowestHit>, NoAnswer>,
     ) -> Result<Self, NoAnswer> {
         let tried = RefCell::new(Vec::new());
         let known = |strength| {
@@ -131,6 +172,12 @@ impl FirstEdge {
         };
         // The ends of the edge between a low and a high strength, of verdicts below and from `least` on, and the verdict at its upper end.
         let narrow = |low: f64, (high, mut verdict): (f64, Verdict), least: Verdict| {
+            let is_certain = (least, verdict) == (Verdict::Uncertain, Verdict::Overturns);
+            let width = if is_certain {
+                width
+            } else {
+                width.max(UNCERTAIN_EDGE_WIDTH)
+            };
             let edge = try_bisect(low, high, Width::Relative(width), |strength| {
                 let found = known(strength)?;
                 verdict = if found >= least { found } else { verdict };
@@ -175,6 +222,23 @@ impl FirstEdge {
                 edge.factor = Some(lowest);
                 break;
             }
+        }
+        let lowest = edge.survives_up_to.map(below).transpose()?.flatten();
+        if let Some(LowestHit { hit, lower }) = lowest {
+            let mut first = (hit, known(hit)?);
+            edge.survives_up_to = None;
+            for lower in lower {
+                let found = known(lower)?;
+                if found == Verdict::Survives {
+                    let ((safe, from), verdict) = narrow(lower, first, Verdict::Uncertain)?;
+                    edge.survives_up_to = Some(safe);
+                    first = (from, verdict);
+                    break;
+                }
+                first = (lower, found);
+            }
+            edge.uncertain_from = (first.1 == Verdict::Uncertain).then_some(first.0);
+            edge.at_most &= edge.survives_up_to.is_none();
         }
         Ok(edge.with_tried(tried.into_inner()))
     }

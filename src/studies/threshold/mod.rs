@@ -1,39 +1,40 @@
 //! Thresholds: the factors on a ground motion at which structures overturn.
 //!
 //! A stronger motion is not always more dangerous. After impacts there are **bands** of factors that overturn the structure, with safe **gaps**
-//! between them, and **uncertain** ranges in which repetitions disagree. So factors are sampled upwards in equal strides, and bisection only
-//! finds the edge between two neighbours with different verdicts. Ranges narrower than a stride may be missed.
+//! between them, and **uncertain** ranges in which repetitions disagree. So factors are sampled upwards in equal strides, bisection finds the edge
+//! between two neighbours with different verdicts, and a finer search below the first edge finds bands that the strides step over.
 
 pub(super) mod along;
+mod below;
 mod digits;
 mod factors;
 pub(crate) mod first_edge;
 mod picture;
 mod report;
+mod search;
 pub(crate) mod survival;
 mod varied;
 
 pub use along::{Along, AlongOptions, AlongRow, KeyRange, Summary as AlongSummary};
 pub(super) use digits::{rounded, rounded_down, rounded_edge, rounded_range};
-pub use factors::{EDGE_WIDTH, Factors};
+use factors::UNCERTAIN_EDGE_WIDTH;
+pub use factors::{EDGE_WIDTH, Factors, SearchedFactors, onset_factor};
 pub use picture::draw;
 pub use report::{FILES, Summary};
 pub use survival::{Survival, VerdictRange, in_words};
+use varied::repeat_governing;
 pub use varied::{VariedThreshold, vary};
 
 use std::ops::ControlFlow;
 
 use serde::{Deserialize, Serialize};
 
-use super::ending::{Ending, NoHistory, Verdict, answered};
+use self::search::Shaking;
+use super::ending::{Ending, NoHistory, Verdict};
 use super::{Progress, Results, Runner, StudyError, Watch};
-use crate::bisection::{Width, next_middles, try_bisect};
 use crate::dynamics::{Direction, Directions};
 use crate::output::Figure;
-use crate::{GroundMotion, Model, Request, Scenario, SimulationError};
-
-/// Number of bisection steps computed ahead for models that compute histories faster together: three steps are seven histories.
-const STEPS_AHEAD: usize = 3;
+use crate::{GroundMotion, Model, Request, Scenario};
 
 /// The history under the ground motion multiplied by a factor.
 #[derive(Clone, Debug, PartialEq)]
@@ -86,6 +87,8 @@ pub struct Threshold {
     pub model: String,
     /// Direction of the ground motion of the samples and ranges.
     pub direction: Direction,
+    /// The factors of the search in all directions.
+    pub factors: SearchedFactors,
     /// The threshold under the mirrored ground motion, up to the first factor that certainly overturns the structure in the first direction; `None`
     /// without a [second direction](Directions::has_second).
     pub mirrored: Option<Box<Self>>,
@@ -165,7 +168,12 @@ impl Threshold {
         }
     }
 
-    fn new(model: String, samples: Vec<FactorSample>, edges: &[(f64, f64)]) -> Self {
+    fn new(
+        model: String,
+        factors: SearchedFactors,
+        samples: Vec<FactorSample>,
+        edges: &[(f64, f64)],
+    ) -> Self {
         // The edge at an end of a range, if there is one, and the reason why the range ends.
         let end = |below: Option<&FactorSample>, above: Option<&FactorSample>| {
             let Some((below, above)) = below.zip(above) else {
@@ -196,6 +204,7 @@ impl Threshold {
         }
         Self {
             model,
+            factors,
             direction: Direction::AsGiven,
             mirrored: None,
             samples,
@@ -206,13 +215,13 @@ impl Threshold {
         }
     }
 
-    /// Follows thrust line and friction demand up to the largest safe factor, in the samples of all directions and in these histories of bisections.
-    fn follow(&mut self, bisected: &[FactorSample]) {
+    /// Follows thrust line and friction demand up to the largest safe factor, in the samples of all directions and in these other histories.
+    fn follow(&mut self, others: &[FactorSample]) {
         let Some(safe) = self.survives_up_to() else {
             return;
         };
         let samples = self.directions().flat_map(|one| &one.samples);
-        let up_to = samples.chain(bisected);
+        let up_to = samples.chain(others);
         let up_to = up_to.filter(|sample| sample.factor <= safe);
         let endings: Vec<&Ending> = up_to.flat_map(|sample| &sample.result).collect();
         let largest = |of: fn(&Ending) -> Option<f64>| {
@@ -229,10 +238,10 @@ impl Threshold {
 /// Computes the factors on the ground motion by which a model, given with its name, overturns in these directions. The ground motion is that of the
 /// first one. The second one is searched up to the first factor that certainly overturns the model in the first direction.
 ///
-/// `watch` receives the progress as in [`Runner::rows`], for each direction: first over all factors, then over the edges as well.
+/// `watch` receives the progress as in [`Runner::rows`], for each step of the search.
 ///
 /// # Errors
-/// When `watch` returns `Break`, threads cannot be started, or the request is not valid. Failed histories are part of the results.
+/// When `watch` returns `Break`, threads cannot be started, or the request or the factors are not valid. Failed histories are part of the results.
 pub fn threshold(
     (name, model): (&str, &dyn Model),
     (directions, ground): (Directions, &GroundMotion),
@@ -242,76 +251,34 @@ pub fn threshold(
     mut watch: impl FnMut(Progress) -> ControlFlow<()>,
 ) -> Result<Threshold, StudyError> {
     request.check(ground).map_err(StudyError::scenario)?;
+    let onset = onset_factor(model, directions, (ground, request));
+    let searched = factors.searched(onset).map_err(StudyError::Scenario)?;
     let shaking = Shaking {
         direction: directions.first(),
         model,
         ground,
         request,
+        searched: &searched,
     };
-    let mut factors = factors.values();
-    let (mut threshold, mut bisected) = in_direction(name, shaking, &factors, runner, &mut watch)?;
-    threshold.direction = directions.first();
+    let mut values = searched.values();
+    let (mut threshold, mut others) = shaking.threshold(name, &values, runner, &mut watch)?;
     if directions.has_second(model, ground, request) {
         let overturns = |sample: &&FactorSample| sample.verdict() == Some(Verdict::Overturns);
         if let Some(first) = threshold.samples.iter().find(overturns) {
-            let below = factors.partition_point(|factor| *factor < first.factor);
-            factors.truncate(below + 1);
+            let below = values.partition_point(|factor| *factor < first.factor);
+            values.truncate(below + 1);
         }
         let shaking = Shaking {
             direction: Direction::Mirrored,
             ground: &ground.mirrored(),
             ..shaking
         };
-        let (mirrored, of_mirrored) = in_direction(name, shaking, &factors, runner, &mut watch)?;
-        bisected.extend(of_mirrored);
-        threshold.mirrored = Some(Box::new(Threshold {
-            direction: Direction::Mirrored,
-            ..mirrored
-        }));
+        let (mirrored, of_mirrored) = shaking.threshold(name, &values, runner, &mut watch)?;
+        others.extend(of_mirrored);
+        threshold.mirrored = Some(Box::new(mirrored));
     }
-    threshold.follow(&bisected);
+    threshold.follow(&others);
     Ok(threshold)
-}
-
-/// Computes the threshold in the direction of a ground motion, among these factors, and the other histories of the bisections.
-fn in_direction(
-    name: &str,
-    shaking: Shaking<'_>,
-    factors: &[f64],
-    runner: &Runner,
-    mut watch: impl FnMut(Progress) -> ControlFlow<()>,
-) -> Result<(Threshold, Vec<FactorSample>), StudyError> {
-    let model = shaking.model;
-    let family = |_| model.is_elastic().then_some(0);
-    let samples_of = |indices: &[usize]| {
-        let of_them = indices.iter().map(|index| factors[*index]);
-        shaking.samples(&of_them.collect::<Vec<_>>())
-    };
-    let sampled = factors.len();
-    let mut samples = runner.each_of_families(sampled, family, samples_of, &mut watch)?;
-    let pairs = samples.windows(2).map(|pair| (&pair[0], &pair[1]));
-    let changes = pairs.filter(|(below, above)| {
-        let both = below.verdict().zip(above.verdict());
-        both.is_some_and(|(below, above)| below != above)
-    });
-    let changes: Vec<Change<'_>> = changes.collect();
-    let search = |index: usize| shaking.search(changes[index]);
-    let found = runner.each(changes.len(), search, |progress| {
-        watch(Progress {
-            done: sampled + progress.done,
-            all: sampled + progress.all,
-        })
-    })?;
-    let (mut edges, mut tried) = (Vec::new(), Vec::new());
-    for found in found.into_iter().flatten() {
-        match found {
-            Found::Edge(low, high) => edges.push((low, high)),
-            Found::Met(sample) => samples.push(*sample),
-            Found::Tried(sample) => tried.push(sample),
-        }
-    }
-    samples.sort_by(|a, b| a.factor.total_cmp(&b.factor));
-    Ok((Threshold::new(name.to_owned(), samples, &edges), tried))
 }
 
 /// Checks that a scenario has a ground motion to scale, and starts from rest.
@@ -364,97 +331,22 @@ pub fn results(
             let variations = scenario.variations().map_err(StudyError::failed)?;
             let has_second = threshold.mirrored.is_some();
             let case = (ground, &request, has_second);
-            threshold.varied = vary(&variations, factors, case, runner, &mut *watch)?;
+            let searched = &threshold.factors;
+            let mut varied = vary(&variations, searched, case, runner, &mut *watch)?;
+            if let Some(safe) = threshold.survives_up_to() {
+                let moving = (directions, ground, &request);
+                repeat_governing(
+                    &mut varied,
+                    &variations,
+                    (safe, searched),
+                    moving,
+                    runner,
+                    watch,
+                )?;
+            }
+            threshold.varied = varied;
         }
         found.push(threshold);
     }
     Ok(report::report(scenarios, factors, &found, figure)?)
-}
-
-/// The model, the ground motion in a direction, and the request.
-#[derive(Clone, Copy)]
-struct Shaking<'a> {
-    direction: Direction,
-    model: &'a dyn Model,
-    ground: &'a GroundMotion,
-    request: &'a Request,
-}
-
-impl Shaking<'_> {
-    /// Computes the histories for several factors, in their order.
-    fn samples(&self, factors: &[f64]) -> Vec<FactorSample> {
-        let cases = factors.iter();
-        let cases = cases.map(|factor| {
-            let ground = self.ground.scaled(*factor);
-            Ok((ground.map_err(SimulationError::from)?, *self.request))
-        });
-        let endings = answered(cases, |cases| Ending::of_all(self.model, cases));
-        let samples = factors.iter().copied().zip(endings);
-        let direction = self.direction;
-        let sample = |(factor, result): (f64, Result<Ending, NoHistory>)| FactorSample {
-            factor,
-            result: result.map(|ending| Ending {
-                direction,
-                ..ending
-            }),
-        };
-        samples.map(sample).collect()
-    }
-
-    /// Finds the edge between neighbouring factors with different verdicts. If a history has a third verdict, returns this history and the edges
-    /// on both sides of it; if a history fails, returns that history. The other histories come with it.
-    fn search(&self, (below, above): Change<'_>) -> Vec<Found> {
-        let width = Width::Relative(EDGE_WIDTH);
-        let is_elastic = self.model.is_elastic();
-        let steps = if is_elastic { STEPS_AHEAD } else { 1 };
-        let (mut low, mut high) = (below.factor, above.factor);
-        let mut ahead: Vec<FactorSample> = Vec::new();
-        let mut found = Vec::new();
-        let edge = try_bisect(low, high, width, |factor| {
-            let known = |ahead: &[FactorSample]| ahead.iter().position(|it| it.factor == factor);
-            let place = known(&ahead).unwrap_or_else(|| {
-                ahead = self.samples(&next_middles(low, high, width, steps));
-                // The first history ahead is the one that is needed now.
-                0
-            });
-            let sample = ahead.swap_remove(place);
-            let is_above = match sample.verdict() {
-                verdict if verdict == below.verdict() => {
-                    low = factor;
-                    false
-                }
-                verdict if verdict == above.verdict() => {
-                    high = factor;
-                    true
-                }
-                _ => return Err(Box::new(sample)),
-            };
-            found.push(Found::Tried(sample));
-            Ok(is_above)
-        });
-        match edge {
-            Ok((low, high)) => found.push(Found::Edge(low, high)),
-            Err(met) => {
-                if met.verdict().is_some() {
-                    found.extend(self.search((below, &*met)));
-                    found.extend(self.search((&*met, above)));
-                }
-                found.push(Found::Met(met));
-            }
-        }
-        found
-    }
-}
-
-/// Neighbouring samples with different verdicts.
-type Change<'a> = (&'a FactorSample, &'a FactorSample);
-
-/// Result of a search between neighbouring samples.
-enum Found {
-    /// Two close factors with different verdicts.
-    Edge(f64, f64),
-    /// A history between the samples that failed or has a third verdict.
-    Met(Box<FactorSample>),
-    /// Another history of the bisection.
-    Tried(FactorSample),
 }

@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 
 use super::digits::rounded;
 use super::survival::{self, Survival};
-use super::{EDGE_WIDTH, FactorSample, Factors, RangeEnd, Threshold};
+use super::{EDGE_WIDTH, FactorSample, RangeEnd, Threshold};
 use crate::output::chart::draw as draw_marks;
 use crate::output::page::Spot;
 use crate::output::{
@@ -31,14 +31,8 @@ const HATCH_PX: f64 = 6.0;
 
 /// Draws the outcome against the factor: a strip for each model with the edges of its bands, and the largest rotation below. `peak_g` is the
 /// peak ground acceleration at factor 1.
-pub fn draw(
-    figure: Figure,
-    title: &str,
-    peak_g: f64,
-    factors: &Factors,
-    thresholds: &[Threshold],
-) -> String {
-    drawn(figure, title, peak_g, (factors, thresholds), &[])
+pub fn draw(figure: Figure, title: &str, peak_g: f64, thresholds: &[Threshold]) -> String {
+    drawn(figure, title, peak_g, thresholds, &[])
 }
 
 /// Draws the same picture with marks for the histories of all models, in their order, on a page.
@@ -46,12 +40,12 @@ pub(super) fn drawn(
     figure: Figure,
     title: &str,
     peak_g: f64,
-    (factors, thresholds): (&Factors, &[Threshold]),
+    thresholds: &[Threshold],
     spots: &[Spot],
 ) -> String {
     let thresholds: Vec<&Threshold> = thresholds.iter().flat_map(Threshold::directions).collect();
     let samples = thresholds.iter().flat_map(|threshold| &threshold.samples);
-    let results = samples.map(|sample| &sample.result);
+    let results = samples.clone().map(|sample| &sample.result);
     let kinds: Vec<OutcomeColor> = results.clone().map(OutcomeColor::of_result).collect();
     let names = thresholds.iter().map(|one| one.name_in_words());
     let names: Vec<String> = names.collect();
@@ -69,7 +63,10 @@ pub(super) fn drawn(
         let named = names.iter().zip(curves());
         keys.extend(named.map(|(name, stroke)| Key::line(name, stroke)));
     }
-    let (first, last) = (factors.from, factors.to);
+    let tried = samples.map(|sample| sample.factor);
+    let (first, last) = tried.fold((f64::INFINITY, 0.0_f64), |(first, last), factor| {
+        (first.min(factor), last.max(factor))
+    });
     let x = match last < 2.0 * first {
         true => Scale::exactly(first, last, figure.ticks(8)),
         false => Scale::logarithmic(first, last),

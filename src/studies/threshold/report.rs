@@ -7,8 +7,8 @@ use serde_json::{Value, json};
 use super::digits::{rounded, rounded_down};
 use super::survival::{self, Survival, VerdictRange};
 use super::{
-    EDGE_WIDTH, FactorRange, FactorSample, Factors, RangeEnd, Threshold, VariedThreshold, peak_g,
-    picture,
+    EDGE_WIDTH, FactorRange, FactorSample, Factors, RangeEnd, SearchedFactors, Threshold,
+    UNCERTAIN_EDGE_WIDTH, VariedThreshold, peak_g, picture,
 };
 use crate::argument::plain;
 use crate::dynamics::{Direction, Directions, MODEL_LIMIT, OutcomeCount};
@@ -45,7 +45,7 @@ pub struct Summary {
     record: Option<String>,
     /// Largest horizontal acceleration of the ground at factor 1, in units of gravity.
     peak_acceleration_g: f64,
-    /// The factors that were sampled.
+    /// The factors as given; null for those that follow from each model.
     factors: Factors,
     /// The factor from which on the ground falls as fast as a free body at some time; absent without such a factor.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -67,6 +67,8 @@ struct ModelSummary {
     scenario: Value,
     /// Name and checksum of each record file.
     record_checksums: Vec<String>,
+    /// The factors of the search.
+    factors: SearchedFactors,
     /// The largest factor up to which the structure certainly survives all sampled factors in all directions; null if it does not survive the smallest.
     survives_up_to_factor: Option<f64>,
     /// The smallest factor that certainly overturns the structure in any direction; null if no factor does.
@@ -131,6 +133,10 @@ struct VariedSummary {
     peak_g: Option<f64>,
     /// Number of histories that ended too early for a verdict.
     incomplete: usize,
+    /// The largest factor that the structure survives; null if it survives all, or if none is known.
+    survives_up_to_factor: Option<f64>,
+    /// True if the histories near that factor were repeated, because it governs the answer that may be quoted.
+    is_repeated: bool,
     /// Reason why the factor could not be computed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     failed: Option<String>,
@@ -222,7 +228,7 @@ pub fn report(
         to_quote: quotable::in_words(&answers),
         models,
     };
-    let picture = picture::draw(figure, title, peak_g, factors, thresholds);
+    let picture = picture::draw(figure, title, peak_g, thresholds);
     let others = [picture.into_bytes(), table(&report.models)?];
     let results = Results::new(&FILES[1..], &report, others)?;
     let mut cases = PageCases::default();
@@ -241,14 +247,15 @@ pub fn report(
             }
         }
     }
-    let draw = |figure| {
-        let searched = (factors, thresholds);
-        picture::drawn(figure, title, peak_g, searched, &cases.spots)
-    };
+    let draw = |figure| picture::drawn(figure, title, peak_g, thresholds, &cases.spots);
+    let searched = thresholds.iter().map(|one| one.factors.in_words());
+    let mut searched: Vec<String> = searched.collect();
+    searched.dedup();
     let edges = format!(
-        "{}. The edge between two neighbours with different verdicts is bisected to {} %",
-        factors.in_words(),
-        plain(100.0 * EDGE_WIDTH)
+        "{}. The edge between two neighbours with different verdicts is bisected to {} %, beside an uncertain one to {} %",
+        searched.join("; "),
+        plain(100.0 * EDGE_WIDTH),
+        plain(100.0 * UNCERTAIN_EDGE_WIDTH)
     );
     let models: Vec<&ModelKind> = scenarios.iter().map(|one| one.motion.kind).collect();
     let what = input_in_words(&scenarios.iter().collect::<Vec<_>>());
@@ -358,6 +365,8 @@ impl Threshold {
                 from_end: factor.map(from_end),
                 peak_g: factor.map(|factor| factor * peak_g),
                 incomplete: varied.incomplete,
+                survives_up_to_factor: varied.survives_up_to().filter(|safe| *safe > 0.0),
+                is_repeated: varied.repeated.is_some(),
                 failed: varied.factor.as_ref().err().cloned(),
             }
         });
@@ -365,6 +374,7 @@ impl Threshold {
             model: self.model.clone(),
             scenario: scenario.to_json(),
             record_checksums: scenario.record_checksums(),
+            factors: self.factors,
             survives_up_to_factor: self.survives_up_to(),
             lowest_factor: self.lowest_factor(),
             friction_demand: self.friction_demand,
@@ -388,16 +398,11 @@ impl Threshold {
         let others = self
             .varied
             .iter()
-            .filter_map(|one| one.factor.clone().ok()?);
+            .filter_map(VariedThreshold::survives_up_to);
         let others: Vec<f64> = others.collect();
         let answer = match self.survives_up_to() {
-            Some(safe) if !others.iter().any(|other| self.is_first(*other)) => {
-                let safe = ascending(
-                    others
-                        .iter()
-                        .map(|other| other / (1.0 + EDGE_WIDTH))
-                        .chain([safe]),
-                );
+            Some(safe) if others.iter().all(|other| *other >= self.factors.from) => {
+                let safe = ascending(others.into_iter().chain([safe]));
                 let [least, most] = [safe[0], safe[safe.len() - 1]].map(|factor| {
                     format!(
                         "{} ({} g)",
@@ -411,7 +416,10 @@ impl Threshold {
                     format!(" to {most}")
                 };
                 let directions = self.directions_in_words(scenario);
-                Ok(format!("survives up to {least}{most}{over}{directions}"))
+                let lower = self.factors.lower_in_words();
+                Ok(format!(
+                    "survives up to {least}{most}{over}{directions}{lower}"
+                ))
             }
             _ => Err("the smallest factor tried is not certainly survived".to_owned()),
         };
@@ -555,13 +563,45 @@ fn at(factor: &f64, peak_g: &f64) -> String {
 }
 
 impl Factors {
-    /// Returns the tried factors in words.
+    /// Returns the factors as given, in words.
     pub fn in_words(&self) -> String {
+        let from = self.from.map_or("the onset of motion".to_owned(), plain);
+        let to = self.to.map_or("the first collapse".to_owned(), plain);
+        let stride = stride_in_words(self.stride);
         format!(
-            "sampled from {} to {} in strides of {} %: narrower bands and gaps may be missed",
-            self.from,
-            self.to,
-            (1e6 * self.stride).round() / 1e4,
+            "factors from {from} to {to} in strides of {stride}, and finely below the first edge"
         )
     }
+}
+
+impl SearchedFactors {
+    /// Returns the factors in words.
+    fn in_words(&self) -> String {
+        let onset = if self.lower_not_tried {
+            ""
+        } else {
+            ", the onset of motion,"
+        };
+        let from = rounded(self.from);
+        let to = match self.ends_at_collapse {
+            true => "the first collapse".to_owned(),
+            false => plain(self.to),
+        };
+        let stride = stride_in_words(self.stride);
+        format!(
+            "factors from {from}{onset} to {to} in strides of {stride}, and finely below the first edge"
+        )
+    }
+
+    /// Returns the words of a quote about factors that were not tried; empty if the structure does not move under lower ones.
+    pub(in crate::studies) fn lower_in_words(&self) -> String {
+        match self.lower_not_tried {
+            true => format!(", lower factors than {} not tried", plain(self.from)),
+            false => String::new(),
+        }
+    }
+}
+
+fn stride_in_words(stride: f64) -> String {
+    format!("{} %", (1e6 * stride).round() / 1e4)
 }

@@ -4,10 +4,11 @@ use std::cell::Cell;
 use std::ops::ControlFlow;
 
 use super::first_edge::lowest;
-use super::{EDGE_WIDTH, Factors};
-use crate::dynamics::Variation;
+use super::{EDGE_WIDTH, Factors, SearchedFactors, threshold};
+use crate::dynamics::{Directions, Variation};
 use crate::studies::ending::answered;
 use crate::studies::runner::{Progress, Runner, RunnerError};
+use crate::studies::{StudyError, Watch};
 use crate::{Case, EndCondition, GroundMotion, Model, Request, SimulationError, Summary, Verdict};
 
 /// The threshold of a variation.
@@ -20,6 +21,73 @@ pub struct VariedThreshold {
     pub factor: Result<Option<f64>, String>,
     /// Number of histories of the search that ended too early for a verdict.
     pub incomplete: usize,
+    /// The largest factor up to which the structure with this property certainly survives, from repeated histories; `None` inside if it does not
+    /// certainly survive the first factor, `None` outside if the histories were not repeated.
+    pub repeated: Option<Option<f64>>,
+}
+
+/// Part of the lowest factor of a variation from which its histories are repeated.
+const REPEATED_FROM: f64 = 0.8;
+
+impl VariedThreshold {
+    /// Returns the largest factor that the structure with this property survives; `None` if it survives all.
+    pub fn survives_up_to(&self) -> Option<f64> {
+        let lowest = self.factor.as_ref().ok().copied().flatten();
+        match self.repeated {
+            Some(repeated) => Some(repeated.unwrap_or(0.0)),
+            None => lowest.map(|factor| factor / (1.0 + EDGE_WIDTH)),
+        }
+    }
+}
+
+/// Repeats the histories of the variation that governs a quote, which survives less than `safe` and than all others, until the governing one has been
+/// repeated.
+///
+/// # Errors
+/// When `watch` returns `Break`, or threads cannot be started.
+pub fn repeat_governing(
+    varied: &mut [VariedThreshold],
+    variations: &[Variation],
+    (safe, searched): (f64, &SearchedFactors),
+    (directions, ground, request): (Directions, &GroundMotion, &Request),
+    runner: &Runner,
+    watch: Watch<'_>,
+) -> Result<(), StudyError> {
+    loop {
+        let known = varied.iter().enumerate();
+        let known = known.filter_map(|(index, one)| Some((index, one.survives_up_to()?)));
+        let governing = known.min_by(|(_, one), (_, other)| one.total_cmp(other));
+        let Some((index, factor)) = governing.filter(|(_, factor)| *factor < safe) else {
+            return Ok(());
+        };
+        let (one, variation) = (&mut varied[index], &variations[index]);
+        let (None, Ok(model)) = (one.repeated, &variation.model) else {
+            return Ok(());
+        };
+        let mut from = searched.from.max(REPEATED_FROM * factor);
+        loop {
+            let to = Some(factor.max(from * (1.0 + EDGE_WIDTH)));
+            let factors = Factors {
+                from: Some(from),
+                to,
+                stride: searched.stride,
+            };
+            let named = (variation.name.as_str(), &**model);
+            let found = threshold(
+                named,
+                (directions, ground),
+                request,
+                &factors,
+                runner,
+                &mut *watch,
+            )?;
+            one.repeated = Some(found.survives_up_to());
+            if found.survives_up_to().is_some() || from == searched.from {
+                break;
+            }
+            from = searched.from;
+        }
+    }
 }
 
 /// Number of histories that are computed together; some models are faster that way.
@@ -31,7 +99,7 @@ const TOGETHER: usize = 4;
 /// When `watch` returns `Break`, or threads cannot be started.
 pub fn vary(
     variations: &[Variation],
-    factors: &Factors,
+    factors: &SearchedFactors,
     (ground, request, has_second): (&GroundMotion, &Request, bool),
     runner: &Runner,
     watch: impl FnMut(Progress) -> ControlFlow<()>,
@@ -63,6 +131,7 @@ pub fn vary(
             name: name.clone(),
             factor,
             incomplete: incomplete.get(),
+            repeated: None,
         }
     };
     runner.each(variations.len(), search, watch)

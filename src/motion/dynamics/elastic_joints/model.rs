@@ -67,8 +67,12 @@ const OTHER_STEPS: [(&str, f64); 6] = [
 ];
 /// Number of parallel histories; eight are slower, because they exceed the processor's first-level cache.
 const SIDE_BY_SIDE: usize = 4;
-/// Factor by which variations multiply and divide the stiffness.
-const OTHER_STIFFNESS: f64 = 3.0;
+/// Number of stiffnesses in a decade that variations have: a structure may survive with two stiffnesses and overturn with one between them.
+const STIFFNESSES_PER_DECADE: f64 = 3.0;
+/// Usual stiffnesses of joints, which variations cover.
+const USUAL_STIFFNESS_PA_M: RangeInclusive<f64> = 2.99e9..=1.01e11;
+/// Powers of the step between stiffnesses that may be usual.
+const MOST_POWERS: RangeInclusive<i32> = -18..=18;
 /// Step length proposed after an error of the energy balance, over the longest step.
 const SHORTER: f64 = 0.3;
 /// Remedy in the message on too many steps.
@@ -240,17 +244,20 @@ impl ElasticJoints {
 
     /// Returns copies with other plausible properties: lower stiffness, higher stiffness, and another integration of the stress.
     pub fn variations(&self) -> Vec<Variation> {
-        let softer = 1.0 / OTHER_STIFFNESS;
-        let stiffness = |factor, words: &str| {
+        let stiffness = |power: i32| {
+            let factor = libm::pow(10.0, f64::from(power) / STIFFNESSES_PER_DECADE);
             let other = self.properties.stiffness_times(factor);
-            let name = match other.stiffness {
+            let (name, is_usual) = match other.stiffness {
                 Stiffness::Uniform(JointStiffness { normal_pa_m, .. }) => {
                     let stiffness = format!("{:.2e}", 1e-9 * normal_pa_m);
-                    format!("{} GPa/m", short(stiffness.parse().unwrap_or(0.0)))
+                    let name = format!("{} GPa/m", short(stiffness.parse().unwrap_or(0.0)));
+                    (name, USUAL_STIFFNESS_PA_M.contains(&normal_pa_m))
                 }
-                Stiffness::Materials(_) => words.to_owned(),
+                Stiffness::Materials(_) => {
+                    (format!("{factor:.2} times the stiffness"), power.abs() <= 2)
+                }
             };
-            (name, other)
+            (power != 0 && (is_usual || power.abs() == 1)).then_some((name, other))
         };
         let (contact, words) = match self.properties.contact {
             Contact::Continuous => (Contact::Points(3), "three contact points"),
@@ -258,11 +265,8 @@ impl ElasticJoints {
         };
         let mut summed_otherwise = self.properties;
         summed_otherwise.contact = contact;
-        let others = [
-            stiffness(softer, "a third of the stiffness"),
-            stiffness(OTHER_STIFFNESS, "three times the stiffness"),
-            (words.to_owned(), summed_otherwise),
-        ];
+        let others = MOST_POWERS.filter_map(stiffness);
+        let others = others.chain([(words.to_owned(), summed_otherwise)]);
         let variation = |(name, properties): (String, ElasticProperties)| Variation {
             name,
             model: match self.varied(properties) {
@@ -270,7 +274,7 @@ impl ElasticJoints {
                 Err(error) => Err(error.to_string()),
             },
         };
-        others.into_iter().map(variation).collect()
+        others.map(variation).collect()
     }
 
     fn varied(&self, properties: ElasticProperties) -> Result<Self, RowModelError> {

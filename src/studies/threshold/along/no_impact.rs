@@ -6,7 +6,7 @@
 
 use crate::GroundMotion;
 use crate::scenario::{Ground, Scenario};
-use crate::studies::threshold::factors::Factors;
+use crate::studies::threshold::factors::{Factors, SearchedFactors, onset_factor};
 use crate::studies::threshold::first_edge::lowest;
 
 /// Ratio of successive factors under motions with lobes to both sides; a narrower range may be missed. The narrowest known ranges, under Ricker,
@@ -42,8 +42,10 @@ pub(super) fn least_without_impact(
     let one_sided =
         matches!(scenario.ground.as_ref(), Some(Ground::Pulse(pulse)) if pulse.kind.is_one_sided());
     let stride = if one_sided { ONE_SIDED_STRIDE } else { STRIDE };
-    let last = factors.to;
-    let ascending = std::iter::successors(Some(factors.from), |factor| {
+    let moving = (scenario.ground_motion(), &request);
+    let onset = onset_factor(&*model, scenario.simulation.direction, moving);
+    let SearchedFactors { from, to: last, .. } = factors.searched(onset)?;
+    let ascending = std::iter::successors(Some(from), |factor| {
         (*factor < last).then(|| (factor * stride).min(last))
     });
     let histories = ascending.map(|factor| (factor, overturns(factor)));

@@ -1,0 +1,266 @@
+//! The search for the threshold of a model in one direction of the ground motion: upwards in strides, then to the edges, then finely below the first
+//! one.
+
+use std::ops::ControlFlow;
+
+use super::below::{Closeness, UnrepeatedHistory, below_edge, unrepeated};
+use super::factors::{EDGE_WIDTH, SearchedFactors, UNCERTAIN_EDGE_WIDTH};
+use super::{FactorSample, Survival, Threshold};
+use crate::bisection::{Width, next_middles, try_bisect};
+use crate::dynamics::Direction;
+use crate::studies::ending::{Ending, NoHistory, Verdict, answered};
+use crate::studies::{Progress, Runner, RunnerError, StudyError};
+use crate::{GroundMotion, Model, Request, SimulationError};
+
+/// Number of bisection steps computed ahead for models that compute histories faster together: three steps are seven histories.
+const STEPS_AHEAD: usize = 3;
+
+/// Number of factors computed together on the way up to the first collapse. It does not depend on the number of threads, so that no result does.
+const TOGETHER: usize = 16;
+
+/// The model, the ground motion in a direction, and the request.
+#[derive(Clone, Copy)]
+pub(super) struct Shaking<'a> {
+    pub(super) direction: Direction,
+    pub(super) model: &'a dyn Model,
+    pub(super) ground: &'a GroundMotion,
+    pub(super) request: &'a Request,
+    pub(super) searched: &'a SearchedFactors,
+}
+
+impl Shaking<'_> {
+    /// Finds the threshold of the model with this name among these ascending factors. Returns it with the other histories of the search: those of
+    /// bisections, and those below the first edge.
+    pub(super) fn threshold(
+        &self,
+        name: &str,
+        factors: &[f64],
+        runner: &Runner,
+        mut watch: impl FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<(Threshold, Vec<FactorSample>), StudyError> {
+        let mut samples = self.upwards(factors, runner, &mut watch)?;
+        let (mut edges, mut others) = self.bisect(&mut samples, runner, &mut watch)?;
+        let first = Threshold::new(name.to_owned(), *self.searched, samples, &edges);
+        let safe = Survival::of_threshold(&first).survives_up_to;
+        let mut samples = first.samples;
+        if let Some(safe) = safe {
+            let found = (&mut samples, &mut edges);
+            others.extend(self.below(safe, found, runner, &mut watch)?);
+        }
+        let threshold = Threshold {
+            direction: self.direction,
+            ..Threshold::new(first.model, *self.searched, samples, &edges)
+        };
+        Ok((threshold, others))
+    }
+
+    /// Computes the histories for these ascending factors, or up to the first one that certainly overturns the structure.
+    fn upwards(
+        &self,
+        factors: &[f64],
+        runner: &Runner,
+        mut watch: impl FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<Vec<FactorSample>, RunnerError> {
+        let ends_at_collapse = self.searched.ends_at_collapse;
+        let together = if ends_at_collapse {
+            TOGETHER
+        } else {
+            factors.len()
+        };
+        let mut samples: Vec<FactorSample> = Vec::new();
+        for factors in factors.chunks(together) {
+            samples.extend(self.in_parallel(
+                factors,
+                |some| self.samples(some),
+                runner,
+                &mut watch,
+            )?);
+            let overturns = |sample: &FactorSample| sample.verdict() == Some(Verdict::Overturns);
+            if let Some(first) = samples
+                .iter()
+                .position(overturns)
+                .filter(|_| ends_at_collapse)
+            {
+                samples.truncate(first + 1);
+                break;
+            }
+        }
+        Ok(samples)
+    }
+
+    /// Computes results for several factors on all threads, in their order.
+    fn in_parallel<R: Send>(
+        &self,
+        factors: &[f64],
+        compute: impl Fn(&[f64]) -> Vec<R> + Sync,
+        runner: &Runner,
+        watch: impl FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<Vec<R>, RunnerError> {
+        let family = |_| self.model.is_elastic().then_some(0);
+        let results_of = |indices: &[usize]| {
+            let some = indices.iter().map(|index| factors[*index]);
+            compute(&some.collect::<Vec<_>>())
+        };
+        runner.each_of_families(factors.len(), family, results_of, watch)
+    }
+
+    /// Finds the edges between neighbouring samples with different verdicts. Adds histories with a third verdict to the samples, and returns the edges
+    /// and all other histories.
+    fn bisect(
+        &self,
+        samples: &mut Vec<FactorSample>,
+        runner: &Runner,
+        watch: impl FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<(Vec<(f64, f64)>, Vec<FactorSample>), RunnerError> {
+        let pairs = samples.windows(2).map(|pair| (&pair[0], &pair[1]));
+        let changes = pairs.filter(|(below, above)| {
+            let both = below.verdict().zip(above.verdict());
+            both.is_some_and(|(below, above)| below != above)
+        });
+        let changes: Vec<Change<'_>> = changes.collect();
+        let search = |index: usize| self.search(changes[index]);
+        let found = runner.each(changes.len(), search, watch)?;
+        let (mut edges, mut tried) = (Vec::new(), Vec::new());
+        for found in found.into_iter().flatten() {
+            match found {
+                EdgeStep::Edge(low, high) => edges.push((low, high)),
+                EdgeStep::Met(sample) => samples.push(*sample),
+                EdgeStep::Tried(sample) => tried.push(sample),
+            }
+        }
+        samples.sort_by(|a, b| a.factor.total_cmp(&b.factor));
+        Ok((edges, tried))
+    }
+
+    /// Searches below the first edge for factors whose histories do not survive. Adds them to the samples, with the next lower factor that is certainly
+    /// survived, and adds their edges. Returns all other histories.
+    fn below(
+        &self,
+        safe: f64,
+        (samples, edges): (&mut Vec<FactorSample>, &mut Vec<(f64, f64)>),
+        runner: &Runner,
+        mut watch: impl FnMut(Progress) -> ControlFlow<()>,
+    ) -> Result<Vec<FactorSample>, RunnerError> {
+        let mut others = Vec::new();
+        let mut closeness = |factors: &[f64]| {
+            let found =
+                self.in_parallel(factors, |some| self.unrepeated(some), runner, &mut watch)?;
+            let (close, own): (Vec<Closeness>, Vec<FactorSample>) = found.into_iter().unzip();
+            others.extend(own);
+            Ok::<_, RunnerError>(close)
+        };
+        let Some(lowest) = below_edge(safe, self.searched.from, &mut closeness)? else {
+            return Ok(others);
+        };
+        // The lowest history that does not survive, repeated, and the next lower one that certainly does.
+        let mut lower = self.samples(&[lowest.hit]);
+        for factor in lowest.lower {
+            lower.splice(0..0, self.samples(&[factor]));
+            if lower[0].verdict() == Some(Verdict::Survives) {
+                break;
+            }
+        }
+        let (found, tried) = self.bisect(&mut lower, runner, watch)?;
+        edges.extend(found);
+        others.extend(tried);
+        samples.extend(lower);
+        samples.sort_by(|a, b| a.factor.total_cmp(&b.factor));
+        Ok(others)
+    }
+
+    /// Computes histories without repetitions, and how close each comes to overturning.
+    fn unrepeated(&self, factors: &[f64]) -> Vec<(Closeness, FactorSample)> {
+        let grounds = factors.iter().map(|factor| self.ground.scaled(*factor));
+        let histories = unrepeated(self.model, self.request, grounds).into_iter();
+        let of = |(factor, (close, history)): (&f64, UnrepeatedHistory)| {
+            (close, self.sample(*factor, Ending::unrepeated(history)))
+        };
+        factors.iter().zip(histories).map(of).collect()
+    }
+
+    fn sample(&self, factor: f64, result: Result<Ending, NoHistory>) -> FactorSample {
+        let direction = self.direction;
+        let result = result.map(|ending| Ending {
+            direction,
+            ..ending
+        });
+        FactorSample { factor, result }
+    }
+
+    /// Computes the histories for several factors, in their order.
+    fn samples(&self, factors: &[f64]) -> Vec<FactorSample> {
+        let cases = factors.iter().map(|factor| {
+            let ground = self.ground.scaled(*factor);
+            Ok((ground.map_err(SimulationError::from)?, *self.request))
+        });
+        let endings = answered(cases, |cases| Ending::of_all(self.model, cases));
+        let samples = factors.iter().copied().zip(endings);
+        samples
+            .map(|(factor, result)| self.sample(factor, result))
+            .collect()
+    }
+
+    /// Finds the edge between neighbouring factors with different verdicts. If a history has a third verdict, returns this history and the edges
+    /// on both sides of it; if a history fails, returns that history. The other histories come with it.
+    fn search(&self, (below, above): Change<'_>) -> Vec<EdgeStep> {
+        let is_uncertain = [below, above]
+            .map(FactorSample::verdict)
+            .contains(&Some(Verdict::Uncertain));
+        let width = Width::Relative(if is_uncertain {
+            UNCERTAIN_EDGE_WIDTH
+        } else {
+            EDGE_WIDTH
+        });
+        let is_elastic = self.model.is_elastic();
+        let steps = if is_elastic { STEPS_AHEAD } else { 1 };
+        let (mut low, mut high) = (below.factor, above.factor);
+        let mut ahead: Vec<FactorSample> = Vec::new();
+        let mut found = Vec::new();
+        let edge = try_bisect(low, high, width, |factor| {
+            let known = |ahead: &[FactorSample]| ahead.iter().position(|it| it.factor == factor);
+            let place = known(&ahead).unwrap_or_else(|| {
+                ahead = self.samples(&next_middles(low, high, width, steps));
+                // The first history ahead is the one that is needed now.
+                0
+            });
+            let sample = ahead.swap_remove(place);
+            let is_above = match sample.verdict() {
+                verdict if verdict == below.verdict() => {
+                    low = factor;
+                    false
+                }
+                verdict if verdict == above.verdict() => {
+                    high = factor;
+                    true
+                }
+                _ => return Err(Box::new(sample)),
+            };
+            found.push(EdgeStep::Tried(sample));
+            Ok(is_above)
+        });
+        match edge {
+            Ok((low, high)) => found.push(EdgeStep::Edge(low, high)),
+            Err(met) => {
+                if met.verdict().is_some() {
+                    found.extend(self.search((below, &*met)));
+                    found.extend(self.search((&*met, above)));
+                }
+                found.push(EdgeStep::Met(met));
+            }
+        }
+        found
+    }
+}
+
+/// Neighbouring samples with different verdicts.
+type Change<'a> = (&'a FactorSample, &'a FactorSample);
+
+/// Result of a search between neighbouring samples.
+enum EdgeStep {
+    /// Two close factors with different verdicts.
+    Edge(f64, f64),
+    /// A history between the samples that failed or has a third verdict.
+    Met(Box<FactorSample>),
+    /// Another history of the bisection.
+    Tried(FactorSample),
+}
