@@ -11,7 +11,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::dynamics::{Directions, MODEL_LIMIT};
+use crate::dynamics::{Direction, Directions, MODEL_LIMIT};
 use crate::scenario::{FOUR_LINKS, FREE_HINGES, ModelKind, Scenario};
 
 /// Smallest and largest coefficient of friction of stone on stone. An answer has no condition up to the smallest one.
@@ -218,9 +218,16 @@ impl ModelAnswer {
     }
 }
 
-/// Returns the directions of the ground motion for which an answer holds, in words that follow the answer.
-pub(super) const fn directions_in_words(directions: Directions) -> &'static str {
+/// Returns the directions of the ground motion for which an answer holds, in words that follow the answer. `governing` is the direction of the worse
+/// result, if both are computed.
+pub(super) const fn directions_in_words(
+    directions: Directions,
+    governing: Direction,
+) -> &'static str {
     match directions {
+        Directions::Both if matches!(governing, Direction::Mirrored) => {
+            " in both directions (the mirrored one governs)"
+        }
         Directions::Both => " in both directions",
         Directions::AsGiven => " in the direction as given only",
         Directions::Mirrored => " in the mirrored direction only",
