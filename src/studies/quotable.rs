@@ -140,11 +140,11 @@ pub(super) fn condition_of(demand: Option<f64>) -> Option<String> {
 /// Coefficient of friction above which values are not printed. No stone has them; they occur at almost unloaded joints.
 const MOST: f64 = 10.0;
 
-/// Returns a coefficient of friction as text.
+/// Returns a needed coefficient of friction as text, rounded up: with less, joints slip.
 fn in_digits(coefficient: f64) -> String {
     match coefficient > MOST {
         true => format!("more than {MOST}"),
-        false => format!("{coefficient:.2}"),
+        false => format!("{:.2}", libm::ceil(100.0 * coefficient - 1e-9) / 100.0),
     }
 }
 

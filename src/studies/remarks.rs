@@ -291,7 +291,7 @@ pub(crate) fn one_direction(scenario: &Scenario) -> Option<String> {
     }
     let both = scenario.in_directions(Directions::Both);
     let model = both.model().ok()?;
-    let only = directions_in_words(directions);
+    let only = directions_in_words(directions, directions.first());
     both.has_second_direction(&*model).then(|| {
         format!("computed{only}; the opposite direction may overturn the structure earlier")
     })
