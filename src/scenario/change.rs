@@ -8,6 +8,7 @@ use std::sync::LazyLock;
 
 use super::document::{Entries, KeyGroup};
 use super::prelude::*;
+use super::suite::BOTH_SIGNS;
 use super::{Scenario, span};
 
 /// The JSON schema of all tables of a scenario, and the keys that exclude or need each other.
@@ -68,6 +69,20 @@ pub(super) fn follow(root: &mut Entries, new: &[String]) {
             });
         }
     }
+    // The older name of the key replaces it, and the reverse.
+    let directions = [("simulation", "direction"), ("suite", BOTH_SIGNS)];
+    let is_new_direction = directions.map(|(table, key)| is_new(&format!("/{table}/{key}")));
+    if let Some(new) = is_new_direction.iter().position(|is_new| *is_new) {
+        let (table, key) = directions[1 - new];
+        if let Some(Value::Object(other)) = tables.get_mut(table)
+            && !is_new_direction[1 - new]
+        {
+            other.shift_remove(key);
+        }
+    }
+    if let Some(Value::Object(piers)) = tables.get_mut("piers") {
+        drop_overridden(piers, |side, key| is_new(&format!("/piers/{side}/{key}")));
+    }
     if let Some(Value::Object(arch)) = tables.get_mut("arch") {
         scale_joints(arch, |key| is_new(&format!("/arch/{key}")));
     }
@@ -99,6 +114,26 @@ fn replace_alternatives(
                 table.shift_remove(companion);
             }
         }
+    }
+}
+
+/// Removes the keys of both piers that a new key of one pier leaves without effect, because the other pier has its own.
+fn drop_overridden(piers: &mut Entries, is_new: impl Fn(&str, &str) -> bool) {
+    const SIDES: [&str; 2] = ["left", "right"];
+    let gives = |piers: &Entries, side: &str, key: &str| {
+        piers.get(side).is_some_and(|pier| pier.get(key).is_some())
+    };
+    let overridden = |key: &String| {
+        SIDES.iter().all(|side| gives(piers, side, key))
+            && SIDES.iter().any(|side| is_new(side, key))
+    };
+    let keys: Vec<String> = piers
+        .keys()
+        .filter(|key| overridden(key))
+        .cloned()
+        .collect();
+    for key in keys {
+        piers.shift_remove(&key);
     }
 }
 

@@ -49,10 +49,10 @@ impl RecordListing {
     }
 
     /// Finds the files that the key `file` of an entry matches, and reads the keys that describe them. Keys of the outer table are defaults, if
-    /// they apply to such files; `format` is the default of the format.
-    pub(super) fn of_entry(table: &mut Table<'_>, format: Option<Format>) -> Self {
+    /// they apply to such files.
+    pub(super) fn of_entry(table: &mut Table<'_>) -> Self {
         let pattern = table.required(FILE, &text());
-        let format = Format::read(table).or(format);
+        let format = Format::inherit(table);
         let given = Some(pattern).filter(|pattern| !pattern.is_empty() || table.gives(FILE));
         let patterns: Vec<_> = given.into_iter().collect();
         let files = list(table, (FILE, &patterns), format, BTreeSet::new());
@@ -60,6 +60,19 @@ impl RecordListing {
         Layout::inherit(table, &formats);
         let layout = Layout::read(table, &formats);
         Self { files, layout }
+    }
+
+    /// Records a fault of each given key that describes neither a listed file nor an entry, which takes it as a default.
+    pub(super) fn refuse_without_effect(&self, table: &mut Table<'_>) -> ReadResult<()> {
+        let formats = formats(&self.files);
+        let describes = |key| self.layout.describes(key, &formats) || table.is_default(key);
+        let given = Layout::keys().filter(|key| table.gives(key));
+        let vain: Vec<_> = given.filter(|key| !describes(key)).collect();
+        for key in vain {
+            let wrong = "has no effect: each entry [[suite.record]] gives its own value or cannot use it; leave it out";
+            table.wrong(key, wrong);
+        }
+        table.check_faultless()
     }
 
     /// Returns the number of files.

@@ -144,7 +144,7 @@ impl Suite {
             Some((strongest, simulation)) => check_record(series, strongest, simulation),
             None => Ok(()),
         };
-        let entry = |entry: &mut Table<'_>| read_entry(entry, format, strongest, accept);
+        let entry = |entry: &mut Table<'_>| read_entry(entry, strongest, accept);
         let entries = table.tables(ENTRIES, entry).concat();
         let related = table.apply_relations(&[
             SomeOf(
@@ -166,6 +166,7 @@ impl Suite {
         );
         table.refuse_all(cases > MAX_CASES, wrong)?;
         table.refuse_all(files == 0, "has no records")?;
+        listing.refuse_without_effect(table)?;
         let has_entries = !entries.is_empty();
         let listed = listing.series(table, accept)?;
         let count = listed.len();
@@ -265,11 +266,10 @@ const ENTRIES: &str = "record";
 /// Reads the records of an entry `[[suite.record]]`.
 fn read_entry(
     table: &mut Table<'_>,
-    format: Option<Format>,
     strongest: Option<Scaling>,
     accept: impl Fn(&Series) -> Result<(), String>,
 ) -> ReadResult<Vec<Series>> {
-    let listing = RecordListing::of_entry(table, format);
+    let listing = RecordListing::of_entry(table);
     let scaling = Scaling::read(table)?;
     let is_replaced = matches!(strongest, Some(Scaling::PeakG(_)));
     let key = match table.gives("scale") {

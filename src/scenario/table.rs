@@ -6,6 +6,7 @@
 //!
 //! Reading also describes: with an empty text, [`describe`] collects all tables, keys, rules and defaults of `read`.
 
+use std::collections::BTreeSet;
 use std::fmt::Display;
 use std::sync::LazyLock;
 
@@ -89,6 +90,10 @@ pub struct Table<'a> {
     outer: Option<(String, &'a Entries)>,
     /// Keys whose values in the outer table are defaults of this table.
     inherited: Vec<&'static str>,
+    /// Keys whose values were read from the outer table, because this table does not give them.
+    taken: Vec<String>,
+    /// Keys of this table that tables in it have taken as defaults.
+    defaults: BTreeSet<String>,
     document: &'a Document<'a>,
     /// The keys that were read, and true for keys of tables.
     known: Vec<(String, bool)>,
@@ -112,6 +117,8 @@ impl<'a> Table<'a> {
             entries,
             outer: None,
             inherited: Vec::new(),
+            taken: Vec::new(),
+            defaults: BTreeSet::new(),
             document,
             known: Vec::new(),
             faults: Vec::new(),
@@ -288,6 +295,11 @@ impl<'a> Table<'a> {
     /// Takes values that the outer table gives for these keys as defaults.
     pub(super) fn inherit(&mut self, keys: impl Iterator<Item = &'static str>) {
         self.inherited.extend(keys);
+    }
+
+    /// Returns true if a table in this one has read the value of this key as a default.
+    pub(super) fn is_default(&self, key: &str) -> bool {
+        self.defaults.contains(key)
     }
 
     /// Returns path and value of a default in the outer table.
@@ -513,6 +525,9 @@ impl<'a> Table<'a> {
         }
         let own = self.entries.get(key);
         let entry = own.or_else(|| self.default_of(key).map(|(_, value)| value));
+        if own.is_none() && entry.is_some() {
+            self.taken.push(key.to_owned());
+        }
         self.is_partial |= entry.is_none() && self.may_give(&[key]);
         entry
     }
@@ -551,6 +566,7 @@ impl<'a> Table<'a> {
         let faultless = table.check_faultless();
         self.faults.append(&mut table.faults);
         self.noted_files.append(&mut table.noted_files);
+        self.defaults.extend(table.taken);
         self.is_partial |= table.is_partial;
         for mut group in table.groups.drain(..) {
             group.tables.insert(0, key.to_owned());

@@ -61,7 +61,7 @@ pub use peaks::{FILES as PEAKS_FILES, Summary as PeaksSummary, results as peak_r
 pub use pictures::{impact as draw_impact, limit as draw_limit};
 pub use quotable::{ModelAnswer, in_words as quoted_in_words};
 pub use record::record;
-use remarks::{CaseSummary, ModelCheck, OutcomeCounts, Remark, Remarks, no_verdict};
+use remarks::{CaseSummary, ModelCheck, OutcomeCounts, Remark, Remarks, no_verdict, one_direction};
 use results::ReportedStudy;
 pub use results::{Results, StudyError, Style, words_of_json};
 use runner::Watch;

@@ -283,7 +283,7 @@ impl<'p> Lines<'p> {
                 Err(unusable(
                     self.path,
                     format!(
-                        "was written by archrock {version}, with rows of format {format}, and this version reads format {ROW_FORMAT}: delete                          the file and compute the part again, or use archrock {version}"
+                        "was written by archrock {version}, with rows of format {format}, and this version reads format {ROW_FORMAT}: delete the file and compute the part again, or use archrock {version}"
                     ),
                 ))
             }

@@ -11,7 +11,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::dynamics::{Directions, MODEL_LIMIT};
+use crate::dynamics::{Direction, Directions, MODEL_LIMIT};
 use crate::scenario::{FOUR_LINKS, FREE_HINGES, ModelKind, Scenario};
 
 /// Smallest and largest coefficient of friction of stone on stone. An answer has no condition up to the smallest one.
@@ -140,11 +140,11 @@ pub(super) fn condition_of(demand: Option<f64>) -> Option<String> {
 /// Coefficient of friction above which values are not printed. No stone has them; they occur at almost unloaded joints.
 const MOST: f64 = 10.0;
 
-/// Returns a coefficient of friction as text.
+/// Returns a needed coefficient of friction as text, rounded up: with less, joints slip.
 fn in_digits(coefficient: f64) -> String {
     match coefficient > MOST {
         true => format!("more than {MOST}"),
-        false => format!("{coefficient:.2}"),
+        false => format!("{:.2}", libm::ceil(100.0 * coefficient - 1e-9) / 100.0),
     }
 }
 
@@ -218,9 +218,16 @@ impl ModelAnswer {
     }
 }
 
-/// Returns the directions of the ground motion for which an answer holds, in words that follow the answer.
-pub(super) const fn directions_in_words(directions: Directions) -> &'static str {
+/// Returns the directions of the ground motion for which an answer holds, in words that follow the answer. `governing` is the direction of the worse
+/// result, if both are computed.
+pub(super) const fn directions_in_words(
+    directions: Directions,
+    governing: Direction,
+) -> &'static str {
     match directions {
+        Directions::Both if matches!(governing, Direction::Mirrored) => {
+            " in both directions (the mirrored one governs)"
+        }
         Directions::Both => " in both directions",
         Directions::AsGiven => " in the direction as given only",
         Directions::Mirrored => " in the mirrored direction only",

@@ -10,8 +10,8 @@ use super::ending::columns::{
     CANNOT_STAND, FAILED, GROUND_FALLS, NOT_FOUR_LINKS, OVERTURNED, UNCERTAIN,
 };
 use super::ending::{Ending, NoHistory, Verdict, outcome_name};
-use super::quotable::SurvivorFriction;
-use crate::dynamics::{EXCESS_LEVELS, MODEL_LIMIT, OutcomeCount};
+use super::quotable::{SurvivorFriction, directions_in_words};
+use crate::dynamics::{Directions, EXCESS_LEVELS, MODEL_LIMIT, OutcomeCount};
 use crate::{Outcome, Scenario};
 
 /// A failed or uncertain case, as results list it.
@@ -52,7 +52,7 @@ pub struct Remarks {
     /// The histories of four links outside their model.
     #[serde(flatten)]
     pub(crate) model: ModelCheck,
-    /// Number of histories that were computed; absent if they are not counted.
+    /// Number of cases with a history; absent if they are not counted.
     #[serde(default, skip_serializing_if = "is_zero")]
     histories: usize,
     /// Number of histories among them that ended too early for a verdict; absent without any.
@@ -244,6 +244,9 @@ pub(crate) struct CaseSummary {
     warnings: Vec<String>,
     /// Name and checksum of each record file.
     record_checksums: Vec<String>,
+    /// The only direction of the ground motion that was computed, in words; absent if both count.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) one_direction: Option<String>,
     /// Number of cases.
     pub(crate) cases: usize,
     #[serde(flatten)]
@@ -261,19 +264,37 @@ impl CaseSummary {
         friction: SurvivorFriction,
         warnings: impl IntoIterator<Item = String>,
     ) -> Self {
+        let one_direction = one_direction(scenario);
         let warnings = warnings.into_iter();
         let warnings = warnings.chain(friction.friction_condition.clone());
+        let warnings = warnings.chain(one_direction.clone());
         Self {
             program: env!("CARGO_PKG_NAME").to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             scenario: scenario.to_json(),
             warnings: scenario.unlikely().into_iter().chain(warnings).collect(),
             record_checksums: scenario.record_checksums(),
+            one_direction,
             cases,
             friction,
             remarks,
         }
     }
+}
+
+/// Returns the only direction of the ground motion that a study of many cases computes, in words; `None` if the structure has no second direction, or
+/// both count.
+pub(crate) fn one_direction(scenario: &Scenario) -> Option<String> {
+    let directions = scenario.simulation.direction;
+    if directions == Directions::Both {
+        return None;
+    }
+    let both = scenario.in_directions(Directions::Both);
+    let model = both.model().ok()?;
+    let only = directions_in_words(directions, directions.first());
+    both.has_second_direction(&*model).then(|| {
+        format!("computed{only}; the opposite direction may overturn the structure earlier")
+    })
 }
 
 /// Returns the number of cases that ended too early for a verdict, and the remedy, in words; `None` if the number is zero.

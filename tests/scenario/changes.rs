@@ -235,8 +235,8 @@ fn all_ways_to_change_a_number_agree() {
     assert!(agree > 250 && refused > 30, "{agree} {refused}");
 }
 
-/// Checks all keys of a text. Returns the number of changes that are allowed and refused.
-fn check_text(text: &Text) -> [usize; 2] {
+/// Returns the text that `check` prints for a text, and the scenario of both.
+fn written(text: &Text) -> (Text, Scenario) {
     let scenario = text.read(&[]).unwrap();
     let written = Text {
         text: scenario.to_toml(),
@@ -245,6 +245,30 @@ fn check_text(text: &Text) -> [usize; 2] {
     let again = written.read(&[]).unwrap();
     assert_eq!(again, scenario, "{}", text.name);
     assert_eq!(again.to_toml(), written.text, "{}", text.name);
+    (written, scenario)
+}
+
+/// Returns a text without the studies that read records: changed scenarios are compared without studies, and each of them would read all records.
+fn without_records(text: &Text) -> Text {
+    let mut is_kept = true;
+    let lines = text.text.lines().filter(|line| {
+        if let Some(header) = line.trim_start().strip_prefix('[') {
+            let table = header.trim_start_matches('[').split(['.', ']']).next();
+            is_kept = !["suite", "verify"].contains(&table.unwrap());
+        }
+        is_kept
+    });
+    Text {
+        text: lines.map(|line| format!("{line}\n")).collect(),
+        name: text.name.clone(),
+    }
+}
+
+/// Checks all keys of a text. Returns the number of changes that are allowed and refused.
+fn check_text(text: &Text) -> [usize; 2] {
+    let _ = written(text);
+    let text = &without_records(text);
+    let (written, scenario) = written(text);
     let mut keys = Vec::new();
     for (name, table) in scenario.to_json().as_object().unwrap() {
         if !STUDIES.contains(&name.as_str()) {

@@ -553,3 +553,17 @@ fn every_relation_between_keys_is_checked() {
     let errors = Scenario::parse(&format!("{arch}[[tie]]\n{tie}"), "s.toml").unwrap_err();
     assert_eq!(errors.0.len(), 7, "{errors}");
 }
+
+/// Paths of the tables with numbers that describe the structure and its motion, without marks of lists.
+pub fn tables_with_numbers() -> BTreeSet<String> {
+    let studies = ["map", "suite", "uncertain", "demand", "verify"];
+    let is_number = |(_, schema): (&str, &Value)| {
+        let mut ways = ways(schema).into_iter();
+        ways.any(|way| way["type"] == "number" || way["type"] == "integer")
+    };
+    let tables = tables().into_iter();
+    let numeric = tables.filter(|(_, schema)| properties(schema).any(is_number));
+    let paths = numeric.map(|(path, _)| path.replace(['[', ']'], ""));
+    let of_structure = |path: &String| !studies.iter().any(|study| path.starts_with(study));
+    paths.filter(of_structure).collect()
+}

@@ -492,3 +492,80 @@ fn faulty_entries_are_refused() {
     .unwrap_err();
     assert!(errors.contains("s.toml:7:8: "), "{errors}");
 }
+
+/// A key of `[suite]` that no record takes, because each entry gives its own value or cannot have it, is refused at its place. One record without its own
+/// value is enough.
+#[test]
+fn keys_that_all_entries_replace_are_refused() {
+    let folder = folder();
+    let folder = folder.path();
+    fs::copy(folder.join("all/timed.csv"), folder.join("all/timed2.csv")).unwrap();
+    let timed = "[[suite.record]]\nfile = 'all/timed.csv'\n";
+    let own = format!("{timed}unit = 'm/s2'\nacceleration_column = 2\n");
+    let other = own.replace("timed", "timed2");
+    let smc = "[[suite.record]]\nfile = 'all/smc.smc'\n";
+    let cwb = "[[suite.record]]\nfile = 'all/cwb.dat'\n";
+    let listed = "records = 'all/smc.smc'\n";
+    for (key, entries) in [
+        ("unit = 'g'", format!("{own}{other}")),
+        ("unit = 'g'", format!("{own}{smc}")),
+        ("acceleration_column = 3", own.clone()),
+        ("skip_rows = 1", format!("{own}skip_rows = 0\n")),
+        (
+            "decimal = 'comma'",
+            format!("{own}decimal = 'point'\n{smc}"),
+        ),
+        (
+            "format = 'csv'",
+            format!("{own}format = 'csv'\n{smc}format = 'smc'\n"),
+        ),
+        ("channel = 2", format!("{cwb}channel = 1\n{smc}")),
+        ("time_column = 2", format!("{own}dt_s = 0.01\n")),
+        (
+            "quantity = 'velocity'",
+            format!("{smc}quantity = 'acceleration'\n"),
+        ),
+        (
+            "baseline = 'mean'",
+            format!("{smc}baseline = 'linear'\n{own}remove_mean = true\n"),
+        ),
+        ("high_pass_hz = 1", format!("{smc}high_pass_hz = 2\n")),
+    ] {
+        let faulty = format!("scales = [1]\n{key}\n{entries}");
+        let errors = read(folder, &faulty).expect_err(&faulty);
+        let message = format!(
+            "s.toml:8:{}: `{key}` has no effect: each entry [[suite.record]] gives",
+            key.find(" = ").unwrap() + 4
+        );
+        assert!(
+            errors.contains(&message) && errors.ends_with("leave it out"),
+            "{faulty}: {errors}"
+        );
+        assert_eq!(errors.lines().count(), 1, "{faulty}: {errors}");
+        read(folder, &format!("scales = [1]\n{entries}"))
+            .unwrap_or_else(|errors| panic!("{entries}: {errors}"));
+    }
+    // A listed file or an entry uses the key.
+    for used in [
+        format!(
+            "unit = 'm/s2'\n{own}{}",
+            other.replace("unit = 'm/s2'\n", "")
+        ),
+        format!("records = 'all/timed2.csv'\nunit = 'm/s2'\nacceleration_column = 2\n{own}"),
+        format!("{listed}high_pass_hz = 1\n{own}high_pass_hz = 2\n"),
+    ] {
+        suite(folder, &format!("scales = [1]\n{used}"));
+    }
+    // A listed file of another format does not use the keys of tables.
+    let errors = read(folder, &format!("scales = [1]\n{listed}unit = 'g'\n{own}"));
+    let errors = errors.unwrap_err();
+    assert!(errors.contains("`unit = 'g'` has no effect"), "{errors}");
+    // The place is the assignment.
+    fs::write(
+        folder.join("s.toml"),
+        format!("{COLUMN}[suite]\nscales = [1]\n{own}"),
+    )
+    .unwrap();
+    let arguments = ["check", "s.toml", "--set", "suite.unit=g"];
+    refused(folder, &arguments, &["--set suite.unit=g", "has no effect"]);
+}

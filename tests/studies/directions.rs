@@ -4,7 +4,7 @@ use std::fs;
 
 use crate::common::program::{archrock, printed, scenarios, stdout};
 use crate::common::results::{data_of, json};
-use crate::common::{COLUMN, ON_A_PIER, UNEVEN_ARCH};
+use crate::common::{COLUMN, ON_A_PIER, UNEVEN_ARCH, pairs};
 use archrock::studies::run::{page_of, words_of};
 use serde_json::Value;
 
@@ -25,6 +25,16 @@ fn run(folder: &std::path::Path, more: &[&str]) -> Value {
     let output = archrock(folder, &arguments);
     assert!(output.status.success(), "{output:?}");
     serde_json::from_str(&stdout(&output)).unwrap()
+}
+
+/// The quote has these words, unless there is no answer.
+#[track_caller]
+fn assert_quotes(summary: &Value, words: &str) {
+    let quote = summary["to_quote"].as_str().unwrap();
+    assert!(
+        quote.contains(words) || quote.contains("no answer"),
+        "{quote}: {words}"
+    );
 }
 
 /// The mirrored result of `both` is the result in that direction alone; the other numbers are those of the motion as given; and the verdict is the
@@ -59,15 +69,28 @@ fn assert_both_are_the_runs_alone(folder: &std::path::Path, more: &[&str]) -> [S
     let verdicts = [&given, &turned].map(severity);
     assert_eq!(severity(&both), *verdicts.iter().max().unwrap());
     assert!(verdicts.iter().all(Option::is_some));
-    for (alone, direction) in [(&given, " as given"), (&turned, " mirrored")] {
-        if alone["verdict"] == "survives" || alone["verdict"] == "overturns" {
-            let quote = alone["to_quote"].as_str().unwrap();
-            assert!(
-                quote.contains(&format!("this motion{direction}")) || quote.contains("no answer"),
-                "{quote}"
-            );
-        }
+    let directions = ["direction as given", "mirrored direction"];
+    for (alone, direction) in [&given, &turned].into_iter().zip(directions) {
+        // A survivor of one direction may overturn in the other.
+        let only = if alone["verdict"] == "survives" {
+            " only"
+        } else {
+            ""
+        };
+        assert_quotes(alone, &format!("this motion in the {direction}{only}"));
     }
+    let overturns = [&given, &turned].map(|alone| alone["verdict"] == "overturns");
+    let peak = |summary: &Value| summary["largest_peak_rotation_rad"].as_f64();
+    let due = match overturns {
+        [true, true] => "overturns under this motion in both directions",
+        [true, false] => "overturns under this motion in the direction as given",
+        [false, true] => "overturns under this motion in the mirrored direction",
+        [false, false] if peak(&turned) > peak(&given) => {
+            "survives this motion in both directions (the mirrored one governs)"
+        }
+        [false, false] => "survives this motion in both directions",
+    };
+    assert_quotes(&both, due);
     [given, turned].map(|alone| alone["verdict"].as_str().unwrap().to_owned())
 }
 
@@ -85,6 +108,111 @@ fn an_arch_on_piers_overturns_under_the_mirrored_motion() {
     assert_eq!(own["mirrored"]["outcome_time_s"], other["outcome_time_s"]);
     assert_eq!(other["mirrored"]["outcome_time_s"], own["outcome_time_s"]);
     assert_eq!([&own["verdict"], &other["verdict"]], ["overturns"; 2]);
+}
+
+/// Elastic joints of a third and three times the stiffness, with more contact points, and rigid ones: each is computed in both directions with the results
+/// of that direction alone, and printed in one line.
+fn assert_varied_in_both(folder: &std::path::Path, both: &Value) {
+    let alone = ["as_given", "mirrored"].map(|direction| run(folder, &["--direction", direction]));
+    let varied = |summary: &Value| summary["variations"].as_array().unwrap().clone();
+    let names = [
+        "1.67 GPa/m",
+        "15 GPa/m",
+        "three contact points",
+        "rigid joints (free hinges)",
+    ];
+    let words = words_of(both).unwrap();
+    let all = pairs(varied(both), names).zip(pairs(varied(&alone[0]), varied(&alone[1])));
+    for ((both, name), (given, turned)) in all {
+        assert_eq!(both["with"], name);
+        for key in [
+            "outcome",
+            "outcome_time_s",
+            "overturning_sway",
+            "first_peak_rad",
+            "largest_peak_rotation_rad",
+        ] {
+            assert_eq!(both[key], given[key], "{key}");
+            assert_eq!(both["mirrored"][key], turned[key], "{key}");
+        }
+        assert!(given.get("mirrored").is_none());
+        assert_ne!(given["first_peak_rad"], turned["first_peak_rad"]);
+        let in_words = |end: &Value| match end["outcome"] == "overturned" {
+            true => format!(
+                "overturns to the {} at {:.4} s",
+                end["overturning_sway"].as_str().unwrap(),
+                end["outcome_time_s"].as_f64().unwrap()
+            ),
+            false => format!(
+                "survives, largest rotation {:.6} rad",
+                end["largest_peak_rotation_rad"].as_f64().unwrap()
+            ),
+        };
+        let line = format!(
+            "  with {name}: {}; mirrored: {}",
+            in_words(&given),
+            in_words(&turned)
+        );
+        assert_eq!(words.matches(&line).count(), 1, "{line}: {words}");
+    }
+    // Each direction has its own repetitions.
+    let counts = [&both["mirrored"]["certainty"], &both["repeatability"]];
+    for (count, alone) in pairs(counts, [&alone[1], &alone[0]]) {
+        assert_eq!(count["of"], alone["repeatability"]["of"]);
+        assert!([3, 7].contains(&count["of"].as_u64().unwrap()), "{count}");
+    }
+}
+
+/// A column with a wall of no height is one without a wall: symmetric, with the same directions, histories, verdicts and thresholds.
+#[test]
+fn a_wall_without_height_keeps_the_symmetry() {
+    let ground =
+        "[ground.one_sine]\namplitude_g = 0.35\nduration_s = 0.8\n[simulation]\nduration_s = 5.0\n";
+    let back = "[column.back]\nside = 'right'\nheight_m = 0.0\n";
+    for (table, more) in [
+        ("", &[][..]),
+        ("[free_hinges]\nlongest_step_s = 1e-3\n", &[]),
+        (
+            "[elastic_joints]\nlongest_step_s = 1e-4\nnormal_stiffness_gpa_m = 1.0\n",
+            &[],
+        ),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let folder = folder.path();
+        let of = |column: &str| {
+            fs::write(folder.join("s.toml"), format!("{column}{ground}{table}")).unwrap();
+            let mut summary = run(folder, more);
+            let keys = summary.as_object_mut().unwrap();
+            // The scenario has the wall, and the measured time of a step differs.
+            keys.remove("scenario");
+            keys.remove("longest_step_us");
+            let factors = [
+                "threshold",
+                "s.toml",
+                "--from",
+                "1",
+                "--to",
+                "1.4",
+                "--stride",
+                "0.2",
+                "--out",
+                "o",
+            ];
+            let words = printed(folder, &factors);
+            let mut threshold = json(&folder.join("o/threshold.json"));
+            let model = threshold["models"][0].as_object_mut().unwrap();
+            model.remove("scenario");
+            (summary, threshold, words)
+        };
+        let alone = of(COLUMN);
+        assert!(alone.0.get("mirrored").is_none());
+        assert_eq!(of(&format!("{COLUMN}{back}")), alone, "{table}");
+        // A wall of any height has a side.
+        let walled = format!("{COLUMN}{}", back.replace("0.0", "3.9"));
+        if !table.contains("free_hinges") {
+            assert!(of(&walled).0["mirrored"].is_object(), "{table}");
+        }
+    }
 }
 
 #[test]
@@ -105,15 +233,7 @@ fn the_verdict_of_a_run_is_that_of_the_worse_direction() {
         assert_both_are_the_runs_alone(folder.path(), &[]);
         if model == elastic {
             let summary = run(folder.path(), &[]);
-            let variations = summary["variations"].as_array().unwrap();
-            assert_eq!(variations.len(), 4);
-            let turned = run(folder.path(), &["--direction", "mirrored"]);
-            for (both, alone) in variations
-                .iter()
-                .zip(turned["variations"].as_array().unwrap())
-            {
-                assert_eq!(both["mirrored"]["outcome_time_s"], alone["outcome_time_s"]);
-            }
+            assert_varied_in_both(folder.path(), &summary);
         }
     }
 }

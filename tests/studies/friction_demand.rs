@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::common::program::printed;
+use crate::common::program::{archrock, printed, stderr, stdout};
 use crate::common::results::{Table, json};
 use crate::common::{Random, noise, parsed, random_history, semicircle};
 use archrock::{EndCondition, FreeHinges, Model, Outcome, Request, RowOptions};
@@ -84,6 +84,35 @@ fn the_demand_of_mechanisms_does_not_depend_on_duration_and_samples() {
     }
 }
 
+/// Steps end at output times, and are mostly shorter than a long `longest_step_s`, so the demand of rows hardly depends on it. Forces are means over a
+/// step: they change by less than 1 % between steps of 1 ms and the default output step of 10 ms under a smooth pulse.
+#[test]
+fn long_steps_keep_the_demand() {
+    let drums = "[column]\nheight_m = 4.0\nwidth_m = 0.8\ndrums = 3\n\
+                 [ground.one_sine]\namplitude_g = 0.3\nduration_s = 0.8\n";
+    let pointed = "[pointed_arch]\nspan_m = 6.0\nrise_m = 4.0\nthickness_m = 0.9\nvoussoirs = 8\n\
+                   [ground.one_cosine]\namplitude_g = 0.4\nduration_s = 0.5\n";
+    for text in [SLIDES, drums, pointed] {
+        let demand = |steps: &str| {
+            let scenario = parsed(&format!(
+                "{text}[simulation]\nduration_s = 4.0\n[free_hinges]\n{steps}"
+            ));
+            let model = scenario.model().unwrap();
+            let summary = model.simulate(scenario.ground_motion(), &scenario.request(), None);
+            summary.unwrap().required_friction()
+        };
+        let due = demand("").unwrap();
+        for longest_step_s in [0.1, 0.3, 1.0] {
+            let found = demand(&format!("longest_step_s = {longest_step_s}\n"));
+            let found = found.unwrap_or_else(|| panic!("{longest_step_s}: {text}"));
+            assert!(
+                (found / due - 1.0).abs() < 0.01,
+                "{longest_step_s}: {found} {due}"
+            );
+        }
+    }
+}
+
 /// With slip or elastic joints nothing depends on the friction of joints that cannot slip.
 #[test]
 fn models_that_slip_or_are_elastic_have_no_demand() {
@@ -158,6 +187,39 @@ fn run_and_threshold_need_the_same_friction() {
         assert_eq!(table.numbers("friction_demand")[0], demand);
         let needs = format!("friction coefficient of {demand:.2}");
         assert_eq!(words.contains(&needs), demand > 0.5, "{words}");
+        // At another factor as well; the quote has the largest demand up to its factor.
+        let found = threshold(folder, &file, &["--from", "1.25", "--to", "1.26"]);
+        let given = text.split("amplitude_g = ").nth(1).unwrap();
+        let given = given.lines().next().unwrap();
+        let scaled_g = 1.25 * given.parse::<f64>().unwrap();
+        let scaled = text.replace(
+            &format!("amplitude_g = {given}"),
+            &format!("amplitude_g = {scaled_g:?}"),
+        );
+        let file = with(folder, "scaled.toml", &scaled);
+        printed(folder, &["run", &file, "--out", "r"]);
+        let run = json(&folder.join("r/summary.json"));
+        let model = &found["models"][0];
+        let samples = model["samples"].as_array().unwrap();
+        let [due, sample] = [&run["friction_demand"], &samples[0]["friction_demand"]]
+            .map(|demand| demand.as_f64().unwrap());
+        // Products of amplitude, factor and gravity are rounded in another order.
+        assert!((sample / due - 1.0).abs() < 1e-6, "{sample} {due}");
+        if let Some(safe) = model["survives_up_to_factor"].as_f64() {
+            let up_to = samples
+                .iter()
+                .filter(|one| one["factor"].as_f64() <= Some(safe));
+            let demands = up_to.filter_map(|one| one["friction_demand"].as_f64());
+            let quoted = model["friction_demand"].as_f64();
+            assert!(quoted >= demands.reduce(f64::max), "{model}");
+            let needs = format!("friction coefficient of {:.2}", quoted.unwrap());
+            let words = found["to_quote"].as_str().unwrap();
+            assert_eq!(
+                words.contains(&needs),
+                quoted > Some(0.5) && !words.contains("no answer"),
+                "{words}"
+            );
+        }
     }
 }
 
@@ -201,4 +263,70 @@ fn a_quote_needs_its_friction() {
     // Joints with more friction than needed slip for less than 1 % of the time, which changes the answer by less than the agreement of repetitions.
     assert!((slipping(1.05 * demand) / safe - 1.0).abs() < 0.01);
     assert!(slipping(0.5) < 0.8 * safe);
+}
+
+/// The command that a study prints for friction above 0.6 runs as printed, also with four links, whose joints cannot slip: its joints slip, and it gives
+/// an answer.
+#[test]
+fn printed_commands_of_friction_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let record: String = (0..60)
+        .map(|step| {
+            format!(
+                "{},{}\n",
+                0.01 * f64::from(step),
+                f64::from(u8::from(step < 23))
+            )
+        })
+        .collect();
+    fs::write(folder.join("a.csv"), record).unwrap();
+    let four = SLIDES.to_owned();
+    let free = format!("{SLIDES}[free_hinges]\n");
+    let map = "[map]\namplitude_g = [1.0]\nduration_s = [0.23]\n";
+    let suite = "[suite]\nrecords = 'a.csv'\nunit = 'g'\nscales = [1.0]\n";
+    let factors = ["--from", "1", "--to", "1.5", "--stride", "0.5"];
+    for (text, study, more) in [
+        (four.clone(), "threshold", &factors[..]),
+        (free.clone(), "threshold", &factors),
+        (four.clone(), "run", &[]),
+        (format!("{four}{map}"), "map", &[]),
+        (format!("{free}{suite}"), "suite", &[]),
+    ] {
+        let file = with(folder, "s.toml", &text);
+        let all = [&[study, &file, "--out", "o"], more].concat();
+        let output = archrock(folder, &all);
+        let words = stdout(&output) + &stderr(&output);
+        let (_, after) = words
+            .split_once("run `archrock ")
+            .unwrap_or_else(|| panic!("{words}"));
+        let (command, _) = after.split_once('`').unwrap();
+        let slips = "free_hinges.friction_coefficient=0.6";
+        assert!(
+            command.starts_with(study) && command.contains(slips),
+            "{command}"
+        );
+        assert_eq!(
+            command.contains("--hinges free"),
+            !text.contains("[free_hinges]"),
+            "{command}"
+        );
+        let command = command.replace("FILE", &file);
+        let arguments: Vec<&str> = command.split(' ').chain(["--out", "p"]).collect();
+        let output = archrock(folder, &arguments);
+        let again = stdout(&output) + &stderr(&output);
+        assert!(!again.contains("joints may slip before"), "{again}");
+        let number = match study {
+            "threshold" => {
+                json(&folder.join("p/threshold.json"))["models"][0]["survives_up_to_factor"].clone()
+            }
+            "run" => json(&folder.join("p/summary.json"))["largest_peak_rotation_rad"].clone(),
+            study => {
+                let rows = Table::read(folder.join(format!("p/{study}.csv"))).rows;
+                assert!(rows.iter().all(|row| row["friction_demand"].is_empty()));
+                Value::from(rows[0].number("peak_rotation_rad"))
+            }
+        };
+        assert!(number.as_f64() > Some(0.0), "{command}: {again}");
+    }
 }

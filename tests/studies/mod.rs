@@ -2,6 +2,7 @@
 
 mod both_directions;
 mod capacity;
+mod changed_numbers;
 mod directions;
 mod elastic_joints;
 mod fragility;

@@ -844,8 +844,23 @@ fn samples_have_the_directions_of_both_signs() {
     assert_eq!(both, capacities("", ""));
     // Two records shake the scenario and both samples.
     assert_eq!((given.len(), both.len()), (3 * 2, 3 * 2 * 2));
-    let own: Vec<Row> = both.into_iter().filter(|row| row["sign"] == "1").collect();
-    assert_eq!(given, own);
+    let mirrored = capacities("direction = 'mirrored'\n", "");
+    assert_eq!(mirrored.len(), given.len());
+    assert!(mirrored.iter().all(|row| row["sign"] == "-1"));
+    // Each direction of both is that direction alone, for the scenario and each of its samples.
+    let [own, other] = ["1", "-1"].map(|sign| {
+        let rows = both.iter().filter(|row| row["sign"] == sign).cloned();
+        rows.collect::<Vec<Row>>()
+    });
+    assert_eq!((&given, &mirrored), (&own, &other));
+    let samples: BTreeSet<_> = both.iter().map(|row| row["sample"].clone()).collect();
+    assert_eq!(samples.len(), 3);
+    // The wall makes the directions different.
+    let intensities =
+        |rows: &[Row]| -> Vec<String> { rows.iter().map(|row| row["intensity"].clone()).collect() };
+    for (own, other) in intensities(&own).iter().zip(intensities(&other)) {
+        assert!(!own.is_empty() && *own != other, "{own} {other}");
+    }
 }
 
 /// A mirrored record counts as the same record.

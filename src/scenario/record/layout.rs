@@ -243,6 +243,23 @@ impl Layout {
         table.inherit(keys.into_iter());
     }
 
+    /// Returns true if the value of a key describes one of the files, whose formats are `listed`. Files of other formats than that of this layout have
+    /// only its quantity, channel and corrections.
+    pub(in crate::scenario) fn describes(&self, key: &str, listed: &[Format]) -> bool {
+        let mut listed = listed.iter();
+        match key {
+            "channel" => listed.any(Format::has_channels),
+            key if Self::is_of_tables(key) => listed.any(|format| *format == self.format),
+            _ => listed.next().is_some(),
+        }
+    }
+
+    /// Returns the keys that describe files.
+    pub(in crate::scenario) fn keys() -> impl Iterator<Item = &'static str> {
+        let others = ["format", "unit", "channel", "quantity"];
+        TABLE_KEYS.into_iter().chain(others).chain(correction::KEYS)
+    }
+
     /// Returns true if one of the keys for tables only is given.
     pub(in crate::scenario) fn has_table_keys(table: &Table<'_>) -> bool {
         TABLE_KEYS.iter().any(|key| table.gives(key))
@@ -293,7 +310,7 @@ impl Format {
     }
 
     /// Returns true if a file of this format may have several channels.
-    pub(in crate::scenario) const fn has_channels(self) -> bool {
+    pub(in crate::scenario) const fn has_channels(&self) -> bool {
         matches!(
             self,
             Self::Csmip | Self::Cosmos | Self::Geonet | Self::Afad | Self::Cwb | Self::Unam
@@ -302,6 +319,12 @@ impl Format {
 
     pub(in crate::scenario) fn read(table: &mut Table<'_>) -> Option<Self> {
         table.optional("format", &one_of(Self::ALL))
+    }
+
+    /// Reads the format; that of the outer table is the default.
+    pub(in crate::scenario) fn inherit(table: &mut Table<'_>) -> Option<Self> {
+        table.inherit(["format"].into_iter());
+        Self::read(table)
     }
 
     /// Reads the format, or determines it from the file if there is one.

@@ -7,9 +7,9 @@ use super::influence::{InfluencedAnswer, Influences, NumberInfluence, percent};
 use super::samples::ReasonCounts;
 use super::{NoAnswer, SampleRow, Samples};
 use crate::output::{Cell, Column, Figure, OutputError, column, csv, list};
-use crate::studies::ModelCheck;
 use crate::studies::quotable::SurvivorFriction;
 use crate::studies::statistics::Share;
+use crate::studies::{ModelCheck, one_direction};
 
 /// A row of the table of samples: the number of the sample, from 1, or 0 for the scenario itself; and its values and answer.
 pub(super) type Line<'a, A> = (usize, &'a SampleRow<A>);
@@ -65,6 +65,9 @@ pub(super) struct SampleSummary {
     scenario: Value,
     /// Warnings about unlikely numbers, limits of the model, and histories without a verdict.
     warnings: Vec<String>,
+    /// The only direction of the ground motion that was computed, in words; absent if both count.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) one_direction: Option<String>,
     /// Number of samples.
     pub(super) samples: usize,
     /// Number of samples with an answer.
@@ -107,7 +110,9 @@ impl SampleSummary {
     ) -> Self {
         let scenario = samples.scenario;
         let condition = friction.friction_condition.clone();
+        let one_direction = one_direction(scenario);
         let limits = limits.into_iter().flatten().chain(condition);
+        let limits = limits.chain(one_direction.clone());
         let own = samples.own.as_ref().err();
         let without = samples.without().map(|(sample, why)| WithoutAnswer {
             sample,
@@ -119,6 +124,7 @@ impl SampleSummary {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             scenario: scenario.to_json(),
             warnings: scenario.unlikely().into_iter().chain(limits).collect(),
+            one_direction,
             samples: samples.rows.len(),
             answered: samples.answers().count(),
             without: samples.reasons(),

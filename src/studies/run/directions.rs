@@ -8,9 +8,10 @@ use askama::Template;
 use super::summary::{ComputedRun, MirroredSummary, OutcomeSummary, Summary, VariedRun};
 use super::{Drawings, NotableImpacts, REPORT, Run, StudyError, repeat};
 use crate::dynamics::repeatability::Repetitions;
-use crate::dynamics::{Directions, OutcomeKind, VariationResult, Variations};
+use crate::dynamics::{Direction, Directions, OutcomeKind, VariationResult, Variations};
 use crate::output::filters;
 use crate::scenario::Scenario;
+use crate::studies::quotable::directions_in_words;
 use crate::work::Pending;
 use crate::{Model, Request, SimulationError, Summary as History, Verdict};
 
@@ -253,20 +254,28 @@ impl Summary {
         Some((MirroredWords { mirrored }, is_worse))
     }
 
-    /// Returns the outcome in words that precede "this motion", with the direction in words that follow it.
-    pub(super) fn happens(&self, direction: Option<&'static str>) -> [&'static str; 2] {
+    /// Returns the outcome in words that precede "this motion", with the direction in words that follow it. `only` is the single direction that is
+    /// computed, if the other one is another problem.
+    pub(super) fn happens(&self, only: Option<Directions>) -> [&'static str; 2] {
         let overturns = |verdict| verdict == Verdict::Overturns;
-        let mirrored = self.mirrored.as_ref().map(|mirrored| mirrored.verdict);
-        let direction = direction.unwrap_or_default();
-        match (overturns(self.own_verdict()), mirrored) {
-            (false, Some(mirrored)) if overturns(mirrored) => ["overturns under", " mirrored"],
-            (false, Some(_)) => ["survives", " in both directions"],
-            (true, Some(mirrored)) if overturns(mirrored) => {
-                ["overturns under", " in both directions"]
+        let mirrored = self.mirrored.as_ref();
+        let mirrored = mirrored.map(|mirrored| overturns(mirrored.verdict));
+        let governing = match self.worse_mirrored() {
+            Some(_) => Direction::Mirrored,
+            None => Direction::AsGiven,
+        };
+        match (overturns(self.own_verdict()), mirrored, only) {
+            (true, Some(true), _) => ["overturns under", " in both directions"],
+            (_, Some(true), _) | (true, None, Some(Directions::Mirrored)) => {
+                ["overturns under", " in the mirrored direction"]
             }
-            (true, Some(_)) => ["overturns under", " as given"],
-            (true, None) => ["overturns under", direction],
-            (false, None) => ["survives", direction],
+            (true, Some(false), _) | (true, None, Some(_)) => {
+                ["overturns under", " in the direction as given"]
+            }
+            (true, None, None) => ["overturns under", ""],
+            (false, Some(_), _) => ["survives", directions_in_words(Directions::Both, governing)],
+            (false, None, Some(only)) => ["survives", directions_in_words(only, governing)],
+            (false, None, None) => ["survives", ""],
         }
     }
 }

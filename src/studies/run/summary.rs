@@ -505,18 +505,13 @@ fn friction_demand(computed: &ComputedRun<'_>) -> Option<f64> {
     own.into_iter().chain(mirrored).reduce(f64::max)
 }
 
-/// Returns the only direction in which a motion is computed, in words, if the other direction is another problem; otherwise `None`.
-fn only_direction(scenario: &Scenario, model: &dyn Model) -> Option<&'static str> {
+/// Returns the only direction in which a motion is computed, if the other direction is another problem; otherwise `None`.
+fn only_direction(scenario: &Scenario, model: &dyn Model) -> Option<Directions> {
     let directions = scenario.simulation.direction;
     let (ground, request) = (scenario.ground_motion(), scenario.request());
-    let words = match directions {
-        Directions::Both => return None,
-        Directions::AsGiven => " as given",
-        Directions::Mirrored => " mirrored",
-    };
-    Directions::Both
-        .has_second(model, ground, &request)
-        .then_some(words)
+    let is_one =
+        directions != Directions::Both && Directions::Both.has_second(model, ground, &request);
+    is_one.then_some(directions)
 }
 
 impl GroundSummary {

@@ -11,6 +11,7 @@ use super::{
     CaseRow, Counts, FragilityRow, Heading, SuiteFragility, ida, picture, records_in_words,
 };
 use crate::argument::plain;
+use crate::dynamics::Direction;
 use crate::output::{Column, Figure, OutputError, column, csv, each, fields, list};
 use crate::scenario::{Measure, Spectral, shown};
 use crate::studies::ending::columns::{self, FAILED, yes};
@@ -278,7 +279,7 @@ impl Heading {
             match survival.survives_up_to.map(rounded_down) {
                 Some(safe) => Ok(format!(
                     "survives all records up to {safe}{unit} ({record}){}",
-                    directions_in_words(self.directions)
+                    directions_in_words(self.directions, Direction::AsGiven)
                 )),
                 None => Err(format!(
                     "the lowest level of {record} is not certainly survived"

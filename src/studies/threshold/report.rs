@@ -11,7 +11,7 @@ use super::{
     UNCERTAIN_EDGE_WIDTH, VariedThreshold, peak_g, picture,
 };
 use crate::argument::plain;
-use crate::dynamics::{Direction, Directions, MODEL_LIMIT, OutcomeCount};
+use crate::dynamics::{Direction, MODEL_LIMIT, OutcomeCount};
 use crate::output::{Figure, OutputError, column, csv, fields};
 use crate::scenario::{Ground, ModelKind, Scenario};
 use crate::studies::ending::columns::{GROUND_FALLS, OVERTURNED};
@@ -433,13 +433,9 @@ impl Threshold {
     /// Returns the directions of the answer, in words that follow it.
     fn directions_in_words(&self, scenario: &Scenario) -> &'static str {
         let has_horizontal = scenario.ground_motion().has_horizontal();
-        match (scenario.simulation.direction, self.governing().direction) {
-            _ if !has_horizontal => "",
-            (Directions::Both, Direction::AsGiven) => directions_in_words(Directions::Both),
-            (Directions::Both, Direction::Mirrored) => {
-                " in both directions (the mirrored one governs)"
-            }
-            (only, _) => directions_in_words(only),
+        match has_horizontal {
+            true => directions_in_words(scenario.simulation.direction, self.governing().direction),
+            false => "",
         }
     }
 
