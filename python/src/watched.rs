@@ -61,7 +61,7 @@ pub fn watched<T: Send + 'static>(
     let mut reported = None;
     let mut report = || {
         let now = *latest.lock().unwrap_or_else(PoisonError::into_inner);
-        if let (Some(progress), Some(Progress { done, all })) = (&progress, now)
+        if let (Some(progress), Some(Progress { done, all, .. })) = (&progress, now)
             && reported != now
         {
             reported = now;

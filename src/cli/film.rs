@@ -118,7 +118,7 @@ fn make(
     let model = scenario.model();
     let model = model.map_err(|error| StudyError::Scenario(error.to_string()))?;
     let film = Film::simulate(scenario, &*model, options, &mut watch(simulated))?;
-    let drawn = |Progress { done, all }, elapsed| {
+    let drawn = |Progress { done, all, .. }, elapsed| {
         let progress = progress_text(done, all - done, elapsed);
         format!("{done} of {all} pictures, {progress}")
     };

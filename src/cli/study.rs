@@ -13,8 +13,8 @@ use archrock::scenario::{ModelKind, Scenario};
 use archrock::studies::run::Sinks;
 use archrock::studies::{
     Computation, Options, PEAKS_FILES, PartError, PartErrorKind, PartFile, Progress, Results,
-    RowSource, Runner, RunnerError, Shard, StudyError, StudyKind, Style, Task, peak_results,
-    rows_in,
+    RowSource, Runner, RunnerError, SearchStep, Shard, StudyError, StudyKind, Style, Task,
+    peak_results, rows_in,
 };
 
 use serde::Serialize;
@@ -308,7 +308,7 @@ impl StudyJob<'_> {
         let (mut shown, mut last) = (None, 0);
         let samples_are_kept = !self.finished_parts.is_empty();
         let mut watch = |progress: Progress| {
-            let Progress { done, all } = progress;
+            let Progress { done, all, .. } = progress;
             // The history of the next model begins.
             if done < last {
                 shown = None;
@@ -335,8 +335,11 @@ impl StudyJob<'_> {
             display.show(part, |elapsed| match kind.is_history {
                 true => simulated(progress, elapsed),
                 false => {
-                    let progress = progress_text(new, all.saturating_sub(done), elapsed);
-                    format!("{done} of {all} cases, {progress}")
+                    let left = progress_text(new, all.saturating_sub(done), elapsed);
+                    match progress.search {
+                        Some(step) => searched(done, step, &left),
+                        None => format!("{done} of {all} cases, {left}"),
+                    }
                 }
             });
             ControlFlow::Continue(())
@@ -507,7 +510,7 @@ pub const PATIENCE: Duration = Duration::from_secs(1);
 fn interrupted(
     kind: StudyKind,
     task: Option<Task<'_>>,
-    Progress { done, all }: Progress,
+    Progress { done, all, .. }: Progress,
     samples_are_kept: bool,
 ) -> String {
     let file = task.map(|task| task.folder.join(task.shard.file_name(kind.name)));
@@ -523,8 +526,20 @@ fn interrupted(
     }
 }
 
+/// The progress of a step of a search. The duration of an open step is unknown.
+fn searched(done: usize, step: SearchStep, left: &str) -> String {
+    let safe = match step.safe_up_to {
+        Some(factor) => format!("survives up to {factor:.4} so far"),
+        None => "survives no factor so far".to_owned(),
+    };
+    match step.is_open {
+        true => format!("{safe}; {done} factors tried"),
+        false => format!("{safe}; {left} in this step"),
+    }
+}
+
 /// The progress of a history, in milliseconds.
-pub fn simulated(Progress { done, all }: Progress, elapsed: Duration) -> String {
+pub fn simulated(Progress { done, all, .. }: Progress, elapsed: Duration) -> String {
     if done == all {
         return "repeating the history with other steps".to_owned();
     }

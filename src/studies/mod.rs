@@ -65,7 +65,7 @@ use remarks::{CaseSummary, ModelCheck, OutcomeCounts, Remark, Remarks, no_verdic
 use results::ReportedStudy;
 pub use results::{Results, StudyError, Style, words_of_json};
 use runner::Watch;
-pub use runner::{Progress, Runner, RunnerError, Study, Task};
+pub use runner::{Progress, Runner, RunnerError, SearchStep, Study, Task};
 pub use spread::{Direction, Summary as SpreadSummary, spread};
 pub use statistics::Share;
 use threshold::{rounded, rounded_down};

@@ -83,12 +83,34 @@ impl Header {
 }
 
 /// The progress of the work.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
     /// Number of cases done, including those of an earlier run.
     pub done: usize,
     /// Number of all cases.
     pub all: usize,
+    /// Step of a search, of which the cases are; `None` for other work.
+    pub search: Option<SearchStep>,
+}
+
+/// A step of a search for a threshold.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SearchStep {
+    /// The largest factor up to which all histories survive so far; `None` if none does.
+    pub safe_up_to: Option<f64>,
+    /// True if the step ends at the first collapse, so that it may have fewer cases.
+    pub is_open: bool,
+}
+
+impl Progress {
+    /// Makes the progress of work that is no search.
+    pub const fn new(done: usize, all: usize) -> Self {
+        Self {
+            done,
+            all,
+            search: None,
+        }
+    }
 }
 
 /// Function that receives the progress of a study. The work stops when the function returns `Break`.
@@ -272,7 +294,7 @@ impl Runner {
             keep(&new)?;
             rows.extend(new);
             let done = rows.len();
-            is_cancelled = is_cancelled || watch(Progress { done, all }).is_break();
+            is_cancelled = is_cancelled || watch(Progress::new(done, all)).is_break();
             Ok(is_cancelled)
         };
         // Even with one thread for the cases, this thread reports the progress and can cancel while they are computed.
@@ -285,7 +307,7 @@ impl Runner {
         }
         let done = rows.len();
         match done < all {
-            true => Err(RunnerError::Cancelled(Progress { done, all })),
+            true => Err(RunnerError::Cancelled(Progress::new(done, all))),
             false => Ok(()),
         }
     }

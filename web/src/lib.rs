@@ -161,7 +161,7 @@ fn answer_to(request: Request) -> Answer {
     answer
 }
 
-fn watch(Progress { done, all }: Progress) -> ControlFlow<()> {
+fn watch(Progress { done, all, .. }: Progress) -> ControlFlow<()> {
     progress(done, all);
     ControlFlow::Continue(())
 }

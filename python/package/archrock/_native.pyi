@@ -74,7 +74,7 @@ class History:
 def study(
     scenario: Scenario,
     kind: str,
-    factors: tuple[float, float, float] | None,
+    factors: tuple[float | None, float | None, float] | None,
     along: tuple[str, bool] | None,
     threads: int | None,
     progress: Progress | None,

@@ -606,7 +606,7 @@ def _study(
     scenario: Scenario | Structure,
     threads: int | None = None,
     progress: Progress | None = None,
-    factors: tuple[float, float, float] | None = None,
+    factors: tuple[float | None, float | None, float] | None = None,
     along: tuple[str, bool] | None = None,
 ) -> list[tuple[str, bytes]]:
     if progress is not None and not callable(progress):
@@ -773,8 +773,8 @@ def threshold(
     of: Structure | Scenario,
     ground: Ground | None = None,
     *,
-    from_factor: float = 0.1,
-    to_factor: float = 10.0,
+    from_factor: float | None = None,
+    to_factor: float | None = None,
     stride: float = 0.02,
     threads: int | None = None,
     progress: Progress | None = None,
@@ -785,11 +785,11 @@ def threshold(
     Args:
         of: the structure, or a scenario, which gives structure, ground and settings.
         ground: the ground motion to be scaled.
-        from_factor: smallest factor.
-        to_factor: largest factor.
-        stride: relative step from one factor to the next; narrower bands and gaps may be missed.
+        from_factor: smallest factor; by default the onset of motion, or 0.1 where it is unknown.
+        to_factor: largest factor; by default the first one that certainly overturns the structure.
+        stride: relative step from one factor to the next, up to the first edge; below it the steps are finer.
         threads: as for :func:`overturning_map`.
-        progress: as for :func:`overturning_map`; first over all factors, then over the edges as well.
+        progress: as for :func:`overturning_map`; for each step of the search.
         settings: as for :func:`simulate`.
 
     Raises:
@@ -810,8 +810,8 @@ def threshold_along(
     end: float,
     count: int,
     no_impact: bool = False,
-    from_factor: float = 0.1,
-    to_factor: float = 10.0,
+    from_factor: float | None = None,
+    to_factor: float | None = None,
     stride: float = 0.02,
     threads: int | None = None,
     progress: Progress | None = None,
@@ -827,9 +827,9 @@ def threshold_along(
         end: its last value.
         count: number of equally spaced values.
         no_impact: true: also finds the least factor that overturns before any impact, for four links and columns.
-        from_factor: smallest factor.
-        to_factor: largest factor.
-        stride: relative step from one factor to the next; narrower bands may be missed.
+        from_factor: smallest factor; by default the onset of motion, or 0.1 where it is unknown.
+        to_factor: largest factor; by default the first one that certainly overturns the structure.
+        stride: relative step from one factor to the next, up to the first edge; below it the steps are finer.
         threads: as for :func:`overturning_map`.
         progress: as for :func:`overturning_map`, for values.
         settings: as for :func:`simulate`.

@@ -115,7 +115,7 @@ impl Film {
             background,
             draw: &draw,
         };
-        Ok(reel.encode(format, &mut |done| watch(Progress { done, all }))?)
+        Ok(reel.encode(format, &mut |done| watch(Progress::new(done, all)))?)
     }
 }
 
@@ -133,7 +133,7 @@ impl Recorder for Camera<'_> {
         self.snapshots.push(sample);
         let done = (sample.time_s * MILLISECONDS) as usize;
         let all = self.duration_ms;
-        let progress = Progress { done, all };
+        let progress = Progress::new(done, all);
         if (self.watch)(progress).is_break() {
             self.status = Err(RunnerError::Cancelled(progress).into());
         } else if self.snapshots.count() == MAX_FILM_PICTURES {

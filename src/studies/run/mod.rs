@@ -314,7 +314,7 @@ impl<'a> Run<'a> {
         let repeated = repetitions.map(|repetitions| {
             // Repetitions that were started are finished.
             let all = duration_ms;
-            let _ = watch(Progress { done: all, all });
+            let _ = watch(Progress::new(all, all));
             repetitions.compare(&history)
         });
         let mirrored = mirrored.map(MirroredRun::finish);

@@ -155,7 +155,7 @@ impl Recorder for RunRecorder<'_, '_> {
         // All is done only while the history is repeated.
         let (done, all) = ((sample.time_s * MILLISECONDS) as usize, self.duration_ms);
         let done = done.min(all.saturating_sub(1));
-        let progress = Progress { done, all };
+        let progress = Progress::new(done, all);
         let _ = self.drawings.sample(sample);
         self.status = match (self.watch)(progress) {
             ControlFlow::Continue(()) => self.tables.sample(sample).map_err(StudyError::from),

@@ -18,10 +18,13 @@ pub use self::heading::Heading;
 pub use self::report::Summary;
 pub use self::strength::{Strength, efficiencies};
 use super::ending::{Ending, NoHistory, Verdict, check_finite};
+use super::threshold::below::{Fineness, below_edge, unrepeated};
+use super::threshold::first_edge::{FirstEdge, TriedHistory};
+use super::threshold::onset_factor;
 use super::threshold::survival::{Survival, VerdictRange};
-use super::{ReportedStudy, Results, Study, Style};
+use super::{NoAnswer, ReportedStudy, Results, Study, Style};
 use crate::bisection::{Width, bisect};
-use crate::dynamics::Direction;
+use crate::dynamics::{Direction, Directions};
 use crate::output::OutputError;
 use crate::scenario::{Measure, Scenario, Suite};
 use crate::{Case, Model, Outcome};
@@ -53,6 +56,9 @@ pub struct CaseRow {
     /// if joints slip or are elastic.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub friction_below_edge: Option<f64>,
+    /// The lowest band or uncertain level between this level and the level below, or the onset, that a finer search found; `None` without one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub found_below: Option<FirstEdge>,
     /// Intensities of the unscaled record.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub strength: Option<Strength>,
@@ -184,8 +190,11 @@ impl Study for RecordSuite<'_> {
         let overturn: Vec<Option<bool>> = results.iter().map(overturns_certainly).collect();
         let edge = |case: usize| {
             let index = indices[case];
-            let below = (index % self.levels.len()).checked_sub(1)?;
-            let known = indices.iter().position(|other| *other == index - 1);
+            let below = self.level_below(index)?;
+            let is_first = index % self.levels.len() == 0;
+            let known = indices
+                .iter()
+                .position(|other| !is_first && *other == index - 1);
             let survives_below = known.map(|known| overturn[known] == Some(false));
             let upper = overturn[case] == Some(true) && survives_below != Some(false);
             upper.then(|| self.edge(index, below, survives_below.is_some()))?
@@ -199,6 +208,7 @@ impl Study for RecordSuite<'_> {
                 Measure::Scale => (level, level * own_g),
                 Measure::PeakG => (level / own_g, level),
             };
+            let found_below = self.search_below(*index, &result, edge);
             CaseRow {
                 record: series.name.clone(),
                 mirrored: direction == Direction::Mirrored,
@@ -214,6 +224,7 @@ impl Study for RecordSuite<'_> {
                 edge_at_most: edge.is_some_and(|edge| edge.at_most),
                 safe_below_edge: edge.and_then(|edge| edge.safe),
                 friction_below_edge: edge.and_then(|edge| edge.friction_demand),
+                found_below,
                 strength: Some(self.strengths[record]),
             }
         };
@@ -314,14 +325,61 @@ impl RecordSuite<'_> {
         )
     }
 
-    /// Finds the edge between the level of a case that overturns and the level with index `below`; `None` if that level overturns as well.
-    fn edge(&self, index: usize, below: usize, survives_below: bool) -> Option<Edge> {
+    /// Returns the level below that of a case; for the lowest level, that at which the structure starts to move under its record. `None` if that is
+    /// unknown or higher.
+    fn level_below(&self, index: usize) -> Option<f64> {
+        if let Some(below) = (index % self.levels.len()).checked_sub(1) {
+            return Some(self.levels[below]);
+        }
         let (level, record, direction) = self.place(index);
-        let ending = |level: f64| {
-            let (ground, request) = case(self.scenario, self.suite, record, level, direction);
-            Ending::of(&*self.model, &ground, &request)
+        let (ground, request) = case(self.scenario, self.suite, record, level, direction);
+        let onset = onset_factor(&*self.model, Directions::AsGiven, (&ground, &request))?;
+        Some(level * onset).filter(|onset| *onset < level)
+    }
+
+    fn ending(&self, record: usize, level: f64, direction: Direction) -> Result<Ending, NoHistory> {
+        let (ground, request) = case(self.scenario, self.suite, record, level, direction);
+        Ending::of(&*self.model, &ground, &request)
+    }
+
+    /// Searches finely between a level that survives, or the safe level of the edge below one that overturns, and the level below.
+    fn search_below(
+        &self,
+        index: usize,
+        own: &Result<Ending, NoHistory>,
+        edge: Option<Edge>,
+    ) -> Option<FirstEdge> {
+        let (level, record, direction) = self.place(index);
+        let survives = own
+            .as_ref()
+            .is_ok_and(|own| own.verdict() == Verdict::Survives);
+        let safe = edge.map_or(survives.then_some(level), |edge| edge.safe)?;
+        let from = self.level_below(index)?;
+        let closeness = |levels: &[f64]| {
+            let cases = levels.iter().map(|level| {
+                let (ground, _) = case(self.scenario, self.suite, record, *level, direction);
+                Ok(ground)
+            });
+            let (_, request) = case(self.scenario, self.suite, record, safe, direction);
+            let all = unrepeated(&*self.model, &request, cases).into_iter();
+            Ok::<_, NoAnswer>(all.map(|(close, _)| close).collect::<Vec<_>>())
         };
-        let below = self.levels[below];
+        let below = |safe| {
+            let close = closeness(&[safe])?[0];
+            below_edge((safe, close), from, Fineness::LEVELS, closeness)
+        };
+        let history = |at: f64| match own {
+            Ok(own) if at == level => Ok(own.clone().into()),
+            _ => self.ending(record, at, direction).map(TriedHistory::from),
+        };
+        let found = FirstEdge::search(&[safe], EDGE_WIDTH, history, below).ok()?;
+        (found.factor.is_some() || found.uncertain_from.is_some()).then_some(found)
+    }
+
+    /// Finds the edge between the level of a case that overturns and the level `below`; `None` if that level overturns as well.
+    fn edge(&self, index: usize, below: f64, survives_below: bool) -> Option<Edge> {
+        let (level, record, direction) = self.place(index);
+        let ending = |level: f64| self.ending(record, level, direction);
         if !survives_below && overturns_certainly(&ending(below))? {
             return None;
         }
@@ -525,6 +583,16 @@ impl SuiteFragility {
 
     /// Returns the intensities that the structure survives under a record, from its cases with one sign, the weakest first.
     fn survival(&self, cases: &[CaseRow]) -> Survival {
+        let mut survival = self.survival_of_levels(cases);
+        let found = cases.iter().find_map(|case| case.found_below.as_ref());
+        if let Some(found) = found {
+            survival.insert(found);
+        }
+        survival
+    }
+
+    /// Returns the intensities that the structure survives under a record, without those found between the levels.
+    fn survival_of_levels(&self, cases: &[CaseRow]) -> Survival {
         let level = |case: &CaseRow| (case.level(self.measure), case.verdict());
         let levels: Vec<_> = cases.iter().map(level).collect();
         let mut survival = Survival::of_levels(&levels);
@@ -536,6 +604,16 @@ impl SuiteFragility {
         let lowest = cases[first].overturns_from(self.measure);
         survival.overturns_from = Some(lowest);
         survival.at_most = cases[first].edge_at_most || !is_known_below;
+        if first == 0 {
+            survival.at_most |= cases[first].edge.is_none();
+            survival.survives_up_to = cases[first].safe_below_edge;
+            let safe = survival.survives_up_to.map(|safe| VerdictRange {
+                verdict: Some(Verdict::Survives),
+                from: safe,
+                to: safe,
+            });
+            survival.ranges.splice(0..0, safe);
+        }
         if first > 0 && cases[..first].iter().all(is(Verdict::Survives)) {
             let safe = cases[first].safe_below_edge.or(survival.survives_up_to);
             survival.survives_up_to = safe;

@@ -10,8 +10,8 @@ use super::{CaseRow, SuiteFragility};
 use crate::dynamics::Intensity;
 use crate::dynamics::demand::peak_displacement;
 use crate::scenario::{Series, Spectral};
-use crate::studies::ending::Verdict;
 use crate::studies::statistics::{bootstrap, interval};
+use crate::studies::threshold::Survival;
 
 /// Intensities of an unscaled record in all measures apart from its peak acceleration.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -91,12 +91,13 @@ impl SuiteFragility {
     }
 
     fn capacity<'a>(&self, levels: &'a [CaseRow]) -> Capacity<'a> {
-        let overturns = |case: &CaseRow| case.verdict() == Some(Verdict::Overturns);
-        let first = levels.iter().position(overturns);
-        let below = first.and_then(|first| levels[first.checked_sub(1)?].known_verdict());
-        let own = &levels[first.unwrap_or(0)];
-        let safe = self.survival(levels).survives_up_to;
-        let level = first.map(|_| own.overturns_from(self.measure));
+        let own = &levels[0];
+        let Survival {
+            survives_up_to: safe,
+            overturns_from: level,
+            at_most,
+            ..
+        } = self.survival(levels);
         let scale_of = |level: f64| own.scale * level / own.level(self.measure);
         let scale = level.map(scale_of);
         // All measures are scaled by the factor of the peak.
@@ -109,7 +110,7 @@ impl SuiteFragility {
             mirrored: own.mirrored,
             survives_up_to_scale: safe.map(scale_of),
             scale,
-            at_most: first.is_some() && (below.is_none() || own.edge_at_most),
+            at_most,
             in_measures: [
                 peak_g,
                 of(|strength| strength.velocity_m_s, 1),

@@ -8,16 +8,36 @@ use crate::dynamics::repeatability::energy_over_barrier;
 use crate::studies::ending::answered;
 use crate::{EndCondition, GroundMotion, Model, Request, SimulationError, Summary, Verdict};
 
-/// Relative step between the first factors below an edge.
-const STEP: f64 = 0.005;
-/// Relative step at which factors are no longer halved.
-const FINEST_STEP: f64 = 0.001;
+/// Steps of the search.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fineness {
+    /// Relative step between the first factors.
+    step: f64,
+    /// Relative step at which factors are no longer halved.
+    finest_step: f64,
+    /// Part of the lowest factor known to overturn down to which lower ones are tried.
+    reach: f64,
+}
+
+impl Fineness {
+    /// Steps below the edge of a threshold.
+    pub const THRESHOLD: Self = Self {
+        step: 0.005,
+        finest_step: 0.001,
+        reach: 0.6,
+    };
+    /// Steps between the levels of a suite, whose records scatter far more than an edge.
+    pub const LEVELS: Self = Self {
+        step: 0.03,
+        finest_step: 0.002,
+        reach: 0.0,
+    };
+}
+
 /// Closeness below which a history hides no band beside it.
 const FAR: f64 = 0.3;
 /// Factor on the slope of the closeness: a band is much narrower than its surroundings.
 const STEEPER: f64 = 4.0;
-/// Part of the lowest factor known to overturn down to which lower ones are tried.
-const REACH: f64 = 0.6;
 
 /// The largest energy of a history over the energy that overturns the structure; infinite if the history does not survive.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
@@ -42,6 +62,9 @@ impl Closeness {
                 .unwrap_or(1.0),
         )
     }
+
+    /// Closeness at an edge.
+    pub const EDGE: Self = Self(1.0);
 
     fn survives(self) -> bool {
         self.0 < f64::INFINITY
@@ -75,29 +98,31 @@ pub struct LowestHit {
     pub lower: Vec<f64>,
 }
 
-/// Finds the lowest factor below a safe one, and not below `from`, whose history does not survive; `None` if all survive. `closeness` computes the
-/// histories of descending factors.
+/// Finds the lowest factor below a safe one with its closeness, and not below `from`, whose history does not survive; `None` if all survive. `closeness`
+/// computes the histories of descending factors.
 ///
 /// # Errors
 /// Those of the histories.
 pub fn below_edge<E>(
-    safe: f64,
+    (safe, close): (f64, Closeness),
     from: f64,
+    fineness: Fineness,
     mut closeness: impl FnMut(&[f64]) -> Result<Vec<Closeness>, E>,
 ) -> Result<Option<LowestHit>, E> {
-    // Descending factors; the edge itself is as close as possible.
-    let mut tried = vec![(safe, Closeness(1.0))];
+    // Descending factors.
+    let mut tried = vec![(safe, close)];
     let mut lowest = safe;
     loop {
-        let least = from.max(REACH * lowest);
+        let least = from.max(fineness.reach * lowest);
         let last = tried.last().map_or(safe, |(factor, _)| *factor);
-        let steps = std::iter::successors(Some(last), |factor| Some(factor / (1.0 + STEP)));
+        let steps =
+            std::iter::successors(Some(last), |factor| Some(factor / (1.0 + fineness.step)));
         let next: Vec<f64> = steps
             .skip(1)
             .take_while(|factor| *factor >= least)
             .collect();
         let next = match next.is_empty() {
-            true => middles(&tried, lowest),
+            true => middles(&tried, lowest, fineness.finest_step),
             false => next,
         };
         if next.is_empty() {
@@ -115,18 +140,20 @@ pub fn below_edge<E>(
 }
 
 /// Returns the geometric middles between neighbouring factors up to the lowest hit that may hide a band.
-fn middles(tried: &[(f64, Closeness)], lowest: f64) -> Vec<f64> {
+fn middles(tried: &[(f64, Closeness)], lowest: f64, finest_step: f64) -> Vec<f64> {
     let below = tried.iter().filter(|(factor, _)| *factor <= lowest);
     let below: Vec<(f64, Closeness)> = below.copied().collect();
     let width = |index: usize| libm::log(below[index].0 / below[index + 1].0);
     let close = |index: usize| below[index].1.0.min(1.0);
     let slope = |index: usize| (close(index) - close(index + 1)).abs() / width(index);
-    let last = below.len() - 1;
+    let Some(last) = below.len().checked_sub(1).filter(|last| *last > 0) else {
+        return Vec::new();
+    };
     let hides_band = |index: &usize| {
         let neighbours = index.saturating_sub(1)..=(index + 1).min(last - 1);
         let steepest = neighbours.map(slope).fold(0.0, f64::max);
         let closest = close(*index).max(close(index + 1));
-        let is_wide = width(*index) > 1.5 * FINEST_STEP;
+        let is_wide = width(*index) > 1.5 * finest_step;
         let reaches = closest + STEEPER * steepest * width(*index) >= 1.0;
         is_wide && below[*index].1.survives() && closest > FAR && reaches
     };
@@ -151,7 +178,8 @@ mod tests {
     /// Returns the lowest hit and the number of histories.
     fn search(from: f64, band: (f64, f64)) -> (Option<f64>, usize) {
         let mut histories = 0;
-        let found = below_edge(1.0, from, |factors| {
+        let edge = (1.0, Closeness::EDGE);
+        let found = below_edge(edge, from, Fineness::THRESHOLD, |factors| {
             histories += factors.len();
             assert!(factors.iter().all(|factor| (from..1.0).contains(factor)));
             let close = factors.iter().map(|factor| close_at(*factor, band));
@@ -187,7 +215,8 @@ mod tests {
                 both[1]
             }
         };
-        let found = below_edge(1.0, 0.1, |factors| {
+        let edge = (1.0, Closeness::EDGE);
+        let found = below_edge(edge, 0.1, Fineness::THRESHOLD, |factors| {
             Ok::<_, Infallible>(factors.iter().map(|factor| hits(*factor)).collect())
         });
         let Ok(found) = found;

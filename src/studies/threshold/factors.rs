@@ -44,7 +44,12 @@ impl Factors {
     ///
     /// # Errors
     /// When a number is not allowed.
-    pub fn new(from: Option<f64>, to: Option<f64>, stride: f64) -> Result<Self, ArgumentError> {
+    pub fn new(
+        from: impl Into<Option<f64>>,
+        to: impl Into<Option<f64>>,
+        stride: f64,
+    ) -> Result<Self, ArgumentError> {
+        let (from, to) = (from.into(), to.into());
         if let Some(from) = from {
             within("from", from, 1e-6..=1e6)?;
         }
@@ -156,7 +161,7 @@ mod tests {
     use super::*;
 
     fn values(from: f64, to: f64, stride: f64) -> Vec<f64> {
-        let factors = Factors::new(Some(from), Some(to), stride).unwrap();
+        let factors = Factors::new(from, to, stride).unwrap();
         factors.searched(None).unwrap().values()
     }
 
@@ -192,7 +197,7 @@ mod tests {
             search(None, Some(3.0)).to,
             10.0 * search(None, Some(3.0)).from
         );
-        let below = Factors::new(None, Some(0.3), 0.02).unwrap();
+        let below = Factors::new(None, 0.3, 0.02).unwrap();
         assert!(below.searched(Some(0.4)).is_err());
     }
 
@@ -206,7 +211,7 @@ mod tests {
             (1.0, 2.0, 0.0, "stride"),
             (1.0, 2.0, f64::NAN, "stride"),
         ] {
-            let error = Factors::new(Some(from), Some(to), stride).unwrap_err();
+            let error = Factors::new(from, to, stride).unwrap_err();
             assert_eq!(error.argument, argument);
         }
     }

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 
 use serde::{Deserialize, Serialize};
 
-use super::below::{Closeness, LowestHit, below_edge, unrepeated};
+use super::below::{Closeness, Fineness, LowestHit, below_edge, unrepeated};
 use super::factors::{EDGE_WIDTH, Factors, UNCERTAIN_EDGE_WIDTH, onset_factor};
 use crate::bisection::{Width, try_bisect};
 use crate::dynamics::{Direction, MODEL_LIMIT};
@@ -134,7 +134,10 @@ impl FirstEdge {
                 }
             })
         };
-        let below = |safe| below_edge(safe, searched.from, closeness);
+        let below = |safe| {
+            let edge = (safe, Closeness::EDGE);
+            below_edge(edge, searched.from, Fineness::THRESHOLD, closeness)
+        };
         let edge = Self::search(&searched.values(), EDGE_WIDTH, history, below)?;
         Ok(Self {
             lower_not_tried: searched.lower_not_tried,
@@ -153,7 +156,7 @@ impl FirstEdge {
     }
 
     /// Finds the first edge as [`FirstEdge::among`]. `below` finds the lowest strength below the safe one whose history does not survive.
-    fn search(
+    pub(in crate::studies) fn search(
         strengths: &[f64],
         width: f64,
         history: impl Fn(f64) -> Result<TriedHistory, NoHistory>,

@@ -5,7 +5,7 @@
 //! between two neighbours with different verdicts, and a finer search below the first edge finds bands that the strides step over.
 
 pub(super) mod along;
-mod below;
+pub(in crate::studies) mod below;
 mod digits;
 mod factors;
 pub(crate) mod first_edge;

@@ -563,30 +563,22 @@ impl Factors {
     pub fn in_words(&self) -> String {
         let from = self.from.map_or("the onset of motion".to_owned(), plain);
         let to = self.to.map_or("the first collapse".to_owned(), plain);
-        let stride = stride_in_words(self.stride);
-        format!(
-            "factors from {from} to {to} in strides of {stride}, and finely below the first edge"
-        )
+        sampled_in_words(&from, &to, self.stride)
     }
 }
 
 impl SearchedFactors {
     /// Returns the factors in words.
     fn in_words(&self) -> String {
-        let onset = if self.lower_not_tried {
-            ""
-        } else {
-            ", the onset of motion,"
+        let from = match self.lower_not_tried {
+            true => plain(self.from),
+            false => format!("{}, the onset of motion,", rounded(self.from)),
         };
-        let from = rounded(self.from);
         let to = match self.ends_at_collapse {
             true => "the first collapse".to_owned(),
             false => plain(self.to),
         };
-        let stride = stride_in_words(self.stride);
-        format!(
-            "factors from {from}{onset} to {to} in strides of {stride}, and finely below the first edge"
-        )
+        sampled_in_words(&from, &to, self.stride)
     }
 
     /// Returns the words of a quote about factors that were not tried; empty if the structure does not move under lower ones.
@@ -598,6 +590,9 @@ impl SearchedFactors {
     }
 }
 
-fn stride_in_words(stride: f64) -> String {
-    format!("{} %", (1e6 * stride).round() / 1e4)
+fn sampled_in_words(from: &str, to: &str, stride: f64) -> String {
+    let percent = (1e6 * stride).round() / 1e4;
+    format!(
+        "sampled from {from} to {to} in strides of {percent} %, and finely below the first edge"
+    )
 }

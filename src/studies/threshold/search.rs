@@ -3,13 +3,13 @@
 
 use std::ops::ControlFlow;
 
-use super::below::{Closeness, UnrepeatedHistory, below_edge, unrepeated};
+use super::below::{Closeness, Fineness, UnrepeatedHistory, below_edge, unrepeated};
 use super::factors::{EDGE_WIDTH, SearchedFactors, UNCERTAIN_EDGE_WIDTH};
 use super::{FactorSample, Survival, Threshold};
 use crate::bisection::{Width, next_middles, try_bisect};
 use crate::dynamics::Direction;
 use crate::studies::ending::{Ending, NoHistory, Verdict, answered};
-use crate::studies::{Progress, Runner, RunnerError, StudyError};
+use crate::studies::{Progress, Runner, RunnerError, SearchStep, StudyError};
 use crate::{GroundMotion, Model, Request, SimulationError};
 
 /// Number of bisection steps computed ahead for models that compute histories faster together: three steps are seven histories.
@@ -26,6 +26,21 @@ pub(super) struct Shaking<'a> {
     pub(super) ground: &'a GroundMotion,
     pub(super) request: &'a Request,
     pub(super) searched: &'a SearchedFactors,
+}
+
+/// Returns a function that reports the progress of a step of a search, after these samples.
+fn in_step(
+    samples: &[FactorSample],
+    is_open: bool,
+    mut watch: impl FnMut(Progress) -> ControlFlow<()>,
+) -> impl FnMut(Progress) -> ControlFlow<()> {
+    let survives = |sample: &&FactorSample| sample.verdict() == Some(Verdict::Survives);
+    let safe = samples.iter().take_while(survives).last();
+    let search = Some(SearchStep {
+        safe_up_to: safe.map(|sample| sample.factor),
+        is_open,
+    });
+    move |progress| watch(Progress { search, ..progress })
 }
 
 impl Shaking<'_> {
@@ -62,25 +77,23 @@ impl Shaking<'_> {
         mut watch: impl FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<Vec<FactorSample>, RunnerError> {
         let ends_at_collapse = self.searched.ends_at_collapse;
-        let together = if ends_at_collapse {
-            TOGETHER
-        } else {
-            factors.len()
-        };
         let mut samples: Vec<FactorSample> = Vec::new();
-        for factors in factors.chunks(together) {
-            samples.extend(self.in_parallel(
-                factors,
-                |some| self.samples(some),
-                runner,
-                &mut watch,
-            )?);
+        for some in factors.chunks(TOGETHER) {
+            let (before, all) = (samples.len(), factors.len());
+            let mut watch = in_step(&samples, ends_at_collapse, &mut watch);
+            let watch = |progress: Progress| {
+                let done = before + progress.done;
+                watch(Progress {
+                    done,
+                    all,
+                    ..progress
+                })
+            };
+            let found = self.in_parallel(some, |some| self.samples(some), runner, watch)?;
+            samples.extend(found);
             let overturns = |sample: &FactorSample| sample.verdict() == Some(Verdict::Overturns);
-            if let Some(first) = samples
-                .iter()
-                .position(overturns)
-                .filter(|_| ends_at_collapse)
-            {
+            let first = samples.iter().position(overturns);
+            if let Some(first) = first.filter(|_| ends_at_collapse) {
                 samples.truncate(first + 1);
                 break;
             }
@@ -119,6 +132,7 @@ impl Shaking<'_> {
         });
         let changes: Vec<Change<'_>> = changes.collect();
         let search = |index: usize| self.search(changes[index]);
+        let watch = in_step(samples, false, watch);
         let found = runner.each(changes.len(), search, watch)?;
         let (mut edges, mut tried) = (Vec::new(), Vec::new());
         for found in found.into_iter().flatten() {
@@ -142,14 +156,26 @@ impl Shaking<'_> {
         mut watch: impl FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<Vec<FactorSample>, RunnerError> {
         let mut others = Vec::new();
+        let tried = samples.clone();
         let mut closeness = |factors: &[f64]| {
-            let found =
-                self.in_parallel(factors, |some| self.unrepeated(some), runner, &mut watch)?;
+            let found = self.in_parallel(
+                factors,
+                |some| self.unrepeated(some),
+                runner,
+                in_step(&tried, false, &mut watch),
+            )?;
             let (close, own): (Vec<Closeness>, Vec<FactorSample>) = found.into_iter().unzip();
             others.extend(own);
             Ok::<_, RunnerError>(close)
         };
-        let Some(lowest) = below_edge(safe, self.searched.from, &mut closeness)? else {
+        let edge = (safe, Closeness::EDGE);
+        let Some(lowest) = below_edge(
+            edge,
+            self.searched.from,
+            Fineness::THRESHOLD,
+            &mut closeness,
+        )?
+        else {
             return Ok(others);
         };
         // The lowest history that does not survive, repeated, and the next lower one that certainly does.

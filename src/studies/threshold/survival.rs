@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Threshold;
 use super::digits::{rounded, rounded_edge, rounded_range};
+use super::first_edge::FirstEdge;
 use crate::studies::ending::Verdict;
 
 /// A range of tried strengths with one verdict.
@@ -51,6 +52,51 @@ impl Survival {
             to: range.to,
         });
         Self::of_ranges(ranges.collect())
+    }
+
+    /// Inserts the lowest band or uncertain strength that a finer search found, if all lower strengths survive.
+    pub(in crate::studies) fn insert(&mut self, found: &FirstEdge) {
+        let (uncertain, certain) = (found.uncertain_from, found.factor);
+        let Some(first) = uncertain.into_iter().chain(certain).reduce(f64::min) else {
+            return;
+        };
+        if self.survives_up_to.is_some_and(|safe| safe < first)
+            || self
+                .overturns_from
+                .is_some_and(|overturns| overturns < first)
+        {
+            return;
+        }
+        self.survives_up_to = found.survives_up_to;
+        if let Some(certain) = certain {
+            self.overturns_from = Some(certain);
+            self.at_most = false;
+        }
+        let (below, mut above): (Vec<_>, Vec<_>) =
+            self.ranges.drain(..).partition(|range| range.from < first);
+        let range = |verdict, from: f64, to: f64| VerdictRange {
+            verdict: Some(verdict),
+            from,
+            to,
+        };
+        if let Some(safe) = found.survives_up_to {
+            let from = below.first().map_or(safe, |range| range.from);
+            self.ranges.push(range(Verdict::Survives, from, safe));
+        }
+        let verdict = if uncertain.is_some() {
+            Verdict::Uncertain
+        } else {
+            Verdict::Overturns
+        };
+        self.ranges.push(range(verdict, first, first));
+        // The rest of the range in which the strength was found.
+        if let Some(rest) = below.last().filter(|rest| rest.to > first) {
+            self.ranges.push(VerdictRange {
+                from: found.tried_to,
+                ..*rest
+            });
+        }
+        self.ranges.append(&mut above);
     }
 
     /// Makes the survival of all ranges of tried strengths, ascending.
