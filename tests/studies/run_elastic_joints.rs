@@ -478,9 +478,21 @@ fn a_threshold_reports_its_dependence_on_stiffness() {
         )
     };
     let (said, own) = lowest("3");
-    let (_, stiffer) = lowest("9");
+    let (_, stiffer) = lowest("6.46330407");
     let variations = own["variations"].as_array().unwrap();
-    assert_eq!(variations[1]["with"], "9 GPa/m");
+    let names: Vec<&str> = variations
+        .iter()
+        .map(|one| one["with"].as_str().unwrap())
+        .collect();
+    // Three stiffnesses a decade, up to 100 GPa/m and one below.
+    let stiffnesses = [
+        "1.39 GPa/m",
+        "6.46 GPa/m",
+        "13.9 GPa/m",
+        "30 GPa/m",
+        "64.6 GPa/m",
+    ];
+    assert_eq!(names[..5], stiffnesses);
     let (found, due) = (&variations[1]["factor"], &stiffer["lowest_factor"]);
     let ratio = found.as_f64().unwrap() / due.as_f64().unwrap();
     // Both are found from the same samples, and enclosed to a ten-thousandth.

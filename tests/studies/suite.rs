@@ -573,6 +573,7 @@ fn results(rows: &[(&str, f64, Option<Outcome>)]) -> SuiteFragility {
         edge_at_most: false,
         safe_below_edge: None,
         friction_below_edge: None,
+        found_below: None,
         strength: None,
         result: outcome
             .ok_or(NoHistory::Failed("it broke".to_owned()))
@@ -620,6 +621,7 @@ fn levels_of(records: &[(&str, &str)]) -> Vec<CaseRow> {
                 edge_at_most: false,
                 safe_below_edge: None,
                 friction_below_edge: None,
+                found_below: None,
                 strength: None,
                 result: Ok(Ending {
                     direction: Direction::AsGiven,
