@@ -15,10 +15,10 @@ use std::error::Error;
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
-use archrock::dynamics::Directions;
-use archrock::studies::threshold::{Factors, Threshold, threshold};
-use archrock::studies::{Progress, Runner};
-use archrock::{EndCondition, GroundMotion, Model, Pulse, Request, Scenario, Sway, Verdict};
+use archrock::{
+    Directions, EndCondition, Factors, GroundMotion, Model, Progress, Pulse, Request, Runner,
+    Scenario, Sway, Threshold, Verdict, threshold,
+};
 
 /// Pseudo-random numbers from 0 to 1 (SplitMix64, Steele, Lea and Flood 2014).
 struct Random(u64);

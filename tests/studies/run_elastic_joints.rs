@@ -359,7 +359,7 @@ fn a_run_reports_its_dependence_on_stiffness() {
     let variations = own["variations"].as_array().unwrap();
     let alone = ["--no-repeat"];
     for (with, text) in [
-        ("30 GPa/m", elastic("30", points)),
+        ("21.5 GPa/m", elastic("21.544346900318838", points)),
         ("continuous contact", elastic("10", "")),
         (
             "rigid joints (free hinges)",
@@ -463,7 +463,7 @@ fn a_threshold_reports_its_dependence_on_stiffness() {
             "threshold",
             "s.toml",
             "--from",
-            "0.45",
+            "0.455",
             "--to",
             "0.52",
             "--stride",
@@ -498,10 +498,10 @@ fn a_threshold_reports_its_dependence_on_stiffness() {
     // Both are found from the same samples, and enclosed to a ten-thousandth.
     assert!((ratio - 1.0).abs() < 1.01e-4, "{found} {due}");
     // A variation that overturns at the smallest factor may do so at smaller ones.
-    assert_eq!(variations[0]["factor"], 0.45);
+    assert_eq!(variations[0]["factor"], 0.455);
     assert_eq!(variations[0]["from_end"], "sampled");
     assert_eq!(variations[1]["from_end"], "edge");
-    shows(&said, &[0.45, own["lowest_factor"].as_f64().unwrap()]);
+    shows(&said, &[0.455, own["lowest_factor"].as_f64().unwrap()]);
     golden("threshold-elastic", &said);
 }
 

@@ -543,11 +543,19 @@ fn without_a_fragility_curve_the_reason_is_reported() {
         assert_eq!(fragility["records_that_never_overturn"], list(never));
         assert_eq!(fragility["records_that_always_overturn"], list(always));
         let line = said.lines().find(|line| line.contains("wave-1.at2: "));
-        for (_, bound) in [(never, 0.2), (always, 4.0)]
-            .iter()
-            .filter(|(name, _)| name.is_some())
-        {
-            shows(line.unwrap(), &[*bound]);
+        if never.is_some() {
+            shows(line.unwrap(), &[0.2]);
+        }
+        // Below the lowest level, the edge is searched down to the onset.
+        if always.is_some() {
+            let edge = Table::read(folder.join("o/capacities.csv")).numbers("scale")[0];
+            shows(line.unwrap(), &[edge]);
+            let both = format!("[{}, {edge}]", edge / 1.0021);
+            write(folder, "edge.toml", &text.replace(scales, &both));
+            done(folder, &["suite", "edge.toml", "--out", "e"]);
+            let rows = Table::read(folder.join("e/suite.csv")).rows;
+            let outcomes: Vec<&str> = rows.iter().map(|row| &*row["outcome"]).collect();
+            assert_eq!(outcomes, ["rest", "overturned"], "{edge}");
         }
         let picture = read(&folder.join("o/suite.svg"));
         // The picture wraps it.

@@ -289,8 +289,10 @@ fn uncertain_factors_are_ranges_of_their_own() {
     assert_eq!(threshold.ranges.len(), expected.len());
     for (range, (verdict, from, to)) in pairs(&threshold.ranges, &expected) {
         assert_eq!(range.verdict, Some(*verdict));
-        assert!((range.from / from - 1.0).abs() < EDGE_WIDTH, "{range:?}");
-        assert!((range.to / to - 1.0).abs() < EDGE_WIDTH, "{range:?}");
+        // Edges beside an uncertain factor are enclosed to 1 %; only that at 3 lies between certain ones.
+        let width = |edge: f64| if edge == 3.0 { EDGE_WIDTH } else { 0.01 };
+        assert!((range.from / from - 1.0).abs() < width(*from), "{range:?}");
+        assert!((range.to / to - 1.0).abs() < width(*to), "{range:?}");
     }
     assert_eq!((threshold.bands().len(), threshold.gaps().len()), (3, 1));
     // No sample of the strides lies between 1.99 and 2: the search met one.
@@ -514,7 +516,7 @@ fn a_threshold_can_be_cancelled_and_refuses_invalid_requests() {
     let StudyError::Runner(RunnerError::Cancelled(progress)) = error else {
         panic!("{error}");
     };
-    assert!(progress.done < 1000 && progress.all == searched(&all).len());
+    assert!(progress.done < 1000 && progress.all <= searched(&all).len());
     let error = threshold(
         model,
         (Directions::AsGiven, &unit_pulse()),
@@ -539,7 +541,19 @@ fn files_agree_and_threads_change_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     file(folder, SCENARIO);
-    let said = printed(folder, &["threshold", "s.toml", "--threads", "1"]);
+    let said = printed(
+        folder,
+        &[
+            "threshold",
+            "s.toml",
+            "--from",
+            "0.1",
+            "--to",
+            "10",
+            "--threads",
+            "1",
+        ],
+    );
     // The semicircle overturns from 0.266 to 0.990 g and from 1.26 g on.
     golden("threshold", &said);
     let (_, shown) = skeleton(&said);
@@ -555,7 +569,14 @@ fn files_agree_and_threads_change_nothing() {
         "json",
         "--quiet",
     ];
-    let result = printed(folder, &[&["threshold", "s.toml"][..], &json].concat());
+    let result = printed(
+        folder,
+        &[
+            &["threshold", "s.toml", "--from", "0.1", "--to", "10"][..],
+            &json,
+        ]
+        .concat(),
+    );
     let read = |folder_name: &str, name: &str| {
         fs::read_to_string(folder.join(folder_name).join(name)).unwrap()
     };
@@ -790,7 +811,16 @@ fn a_scenario_without_a_threshold_is_refused() {
     file(folder, falling);
     let said = printed(
         folder,
-        &["threshold", "s.toml", "--from", "1.95", "--stride", "0.1"],
+        &[
+            "threshold",
+            "s.toml",
+            "--from",
+            "1.95",
+            "--to",
+            "3",
+            "--stride",
+            "0.1",
+        ],
     );
     assert!(
         said.contains("from factor 2.000 on, the ground falls"),
@@ -921,7 +951,10 @@ fn all_totals_of_histories_agree() {
     let text = "[column]\nheight_m = 4.0\nwidth_m = 1.0\n[free_hinges]\n[ground.half_sine]\namplitude_g = 0.9\n\
                 duration_s = 0.3\nvertical_amplitude_g = -0.9\n[simulation]\nduration_s = 3.0\n";
     fs::write(folder.path().join("s.toml"), text).unwrap();
-    let words = printed(folder.path(), &["--quiet", "threshold", "s.toml"]);
+    let words = printed(
+        folder.path(),
+        &["--quiet", "threshold", "s.toml", "--to", "10"],
+    );
     assert!(
         words.contains("the ground falls as fast as a free body"),
         "{words}"

@@ -570,9 +570,9 @@ impl Factors {
 impl SearchedFactors {
     /// Returns the factors in words.
     fn in_words(&self) -> String {
-        let from = match self.lower_not_tried {
-            true => plain(self.from),
-            false => format!("{}, the onset of motion,", rounded(self.from)),
+        let from = match self.begins_at_onset {
+            true => format!("{}, the onset of motion,", rounded(self.from)),
+            false => plain(self.from),
         };
         let to = match self.ends_at_collapse {
             true => "the first collapse".to_owned(),
