@@ -374,7 +374,7 @@ fn a_run_reports_its_dependence_on_stiffness() {
         }
         assert_eq!(found["first_peak_rad"], due["half_cycles"][0]["peak_rad"]);
     }
-    assert_eq!(variations.len(), 4, "{variations:?}");
+    assert_eq!(variations.len(), 6, "{variations:?}");
     golden("run-variations", &said);
     let (said, own) = run("own", &elastic("10", points), &alone);
     assert!(!said.contains("  with "), "{said}");
