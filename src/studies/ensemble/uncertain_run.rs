@@ -19,12 +19,15 @@ use crate::output::{
     filters, list,
 };
 use crate::scenario::{MotionModel, Scenario, Structure};
+use crate::studies::Results;
 use crate::studies::ending::columns::{self, OUTCOMES, OVERTURNED};
 use crate::studies::page::kind_of;
 use crate::studies::quotable::SurvivorFriction;
 use crate::studies::statistics::{Share, band, fractile, quantile};
-use crate::studies::{ModelCheck, Results};
 use crate::{Ending, Factors, Model, NoHistory, Sample, Verdict};
+
+/// Smallest number of certainly overturned samples, and of certainly surviving ones, for influences on overturning.
+const LEAST_OF_EACH: usize = 10;
 
 /// Largest number of times at which samples are compared.
 const MOST_TIMES: usize = 300;
@@ -106,10 +109,17 @@ impl Question for Histories {
     ) -> Result<Results, OutputError> {
         // Overturned samples have no largest rotation, but rank above all others.
         let peak_rad = |answer: &HistoryAnswer| answer.ending.peak_or_infinite_rad();
+        let ends = [1.0, 0.0].map(|end| {
+            let answers = samples.answers();
+            answers.filter(|one| one.overturned() == end).count()
+        });
+        let is_enough = ends.iter().all(|count| *count >= LEAST_OF_EACH);
         let influences = [
             (
                 InfluencedAnswer::Overturning,
-                samples.influence(false, HistoryAnswer::overturned),
+                is_enough
+                    .then(|| samples.influence(false, HistoryAnswer::overturned))
+                    .flatten(),
             ),
             (
                 InfluencedAnswer::PeakRotationRank,
@@ -127,14 +137,13 @@ impl Question for Histories {
             Some((name.to_owned(), share?))
         });
         let answers = samples.answers();
-        let model = ModelCheck::of(answers.map(|answer| answer.ending.thrust_excess_ratio));
+        let model = samples.model_check(answers.map(|answer| answer.ending.thrust_excess_ratio));
         let survivors = samples.answers().map(|answer| &answer.ending);
-        let survivors = survivors
-            .filter(|ending| ending.verdict() == Verdict::Survives && !ending.is_outside_model());
+        let survivors = survivors.filter(|ending| ending.verdict() == Verdict::Survives);
         let demands = survivors.map(|ending| ending.friction_demand);
         let study = ("run FILE", "surviving samples");
         let friction = SurvivorFriction::of(demands, samples.scenario, study);
-        let limits = [model.in_words(CHECKED), samples.no_verdict()];
+        let limits = (CHECKED, samples.no_verdict());
         let report = Summary {
             all: SampleSummary::new(samples, model, friction, limits, influences),
             own: samples.own.as_ref().ok().map(OwnHistory::of),
@@ -221,6 +230,9 @@ impl Histories {
         let (ending, potential_over_barrier) = worse(given, scenario, model)?;
         if ending.verdict() == Verdict::Incomplete {
             return Err(NoAnswer::Incomplete);
+        }
+        if ending.is_outside_model() {
+            return Err(NoAnswer::OutsideModel);
         }
         Ok(HistoryAnswer {
             ending,
@@ -360,11 +372,7 @@ const TITLE: &str = "Histories with uncertain data";
 /// Returns the answer of a sample on its page: the largest rotation, beyond the axis if the sample overturned.
 fn page_answer(HistoryAnswer { ending, .. }: &HistoryAnswer) -> PageAnswer {
     let peak_rad = (!ending.overturned_itself()).then_some(ending.peak_rotation_rad);
-    (
-        kind_of(Some(ending.verdict())),
-        ending.is_outside_model(),
-        peak_rad,
-    )
+    (kind_of(Some(ending.verdict())), false, peak_rad)
 }
 
 /// Report on the histories of samples.
