@@ -311,7 +311,7 @@ struct Estimated {
     median_interval: Option<[f64; 2]>,
     /// Dispersion; `None` if too few cases overturn for the 84 % fractile.
     dispersion: Option<f64>,
-    /// Ends of the 95 % interval of the dispersion; `None` without a dispersion, or with one record.
+    /// Ends of the 95 % interval of the dispersion; `None` without a dispersion, with one record, or for the uncertain data alone.
     dispersion_interval: Option<[f64; 2]>,
 }
 
@@ -404,7 +404,8 @@ impl<'a> Counted<'a> {
                 let [low, high] = intervals.of_median(median, scatter);
                 Some([low.min(ends[0][which][0]?), high.max(ends[1][which][0]?)])
             });
-            let both = intervals.as_ref().zip(dispersion);
+            // Few records leave scatter of pairs of record and sample in the medians of the samples, which this interval would miss.
+            let both = intervals.as_ref().zip(dispersion.filter(|_| which != 1));
             Estimated {
                 median,
                 median_interval,
