@@ -403,7 +403,7 @@ mod tests {
                      'column.height_m' = {{ from = 3.0, to = 5.0 }}\n'ground.one_sine.amplitude_g' = {{ from = 0.4, to = 0.6 }}\n"
                 );
                 let scenario = Scenario::parse(&text, "s.toml").unwrap();
-                let uncertain = scenario.uncertain.unwrap();
+                let uncertain = scenario.uncertain.as_ref().unwrap();
                 let sums = (0..count).map(|sample| uncertain.point(sample).iter().sum());
                 ascending(sums)[rank - 1] <= fractile
             });

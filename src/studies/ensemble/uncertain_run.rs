@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use askama::Template;
 use serde::{Deserialize, Serialize};
 
-use super::influence::{InfluencedAnswer, percent};
+use super::influence::{InfluencedAnswer, NumberInfluence, percent};
 use super::page::{PageAnswer, SAMPLES, SamplePage};
 use super::report::{self, Band, Line, SampleSummary, of_answer};
 use super::{NoAnswer, Question, Samples};
@@ -107,25 +107,7 @@ impl Question for Histories {
         samples: &Samples<'_, HistoryAnswer>,
         figure: Figure,
     ) -> Result<Results, OutputError> {
-        // Overturned samples have no largest rotation, but rank above all others.
-        let peak_rad = |answer: &HistoryAnswer| answer.ending.peak_or_infinite_rad();
-        let ends = [1.0, 0.0].map(|end| {
-            let answers = samples.answers();
-            answers.filter(|one| one.overturned() == end).count()
-        });
-        let is_enough = ends.iter().all(|count| *count >= LEAST_OF_EACH);
-        let influences = [
-            (
-                InfluencedAnswer::Overturning,
-                is_enough
-                    .then(|| samples.influence(false, HistoryAnswer::overturned))
-                    .flatten(),
-            ),
-            (
-                InfluencedAnswer::PeakRotationRank,
-                samples.influence(true, peak_rad),
-            ),
-        ];
+        let influences = influences(samples);
         let of_samples = samples.rows.iter();
         let of_samples = of_samples.map(|row| row.answer.as_ref().ok().map(peak_rad));
         let largest_rotations_rad: Vec<_> = iter::once(None).chain(of_samples).collect();
@@ -202,6 +184,28 @@ impl Question for Histories {
         let model = scenario.model().map_err(NoAnswer::invalid)?;
         self.history(scenario, &*model)
     }
+}
+
+/// Returns the largest rotation of a sample, in radians. Overturned samples have none, but rank above all others.
+const fn peak_rad(answer: &HistoryAnswer) -> f64 {
+    answer.ending.peak_or_infinite_rad()
+}
+
+/// The influence of the uncertain numbers on an answer; `None` if it is unknown.
+type OnAnswer = (InfluencedAnswer, Option<Vec<NumberInfluence>>);
+
+/// Returns the influences on overturning, if enough samples overturn and survive, and on the rank of the largest rotation.
+fn influences(samples: &Samples<'_, HistoryAnswer>) -> [OnAnswer; 2] {
+    let is_enough = [1.0, 0.0].into_iter().all(|end| {
+        let alike = samples.answers().filter(|one| one.overturned() == end);
+        alike.count() >= LEAST_OF_EACH
+    });
+    let overturning = is_enough.then(|| samples.influence(false, HistoryAnswer::overturned));
+    let rank = samples.influence(true, peak_rad);
+    [
+        (InfluencedAnswer::Overturning, overturning.flatten()),
+        (InfluencedAnswer::PeakRotationRank, rank),
+    ]
 }
 
 impl Histories {

@@ -183,8 +183,10 @@ impl Heading {
         let friction = self.slip.condition(friction_demand, "suite FILE");
         let limits = remarks.warnings("cases");
         let limits = limits.chain(friction.as_ref().map(ToString::to_string));
-        let answer = answer.with_friction(friction.clone());
-        let answer = answer.unless_uncertain(!self.scenario["uncertain"].is_null());
+        let is_uncertain = !self.scenario["uncertain"].is_null();
+        let answer = answer
+            .with_friction(friction.clone())
+            .unless_uncertain(is_uncertain);
         let ends = [results.levels.first(), results.levels.last()];
         let [from, to] = ends.map(|level| level.map_or(0.0, |level| level.intensity));
         let curve = |found| Curve::of(found, [from, to]);
