@@ -212,6 +212,17 @@ impl ModelAnswer {
         }
     }
 
+    /// Returns the answer of a scenario itself, which may not be quoted if its numbers are uncertain.
+    pub(super) fn unless_uncertain(self, is_uncertain: bool) -> Self {
+        match is_uncertain {
+            false => self,
+            true => Self {
+                answer: Err("its numbers are uncertain; quote the answer of the samples".to_owned()),
+                ..self
+            },
+        }
+    }
+
     /// Returns the answer with the friction on which it depends.
     pub fn with_friction(self, friction: Option<FrictionCondition>) -> Self {
         Self { friction, ..self }

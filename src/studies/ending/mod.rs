@@ -71,6 +71,9 @@ impl Ending {
     pub const INCOMPLETE: &str = "incomplete: the run ends while the ground still moves, or with too much energy left for a verdict; \
                                   give a longer `duration_s` in [simulation]";
 
+    /// Reason why a sample outside the model of four links has no verdict, and the remedy.
+    pub const OUTSIDE_MODEL: &str = "outside the model of four links: the thrust line leaves the arch too far; compute it with free hinges";
+
     /// Returns the time of the outcome, in seconds; `None` if it is unknown.
     pub fn known_time_s(&self) -> Option<f64> {
         self.safe_from_s.is_none().then_some(self.outcome_time_s)
@@ -335,6 +338,8 @@ pub enum NoAnswer {
     Failed(String),
     /// The history ended too early for a verdict.
     Incomplete,
+    /// The history is outside the model of four links, so it may survive or overturn.
+    OutsideModel,
 }
 
 impl From<NoHistory> for NoAnswer {
@@ -359,6 +364,7 @@ impl NoAnswer {
             Self::Invalid(_) => "invalid",
             Self::Failed(_) => columns::FAILED,
             Self::Incomplete => Outcome::Incomplete.name(),
+            Self::OutsideModel => columns::OUTSIDE_MODEL,
         }
     }
 
@@ -367,6 +373,7 @@ impl NoAnswer {
         match self {
             Self::Invalid(reason) | Self::Failed(reason) => reason,
             Self::Incomplete => Ending::INCOMPLETE,
+            Self::OutsideModel => Ending::OUTSIDE_MODEL,
         }
     }
 }

@@ -204,6 +204,7 @@ pub fn report(
         .zip(&frictions)
         .map(|((one, scenario), friction)| {
             let answer = one.answer(scenario, peak_g);
+            let answer = answer.unless_uncertain(scenario.uncertain.is_some());
             answer.with_friction(friction.clone())
         });
     let answers = answers.collect::<Vec<_>>();
