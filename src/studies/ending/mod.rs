@@ -2,8 +2,6 @@
 
 pub(crate) mod columns;
 
-use std::fmt;
-
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -353,9 +351,14 @@ impl From<NoHistory> for NoAnswer {
 }
 
 impl NoAnswer {
-    /// Returns the error of a sample whose structure has no model of motion.
-    pub(super) fn invalid(error: impl fmt::Display) -> Self {
-        Self::Invalid(error.to_string())
+    /// Returns the error of a sample whose structure has no model of motion. Without a restitution the structure is valid, but its answer unknown.
+    pub(super) fn without_model(error: ModelError) -> Self {
+        match error {
+            ModelError::FourLinks(error @ FourLinkError::Wall(_)) => {
+                Self::Failed(error.to_string())
+            }
+            error => Self::Invalid(error.to_string()),
+        }
     }
 
     /// Returns the name of the reason in tables.

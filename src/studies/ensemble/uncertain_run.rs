@@ -60,12 +60,6 @@ pub struct HistoryAnswer {
     pub course_overturns: bool,
 }
 
-/// Makes the model of a scenario for a study of many cases.
-fn many_cases(scenario: &Scenario) -> Result<Box<dyn Model>, String> {
-    let model = scenario.model_for_many_cases();
-    model.map_err(|error| error.to_string())
-}
-
 impl Question for Histories {
     type Answer = HistoryAnswer;
     const NAME: &'static str = "uncertain";
@@ -94,11 +88,13 @@ impl Question for Histories {
         let stride = (samples / MOST_TIMES as f64).ceil();
         let times = (samples / stride).floor() as usize + 1;
         let structure = scenario.structure.clone();
+        let many_cases = scenario.model_for_many_cases();
+        let many_cases = many_cases.map_err(|error| error.to_string())?;
         Ok(Self {
             body: most.map_or(0, |(body, _)| body),
             step_s: stride * request.output_step_s,
             times,
-            own: (structure, scenario.motion.clone(), many_cases(scenario)?),
+            own: (structure, scenario.motion.clone(), many_cases),
         })
     }
 
@@ -175,13 +171,14 @@ impl Question for Histories {
         if scenario.structure == *structure && scenario.motion == *motion {
             return self.history(scenario, &**model);
         }
-        let model = many_cases(scenario).map_err(NoAnswer::Invalid)?;
+        let model = scenario.model_for_many_cases();
+        let model = model.map_err(NoAnswer::without_model)?;
         self.history(scenario, &*model)
     }
 
     /// Computes the answer of the scenario itself with the steps of `run`.
     fn own_answer(&self, scenario: &Scenario) -> Result<HistoryAnswer, NoAnswer> {
-        let model = scenario.model().map_err(NoAnswer::invalid)?;
+        let model = scenario.model().map_err(NoAnswer::without_model)?;
         self.history(scenario, &*model)
     }
 }

@@ -234,7 +234,7 @@ impl Question for Capacities {
     }
 
     fn answer(&self, scenario: &Scenario) -> Result<Edges, NoAnswer> {
-        let model = scenario.model().map_err(NoAnswer::invalid)?;
+        let model = scenario.model().map_err(NoAnswer::without_model)?;
         let edge = |record: usize, direction: Direction| {
             FirstEdge::among(&self.levels, WIDTH, |level: f64| {
                 let (ground, request) = case(scenario, &self.suite, record, level, direction);

@@ -15,7 +15,7 @@ use crate::mechanics::Sides;
 use crate::output::mechanisms::columns;
 use crate::output::{Named, OutputError, summary_of};
 use crate::scenario::{ELASTIC_JOINTS, Ground, ModelKind, Scenario};
-use crate::studies::quotable::{self, ModelAnswer, SlipWords};
+use crate::studies::quotable::{self, ModelAnswer, SlipWords, restitution_in_words};
 use crate::{MechanismModel, Model, Outcome, Summary as History, Sway, Verdict};
 
 /// A computed motion, with its repetitions and variations.
@@ -490,6 +490,7 @@ impl Summary {
             excess_ratio,
             answer,
         )
+        .with_restitution(restitution_in_words(scenario))
         .with_friction(SlipWords::of(scenario).condition(self.friction_demand, "run FILE"))
     }
 }

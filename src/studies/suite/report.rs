@@ -310,6 +310,7 @@ impl Heading {
             }
         });
         let answer = ModelAnswer::new(self.model, self.is_arch, excess_ratio, answer);
+        let answer = answer.with_restitution(self.restitution.clone());
         (answer, friction_demand)
     }
 

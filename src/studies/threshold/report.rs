@@ -18,7 +18,7 @@ use crate::studies::ending::columns::{GROUND_FALLS, OVERTURNED};
 use crate::studies::ending::{NoHistory, Verdict, outcome_name};
 use crate::studies::page::{Page, PageCases, input_in_words, under_factor};
 use crate::studies::quotable::{
-    self, FrictionCondition, ModelAnswer, SlipWords, directions_in_words,
+    self, FrictionCondition, ModelAnswer, SlipWords, directions_in_words, restitution_in_words,
 };
 use crate::studies::statistics::ascending;
 use crate::studies::{Remarks, Results};
@@ -429,6 +429,7 @@ impl Threshold {
             scenario.structure.has_horizontal_thrust(),
         );
         ModelAnswer::new(model, is_arch, self.safe_excess_ratio, answer)
+            .with_restitution(restitution_in_words(scenario))
     }
 
     /// Returns the directions of the answer, in words that follow it.
