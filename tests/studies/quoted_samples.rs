@@ -61,7 +61,7 @@ fn a_threshold_of_samples_quotes_the_limit_of_the_fractile() {
         assert!(limit < own["models"][0]["survives_up_to_factor"].as_f64().unwrap());
         let quote = quote(&summary);
         assert!(
-            quote.contains(&format!("the {rank}. lowest of {samples} samples")),
+            quote.contains(&format!("sample {rank} of {samples}, the weakest first")),
             "{quote}"
         );
         shows(&quote, &[95.0]);
