@@ -167,11 +167,7 @@ impl FirstEdge {
             let found = history(strength)?;
             let share = found.overturning_share.ok_or(NoAnswer::Incomplete)?;
             tried.borrow_mut().push(([strength, share], found));
-            Ok(match share {
-                ..=0.0 => Verdict::Survives,
-                1.0.. => Verdict::Overturns,
-                _ => Verdict::Uncertain,
-            })
+            Ok(verdict_of(share))
         };
         // The ends of the edge between a low and a high strength, of verdicts below and from `least` on, and the verdict at its upper end.
         let narrow = |low: f64, (high, mut verdict): (f64, Verdict), least: Verdict| {
@@ -331,6 +327,15 @@ impl FirstEdge {
             self.survives_up_to.is_some() || self.uncertain.first().is_some_and(doubtful);
         let reached = self.uncertain.iter().filter(|own| doubtful(own));
         (is_known && is_tried).then(|| reached.map(|[_, share]| *share).fold(0.0, f64::max))
+    }
+}
+
+/// Returns the verdict of a history of which this share of the repetitions overturns.
+fn verdict_of(share: f64) -> Verdict {
+    match share {
+        ..=0.0 => Verdict::Survives,
+        1.0.. => Verdict::Overturns,
+        _ => Verdict::Uncertain,
     }
 }
 
