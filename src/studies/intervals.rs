@@ -223,12 +223,12 @@ mod tests {
     fn simulated_quantiles_are_the_known_ones() {
         let two = FractileIntervals::of(2).unwrap();
         assert!(
-            (two.ratios[0] / (0.707_107 * 0.031_338) - 1.0).abs() < 0.4,
+            (two.ratios[0] / (FRAC_1_SQRT_2 * 0.031_338) - 1.0).abs() < 0.4,
             "{:?}",
             two.ratios
         );
         assert!(
-            (two.ratios[1] / (0.707_107 * 2.241_403) - 1.0).abs() < 0.06,
+            (two.ratios[1] / (FRAC_1_SQRT_2 * 2.241_403) - 1.0).abs() < 0.06,
             "{:?}",
             two.ratios
         );

@@ -8,6 +8,7 @@ mod report;
 pub(super) mod strength;
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::OnceLock;
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -27,7 +28,7 @@ use crate::bisection::{Width, bisect};
 use crate::dynamics::{Direction, Directions};
 use crate::output::OutputError;
 use crate::scenario::{Measure, Scenario, Suite};
-use crate::{Case, Model, Outcome};
+use crate::{Case, EndCondition, Model, Outcome};
 
 /// A case of a suite: a record at a level, and the end of its history.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -129,6 +130,8 @@ pub struct RecordSuite<'a> {
     levels: Vec<f64>,
     /// Intensities of each unscaled record.
     strengths: Vec<Strength>,
+    /// The lowest level at which a record overturns the structure, without repetitions; infinite if none does. Computed at the first request.
+    lowest: OnceLock<f64>,
 }
 
 impl<'a> RecordSuite<'a> {
@@ -154,6 +157,7 @@ impl<'a> RecordSuite<'a> {
             model,
             levels: suite.levels.values(),
             strengths: strengths.collect(),
+            lowest: OnceLock::new(),
         })
     }
 }
@@ -191,7 +195,7 @@ impl Study for RecordSuite<'_> {
         let edge = |case: usize| {
             let index = indices[case];
             let below = self.level_below(index)?;
-            let is_first = index % self.levels.len() == 0;
+            let is_first = index.is_multiple_of(self.levels.len());
             let known = indices
                 .iter()
                 .position(|other| !is_first && *other == index - 1);
@@ -337,12 +341,36 @@ impl RecordSuite<'_> {
         Some(level * onset).filter(|onset| *onset < level)
     }
 
+    /// Returns the lowest level at which a record overturns the structure, without repetitions; infinite if none does.
+    fn lowest(&self) -> f64 {
+        *self.lowest.get_or_init(|| {
+            let overturns = |level: &&f64| {
+                let records = 0..self.suite.records.len();
+                let mut signed = records.flat_map(|record| {
+                    let signs = self.directions.iter();
+                    signs.map(move |direction| (record, *direction))
+                });
+                signed.any(|(record, direction)| {
+                    let case = case(self.scenario, self.suite, record, **level, direction);
+                    let history = self.model.simulate_until(EndCondition::Safe, &case);
+                    history.is_ok_and(|one| Verdict::from(one.outcome) == Verdict::Overturns)
+                })
+            };
+            self.levels
+                .iter()
+                .find(overturns)
+                .copied()
+                .unwrap_or(f64::INFINITY)
+        })
+    }
+
     fn ending(&self, record: usize, level: f64, direction: Direction) -> Result<Ending, NoHistory> {
         let (ground, request) = case(self.scenario, self.suite, record, level, direction);
         Ending::of(&*self.model, &ground, &request)
     }
 
-    /// Searches finely between a level that survives, or the safe level of the edge below one that overturns, and the level below.
+    /// Searches finely between a level that survives, or the safe level of the edge below one that overturns, and the level below; only up to the
+    /// lowest level at which any record overturns the structure, because the quote is the least of all records.
     fn search_below(
         &self,
         index: usize,
@@ -354,7 +382,9 @@ impl RecordSuite<'_> {
             .as_ref()
             .is_ok_and(|own| own.verdict() == Verdict::Survives);
         let safe = edge.map_or(survives.then_some(level), |edge| edge.safe)?;
-        let from = self.level_below(index)?;
+        let from = self
+            .level_below(index)
+            .filter(|from| *from < self.lowest())?;
         let closeness = |levels: &[f64]| {
             let cases = levels.iter().map(|level| {
                 let (ground, _) = case(self.scenario, self.suite, record, *level, direction);

@@ -274,7 +274,7 @@ impl Heading {
             cases.push_history(&words, &case.result, || self.scenario_of(case));
         }
         let own = "each record acts alone, at every level, and starts from rest; the lowest overturning level of a record is bisected between \
-                   two levels, and a finer search finds bands between and below the levels; the curve takes the records as equally likely";
+                   two levels, and up to the lowest edge of all records a finer search finds bands; the curve takes the records as equally likely";
         let draw = |figure| ida::draw(figure, self, results, &cases.spots);
         let page = Page::new(self.title(), self.what.clone(), &[own], &[self.model]);
         let more: [DrawPicture<'_>; 2] = [

@@ -28,6 +28,9 @@ pub(super) struct Shaking<'a> {
     pub(super) searched: &'a SearchedFactors,
 }
 
+/// Edges: neighbouring factors with different verdicts.
+type Edges = Vec<(f64, f64)>;
+
 /// Returns the step of a search after these samples.
 fn step_after(samples: &[FactorSample], is_open: bool) -> SearchStep {
     let survives = |sample: &&FactorSample| sample.verdict() == Some(Verdict::Survives);
@@ -133,7 +136,7 @@ impl Shaking<'_> {
         samples: &mut Vec<FactorSample>,
         runner: &Runner,
         watch: impl FnMut(Progress) -> ControlFlow<()>,
-    ) -> Result<(Vec<(f64, f64)>, Vec<FactorSample>), RunnerError> {
+    ) -> Result<(Edges, Vec<FactorSample>), RunnerError> {
         let pairs = samples.windows(2).map(|pair| (&pair[0], &pair[1]));
         let changes = pairs.filter(|(below, above)| {
             let both = below.verdict().zip(above.verdict());
@@ -160,7 +163,7 @@ impl Shaking<'_> {
     fn below(
         &self,
         safe: f64,
-        (samples, edges): (&mut Vec<FactorSample>, &mut Vec<(f64, f64)>),
+        (samples, edges): (&mut Vec<FactorSample>, &mut Edges),
         runner: &Runner,
         mut watch: impl FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<Vec<FactorSample>, RunnerError> {
