@@ -161,6 +161,8 @@ fn student_probability(t: f64, degrees: usize) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::FRAC_1_SQRT_2;
+
     use super::*;
     use crate::Scenario;
     use crate::studies::statistics::moments;
@@ -273,7 +275,6 @@ mod tests {
     /// Asserts that a number of intervals out of all contains the truth: 95 %, or at least so many in a hundred, within four standard errors.
     fn assert_coverage(name: &str, count: usize, of: usize, [least, most]: [f64; 2]) {
         let covered = 100.0 * count as f64 / of as f64;
-        println!("{name}: {covered:.1} % of {of}");
         let error = 400.0 * (0.05 * 0.95 / of as f64).sqrt();
         assert!(
             covered > least - error && covered < most + error,
