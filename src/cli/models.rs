@@ -43,7 +43,8 @@ impl ModelsOption {
             return Ok(vec![input.read(None)?]);
         }
         let scenarios = models.into_iter().map(|model| input.read(Some(model)));
-        scenarios.collect()
+        let scenarios: Vec<Scenario> = scenarios.collect::<Result<_, _>>()?;
+        Ok(with_known_restitution(scenarios))
     }
 
     /// Reads a scenario with one model; several models are an error.
@@ -55,6 +56,23 @@ impl ModelsOption {
         }
         Ok(scenarios.remove(0))
     }
+}
+
+/// Leaves out, with a warning, a model that needs a restitution of the wall behind the column. If all models need it, keeps them all: the study
+/// reports the error.
+fn with_known_restitution(scenarios: Vec<Scenario>) -> Vec<Scenario> {
+    let missing = |scenario: &Scenario| scenario.check_restitution().err();
+    if scenarios.iter().all(|scenario| missing(scenario).is_some()) {
+        return scenarios;
+    }
+    let known = scenarios.into_iter().filter(|scenario| {
+        let missing = missing(scenario);
+        if let Some(why) = &missing {
+            super::warn(&[format!("one rigid block is not computed: {why}")]);
+        }
+        missing.is_none()
+    });
+    known.collect()
 }
 
 /// Prints warnings about unlikely numbers of a scenario, and about a table that its model ignores.

@@ -126,6 +126,9 @@ pub fn map(arguments: &MapArguments) -> Result<(), Failure> {
 pub fn suite(study: &StudyArguments) -> Result<(), Failure> {
     let input = study.open()?;
     let scenarios = study.models.read(&input)?;
+    let mut known = scenarios.iter().map(Scenario::check_restitution);
+    let known = known.find(Result::is_err).unwrap_or(Ok(()));
+    known.map_err(|message| input.input_error(message))?;
     warn_of(&scenarios);
     let style = Style::of(study.figure.get()?);
     let kinds = [SUITE, UNCERTAIN_SUITE];

@@ -59,7 +59,10 @@ pub fn threshold(arguments: &Arguments) -> Result<(), Failure> {
     }
     let models = study.models.read(&input)?;
     let origin = Origin::of(&models[0]);
-    let tasks = arguments.suite.tasks(&input, models, check)?;
+    let tasks = arguments.suite.tasks(&input, models, |scenario| {
+        check(scenario)?;
+        scenario.check_restitution()
+    })?;
     let root = input.results(study.out.as_deref());
     check_distinct(tasks.iter().map(|task| task.place(&root)))?;
     let mut scenarios = tasks.iter().flat_map(|task| &task.scenarios);

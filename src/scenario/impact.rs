@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use super::back_wall::wrong_wall;
 use super::model_kind::{AnyModel, ModelKind, ModelOptions, Site};
 use super::prelude::*;
 use super::structure::Structure;
@@ -34,7 +33,7 @@ fn read(table: &mut Table<'_>) -> ReadResult<ImpactLaw> {
     let names = IMPACT_MODELS.map(|model| model.name());
     let name = table.or("model", &one_of(&names), names[0]);
     let restitution = table.optional("restitution", &RESTITUTION);
-    // Upper bound far above measured values, which are 0.67 to 0.97 times the theory.
+    // The upper bound is far above measured values.
     let restitution_factor = table.or("restitution_factor", &within(&(0.0..=100.0)), 1.0);
     let index = names.iter().position(|one| *one == name);
     let mut model = IMPACT_MODELS[index.unwrap_or(0)];
@@ -67,7 +66,7 @@ impl ModelOptions for ImpactLaw {
         Ok(structure.model(*self)?)
     }
 
-    /// Rejects an impact law beside the ratio of rates of a wall behind a column, and a wall that needs one of them.
+    /// Rejects an impact law beside the ratio of rates of a wall behind a column. If the wall needs one of them, only the model of motion does.
     fn check(
         &self,
         table: &mut Table<'_>,
@@ -79,10 +78,6 @@ impl ModelOptions for ImpactLaw {
             return Ok(());
         };
         let is_prescribed = matches!(self.model, ImpactModel::Prescribed { .. });
-        if !is_prescribed {
-            let rate_ratio = column.wall_rate_ratio();
-            rate_ratio.map_err(|error| wrong_wall(table, &error))?;
-        }
         let is_given = (column.wall()).is_some_and(|(wall, _)| wall.rate_ratio.is_some());
         let is_own = self.is_theory() && !is_prescribed;
         let wrong = "changes the ratio of energies of the impact on the wall, and `restitution` of [column.back], a ratio of rates, gives it as well; \

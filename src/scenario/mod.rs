@@ -72,7 +72,8 @@ use std::sync::Arc;
 
 use crate::dynamics::{Direction, Directions, Variation};
 use crate::{
-    FourLinkError, GroundMotion, Initial, MechanismModel, Model, Request, Row, RowModelError,
+    Column, FourLinkError, GroundMotion, ImpactModel, Initial, MechanismModel, Model, Request, Row,
+    RowModelError,
 };
 pub use assignment::Assignment;
 use document::Entries;
@@ -535,6 +536,35 @@ impl Scenario {
         self.structure.model(self.motion.impact())
     }
 
+    /// Makes the model of mechanisms for a computation without impacts, which needs no restitution of a wall behind a column.
+    ///
+    /// # Errors
+    /// As [`Structure::model`].
+    pub(crate) fn mechanisms_without_impacts(
+        &self,
+    ) -> Result<Box<dyn MechanismModel>, FourLinkError> {
+        match self.structure.wall_behind() {
+            Some(_) => self
+                .structure
+                .model(ImpactModel::Prescribed { restitution: 0.0 }),
+            None => self.mechanisms(),
+        }
+    }
+
+    /// Rejects a column before a wall as one rigid block if the restitution of the wall is neither given nor has a default.
+    ///
+    /// # Errors
+    /// The key to give, and the command that computes an answer without the key.
+    pub fn check_restitution(&self) -> Result<(), String> {
+        let column = self.structure.column().filter(|_| {
+            let is_prescribed =
+                matches!(self.motion.impact().model, ImpactModel::Prescribed { .. });
+            self.motion.kind == &FOUR_LINKS && !is_prescribed
+        });
+        let ratio = column.map_or(Ok(None), Column::wall_rate_ratio);
+        ratio.map(drop).map_err(|error| error.to_string())
+    }
+
     /// Rejects `[initial]` for a study named `what`, whose histories start from rest.
     ///
     /// # Errors
@@ -571,10 +601,10 @@ impl Scenario {
     /// Checks that there is a history to simulate: the ground moves, or the structure is released from a rotated position.
     ///
     /// # Errors
-    /// The table to add, or the command to use.
+    /// The table or the key to add, or the command to use.
     pub fn check_for_run(&self) -> Result<(), String> {
         if self.ground.is_some() || self.initial.is_some() {
-            return Ok(());
+            return self.check_restitution();
         }
         let give = "nothing moves the structure: give a table [ground.<kind>], such as [ground.rectangular], or \
                     [initial]";

@@ -20,6 +20,7 @@ mod catalogue;
 pub(crate) mod ending;
 pub mod ensemble;
 mod impact;
+mod intervals;
 mod limit;
 pub mod map;
 mod outcome_colors;

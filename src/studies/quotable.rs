@@ -5,6 +5,8 @@
 //! the same for all of them. Four links of an arch are quoted only if their thrust line was followed, and inside their model; a single motion that they
 //! survive only if its peak rotation is below 40 % of overturning.
 //!
+//! One rigid block names the restitution that it assumes.
+//!
 //! Rigid joints without a friction coefficient never slip. The answer then depends on the largest friction coefficient that its histories require,
 //! over all motions up to the quoted one and all repetitions ([`FrictionCondition`]).
 
@@ -12,11 +14,20 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
+use crate::ImpactModel;
+use crate::argument::plain;
 use crate::dynamics::{Direction, Directions, MODEL_LIMIT};
 use crate::scenario::{FOUR_LINKS, FREE_HINGES, ModelKind, Scenario};
 
 /// Smallest and largest coefficient of friction of stone on stone. An answer has no condition up to the smallest one.
 pub(super) const STONE_FRICTION: [f64; 2] = [0.5, 0.8];
+
+/// Smallest and largest measured restitution of blocks over Housner's, both ratios of energies.
+const MEASURED_RESTITUTION: [f64; 2] = [0.9, 1.05];
+
+/// Height over width of the most squat blocks that do not bounce in experiments (Lipscombe and Pellegrino, Free rocking of prismatic blocks, Journal
+/// of Engineering Mechanics 119, 1993).
+const LEAST_SLENDERNESS: f64 = 3.0;
 
 /// Friction coefficient above which joints of stone may slip under weaker motions, so that the answer is not on the safe side.
 const SLIPS_ABOVE: f64 = 0.6;
@@ -194,6 +205,47 @@ pub struct ModelAnswer {
     answer: Result<String, String>,
     /// Friction on which the answer depends; `None` without condition.
     friction: Option<FrictionCondition>,
+    /// The assumed restitution, in words; `None` unless the model is one rigid block.
+    restitution: Option<String>,
+}
+
+/// Returns the restitution that one rigid block assumes, in words that follow its name; `None` for other models.
+pub(super) fn restitution_in_words(scenario: &Scenario) -> Option<String> {
+    let structure = &scenario.structure;
+    let column = structure
+        .column()
+        .filter(|_| scenario.motion.kind == &FOUR_LINKS)?;
+    let law = scenario.motion.impact();
+    let is_given = matches!(law.model, ImpactModel::Prescribed { .. });
+    let model = scenario.mechanisms().ok()?;
+    let energies = model.restitution_from(model.first_side(), 1).unwrap_or(0.0);
+    let factor = law.restitution_factor;
+    let bounces = match column.height_m < LEAST_SLENDERNESS * column.width_m {
+        true => "; blocks below 3 : 1 bounce (Lipscombe and Pellegrino 1993)",
+        false => "",
+    };
+    Some(match column.wall() {
+        Some(_) if is_given => format!("restitution {energies:.3} at the wall (energies, given)"),
+        Some((wall, _)) => {
+            let source = match (wall.rate_ratio, factor) {
+                (Some(_), _) => "given".to_owned(),
+                (None, 1.0) => "default of a full wall".to_owned(),
+                (None, factor) => format!("energies {} of the default", plain(factor)),
+            };
+            let rates = energies.sqrt();
+            format!("restitution {rates:.3} at the wall (rates, {source})")
+        }
+        None if is_given => format!("restitution {energies:.3} (given){bounces}"),
+        None => {
+            let [low, high] = MEASURED_RESTITUTION;
+            let own = match factor {
+                1.0 => "Housner's".to_owned(),
+                factor => format!("{} of Housner's", plain(factor)),
+            };
+            let measured = format!("measured {low} to {high} of it");
+            format!("restitution {energies:.3} ({own}; {measured}){bounces}")
+        }
+    })
 }
 
 impl ModelAnswer {
@@ -214,6 +266,26 @@ impl ModelAnswer {
             },
             answer: answer.and_then(|answer| outside.flatten().map_or(Ok(answer), Err)),
             friction: None,
+            restitution: None,
+        }
+    }
+
+    /// Returns the answer with the restitution that it assumes, in words.
+    pub fn with_restitution(self, restitution: Option<String>) -> Self {
+        Self {
+            restitution,
+            ..self
+        }
+    }
+
+    /// Returns the answer of a scenario itself, which may not be quoted if its numbers are uncertain.
+    pub(super) fn unless_uncertain(self, is_uncertain: bool) -> Self {
+        match is_uncertain {
+            false => self,
+            true => Self {
+                answer: Err("its numbers are uncertain; quote the answer of the samples".to_owned()),
+                ..self
+            },
         }
     }
 
@@ -281,8 +353,12 @@ pub fn in_words(answers: &[ModelAnswer]) -> Option<String> {
     let clause = friction.map_or(String::new(), FrictionCondition::clause);
     let slip = friction.filter(|friction| friction.may_slip());
     let slip = slip.map_or(String::new(), |slip| format!("; {slip}"));
+    let restitution = best.restitution.iter();
+    let restitution: String = restitution.map(|words| format!(", {words}")).collect();
     Some(match &best.answer {
-        Ok(answer) => format!("to quote: {answer}{clause}, with {label}{more}{slip}"),
+        Ok(answer) => {
+            format!("to quote: {answer}{clause}, with {label}{restitution}{more}{slip}")
+        }
         Err(why) => format!("to quote: no answer with {label}: {why}"),
     })
 }

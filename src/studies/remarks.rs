@@ -197,6 +197,18 @@ impl ModelCheck {
         }
     }
 
+    /// Returns the check with this number of further histories outside the model, whose excess is not known.
+    pub(crate) fn with_outside(self, outside: usize) -> Self {
+        match outside {
+            0 => self,
+            _ => Self {
+                outside: Some(self.outside.unwrap_or(0) + outside),
+                of: self.of + outside,
+                largest_ratio: None,
+            },
+        }
+    }
+
     /// Adds a history.
     fn note(&mut self, excess_ratio: Option<f64>) {
         let Some(ratio) = excess_ratio else {

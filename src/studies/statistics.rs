@@ -5,6 +5,9 @@ use serde::{Deserialize, Serialize};
 /// Number of standard deviations on each side of the mean that enclose 95 % of a normal distribution.
 pub(super) const TWO_SIDED_95: f64 = 1.959_963_984_540_054;
 
+/// Number of samples with a verdict below which only the interval of their share is reported in words.
+const FEW: usize = 20;
+
 /// Number of samples with a property, and the estimated share among all possible samples.
 ///
 /// # Interval
@@ -61,6 +64,11 @@ impl Share {
             low: wilson(count, all)[0],
             high: wilson(possible + no_verdict, all)[1],
         })
+    }
+
+    /// Returns true if the share itself says little: fewer than [`FEW`] samples have a verdict, or more than a tenth of all has none.
+    pub(super) const fn is_known_by_interval_only(&self) -> bool {
+        self.of < FEW || 9 * self.no_verdict > self.of
     }
 
     /// Returns the share and both ends of its interval.
@@ -224,19 +232,37 @@ pub fn correlation(pairs: impl Iterator<Item = (f64, f64)> + Clone) -> Option<f6
 /// Number of bootstrap replicates.
 pub const REPLICATES: usize = 300;
 
-/// Draws `count` indices below `count` with replacement, [`REPLICATES`] times. The indices are the same on every machine.
-pub fn bootstrap(count: usize) -> impl Iterator<Item = Vec<usize>> {
-    let mut state = 0_u64;
-    // SplitMix64 (Steele, Lea and Flood 2014).
-    let mut next = move || {
-        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut mixed = state;
+/// Random numbers that are the same on every machine: SplitMix64 (Steele, Lea and Flood 2014).
+#[derive(Default)]
+pub(super) struct RandomNumbers(u64);
+
+impl RandomNumbers {
+    pub(super) fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut mixed = self.0;
         mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         mixed ^ (mixed >> 31)
-    };
-    let mut index = move || ((u128::from(next()) * count as u128) >> 64) as usize;
-    (0..REPLICATES).map(move |_| (0..count).map(|_| index()).collect())
+    }
+
+    /// Returns a number below `count`.
+    fn index(&mut self, count: usize) -> usize {
+        ((u128::from(self.next()) * count as u128) >> 64) as usize
+    }
+
+    /// Returns a number from the standard normal distribution (Box and Muller 1958).
+    pub(super) fn normal(&mut self) -> f64 {
+        // The middle of one of 2^53 equal parts of 0 to 1.
+        let [radius, angle] =
+            [(); 2].map(|()| ((self.next() >> 11) as f64 + 0.5) / (1_u64 << 53) as f64);
+        (-2.0 * libm::log(radius)).sqrt() * libm::cos(std::f64::consts::TAU * angle)
+    }
+}
+
+/// Draws `count` indices below `count` with replacement, [`REPLICATES`] times. The indices are the same on every machine.
+pub fn bootstrap(count: usize) -> impl Iterator<Item = Vec<usize>> {
+    let mut random = RandomNumbers::default();
+    (0..REPLICATES).map(move |_| (0..count).map(|_| random.index(count)).collect())
 }
 
 /// Computes the ends of the 95 % interval of bootstrapped values; `None` without values.

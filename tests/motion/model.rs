@@ -429,6 +429,7 @@ proptest! {
         let column = Column::new(height_m, width_m)
             .and_then(|column| column.with_depth_m(depth_m))
             .and_then(|column| column.with_density_kg_m3(density_kg_m3))
+            .map_err(FourLinkError::from)
             .and_then(|column| RockingColumn::new(&column, model));
         match column {
             Ok(column) => {
@@ -437,10 +438,11 @@ proptest! {
                 let barrier = column.link(0).unwrap().barrier;
                 prop_assert!(barrier > 0.0 && barrier.is_finite());
             }
-            Err(error) => check_named(&error, &[
+            Err(FourLinkError::Argument(error)) => check_named(&error, &[
                 ("height_m", height_m), ("width_m", width_m), ("depth_m", depth_m),
                 ("density_kg_m3", density_kg_m3), ("restitution", restitution(model)),
             ])?,
+            Err(error) => prop_assert!(false, "{}", error),
         }
     }
 

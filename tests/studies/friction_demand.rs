@@ -212,7 +212,8 @@ fn run_and_threshold_need_the_same_friction() {
             let demands = up_to.filter_map(|one| one["friction_demand"].as_f64());
             let quoted = model["friction_demand"].as_f64();
             assert!(quoted >= demands.reduce(f64::max), "{model}");
-            let needs = format!("friction coefficient of {:.2}", quoted.unwrap());
+            let rounded_up = (100.0 * quoted.unwrap() - 1e-9).ceil() / 100.0;
+            let needs = format!("friction coefficient of {rounded_up:.2}");
             let words = found["to_quote"].as_str().unwrap();
             assert_eq!(
                 words.contains(&needs),

@@ -17,6 +17,7 @@ mod map_axes;
 mod outside_model;
 mod peaks;
 mod quotable;
+mod quoted_samples;
 mod rendered_again;
 mod repeatability;
 mod run_column;

@@ -118,7 +118,7 @@ fn counts(folder: &Path, words: &str, name: &str) -> [usize; 5] {
         "map.json" => row["thrust_excess_ratio"]
             .parse()
             .is_ok_and(|ratio: f64| ratio > MODEL_LIMIT),
-        _ => 2.0 * row.number("outside_model") > row.number("samples"),
+        _ => row.number("outside_model") > row.number("samples"),
     });
     let summary = json(&folder.join(name));
     let picture = fs::read_to_string(folder.join("map.svg")).unwrap();

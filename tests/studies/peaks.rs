@@ -227,8 +227,7 @@ fn a_suite_prints_a_line_per_record_and_draws_the_peaks() {
         assert!(scale < edge.number("scale") && edge.number("scale") < 1.0021 * scale);
         let safe_g = scale * edge.number("peak_g") / edge.number("scale");
         let [safe_g, first_g] = self::edge([safe_g, edge.number("peak_g")]);
-        let mut expected =
-            format!("  {record}: survives up to {safe_g} g; overturns from {first_g} g");
+        let expected = format!("  {record}: survives up to {safe_g} g; overturns from {first_g} g");
         let again: Vec<String> = own[first..]
             .chunk_by(|a, b| (a["outcome"] == "overturned") == (b["outcome"] == "overturned"))
             .filter(|run| run[0]["outcome"] != "overturned")
@@ -238,12 +237,12 @@ fn a_suite_prints_a_line_per_record_and_draws_the_peaks() {
                 [] => unreachable!(),
             })
             .collect();
-        if !again.is_empty() {
-            expected += &format!(" (gaps above: {})", again.join(", "));
-        }
+        // A finer search may find further gaps between the levels.
+        let line = said.lines().find(|line| line.starts_with(&expected));
+        let line = line.unwrap_or_else(|| panic!("{expected}\n{said}"));
         assert!(
-            said.lines().any(|line| line == expected),
-            "{expected}\n{said}"
+            again.iter().all(|gap| line.contains(gap)),
+            "{again:?} {line}"
         );
         assert_eq!(marks(record), 1, "a curve");
     }

@@ -119,7 +119,10 @@ fn thresholds_and_runs_end_with_their_answer() {
     let at = folder.path();
     let pulse = "[ground.half_sine]\namplitude_g = 0.5\nduration_s = 0.5\n";
     for (structure, named) in [
-        (COLUMN, "with one rigid block"),
+        (
+            COLUMN,
+            "with one rigid block, restitution 0.888 (Housner's; measured 0.9 to 1.05 of it)",
+        ),
         (ARCH, "with four links; compare with free hinges"),
     ] {
         fs::write(at.join("s.toml"), format!("{structure}{pulse}")).unwrap();
@@ -214,4 +217,72 @@ fn a_release_has_the_excess_of_its_first_sample() {
     // Studies compute the excess at fewer sections than the table.
     let excess = excess.as_f64().unwrap();
     assert!(first > 0.0 && excess >= 0.9 * first, "{excess} {first}");
+}
+
+/// A quote of one rigid block names the restitution of its impacts. Housner's is `(1 - 1.5 sin^2 alpha)^2`; the wall's is a ratio of rates.
+#[test]
+fn quotes_of_one_rigid_block_name_their_restitution() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    let pulse = "[ground.half_sine]\namplitude_g = 0.3\nduration_s = 0.4\n";
+    let sine_sq = 0.8_f64.powi(2) / (0.8_f64.powi(2) + 4.0_f64.powi(2));
+    let housner = (1.0 - 1.5 * sine_sq).powi(2);
+    let wall = "[column.back]\nside = 'left'\n";
+    let full = (1.0 - 1.5 * sine_sq).powi(2) * (1.5 * (1.0 - sine_sq) - 1.0);
+    let measured = "measured 0.9 to 1.05 of it";
+    for (tables, due) in [
+        (
+            "",
+            format!("restitution {housner:.3} (Housner's; {measured})"),
+        ),
+        (
+            "[impact]\nrestitution_factor = 1.04\n",
+            format!(
+                "restitution {:.3} (1.04 of Housner's; {measured})",
+                1.04 * housner
+            ),
+        ),
+        (
+            "[impact]\nmodel = 'prescribed'\nrestitution = 0.7\n",
+            "restitution 0.700 (given)".to_owned(),
+        ),
+        (
+            wall,
+            format!("restitution {full:.3} at the wall (rates, default of a full wall)"),
+        ),
+        (
+            &format!("{wall}restitution = 0.4\n"),
+            "restitution 0.400 at the wall (rates, given)".to_owned(),
+        ),
+        (
+            &format!("{wall}[impact]\nrestitution_factor = 0.81\n"),
+            format!(
+                "restitution {:.3} at the wall (rates, energies 0.81 of the default)",
+                0.9 * full
+            ),
+        ),
+        (
+            &format!("{wall}[impact]\nmodel = 'prescribed'\nrestitution = 0.36\n"),
+            "restitution 0.360 at the wall (energies, given)".to_owned(),
+        ),
+    ] {
+        fs::write(path.join("s.toml"), format!("{COLUMN}{tables}{pulse}")).unwrap();
+        let due = format!(", with one rigid block, {due}");
+        let words = printed(path, &["run", "s.toml"]);
+        let summary = json(&path.join("results/s/summary.json"));
+        assert!(words.contains(&due), "{due}: {words}");
+        assert!(summary["to_quote"].as_str().unwrap().contains(&due));
+        let page = fs::read_to_string(path.join("results/s/report.html")).unwrap();
+        assert!(page.contains("with one rigid block, restitution"));
+    }
+    for (height_m, bounces) in [(2.39, true), (2.41, false)] {
+        let squat = format!("[column]\nheight_m = {height_m}\nwidth_m = 0.8\n{pulse}");
+        fs::write(path.join("s.toml"), squat).unwrap();
+        let words = printed(path, &["run", "s.toml"]);
+        assert_eq!(
+            words.contains("blocks below 3 : 1 bounce"),
+            bounces,
+            "{words}"
+        );
+    }
 }

@@ -98,13 +98,7 @@ fn rows_come_in_order_on_any_number_of_threads() {
             ControlFlow::Continue(())
         });
         assert_eq!(rows.unwrap(), all());
-        assert_eq!(
-            reported[0],
-            Progress {
-                done: 0,
-                all: COUNT
-            }
-        );
+        assert_eq!(reported[0], Progress::new(0, COUNT));
         assert_eq!(reported[reported.len() - 1].done, COUNT);
         assert!(reported.is_sorted_by_key(|progress| progress.done));
     }
@@ -120,7 +114,10 @@ fn cancelled_work_stops_soon_and_is_resumed() {
 
     let study = Slow::default();
     let cancelled = threads(2).rows_in(&study, task(folder.path(), "1/1", false), until(1));
-    let Err(RunnerError::Cancelled(Progress { done, all: COUNT })) = cancelled else {
+    let Err(RunnerError::Cancelled(Progress {
+        done, all: COUNT, ..
+    })) = cancelled
+    else {
         panic!("{cancelled:?}");
     };
     // The cases under way were finished, and no row is lost.

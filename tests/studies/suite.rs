@@ -268,7 +268,7 @@ fn the_curve_is_the_fit_of_the_rows() {
         let line = said.lines().find(|line| line.starts_with(&record));
         shows(line.unwrap(), &[capacity.number("peak_g")]);
     }
-    // The ranking of measures comes with its intervals: that of the factor on the peak is that of another bootstrap, to the noise of 300 draws.
+    // The ranking of measures comes with its intervals: that of the factor on the peak is that of the chi-square distribution, from its table.
     let measures = Table::read(results.join("intensity.csv")).rows;
     let shares: f64 = measures.iter().map(|row| row.number("best_share")).sum();
     assert!((shares - 1.0).abs() < 1e-9, "{shares}");
@@ -290,29 +290,16 @@ fn the_curve_is_the_fit_of_the_rows() {
         .iter()
         .map(|row| row.number("peak_g").ln())
         .collect();
-    let mut state = 7_u64;
-    let mut draw = || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1);
-        peaks[(state >> 33) as usize % peaks.len()]
-    };
-    let mut dispersions: Vec<f64> = (0..4000)
-        .map(|_| {
-            let drawn: Vec<f64> = peaks.iter().map(|_| draw()).collect();
-            let mean = drawn.iter().sum::<f64>() / drawn.len() as f64;
-            let squares: f64 = drawn.iter().map(|one| (one - mean).powi(2)).sum();
-            (squares / (drawn.len() as f64 - 1.0)).sqrt()
-        })
-        .collect();
-    dispersions.sort_by(f64::total_cmp);
+    let mean = peaks.iter().sum::<f64>() / 8.0;
+    let squares: f64 = peaks.iter().map(|one| (one - mean).powi(2)).sum();
+    let ends = [16.012_764, 1.689_869].map(|chi_square: f64| (squares / chi_square).sqrt());
     let peak = measures
         .iter()
         .find(|row| &row["measure"] == "peak_g")
         .unwrap();
-    for (end, known) in [("low", dispersions[100]), ("high", dispersions[3900])] {
+    for (end, known) in ["low", "high"].into_iter().zip(ends) {
         let found = peak.number(&*format!("dispersion_of_factor_{end}"));
-        assert!((found / known - 1.0).abs() < 0.2, "{end} {found} {known}");
+        assert!((found / known - 1.0).abs() < 1e-5, "{end} {found} {known}");
     }
     let picture = read(&results.join("suite.svg"));
     let picture = Document::parse(&picture).unwrap();
@@ -543,11 +530,19 @@ fn without_a_fragility_curve_the_reason_is_reported() {
         assert_eq!(fragility["records_that_never_overturn"], list(never));
         assert_eq!(fragility["records_that_always_overturn"], list(always));
         let line = said.lines().find(|line| line.contains("wave-1.at2: "));
-        for (_, bound) in [(never, 0.2), (always, 4.0)]
-            .iter()
-            .filter(|(name, _)| name.is_some())
-        {
-            shows(line.unwrap(), &[*bound]);
+        if never.is_some() {
+            shows(line.unwrap(), &[0.2]);
+        }
+        // Below the lowest level, the edge is searched down to the onset.
+        if always.is_some() {
+            let edge = Table::read(folder.join("o/capacities.csv")).numbers("scale")[0];
+            shows(line.unwrap(), &[edge]);
+            let both = format!("[{}, {edge}]", edge / 1.0021);
+            write(folder, "edge.toml", &text.replace(scales, &both));
+            done(folder, &["suite", "edge.toml", "--out", "e"]);
+            let rows = Table::read(folder.join("e/suite.csv")).rows;
+            let outcomes: Vec<&str> = rows.iter().map(|row| &*row["outcome"]).collect();
+            assert_eq!(outcomes, ["rest", "overturned"], "{edge}");
         }
         let picture = read(&folder.join("o/suite.svg"));
         // The picture wraps it.
@@ -573,6 +568,7 @@ fn results(rows: &[(&str, f64, Option<Outcome>)]) -> SuiteFragility {
         edge_at_most: false,
         safe_below_edge: None,
         friction_below_edge: None,
+        found_below: None,
         strength: None,
         result: outcome
             .ok_or(NoHistory::Failed("it broke".to_owned()))
@@ -620,6 +616,7 @@ fn levels_of(records: &[(&str, &str)]) -> Vec<CaseRow> {
                 edge_at_most: false,
                 safe_below_edge: None,
                 friction_below_edge: None,
+                found_below: None,
                 strength: None,
                 result: Ok(Ending {
                     direction: Direction::AsGiven,

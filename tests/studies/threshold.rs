@@ -11,7 +11,7 @@ use std::time::Duration;
 use crate::common::program::{archrock, printed, refused, scenarios, stderr, stdout};
 use crate::common::prose::{golden, shows, skeleton};
 use crate::common::pulse;
-use crate::common::results::{Row, Table, named};
+use crate::common::results::{Row, Table, json, named};
 use crate::common::{GRAVITY, pairs, request, semicircle, seven_voussoirs};
 use archrock::dynamics::{Cost, Details, Directions, MechanismSummary, Repetition};
 use archrock::output::Figure;
@@ -289,8 +289,10 @@ fn uncertain_factors_are_ranges_of_their_own() {
     assert_eq!(threshold.ranges.len(), expected.len());
     for (range, (verdict, from, to)) in pairs(&threshold.ranges, &expected) {
         assert_eq!(range.verdict, Some(*verdict));
-        assert!((range.from / from - 1.0).abs() < EDGE_WIDTH, "{range:?}");
-        assert!((range.to / to - 1.0).abs() < EDGE_WIDTH, "{range:?}");
+        // Edges beside an uncertain factor are enclosed to 1 %; only that at 3 lies between certain ones.
+        let width = |edge: f64| if edge == 3.0 { EDGE_WIDTH } else { 0.01 };
+        assert!((range.from / from - 1.0).abs() < width(*from), "{range:?}");
+        assert!((range.to / to - 1.0).abs() < width(*to), "{range:?}");
     }
     assert_eq!((threshold.bands().len(), threshold.gaps().len()), (3, 1));
     // No sample of the strides lies between 1.99 and 2: the search met one.
@@ -514,7 +516,7 @@ fn a_threshold_can_be_cancelled_and_refuses_invalid_requests() {
     let StudyError::Runner(RunnerError::Cancelled(progress)) = error else {
         panic!("{error}");
     };
-    assert!(progress.done < 1000 && progress.all == searched(&all).len());
+    assert!(progress.done < 1000 && progress.all <= searched(&all).len());
     let error = threshold(
         model,
         (Directions::AsGiven, &unit_pulse()),
@@ -539,7 +541,19 @@ fn files_agree_and_threads_change_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     file(folder, SCENARIO);
-    let said = printed(folder, &["threshold", "s.toml", "--threads", "1"]);
+    let said = printed(
+        folder,
+        &[
+            "threshold",
+            "s.toml",
+            "--from",
+            "0.1",
+            "--to",
+            "10",
+            "--threads",
+            "1",
+        ],
+    );
     // The semicircle overturns from 0.266 to 0.990 g and from 1.26 g on.
     golden("threshold", &said);
     let (_, shown) = skeleton(&said);
@@ -555,7 +569,14 @@ fn files_agree_and_threads_change_nothing() {
         "json",
         "--quiet",
     ];
-    let result = printed(folder, &[&["threshold", "s.toml"][..], &json].concat());
+    let result = printed(
+        folder,
+        &[
+            &["threshold", "s.toml", "--from", "0.1", "--to", "10"][..],
+            &json,
+        ]
+        .concat(),
+    );
     let read = |folder_name: &str, name: &str| {
         fs::read_to_string(folder.join(folder_name).join(name)).unwrap()
     };
@@ -640,6 +661,104 @@ fn files_agree_and_threads_change_nothing() {
     }
 }
 
+/// The example of the documents overturns certainly from 1.2585 to 1.2668, a band that strides of 2 % step over: single histories say so. The quote is
+/// below the band. The search begins at the onset, `A_L` over the peak of the pulse, and ends at the first factor that certainly overturns.
+#[test]
+fn a_narrow_band_below_an_edge_is_found() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = scenarios().join("recipes/own-arch.toml");
+    let own = file.to_str().unwrap();
+    for factor in [1.2590, 1.2620, 1.2660] {
+        let set = format!("ground.one_sine.amplitude_g={}", -0.6 * factor);
+        let run = ["run", own, "--no-repeat", "--no-report", "--set", &set];
+        assert!(
+            printed(folder.path(), &run).contains("overturned"),
+            "{factor}"
+        );
+    }
+    let limit = printed(folder.path(), &["limit", own, "--format", "json"]);
+    let limit: Value = serde_json::from_str(&limit).unwrap();
+    let start_g = limit["incipient_acceleration_g"]["right"].as_f64().unwrap();
+    printed(
+        folder.path(),
+        &["threshold", own, "--no-report", "--out", "t"],
+    );
+    let found = json(&folder.path().join("t/threshold.json"));
+    let model = &found["models"][0];
+    let safe = model["survives_up_to_factor"].as_f64().unwrap();
+    assert!(safe < 1.2585 && safe > 1.2, "{safe}");
+    let first = model["factors"]["from"].as_f64().unwrap();
+    assert!(
+        (first * 0.6 / start_g - 1.0).abs() < 2.0 * EDGE_WIDTH,
+        "{first} {start_g}"
+    );
+    let samples = model["samples"].as_array().unwrap();
+    let outcomes: Vec<&str> = samples
+        .iter()
+        .map(|one| one["outcome"].as_str().unwrap())
+        .collect();
+    assert_eq!(outcomes.last(), Some(&"overturned"));
+    assert_eq!(
+        outcomes.iter().filter(|one| **one == "overturned").count(),
+        1
+    );
+    assert_eq!(model["factors"]["lower_not_tried"], false);
+    let quote = found["to_quote"].as_str().unwrap();
+    assert!(!quote.contains("not tried"), "{quote}");
+}
+
+/// A search that begins above the onset, or where the onset is unknown, says so in its quote; with a smaller first factor the quote is smaller.
+#[test]
+fn a_quote_names_the_first_factor_if_lower_ones_may_overturn() {
+    let folder = tempfile::tempdir().unwrap();
+    let column = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[ground.one_sine]\namplitude_g = 0.5\nduration_s = 0.6\n";
+    let elastic = format!("{column}[elastic_joints]\nnormal_stiffness_gpa_m = 10.0\n");
+    let vertical = column.replace("duration_s", "vertical_amplitude_g = 0.05\nduration_s");
+    for (text, more, first) in [
+        (column, "--stride 0.1", None),
+        (column, "--from 0.3 --stride 0.1", None),
+        (column, "--from 0.5 --stride 0.1", Some("0.5")),
+        (&vertical, "--stride 0.1", Some("0.1")),
+        (&elastic, "--stride 0.3 --to 2", Some("0.1")),
+    ] {
+        self::file(folder.path(), text);
+        let all = format!("threshold s.toml {more}");
+        let said = printed(folder.path(), &all.split(' ').collect::<Vec<_>>());
+        let quote = said.lines().find(|line| line.contains("to quote")).unwrap();
+        match first {
+            None => assert!(!quote.contains("not tried"), "{quote}"),
+            Some(first) => {
+                let words = format!("lower factors than {first} not tried");
+                assert!(quote.contains(&words), "{quote}");
+            }
+        }
+    }
+}
+
+/// Without `--to` the search ends at the first certain collapse, with it at the given factor; both have the same first edge.
+#[test]
+fn a_search_without_a_last_factor_ends_at_the_first_collapse() {
+    let islands = Rule::new(|x| Some((2.0..3.0).contains(&x) || x >= 4.0));
+    let found = |to: Option<f64>| {
+        let factors = Factors::new(0.5, to, 0.1).unwrap();
+        found(&islands, &unit_pulse(), 1.0, &factors)
+    };
+    let (open, closed) = (found(None), found(Some(8.0)));
+    assert_eq!((open.bands().len(), closed.bands().len()), (1, 2));
+    assert_eq!(open.survives_up_to(), closed.survives_up_to());
+    assert_eq!(open.lowest_factor(), closed.lowest_factor());
+    assert!(open.samples.len() < 20 && closed.samples.len() > 28);
+    // A band of 1.5 % below the edge, which strides of 10 % step over.
+    let narrow = Rule::new(|x| Some((1.7..1.726).contains(&x) || x >= 2.0));
+    let factors = Factors::new(0.5, None, 0.1).unwrap();
+    let found = self::found(&narrow, &unit_pulse(), 1.0, &factors);
+    let safe = found.survives_up_to().unwrap();
+    assert!(
+        safe < 1.7 && safe > 1.7 * (1.0 - 2.0 * EDGE_WIDTH),
+        "{safe}"
+    );
+}
+
 #[test]
 fn strides_and_limits_can_be_chosen() {
     let folder = tempfile::tempdir().unwrap();
@@ -692,7 +811,16 @@ fn a_scenario_without_a_threshold_is_refused() {
     file(folder, falling);
     let said = printed(
         folder,
-        &["threshold", "s.toml", "--from", "1.95", "--stride", "0.1"],
+        &[
+            "threshold",
+            "s.toml",
+            "--from",
+            "1.95",
+            "--to",
+            "3",
+            "--stride",
+            "0.1",
+        ],
     );
     assert!(
         said.contains("from factor 2.000 on, the ground falls"),
@@ -823,7 +951,10 @@ fn all_totals_of_histories_agree() {
     let text = "[column]\nheight_m = 4.0\nwidth_m = 1.0\n[free_hinges]\n[ground.half_sine]\namplitude_g = 0.9\n\
                 duration_s = 0.3\nvertical_amplitude_g = -0.9\n[simulation]\nduration_s = 3.0\n";
     fs::write(folder.path().join("s.toml"), text).unwrap();
-    let words = printed(folder.path(), &["--quiet", "threshold", "s.toml"]);
+    let words = printed(
+        folder.path(),
+        &["--quiet", "threshold", "s.toml", "--to", "10"],
+    );
     assert!(
         words.contains("the ground falls as fast as a free body"),
         "{words}"

@@ -175,7 +175,8 @@ class Column(Structure):
         depth_m: length out of plane; ``None``: the default, 1.
         density_kg_m3: density; ``None``: the default, 2000.
         back: table ``[column.back]``: a wall behind the column, from which it can only move away, such as
-            ``{"side": "left"}``, perhaps with ``height_m`` and ``restitution`` (ratio of rates); drums then need elastic joints.
+            ``{"side": "left"}``, perhaps with ``height_m`` and ``restitution`` (ratio of rates), which one block before a lower wall
+            or with moving loads needs; drums then need elastic joints.
             ``None``: it stands free.
         load: tables ``[[load]]``: roofs, floors and thrusts, such as ``[{"mass_kg": 1500.0, "x_m": -0.15}]``, perhaps with
             ``height_m``, ``moves`` and ``thrust_n``.

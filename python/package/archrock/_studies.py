@@ -465,7 +465,7 @@ class Histories(Ensemble):
 
     @property
     def outcome(self) -> npt.NDArray[np.str_]:
-        """The outcome of each sample, as in ``samples.csv``."""
+        """The outcome of each sample, as in ``samples.csv``; ``outside_model`` outside the model of four links."""
         return self._samples("outcome")
 
     @property
@@ -475,7 +475,10 @@ class Histories(Ensemble):
 
     @property
     def probability(self) -> dict[str, float]:
-        """The fraction of samples that overturn, and its 95 % interval: ``share``, ``low``, ``high``, ``count``, ``of``."""
+        """The fraction of samples that overturn, and its 95 % interval: ``share``, ``low``, ``high``, ``count``, ``of``.
+
+        ``no_verdict`` samples count in the interval only. Report the interval alone if few have a verdict.
+        """
         share: dict[str, float] = self.summary["outcomes"]["overturned"]
         return share
 
@@ -486,7 +489,11 @@ class Histories(Ensemble):
 
 
 class FirstFactors(Ensemble):
-    """An ensemble of the first factors on the ground motion that overturn."""
+    """An ensemble of the first factors on the ground motion that overturn.
+
+    ``to_quote`` has the answer that may be quoted, and ``lower_limit_factor`` its factor: the lower 95 % confidence limit of the factor that
+    95 % of the structures survive, ``None`` with fewer than 59 samples.
+    """
 
     __slots__ = ()
 
@@ -506,7 +513,8 @@ class FirstFactors(Ensemble):
 class Fragilities(Ensemble):
     """An ensemble of the intensities from which the records of a suite overturn.
 
-    ``fragility`` has median and dispersion with their intervals: ``record_to_record``, ``uncertain_data`` and ``both``.
+    ``fragility`` has median and dispersion with their intervals: ``record_to_record``, ``uncertain_data`` and ``both``. ``to_quote``
+    has those that may be quoted, in words.
     """
 
     __slots__ = ()
@@ -525,7 +533,7 @@ class ProbabilityMap(_Plane):
 
     @property
     def probability(self) -> npt.NDArray[np.float64]:
-        """The fraction of samples that overturn in each cell, NaN if none has an outcome, shape ``(len(x), len(y))``."""
+        """The fraction of samples that overturn in each cell, NaN if none has a verdict, shape ``(len(x), len(y))``."""
         return self._plane("overturned")
 
     @property
@@ -535,7 +543,7 @@ class ProbabilityMap(_Plane):
 
     @property
     def lines(self) -> dict[str, npt.NDArray[Any]]:
-        """Where the probability first reaches 5, 50 and 95 % along y, for each x, as in ``probability.csv``."""
+        """The two cells between which the probability first reaches 5, 50 and 95 % along y, for each x, as in ``probability.csv``."""
         return self.columns("probability.csv")
 
     def plot(self, ax: Axes | None = None) -> Axes:

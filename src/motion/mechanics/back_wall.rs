@@ -2,7 +2,7 @@
 //!
 //! # Default restitution
 //!
-//! The column turns back about its outer toe `O` and strikes three times in turn, each time at one place (Sorrentino, AlShawa and Decanini, The
+//! It exists for a homogeneous block that is held over its full height. The column turns back about its outer toe `O` and strikes three times in turn, each time at one place (Sorrentino, AlShawa and Decanini, The
 //! relevance of energy damping in unreinforced masonry rocking mechanisms, Bulletin of Earthquake Engineering 9, 2011):
 //!
 //! 1. at the base: the rotation passes from `O` to the inner toe `I`,
@@ -13,10 +13,9 @@
 //! `m w (k^2 + (G - A).(G - B))` about `B`. An impact at `B` conserves it. With `<A, B> = k^2 + (G - A).(G - B)` the rate becomes
 //! `w <A, B> / <B, B>`, and the energy is multiplied by the squared cosine `c(A, B)^2`, where `c(A, B) = <A, B> / sqrt(<A, A> <B, B>)`.
 //!
-//! After impact 2 the foot of the wall stops the base, which moves towards the wall, and the rotation about `C` becomes a rotation about `I`. We
-//! assume that this passage conserves the energy. At the full height of a block it then keeps the rate as well; at a lower wall, keeping the rate would
-//! add energy. A direct impact from `C` to `O` would not throw the column back at all. The body turns about `O` before and after, so the ratio of rates
-//! is
+//! After impact 2 the foot of the wall stops the base, which moves towards the wall, and the rotation about `C` becomes a rotation about `I`. At the
+//! full height of a block this passage keeps the energy and the rate. At a lower wall, or with loads that move, it would be an assumption: models of the
+//! contacts contradict it, and have larger ratios. Then there is no default. The body turns about `O` before and after, so the ratio of rates is
 //!
 //! `-c(O, I) c(I, C) c(I, O) = -c(O, I)^2 c(I, C)`.
 //!
@@ -26,8 +25,8 @@
 //! Further assumptions: column, wall and ground are rigid, contacts neither slip nor pull, wall and ground move as one, and the three impacts take no
 //! time.
 //!
-//! If `c(I, C)` is not negative, the rotation does not reverse: the column would turn over the top of the wall. This is so if `C` is not above the
-//! centre of percussion of the rotation about `I`. Then there is no default.
+//! If `c(I, C)` is not negative, the rotation does not reverse: the column would turn over the top of the wall. This is so if the block is wider than
+//! 0.7071 of its height. Then there is no default either.
 //!
 //! # Lowest wall
 //!
@@ -38,8 +37,34 @@
 
 use nalgebra::Vector2;
 use serde::Serialize;
+use thiserror::Error;
 
+use crate::argument::plain;
 use crate::mechanics::{MassMoments, Sway, Twist};
+
+/// Reason why an impact on the wall behind a column has no default ratio of rates.
+#[derive(Clone, Debug, PartialEq, Error)]
+#[non_exhaustive]
+pub enum NoWallRatio {
+    /// The wall is lower than the column; heights in metres.
+    #[error("the wall behind the column is {} m high, the column {} m: {REMEDY}", plain(*.wall_m), plain(*.column_m))]
+    Low {
+        /// Height of the wall.
+        wall_m: f64,
+        /// Height of the column.
+        column_m: f64,
+    },
+    /// Loads of this mass in kg move with the column.
+    #[error("{} kg of loads move with the column before the wall: {REMEDY}", plain(*.0))]
+    Loads(f64),
+    /// The column has this ratio of width to height, and three impacts do not throw it back.
+    #[error("the column before the wall is {} times as wide as high, and above 0.7071 three impacts do not throw it back: {REMEDY}", plain(*.0))]
+    Wide(f64),
+}
+
+/// Remedy for a missing ratio of rates.
+const REMEDY: &str = "the default restitution is that of a homogeneous block held over its full height; give `restitution` of [column.back], a \
+                      measured ratio of rates, or run `archrock threshold FILE --along column.back.restitution=0.2..0.9:8` and quote its lowest value";
 
 /// Wall behind a column.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -50,7 +75,7 @@ pub struct BackWall {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub height_m: Option<f64>,
     /// Rate after the column has struck the wall over the rate before, from 0 to 1, the key `restitution` of scenarios; `None` for three impacts in
-    /// turn. Its square is the restitution coefficient of [`Link`](crate::mechanics::Link) and `[impact]`, a ratio of energies.
+    /// turn, of a homogeneous block that is held over its full height. Its square is the restitution coefficient of [`Link`](crate::mechanics::Link) and `[impact]`, a ratio of energies.
     #[serde(rename = "restitution", skip_serializing_if = "Option::is_none")]
     pub rate_ratio: Option<f64>,
 }
@@ -80,12 +105,6 @@ pub fn three_impacts(
     let at_base = cosine(moments, [outer, inner]);
     let at_wall = cosine(moments, [inner, contact]);
     (at_base > 0.0 && at_wall < 0.0).then_some(-at_base * at_base * at_wall)
-}
-
-/// Returns the height of the centre of percussion of the rotation about the inner toe, above that toe: three impacts throw the body back from higher
-/// walls only.
-pub fn percussion_height(moments: &MassMoments, inner: Vector2<f64>) -> f64 {
-    product(moments, inner, inner) / (moments.first.y - moments.mass * inner.y)
 }
 
 #[cfg(test)]
@@ -138,7 +157,8 @@ mod tests {
             let passed = second * (about(contact) / about(inner)).sqrt();
             let third = impact(passed, inner, outer);
             prop_assert!((rate_passed(&moments, outer, inner) - first).abs() < 1e-13);
-            let highest = percussion_height(&moments, inner);
+            // The centre of percussion of the rotation about the inner toe.
+            let highest = about(inner) / y;
             let found = three_impacts(&moments, [outer, inner, contact]);
             if (first.abs() > 1e-9) && (wall - highest).abs() > 1e-9 {
                 prop_assert_eq!(found.is_some(), first > 0.0 && wall > highest);

@@ -26,7 +26,7 @@ use serde::Serialize;
 use thiserror::Error;
 
 use super::arch::{DENSITY_KG_M3, DEPTH_M};
-use super::back_wall::{percussion_height, three_impacts};
+use super::back_wall::three_impacts;
 use super::blocks::{GRAVITY_M_S2, MAX_BLOCKS};
 use super::chain::MechanismState;
 use super::tie::TieError;
@@ -35,8 +35,8 @@ use crate::argument::{ArgumentError, allow, plain, within};
 use crate::mechanics::four_link::resultant::SectionResultant;
 use crate::mechanics::masonry::LoadOutlines;
 use crate::mechanics::{
-    BackWall, Block, Demand, Hinge, ImpactLaw, ImpactModel, Link, MechanismChain, PlacedLoad, Row,
-    RowError, Sides, Sway, Tie,
+    BackWall, Block, Demand, FourLinkError, Hinge, ImpactLaw, ImpactModel, Link, MechanismChain,
+    NoWallRatio, PlacedLoad, Row, RowError, Sides, Sway, Tie,
 };
 
 /// Range of sizes in metres and of densities in kg/m3; their products stay in the range of an `f64`.
@@ -324,35 +324,38 @@ impl Column {
         (height_m > 0.0).then_some((back, height_m))
     }
 
-    /// Returns the ratio of the rates after and before an impact on the wall behind the column; `None` without a wall.
+    /// Returns the ratio of the rates after and before an impact on the wall behind the column; `None` without a wall. The default is that of a
+    /// homogeneous block that is held over its full height.
     ///
     /// # Errors
-    /// If the ratio is not given, and three impacts in turn do not throw the column back.
-    pub fn wall_rate_ratio(&self) -> Result<Option<f64>, ArgumentError> {
+    /// If the ratio is not given, and the wall is lower than the column, loads move with the column, or the column is too wide.
+    pub fn wall_rate_ratio(&self) -> Result<Option<f64>, NoWallRatio> {
         let Some((wall, height_m)) = self.wall() else {
             return Ok(None);
         };
+        if let Some(rate_ratio) = wall.rate_ratio {
+            return Ok(Some(rate_ratio));
+        }
+        if height_m < self.height_m {
+            return Err(NoWallRatio::Low {
+                wall_m: height_m,
+                column_m: self.height_m,
+            });
+        }
+        let loads = self.placed_loads();
+        let moving = loads.filter_map(|(load, at_m)| load.moving_body(at_m));
+        let moving_kg = moving.map(|load| load.mass_kg).sum::<f64>();
+        if moving_kg > 0.0 {
+            return Err(NoWallRatio::Loads(moving_kg));
+        }
         // Lengths in half diagonals.
         let half_m = self.half_diagonal_m();
         let outer = Vector2::new(0.5 * self.width_m / half_m, 0.0);
-        let contact = Vector2::new(0.0, height_m / half_m) - outer;
+        let contact = Vector2::new(0.0, self.height_m / half_m) - outer;
         let tilting = self.tilting(wall.side.opposite());
-        let moments = tilting.body();
-        let default = || three_impacts(moments, [outer, -outer, contact]);
-        if let Some(rate_ratio) = wall.rate_ratio.or_else(default) {
-            return Ok(Some(rate_ratio));
-        }
-        let lowest_m = percussion_height(moments, -outer) * half_m;
-        let measured = "otherwise three impacts in turn do not throw the column back, so give `restitution` of [column.back], a measured ratio of rates";
-        if lowest_m >= self.height_m {
-            let wide = "below 0.7071 of the height: no wall is high enough for a wider column";
-            let allowed = format!("{wide}; {measured}");
-            return Err(ArgumentError::new("width_m", self.width_m, allowed));
-        }
-        let lowest = plain(lowest_m);
-        let allowed =
-            format!("above {lowest} m, the height of the centre of percussion; {measured}");
-        Err(ArgumentError::new("height_m", height_m, allowed))
+        let ratio = three_impacts(tilting.body(), [outer, -outer, contact]);
+        let wide = NoWallRatio::Wide(self.width_m / self.height_m);
+        ratio.map(Some).ok_or(wide)
     }
 
     /// Returns the rate about the toe to this side, in rad/s, of a column of one block at rest just after a short horizontal blow: the angular impulse
@@ -370,8 +373,7 @@ impl Column {
     /// the wall carries every push towards it.
     ///
     /// # Errors
-    /// If the column tapers or has ties, or the wall is below the centre of a drum. A column of one block also needs a ratio of rates, because its
-    /// statics are those of Housner's column.
+    /// If the column tapers or has ties, or the wall is below the centre of a drum.
     pub fn wall_behind_drums(&self) -> Result<Option<(Sway, f64)>, ArgumentError> {
         let Some((wall, height_m)) = self.wall() else {
             return Ok(None);
@@ -390,9 +392,6 @@ impl Column {
             plain(least_m)
         );
         allow(height_m >= least_m, "height_m", height_m, allowed)?;
-        if self.is_one_prism() {
-            self.wall_rate_ratio()?;
-        }
         Ok(Some((wall.side, height_m)))
     }
 
@@ -506,7 +505,7 @@ impl RockingColumn {
     /// # Errors
     /// If a prescribed restitution coefficient is not in 0 to 1, or the column is not one prismatic block, or the wall behind it needs a ratio of rates
     /// that is neither given nor prescribed.
-    pub fn new(column: &Column, law: impl Into<ImpactLaw>) -> Result<Self, ArgumentError> {
+    pub fn new(column: &Column, law: impl Into<ImpactLaw>) -> Result<Self, FourLinkError> {
         let law = law.into();
         law.check()?;
         let (drums, top_m) = (column.drum_heights_m().len(), column.top_width_m());

@@ -18,8 +18,8 @@ use super::four_link::thrust::ThrustLine;
 use super::stability::collapse_mechanism;
 use crate::argument::{ArgumentError, within};
 use crate::mechanics::{
-    Arch, Demand, Hinge, ImpactLaw, LimitError, Link, MechanismChain, Profile as _, Row, Sides,
-    Sway,
+    Arch, Demand, Hinge, ImpactLaw, LimitError, Link, MechanismChain, NoWallRatio, Profile as _,
+    Row, Sides, Sway,
 };
 
 /// Structure with its sequences of four-link mechanisms under an impact law. The sequences depend on neither size nor material, and clones share
@@ -88,6 +88,9 @@ pub enum FourLinkError {
     /// The restitution coefficient is out of range.
     #[error(transparent)]
     Argument(#[from] ArgumentError),
+    /// The wall behind a column needs a restitution that is not given.
+    #[error(transparent)]
+    Wall(#[from] NoWallRatio),
 }
 
 const VOUSSOIRS: &str = "; `limit` and [free_hinges] take any mechanism of voussoirs";

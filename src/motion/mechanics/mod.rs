@@ -36,7 +36,7 @@ pub use self::arch::{
     Arch, DENSITY_KG_M3, DEPTH_M, EMBRACE_DEG, MAGNITUDE, MIN_THICKNESS_RATIO, MeasuredAt,
     THICKNESS_RATIO_BOUND, VOUSSOIRS,
 };
-pub use self::back_wall::{BackWall, percussion_height, three_impacts};
+pub use self::back_wall::{BackWall, NoWallRatio, three_impacts};
 pub use self::blocks::{Block, Drum, Joint, MAX_BLOCKS, Row, RowError, Supports};
 pub use self::capacity::{
     Capacity, CapacityError, Control, CurvePoint, Displaced, TieEventDisplacements,

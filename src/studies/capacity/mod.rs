@@ -57,7 +57,7 @@ pub fn capacity(
             Ok(Some(capacity.with_ties(&events, displaced, gravity_m_s2)))
         });
     }
-    let model = scenario.mechanisms()?;
+    let model = scenario.mechanisms_without_impacts()?;
     let structure = scenario.structure.as_parts();
     let control = control(structure, point_m)?;
     Sides::try_of(|sway| {

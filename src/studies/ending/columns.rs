@@ -7,6 +7,8 @@ use crate::{Outcome, Sway};
 
 /// Outcome of a case whose history could not be computed.
 pub(crate) const FAILED: &str = "failed";
+/// Outcome of a sample outside the model of four links.
+pub(crate) const OUTSIDE_MODEL: &str = "outside_model";
 /// Outcome of a case whose overturning is uncertain.
 pub(crate) const UNCERTAIN: &str = "uncertain";
 

@@ -2,8 +2,6 @@
 
 pub(crate) mod columns;
 
-use std::fmt;
-
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -70,6 +68,9 @@ impl Ending {
     /// Reason why a case with [`Outcome::Incomplete`] does not count, and the remedy.
     pub const INCOMPLETE: &str = "incomplete: the run ends while the ground still moves, or with too much energy left for a verdict; \
                                   give a longer `duration_s` in [simulation]";
+
+    /// Reason why a sample outside the model of four links has no verdict, and the remedy.
+    pub const OUTSIDE_MODEL: &str = "outside the model of four links: the thrust line leaves the arch too far; compute it with free hinges";
 
     /// Returns the time of the outcome, in seconds; `None` if it is unknown.
     pub fn known_time_s(&self) -> Option<f64> {
@@ -335,6 +336,8 @@ pub enum NoAnswer {
     Failed(String),
     /// The history ended too early for a verdict.
     Incomplete,
+    /// The history is outside the model of four links, so it may survive or overturn.
+    OutsideModel,
 }
 
 impl From<NoHistory> for NoAnswer {
@@ -348,9 +351,14 @@ impl From<NoHistory> for NoAnswer {
 }
 
 impl NoAnswer {
-    /// Returns the error of a sample whose structure has no model of motion.
-    pub(super) fn invalid(error: impl fmt::Display) -> Self {
-        Self::Invalid(error.to_string())
+    /// Returns the error of a sample whose structure has no model of motion. Without a restitution the structure is valid, but its answer unknown.
+    pub(super) fn without_model(error: ModelError) -> Self {
+        match error {
+            ModelError::FourLinks(error @ FourLinkError::Wall(_)) => {
+                Self::Failed(error.to_string())
+            }
+            error => Self::Invalid(error.to_string()),
+        }
     }
 
     /// Returns the name of the reason in tables.
@@ -359,6 +367,7 @@ impl NoAnswer {
             Self::Invalid(_) => "invalid",
             Self::Failed(_) => columns::FAILED,
             Self::Incomplete => Outcome::Incomplete.name(),
+            Self::OutsideModel => columns::OUTSIDE_MODEL,
         }
     }
 
@@ -367,6 +376,7 @@ impl NoAnswer {
         match self {
             Self::Invalid(reason) | Self::Failed(reason) => reason,
             Self::Incomplete => Ending::INCOMPLETE,
+            Self::OutsideModel => Ending::OUTSIDE_MODEL,
         }
     }
 }

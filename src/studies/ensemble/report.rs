@@ -88,29 +88,40 @@ pub(super) struct SampleSummary {
     pub(super) what_matters: Influences,
 }
 
+/// Returns the number of histories outside the model of four links, or the largest excess of the thrust line, in words; `None` if the thrust line stays
+/// almost inside.
+fn outside_in_words(model: &ModelCheck, checked: &str) -> Option<String> {
+    let words = model.in_words(checked)?;
+    Some(match model.outside {
+        Some(1..) => format!("{words}; they have no verdict, and count only in intervals"),
+        _ => words,
+    })
+}
+
 /// A sample without an answer.
 #[derive(Serialize, Deserialize)]
 struct WithoutAnswer {
     /// Number of the sample, from 1.
     sample: usize,
-    /// `invalid`, `failed` or `incomplete`.
+    /// `invalid`, `failed`, `incomplete` or `outside_model`.
     why: String,
     /// The reason in words.
     reason: String,
 }
 
 impl SampleSummary {
-    /// Makes the summary of samples; `limits` are warnings about the results.
+    /// Makes the summary of samples. `checked` are the histories whose `model` is checked, in words, and `no_verdict` is the warning about incomplete ones.
     pub(super) fn new<A, const N: usize>(
         samples: &Samples<'_, A>,
         model: ModelCheck,
         friction: SurvivorFriction,
-        limits: [Option<String>; 2],
+        (checked, no_verdict): (&str, Option<String>),
         influences: [(InfluencedAnswer, Option<Vec<NumberInfluence>>); N],
     ) -> Self {
         let scenario = samples.scenario;
         let condition = friction.friction_condition.clone();
         let one_direction = one_direction(scenario);
+        let limits = [outside_in_words(&model, checked), no_verdict];
         let limits = limits.into_iter().flatten().chain(condition);
         let limits = limits.chain(one_direction.clone());
         let own = samples.own.as_ref().err();
@@ -141,6 +152,11 @@ impl SampleSummary {
     pub(super) fn draw_influences<A>(&self, samples: &Samples<'_, A>, figure: Figure) -> String {
         let title = samples.title("Influence of uncertain data");
         self.what_matters.draw(figure, title)
+    }
+
+    /// Returns the number of histories outside the model of four links in words, as [`outside_in_words`].
+    pub(super) fn outside_in_words(&self, checked: &str) -> Option<String> {
+        outside_in_words(&self.model, checked)
     }
 
     /// Returns the reason of the first sample that has no answer for this reason.
@@ -182,7 +198,10 @@ impl Share {
             uncertain => format!("{} certain and {uncertain} uncertain", self.count),
         };
         let of = self.of;
-        format!("{part} (95 %: {low} to {high}), {certain} of {of} samples")
+        match self.is_known_by_interval_only() {
+            true => format!("{low} to {high} (95 %; {certain} of {of} samples with a verdict)"),
+            false => format!("{part} (95 %: {low} to {high}), {certain} of {of} samples"),
+        }
     }
 
     /// Returns the treatment of uncertain samples, and of samples without a verdict, in a probability of overturning, in words; empty without such

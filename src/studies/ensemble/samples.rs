@@ -6,8 +6,8 @@ use super::NoAnswer;
 use super::influence::NumberInfluence;
 use super::sensitivity::{Total, sensitivities, total_indices};
 use crate::scenario::{Scenario, Uncertain};
-use crate::studies::no_verdict;
 use crate::studies::statistics::{Share, ranks};
+use crate::studies::{ModelCheck, no_verdict};
 
 /// A sample and its answer.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -82,10 +82,18 @@ impl<'a, A> Samples<'a, A> {
         Share::of_chances(self.rows.iter().filter_map(chance))
     }
 
+    /// Returns the histories of four links outside their model; `excess_ratios` are those of the samples with an answer.
+    pub(super) fn model_check(
+        &self,
+        excess_ratios: impl IntoIterator<Item = Option<f64>>,
+    ) -> ModelCheck {
+        ModelCheck::of(excess_ratios).with_outside(self.reasons().outside)
+    }
+
     /// Returns the number of valid structures without an answer.
     pub(super) fn unknown(&self) -> usize {
         let reasons = self.reasons();
-        reasons.failed + reasons.incomplete
+        reasons.failed + reasons.incomplete + reasons.outside
     }
 
     /// Returns the numbers of samples without an answer.
@@ -145,6 +153,8 @@ pub(super) struct ReasonCounts {
     pub(super) failed: usize,
     /// Number that ended too early for a verdict.
     pub(super) incomplete: usize,
+    /// Number outside the model of four links, which have no verdict.
+    pub(super) outside: usize,
 }
 
 impl ReasonCounts {
@@ -155,13 +165,14 @@ impl ReasonCounts {
                 NoAnswer::Invalid(_) => &mut counts.invalid,
                 NoAnswer::Failed(_) => &mut counts.failed,
                 NoAnswer::Incomplete => &mut counts.incomplete,
+                NoAnswer::OutsideModel => &mut counts.outside,
             } += 1;
         }
         counts
     }
 
     pub(super) const fn all(&self) -> usize {
-        self.invalid + self.failed + self.incomplete
+        self.invalid + self.failed + self.incomplete + self.outside
     }
 
     /// Returns the number of `cases` that ended too early for a verdict, and the remedy, in words; `None` if the number is zero.

@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use askama::Template;
 use serde::{Deserialize, Serialize};
 
-use super::influence::{InfluencedAnswer, percent};
+use super::influence::{InfluencedAnswer, NumberInfluence, percent};
 use super::page::{PageAnswer, SAMPLES, SamplePage};
 use super::report::{self, Band, Line, SampleSummary, of_answer};
 use super::{NoAnswer, Question, Samples};
@@ -19,12 +19,15 @@ use crate::output::{
     filters, list,
 };
 use crate::scenario::{MotionModel, Scenario, Structure};
+use crate::studies::Results;
 use crate::studies::ending::columns::{self, OUTCOMES, OVERTURNED};
 use crate::studies::page::kind_of;
 use crate::studies::quotable::SurvivorFriction;
 use crate::studies::statistics::{Share, band, fractile, quantile};
-use crate::studies::{ModelCheck, Results};
 use crate::{Ending, Factors, Model, NoHistory, Sample, Verdict};
+
+/// Smallest number of certainly overturned samples, and of certainly surviving ones, for influences on overturning.
+const LEAST_OF_EACH: usize = 10;
 
 /// Largest number of times at which samples are compared.
 const MOST_TIMES: usize = 300;
@@ -57,12 +60,6 @@ pub struct HistoryAnswer {
     pub course_overturns: bool,
 }
 
-/// Makes the model of a scenario for a study of many cases.
-fn many_cases(scenario: &Scenario) -> Result<Box<dyn Model>, String> {
-    let model = scenario.model_for_many_cases();
-    model.map_err(|error| error.to_string())
-}
-
 impl Question for Histories {
     type Answer = HistoryAnswer;
     const NAME: &'static str = "uncertain";
@@ -91,11 +88,13 @@ impl Question for Histories {
         let stride = (samples / MOST_TIMES as f64).ceil();
         let times = (samples / stride).floor() as usize + 1;
         let structure = scenario.structure.clone();
+        let many_cases = scenario.model_for_many_cases();
+        let many_cases = many_cases.map_err(|error| error.to_string())?;
         Ok(Self {
             body: most.map_or(0, |(body, _)| body),
             step_s: stride * request.output_step_s,
             times,
-            own: (structure, scenario.motion.clone(), many_cases(scenario)?),
+            own: (structure, scenario.motion.clone(), many_cases),
         })
     }
 
@@ -104,18 +103,7 @@ impl Question for Histories {
         samples: &Samples<'_, HistoryAnswer>,
         figure: Figure,
     ) -> Result<Results, OutputError> {
-        // Overturned samples have no largest rotation, but rank above all others.
-        let peak_rad = |answer: &HistoryAnswer| answer.ending.peak_or_infinite_rad();
-        let influences = [
-            (
-                InfluencedAnswer::Overturning,
-                samples.influence(false, HistoryAnswer::overturned),
-            ),
-            (
-                InfluencedAnswer::PeakRotationRank,
-                samples.influence(true, peak_rad),
-            ),
-        ];
+        let influences = influences(samples);
         let of_samples = samples.rows.iter();
         let of_samples = of_samples.map(|row| row.answer.as_ref().ok().map(peak_rad));
         let largest_rotations_rad: Vec<_> = iter::once(None).chain(of_samples).collect();
@@ -127,14 +115,13 @@ impl Question for Histories {
             Some((name.to_owned(), share?))
         });
         let answers = samples.answers();
-        let model = ModelCheck::of(answers.map(|answer| answer.ending.thrust_excess_ratio));
+        let model = samples.model_check(answers.map(|answer| answer.ending.thrust_excess_ratio));
         let survivors = samples.answers().map(|answer| &answer.ending);
-        let survivors = survivors
-            .filter(|ending| ending.verdict() == Verdict::Survives && !ending.is_outside_model());
+        let survivors = survivors.filter(|ending| ending.verdict() == Verdict::Survives);
         let demands = survivors.map(|ending| ending.friction_demand);
         let study = ("run FILE", "surviving samples");
         let friction = SurvivorFriction::of(demands, samples.scenario, study);
-        let limits = [model.in_words(CHECKED), samples.no_verdict()];
+        let limits = (CHECKED, samples.no_verdict());
         let report = Summary {
             all: SampleSummary::new(samples, model, friction, limits, influences),
             own: samples.own.as_ref().ok().map(OwnHistory::of),
@@ -184,15 +171,38 @@ impl Question for Histories {
         if scenario.structure == *structure && scenario.motion == *motion {
             return self.history(scenario, &**model);
         }
-        let model = many_cases(scenario).map_err(NoAnswer::Invalid)?;
+        let model = scenario.model_for_many_cases();
+        let model = model.map_err(NoAnswer::without_model)?;
         self.history(scenario, &*model)
     }
 
     /// Computes the answer of the scenario itself with the steps of `run`.
     fn own_answer(&self, scenario: &Scenario) -> Result<HistoryAnswer, NoAnswer> {
-        let model = scenario.model().map_err(NoAnswer::invalid)?;
+        let model = scenario.model().map_err(NoAnswer::without_model)?;
         self.history(scenario, &*model)
     }
+}
+
+/// Returns the largest rotation of a sample, in radians. Overturned samples have none, but rank above all others.
+const fn peak_rad(answer: &HistoryAnswer) -> f64 {
+    answer.ending.peak_or_infinite_rad()
+}
+
+/// The influence of the uncertain numbers on an answer; `None` if it is unknown.
+type OnAnswer = (InfluencedAnswer, Option<Vec<NumberInfluence>>);
+
+/// Returns the influences on overturning, if enough samples overturn and survive, and on the rank of the largest rotation.
+fn influences(samples: &Samples<'_, HistoryAnswer>) -> [OnAnswer; 2] {
+    let is_enough = [1.0, 0.0].into_iter().all(|end| {
+        let alike = samples.answers().filter(|one| one.overturned() == end);
+        alike.count() >= LEAST_OF_EACH
+    });
+    let overturning = is_enough.then(|| samples.influence(false, HistoryAnswer::overturned));
+    let rank = samples.influence(true, peak_rad);
+    [
+        (InfluencedAnswer::Overturning, overturning.flatten()),
+        (InfluencedAnswer::PeakRotationRank, rank),
+    ]
 }
 
 impl Histories {
@@ -221,6 +231,9 @@ impl Histories {
         let (ending, potential_over_barrier) = worse(given, scenario, model)?;
         if ending.verdict() == Verdict::Incomplete {
             return Err(NoAnswer::Incomplete);
+        }
+        if ending.is_outside_model() {
+            return Err(NoAnswer::OutsideModel);
         }
         Ok(HistoryAnswer {
             ending,
@@ -360,11 +373,7 @@ const TITLE: &str = "Histories with uncertain data";
 /// Returns the answer of a sample on its page: the largest rotation, beyond the axis if the sample overturned.
 fn page_answer(HistoryAnswer { ending, .. }: &HistoryAnswer) -> PageAnswer {
     let peak_rad = (!ending.overturned_itself()).then_some(ending.peak_rotation_rad);
-    (
-        kind_of(Some(ending.verdict())),
-        ending.is_outside_model(),
-        peak_rad,
-    )
+    (kind_of(Some(ending.verdict())), false, peak_rad)
 }
 
 /// Report on the histories of samples.

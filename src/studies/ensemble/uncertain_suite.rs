@@ -13,12 +13,13 @@ use crate::dynamics::{Direction, Directions};
 use crate::output::page::SpotKind;
 use crate::output::{Chart, Figure, Key, Mark, OutputError, Scale, Stroke, color, column, csv};
 use crate::scenario::{Measure, Scenario, Suite, shown};
-use crate::studies::quotable::SurvivorFriction;
-use crate::studies::statistics::{
-    ascending_weighted, bootstrap, interval, shares_up_to, weighted_fractile,
+use crate::studies::intervals::{FRACTILES, FractileIntervals};
+use crate::studies::quotable::{
+    self, ModelAnswer, SlipWords, SurvivorFriction, directions_in_words,
 };
+use crate::studies::statistics::{ascending_weighted, shares_up_to, weighted_fractile};
 use crate::studies::suite::strength::few;
-use crate::studies::suite::{case, directions};
+use crate::studies::suite::{case, directions, records_in_words};
 use crate::studies::threshold::first_edge::{FirstEdge, TREATMENTS, Treatment, TriedHistory};
 use crate::studies::threshold::{Factors, rounded, rounded_range};
 use crate::studies::{Ending, ModelCheck, Results};
@@ -54,6 +55,33 @@ impl Capacities {
         };
         let records = self.suite.records.iter();
         records.flat_map(move |series| signs.iter().map(|sign| (series.name.as_str(), *sign)))
+    }
+
+    /// Returns the answer that may be quoted: median and dispersion over records and samples. `excess_ratio` is the largest excess of the thrust line, and
+    /// `demand` the largest friction demand.
+    fn quoted(
+        &self,
+        samples: &Samples<'_, Edges>,
+        both: &Estimated,
+        excess_ratio: Option<f64>,
+        demand: Option<f64>,
+    ) -> ModelAnswer {
+        let scenario = samples.scenario;
+        let answer = match (both.median, both.dispersion) {
+            (Some(_), Some(_)) => Ok(format!(
+                "overturns with 50 % at {} {}, dispersion {} (95 %), over {} and {} samples{}",
+                self.suite.measure.name(),
+                estimated(&both.median, &both.median_interval),
+                estimated(&both.dispersion, &both.dispersion_interval),
+                records_in_words(self.suite.records.len()),
+                samples.answers().count(),
+                directions_in_words(self.directions, Direction::AsGiven)
+            )),
+            _ => Err("too few records and samples overturn for a median and a dispersion; add higher levels".to_owned()),
+        };
+        let is_arch = scenario.structure.has_horizontal_thrust();
+        let answer = ModelAnswer::new(scenario.motion.kind, is_arch, excess_ratio, answer);
+        answer.with_friction(SlipWords::of(scenario).condition(demand, "suite FILE"))
     }
 
     /// Makes the table of all edges.
@@ -143,8 +171,9 @@ impl Question for Capacities {
         let counted = Counted::new(self, samples);
         // Influence on the median over the records of a sample; the largest level if fewer than half of the records overturn the sample.
         let most = self.levels.last().copied().unwrap_or(1.0);
+        let inside = |edge: &&FirstEdge| !edge.is_outside_model();
         let median = |edges: &Edges| {
-            let median = first_strength(edges.iter(), 0.5);
+            let median = first_strength(edges.iter().filter(inside), 0.5);
             median.map_or(most, |(strength, _)| strength.min(most))
         };
         let influences = [(
@@ -153,17 +182,23 @@ impl Question for Capacities {
         )];
         let edges = counted.of_samples();
         let model = ModelCheck::of(edges.clone().map(|edge| edge.thrust_excess_ratio));
+        let edges = edges.filter(|edge| !edge.is_outside_model());
         let demands = edges.clone().map(|edge| edge.friction_demand);
         let survivors = ("suite FILE", "surviving motions of samples");
         let friction = SurvivorFriction::of(demands, samples.scenario, survivors);
-        let limits = [model.in_words(CHECKED), samples.no_verdict()];
+        let limits = (CHECKED, samples.no_verdict());
+        let fragility = counted.fragilities();
+        let excess = edges.clone().filter_map(|edge| edge.thrust_excess_ratio);
+        let demand = friction.friction_demand;
+        let quoted = self.quoted(samples, &fragility.both, excess.reduce(f64::max), demand);
         let report = Summary {
             all: SampleSummary::new(samples, model, friction, limits, influences),
             intensity: self.suite.measure,
+            to_quote: quotable::in_words(std::slice::from_ref(&quoted)),
             quote: "both".to_owned(),
             first_intensity: StrengthBand::of(edges.clone()),
             own_first_intensity: StrengthBand::of(counted.of_itself()),
-            fragility: counted.fragilities(),
+            fragility,
             records: self.suite.records.len(),
             edges: edges.clone().count(),
             at_lowest_level: edges.filter(|edge| edge.at_most).count(),
@@ -179,7 +214,8 @@ impl Question for Capacities {
         ];
         let results = Results::new(&Self::FILES[1..], &report, others)?;
         let answer = |edges: &Edges| {
-            let median = first_strength(edges.iter(), 0.5).map(|(strength, _)| strength);
+            let median = first_strength(edges.iter().filter(inside), 0.5);
+            let median = median.map(|(strength, _)| strength);
             let outside = edges.iter().any(FirstEdge::is_outside_model);
             (
                 SpotKind::Point,
@@ -198,7 +234,7 @@ impl Question for Capacities {
     }
 
     fn answer(&self, scenario: &Scenario) -> Result<Edges, NoAnswer> {
-        let model = scenario.model().map_err(NoAnswer::invalid)?;
+        let model = scenario.model().map_err(NoAnswer::without_model)?;
         let edge = |record: usize, direction: Direction| {
             FirstEdge::among(&self.levels, WIDTH, |level: f64| {
                 let (ground, request) = case(scenario, &self.suite, record, level, direction);
@@ -230,6 +266,8 @@ pub struct Summary {
     all: SampleSummary,
     /// The measure of the intensities.
     intensity: Measure,
+    /// The answer that may be quoted, in words.
+    to_quote: Option<String>,
     /// Name of the distribution in `fragility` to quote: it has the scatter of records and of uncertain numbers.
     quote: String,
     /// The intensity at which a record first overturns a sample.
@@ -263,17 +301,17 @@ struct Fragilities {
     both: Estimated,
 }
 
-/// A distribution, with 95 % intervals by bootstrap over the records.
+/// A distribution, with 95 % intervals from the number of records.
 #[derive(Serialize, Deserialize)]
 struct Estimated {
     /// Median; `None` if fewer than half of the cases overturn. Uncertain intensities count with the fraction of the repetitions that overturn.
     median: Option<f64>,
-    /// Ends of the interval of the median; `None` if a draw has no median. It contains both ends: uncertain intensities overturn, and samples without
-    /// a verdict at the lowest level, or all survive.
+    /// Ends of the 95 % interval of the median; `None` without a dispersion, or with one record. It contains both ends: uncertain intensities overturn, and
+    /// samples without a verdict at the lowest level, or all survive.
     median_interval: Option<[f64; 2]>,
     /// Dispersion; `None` if too few cases overturn for the 84 % fractile.
     dispersion: Option<f64>,
-    /// Ends of the interval of the dispersion; `None` if a draw has no dispersion.
+    /// Ends of the 95 % interval of the dispersion; `None` without a dispersion, with one record, or for the uncertain data alone.
     dispersion_interval: Option<[f64; 2]>,
 }
 
@@ -301,7 +339,7 @@ fn estimated(number: &Option<f64>, ends: &Option<[f64; 2]>) -> String {
 fn distribution(intensities: impl IntoIterator<Item = [f64; 2]>) -> [Option<f64>; 2] {
     let intensities = ascending_weighted(intensities);
     let finite = |part| weighted_fractile(&intensities, part).filter(|at| at.is_finite());
-    let [low, median, high] = [0.16, 0.5, 0.84].map(finite);
+    let [low, median, high] = FRACTILES.map(finite);
     let dispersion = low.zip(high).map(|(low, high)| 0.5 * libm::log(high / low));
     [median, dispersion]
 }
@@ -337,10 +375,13 @@ impl<'a> Counted<'a> {
         }
     }
 
+    /// Returns the edges of the scenario itself that are inside the model.
     fn of_itself(&self) -> impl Iterator<Item = &'a FirstEdge> + Clone {
-        self.own.iter().copied().flatten()
+        let edges = self.own.iter().copied().flatten();
+        edges.filter(|edge| !edge.is_outside_model())
     }
 
+    /// Returns the edges of all samples, also those outside the model.
     fn of_samples(&self) -> impl Iterator<Item = &'a FirstEdge> + Clone {
         self.samples.iter().flatten().copied().flatten()
     }
@@ -352,23 +393,24 @@ impl<'a> Counted<'a> {
         let lowest = self.question.levels.first().copied();
         let ends = [(1, lowest), (2, Some(f64::INFINITY))];
         let ends = ends.map(|(how, unknown)| self.distributions(&all, TREATMENTS[how], unknown));
-        let draws = bootstrap(count);
-        let drawn = draws.map(|drawn| self.distributions(&drawn, TREATMENTS[0], None));
-        let drawn: Vec<_> = drawn.collect();
+        // Both signs of a record, and all samples under it, count as one value.
+        let intervals = FractileIntervals::of(count);
         let estimated = |which: usize| {
-            let of = |number: usize| {
-                // There is no interval if a draw lacks the number.
-                let numbers = drawn.iter().map(|drawn| drawn[which][number]);
-                interval(numbers.collect::<Option<_>>()?)
-            };
             let [median, dispersion] = found[which];
+            // The median of the uncertain data has the scatter of the records as well.
+            let scatter = if which == 0 { dispersion } else { found[2][1] };
+            let both = intervals.as_ref().zip(median.zip(scatter));
+            let median_interval = both.and_then(|(intervals, (median, scatter))| {
+                let [low, high] = intervals.of_median(median, scatter);
+                Some([low.min(ends[0][which][0]?), high.max(ends[1][which][0]?)])
+            });
+            // Few records leave scatter of pairs of record and sample in the medians of the samples, which this interval would miss.
+            let both = intervals.as_ref().zip(dispersion.filter(|_| which != 1));
             Estimated {
                 median,
-                median_interval: of(0).and_then(|[low, high]| {
-                    Some([low.min(ends[0][which][0]?), high.max(ends[1][which][0]?)])
-                }),
+                median_interval,
                 dispersion,
-                dispersion_interval: of(1),
+                dispersion_interval: both.map(|(of, dispersion)| of.of_dispersion(dispersion)),
             }
         };
         Fragilities {
@@ -379,7 +421,7 @@ impl<'a> Counted<'a> {
     }
 
     /// Computes the distributions due to the records, to the uncertain numbers and to both, for a list of records with repetitions.
-    /// Samples without a verdict have the intensity `unknown`, or do not count.
+    /// Samples without a verdict, and edges outside the model, have the intensity `unknown`, or do not count.
     fn distributions(
         &self,
         records: &[usize],
@@ -389,7 +431,11 @@ impl<'a> Counted<'a> {
         let chosen = |of: &Vec<&[FirstEdge]>| -> Vec<[f64; 2]> {
             let edges = records.iter().filter_map(|record| of.get(*record).copied());
             let edges = edges.flatten();
-            edges.flat_map(|edge| edge.strengths(treatment)).collect()
+            let strengths = |edge: &FirstEdge| match edge.is_outside_model() {
+                true => unknown.map(|at| [at, 1.0]).into_iter().collect(),
+                false => edge.strengths(treatment),
+            };
+            edges.flat_map(strengths).collect()
         };
         let median = |of: &Vec<&[FirstEdge]>| {
             let median = weighted_fractile(&ascending_weighted(chosen(of)), 0.5);
@@ -412,7 +458,8 @@ impl<'a> Counted<'a> {
             (!edges.is_empty()).then(|| overturned.sum::<f64>() / edges.len() as f64)
         };
         let own = |level: &f64| share(self.of_itself().collect(), *level);
-        let all = |level: &f64| share(self.of_samples().collect(), *level);
+        let inside = |edge: &&FirstEdge| !edge.is_outside_model();
+        let all = |level: &f64| share(self.of_samples().filter(inside).collect(), *level);
         let columns = [
             column(self.question.suite.measure.name(), |level: &f64| *level),
             column("record_to_record", own),

@@ -9,17 +9,21 @@ use super::influence::InfluencedAnswer;
 use super::page::{SAMPLES, SamplePage};
 use super::report::{self, Band, Line, SampleSummary, why_not};
 use super::{NoAnswer, Question, Samples};
+use crate::dynamics::Direction;
 use crate::output::{
     Chart, Figure, Key, Mark, OutputError, Scale, Sign, Stroke, color, column, csv, each, list,
 };
 use crate::scenario::Scenario;
-use crate::studies::quotable::SurvivorFriction;
+use crate::studies::Results;
+use crate::studies::intervals::{LEAST_FOR_LIMIT, rank_of_lower_limit};
+use crate::studies::quotable::{
+    self, ModelAnswer, SlipWords, SurvivorFriction, directions_in_words,
+};
 use crate::studies::statistics::{
-    BAND, Share, ascending_weighted, band, fractile, weighted_fractile,
+    BAND, Share, ascending, ascending_weighted, band, fractile, weighted_fractile,
 };
 use crate::studies::threshold::first_edge::{FirstEdge, TREATMENTS};
-use crate::studies::threshold::{Factors, check, rounded, rounded_down};
-use crate::studies::{ModelCheck, Results};
+use crate::studies::threshold::{Factors, check, peak_g, rounded, rounded_down};
 
 /// The question for the first edge of each sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -119,16 +123,24 @@ impl Question for FirstEdges {
             InfluencedAnswer::FirstFactor,
             samples.influence(false, strength),
         )];
-        let model = ModelCheck::of(edges.clone().map(|edge| edge.thrust_excess_ratio));
+        let model = samples.model_check(edges.clone().map(|edge| edge.thrust_excess_ratio));
         let demands = edges.clone().map(|edge| edge.friction_demand);
         let study = format!("threshold FILE{}", self.factors.options());
         let survivors = (study.as_str(), "surviving motions of samples");
         let friction = SurvivorFriction::of(demands, samples.scenario, survivors);
-        let limits = [model.in_words(CHECKED), samples.no_verdict()];
+        let limits = (CHECKED, samples.no_verdict());
         let own = samples.own.as_ref().ok();
         let count = |condition: fn(&&_) -> bool| edges.clone().filter(condition).count();
+        let lower_limit = LowerLimit::of(samples);
+        let excess = edges.clone().filter_map(|edge| edge.thrust_excess_ratio);
+        let excess = excess.reduce(f64::max);
+        let quoted = lower_limit.quoted(samples.scenario, excess);
+        let condition = SlipWords::of(samples.scenario).condition(friction.friction_demand, &study);
+        let quoted = quoted.with_friction(condition);
         let report = Summary {
             all: SampleSummary::new(samples, model, friction, limits, influences),
+            to_quote: quotable::in_words(std::slice::from_ref(&quoted)),
+            lower_limit,
             survives_up_to_factor: each(band(
                 edges.clone().map(FirstEdge::safe_or_zero).collect(),
                 fractile,
@@ -166,18 +178,78 @@ impl Question for FirstEdges {
             title: samples.title(TITLE),
             label: "first factor that overturns",
             command: self.factors.command(),
-            answer: &|edge: &FirstEdge| (edge.spot_kind(), edge.is_outside_model(), edge.factor),
+            answer: &|edge: &FirstEdge| (edge.spot_kind(), false, edge.factor),
             picture: &|figure| draw(figure, samples, &probabilities),
         };
         Ok(page.add_to(results, samples, &report.all))
     }
 
     fn answer(&self, scenario: &Scenario) -> Result<FirstEdge, NoAnswer> {
-        FirstEdge::of(scenario, &self.factors)
+        let edge = FirstEdge::of(scenario, &self.factors)?;
+        match edge.is_outside_model() {
+            true => Err(NoAnswer::OutsideModel),
+            false => Ok(edge),
+        }
     }
 
     fn options(&self) -> Value {
         json!({ "factors": self.factors })
+    }
+}
+
+/// Lower 95 % confidence limit of the factor that 95 % of all structures survive: one of the lowest factors of the samples.
+#[derive(Serialize, Deserialize)]
+struct LowerLimit {
+    /// Number of samples that count: all valid structures. Those without a verdict count as if they survive no factor.
+    counted: usize,
+    /// Rank of the sample, from 1 for the lowest; null with fewer than 59 samples, which give no limit.
+    rank_of_limit: Option<usize>,
+    /// The largest factor up to which that sample certainly survives: 95 % of all structures survive it, with a confidence of 95 %. Null if it does not
+    /// survive the smallest factor, or without a rank.
+    lower_limit_factor: Option<f64>,
+}
+
+impl LowerLimit {
+    fn of(samples: &Samples<'_, FirstEdge>) -> Self {
+        let known = samples.answers().map(FirstEdge::safe_or_zero);
+        let safe = ascending(known.chain(std::iter::repeat_n(0.0, samples.unknown())));
+        let rank = rank_of_lower_limit(safe.len());
+        Self {
+            counted: safe.len(),
+            rank_of_limit: rank,
+            lower_limit_factor: rank.map(|rank| safe[rank - 1]).filter(|safe| *safe > 0.0),
+        }
+    }
+
+    /// Returns the answer that may be quoted. `excess_ratio` is the largest excess of the thrust line of the samples.
+    fn quoted(&self, scenario: &Scenario, excess_ratio: Option<f64>) -> ModelAnswer {
+        let (directions, counted) = (scenario.simulation.direction, self.counted);
+        let uncertain = scenario
+            .uncertain
+            .iter()
+            .flat_map(|uncertain| &uncertain.keys);
+        let has_one_peak = uncertain.clone().all(|key| !key.key.starts_with("ground."));
+        let in_g = |factor: f64| match has_one_peak {
+            true => format!(" ({} g)", rounded_down(factor * peak_g(scenario))),
+            false => " times the ground motion of each sample".to_owned(),
+        };
+        let answer = match (self.rank_of_limit, self.lower_limit_factor) {
+            (None, _) => Err(format!(
+                "{counted} samples are too few for the factor that 95 % survive: give at least {LEAST_FOR_LIMIT}"
+            )),
+            (Some(_), None) => Err(
+                "too many samples lack a verdict, or do not certainly survive the smallest factor tried"
+                    .to_owned(),
+            ),
+            (Some(rank), Some(factor)) => Ok(format!(
+                "95 % of such structures survive up to {}{}{} (95 % confidence: the {rank}. lowest of {counted} samples)",
+                rounded_down(factor),
+                in_g(factor),
+                directions_in_words(directions, Direction::AsGiven)
+            )),
+        };
+        let is_arch = scenario.structure.has_horizontal_thrust();
+        ModelAnswer::new(scenario.motion.kind, is_arch, excess_ratio, answer)
     }
 }
 
@@ -187,6 +259,10 @@ impl Question for FirstEdges {
 pub struct Summary {
     #[serde(flatten)]
     all: SampleSummary,
+    /// The answer that may be quoted, in words.
+    to_quote: Option<String>,
+    #[serde(flatten)]
+    lower_limit: LowerLimit,
     /// The largest factor up to which a sample certainly survives; 0 if it does not survive the smallest.
     survives_up_to_factor: Band,
     /// The largest factor up to which the scenario itself certainly survives; null if it does not survive the smallest.

@@ -46,7 +46,8 @@ fn summary(scenario: &Scenario) -> Result<Summary, StudyError> {
     let mut summary = match scenario.row().map_err(StudyError::scenario)? {
         Some(row) => of_row(scenario, &row).map_err(StudyError::scenario)?,
         None => {
-            let model = scenario.mechanisms().map_err(StudyError::scenario)?;
+            let model = scenario.mechanisms_without_impacts();
+            let model = model.map_err(StudyError::scenario)?;
             Summary {
                 wall_behind: scenario.structure.wall_behind(),
                 ..Summary::of_mechanism(&*model, scenario.gravity_m_s2())

@@ -177,7 +177,8 @@ impl<'a> OverturningMap<'a> {
              amplitude_g = { from = 0.1, to = 1.5, count = 40 }",
         )?;
         // Keys of other tables may not exist, or may allow none of the values.
-        let faults = (0..map.count()).map(|index| map.variant(index).err());
+        let fault = |index| map.variant(index).and_then(|one| one.check_restitution());
+        let faults = (0..map.count()).map(|index| fault(index).err());
         match faults.collect::<Option<Vec<String>>>().as_deref() {
             Some([fault, ..]) => Err(format!("no cell of [map] makes a valid scenario: {fault}")),
             _ => Ok(map),

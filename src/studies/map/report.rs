@@ -137,8 +137,13 @@ impl Style {
         if scenario.motion.kind.has_joints {
             return Err("is for four links and columns: free hinges have no p");
         }
-        let (model, gravity_m_s2) = (scenario.mechanisms().ok(), scenario.gravity_m_s2());
-        let scales = model.and_then(|model| Scales::new(&*model, gravity_m_s2));
+        let (model, gravity_m_s2) = (
+            scenario.mechanisms_without_impacts(),
+            scenario.gravity_m_s2(),
+        );
+        let scales = model
+            .ok()
+            .and_then(|model| Scales::new(&*model, gravity_m_s2));
         let scales = scales.ok_or("needs a mechanism that has an unstable equilibrium")?;
         let [right, left] = scales.incipient_m_s2;
         Ok([scales.frequency_rad_s, gravity_m_s2 / right.min(left)])

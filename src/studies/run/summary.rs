@@ -15,7 +15,7 @@ use crate::mechanics::Sides;
 use crate::output::mechanisms::columns;
 use crate::output::{Named, OutputError, summary_of};
 use crate::scenario::{ELASTIC_JOINTS, Ground, ModelKind, Scenario};
-use crate::studies::quotable::{self, ModelAnswer, QUOTED_PEAK, SlipWords};
+use crate::studies::quotable::{self, ModelAnswer, QUOTED_PEAK, SlipWords, restitution_in_words};
 use crate::{MechanismModel, Model, Outcome, Summary as History, Sway, Verdict};
 
 /// A computed motion, with its repetitions and variations.
@@ -503,7 +503,9 @@ impl Summary {
             Some(peak) => answer.surviving_with(peak),
             None => answer,
         };
-        answer.with_friction(SlipWords::of(scenario).condition(self.friction_demand, "run FILE"))
+        answer
+            .with_restitution(restitution_in_words(scenario))
+            .with_friction(SlipWords::of(scenario).condition(self.friction_demand, "run FILE"))
     }
 }
 

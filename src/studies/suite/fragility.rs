@@ -22,7 +22,8 @@
 //! samples (Cameron and Miller, "A practitioner's guide to cluster-robust inference", Journal of Human Resources 50(2), 2015). With fewer than
 //! about thirty records these errors, too, tend to be too small.
 //!
-//! Both sets are first-order approximations: they hold if the errors are small compared with the dispersion.
+//! Both sets are first-order approximations: they hold if the errors are small compared with the dispersion. The 95 % intervals use neither: they take each
+//! record as one value of a lognormal distribution. Their measured coverage is in docs/evidence.md.
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
@@ -30,6 +31,7 @@ use nalgebra::{Matrix2, Vector2};
 use thiserror::Error;
 
 use crate::argument::plain;
+use crate::studies::intervals::{of_dispersion, of_median, student_quantile};
 use crate::studies::statistics::TWO_SIDED_95;
 
 /// The outcome of a record at one intensity.
@@ -77,6 +79,8 @@ pub struct Fragility {
     pub clustered: Option<Errors>,
     /// The maximum of the log-likelihood.
     pub log_likelihood: f64,
+    /// Number of records.
+    records: usize,
     line: Line,
     /// Covariance of level and slope of the line under the assumption that all cases are independent.
     covariance: Matrix2<f64>,
@@ -154,8 +158,18 @@ impl Fragility {
         normal_probability(self.line.at(logarithm(x)))
     }
 
-    /// Returns the pointwise 95 % confidence band of the curve at intensity `x`: `Phi(eta -+ 1.96 s)`. `s` is the larger standard error of
-    /// `eta`, with or without dependence within records.
+    /// Returns the ends of the 95 % interval of the median, by Student's distribution for the number of records; `None` with one record.
+    pub fn median_interval(&self) -> Option<[f64; 2]> {
+        of_median(self.median, self.dispersion, self.records)
+    }
+
+    /// Returns the ends of the 95 % interval of the dispersion, by the chi-square distribution for the number of records; `None` with one record.
+    pub fn dispersion_interval(&self) -> Option<[f64; 2]> {
+        of_dispersion(self.dispersion, self.records)
+    }
+
+    /// Returns the pointwise 95 % confidence band of the curve at intensity `x`: `Phi(eta -+ t s)`. `s` is the larger standard error of
+    /// `eta`, with or without dependence within records, and `t` is Student's quantile for the number of records, 1.96 with one record.
     pub fn band(&self, x: f64) -> (f64, f64) {
         let log = logarithm(x);
         let gradient = Vector2::new(1.0, log - self.line.pivot);
@@ -163,7 +177,11 @@ impl Fragility {
         let error = self.clustered_covariance.map_or(independent, |covariance| {
             independent.max(standard_error(&covariance, &gradient))
         });
-        let (eta, margin) = (self.line.at(log), TWO_SIDED_95 * error);
+        let quantile = match self.records {
+            0 | 1 => TWO_SIDED_95,
+            records => student_quantile(records - 1),
+        };
+        let (eta, margin) = (self.line.at(log), quantile * error);
         let [low, high] = [eta - margin, eta + margin].map(normal_probability);
         (low, high)
     }
@@ -187,6 +205,9 @@ impl Fragility {
         let clustered = clustered_covariance.as_ref().map(errors);
 
         let sound = |errors: &Errors| errors.median.is_finite() && errors.dispersion.is_finite();
+        let mut records: Vec<usize> = observations.iter().map(|case| case.record).collect();
+        records.sort_unstable();
+        records.dedup();
         let in_range = median.is_normal()
             && dispersion.is_normal()
             && sound(&independent)
@@ -197,6 +218,7 @@ impl Fragility {
             independent,
             clustered,
             log_likelihood: best.logarithm,
+            records: records.len(),
             line,
             covariance,
             clustered_covariance,

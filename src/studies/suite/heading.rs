@@ -10,7 +10,7 @@ use crate::output::caption::caption;
 use crate::output::{Figure, Scale};
 use crate::scenario::{Measure, ModelKind, Scenario, Spacing, Spectral, Suite};
 use crate::studies::page::under_factor;
-use crate::studies::quotable::SlipWords;
+use crate::studies::quotable::{SlipWords, restitution_in_words};
 
 /// The parts of a scenario that the report of its suite needs. Part files keep them, so that `merge` needs no record files.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -36,6 +36,9 @@ pub struct Heading {
     /// The words about its friction.
     #[serde(default)]
     pub(super) slip: SlipWords,
+    /// The assumed restitution, in words; `None` unless the model is one rigid block.
+    #[serde(default)]
+    pub(super) restitution: Option<String>,
     /// The ground motion of each record with a peak of 1 g, by the name of the record.
     #[serde(default)]
     unit_grounds: Vec<(String, Value)>,
@@ -58,6 +61,7 @@ impl Heading {
             // The records of the suite replace the ground motion of the scenario.
             what: caption(&scenario.with_ground(None), &[]),
             slip: SlipWords::of(scenario),
+            restitution: restitution_in_words(scenario),
             unit_grounds: suite.unit_grounds(scenario.gravity_m_s2()),
         }
     }

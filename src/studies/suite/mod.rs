@@ -274,7 +274,7 @@ pub(super) fn case(
 }
 
 /// Returns a number of records in words.
-fn records_in_words(records: usize) -> String {
+pub(super) fn records_in_words(records: usize) -> String {
     match records {
         1 => "1 record".to_owned(),
         count => format!("{count} records"),

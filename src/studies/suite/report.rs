@@ -17,6 +17,7 @@ use crate::scenario::{Measure, Spectral, shown};
 use crate::studies::ending::columns::{self, FAILED, yes};
 use crate::studies::page::{DrawPicture, Page, PageCases};
 use crate::studies::quotable::{self, ModelAnswer, directions_in_words};
+use crate::studies::threshold::rounded_range;
 use crate::studies::threshold::survival::{self, Survival};
 use crate::studies::{OutcomeCounts, Remarks, Results, Verdict, rounded, rounded_down};
 
@@ -122,29 +123,47 @@ struct Curve {
     median_standard_error: Option<f64>,
     /// Standard error of the median if the cases of a record depend on each other.
     median_standard_error_by_record: Option<f64>,
+    /// Ends of the 95 % interval of the median; null with one record.
+    #[serde(default)]
+    median_interval: Option<[f64; 2]>,
+    /// The highest level if the median is above it, the lowest if it is below it: the median is extrapolated. Null between them.
+    #[serde(default)]
+    extrapolated_beyond: Option<f64>,
     /// Standard deviation of the logarithm of the overturning intensity.
     dispersion: Option<f64>,
     /// Standard error of the dispersion if all cases are independent.
     dispersion_standard_error: Option<f64>,
     /// Standard error of the dispersion if the cases of a record depend on each other.
     dispersion_standard_error_by_record: Option<f64>,
+    /// Ends of the 95 % interval of the dispersion; null with one record.
+    #[serde(default)]
+    dispersion_interval: Option<[f64; 2]>,
     /// The maximum of the log-likelihood.
     log_likelihood: Option<f64>,
     /// The reason why there is no curve.
     no_fit: Option<String>,
 }
 
-impl From<&Result<Fragility, NoFit>> for Curve {
-    fn from(found: &Result<Fragility, NoFit>) -> Self {
+impl Curve {
+    /// Makes the summary of a curve; `from` and `to` are the lowest and the highest level.
+    fn of(found: &Result<Fragility, NoFit>, [from, to]: [f64; 2]) -> Self {
         let fit = found.as_ref().ok();
+        let beyond = |fit: &Fragility| match fit.median {
+            median if median > to => Some(to),
+            median if median < from => Some(from),
+            _ => None,
+        };
         let by_record = fit.and_then(|fit| fit.clustered);
         Self {
             median: fit.map(|fit| fit.median),
             median_standard_error: fit.map(|fit| fit.independent.median),
             median_standard_error_by_record: by_record.map(|errors| errors.median),
+            median_interval: fit.and_then(Fragility::median_interval),
+            extrapolated_beyond: fit.and_then(beyond),
             dispersion: fit.map(|fit| fit.dispersion),
             dispersion_standard_error: fit.map(|fit| fit.independent.dispersion),
             dispersion_standard_error_by_record: by_record.map(|errors| errors.dispersion),
+            dispersion_interval: fit.and_then(Fragility::dispersion_interval),
             log_likelihood: fit.map(|fit| fit.log_likelihood),
             no_fit: found.as_ref().err().map(ToString::to_string),
         }
@@ -164,10 +183,14 @@ impl Heading {
         let friction = self.slip.condition(friction_demand, "suite FILE");
         let limits = remarks.warnings("cases");
         let limits = limits.chain(friction.as_ref().map(ToString::to_string));
-        let answer = answer.with_friction(friction.clone());
-        let end = |end: usize| results.fits().nth(1 + end).map(Into::into);
+        let is_uncertain = !self.scenario["uncertain"].is_null();
+        let answer = answer
+            .with_friction(friction.clone())
+            .unless_uncertain(is_uncertain);
         let ends = [results.levels.first(), results.levels.last()];
         let [from, to] = ends.map(|level| level.map_or(0.0, |level| level.intensity));
+        let curve = |found| Curve::of(found, [from, to]);
+        let end = |end: usize| results.fits().nth(1 + end).map(curve);
         let survivals = results.survivals().into_iter();
         let owned = |names: Vec<&str>| names.into_iter().map(str::to_owned).collect();
         let report = Summary {
@@ -179,7 +202,7 @@ impl Heading {
             friction_demand,
             outcomes: OutcomeCounts::of(results.cases.iter().map(|case| &case.result)),
             intensity: self.measure,
-            curve: (&results.fit).into(),
+            curve: curve(&results.fit),
             records: results.record_count(),
             counts: Counts::of(&results.cases.iter().collect::<Vec<_>>()),
             levels: Levels {
@@ -287,6 +310,7 @@ impl Heading {
             }
         });
         let answer = ModelAnswer::new(self.model, self.is_arch, excess_ratio, answer);
+        let answer = answer.with_restitution(self.restitution.clone());
         (answer, friction_demand)
     }
 
@@ -439,33 +463,24 @@ impl RecordSurvival {
 }
 
 impl Curve {
-    /// Returns the curve in words, with its standard errors; those by record come last. `None` without a curve.
+    /// Returns the curve in words, with its 95 % intervals. `None` without a curve.
     fn in_words(&self, unit: &str) -> Option<String> {
-        let quantity = |value: f64, error: f64, by_record: Option<f64>, unit: &str| {
-            // The printed errors have two significant digits.
-            let digits = digits(error);
-            let by_record = by_record.map_or(String::new(), |error| {
-                format!(" (by record ± {error:.digits$}{unit})")
-            });
-            format!("{value:.digits$}{unit} ± {error:.digits$}{unit}{by_record}")
+        let interval = |ends: Option<[f64; 2]>, unit: &str| {
+            let ends = ends.map(rounded_range);
+            ends.map_or(String::new(), |[low, high]| {
+                format!(" (95 %: {low} to {high}{unit})")
+            })
         };
-        let median = quantity(
-            self.median?,
-            self.median_standard_error?,
-            self.median_standard_error_by_record,
-            unit,
-        );
-        let dispersion = quantity(
-            self.dispersion?,
-            self.dispersion_standard_error?,
-            self.dispersion_standard_error_by_record,
-            "",
-        );
-        Some(format!("median {median}, dispersion {dispersion}"))
+        let (median, dispersion) = (self.median?, self.dispersion?);
+        let extrapolated = self.extrapolated_beyond.map_or(String::new(), |level| {
+            format!(", extrapolated beyond the level {}{unit}", rounded(level))
+        });
+        Some(format!(
+            "median {}{unit}{extrapolated}{}, dispersion {}{}",
+            rounded(median),
+            interval(self.median_interval, unit),
+            rounded(dispersion),
+            interval(self.dispersion_interval, "")
+        ))
     }
-}
-
-/// Returns the number of decimals that show two significant digits of an error.
-fn digits(error: f64) -> usize {
-    (1.0 - libm::log10(error).floor()).clamp(0.0, 12.0) as usize
 }

@@ -10,7 +10,8 @@ use super::{CaseRow, SuiteFragility};
 use crate::dynamics::Intensity;
 use crate::dynamics::demand::peak_displacement;
 use crate::scenario::{Series, Spectral};
-use crate::studies::statistics::{bootstrap, interval};
+use crate::studies::intervals::of_dispersion;
+use crate::studies::statistics::bootstrap;
 use crate::studies::threshold::Survival;
 
 /// Intensities of an unscaled record in all measures apart from its peak acceleration.
@@ -25,7 +26,7 @@ pub struct Strength {
 }
 
 impl Strength {
-    /// Computes the intensities of a record. The spectral acceleration is the pseudo-acceleration: `omega^2` times the largest displacement.
+    /// Computes the intensities of a record. The spectral acceleration is the pseudo-acceleration: `omega^2` times the likeliest displacement.
     pub fn of(series: &Series, spectral: Spectral, gravity_m_s2: f64) -> Self {
         let samples = series.accelerations_m_s2(gravity_m_s2);
         let intensity = Intensity::of(&samples, gravity_m_s2);
@@ -47,7 +48,7 @@ pub struct Capacity<'a> {
     pub record: &'a str,
     /// True if the record is mirrored.
     pub mirrored: bool,
-    /// The largest factor on the record up to which the structure certainly survives; `None` if it does not survive the lowest level.
+    /// The likeliest factor on the record up to which the structure certainly survives; `None` if it does not survive the lowest level.
     pub survives_up_to_scale: Option<f64>,
     /// The factor on the record; `None` if no level overturns the structure.
     pub scale: Option<f64>,
@@ -78,7 +79,7 @@ pub struct Efficiency {
     pub dispersion: f64,
     /// Dispersion of the factor on the record: the dispersion of the measure, halved if the measure is proportional to the square of the factor.
     pub dispersion_of_factor: f64,
-    /// Ends of the 95 % interval of `dispersion_of_factor`, by bootstrap over the records; `None` if a draw has too few capacities.
+    /// Ends of the 95 % interval of `dispersion_of_factor`, by the chi-square distribution for the number of records that overturn the structure.
     pub dispersion_of_factor_interval: Option<[f64; 2]>,
     /// Share of the bootstrap draws in which no other measure has a smaller dispersion of the factor.
     pub best_share: f64,
@@ -128,9 +129,8 @@ const MANY_RECORDS: usize = 30;
 /// standard deviation of `n` normal values is `1 / sqrt(2 (n - 1))`.
 pub(in crate::studies) fn few(records: usize) -> Option<String> {
     let percent = 100.0 / (2.0 * (records.max(2) - 1) as f64).sqrt();
-    let words = "its intervals tend to be too narrow";
     (records < MANY_RECORDS).then(|| {
-        format!("few records: a dispersion from {records} has a standard error of at least {percent:.0} %, and {words}")
+        format!("few records: a dispersion from {records} has a standard error of at least {percent:.0} %")
     })
 }
 
@@ -157,7 +157,7 @@ fn scatter<'a>(
     (logarithms.len() >= LEAST_CAPACITIES).then_some((logarithms.len(), numbers))
 }
 
-/// Computes the efficiency of each measure of intensity, the best first, with intervals by bootstrap over the records. Records that do not
+/// Computes the efficiency of each measure of intensity, the best first, with intervals. Records that do not
 /// overturn the structure are ignored. Empty with fewer than three capacities that are no upper bounds: bounds have the order of the levels.
 pub fn efficiencies(capacities: &[Capacity<'_>]) -> Vec<Efficiency> {
     let known = |one: &&Capacity<'_>| one.scale.is_some() && !one.at_most;
@@ -183,7 +183,9 @@ pub fn efficiencies(capacities: &[Capacity<'_>]) -> Vec<Efficiency> {
     let of = |measure: usize| {
         let (count, [median, dispersion, dispersion_of_factor]) =
             scatter(capacities.iter(), measure)?;
-        let own: Option<Vec<f64>> = drawn.iter().map(|draw| draw[measure]).collect();
+        // Both signs of a record count as one value.
+        let degrees = records.len() as f64 - 1.0;
+        let likeliest = dispersion_of_factor * (degrees.max(0.0) / records.len() as f64).sqrt();
         let best = drawn.iter();
         let best = best.filter(|draw| draw[measure].is_some() && draw[measure] == least(draw));
         Some(Efficiency {
@@ -192,7 +194,7 @@ pub fn efficiencies(capacities: &[Capacity<'_>]) -> Vec<Efficiency> {
             median,
             dispersion,
             dispersion_of_factor,
-            dispersion_of_factor_interval: own.and_then(interval),
+            dispersion_of_factor_interval: of_dispersion(likeliest, records.len()),
             best_share: best.count() as f64 / drawn.len() as f64,
         })
     };

@@ -67,7 +67,7 @@ impl Factors {
         let own = Self::default().stride != self.stride;
         let stride = own.then_some(("--stride", self.stride));
         let all = given.chain(stride);
-        all.map(|(name, value)| format!(" {name} {value:?}"))
+        all.map(|(name, value)| format!(" {name} {value}"))
             .collect()
     }
 
@@ -95,6 +95,7 @@ impl Factors {
             from,
             to,
             stride: self.stride,
+            begins_at_onset: start == Some(from),
             lower_not_tried: start.is_none_or(|start| from > start),
             ends_at_collapse: self.to.is_none(),
         })
@@ -110,6 +111,8 @@ pub struct SearchedFactors {
     pub to: f64,
     /// The relative step between factors.
     pub stride: f64,
+    /// True if the first factor is the onset of motion.
+    pub begins_at_onset: bool,
     /// True if factors below the first one may overturn the structure: the first one is above the onset of motion, or the onset is unknown.
     pub lower_not_tried: bool,
     /// True if the search ends at the first factor that certainly overturns the structure.

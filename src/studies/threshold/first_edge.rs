@@ -104,7 +104,7 @@ impl FirstEdge {
     /// # Errors
     /// The reason why there is no answer.
     pub fn of(scenario: &Scenario, factors: &Factors) -> Result<Self, NoAnswer> {
-        let model = scenario.model().map_err(NoAnswer::invalid)?;
+        let model = scenario.model().map_err(NoAnswer::without_model)?;
         let ground = scenario.ground_motion();
         let request = scenario.request_on(ground, &scenario.structure);
         let directions = scenario.simulation.direction;

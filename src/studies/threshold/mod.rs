@@ -297,7 +297,7 @@ pub fn check(scenario: &Scenario) -> Result<(), String> {
 }
 
 /// Returns the largest horizontal acceleration of the ground at factor 1, in units of gravity.
-fn peak_g(scenario: &Scenario) -> f64 {
+pub(super) fn peak_g(scenario: &Scenario) -> f64 {
     scenario.ground_motion().peaks_m_s2(f64::INFINITY).x / scenario.gravity_m_s2()
 }
 

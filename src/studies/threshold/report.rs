@@ -18,7 +18,7 @@ use crate::studies::ending::columns::{GROUND_FALLS, OVERTURNED};
 use crate::studies::ending::{NoHistory, Verdict, outcome_name};
 use crate::studies::page::{Page, PageCases, input_in_words, under_factor};
 use crate::studies::quotable::{
-    self, FrictionCondition, ModelAnswer, SlipWords, directions_in_words,
+    self, FrictionCondition, ModelAnswer, SlipWords, directions_in_words, restitution_in_words,
 };
 use crate::studies::statistics::ascending;
 use crate::studies::{Remarks, Results};
@@ -204,6 +204,7 @@ pub fn report(
         .zip(&frictions)
         .map(|((one, scenario), friction)| {
             let answer = one.answer(scenario, peak_g);
+            let answer = answer.unless_uncertain(scenario.uncertain.is_some());
             answer.with_friction(friction.clone())
         });
     let answers = answers.collect::<Vec<_>>();
@@ -428,6 +429,7 @@ impl Threshold {
             scenario.structure.has_horizontal_thrust(),
         );
         ModelAnswer::new(model, is_arch, self.safe_excess_ratio, answer)
+            .with_restitution(restitution_in_words(scenario))
     }
 
     /// Returns the directions of the answer, in words that follow it.
@@ -570,9 +572,9 @@ impl Factors {
 impl SearchedFactors {
     /// Returns the factors in words.
     fn in_words(&self) -> String {
-        let from = match self.lower_not_tried {
-            true => plain(self.from),
-            false => format!("{}, the onset of motion,", rounded(self.from)),
+        let from = match self.begins_at_onset {
+            true => format!("{}, the onset of motion,", rounded(self.from)),
+            false => plain(self.from),
         };
         let to = match self.ends_at_collapse {
             true => "the first collapse".to_owned(),

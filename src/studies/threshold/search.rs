@@ -28,19 +28,27 @@ pub(super) struct Shaking<'a> {
     pub(super) searched: &'a SearchedFactors,
 }
 
-/// Returns a function that reports the progress of a step of a search, after these samples.
-fn in_step(
-    samples: &[FactorSample],
-    is_open: bool,
-    mut watch: impl FnMut(Progress) -> ControlFlow<()>,
-) -> impl FnMut(Progress) -> ControlFlow<()> {
+/// Returns the step of a search after these samples.
+fn step_after(samples: &[FactorSample], is_open: bool) -> SearchStep {
     let survives = |sample: &&FactorSample| sample.verdict() == Some(Verdict::Survives);
     let safe = samples.iter().take_while(survives).last();
-    let search = Some(SearchStep {
+    SearchStep {
         safe_up_to: safe.map(|sample| sample.factor),
         is_open,
-    });
-    move |progress| watch(Progress { search, ..progress })
+    }
+}
+
+/// Returns a function that reports the progress of a step of a search.
+fn in_step(
+    step: SearchStep,
+    mut watch: impl FnMut(Progress) -> ControlFlow<()>,
+) -> impl FnMut(Progress) -> ControlFlow<()> {
+    move |progress| {
+        watch(Progress {
+            search: Some(step),
+            ..progress
+        })
+    }
 }
 
 impl Shaking<'_> {
@@ -80,7 +88,8 @@ impl Shaking<'_> {
         let mut samples: Vec<FactorSample> = Vec::new();
         for some in factors.chunks(TOGETHER) {
             let (before, all) = (samples.len(), factors.len());
-            let mut watch = in_step(&samples, ends_at_collapse, &mut watch);
+            let step = step_after(&samples, ends_at_collapse);
+            let mut watch = in_step(step, &mut watch);
             let watch = |progress: Progress| {
                 let done = before + progress.done;
                 watch(Progress {
@@ -132,7 +141,7 @@ impl Shaking<'_> {
         });
         let changes: Vec<Change<'_>> = changes.collect();
         let search = |index: usize| self.search(changes[index]);
-        let watch = in_step(samples, false, watch);
+        let watch = in_step(step_after(samples, false), watch);
         let found = runner.each(changes.len(), search, watch)?;
         let (mut edges, mut tried) = (Vec::new(), Vec::new());
         for found in found.into_iter().flatten() {
@@ -156,13 +165,13 @@ impl Shaking<'_> {
         mut watch: impl FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<Vec<FactorSample>, RunnerError> {
         let mut others = Vec::new();
-        let tried = samples.clone();
+        let step = step_after(samples, false);
         let mut closeness = |factors: &[f64]| {
             let found = self.in_parallel(
                 factors,
                 |some| self.unrepeated(some),
                 runner,
-                in_step(&tried, false, &mut watch),
+                in_step(step, &mut watch),
             )?;
             let (close, own): (Vec<Closeness>, Vec<FactorSample>) = found.into_iter().unzip();
             others.extend(own);

@@ -16,7 +16,7 @@ use crate::mechanics::{
 };
 use crate::scenario::{CheckedSides, Structure};
 use crate::studies::capacity::Bodies;
-use crate::{Hinge, ImpactModel, MechanismModel, Row, Sway};
+use crate::{Hinge, MechanismModel, Row, Sway};
 
 /// A hinge with its position.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -553,7 +553,7 @@ pub(super) fn mechanisms(input: &CheckInput<'_>) -> Result<BTreeMap<Sway, Mechan
     let coefficient = input.allowed_friction;
     let none =
         |sway: Sway| VerifyError::NoMechanism(format!("no push moves it to the {}", sway.name()));
-    let model = structure.model(ImpactModel::MaxRestitution);
+    let model = input.scenario.mechanisms_without_impacts();
     let row = structure
         .row()
         .map_err(|error| VerifyError::NoMechanism(error.to_string()));

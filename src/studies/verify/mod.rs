@@ -54,6 +54,9 @@ pub enum VerifyError {
          [demand.slv]\nag_g = 0.25\nf0 = 2.40\ntc_star_s = 0.35"
     )]
     NoDemand,
+    /// The restitution of the wall behind a column is neither given nor known, for this reason.
+    #[error("{0}")]
+    NoRestitution(String),
     /// There is no mechanism to one side, for this reason.
     #[error("there is no mechanism to check: {0}")]
     NoMechanism(String),
@@ -207,6 +210,8 @@ struct CheckInput<'a> {
 /// When there is no demand, no mechanism or no possible check, or a spectrum of points ends at too small a period.
 pub fn verify(scenario: &Scenario) -> Result<Summary, VerifyError> {
     let demand = scenario.demand.clone().ok_or(VerifyError::NoDemand)?;
+    let known = scenario.check_restitution();
+    known.map_err(VerifyError::NoRestitution)?;
     let structure = &scenario.structure;
     let settings = Verify {
         sides: checked_sides(scenario)?,

@@ -18,16 +18,13 @@ use crate::studies::map::OverturningMap;
 use crate::studies::statistics::Share;
 use crate::studies::{Ending, NoHistory, ReportedStudy, Results, Study, Style, Verdict};
 
-/// The outcome of a cell of a sample, as an index of [`OUTCOMES`], plus [`OUTSIDE`] for a history outside the model of four links, plus
+/// The outcome of a cell of a sample, as an index of [`OUTCOMES`], plus
 /// [`MIRRORED`] for a history under the mirrored ground motion, its probability of overturning, in parts of [`PARTS`], and of a survivor the friction
 /// demand; or the reason why there is none. Rows are small, because all must fit into memory.
 type CellRow = Result<(u8, u8, Option<f32>), NoAnswer>;
 
 /// Number of parts of a probability: fractions of 2, 3, 5, 6 and 7 repetitions are exact, others almost.
 const PARTS: f64 = 210.0;
-
-/// Added to the index of the outcome of a history outside the model of four links.
-const OUTSIDE: u8 = 100;
 
 /// Added to the index of the outcome of a history under the mirrored ground motion.
 const MIRRORED: u8 = 50;
@@ -41,14 +38,16 @@ fn cell_row(result: Result<Ending, NoHistory>) -> CellRow {
     let ending = result?;
     let outcome = ending.outcome_name();
     let place = OUTCOMES.iter().position(|name| *name == outcome);
-    let outside = OUTSIDE * u8::from(ending.is_outside_model());
+    if ending.is_outside_model() {
+        return Err(NoAnswer::OutsideModel);
+    }
     let mirrored = MIRRORED * u8::from(ending.direction == Direction::Mirrored);
     let both = place.zip(ending.overturning_share());
-    let is_known = ending.verdict() == Verdict::Survives && !ending.is_outside_model();
-    let demand = ending.friction_demand.filter(|_| is_known);
+    let survives = ending.verdict() == Verdict::Survives;
+    let demand = ending.friction_demand.filter(|_| survives);
     let demand = demand.map(|demand| demand as f32);
     let both = both.map(|(place, share)| {
-        let place = place as u8 + outside + mirrored;
+        let place = place as u8 + mirrored;
         (place, (PARTS * share).round() as u8, demand)
     });
     both.ok_or(NoAnswer::Incomplete)
@@ -188,8 +187,6 @@ struct CellCounts {
     overturned: Option<Share>,
     /// Number of samples with each of the [`OUTCOMES`].
     outcomes: [usize; OUTCOMES.len()],
-    /// Number of samples with a history outside the model of four links.
-    outside: usize,
     /// Number of samples with the numbers of the mirrored ground motion.
     mirrored: usize,
     /// Numbers of samples without an outcome.
@@ -199,10 +196,9 @@ struct CellCounts {
 impl CellCounts {
     fn of<'r>(at: [f64; 2], rows: impl Iterator<Item = &'r CellRow> + Clone) -> Self {
         let mut outcomes = [0; OUTCOMES.len()];
-        let (mut outside, mut mirrored) = (0, 0);
+        let mut mirrored = 0;
         for (outcome, ..) in rows.clone().flatten() {
-            outside += usize::from(*outcome >= OUTSIDE);
-            mirrored += usize::from(*outcome % OUTSIDE >= MIRRORED);
+            mirrored += usize::from(*outcome >= MIRRORED);
             outcomes[outcome_of(*outcome)] += 1;
         }
         let without = ReasonCounts::of(rows.clone().filter_map(|row| row.as_ref().err()));
@@ -217,7 +213,6 @@ impl CellCounts {
             samples,
             overturned: Share::of_chances(chances),
             outcomes,
-            outside,
             mirrored,
             without,
         }
@@ -225,7 +220,7 @@ impl CellCounts {
 
     /// Returns true if most samples have a history outside the model of four links.
     const fn is_outside_model(&self) -> bool {
-        2 * self.outside > self.samples
+        self.without.outside > self.samples
     }
 
     /// Returns the share of samples that overturn; `None` without samples.
@@ -247,29 +242,28 @@ const LEVELS: [f64; 3] = [0.05, 0.5, 0.95];
 struct Crossing {
     /// The value of x.
     x: f64,
-    /// The values of y, interpolated between cells. The lowest cell of the column if it already reaches the level; `None` if no cell reaches it.
+    /// The values of y of the lowest cells that reach the level; `None` if no cell reaches it.
     y: [Option<f64>; 3],
+    /// The values of y of the cells below these, which do not reach the level: it is reached between the two. `None` if there is no lower cell, or no cell
+    /// reaches the level.
+    above: [Option<f64>; 3],
+    /// The contour lines: values of y interpolated between the two; `None` if the level is not reached between two cells.
+    #[serde(skip)]
+    lines: [Option<f64>; 3],
     /// True if the lowest cell already reaches the level, so that the level may be reached below the map.
     at_most: [bool; 3],
 }
 
 impl Crossing {
-    /// Returns the value of y at which a level is reached; `None` if it is not inside the map.
-    fn inside(&self, level: usize) -> Option<f64> {
-        self.y[level].filter(|_| !self.at_most[level])
-    }
-
     /// Finds the crossings in a column of cells with ascending y.
     fn of(column: &[CellCounts], logarithmic: bool) -> Self {
         let known = column.iter();
         let known = known.filter_map(|cell| Some([cell.at[1], cell.probability()?]));
         let known: Vec<[f64; 2]> = known.collect();
-        let first = |level: f64| {
-            let index = known.iter().position(|[_, share]| *share >= level)?;
-            let [y, share] = known[index];
-            let Some([below, least]) = index.checked_sub(1).map(|before| known[before]) else {
-                return Some(y);
-            };
+        let index = |level: f64| known.iter().position(|[_, share]| *share >= level);
+        let ends = |level: f64| Some([index(level)?.checked_sub(1)?, index(level)?]);
+        let line = |level: f64| {
+            let [[below, least], [y, share]] = ends(level)?.map(|index| known[index]);
             let part = (level - least) / (share - least);
             Some(if logarithmic {
                 below * libm::pow(y / below, part)
@@ -280,7 +274,9 @@ impl Crossing {
         let lowest = known.first().map_or(0.0, |[_, share]| *share);
         Self {
             x: column.first().map_or(0.0, |cell| cell.at[0]),
-            y: LEVELS.map(first),
+            y: LEVELS.map(|level| Some(known[index(level)?][0])),
+            above: LEVELS.map(|level| Some(known[ends(level)?[0]][0])),
+            lines: LEVELS.map(line),
             at_most: LEVELS.map(|level| lowest >= level),
         }
     }

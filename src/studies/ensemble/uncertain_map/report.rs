@@ -39,7 +39,7 @@ const PALETTE: [OutcomeColor; 9] = [
     OutcomeColor::new("probability-95", "up to 95 %", "#c93a1c"),
     OutcomeColor::new("probability-99", "above 95 %", "#97150f"),
     OutcomeColor::new("probability-100", "every sample overturns", "#5a0008"),
-    OutcomeColor::new("no-answer", "no sample has an outcome", "#ffffff"),
+    OutcomeColor::new("no-answer", "no sample has a verdict", "#ffffff"),
 ];
 
 fn color_of(cell: &CellCounts) -> OutcomeColor {
@@ -76,7 +76,7 @@ pub struct Summary {
     cells_at_levels: [usize; 3],
     /// The map of the scenario itself; null if no cell has an outcome.
     own: Option<OwnMap>,
-    /// The values of y at which the probability reaches 5, 50 and 95 %: in the first, the middle and the last column of the map.
+    /// The cells between which the probability reaches 5, 50 and 95 %: in the first, the middle and the last column of the map.
     crossings: Vec<Crossing>,
     /// Number of histories without an outcome, for each reason.
     histories_without_outcome: ReasonCounts,
@@ -110,13 +110,10 @@ pub(super) fn report(
     let reasons = ReasonCounts::of(without.clone());
     let (kind, structure) = (study.scenario.motion.kind, &study.scenario.structure);
     let four = !kind.has_joints && structure.has_horizontal_thrust();
-    let outside = counts.iter().map(|cell| cell.outside);
-    let answered = counts.iter().map(|cell| cell.samples);
-    let model = ModelCheck::counted(four.then(|| [outside.sum(), answered.sum()]));
-    let limits = [
-        model.in_words(CHECKED),
-        reasons.no_verdict(rows.len(), CHECKED),
-    ];
+    let answered: usize = counts.iter().map(|cell| cell.samples).sum();
+    let outside = reasons.outside;
+    let model = ModelCheck::counted(four.then_some([outside, answered + outside]));
+    let limits = (CHECKED, reasons.no_verdict(rows.len(), CHECKED));
     let demands = rows
         .iter()
         .flatten()
@@ -201,17 +198,17 @@ impl Summary {
 }
 
 impl Crossing {
-    /// Returns the crossings of the [`LEVELS`] in words.
+    /// Returns the cells between which the [`LEVELS`] are reached, in words.
     fn in_words(&self) -> String {
-        let level = |(level, (y, at_most)): (f64, (&Option<f64>, &bool))| {
+        let level = |(level, (y, above)): (f64, (&Option<f64>, &Option<f64>))| {
             let percent = percent(level);
-            match (y.map(rounded), at_most) {
-                (Some(y), true) => format!("{percent} at or below {y}"),
-                (Some(y), false) => format!("{percent} from {y}"),
+            match (y.map(rounded), above.map(rounded)) {
+                (Some(y), None) => format!("{percent} at or below {y}"),
+                (Some(y), Some(above)) => format!("{percent} between {above} and {y}"),
                 (None, _) => format!("{percent} nowhere"),
             }
         };
-        let crossings = self.y.iter().zip(&self.at_most);
+        let crossings = self.y.iter().zip(&self.above);
         let levels = LEVELS.into_iter().zip(crossings).map(level);
         levels.collect::<Vec<_>>().join(", ")
     }
@@ -237,7 +234,7 @@ fn table(study: &CellsOfSamples<'_>, counts: &[CellCounts]) -> Result<Vec<u8>, O
         column("invalid", |cell: &CellCounts| cell.without.invalid),
         column("failed", |cell: &CellCounts| cell.without.failed),
         column("incomplete", |cell: &CellCounts| cell.without.incomplete),
-        column("outside_model", |cell: &CellCounts| cell.outside),
+        column("outside_model", |cell: &CellCounts| cell.without.outside),
         column("mirrored", |cell: &CellCounts| cell.mirrored),
     ];
     csv(columns, counts)
@@ -260,6 +257,10 @@ fn crossing_table(
             |crossing: &Crossing| crossing.y,
         ),
         list(
+            levels.map(|level| format!("above_{level}")),
+            |crossing: &Crossing| crossing.above,
+        ),
+        list(
             levels.map(|level| format!("at_most_{level}")),
             |crossing: &Crossing| crossing.at_most.map(yes),
         ),
@@ -279,14 +280,14 @@ fn draw(
     for (level, (name, stroke)) in LINES.into_iter().enumerate() {
         if crossings
             .iter()
-            .any(|crossing| crossing.inside(level).is_some())
+            .any(|crossing| crossing.lines[level].is_some())
         {
             keys.push(Key::line(name, stroke));
         }
         // A line is interrupted where the level is not reached, or is reached below the map.
         let points = crossings
             .iter()
-            .map(|crossing| chart.point(crossing.x, crossing.inside(level).unwrap_or(f64::NAN)));
+            .map(|crossing| chart.point(crossing.x, crossing.lines[level].unwrap_or(f64::NAN)));
         lines.push(Mark::curve(name, stroke, points));
     }
     chart.draw(cells, keys, vec![Mark::clipped(lines)])

@@ -131,7 +131,8 @@ impl<'a> Along<'a> {
             values: options.along.values(),
             options,
         };
-        let faults = study.values.iter().map(|value| study.variant(*value).err());
+        let fault = |value: f64| study.variant(value).and_then(|one| one.check_restitution());
+        let faults = study.values.iter().map(|value| fault(*value).err());
         match faults.collect::<Option<Vec<String>>>().as_deref() {
             Some([first, ..]) => Err(format!(
                 "no value of `{}` makes a valid scenario: {first}",

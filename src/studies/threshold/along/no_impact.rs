@@ -26,7 +26,8 @@ pub(super) fn least_without_impact(
     scenario: &Scenario,
     factors: &Factors,
 ) -> Result<Option<f64>, String> {
-    let model = scenario.mechanisms().map_err(|error| error.to_string())?;
+    let model = scenario.mechanisms_without_impacts();
+    let model = model.map_err(|error| error.to_string())?;
     let request = scenario.request_on(scenario.ground_motion(), &scenario.structure);
     let has_second = scenario.has_second_direction(&*model);
     let overturns = |factor: f64| {
