@@ -443,7 +443,7 @@ fn an_overturned_run_prints_no_largest_rotation() {
             overturns,
             "{said}"
         );
-        assert_eq!(said.contains("  reached 45.2 % of"), !overturns, "{said}");
+        assert_eq!(said.contains("  reached 33.7 % of"), !overturns, "{said}");
     }
 }
 
