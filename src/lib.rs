@@ -100,10 +100,10 @@ pub use mechanics::{
     RockingColumn, Row, Sway,
 };
 pub use scenario::{Scenario, Structure};
-pub use studies::Runner;
 pub use studies::map::OverturningMap;
 pub use studies::threshold::{Factors, Threshold, threshold};
 pub use studies::{Ending, NoHistory, Verdict};
+pub use studies::{Progress, Runner};
 
 /// The tasks of the document compile and run.
 #[cfg(doctest)]

@@ -242,7 +242,7 @@ impl LowerLimit {
                     .to_owned(),
             ),
             (Some(rank), Some(factor)) => Ok(format!(
-                "95 % of such structures survive up to {}{}{} (95 % confidence: the {rank}. lowest of {counted} samples)",
+                "95 % of such structures survive up to {}{}{} (95 % confidence: sample {rank} of {counted}, the weakest first)",
                 rounded_down(factor),
                 in_g(factor),
                 directions_in_words(directions, Direction::AsGiven)

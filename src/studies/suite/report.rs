@@ -95,7 +95,7 @@ pub struct Summary {
 }
 
 /// The levels of a suite.
-#[derive(Serialize, Deserialize)]
+#[derive(Clone, Copy, Serialize, Deserialize)]
 struct Levels {
     /// Number of levels.
     count: usize,
@@ -103,6 +103,18 @@ struct Levels {
     from: f64,
     /// Highest level.
     to: f64,
+}
+
+impl Levels {
+    fn of(results: &SuiteFragility) -> Self {
+        let ends = [results.levels.first(), results.levels.last()];
+        let [from, to] = ends.map(|level| level.map_or(0.0, |level| level.intensity));
+        Self {
+            count: results.levels.len(),
+            from,
+            to,
+        }
+    }
 }
 
 /// The intensities that the structure survives under a record.
@@ -145,12 +157,12 @@ struct Curve {
 }
 
 impl Curve {
-    /// Makes the summary of a curve; `from` and `to` are the lowest and the highest level.
-    fn of(found: &Result<Fragility, NoFit>, [from, to]: [f64; 2]) -> Self {
+    /// Makes the summary of a curve.
+    fn of(found: &Result<Fragility, NoFit>, levels: &Levels) -> Self {
         let fit = found.as_ref().ok();
         let beyond = |fit: &Fragility| match fit.median {
-            median if median > to => Some(to),
-            median if median < from => Some(from),
+            median if median > levels.to => Some(levels.to),
+            median if median < levels.from => Some(levels.from),
             _ => None,
         };
         let by_record = fit.and_then(|fit| fit.clustered);
@@ -187,9 +199,8 @@ impl Heading {
         let answer = answer
             .with_friction(friction.clone())
             .unless_uncertain(is_uncertain);
-        let ends = [results.levels.first(), results.levels.last()];
-        let [from, to] = ends.map(|level| level.map_or(0.0, |level| level.intensity));
-        let curve = |found| Curve::of(found, [from, to]);
+        let levels = Levels::of(&results);
+        let curve = |found| Curve::of(found, &levels);
         let end = |end: usize| results.fits().nth(1 + end).map(curve);
         let survivals = results.survivals().into_iter();
         let owned = |names: Vec<&str>| names.into_iter().map(str::to_owned).collect();
@@ -205,11 +216,7 @@ impl Heading {
             curve: curve(&results.fit),
             records: results.record_count(),
             counts: Counts::of(&results.cases.iter().collect::<Vec<_>>()),
-            levels: Levels {
-                count: results.levels.len(),
-                from,
-                to,
-            },
+            levels,
             survivals: survivals
                 .map(|(case, survival)| RecordSurvival {
                     record: case.record_in_words(),

@@ -98,6 +98,28 @@ pub struct LowestHit {
     pub lower: Vec<f64>,
 }
 
+impl LowestHit {
+    /// Repeats the history of the hit, then those of the lower factors until one survives, and returns the lowest that does not, with its verdict, and
+    /// the one that does; `None` if none does.
+    ///
+    /// # Errors
+    /// Those of the histories.
+    pub fn confirm<E>(
+        self,
+        verdict: impl Fn(f64) -> Result<Verdict, E>,
+    ) -> Result<((f64, Verdict), Option<f64>), E> {
+        let mut first = (self.hit, verdict(self.hit)?);
+        for lower in self.lower {
+            let found = verdict(lower)?;
+            if found == Verdict::Survives {
+                return Ok((first, Some(lower)));
+            }
+            first = (lower, found);
+        }
+        Ok((first, None))
+    }
+}
+
 /// Finds the lowest factor below a safe one with its closeness, and not below `from`, whose history does not survive; `None` if all survive. `closeness`
 /// computes the histories of descending factors.
 ///

@@ -167,20 +167,17 @@ impl FirstEdge {
             let found = history(strength)?;
             let share = found.overturning_share.ok_or(NoAnswer::Incomplete)?;
             tried.borrow_mut().push(([strength, share], found));
-            Ok(match share {
-                ..=0.0 => Verdict::Survives,
-                1.0.. => Verdict::Overturns,
-                _ => Verdict::Uncertain,
-            })
+            Ok(verdict_of(share))
         };
         // The ends of the edge between a low and a high strength, of verdicts below and from `least` on, and the verdict at its upper end.
         let narrow = |low: f64, (high, mut verdict): (f64, Verdict), least: Verdict| {
             let is_certain = (least, verdict) == (Verdict::Uncertain, Verdict::Overturns);
-            let width = if is_certain {
-                width
+            let least_width = if is_certain {
+                0.0
             } else {
-                width.max(UNCERTAIN_EDGE_WIDTH)
+                UNCERTAIN_EDGE_WIDTH
             };
+            let width = width.max(least_width);
             let edge = try_bisect(low, high, Width::Relative(width), |strength| {
                 let found = known(strength)?;
                 verdict = if found >= least { found } else { verdict };
@@ -227,18 +224,13 @@ impl FirstEdge {
             }
         }
         let lowest = edge.survives_up_to.map(below).transpose()?.flatten();
-        if let Some(LowestHit { hit, lower }) = lowest {
-            let mut first = (hit, known(hit)?);
+        if let Some(lowest) = lowest {
+            let (mut first, safe) = lowest.confirm(known)?;
             edge.survives_up_to = None;
-            for lower in lower {
-                let found = known(lower)?;
-                if found == Verdict::Survives {
-                    let ((safe, from), verdict) = narrow(lower, first, Verdict::Uncertain)?;
-                    edge.survives_up_to = Some(safe);
-                    first = (from, verdict);
-                    break;
-                }
-                first = (lower, found);
+            if let Some(lower) = safe {
+                let ((safe, from), verdict) = narrow(lower, first, Verdict::Uncertain)?;
+                edge.survives_up_to = Some(safe);
+                first = (from, verdict);
             }
             edge.uncertain_from = (first.1 == Verdict::Uncertain).then_some(first.0);
             edge.at_most &= edge.survives_up_to.is_none();
@@ -335,6 +327,15 @@ impl FirstEdge {
             self.survives_up_to.is_some() || self.uncertain.first().is_some_and(doubtful);
         let reached = self.uncertain.iter().filter(|own| doubtful(own));
         (is_known && is_tried).then(|| reached.map(|[_, share]| *share).fold(0.0, f64::max))
+    }
+}
+
+/// Returns the verdict of a history of which this share of the repetitions overturns.
+fn verdict_of(share: f64) -> Verdict {
+    match share {
+        ..=0.0 => Verdict::Survives,
+        1.0.. => Verdict::Overturns,
+        _ => Verdict::Uncertain,
     }
 }
 

@@ -63,10 +63,7 @@ pub(super) fn drawn(
         let named = names.iter().zip(curves());
         keys.extend(named.map(|(name, stroke)| Key::line(name, stroke)));
     }
-    let tried = samples.map(|sample| sample.factor);
-    let (first, last) = tried.fold((f64::INFINITY, 0.0_f64), |(first, last), factor| {
-        (first.min(factor), last.max(factor))
-    });
+    let [first, last] = ends(samples.map(|sample| sample.factor));
     let x = match last < 2.0 * first {
         true => Scale::exactly(first, last, figure.ticks(8)),
         false => Scale::logarithmic(first, last),
@@ -120,6 +117,13 @@ pub(super) fn drawn(
     chart.add_plot(&mut sheet);
     sheet.gap(BELOW_PX);
     sheet.finish()
+}
+
+/// Returns the smallest and the largest factor.
+fn ends(factors: impl Iterator<Item = f64>) -> [f64; 2] {
+    factors.fold([f64::INFINITY, 0.0], |[first, last], factor| {
+        [first.min(factor), last.max(factor)]
+    })
 }
 
 impl FactorSample {
