@@ -60,7 +60,15 @@ fn histories_outside_the_model_of_four_links_are_counted_in_every_study() {
             for file in files {
                 let file = json(&at.join(&out).join(file));
                 let mut reported = warnings(&file);
-                reported.retain(|warning| !warning.contains("friction coefficient"));
+                let looking = "a map of four links is for looking";
+                let is_map = is_arch && command == "map";
+                assert_eq!(said.contains(looking), is_map, "{command}: {said}");
+                let looked_at = |warning: &&str| warning.contains(looking);
+                let is_own = is_map && file.get("outcomes").is_some();
+                assert_eq!(reported.iter().any(looked_at), is_own, "{reported:?}");
+                reported.retain(|warning| {
+                    !warning.contains("friction coefficient") && !warning.contains(looking)
+                });
                 assert_eq!(
                     reported.len(),
                     usize::from(is_arch),

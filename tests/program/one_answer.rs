@@ -66,6 +66,7 @@ fn answer(file: &str, options: &[&str]) -> String {
     let demand = summary["friction_demand"].as_f64();
     // The quote names a coefficient that stone may lack.
     if let Some(demand) = demand.filter(|demand| *demand > 0.5 && !quote.contains("no answer")) {
+        // Words round up: with less, joints slip.
         let needed = format!("{:.2}", (100.0 * demand - 1e-9).ceil() / 100.0);
         assert!(quote.contains(&needed), "{file}: {quote}");
     }

@@ -308,11 +308,26 @@ fn passes_of(histories: &Histories) -> [Option<bool>; 2] {
     [histories.passed, histories.passed_over_fc]
 }
 
-/// With seven records or more the mean counts, with fewer the largest; with FC and without.
+/// With seven records or more the mean counts, with fewer the largest; with FC and without. Records outside the model of four links never pass, and
+/// a column has none.
 #[test]
 fn c8_7_1_2_1_9_and_7_3_5_the_mean_of_seven_or_the_largest_of_fewer() {
     let seven = &*SEVEN;
-    assert!(seven.demand == ComparedPeak::Mean && passes_of(seven) == [Some(true); 2]);
+    assert!(seven.demand == ComparedPeak::Mean && passes_of(seven) == [None; 2]);
+    assert!(
+        seven
+            .sides
+            .values()
+            .all(|own| own.records_outside_model == 7)
+    );
+    let column = of_slv(COLUMN, "'slv-*.at2'");
+    assert!(column.demand == ComparedPeak::Mean && passes_of(&column) == [Some(true); 2]);
+    assert!(
+        column
+            .sides
+            .values()
+            .all(|own| own.records_outside_model == 0)
+    );
     for (side, own) in &seven.sides {
         let peaks_m = peaks(&seven.records, *side);
         let mean_m = peaks_m.iter().sum::<f64>() / 7.0;
@@ -359,7 +374,7 @@ fn c8_7_1_2_1_9_and_7_3_5_the_mean_of_seven_or_the_largest_of_fewer() {
             [own.capacity_m, own.capacity_over_fc_m].map(|allowed_m| largest_m <= allowed_m);
         assert_eq!(
             (passes_of(&few), within),
-            (passes.map(Some), passes),
+            (passes.map(|passed| (!passed).then_some(false)), passes),
             "{records}"
         );
     }
@@ -567,7 +582,24 @@ fn words_json_and_page_agree_on_histories() {
     assert!(slc["right"]["demand_m"].is_null() && slc["records"][0]["right"]["peak_m"].is_null());
     assert_eq!(
         (&slc["passed"], &slv["passed_over_fc"]),
-        (&false.into(), &true.into())
+        (&false.into(), &Value::Null)
+    );
+    assert!(
+        said.contains(": no answer: outside the model of four links\n"),
+        "{said}"
+    );
+    let italian = [
+        "verify",
+        "a.toml",
+        "--set",
+        "verify.language=it",
+        "--out",
+        "it",
+    ];
+    let italian = printed(folder.path(), &italian);
+    assert!(
+        italian.contains(": senza esito: fuori dal modello di quattro cerniere\n"),
+        "{italian}"
     );
     // The check by displacement decides the verdict of the state.
     assert_eq!(data["verdict"]["slv"], "not_passed");
@@ -597,7 +629,7 @@ for (const [index, state] of ['slv', 'slc'].entries()) {
   });
   const shown = [...document.querySelectorAll('#result tr')].find((row) => row.textContent.includes('histories') &&
     row.textContent.startsWith(state.toUpperCase()));
-  const word = { true: { true: 'passed' }, false: { true: 'passed without FC only', false: 'not passed' } };
+  const word = { null: { null: 'no answer: outside the model of four links' }, false: { true: 'passed without FC only', false: 'not passed' } };
   verify(shown.lastElementChild.textContent === word[histories.passed_over_fc][histories.passed], state);
 }
 ";
@@ -649,7 +681,12 @@ fn commands_print_the_output_shown_in_docs_verify() {
         assert_eq!(cells[2], format!("{:.4}", expected[0]), "{line}");
         assert_eq!(cells[3], format!("{:.4}", expected[1]), "{line}");
         assert_eq!(cells[4], format!("{:.3}", expected[2]), "{line}");
-        assert_eq!(cells[5] == "passed", passed.as_bool().unwrap(), "{line}");
+        let word = match passed.as_bool() {
+            Some(true) => "passed",
+            Some(false) => "not passed",
+            None => "no answer: outside the model",
+        };
+        assert_eq!(cells[5], word, "{line}");
     }
 }
 

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::picture::{ColoredCells, Drawn};
-use super::{CellRow, OverturningMap, label};
+use super::{CellRow, OverturningMap, label, report};
 use crate::output::caption::caption;
 use crate::output::page::{BASE, PROGRAM, STYLE, script_safe};
 use crate::output::{Figure, filters, render};
@@ -31,6 +31,9 @@ struct Page {
     /// The condition on friction, in words; `None` without condition.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     friction: Option<String>,
+    /// The use of a map of four links, in words; `None` for other models.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    for_looking: Option<String>,
     axes: [PageAxis; 2],
     /// The drawings for wide and for narrow screens.
     sheets: [PageSheet; 2],
@@ -133,6 +136,7 @@ impl ColoredCells {
             }),
             what: caption(map.scenario, &map.axes),
             friction,
+            for_looking: report::for_looking(map.scenario).map(str::to_owned),
             kinds: BASE64_STANDARD.encode(kinds),
             doubts,
             outside: are(&self.outside),

@@ -15,7 +15,7 @@ use crate::mechanics::Sides;
 use crate::output::mechanisms::columns;
 use crate::output::{Named, OutputError, summary_of};
 use crate::scenario::{ELASTIC_JOINTS, Ground, ModelKind, Scenario};
-use crate::studies::quotable::{self, ModelAnswer, SlipWords, restitution_in_words};
+use crate::studies::quotable::{self, ModelAnswer, QUOTED_PEAK, SlipWords, restitution_in_words};
 use crate::{MechanismModel, Model, Outcome, Summary as History, Sway, Verdict};
 
 /// A computed motion, with its repetitions and variations.
@@ -229,11 +229,9 @@ pub struct Thrust {
 named! {
     /// Quality of four links as a model of a motion.
     pub enum FourLinkQuality {
-        /// The thrust line leaves the arch by at most a hundredth of its thickness.
-        Sufficient = "sufficient",
-        /// The thrust line leaves the arch by at most a twentieth of its thickness.
+        /// The thrust line leaves the arch by at most a twentieth of its thickness, and the arch survives with less than 40 % of overturning, or overturns.
         Close = "close",
-        /// The thrust line leaves the arch by more.
+        /// The thrust line leaves the arch by more, or the arch survives with a larger rotation.
         Rough = "rough",
         /// Up to the largest rotation the thrust line leaves the arch so far that the mechanism cannot transmit its own forces.
         Outside = "outside",
@@ -243,10 +241,15 @@ named! {
 impl FourLinkQuality {
     fn of(history: &History, thrust: &ThrustRecord) -> Self {
         let up_to_peak = history.thrust_excess_ratio();
+        let overturns = matches!(history.outcome, Outcome::Overturned(_));
+        let is_large = history
+            .peak_over_critical()
+            .is_some_and(|peak| peak >= QUOTED_PEAK);
         match thrust.largest_excess.value {
             _ if up_to_peak.is_some_and(|ratio| ratio > MODEL_LIMIT) => Self::Outside,
-            excess_ratio if excess_ratio <= EXCESS_LEVELS[0] => Self::Sufficient,
-            excess_ratio if excess_ratio <= EXCESS_LEVELS[1] => Self::Close,
+            excess_ratio if excess_ratio <= EXCESS_LEVELS[1] && (overturns || !is_large) => {
+                Self::Close
+            }
             _ => Self::Rough,
         }
     }
@@ -484,14 +487,25 @@ impl Summary {
         let mirrored_ratio = mirrored.and_then(|mirrored| mirrored.thrust_excess_ratio);
         // A ratio that was not followed as given is not known from the mirrored motion.
         let excess_ratio = excess_ratio.map(|ratio| ratio.max(mirrored_ratio.unwrap_or(0.0)));
-        ModelAnswer::new(
+        let answer = ModelAnswer::new(
             self.model,
             scenario.structure.has_horizontal_thrust(),
             excess_ratio,
             answer,
-        )
-        .with_restitution(restitution_in_words(scenario))
-        .with_friction(SlipWords::of(scenario).condition(self.friction_demand, "run FILE"))
+        );
+        let own_peak = self
+            .mechanisms
+            .as_ref()
+            .and_then(|own| own.peak_rotation_over_critical);
+        let mirrored_peak = mirrored.and_then(|mirrored| mirrored.peak_rotation_over_critical);
+        let peak = own_peak.into_iter().chain(mirrored_peak).reduce(f64::max);
+        let answer = match peak.filter(|_| self.verdict == Verdict::Survives) {
+            Some(peak) => answer.surviving_with(peak),
+            None => answer,
+        };
+        answer
+            .with_restitution(restitution_in_words(scenario))
+            .with_friction(SlipWords::of(scenario).condition(self.friction_demand, "run FILE"))
     }
 }
 

@@ -86,9 +86,11 @@ pub struct HistorySide {
     pub records_beyond_d0: usize,
     /// Number of records that exceed `d0_m` divided by FC.
     pub records_beyond_d0_over_fc: usize,
-    /// True if the side passes; `None` if that depends on a history without a verdict.
+    /// Number of records outside the model of four links. With any, the side does not pass.
+    pub records_outside_model: usize,
+    /// True if the side passes; `None` if that depends on a history without a verdict or outside the model.
     pub passed: Option<bool>,
-    /// True if the side passes with capacities divided by FC; `None` if that depends on a history without a verdict.
+    /// True if the side passes with capacities divided by FC; `None` if that depends on a history without a verdict or outside the model.
     pub passed_over_fc: Option<bool>,
     /// True if a record overturns the structure to that side.
     pub overturned: bool,
@@ -124,9 +126,9 @@ pub struct MeanSpectrum {
 pub struct Histories {
     /// The peak that is compared with the capacity.
     pub demand: ComparedPeak,
-    /// True if all sides pass; `None` if that depends on a history without a verdict.
+    /// True if all sides pass; `None` if that depends on a history without a verdict or outside the model of four links.
     pub passed: Option<bool>,
-    /// True if all sides pass with capacities divided by FC; `None` if that depends on a history without a verdict.
+    /// True if all sides pass with capacities divided by FC; `None` if that depends on a history without a verdict or outside the model of four links.
     pub passed_over_fc: Option<bool>,
     /// Number of records with a history that ended too early for a verdict.
     pub incomplete: usize,
@@ -187,13 +189,19 @@ pub(super) fn histories(
     let found: Result<Vec<RecordPeaks>, SimulationError> = found.collect();
     let series = records;
     let records = found.map_err(|error| failed(error.to_string()))?;
+    let model_check = ModelCheck::of(records.iter().map(|one| one.thrust_excess_ratio));
     let results = mechanisms.iter().map(|(sway, mechanism)| {
         let peaks: Vec<Peak> = records.iter().map(|one| one.peaks[sway]).collect();
         let d0_m = mechanism.d0_m.unwrap_or_default();
         let capacity_m = rule.part_of_d0 * d0_m / rule.divide_displacement;
         let side = HistorySide {
             restitution: model.restitution_from(*sway, 1),
-            ..history_side(&peaks, [capacity_m, d0_m], input.settings.confidence_factor)
+            ..history_side(
+                &peaks,
+                model_check.outside.unwrap_or_default(),
+                [capacity_m, d0_m],
+                input.settings.confidence_factor,
+            )
         };
         (*sway, side)
     });
@@ -215,7 +223,7 @@ pub(super) fn histories(
         passed: all_pass(&results, |side| side.passed),
         passed_over_fc: all_pass(&results, |side| side.passed_over_fc),
         incomplete: records.iter().filter(is_incomplete).count(),
-        model: ModelCheck::of(records.iter().map(|one| one.thrust_excess_ratio)),
+        model: model_check,
         records,
         mean_spectrum: MeanSpectrum {
             from_s,
@@ -274,6 +282,7 @@ fn record_peaks(
 
 fn history_side(
     peaks: &[Peak],
+    records_outside_model: usize,
     [capacity_m, d0_m]: [f64; 2],
     confidence_factor: f64,
 ) -> HistorySide {
@@ -296,8 +305,9 @@ fn history_side(
         let exceeds = |peak: &&Peak| peak.overturned || peak.displacement_m > d0_m / divisor;
         let exceeded = peaks.iter().filter(exceeds).count();
         let passes = !overturned && exceeded == 0 && least_m <= capacity_m / divisor;
-        // Later peaks of an incomplete history can only be larger, so a failure is final.
-        (exceeded, (!passes || !incomplete).then_some(passes))
+        // Later peaks of an incomplete history can only be larger, and four links outside their model are not on the safe side, so a failure is final.
+        let is_known = !incomplete && records_outside_model == 0;
+        (exceeded, (!passes || is_known).then_some(passes))
     });
     HistorySide {
         restitution: None,
@@ -308,6 +318,7 @@ fn history_side(
         d0_m,
         records_beyond_d0: beyond,
         records_beyond_d0_over_fc: beyond_fc,
+        records_outside_model,
         passed,
         passed_over_fc: passed_fc,
         overturned,
