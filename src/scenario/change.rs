@@ -8,11 +8,13 @@ use std::sync::LazyLock;
 
 use super::document::{Entries, KeyGroup};
 use super::prelude::*;
-use super::suite::BOTH_SIGNS;
 use super::{Scenario, span};
 
 /// The JSON schema of all tables of a scenario, and the keys that exclude or need each other.
 static DESCRIPTION: LazyLock<(Value, Vec<KeyGroup>)> = LazyLock::new(Scenario::describe);
+
+/// The key of `[suite]` that is an older name of `direction` in `[simulation]`.
+pub(super) const BOTH_SIGNS: &str = "both_signs";
 
 /// Returns true if a key is a count, which must be a whole number.
 pub(super) fn is_count(tables: &[&str], key: &str) -> bool {

@@ -425,7 +425,7 @@ impl Scenario {
         }
         // The older name of the key.
         if let Some(Value::Object(suite)) = given.get_mut("suite") {
-            suite.shift_remove(suite::BOTH_SIGNS);
+            suite.shift_remove(change::BOTH_SIGNS);
         }
         turned
     }

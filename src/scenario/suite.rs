@@ -19,6 +19,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::change::BOTH_SIGNS;
 use super::listing::{RecordListing, written};
 use super::prelude::*;
 use super::record::{self, Component, Format, Record, Scaling, Series};
@@ -232,9 +233,6 @@ impl Serialize for Suite {
         serializer.collect_map(records.into_iter().chain(own))
     }
 }
-
-/// Older name of `direction` in `[simulation]`.
-pub(super) const BOTH_SIGNS: &str = "both_signs";
 
 /// Returns the directions that `both_signs` names.
 const fn directions_of(both_signs: bool) -> Directions {

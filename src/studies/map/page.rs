@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::picture::{ColoredCells, Drawn};
-use super::{CellRow, OverturningMap, label, report};
+use super::{CellRow, OverturningMap, label};
 use crate::output::caption::caption;
 use crate::output::page::{BASE, PROGRAM, STYLE, script_safe};
 use crate::output::{Figure, filters, render};
@@ -136,7 +136,7 @@ impl ColoredCells {
             }),
             what: caption(map.scenario, &map.axes),
             friction,
-            for_looking: report::for_looking(map.scenario).map(str::to_owned),
+            for_looking: super::for_looking(map.scenario).map(str::to_owned),
             kinds: BASE64_STANDARD.encode(kinds),
             doubts,
             outside: are(&self.outside),

@@ -42,7 +42,7 @@ impl ReportedStudy for OverturningMap<'_> {
         let scenario = self.scenario;
         let title = scenario.title.as_deref().unwrap_or("Overturning map");
         let remarks = remarks(self, &cells);
-        let for_looking = for_looking(scenario).map(str::to_owned);
+        let for_looking = super::for_looking(scenario).map(str::to_owned);
         let warnings = remarks.warnings("cells").chain(for_looking.clone());
         let survivors = cells.iter().filter_map(|cell| cell.result.as_ref().ok());
         let survivors = survivors
@@ -98,16 +98,6 @@ impl OverturningMap<'_> {
         }
         all
     }
-}
-
-/// Returns the use of a map of four links of an arch, in words, with the measured shares of wrong cells; `None` for other models and for columns.
-pub(super) fn for_looking(scenario: &Scenario) -> Option<&'static str> {
-    let is_looked_at =
-        !scenario.motion.kind.has_joints && scenario.structure.has_horizontal_thrust();
-    is_looked_at.then_some(
-        "a map of four links is for looking: in the map of docs/recipes.md, 22 % of the surviving cells inside the model and 41 % of those outside \
-         overturn with free hinges; compute a map with free hinges to quote it",
-    )
 }
 
 /// Returns failed cells, cells with a failed repetition, and uncertain cells.
