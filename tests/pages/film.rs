@@ -19,7 +19,15 @@ fn pictures_between_samples_are_interpolated() {
     let own = pulse();
     let corners = |step: &str| {
         let step = format!("simulation.output_step_s={step}");
-        let end = ["--set", "simulation.duration_s=0.9", "--set", &step];
+        let pulse = "ground.rectangular.amplitude_g=-0.30";
+        let end = [
+            "--set",
+            "simulation.duration_s=0.9",
+            "--set",
+            &step,
+            "--set",
+            pulse,
+        ];
         let arguments = [
             "run",
             &own,

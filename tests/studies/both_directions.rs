@@ -205,8 +205,7 @@ fn thresholds_along_a_key_are_those_of_the_worse_direction() {
 #[test]
 fn samples_of_a_run_are_those_of_the_worse_direction() {
     let [own, _] = uneven();
-    let uncertain =
-        "[uncertain]\nsamples = 6\n\"ground.one_sine.amplitude_g\" = { from = 0.25, to = 0.6 }\n";
+    let uncertain = "[free_hinges]\n[uncertain]\nsamples = 6\n\"ground.one_sine.amplitude_g\" = { from = 0.25, to = 0.6 }\n";
     let found = |direction: &str| {
         let scenario = scenario(&format!("{own}{uncertain}"), direction);
         let ensemble = Ensemble::<Histories>::of(&scenario, Factors::default()).unwrap();
@@ -222,7 +221,10 @@ fn samples_of_a_run_are_those_of_the_worse_direction() {
         let direction = assert_worse(&worse, &given, &mirrored);
         mirrored_count += usize::from(direction == Direction::Mirrored);
     }
-    assert!(mirrored_count > 0);
+    assert!(
+        mirrored_count > 0 && compared > 2,
+        "{mirrored_count} {compared}"
+    );
 }
 
 /// The name of a direction is that of its key, and the default is both.

@@ -210,7 +210,7 @@ fn a_wall_without_height_keeps_the_symmetry() {
         assert!(alone.0.get("mirrored").is_none());
         assert_eq!(of(&format!("{COLUMN}{back}")), alone, "{table}");
         // A wall of any height has a side.
-        let walled = format!("{COLUMN}{}", back.replace("0.0", "3.9"));
+        let walled = format!("{COLUMN}{}restitution = 0.4\n", back.replace("0.0", "3.9"));
         if !table.contains("free_hinges") {
             assert!(of(&walled).0["mirrored"].is_object(), "{table}");
         }
