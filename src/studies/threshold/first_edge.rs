@@ -393,7 +393,7 @@ mod tests {
             let edge = edge_among(strengths, verdict).unwrap();
             let near = |found: Option<f64>, known: f64| {
                 assert!(
-                    (found.unwrap() / known - 1.0).abs() <= EDGE_WIDTH,
+                    (found.unwrap() / known - 1.0).abs() <= UNCERTAIN_EDGE_WIDTH,
                     "{edge:?}"
                 );
             };
@@ -427,7 +427,10 @@ mod tests {
         let edge = edge_among(&[0.3, 0.65, 1.0], share).unwrap();
         let (from, first) = (edge.uncertain_from.unwrap(), edge.strength());
         for (found, known) in [(from, 0.5), (first, 0.7)] {
-            assert!((found / known - 1.0).abs() < EDGE_WIDTH, "{found}");
+            assert!(
+                (found / known - 1.0).abs() < UNCERTAIN_EDGE_WIDTH,
+                "{found}"
+            );
         }
         let known = [
             vec![[from, 0.75], [first, 0.25]],
@@ -469,7 +472,7 @@ mod tests {
         };
         let edge = edge_among(&[0.5, 1.0, 1.5], share).unwrap();
         assert_eq!(edge.factor, Some(0.75));
-        assert!((edge.uncertain_from.unwrap() / 0.6 - 1.0).abs() < EDGE_WIDTH);
+        assert!((edge.uncertain_from.unwrap() / 0.6 - 1.0).abs() < UNCERTAIN_EDGE_WIDTH);
         assert!(edge.uncertain.iter().all(|[strength, _]| *strength < 0.75));
         assert_eq!(edge.overturns_up_to(0.8), Some(1.0));
     }
