@@ -687,7 +687,7 @@ fn a_narrow_band_below_an_edge_is_found() {
     let model = &found["models"][0];
     let safe = model["survives_up_to_factor"].as_f64().unwrap();
     assert!(safe < 1.2585 && safe > 1.2, "{safe}");
-    let first = model["factors"]["from"].as_f64().unwrap();
+    let first = model["searched_factors"]["from"].as_f64().unwrap();
     assert!(
         (first * 0.6 / start_g - 1.0).abs() < 2.0 * EDGE_WIDTH,
         "{first} {start_g}"
@@ -702,7 +702,7 @@ fn a_narrow_band_below_an_edge_is_found() {
         outcomes.iter().filter(|one| **one == "overturned").count(),
         1
     );
-    assert_eq!(model["factors"]["lower_not_tried"], false);
+    assert_eq!(model["searched_factors"]["lower_not_tried"], false);
     let quote = found["to_quote"].as_str().unwrap();
     assert!(!quote.contains("not tried"), "{quote}");
 }

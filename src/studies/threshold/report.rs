@@ -68,7 +68,7 @@ struct ModelSummary {
     /// Name and checksum of each record file.
     record_checksums: Vec<String>,
     /// The factors of the search.
-    factors: SearchedFactors,
+    searched_factors: SearchedFactors,
     /// The largest factor up to which the structure certainly survives all sampled factors in all directions; null if it does not survive the smallest.
     survives_up_to_factor: Option<f64>,
     /// The smallest factor that certainly overturns the structure in any direction; null if no factor does.
@@ -375,7 +375,7 @@ impl Threshold {
             model: self.model.clone(),
             scenario: scenario.to_json(),
             record_checksums: scenario.record_checksums(),
-            factors: self.factors,
+            searched_factors: self.factors,
             survives_up_to_factor: self.survives_up_to(),
             lowest_factor: self.lowest_factor(),
             friction_demand: self.friction_demand,
