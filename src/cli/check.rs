@@ -87,14 +87,16 @@ fn read(input: &Input<'_>) -> Result<Scenario, Failure> {
         Err(Failure::Input(wrong)) => wrong,
         // The reader has tried elastic joints, whose equilibrium takes long to find.
         Ok(scenario) if !scenario.motion.kind.is_rigid => return Ok(scenario),
-        Ok(scenario) if scenario.check_restitution().is_err() => {
-            super::warn(&Vec::from_iter(scenario.check_restitution().err()));
-            return Ok(scenario);
+        Ok(scenario) => {
+            if let Err(missing) = scenario.check_restitution() {
+                super::warn(&[missing]);
+                return Ok(scenario);
+            }
+            match scenario.model() {
+                Err(error) => error.to_string(),
+                Ok(_) => return Ok(scenario),
+            }
         }
-        Ok(scenario) => match scenario.model() {
-            Err(error) => error.to_string(),
-            Ok(_) => return Ok(scenario),
-        },
         failed => return failed,
     };
     let Ok(scenario) = input.read_statics() else {

@@ -8,6 +8,7 @@
 use std::f64::consts::FRAC_2_PI;
 
 use super::statistics::{RandomNumbers, ascending, quantile};
+use crate::bisection::{Width, bisect};
 
 /// Returns the rank, from 1, of the value that is the lower 95 % confidence limit of the 5 % fractile, among `count` independent values in ascending
 /// order: the largest rank `k` for which at most `k - 1` of the values are below the fractile with a probability of at most 5 %. `None` if there are too
@@ -102,16 +103,7 @@ fn solve(value: f64, mut high: f64, function: impl Fn(f64) -> f64) -> f64 {
     while function(high) < value {
         high *= 2.0;
     }
-    let mut low = 0.0;
-    for _ in 0..80 {
-        let middle = 0.5 * (low + high);
-        if function(middle) < value {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    0.5 * (low + high)
+    bisect(0.0, high, Width::Rounding, |at| function(at) >= value).1
 }
 
 /// Returns the quantile of the chi-square distribution.

@@ -32,8 +32,8 @@ const LEAST_SLENDERNESS: f64 = 3.0;
 /// Friction coefficient above which joints of stone may slip under weaker motions, so that the answer is not on the safe side.
 const SLIPS_ABOVE: f64 = 0.6;
 
-/// Peak rotation, over that of overturning, from which the survival of an arch with four links is not quoted. Of surviving cells inside the model
-/// 0 of 340 overturn with free hinges below it, and 16 of 23 from there on (docs/evidence.md).
+/// Peak rotation, over that of overturning, from which the survival of an arch with four links is not quoted. Of the surviving cells inside the model in
+/// `scenarios/recipes/map-for-print.toml` 6 of 620 overturn with free hinges below it, and 187 of 244 from there on.
 pub(super) const QUOTED_PEAK: f64 = 0.4;
 
 /// The part of a scenario that words about its friction need.
@@ -296,7 +296,7 @@ impl ModelAnswer {
         let answer = match is_arch && peak_over_critical >= QUOTED_PEAK {
             true => self.answer.and_then(|_| {
                 Err(format!(
-                    "peak rotation {:.0} % of overturning, and with free hinges 16 of 23 such survivors from 40 % on overturn (below, 0 of 340); compare \
+                    "peak rotation {:.0} % of overturning, and with free hinges 187 of 244 such survivors from 40 % on overturn (below, 6 of 620); compare \
                      with free hinges",
                     100.0 * peak_over_critical
                 ))

@@ -286,7 +286,7 @@ fn printed_commands_of_friction_run() {
     let free = format!("{SLIDES}[free_hinges]\n");
     let map = "[map]\namplitude_g = [1.0]\nduration_s = [0.23]\n";
     let suite = "[suite]\nrecords = 'a.csv'\nunit = 'g'\nscales = [1.0]\n";
-    let factors = ["--from", "1", "--to", "1.5", "--stride", "0.5"];
+    let factors = ["--from", "1", "--to", "1.02", "--stride", "0.02"];
     for (text, study, more) in [
         (four.clone(), "threshold", &factors[..]),
         (free.clone(), "threshold", &factors),

@@ -13,7 +13,7 @@ use crate::mechanics::{LimitError, StabilityError};
 use crate::scenario::ModelError;
 use crate::{
     Case, EndCondition, FourLinkError, GroundMotion, Model, Outcome, Request, RowModelError,
-    SimulationError, Summary,
+    SimulationError,
 };
 
 /// The steps of a history.
@@ -193,19 +193,6 @@ impl Ending {
             Some(Err(reason)) if self.verdict() < Verdict::Uncertain => Err(reason.mirrored()),
             _ => Ok(self),
         }
-    }
-
-    /// Makes the ending of a history without repetitions.
-    ///
-    /// # Errors
-    /// The reason why there is no history, or a number is not finite.
-    pub(super) fn unrepeated(history: Result<Summary, SimulationError>) -> Result<Self, NoHistory> {
-        let friction_demand = history.as_ref().ok().and_then(Summary::required_friction);
-        Self::of_checked(CheckedHistory {
-            own: history,
-            count: None,
-            friction_demand,
-        })
     }
 
     /// Makes the ending of a history with its repetitions.

@@ -19,7 +19,7 @@ pub use self::heading::Heading;
 pub use self::report::Summary;
 pub use self::strength::{Strength, efficiencies};
 use super::ending::{Ending, NoHistory, Verdict, check_finite};
-use super::threshold::below::{Fineness, below_edge, unrepeated};
+use super::threshold::below::{FineHistory, Fineness, below_edge};
 use super::threshold::first_edge::{FirstEdge, TriedHistory};
 use super::threshold::onset_factor;
 use super::threshold::survival::{Survival, VerdictRange};
@@ -341,25 +341,36 @@ impl RecordSuite<'_> {
         Some(level * onset).filter(|onset| *onset < level)
     }
 
-    /// Returns the lowest level at which a record overturns the structure, without repetitions; infinite if none does.
+    /// Returns the lowest edge of all records below the lowest level at which one of them overturns the structure, without repetitions; infinite if none
+    /// does.
     fn lowest(&self) -> f64 {
         *self.lowest.get_or_init(|| {
-            let overturns = |level: &&f64| {
-                let records = 0..self.suite.records.len();
-                let mut signed = records.flat_map(|record| {
-                    let signs = self.directions.iter();
-                    signs.map(move |direction| (record, *direction))
-                });
-                signed.any(|(record, direction)| {
-                    let case = case(self.scenario, self.suite, record, **level, direction);
-                    let history = self.model.simulate_until(EndCondition::Safe, &case);
-                    history.is_ok_and(|one| Verdict::from(one.outcome) == Verdict::Overturns)
-                })
+            let shakes = 0..self.count() / self.levels.len();
+            let overturns = |index: usize, level: f64| {
+                let (_, record, direction) = self.place(index);
+                let case = case(self.scenario, self.suite, record, level, direction);
+                let history = self.model.simulate_until(EndCondition::Safe, &case);
+                history.is_ok_and(|one| Verdict::from(one.outcome) == Verdict::Overturns)
             };
-            self.levels
-                .iter()
-                .find(overturns)
-                .copied()
+            let lowest_at = |level: usize| {
+                let lowest = self.levels[level];
+                let mut indices = shakes
+                    .clone()
+                    .map(|shake| shake * self.levels.len() + level);
+                let first = indices.find(|index| overturns(*index, lowest))?;
+                let with_first = std::iter::once(first).chain(indices);
+                Some(
+                    with_first.fold(lowest, |lowest, index| match self.level_below(index) {
+                        Some(below) if below < lowest && overturns(index, lowest) => {
+                            let width = Width::Relative(EDGE_WIDTH);
+                            bisect(below, lowest, width, |level| overturns(index, level)).1
+                        }
+                        _ => lowest,
+                    }),
+                )
+            };
+            (0..self.levels.len())
+                .find_map(lowest_at)
                 .unwrap_or(f64::INFINITY)
         })
     }
@@ -370,7 +381,7 @@ impl RecordSuite<'_> {
     }
 
     /// Searches finely between a level that survives, or the safe level of the edge below one that overturns, and the level below; only up to the
-    /// lowest level at which any record overturns the structure, because the quote is the least of all records.
+    /// lowest edge of all records, because the quote is the least of them.
     fn search_below(
         &self,
         index: usize,
@@ -382,21 +393,17 @@ impl RecordSuite<'_> {
             .as_ref()
             .is_ok_and(|own| own.verdict() == Verdict::Survives);
         let safe = edge.map_or(survives.then_some(level), |edge| edge.safe)?;
-        let from = self
-            .level_below(index)
-            .filter(|from| *from < self.lowest())?;
-        let closeness = |levels: &[f64]| {
-            let cases = levels.iter().map(|level| {
-                let (ground, _) = case(self.scenario, self.suite, record, *level, direction);
-                Ok(ground)
-            });
-            let (_, request) = case(self.scenario, self.suite, record, safe, direction);
-            let all = unrepeated(&*self.model, &request, cases).into_iter();
-            Ok::<_, NoAnswer>(all.map(|(close, _)| close).collect::<Vec<_>>())
+        let safe = safe.min(self.lowest());
+        let from = self.level_below(index).filter(|from| *from < safe)?;
+        let (_, request) = case(self.scenario, self.suite, record, safe, direction);
+        let histories = |levels: &[f64]| {
+            let ground = |level| Ok(case(self.scenario, self.suite, record, level, direction).0);
+            let found = FineHistory::of_all(&*self.model, &request, levels, ground);
+            Ok::<_, NoAnswer>(found)
         };
         let below = |safe| {
-            let close = closeness(&[safe])?[0];
-            below_edge((safe, close), from, Fineness::LEVELS, closeness)
+            let close = histories(&[safe])?[0].close;
+            below_edge((safe, close), from, Fineness::LEVELS, histories)
         };
         let history = |at: f64| match own {
             Ok(own) if at == level => Ok(own.clone().into()),

@@ -302,7 +302,10 @@ impl Heading {
         let demand = |case: &CaseRow| case.result.as_ref().ok()?.friction_demand;
         let demands = cases.clone().filter(survives).filter_map(demand);
         let below_edges = cases.clone().filter_map(|case| case.friction_below_edge);
-        let friction_demand = demands.chain(below_edges).reduce(f64::max);
+        let found = cases
+            .clone()
+            .filter_map(|case| case.found_below.as_ref()?.friction_demand);
+        let friction_demand = demands.chain(below_edges).chain(found).reduce(f64::max);
         let excess_ratio = cases.filter_map(excess).reduce(f64::max);
         let answer = lowest.map_or(Err("there are no cases".to_owned()), |(case, survival)| {
             let (record, unit) = (case.record_in_words(), self.measure.unit());

@@ -26,7 +26,7 @@ pub struct Strength {
 }
 
 impl Strength {
-    /// Computes the intensities of a record. The spectral acceleration is the pseudo-acceleration: `omega^2` times the likeliest displacement.
+    /// Computes the intensities of a record. The spectral acceleration is the pseudo-acceleration: `omega^2` times the largest displacement.
     pub fn of(series: &Series, spectral: Spectral, gravity_m_s2: f64) -> Self {
         let samples = series.accelerations_m_s2(gravity_m_s2);
         let intensity = Intensity::of(&samples, gravity_m_s2);
@@ -48,7 +48,7 @@ pub struct Capacity<'a> {
     pub record: &'a str,
     /// True if the record is mirrored.
     pub mirrored: bool,
-    /// The likeliest factor on the record up to which the structure certainly survives; `None` if it does not survive the lowest level.
+    /// The largest factor on the record up to which the structure certainly survives; `None` if it does not survive the lowest level.
     pub survives_up_to_scale: Option<f64>,
     /// The factor on the record; `None` if no level overturns the structure.
     pub scale: Option<f64>,

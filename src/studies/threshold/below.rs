@@ -44,6 +44,9 @@ const STEEPER: f64 = 4.0;
 pub struct Closeness(pub f64);
 
 impl Closeness {
+    /// Closeness at an edge.
+    pub const EDGE: Self = Self(1.0);
+
     /// Returns the closeness of a history. A structure whose barrier is unknown always counts as close.
     fn of(
         model: &dyn Model,
@@ -63,65 +66,140 @@ impl Closeness {
         )
     }
 
-    /// Closeness at an edge.
-    pub const EDGE: Self = Self(1.0);
-
     fn survives(self) -> bool {
         self.0 < f64::INFINITY
     }
 }
 
-/// A history without repetitions, and how close it comes to overturning.
-pub type UnrepeatedHistory = (Closeness, Result<Summary, SimulationError>);
-
-/// Computes the histories of a model under several ground motions, in their order, without repetitions. They stop once they can no longer overturn.
-pub fn unrepeated(
-    model: &dyn Model,
-    request: &Request,
-    grounds: impl IntoIterator<Item = Result<GroundMotion, ArgumentError>>,
-) -> Vec<UnrepeatedHistory> {
-    let cases = grounds.into_iter().map(|ground| Ok((ground?, *request)));
-    let histories = answered(cases, |cases| {
-        model.simulate_all_until(EndCondition::Safe, cases)
-    });
-    let histories = histories.into_iter();
-    histories
-        .map(|history| (Closeness::of(model, request, &history), history))
-        .collect()
-}
-
-/// Lowest factor below an edge whose history does not survive.
-pub struct LowestHit {
+/// A history at a factor, without repetitions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FineHistory {
     /// The factor.
-    pub hit: f64,
-    /// All lower tried factors, which survive, descending.
-    pub lower: Vec<f64>,
+    pub factor: f64,
+    /// How close it comes to overturning.
+    pub close: Closeness,
+    /// Excess of the thrust line, as in [`Ending`](crate::studies::Ending).
+    pub thrust_excess_ratio: Option<f64>,
+    /// Friction coefficient that it requires without slip; `None` if joints slip or are elastic.
+    pub friction_demand: Option<f64>,
 }
 
-impl LowestHit {
-    /// Repeats the history of the hit, then those of the lower factors until one survives, and returns the lowest that does not, with its verdict, and
-    /// the one that does; `None` if none does.
+impl FineHistory {
+    /// Makes a history of which only the closeness is known.
+    pub const fn new(factor: f64, close: Closeness) -> Self {
+        Self {
+            factor,
+            close,
+            thrust_excess_ratio: None,
+            friction_demand: None,
+        }
+    }
+
+    /// Computes the histories of a model at factors, in their order, under the ground motions at these factors. They stop once they can no longer
+    /// overturn.
+    pub fn of_all(
+        model: &dyn Model,
+        request: &Request,
+        factors: &[f64],
+        ground: impl Fn(f64) -> Result<GroundMotion, ArgumentError>,
+    ) -> Vec<Self> {
+        let cases = factors
+            .iter()
+            .map(|factor| Ok((ground(*factor)?, *request)));
+        let histories = answered(cases, |cases| {
+            model.simulate_all_until(EndCondition::Safe, cases)
+        });
+        let of = |(factor, history): (&f64, Result<Summary, SimulationError>)| {
+            let close = Closeness::of(model, request, &history);
+            let known = history.as_ref().ok();
+            Self {
+                thrust_excess_ratio: known.and_then(Summary::thrust_excess_ratio),
+                friction_demand: known.and_then(Summary::required_friction),
+                ..Self::new(*factor, close)
+            }
+        };
+        factors.iter().zip(histories).map(of).collect()
+    }
+
+    /// Returns the closer one of this history and that under the mirrored ground motion, with the larger excess and friction demand of both.
+    pub fn or_closer(self, mirrored: Self) -> Self {
+        let larger = |one: Option<f64>, other| one.into_iter().chain(other).reduce(f64::max);
+        Self {
+            factor: self.factor,
+            close: Closeness(self.close.0.max(mirrored.close.0)),
+            thrust_excess_ratio: larger(self.thrust_excess_ratio, mirrored.thrust_excess_ratio),
+            friction_demand: larger(self.friction_demand, mirrored.friction_demand),
+        }
+    }
+}
+
+/// The lowest edge that a search below an edge found, with repeated histories.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LowestEdge {
+    /// The lowest factor that does not survive.
+    pub factor: f64,
+    /// Its verdict.
+    pub verdict: Verdict,
+    /// The next lower tried factor, which survives; `None` if none does.
+    pub survived: Option<f64>,
+}
+
+/// The histories of a search below an edge.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FineSearch {
+    /// The edge, then all histories, by descending factors.
+    pub histories: Vec<FineHistory>,
+}
+
+impl FineSearch {
+    /// Returns the index of the lowest history that does not survive; `None` if all survive.
+    fn lowest(&self) -> Option<usize> {
+        let mut histories = self.histories.iter();
+        histories.rposition(|history| !history.close.survives())
+    }
+
+    /// Returns the lowest factor whose history does not survive, and the survived factor above those next to it that do not survive either: the ends of
+    /// a band, of which both are survived or repeated. `None` if all survive.
+    pub fn upper_edge(&self) -> Option<(f64, f64)> {
+        let above = &self.histories[..=self.lowest()?];
+        let survived = above.iter().rposition(|history| history.close.survives())?;
+        Some((above[survived + 1].factor, above[survived].factor))
+    }
+
+    /// Repeats the lowest history that does not survive, then those at lower factors until one survives. `None` if all histories survive.
     ///
     /// # Errors
     /// Those of the histories.
     pub fn confirm<E>(
-        self,
-        verdict: impl Fn(f64) -> Result<Verdict, E>,
-    ) -> Result<((f64, Verdict), Option<f64>), E> {
-        let mut first = (self.hit, verdict(self.hit)?);
-        for lower in self.lower {
-            let found = verdict(lower)?;
-            if found == Verdict::Survives {
-                return Ok((first, Some(lower)));
+        &self,
+        mut verdict: impl FnMut(f64) -> Result<Verdict, E>,
+    ) -> Result<Option<LowestEdge>, E> {
+        let Some(lowest) = self.lowest() else {
+            return Ok(None);
+        };
+        let factors = self.histories[lowest..].iter().map(|one| one.factor);
+        let mut edge: Option<LowestEdge> = None;
+        for factor in factors {
+            match (verdict(factor)?, &mut edge) {
+                (Verdict::Survives, Some(edge)) => {
+                    edge.survived = Some(factor);
+                    break;
+                }
+                (verdict, edge) => {
+                    *edge = Some(LowestEdge {
+                        factor,
+                        verdict,
+                        survived: None,
+                    });
+                }
             }
-            first = (lower, found);
         }
-        Ok((first, None))
+        Ok(edge)
     }
 }
 
-/// Finds the lowest factor below a safe one with its closeness, and not below `from`, whose history does not survive; `None` if all survive. `closeness`
-/// computes the histories of descending factors.
+/// Searches below a safe factor of known closeness, and not below `from`, for histories that do not survive. `histories` computes those of descending
+/// factors.
 ///
 /// # Errors
 /// Those of the histories.
@@ -129,14 +207,16 @@ pub fn below_edge<E>(
     (safe, close): (f64, Closeness),
     from: f64,
     fineness: Fineness,
-    mut closeness: impl FnMut(&[f64]) -> Result<Vec<Closeness>, E>,
-) -> Result<Option<LowestHit>, E> {
-    // Descending factors.
-    let mut tried = vec![(safe, close)];
-    let mut lowest = safe;
+    mut histories: impl FnMut(&[f64]) -> Result<Vec<FineHistory>, E>,
+) -> Result<FineSearch, E> {
+    let mut search = FineSearch {
+        histories: vec![FineHistory::new(safe, close)],
+    };
     loop {
-        let least = from.max(fineness.reach * lowest);
-        let last = tried.last().map_or(safe, |(factor, _)| *factor);
+        let tried = &search.histories;
+        let lowest = search.lowest().unwrap_or(0);
+        let least = from.max(fineness.reach * tried[lowest].factor);
+        let last = tried[tried.len() - 1].factor;
         let steps =
             std::iter::successors(Some(last), |factor| Some(factor / (1.0 + fineness.step)));
         let next: Vec<f64> = steps
@@ -144,29 +224,23 @@ pub fn below_edge<E>(
             .take_while(|factor| *factor >= least)
             .collect();
         let next = match next.is_empty() {
-            true => middles(&tried, lowest, fineness.finest_step),
+            true => middles(&tried[lowest..], fineness.finest_step),
             false => next,
         };
         if next.is_empty() {
-            break;
+            return Ok(search);
         }
-        let found = closeness(&next)?;
-        tried.extend(next.into_iter().zip(found));
-        tried.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let hits = tried.iter().filter(|(_, close)| !close.survives());
-        lowest = hits.map(|(factor, _)| *factor).fold(safe, f64::min);
+        search.histories.extend(histories(&next)?);
+        search
+            .histories
+            .sort_by(|a, b| b.factor.total_cmp(&a.factor));
     }
-    let lower = tried.iter().map(|(factor, _)| *factor);
-    let lower = lower.filter(|factor| *factor < lowest).collect();
-    Ok((lowest < safe).then_some(LowestHit { hit: lowest, lower }))
 }
 
-/// Returns the geometric middles between neighbouring factors up to the lowest hit that may hide a band.
-fn middles(tried: &[(f64, Closeness)], lowest: f64, finest_step: f64) -> Vec<f64> {
-    let below = tried.iter().filter(|(factor, _)| *factor <= lowest);
-    let below: Vec<(f64, Closeness)> = below.copied().collect();
-    let width = |index: usize| libm::log(below[index].0 / below[index + 1].0);
-    let close = |index: usize| below[index].1.0.min(1.0);
+/// Returns the geometric middles between neighbouring factors that may hide a band. The first history is the edge or does not survive.
+fn middles(below: &[FineHistory], finest_step: f64) -> Vec<f64> {
+    let width = |index: usize| libm::log(below[index].factor / below[index + 1].factor);
+    let close = |index: usize| below[index].close.0.min(1.0);
     let slope = |index: usize| (close(index) - close(index + 1)).abs() / width(index);
     let Some(last) = below.len().checked_sub(1).filter(|last| *last > 0) else {
         return Vec::new();
@@ -177,10 +251,10 @@ fn middles(tried: &[(f64, Closeness)], lowest: f64, finest_step: f64) -> Vec<f64
         let closest = close(*index).max(close(index + 1));
         let is_wide = width(*index) > 1.5 * finest_step;
         let reaches = closest + STEEPER * steepest * width(*index) >= 1.0;
-        is_wide && below[*index].1.survives() && closest > FAR && reaches
+        is_wide && below[*index].close.survives() && closest > FAR && reaches
     };
     let wide = (0..last).filter(hides_band);
-    let middle = |index: usize| libm::sqrt(below[index].0 * below[index + 1].0);
+    let middle = |index: usize| libm::sqrt(below[index].factor * below[index + 1].factor);
     wide.map(middle).collect()
 }
 
@@ -197,6 +271,11 @@ mod tests {
         Closeness(if close >= 1.0 { f64::INFINITY } else { close })
     }
 
+    fn fine(factors: &[f64], close: impl Fn(f64) -> Closeness) -> Vec<FineHistory> {
+        let of = |factor: &f64| FineHistory::new(*factor, close(*factor));
+        factors.iter().map(of).collect()
+    }
+
     /// Returns the lowest hit and the number of histories.
     fn search(from: f64, band: (f64, f64)) -> (Option<f64>, usize) {
         let mut histories = 0;
@@ -204,14 +283,21 @@ mod tests {
         let found = below_edge(edge, from, Fineness::THRESHOLD, |factors| {
             histories += factors.len();
             assert!(factors.iter().all(|factor| (from..1.0).contains(factor)));
-            let close = factors.iter().map(|factor| close_at(*factor, band));
-            Ok::<_, Infallible>(close.collect())
+            Ok::<_, Infallible>(fine(factors, |factor| close_at(factor, band)))
         });
         let Ok(found) = found;
-        for lower in found.iter().flat_map(|found| &found.lower) {
-            assert!(close_at(*lower, band).survives());
+        let lowest = found.lowest();
+        if let Some(lowest) = lowest {
+            let (hit, survived) = found.upper_edge().unwrap();
+            assert!(hit < survived && !close_at(hit, band).survives());
+            assert!(survived == 1.0 || close_at(survived, band).survives());
+            let lower = &found.histories[lowest + 1..];
+            assert!(lower.iter().all(|one| one.close.survives()));
         }
-        (found.map(|found| found.hit), histories)
+        (
+            lowest.map(|lowest| found.histories[lowest].factor),
+            histories,
+        )
     }
 
     /// Bands of 0.15 % are found down to 0.6 of the edge, with far fewer histories than steps of 0.1 % need (511).
@@ -239,9 +325,21 @@ mod tests {
         };
         let edge = (1.0, Closeness::EDGE);
         let found = below_edge(edge, 0.1, Fineness::THRESHOLD, |factors| {
-            Ok::<_, Infallible>(factors.iter().map(|factor| hits(*factor)).collect())
+            Ok::<_, Infallible>(fine(factors, hits))
         });
         let Ok(found) = found;
-        assert!((found.unwrap().hit / 0.5 - 1.0).abs() < 0.003);
+        // Repeated, the histories near 0.5 do not survive down to 0.49.
+        let verdict = |factor: f64| {
+            let survives = factor < 0.49;
+            Ok::<_, Infallible>(if survives {
+                Verdict::Survives
+            } else {
+                Verdict::Uncertain
+            })
+        };
+        let Ok(confirmed) = found.confirm(verdict);
+        let edge = confirmed.unwrap();
+        assert_eq!(edge.verdict, Verdict::Uncertain);
+        assert!((0.49..0.4925).contains(&edge.factor) && edge.survived.unwrap() < 0.49);
     }
 }

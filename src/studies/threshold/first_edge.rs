@@ -4,7 +4,7 @@ use std::cell::RefCell;
 
 use serde::{Deserialize, Serialize};
 
-use super::below::{Closeness, Fineness, LowestHit, below_edge, unrepeated};
+use super::below::{Closeness, FineHistory, FineSearch, Fineness, below_edge};
 use super::factors::{EDGE_WIDTH, Factors, UNCERTAIN_EDGE_WIDTH, onset_factor};
 use crate::bisection::{Width, try_bisect};
 use crate::dynamics::{Direction, MODEL_LIMIT};
@@ -117,26 +117,22 @@ impl FirstEdge {
         };
         let has_second = directions.has_second(&*model, ground, &request);
         let mirrored = has_second.then(|| ground.mirrored());
-        let closeness = |factors: &[f64]| {
+        let histories = |factors: &[f64]| {
             let under = |ground: &GroundMotion| {
-                let grounds = factors.iter().map(|factor| ground.scaled(*factor));
-                unrepeated(&*model, &request, grounds)
-                    .into_iter()
-                    .map(|(close, _)| close)
+                FineHistory::of_all(&*model, &request, factors, |factor| ground.scaled(factor))
             };
             let own = under(ground);
             Ok::<_, NoAnswer>(match &mirrored {
-                None => own.collect(),
+                None => own,
                 Some(mirrored) => {
-                    let both = own.zip(under(mirrored));
-                    both.map(|(one, other)| Closeness(one.0.max(other.0)))
-                        .collect()
+                    let both = own.into_iter().zip(under(mirrored));
+                    both.map(|(one, other)| one.or_closer(other)).collect()
                 }
             })
         };
         let below = |safe| {
             let edge = (safe, Closeness::EDGE);
-            below_edge(edge, searched.from, Fineness::THRESHOLD, closeness)
+            below_edge(edge, searched.from, Fineness::THRESHOLD, histories)
         };
         let edge = Self::search(&searched.values(), EDGE_WIDTH, history, below)?;
         Ok(Self {
@@ -152,15 +148,15 @@ impl FirstEdge {
         width: f64,
         history: impl Fn(f64) -> Result<TriedHistory, NoHistory>,
     ) -> Result<Self, NoAnswer> {
-        Self::search(strengths, width, history, |_| Ok(None))
+        Self::search(strengths, width, history, |_| Ok(FineSearch::default()))
     }
 
-    /// Finds the first edge as [`FirstEdge::among`]. `below` finds the lowest strength below the safe one whose history does not survive.
+    /// Finds the first edge as [`FirstEdge::among`]. `below` searches below the safe strength.
     pub(in crate::studies) fn search(
         strengths: &[f64],
         width: f64,
         history: impl Fn(f64) -> Result<TriedHistory, NoHistory>,
-        below: impl FnOnce(f64) -> Result<Option<LowestHit>, NoAnswer>,
+        below: impl FnOnce(f64) -> Result<FineSearch, NoAnswer>,
     ) -> Result<Self, NoAnswer> {
         let tried = RefCell::new(Vec::new());
         let known = |strength| {
@@ -223,11 +219,12 @@ impl FirstEdge {
                 break;
             }
         }
-        let lowest = edge.survives_up_to.map(below).transpose()?.flatten();
-        if let Some(lowest) = lowest {
-            let (mut first, safe) = lowest.confirm(known)?;
+        let fine = edge.survives_up_to.map(below).transpose()?;
+        let fine = fine.unwrap_or_default();
+        if let Some(lowest) = fine.confirm(known)? {
+            let mut first = (lowest.factor, lowest.verdict);
             edge.survives_up_to = None;
-            if let Some(lower) = safe {
+            if let Some(lower) = lowest.survived {
                 let ((safe, from), verdict) = narrow(lower, first, Verdict::Uncertain)?;
                 edge.survives_up_to = Some(safe);
                 first = (from, verdict);
@@ -235,11 +232,11 @@ impl FirstEdge {
             edge.uncertain_from = (first.1 == Verdict::Uncertain).then_some(first.0);
             edge.at_most &= edge.survives_up_to.is_none();
         }
-        Ok(edge.with_tried(tried.into_inner()))
+        Ok(edge.with_tried(tried.into_inner(), &fine))
     }
 
-    /// Returns the edge with the results of all tried strengths, each with its share of repetitions that overturn.
-    fn with_tried(mut self, tried: Vec<([f64; 2], TriedHistory)>) -> Self {
+    /// Returns the edge with the results of all tried strengths, each with its share of repetitions that overturn, and of the search below it.
+    fn with_tried(mut self, tried: Vec<([f64; 2], TriedHistory)>, fine: &FineSearch) -> Self {
         // The bisection of the first doubt may meet a strength that certainly overturns below one that is uncertain.
         let certain = tried.iter().filter(|(own, _)| own[1] == 1.0);
         let certain = certain.map(|(own, _)| own[0]);
@@ -257,6 +254,9 @@ impl FirstEdge {
             .iter()
             .filter(|([strength, _], _)| Some(*strength) <= safe);
         let demands = up_to_safe.filter_map(|(_, found)| found.friction_demand);
+        let fine = fine.histories.iter();
+        let fine = fine.filter(|history| Some(history.factor) <= safe);
+        let demands = demands.chain(fine.filter_map(|history| history.friction_demand));
         self.friction_demand = demands.reduce(f64::max);
         let below = |[strength, share]: &[f64; 2]| *strength < self.strength() && *share < 1.0;
         let shares = tried.into_iter().map(|(share, _)| share);

@@ -29,7 +29,7 @@ use std::ops::ControlFlow;
 
 use serde::{Deserialize, Serialize};
 
-use self::search::Shaking;
+use self::search::{OtherHistories, Shaking};
 use super::ending::{Ending, NoHistory, Verdict};
 use super::{Progress, Results, Runner, StudyError, Watch};
 use crate::dynamics::{Direction, Directions};
@@ -216,22 +216,22 @@ impl Threshold {
     }
 
     /// Follows thrust line and friction demand up to the largest safe factor, in the samples of all directions and in these other histories.
-    fn follow(&mut self, others: &[FactorSample]) {
+    fn follow(&mut self, others: &[OtherHistories]) {
         let Some(safe) = self.survives_up_to() else {
             return;
         };
         let samples = self.directions().flat_map(|one| &one.samples);
-        let up_to = samples.chain(others);
+        let up_to = samples.chain(others.iter().flat_map(|one| &one.bisected));
         let up_to = up_to.filter(|sample| sample.factor <= safe);
-        let endings: Vec<&Ending> = up_to.flat_map(|sample| &sample.result).collect();
-        let largest = |of: fn(&Ending) -> Option<f64>| {
-            let known = endings.iter().filter_map(|ending| of(ending));
-            known.reduce(f64::max)
-        };
-        let excess_ratio = largest(|ending| ending.thrust_excess_ratio);
-        let friction_demand = largest(|ending| ending.friction_demand);
-        self.safe_excess_ratio = excess_ratio;
-        self.friction_demand = friction_demand;
+        let endings = up_to.flat_map(|sample| &sample.result);
+        let fine = others.iter().flat_map(|one| &one.fine);
+        let fine = fine.filter(|history| history.factor <= safe);
+        let of_endings = endings.map(|one| (one.thrust_excess_ratio, one.friction_demand));
+        let of_fine = fine.map(|one| (one.thrust_excess_ratio, one.friction_demand));
+        let (excess_ratios, demands): (Vec<_>, Vec<_>) = of_endings.chain(of_fine).unzip();
+        let largest = |known: Vec<Option<f64>>| known.into_iter().flatten().reduce(f64::max);
+        self.safe_excess_ratio = largest(excess_ratios);
+        self.friction_demand = largest(demands);
     }
 }
 
@@ -261,7 +261,8 @@ pub fn threshold(
         searched: &searched,
     };
     let mut values = searched.values();
-    let (mut threshold, mut others) = shaking.threshold(name, &values, runner, &mut watch)?;
+    let (mut threshold, own) = shaking.threshold(name, &values, runner, &mut watch)?;
+    let mut others = vec![own];
     if directions.has_second(model, ground, request) {
         let overturns = |sample: &&FactorSample| sample.verdict() == Some(Verdict::Overturns);
         if let Some(first) = threshold.samples.iter().find(overturns) {
@@ -274,7 +275,7 @@ pub fn threshold(
             ..shaking
         };
         let (mirrored, of_mirrored) = shaking.threshold(name, &values, runner, &mut watch)?;
-        others.extend(of_mirrored);
+        others.push(of_mirrored);
         threshold.mirrored = Some(Box::new(mirrored));
     }
     threshold.follow(&others);

@@ -3,7 +3,7 @@
 
 use std::ops::ControlFlow;
 
-use super::below::{Closeness, Fineness, UnrepeatedHistory, below_edge, unrepeated};
+use super::below::{Closeness, FineHistory, FineSearch, Fineness, below_edge};
 use super::factors::{EDGE_WIDTH, SearchedFactors, UNCERTAIN_EDGE_WIDTH};
 use super::{FactorSample, Survival, Threshold};
 use crate::bisection::{Width, next_middles, try_bisect};
@@ -26,6 +26,13 @@ pub(super) struct Shaking<'a> {
     pub(super) ground: &'a GroundMotion,
     pub(super) request: &'a Request,
     pub(super) searched: &'a SearchedFactors,
+}
+
+/// Histories of a search that are no samples.
+pub(super) struct OtherHistories {
+    pub(super) bisected: Vec<FactorSample>,
+    /// Histories below the first edge, without repetitions.
+    pub(super) fine: Vec<FineHistory>,
 }
 
 /// Edges: neighbouring factors with different verdicts.
@@ -55,29 +62,39 @@ fn in_step(
 }
 
 impl Shaking<'_> {
-    /// Finds the threshold of the model with this name among these ascending factors. Returns it with the other histories of the search: those of
-    /// bisections, and those below the first edge.
+    /// Finds the threshold of the model with this name among these ascending factors. Returns it with the other histories: those of bisections, and
+    /// those of the search below the first edge.
     pub(super) fn threshold(
         &self,
         name: &str,
         factors: &[f64],
         runner: &Runner,
         mut watch: impl FnMut(Progress) -> ControlFlow<()>,
-    ) -> Result<(Threshold, Vec<FactorSample>), StudyError> {
+    ) -> Result<(Threshold, OtherHistories), StudyError> {
         let mut samples = self.upwards(factors, runner, &mut watch)?;
         let (mut edges, mut others) = self.bisect(&mut samples, runner, &mut watch)?;
         let first = Threshold::new(name.to_owned(), *self.searched, samples, &edges);
         let safe = Survival::of_threshold(&first).survives_up_to;
         let mut samples = first.samples;
+        let mut fine = FineSearch::default();
         if let Some(safe) = safe {
             let found = (&mut samples, &mut edges);
-            others.extend(self.below(safe, found, runner, &mut watch)?);
+            let tried;
+            (tried, fine) = self.below(safe, found, runner, &mut watch)?;
+            others.extend(tried);
         }
         let threshold = Threshold {
             direction: self.direction,
             ..Threshold::new(first.model, *self.searched, samples, &edges)
         };
-        Ok((threshold, others))
+        let fine = fine.histories;
+        Ok((
+            threshold,
+            OtherHistories {
+                bisected: others,
+                fine,
+            },
+        ))
     }
 
     /// Computes the histories for these ascending factors, or up to the first one that certainly overturns the structure.
@@ -158,62 +175,42 @@ impl Shaking<'_> {
         Ok((edges, tried))
     }
 
-    /// Searches below the first edge for factors whose histories do not survive. Adds them to the samples, with the next lower factor that is certainly
-    /// survived, and adds their edges. Returns all other histories.
+    /// Searches below the first edge for factors whose histories do not survive. Adds the lowest to the samples, with the next lower factor that is
+    /// certainly survived, and adds their edges. Returns the other histories of bisections, and those of the search.
     fn below(
         &self,
         safe: f64,
         (samples, edges): (&mut Vec<FactorSample>, &mut Edges),
         runner: &Runner,
         mut watch: impl FnMut(Progress) -> ControlFlow<()>,
-    ) -> Result<Vec<FactorSample>, RunnerError> {
-        let mut others = Vec::new();
+    ) -> Result<(Vec<FactorSample>, FineSearch), RunnerError> {
         let step = step_after(samples, false);
-        let mut closeness = |factors: &[f64]| {
-            let found = self.in_parallel(
-                factors,
-                |some| self.unrepeated(some),
-                runner,
-                in_step(step, &mut watch),
-            )?;
-            let (close, own): (Vec<Closeness>, Vec<FactorSample>) = found.into_iter().unzip();
-            others.extend(own);
-            Ok::<_, RunnerError>(close)
+        let histories = |factors: &[f64]| {
+            let compute = |some: &[f64]| {
+                let ground = |factor| self.ground.scaled(factor);
+                FineHistory::of_all(self.model, self.request, some, ground)
+            };
+            self.in_parallel(factors, compute, runner, in_step(step, &mut watch))
         };
         let edge = (safe, Closeness::EDGE);
-        let Some(lowest) = below_edge(
-            edge,
-            self.searched.from,
-            Fineness::THRESHOLD,
-            &mut closeness,
-        )?
-        else {
-            return Ok(others);
-        };
-        // The lowest history that does not survive, repeated, and the next lower one that certainly does.
-        let mut lower = self.samples(&[lowest.hit]);
-        for factor in lowest.lower {
+        let fine = below_edge(edge, self.searched.from, Fineness::THRESHOLD, histories)?;
+        let mut lower: Vec<FactorSample> = Vec::new();
+        let repeated = |factor: f64| {
             lower.splice(0..0, self.samples(&[factor]));
-            if lower[0].verdict() == Some(Verdict::Survives) {
-                break;
-            }
+            Ok::<_, RunnerError>(lower[0].verdict().unwrap_or(Verdict::Incomplete))
+        };
+        fine.confirm(repeated)?;
+        if let Some((hit, _)) = fine.upper_edge()
+            && lower.iter().all(|sample| sample.factor != hit)
+        {
+            lower.extend(self.samples(&[hit]));
         }
         let (found, tried) = self.bisect(&mut lower, runner, watch)?;
         edges.extend(found);
-        others.extend(tried);
+        edges.extend(fine.upper_edge());
         samples.extend(lower);
         samples.sort_by(|a, b| a.factor.total_cmp(&b.factor));
-        Ok(others)
-    }
-
-    /// Computes histories without repetitions, and how close each comes to overturning.
-    fn unrepeated(&self, factors: &[f64]) -> Vec<(Closeness, FactorSample)> {
-        let grounds = factors.iter().map(|factor| self.ground.scaled(*factor));
-        let histories = unrepeated(self.model, self.request, grounds).into_iter();
-        let of = |(factor, (close, history)): (&f64, UnrepeatedHistory)| {
-            (close, self.sample(*factor, Ending::unrepeated(history)))
-        };
-        factors.iter().zip(histories).map(of).collect()
+        Ok((tried, fine))
     }
 
     fn sample(&self, factor: f64, result: Result<Ending, NoHistory>) -> FactorSample {
