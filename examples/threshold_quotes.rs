@@ -13,6 +13,7 @@
 use std::env;
 use std::error::Error;
 use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
 
 mod random;
 
@@ -45,6 +46,51 @@ fn structure(class: &str, random: &mut Random) -> String {
         "elastic" => format!("{row}[elastic_joints]\nnormal_stiffness_gpa_m = {stiffness}\n"),
         "wall" => format!("{column}[column.back]\nside = \"left\"\n"),
         _ => format!("{arch}[free_hinges]\n"),
+    }
+}
+
+/// The work of an edge in the progress of a search, and the factors that bisection really tries.
+const EDGE: (usize, usize) = (30, 8);
+
+/// Estimates of the time that a search takes yet, from the first collapse on: time now, and time left.
+#[derive(Default)]
+struct Estimates {
+    /// Work at the last report, and number of tried factors.
+    done: usize,
+    factors: usize,
+    begun: Option<(Instant, usize)>,
+    left: Vec<(Instant, Duration)>,
+}
+
+impl Estimates {
+    fn note(&mut self, Progress { done, all, search }: Progress) {
+        let new = done.saturating_sub(self.done);
+        self.factors += if new == EDGE.0 { EDGE.1 } else { new };
+        self.done = done;
+        if search.is_some_and(|step| step.is_open) {
+            return;
+        }
+        let now = Instant::now();
+        let (begun, before) = *self.begun.get_or_insert((now, done));
+        if done > before {
+            let each = (now - begun).div_f64((done - before) as f64);
+            self.left.push((now, each.mul_f64((all - done) as f64)));
+        }
+    }
+
+    /// Returns the estimates at a quarter, half and three quarters of the time, over the time that was left.
+    fn over_true(&self) -> Vec<f64> {
+        let (Some((begun, _)), Some((end, _))) = (self.begun, self.left.last()) else {
+            return Vec::new();
+        };
+        let all = *end - begun;
+        let at = [0.25, 0.5, 0.75].map(|part| begun + all.mul_f64(part));
+        let first = at.map(|at| self.left.iter().find(|(now, _)| *now >= at));
+        let over = first.into_iter().flatten().map(|(now, left)| {
+            let true_s = (*end - *now).as_secs_f64();
+            left.as_secs_f64() / true_s.max(0.02 * all.as_secs_f64())
+        });
+        over.collect()
     }
 }
 
@@ -98,12 +144,11 @@ impl Case {
         })
     }
 
-    /// Returns the threshold, and the number of its cases without their repetitions.
-    fn threshold(&self) -> Result<(Threshold, usize), Box<dyn Error>> {
-        let (mut before, mut last) = (0, 0);
-        let watch = |Progress { done, .. }: Progress| {
-            before += if done < last { last } else { 0 };
-            last = done;
+    /// Returns the threshold, the number of its factors, and its estimates of the time left, over the true one.
+    fn threshold(&self) -> Result<(Threshold, usize, Vec<f64>), Box<dyn Error>> {
+        let mut estimates = Estimates::default();
+        let watch = |progress: Progress| {
+            estimates.note(progress);
             ControlFlow::Continue(())
         };
         let found = threshold(
@@ -114,7 +159,7 @@ impl Case {
             &Runner::default(),
             watch,
         )?;
-        Ok((found, before + last))
+        Ok((found, estimates.factors, estimates.over_true()))
     }
 
     fn overturns(&self, factor: f64) -> bool {
@@ -155,14 +200,16 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let mut random = Random(57);
     let (mut quotes, mut wrong, mut cases) = (0, 0, 0);
+    let mut estimates = Vec::new();
     for index in 0..all {
         let case = loop {
             if let Some(case) = Case::random(class, index % 2 == 1, &mut random) {
                 break case;
             }
         };
-        let (found, own) = case.threshold()?;
+        let (found, own, left) = case.threshold()?;
         cases += own;
+        estimates.extend(left);
         let (Some(quote), Some(_)) = (found.survives_up_to(), found.lowest_factor()) else {
             continue;
         };
@@ -186,5 +233,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let [low, high] = interval(wrong, quotes.max(1)).map(|share| 100.0 * share);
     let mean = cases as f64 / all as f64;
     println!("| {class} | {all} | {quotes} | {wrong} | {low:.1} to {high:.1} % | {mean:.0} |");
+    let good = estimates.iter().filter(|over| (0.5..=2.0).contains(*over));
+    println!(
+        "estimates of the time left within a factor of two: {} of {}",
+        good.count(),
+        estimates.len()
+    );
     Ok(())
 }

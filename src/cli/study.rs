@@ -305,15 +305,16 @@ impl StudyJob<'_> {
         self.check_names(kind, folder.filter(|_| !kind.is_history))?;
         let threads = work.threads.and_then(|n| NonZeroUsize::new(n.into()));
         let runner = Runner { threads };
-        let (mut shown, mut last) = (None, 0);
+        let (mut shown, mut last) = (None, (0, false));
         let samples_are_kept = !self.finished_parts.is_empty();
         let mut watch = |progress: Progress| {
             let Progress { done, all, .. } = progress;
-            // The history of the next model begins.
-            if done < last {
+            // The history of the next model begins, or the way up to the first collapse ends.
+            let is_open = progress.search.is_some_and(|step| step.is_open);
+            let (before, was_open) = std::mem::replace(&mut last, (done, is_open));
+            if done < before || is_open != was_open {
                 shown = None;
             }
-            last = done;
             let (display, before) = shown.get_or_insert_with(|| {
                 // Ctrl-C ends a history at once, unless samples before it listen already.
                 let display = if kind.is_history {
@@ -534,7 +535,7 @@ fn searched(done: usize, step: SearchStep, left: &str) -> String {
     };
     match step.is_open {
         true => format!("{safe}; {done} factors tried"),
-        false => format!("{safe}; {left} in this step"),
+        false => format!("{safe}; {left}"),
     }
 }
 

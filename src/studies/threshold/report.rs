@@ -586,10 +586,15 @@ impl SearchedFactors {
     /// Returns the words of a quote about factors that were not tried; empty if the structure does not move under lower ones.
     pub(in crate::studies) fn lower_in_words(&self) -> String {
         match self.lower_not_tried {
-            true => format!(", lower factors than {} not tried", plain(self.from)),
+            true => lower_in_words(self.from),
             false => String::new(),
         }
     }
+}
+
+/// Returns the words of a quote about factors below this one, which may overturn the structure.
+pub(super) fn lower_in_words(from: f64) -> String {
+    format!(", lower factors than {} not tried", plain(from))
 }
 
 fn sampled_in_words(from: &str, to: &str, stride: f64) -> String {

@@ -9,8 +9,12 @@ use crate::dynamics::Direction;
 use crate::output::page::SpotKind;
 use crate::output::{OutputError, column, csv, fields, filters};
 use crate::studies::page::{Page, PageCases, input_in_words};
-use crate::studies::quotable::SurvivorFriction;
-use crate::studies::threshold::{Factors, rounded, rounded_edge};
+use crate::studies::quotable::{
+    self, ModelAnswer, SlipWords, SurvivorFriction, directions_in_words, restitution_in_words,
+};
+use crate::studies::threshold::factors::LEAST;
+use crate::studies::threshold::report::lower_in_words;
+use crate::studies::threshold::{Factors, rounded, rounded_down, rounded_edge};
 use crate::studies::{
     CaseSummary, ModelCheck, NoAnswer, Remark, Remarks, ReportedStudy, Results, Style, no_verdict,
 };
@@ -21,6 +25,8 @@ use crate::studies::{
 pub struct Summary {
     #[serde(flatten)]
     all: CaseSummary,
+    /// The answer that may be quoted, in words: the least of all values.
+    to_quote: Option<String>,
     /// Number of values without a verdict, because their histories end too early.
     values_without_verdict: usize,
     /// The key and its values.
@@ -58,8 +64,11 @@ impl ReportedStudy for Along<'_> {
         let study = format!("threshold FILE --along {along}{}", factors.options());
         let survivors = (study.as_str(), "surviving motions");
         let friction = SurvivorFriction::of(demands, self.scenario, survivors);
+        let condition = SlipWords::of(self.scenario).condition(friction.friction_demand, &study);
+        let answer = self.answer(&rows).with_friction(condition);
         let report = Summary {
             all: CaseSummary::new(self.scenario, rows.len(), remarks, friction, limits),
+            to_quote: quotable::in_words(&[answer]),
             values_without_verdict,
             along,
             factors,
@@ -137,6 +146,54 @@ impl Along<'_> {
         cases.push(mark, words, || {
             Some(self.variant(row.value).ok()?.to_json())
         });
+    }
+
+    /// Returns the answer that may be quoted: the least strength of all values.
+    fn answer(&self, rows: &[AlongRow]) -> ModelAnswer {
+        let (scenario, along) = (self.scenario, &self.options.along);
+        let known = rows.iter().map(|row| {
+            let edge = row.edge.as_ref().ok()?;
+            Some((edge.survives_up_to? * row.peak_g?, row.value, edge))
+        });
+        let known: Option<Vec<_>> = known.collect();
+        let least = known
+            .into_iter()
+            .flatten()
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        let answer = least.map(|(safe_g, value, edge)| {
+            let stiffness = match scenario.motion.kind.is_rigid {
+                true => "",
+                false => ", other stiffness and contact unknown",
+            };
+            let directions = match scenario.ground_motion().has_horizontal() {
+                true => directions_in_words(scenario.simulation.direction, edge.direction),
+                false => "",
+            };
+            let from = self.options.factors.from.unwrap_or(LEAST);
+            let lower = edge.lower_not_tried.then(|| lower_in_words(from));
+            format!(
+                "survives up to {} g{stiffness}{directions}{}, the lowest of {} values of {} (at {})",
+                rounded_down(safe_g),
+                lower.unwrap_or_default(),
+                rows.len(),
+                along.key,
+                plain(value)
+            )
+        });
+        let edges = rows.iter().flat_map(|row| &row.edge);
+        let excess_ratio = edges.filter_map(|edge| edge.thrust_excess_ratio);
+        let variant = least.and_then(|(_, value, _)| self.variant(value).ok());
+        let answer = answer.ok_or_else(|| {
+            format!(
+                "not every value of {} certainly survives the smallest factor tried",
+                along.key
+            )
+        });
+        let is_arch = scenario.structure.has_horizontal_thrust();
+        let kind = scenario.motion.kind;
+        ModelAnswer::new(kind, is_arch, excess_ratio.reduce(f64::max), answer)
+            .with_restitution(variant.as_ref().and_then(restitution_in_words))
+            .unless_uncertain(scenario.uncertain.is_some())
     }
 
     /// Returns the values without an answer, with the reasons.
