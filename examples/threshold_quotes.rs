@@ -49,48 +49,57 @@ fn structure(class: &str, random: &mut Random) -> String {
     }
 }
 
-/// The work of an edge in the progress of a search, and the factors that bisection really tries.
-const EDGE: (usize, usize) = (30, 8);
-
-/// Estimates of the time that a search takes yet, from the first collapse on: time now, and time left.
+/// Estimates of the time that steps of a search take yet. Steps of less than 20 ms do not count.
 #[derive(Default)]
 struct Estimates {
-    /// Work at the last report, and number of tried factors.
+    /// Cases at the last report, and cases of all steps before.
     done: usize,
-    factors: usize,
-    begun: Option<(Instant, usize)>,
+    before: usize,
+    /// True if the step ends at the first collapse.
+    is_open: bool,
+    /// Beginning of the step, and its estimates: time now, and time left.
+    begun: Option<Instant>,
     left: Vec<(Instant, Duration)>,
+    over_true: Vec<f64>,
 }
 
 impl Estimates {
     fn note(&mut self, Progress { done, all, search }: Progress) {
-        let new = done.saturating_sub(self.done);
-        self.factors += if new == EDGE.0 { EDGE.1 } else { new };
-        self.done = done;
-        if search.is_some_and(|step| step.is_open) {
-            return;
+        let is_open = search.is_some_and(|step| step.is_open);
+        if done < self.done || is_open != self.is_open {
+            self.end_step();
         }
+        self.is_open = is_open;
+        self.done = done;
         let now = Instant::now();
-        let (begun, before) = *self.begun.get_or_insert((now, done));
-        if done > before {
-            let each = (now - begun).div_f64((done - before) as f64);
+        let begun = *self.begun.get_or_insert(now);
+        if done > 0 && !is_open {
+            let each = (now - begun).div_f64(done as f64);
             self.left.push((now, each.mul_f64((all - done) as f64)));
         }
     }
 
-    /// Returns the estimates at a quarter, half and three quarters of the time, over the time that was left.
-    fn over_true(&self) -> Vec<f64> {
-        let (Some((begun, _)), Some((end, _))) = (self.begun, self.left.last()) else {
-            return Vec::new();
+    /// Takes the estimates at a quarter, half and three quarters of the time, over the time that was left.
+    fn end_step(&mut self) {
+        self.before += self.done;
+        self.done = 0;
+        let left = std::mem::take(&mut self.left);
+        let (Some(begun), Some((end, _))) = (self.begun.take(), left.last()) else {
+            return;
         };
         let all = *end - begun;
+        if all < Duration::from_millis(20) {
+            return;
+        }
         let at = [0.25, 0.5, 0.75].map(|part| begun + all.mul_f64(part));
-        let first = at.map(|at| self.left.iter().find(|(now, _)| *now >= at));
-        let over = first.into_iter().flatten().map(|(now, left)| {
-            let true_s = (*end - *now).as_secs_f64();
-            left.as_secs_f64() / true_s.max(0.02 * all.as_secs_f64())
-        });
-        over.collect()
+        for at in at {
+            if let Some((now, left)) = left.iter().find(|(now, _)| *now >= at)
+                && end > now
+            {
+                self.over_true
+                    .push(left.as_secs_f64() / (*end - *now).as_secs_f64());
+            }
+        }
     }
 }
 
@@ -159,7 +168,8 @@ impl Case {
             &Runner::default(),
             watch,
         )?;
-        Ok((found, estimates.factors, estimates.over_true()))
+        estimates.end_step();
+        Ok((found, estimates.before, estimates.over_true))
     }
 
     fn overturns(&self, factor: f64) -> bool {
@@ -233,6 +243,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let [low, high] = interval(wrong, quotes.max(1)).map(|share| 100.0 * share);
     let mean = cases as f64 / all as f64;
     println!("| {class} | {all} | {quotes} | {wrong} | {low:.1} to {high:.1} % | {mean:.0} |");
+    eprintln!("{estimates:.2?}");
     let good = estimates.iter().filter(|over| (0.5..=2.0).contains(*over));
     println!(
         "estimates of the time left within a factor of two: {} of {}",

@@ -309,7 +309,7 @@ impl StudyJob<'_> {
         let samples_are_kept = !self.finished_parts.is_empty();
         let mut watch = |progress: Progress| {
             let Progress { done, all, .. } = progress;
-            // The history of the next model begins, or the way up to the first collapse ends.
+            // The history of the next model, or the next step of a search begins.
             let is_open = progress.search.is_some_and(|step| step.is_open);
             let (before, was_open) = std::mem::replace(&mut last, (done, is_open));
             if done < before || is_open != was_open {
@@ -535,7 +535,7 @@ fn searched(done: usize, step: SearchStep, left: &str) -> String {
     };
     match step.is_open {
         true => format!("{safe}; {done} factors tried"),
-        false => format!("{safe}; {left}"),
+        false => format!("{safe}; {left} in this step"),
     }
 }
 

@@ -340,6 +340,9 @@ fn outside_four_links(excess_ratio: Option<f64>) -> Option<String> {
     Some(format!("{why}; compare with free hinges"))
 }
 
+/// Begin of a quote without an answer.
+pub(super) const NO_ANSWER: &str = "to quote: no answer";
+
 /// Returns the answer that may be quoted, in words; `None` without models.
 pub fn in_words(answers: &[ModelAnswer]) -> Option<String> {
     let best = answers.iter().max_by_key(|one| one.model.rank())?;
@@ -359,6 +362,6 @@ pub fn in_words(answers: &[ModelAnswer]) -> Option<String> {
         Ok(answer) => {
             format!("to quote: {answer}{clause}, with {label}{restitution}{more}{slip}")
         }
-        Err(why) => format!("to quote: no answer with {label}: {why}"),
+        Err(why) => format!("{NO_ANSWER} with {label}: {why}"),
     })
 }

@@ -396,13 +396,13 @@ impl RecordSuite<'_> {
         let safe = safe.min(self.lowest());
         let from = self.level_below(index).filter(|from| *from < safe)?;
         let (_, request) = case(self.scenario, self.suite, record, safe, direction);
-        let histories = |levels: &[f64]| {
+        let histories = |levels: &[f64], _| {
             let ground = |level| Ok(case(self.scenario, self.suite, record, level, direction).0);
             let found = FineHistory::of_all(&*self.model, &request, levels, ground);
             Ok::<_, NoAnswer>(found)
         };
         let below = |safe| {
-            let close = histories(&[safe])?[0].close;
+            let close = histories(&[safe], 0)?[0].close;
             below_edge((safe, close), from, Fineness::LEVELS, histories)
         };
         let history = |at: f64| match own {

@@ -23,7 +23,7 @@ impl Fineness {
     /// Steps below the edge of a threshold.
     pub const THRESHOLD: Self = Self {
         step: 0.005,
-        finest_step: 0.001,
+        finest_step: 0.0005,
         reach: 0.6,
     };
     /// Steps between the levels of a suite, whose records scatter far more than an edge.
@@ -36,8 +36,11 @@ impl Fineness {
 
 /// Closeness below which a history hides no band beside it.
 const FAR: f64 = 0.3;
+/// Expected number of later histories over that of the first steps, and over that of a halving for each halving after it: for estimates of the time left.
+const LATER_OF_STEPS: f64 = 0.5;
+const LATER_OF_HALVING: f64 = 0.6;
 /// Factor on the slope of the closeness: a band is much narrower than its surroundings.
-const STEEPER: f64 = 4.0;
+const STEEPER: f64 = 8.0;
 
 /// The largest energy of a history over the energy that overturns the structure; infinite if the history does not survive.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
@@ -199,7 +202,7 @@ impl FineSearch {
 }
 
 /// Searches below a safe factor of known closeness, and not below `from`, for histories that do not survive. `histories` computes those of descending
-/// factors.
+/// factors; it is given the expected number of later ones.
 ///
 /// # Errors
 /// Those of the histories.
@@ -207,11 +210,12 @@ pub fn below_edge<E>(
     (safe, close): (f64, Closeness),
     from: f64,
     fineness: Fineness,
-    mut histories: impl FnMut(&[f64]) -> Result<Vec<FineHistory>, E>,
+    mut histories: impl FnMut(&[f64], usize) -> Result<Vec<FineHistory>, E>,
 ) -> Result<FineSearch, E> {
     let mut search = FineSearch {
         histories: vec![FineHistory::new(safe, close)],
     };
+    let mut halvings = 0_u32;
     loop {
         let tried = &search.histories;
         let lowest = search.lowest().unwrap_or(0);
@@ -223,14 +227,24 @@ pub fn below_edge<E>(
             .skip(1)
             .take_while(|factor| *factor >= least)
             .collect();
-        let next = match next.is_empty() {
-            true => middles(&tried[lowest..], fineness.finest_step),
-            false => next,
+        let (next, later) = match next.is_empty() {
+            true => {
+                halvings += 1;
+                let next = middles(&tried[lowest..], fineness.finest_step);
+                let most = libm::log2(fineness.step / fineness.finest_step);
+                let later = LATER_OF_HALVING * next.len() as f64 * (most - f64::from(halvings));
+                (next, later)
+            }
+            false => {
+                let later = LATER_OF_STEPS * next.len() as f64;
+                (next, later)
+            }
         };
         if next.is_empty() {
             return Ok(search);
         }
-        search.histories.extend(histories(&next)?);
+        let later = later.max(0.0) as usize;
+        search.histories.extend(histories(&next, later)?);
         search
             .histories
             .sort_by(|a, b| b.factor.total_cmp(&a.factor));
@@ -280,7 +294,7 @@ mod tests {
     fn search(from: f64, band: (f64, f64)) -> (Option<f64>, usize) {
         let mut histories = 0;
         let edge = (1.0, Closeness::EDGE);
-        let found = below_edge(edge, from, Fineness::THRESHOLD, |factors| {
+        let found = below_edge(edge, from, Fineness::THRESHOLD, |factors, _| {
             histories += factors.len();
             assert!(factors.iter().all(|factor| (from..1.0).contains(factor)));
             Ok::<_, Infallible>(fine(factors, |factor| close_at(factor, band)))
@@ -324,7 +338,7 @@ mod tests {
             }
         };
         let edge = (1.0, Closeness::EDGE);
-        let found = below_edge(edge, 0.1, Fineness::THRESHOLD, |factors| {
+        let found = below_edge(edge, 0.1, Fineness::THRESHOLD, |factors, _| {
             Ok::<_, Infallible>(fine(factors, hits))
         });
         let Ok(found) = found;

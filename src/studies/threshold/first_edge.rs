@@ -117,7 +117,7 @@ impl FirstEdge {
         };
         let has_second = directions.has_second(&*model, ground, &request);
         let mirrored = has_second.then(|| ground.mirrored());
-        let histories = |factors: &[f64]| {
+        let histories = |factors: &[f64], _| {
             let under = |ground: &GroundMotion| {
                 FineHistory::of_all(&*model, &request, factors, |factor| ground.scaled(factor))
             };

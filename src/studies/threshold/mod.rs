@@ -29,7 +29,7 @@ use std::ops::ControlFlow;
 
 use serde::{Deserialize, Serialize};
 
-use self::search::{OtherHistories, Shaking, Watched};
+use self::search::{OtherHistories, Shaking};
 use super::ending::{Ending, NoHistory, Verdict};
 use super::{Progress, Results, Runner, StudyError, Watch};
 use crate::dynamics::{Direction, Directions};
@@ -261,11 +261,9 @@ pub fn threshold(
         searched: &searched,
     };
     let mut values = searched.values();
-    let has_second = directions.has_second(model, ground, request);
-    let mut watched = Watched::new(&mut watch, 1 + usize::from(has_second));
-    let (mut threshold, own) = shaking.threshold(name, &values, runner, &mut watched)?;
+    let (mut threshold, own) = shaking.threshold(name, &values, runner, &mut watch)?;
     let mut others = vec![own];
-    if has_second {
+    if directions.has_second(model, ground, request) {
         let overturns = |sample: &&FactorSample| sample.verdict() == Some(Verdict::Overturns);
         if let Some(first) = threshold.samples.iter().find(overturns) {
             let below = values.partition_point(|factor| *factor < first.factor);
@@ -276,7 +274,7 @@ pub fn threshold(
             ground: &ground.mirrored(),
             ..shaking
         };
-        let (mirrored, of_mirrored) = shaking.threshold(name, &values, runner, &mut watched)?;
+        let (mirrored, of_mirrored) = shaking.threshold(name, &values, runner, &mut watch)?;
         others.push(of_mirrored);
         threshold.mirrored = Some(Box::new(mirrored));
     }

@@ -9,7 +9,7 @@ use super::{FactorSample, Survival, Threshold};
 use crate::bisection::{Width, next_middles, try_bisect};
 use crate::dynamics::Direction;
 use crate::studies::ending::{Ending, NoHistory, Verdict, answered};
-use crate::studies::{Progress, Runner, RunnerError, SearchStep, StudyError, Watch};
+use crate::studies::{Progress, Runner, RunnerError, SearchStep, StudyError};
 use crate::{GroundMotion, Model, Request, SimulationError};
 
 /// Number of bisection steps computed ahead for models that compute histories faster together: three steps are seven histories.
@@ -48,65 +48,16 @@ fn step_after(samples: &[FactorSample], is_open: bool) -> SearchStep {
     }
 }
 
-/// Histories without repetitions to which the bisection of an edge corresponds, and those of the search below the first edge: they estimate the time left.
-/// docs/evidence.md has the measured errors of the estimate.
-const WORK_OF_EDGE: usize = 30;
-const WORK_BELOW: usize = 150;
-
-/// The progress of a search in all directions: its work so far, and that expected in all, in histories without repetitions.
-pub(super) struct Watched<'w> {
-    watch: Watch<'w>,
-    done: usize,
-    expected: usize,
-    directions: usize,
-}
-
-impl<'w> Watched<'w> {
-    pub(super) fn new(watch: Watch<'w>, directions: usize) -> Self {
-        Self {
-            watch,
-            done: 0,
-            expected: 0,
-            directions,
-        }
-    }
-
-    /// Returns true before the search in the first direction.
-    const fn is_first(&self) -> bool {
-        self.done == 0
-    }
-
-    /// Expects the work of all directions, of which each tries at most this number of factors on the way up.
-    fn begin(&mut self, upwards: usize) {
-        if self.is_first() {
-            let each = upwards + WORK_OF_EDGE + WORK_BELOW;
-            self.expected = each * self.directions;
-        }
-    }
-
-    /// Ends a way up to the first collapse, of which only now the number of factors is known. The estimate begins here.
-    fn end_open(&mut self, upwards: usize) {
-        self.done = 0;
-        self.begin(upwards);
-        self.expected -= upwards;
-    }
-
-    /// Returns a function that reports the progress of a step, each of whose cases corresponds to `each` histories.
-    fn in_step(
-        &mut self,
-        step: SearchStep,
-        each: usize,
-    ) -> impl FnMut(Progress) -> ControlFlow<()> + use<'_, 'w> {
-        let before = self.done;
-        move |progress| {
-            let [done, all] = [progress.done, progress.all].map(|cases| before + each * cases);
-            self.done = done;
-            (self.watch)(Progress {
-                done,
-                all: all.max(self.expected),
-                search: Some(step),
-            })
-        }
+/// Returns a function that reports the progress of a step of a search.
+fn in_step(
+    step: SearchStep,
+    mut watch: impl FnMut(Progress) -> ControlFlow<()>,
+) -> impl FnMut(Progress) -> ControlFlow<()> {
+    move |progress| {
+        watch(Progress {
+            search: Some(step),
+            ..progress
+        })
     }
 }
 
@@ -118,10 +69,10 @@ impl Shaking<'_> {
         name: &str,
         factors: &[f64],
         runner: &Runner,
-        watched: &mut Watched<'_>,
+        mut watch: impl FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<(Threshold, OtherHistories), StudyError> {
-        let mut samples = self.upwards(factors, runner, watched)?;
-        let (mut edges, mut others) = self.bisect(&mut samples, runner, watched)?;
+        let mut samples = self.upwards(factors, runner, &mut watch)?;
+        let (mut edges, mut others) = self.bisect(&mut samples, runner, &mut watch)?;
         let first = Threshold::new(name.to_owned(), *self.searched, samples, &edges);
         let safe = Survival::of_threshold(&first).survives_up_to;
         let mut samples = first.samples;
@@ -129,7 +80,7 @@ impl Shaking<'_> {
         if let Some(safe) = safe {
             let found = (&mut samples, &mut edges);
             let tried;
-            (tried, fine) = self.below(safe, found, runner, watched)?;
+            (tried, fine) = self.below(safe, found, runner, &mut watch)?;
             others.extend(tried);
         }
         let threshold = Threshold {
@@ -151,14 +102,22 @@ impl Shaking<'_> {
         &self,
         factors: &[f64],
         runner: &Runner,
-        watched: &mut Watched<'_>,
+        mut watch: impl FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<Vec<FactorSample>, RunnerError> {
         let ends_at_collapse = self.searched.ends_at_collapse;
-        let is_open = ends_at_collapse && watched.is_first();
-        watched.begin(factors.len());
         let mut samples: Vec<FactorSample> = Vec::new();
         for some in factors.chunks(TOGETHER) {
-            let watch = watched.in_step(step_after(&samples, is_open), 1);
+            let (before, all) = (samples.len(), factors.len());
+            let step = step_after(&samples, ends_at_collapse);
+            let mut watch = in_step(step, &mut watch);
+            let watch = |progress: Progress| {
+                let done = before + progress.done;
+                watch(Progress {
+                    done,
+                    all,
+                    ..progress
+                })
+            };
             let found = self.in_parallel(some, |some| self.samples(some), runner, watch)?;
             samples.extend(found);
             let overturns = |sample: &FactorSample| sample.verdict() == Some(Verdict::Overturns);
@@ -167,9 +126,6 @@ impl Shaking<'_> {
                 samples.truncate(first + 1);
                 break;
             }
-        }
-        if is_open {
-            watched.end_open(samples.len());
         }
         Ok(samples)
     }
@@ -196,7 +152,7 @@ impl Shaking<'_> {
         &self,
         samples: &mut Vec<FactorSample>,
         runner: &Runner,
-        watched: &mut Watched<'_>,
+        watch: impl FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<(Edges, Vec<FactorSample>), RunnerError> {
         let pairs = samples.windows(2).map(|pair| (&pair[0], &pair[1]));
         let changes = pairs.filter(|(below, above)| {
@@ -205,7 +161,7 @@ impl Shaking<'_> {
         });
         let changes: Vec<Change<'_>> = changes.collect();
         let search = |index: usize| self.search(changes[index]);
-        let watch = watched.in_step(step_after(samples, false), WORK_OF_EDGE);
+        let watch = in_step(step_after(samples, false), watch);
         let found = runner.each(changes.len(), search, watch)?;
         let (mut edges, mut tried) = (Vec::new(), Vec::new());
         for found in found.into_iter().flatten() {
@@ -226,15 +182,25 @@ impl Shaking<'_> {
         safe: f64,
         (samples, edges): (&mut Vec<FactorSample>, &mut Edges),
         runner: &Runner,
-        watched: &mut Watched<'_>,
+        mut watch: impl FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<(Vec<FactorSample>, FineSearch), RunnerError> {
         let step = step_after(samples, false);
-        let histories = |factors: &[f64]| {
+        let mut before = 0;
+        let histories = |factors: &[f64], later: usize| {
             let compute = |some: &[f64]| {
                 let ground = |factor| self.ground.scaled(factor);
                 FineHistory::of_all(self.model, self.request, some, ground)
             };
-            self.in_parallel(factors, compute, runner, watched.in_step(step, 1))
+            let mut watch = in_step(step, &mut watch);
+            let found = self.in_parallel(factors, compute, runner, |progress| {
+                watch(Progress {
+                    done: before + progress.done,
+                    all: before + factors.len() + later,
+                    ..progress
+                })
+            });
+            before += factors.len();
+            found
         };
         let edge = (safe, Closeness::EDGE);
         let fine = below_edge(edge, self.searched.from, Fineness::THRESHOLD, histories)?;
@@ -249,7 +215,7 @@ impl Shaking<'_> {
         {
             lower.extend(self.samples(&[hit]));
         }
-        let (found, tried) = self.bisect(&mut lower, runner, watched)?;
+        let (found, tried) = self.bisect(&mut lower, runner, watch)?;
         edges.extend(found);
         edges.extend(fine.upper_edge());
         samples.extend(lower);

@@ -216,6 +216,13 @@ impl Along<'_> {
 }
 
 impl Summary {
+    /// Returns the condition on friction if there is no answer, which would have it.
+    fn condition_without_answer(&self) -> Option<&String> {
+        let to_quote = self.to_quote.as_deref().unwrap_or_default();
+        let condition = self.all.friction.friction_condition.as_ref();
+        condition.filter(|_| to_quote.starts_with(quotable::NO_ANSWER))
+    }
+
     /// Returns the ranges of the thresholds, and the numbers of values without one, in words.
     fn ranges(&self) -> String {
         let points = &self.values;
