@@ -243,7 +243,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     let [low, high] = interval(wrong, quotes.max(1)).map(|share| 100.0 * share);
     let mean = cases as f64 / all as f64;
     println!("| {class} | {all} | {quotes} | {wrong} | {low:.1} to {high:.1} % | {mean:.0} |");
-    eprintln!("{estimates:.2?}");
     let good = estimates.iter().filter(|over| (0.5..=2.0).contains(*over));
     println!(
         "estimates of the time left within a factor of two: {} of {}",

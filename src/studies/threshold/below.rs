@@ -34,11 +34,23 @@ impl Fineness {
     };
 }
 
+impl Fineness {
+    /// Returns the expected number of histories after a halving, counted from 1, over that of this halving.
+    fn after_halving(self, halving: u32) -> f64 {
+        let last = libm::ceil(libm::log2(self.step / (WIDE * self.finest_step)));
+        let left = (last - f64::from(halving)).max(0.0);
+        (libm::pow(GROWTH, left + 1.0) - GROWTH) / (GROWTH - 1.0)
+    }
+}
+
+/// Width of a step, over the finest one, from which it is halved.
+const WIDE: f64 = 1.5;
 /// Closeness below which a history hides no band beside it.
 const FAR: f64 = 0.3;
-/// Expected number of later histories over that of the first steps, and over that of a halving for each halving after it: for estimates of the time left.
-const LATER_OF_STEPS: f64 = 0.5;
-const LATER_OF_HALVING: f64 = 0.6;
+/// Expected number of all histories after the first steps over that of these steps, and that of a halving over that of the halving before: for estimates
+/// of the time left.
+const AFTER_STEPS: f64 = 1.0;
+const GROWTH: f64 = 1.5;
 /// Factor on the slope of the closeness: a band is much narrower than its surroundings.
 const STEEPER: f64 = 8.0;
 
@@ -231,19 +243,14 @@ pub fn below_edge<E>(
             true => {
                 halvings += 1;
                 let next = middles(&tried[lowest..], fineness.finest_step);
-                let most = libm::log2(fineness.step / fineness.finest_step);
-                let later = LATER_OF_HALVING * next.len() as f64 * (most - f64::from(halvings));
-                (next, later)
+                (next, fineness.after_halving(halvings))
             }
-            false => {
-                let later = LATER_OF_STEPS * next.len() as f64;
-                (next, later)
-            }
+            false => (next, AFTER_STEPS),
         };
         if next.is_empty() {
             return Ok(search);
         }
-        let later = later.max(0.0) as usize;
+        let later = (later * next.len() as f64) as usize;
         search.histories.extend(histories(&next, later)?);
         search
             .histories
@@ -263,7 +270,7 @@ fn middles(below: &[FineHistory], finest_step: f64) -> Vec<f64> {
         let neighbours = index.saturating_sub(1)..=(index + 1).min(last - 1);
         let steepest = neighbours.map(slope).fold(0.0, f64::max);
         let closest = close(*index).max(close(index + 1));
-        let is_wide = width(*index) > 1.5 * finest_step;
+        let is_wide = width(*index) > WIDE * finest_step;
         let reaches = closest + STEEPER * steepest * width(*index) >= 1.0;
         is_wide && below[*index].close.survives() && closest > FAR && reaches
     };
