@@ -231,7 +231,7 @@ fn a_quote_needs_its_friction() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
     let file = with(folder, "s.toml", &format!("{SLIDES}[free_hinges]\n"));
-    let factors = ["--from", "1", "--to", "2", "--stride", "0.25"];
+    let factors = ["--from", "1.4", "--to", "1.7", "--stride", "0.1"];
     let quoted = |more: &[&str]| threshold(folder, &file, &[&factors[..], more].concat());
     let own = quoted(&[]);
     let (safe, demand) = (
@@ -241,7 +241,7 @@ fn a_quote_needs_its_friction() {
     let (safe, demand) = (safe.as_f64().unwrap(), demand.as_f64().unwrap());
     assert!(demand > 0.6);
     let words = own["to_quote"].as_str().unwrap();
-    let command = "archrock threshold FILE --from 1 --to 2 --stride 0.25 --set free_hinges.friction_coefficient=0.6";
+    let command = "archrock threshold FILE --from 1.4 --to 1.7 --stride 0.1 --set free_hinges.friction_coefficient=0.6";
     assert!(
         words.contains("joints may slip before") && words.contains(command),
         "{words}"
@@ -257,13 +257,11 @@ fn a_quote_needs_its_friction() {
         let found = quoted(&["--set", &set]);
         assert_eq!(found["models"][0]["friction_demand"], Value::Null);
         assert!(!found["to_quote"].as_str().unwrap().contains("friction"));
-        found["models"][0]["survives_up_to_factor"]
-            .as_f64()
-            .unwrap()
+        found["models"][0]["survives_up_to_factor"].as_f64()
     };
     // Joints with more friction than needed slip for less than 1 % of the time, which changes the answer by less than the agreement of repetitions.
-    assert!((slipping(1.05 * demand) / safe - 1.0).abs() < 0.01);
-    assert!(slipping(0.5) < 0.8 * safe);
+    assert!((slipping(1.05 * demand).unwrap() / safe - 1.0).abs() < 0.01);
+    assert_eq!(slipping(0.5), None);
 }
 
 /// The command that a study prints for friction above 0.6 runs as printed, also with four links, whose joints cannot slip: its joints slip, and it gives

@@ -22,6 +22,7 @@ use crate::studies::quotable::{
 use crate::studies::statistics::{
     BAND, Share, ascending, ascending_weighted, band, fractile, weighted_fractile,
 };
+use crate::studies::threshold::below::Fineness;
 use crate::studies::threshold::first_edge::{FirstEdge, TREATMENTS};
 use crate::studies::threshold::{Factors, check, peak_g, rounded, rounded_down};
 
@@ -185,7 +186,7 @@ impl Question for FirstEdges {
     }
 
     fn answer(&self, scenario: &Scenario) -> Result<FirstEdge, NoAnswer> {
-        let edge = FirstEdge::of(scenario, &self.factors)?;
+        let edge = FirstEdge::of(scenario, &self.factors, Fineness::SAMPLES)?;
         match edge.is_outside_model() {
             true => Err(NoAnswer::OutsideModel),
             false => Ok(edge),

@@ -26,6 +26,12 @@ impl Fineness {
         finest_step: 0.0005,
         reach: 0.6,
     };
+    /// Steps below the edges of samples, which scatter more than an edge.
+    pub const SAMPLES: Self = Self {
+        step: 0.02,
+        finest_step: 0.002,
+        reach: 0.6,
+    };
     /// Steps between the levels of a suite, whose records scatter far more than an edge.
     pub const LEVELS: Self = Self {
         step: 0.03,
@@ -62,7 +68,7 @@ impl Closeness {
     /// Closeness at an edge.
     pub const EDGE: Self = Self(1.0);
 
-    /// Returns the closeness of a history. A structure whose barrier is unknown always counts as close.
+    /// Returns the closeness of a history. Where the barrier is unknown, as with joints that slip, steps are not halved: that would cost eight times as much.
     fn of(
         model: &dyn Model,
         request: &Request,
@@ -77,7 +83,7 @@ impl Closeness {
         let own = history.peak_over_critical().map(of_mechanism);
         Self(
             own.or_else(|| energy_over_barrier(model, request, history))
-                .unwrap_or(1.0),
+                .unwrap_or(FAR),
         )
     }
 

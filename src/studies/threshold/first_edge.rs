@@ -99,11 +99,15 @@ impl FirstEdge {
     }
 
     /// Finds the first edge of a scenario that starts from rest, among these factors on its ground motion. At every factor the worse direction of the
-    /// ground motion counts.
+    /// ground motion counts. The search below the edge has these steps.
     ///
     /// # Errors
     /// The reason why there is no answer.
-    pub fn of(scenario: &Scenario, factors: &Factors) -> Result<Self, NoAnswer> {
+    pub fn of(
+        scenario: &Scenario,
+        factors: &Factors,
+        fineness: Fineness,
+    ) -> Result<Self, NoAnswer> {
         let model = scenario.model().map_err(NoAnswer::without_model)?;
         let ground = scenario.ground_motion();
         let request = scenario.request_on(ground, &scenario.structure);
@@ -132,7 +136,7 @@ impl FirstEdge {
         };
         let below = |safe| {
             let edge = (safe, Closeness::EDGE);
-            below_edge(edge, searched.from, Fineness::THRESHOLD, histories)
+            below_edge(edge, searched.from, fineness, histories)
         };
         let edge = Self::search(&searched.values(), EDGE_WIDTH, history, below)?;
         Ok(Self {

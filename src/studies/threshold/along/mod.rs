@@ -12,6 +12,7 @@ use std::str::FromStr;
 use serde::{Deserialize, Serialize};
 
 use self::no_impact::least_without_impact;
+use super::below::Fineness;
 use super::check;
 use super::factors::Factors;
 use super::first_edge::FirstEdge;
@@ -224,7 +225,7 @@ impl Along<'_> {
             value,
             peak_g: scenario.as_ref().ok().map(|one| super::peak_g(one)),
             no_impact: self.options.no_impact.then(no_impact),
-            edge: edge.and_then(|one| FirstEdge::of(one, factors)),
+            edge: edge.and_then(|one| FirstEdge::of(one, factors, Fineness::THRESHOLD)),
         }
     }
 }
