@@ -569,6 +569,7 @@ fn results(rows: &[(&str, f64, Option<Outcome>)]) -> SuiteFragility {
         safe_below_edge: None,
         friction_below_edge: None,
         found_below: None,
+        searched_from: None,
         strength: None,
         result: outcome
             .ok_or(NoHistory::Failed("it broke".to_owned()))
@@ -617,6 +618,7 @@ fn levels_of(records: &[(&str, &str)]) -> Vec<CaseRow> {
                 safe_below_edge: None,
                 friction_below_edge: None,
                 found_below: None,
+                searched_from: None,
                 strength: None,
                 result: Ok(Ending {
                     direction: Direction::AsGiven,

@@ -592,6 +592,17 @@ fn the_offered_command_answers_without_a_restitution() {
         );
     }
     let least = safe.into_iter().fold(f64::INFINITY, f64::min);
+    // The quote is the lowest value, rounded down to four digits.
+    let words = found["to_quote"].as_str().unwrap();
+    let quoted = words.strip_prefix("to quote: survives up to ").unwrap();
+    let (quoted, conditions) = quoted.split_once(" g").unwrap();
+    let quoted: f64 = quoted.parse().unwrap();
+    assert!(quoted <= least && quoted > 0.999 * least, "{words}");
+    let lowest = conditions.contains("the lowest of 3 values of column.back.restitution (at 0.9)");
+    assert!(
+        lowest && conditions.contains("restitution 0.900 at the wall (rates, given)"),
+        "{words}"
+    );
     assert!(least < 0.6 * threshold(0.176), "{least}");
 }
 

@@ -19,7 +19,7 @@ use crate::studies::quotable::{
 };
 use crate::studies::statistics::{ascending_weighted, shares_up_to, weighted_fractile};
 use crate::studies::suite::strength::few;
-use crate::studies::suite::{case, directions, records_in_words};
+use crate::studies::suite::{OF_LEVELS, case, directions, records_in_words};
 use crate::studies::threshold::first_edge::{FirstEdge, TREATMENTS, Treatment, TriedHistory};
 use crate::studies::threshold::{Factors, rounded, rounded_range};
 use crate::studies::{Ending, ModelCheck, Results};
@@ -69,7 +69,7 @@ impl Capacities {
         let scenario = samples.scenario;
         let answer = match (both.median, both.dispersion) {
             (Some(_), Some(_)) => Ok(format!(
-                "overturns with 50 % at {} {}, dispersion {} (95 %), over {} and {} samples{}",
+                "overturns with 50 % at {} {}, dispersion {} (95 %){OF_LEVELS}, over {} and {} samples{}",
                 self.suite.measure.name(),
                 estimated(&both.median, &both.median_interval),
                 estimated(&both.dispersion, &both.dispersion_interval),

@@ -16,6 +16,7 @@ use serde_json::{Value, json};
 use self::fragility::by_intensity;
 pub use self::fragility::{Errors, Fraction, Fragility, NoFit, Observation, fit, fractions};
 pub use self::heading::Heading;
+pub(super) use self::report::OF_LEVELS;
 pub use self::report::Summary;
 pub use self::strength::{Strength, efficiencies};
 use super::ending::{Ending, NoHistory, Verdict, check_finite};
@@ -60,6 +61,9 @@ pub struct CaseRow {
     /// The lowest band or uncertain level between this level and the level below, or the onset, that a finer search found; `None` without one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub found_below: Option<FirstEdge>,
+    /// The level at which that search began, downwards; `None` without a search.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub searched_from: Option<f64>,
     /// Intensities of the unscaled record.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub strength: Option<Strength>,
@@ -212,7 +216,8 @@ impl Study for RecordSuite<'_> {
                 Measure::Scale => (level, level * own_g),
                 Measure::PeakG => (level / own_g, level),
             };
-            let found_below = self.search_below(*index, &result, edge);
+            let searched_from = self.search_from(*index, &result, edge);
+            let found_below = searched_from.and_then(|at| self.search_below(*index, &result, at));
             CaseRow {
                 record: series.name.clone(),
                 mirrored: direction == Direction::Mirrored,
@@ -229,6 +234,7 @@ impl Study for RecordSuite<'_> {
                 safe_below_edge: edge.and_then(|edge| edge.safe),
                 friction_below_edge: edge.and_then(|edge| edge.friction_demand),
                 found_below,
+                searched_from,
                 strength: Some(self.strengths[record]),
             }
         };
@@ -312,6 +318,9 @@ struct Edge {
 /// Relative width to which bisection encloses an edge: much less than the scatter of records.
 const EDGE_WIDTH: f64 = 2e-3;
 
+/// Largest strength of a finer search, over the lowest edge of all records: those next to the lowest one are searched too.
+const SEARCHED: f64 = 1.25;
+
 impl RecordSuite<'_> {
     fn heading(&self) -> Heading {
         let has_both = self.directions.len() > 1;
@@ -341,7 +350,7 @@ impl RecordSuite<'_> {
         Some(level * onset).filter(|onset| *onset < level)
     }
 
-    /// Returns the lowest edge of all records below the lowest level at which one of them overturns the structure, without repetitions; infinite if none
+    /// Returns the lowest edge of all records, without repetitions: below the lowest level at which one of them overturns the structure. Infinite if none
     /// does.
     fn lowest(&self) -> f64 {
         *self.lowest.get_or_init(|| {
@@ -353,21 +362,19 @@ impl RecordSuite<'_> {
                 history.is_ok_and(|one| Verdict::from(one.outcome) == Verdict::Overturns)
             };
             let lowest_at = |level: usize| {
-                let lowest = self.levels[level];
-                let mut indices = shakes
+                let indices = shakes
                     .clone()
                     .map(|shake| shake * self.levels.len() + level);
-                let first = indices.find(|index| overturns(*index, lowest))?;
-                let with_first = std::iter::once(first).chain(indices);
-                Some(
-                    with_first.fold(lowest, |lowest, index| match self.level_below(index) {
-                        Some(below) if below < lowest && overturns(index, lowest) => {
-                            let width = Width::Relative(EDGE_WIDTH);
-                            bisect(below, lowest, width, |level| overturns(index, level)).1
-                        }
-                        _ => lowest,
-                    }),
-                )
+                indices.fold(None, |lowest: Option<f64>, index| {
+                    let high = lowest.unwrap_or(self.levels[level]);
+                    if !overturns(index, high) {
+                        return lowest;
+                    }
+                    let below = self.level_below(index).filter(|below| *below < high);
+                    let width = Width::Relative(EDGE_WIDTH);
+                    let edge = |below| bisect(below, high, width, |at| overturns(index, at)).1;
+                    Some(below.map_or(high, edge))
+                })
             };
             (0..self.levels.len())
                 .find_map(lowest_at)
@@ -380,21 +387,34 @@ impl RecordSuite<'_> {
         Ending::of(&*self.model, &ground, &request)
     }
 
-    /// Searches finely between a level that survives, or the safe level of the edge below one that overturns, and the level below; only up to the
-    /// lowest edge of all records, because the quote is the least of them.
-    fn search_below(
+    /// Returns the level from which on a finer search goes down to the level below: a level that survives, or the safe level of the edge below one that
+    /// overturns; at most a little above the lowest edge of all records, because the quote is the least of them. `None` if there is nothing to search.
+    fn search_from(
         &self,
         index: usize,
         own: &Result<Ending, NoHistory>,
         edge: Option<Edge>,
-    ) -> Option<FirstEdge> {
-        let (level, record, direction) = self.place(index);
+    ) -> Option<f64> {
+        let (level, ..) = self.place(index);
         let survives = own
             .as_ref()
             .is_ok_and(|own| own.verdict() == Verdict::Survives);
         let safe = edge.map_or(survives.then_some(level), |edge| edge.safe)?;
-        let safe = safe.min(self.lowest());
-        let from = self.level_below(index).filter(|from| *from < safe)?;
+        let at = safe.min(SEARCHED * self.lowest());
+        self.level_below(index)
+            .is_some_and(|below| below < at)
+            .then_some(at)
+    }
+
+    /// Searches finely between this level and the level below.
+    fn search_below(
+        &self,
+        index: usize,
+        own: &Result<Ending, NoHistory>,
+        safe: f64,
+    ) -> Option<FirstEdge> {
+        let (level, record, direction) = self.place(index);
+        let from = self.level_below(index)?;
         let (_, request) = case(self.scenario, self.suite, record, safe, direction);
         let histories = |levels: &[f64], _| {
             let ground = |level| Ok(case(self.scenario, self.suite, record, level, direction).0);
@@ -602,17 +622,17 @@ impl SuiteFragility {
         [&self.fit].into_iter().chain(&self.ends).take(shown)
     }
 
-    /// Returns the first case of each record, and the intensities that the structure survives under the record; mirrored records only if their
-    /// results differ. The first overturning intensity is found by bisection, the others are levels of the suite.
-    pub fn survivals(&self) -> Vec<(&CaseRow, Survival)> {
-        let mut survivals: Vec<(&CaseRow, Survival)> = Vec::new();
+    /// Returns the cases of each record, and the intensities that the structure survives under the record; mirrored records only if their
+    /// results differ. The first overturning intensity is found by bisection and a finer search, the others are levels of the suite.
+    pub fn survivals(&self) -> Vec<(&[CaseRow], Survival)> {
+        let mut survivals: Vec<(&[CaseRow], Survival)> = Vec::new();
         for cases in self.shakes() {
             let survival = self.survival(cases);
             let case = &cases[0];
             let last = survivals.last();
-            let last = last.filter(|(other, _)| case.mirrored && other.record == case.record);
+            let last = last.filter(|(other, _)| case.mirrored && other[0].record == case.record);
             if last.is_none_or(|(_, other)| *other != survival) {
-                survivals.push((case, survival));
+                survivals.push((cases, survival));
             }
         }
         survivals
@@ -626,6 +646,12 @@ impl SuiteFragility {
             survival.insert(found);
         }
         survival
+    }
+
+    /// Returns true if lower intensities than `survives_up_to` of these cases with one sign were tried at the levels only.
+    fn is_of_levels_only(cases: &[CaseRow], survival: &Survival) -> bool {
+        let searched = cases.iter().filter_map(|case| case.searched_from);
+        survival.survives_up_to > searched.reduce(f64::max)
     }
 
     /// Returns the intensities that the structure survives under a record, without those found between the levels.

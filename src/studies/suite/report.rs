@@ -21,6 +21,13 @@ use crate::studies::threshold::rounded_range;
 use crate::studies::threshold::survival::{self, Survival};
 use crate::studies::{OutcomeCounts, Remarks, Results, Verdict, rounded, rounded_down};
 
+/// Words after intensities that are the lowest of the levels tried.
+pub const OF_LEVELS: &str = ", of the levels tried";
+
+const fn of_levels(levels_only: bool) -> &'static str {
+    if levels_only { OF_LEVELS } else { "" }
+}
+
 const FRAGILITY: &str = "fragility.json";
 
 /// Names of the files, the seal last.
@@ -124,6 +131,9 @@ struct RecordSurvival {
     record: String,
     #[serde(flatten)]
     survival: Survival,
+    /// True if intensities between the levels below `survives_up_to` were not tried, so that some of them may overturn the structure.
+    #[serde(default)]
+    levels_only: bool,
 }
 
 /// A fragility curve with its standard errors, or the reason why there is none.
@@ -218,8 +228,9 @@ impl Heading {
             counts: Counts::of(&results.cases.iter().collect::<Vec<_>>()),
             levels,
             survivals: survivals
-                .map(|(case, survival)| RecordSurvival {
-                    record: case.record_in_words(),
+                .map(|(cases, survival)| RecordSurvival {
+                    record: cases[0].record_in_words(),
+                    levels_only: SuiteFragility::is_of_levels_only(cases, &survival),
                     survival,
                 })
                 .collect(),
@@ -274,7 +285,8 @@ impl Heading {
             cases.push_history(&words, &case.result, || self.scenario_of(case));
         }
         let own = "each record acts alone, at every level, and starts from rest; the lowest overturning level of a record is bisected between \
-                   two levels, and up to the lowest edge of all records a finer search finds bands; the curve takes the records as equally likely";
+                   two levels, and a finer search below it finds bands, unless it is \"of the levels tried\"; the curve takes the records as equally \
+                   likely";
         let draw = |figure| ida::draw(figure, self, results, &cases.spots);
         let page = Page::new(self.title(), self.what.clone(), &[own], &[self.model]);
         let more: [DrawPicture<'_>; 2] = [
@@ -307,12 +319,13 @@ impl Heading {
             .filter_map(|case| case.found_below.as_ref()?.friction_demand);
         let friction_demand = demands.chain(below_edges).chain(found).reduce(f64::max);
         let excess_ratio = cases.filter_map(excess).reduce(f64::max);
-        let answer = lowest.map_or(Err("there are no cases".to_owned()), |(case, survival)| {
-            let (record, unit) = (case.record_in_words(), self.measure.unit());
+        let answer = lowest.map_or(Err("there are no cases".to_owned()), |(cases, survival)| {
+            let (record, unit) = (cases[0].record_in_words(), self.measure.unit());
             match survival.survives_up_to.map(rounded_down) {
                 Some(safe) => Ok(format!(
-                    "survives all records up to {safe}{unit} ({record}){}",
-                    directions_in_words(self.directions, Direction::AsGiven)
+                    "survives all records up to {safe}{unit} ({record}){}{}",
+                    directions_in_words(self.directions, Direction::AsGiven),
+                    of_levels(SuiteFragility::is_of_levels_only(cases, &survival))
                 )),
                 None => Err(format!(
                     "the lowest level of {record} is not certainly survived"
@@ -377,7 +390,7 @@ const fn sign(mirrored: bool) -> &'static str {
 }
 
 /// Returns the columns of `capacities.csv`, one row per record. Missing values are empty.
-fn capacity_columns<'r>() -> [Column<'r, Capacity<'r>>; 6] {
+fn capacity_columns<'r>() -> [Column<'r, Capacity<'r>>; 7] {
     let measures = MEASURES.map(|(name, _, _)| name);
     [
         column("record", |one: &Capacity<'_>| shown(one.record)),
@@ -388,6 +401,7 @@ fn capacity_columns<'r>() -> [Column<'r, Capacity<'r>>; 6] {
         column("scale", |one: &Capacity<'_>| one.scale),
         list(measures, |one: &Capacity<'_>| one.in_measures),
         column("at_most", |one: &Capacity<'_>| yes(one.at_most)),
+        column("levels_only", |one: &Capacity<'_>| yes(one.levels_only)),
     ]
 }
 
@@ -458,6 +472,11 @@ impl Summary {
         format!("{words}{at} {:.2}{interval}", one.dispersion_of_factor)
     }
 
+    /// Returns the words after the dispersion of all capacities.
+    fn of_levels(&self) -> &'static str {
+        of_levels(self.survivals.iter().any(|one| one.levels_only))
+    }
+
     /// Returns all measures but the best, in words.
     fn other_measures(&self) -> String {
         let others = self.intensity_measures.iter().skip(1);
@@ -468,7 +487,7 @@ impl Summary {
 
 impl RecordSurvival {
     fn in_words(&self, unit: &str) -> String {
-        survival::in_words(&self.survival, unit, None)
+        survival::in_words(&self.survival, unit, None) + of_levels(self.levels_only)
     }
 }
 

@@ -54,6 +54,8 @@ pub struct Capacity<'a> {
     pub scale: Option<f64>,
     /// True if the capacity may be less: the lowest level already overturns the structure, or the level below has no complete history.
     pub at_most: bool,
+    /// True if factors between the levels below it were not tried, so that some of them may overturn the structure.
+    pub levels_only: bool,
     /// The intensities at that factor, in the order of [`MEASURES`]; `None` if no level overturns the structure.
     pub in_measures: [Option<f64>; 4],
 }
@@ -93,12 +95,14 @@ impl SuiteFragility {
 
     fn capacity<'a>(&self, levels: &'a [CaseRow]) -> Capacity<'a> {
         let own = &levels[0];
+        let survival = self.survival(levels);
+        let levels_only = Self::is_of_levels_only(levels, &survival);
         let Survival {
             survives_up_to: safe,
             overturns_from: level,
             at_most,
             ..
-        } = self.survival(levels);
+        } = survival;
         let scale_of = |level: f64| own.scale * level / own.level(self.measure);
         let scale = level.map(scale_of);
         // All measures are scaled by the factor of the peak.
@@ -112,6 +116,7 @@ impl SuiteFragility {
             survives_up_to_scale: safe.map(scale_of),
             scale,
             at_most,
+            levels_only,
             in_measures: [
                 peak_g,
                 of(|strength| strength.velocity_m_s, 1),

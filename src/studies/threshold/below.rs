@@ -38,9 +38,7 @@ impl Fineness {
         finest_step: 0.002,
         reach: 0.0,
     };
-}
 
-impl Fineness {
     /// Returns the expected number of histories after a halving, counted from 1, over that of this halving.
     fn after_halving(self, halving: u32) -> f64 {
         let last = libm::ceil(libm::log2(self.step / (WIDE * self.finest_step)));
@@ -53,9 +51,9 @@ impl Fineness {
 const WIDE: f64 = 1.5;
 /// Closeness below which a history hides no band beside it.
 const FAR: f64 = 0.3;
-/// Expected number of all histories after the first steps over that of these steps, and that of a halving over that of the halving before: for estimates
-/// of the time left.
+/// Expected number of histories after the first steps, over that of these steps: for estimates of the time left.
 const AFTER_STEPS: f64 = 1.0;
+/// Expected number of histories of a halving, over that of the halving before.
 const GROWTH: f64 = 1.5;
 /// Factor on the slope of the closeness: a band is much narrower than its surroundings.
 const STEEPER: f64 = 8.0;
@@ -68,7 +66,8 @@ impl Closeness {
     /// Closeness at an edge.
     pub const EDGE: Self = Self(1.0);
 
-    /// Returns the closeness of a history. Where the barrier is unknown, as with joints that slip, steps are not halved: that would cost eight times as much.
+    /// Returns the closeness of a history. Where the barrier is unknown, as with joints that slip, steps are not halved: all of them would be, at eight
+    /// times the cost.
     fn of(
         model: &dyn Model,
         request: &Request,
@@ -305,14 +304,22 @@ mod tests {
 
     /// Returns the lowest hit and the number of histories.
     fn search(from: f64, band: (f64, f64)) -> (Option<f64>, usize) {
-        let mut histories = 0;
+        let (mut histories, mut expected) = (0, Vec::new());
         let edge = (1.0, Closeness::EDGE);
-        let found = below_edge(edge, from, Fineness::THRESHOLD, |factors, _| {
+        let found = below_edge(edge, from, Fineness::THRESHOLD, |factors, later| {
             histories += factors.len();
+            expected.push(histories + later);
             assert!(factors.iter().all(|factor| (from..1.0).contains(factor)));
             Ok::<_, Infallible>(fine(factors, |factor| close_at(factor, band)))
         });
         let Ok(found) = found;
+        // Estimates of all histories hold within a factor of 2.5, and end with their number.
+        let good = expected.iter().map(|all| *all as f64 / histories as f64);
+        assert!(
+            good.clone().all(|over| (0.4..2.5).contains(&over)),
+            "{expected:?}"
+        );
+        assert_eq!(good.next_back(), Some(1.0));
         let lowest = found.lowest();
         if let Some(lowest) = lowest {
             let (hit, survived) = found.upper_edge().unwrap();

@@ -36,7 +36,7 @@ impl Default for Factors {
 /// Largest factor of a search that no collapse ends, if the onset is below 1; otherwise over the onset.
 const MOST: f64 = 10.0;
 /// First factor where the onset is unknown.
-pub(super) const LEAST: f64 = 0.1;
+const LEAST: f64 = 0.1;
 
 impl Factors {
     /// Makes factors from `from`, at least 1e-6, to `to`, which is larger and at most 1e6. Each step is `stride` times the factor; `stride` is

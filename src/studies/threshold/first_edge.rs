@@ -30,9 +30,9 @@ pub struct FirstEdge {
     pub tried_to: f64,
     /// The smallest factor below `factor` with an uncertain verdict; `None` without uncertain verdicts.
     pub uncertain_from: Option<f64>,
-    /// True if factors below the smallest tried one may overturn the structure.
-    #[serde(default)]
-    pub lower_not_tried: bool,
+    /// The smallest tried factor if lower ones may overturn the structure; `None` if it never moves below.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tried_from: Option<f64>,
     /// True if the history at the factor after `tried_to` failed, so that nothing is known of stronger motions.
     #[serde(default)]
     pub failed_beyond: bool,
@@ -140,7 +140,7 @@ impl FirstEdge {
         };
         let edge = Self::search(&searched.values(), EDGE_WIDTH, history, below)?;
         Ok(Self {
-            lower_not_tried: searched.lower_not_tried,
+            tried_from: searched.lower_not_tried.then_some(searched.from),
             ..edge
         })
     }

@@ -585,16 +585,15 @@ impl SearchedFactors {
 
     /// Returns the words of a quote about factors that were not tried; empty if the structure does not move under lower ones.
     pub(in crate::studies) fn lower_in_words(&self) -> String {
-        match self.lower_not_tried {
-            true => lower_in_words(self.from),
-            false => String::new(),
-        }
+        lower_in_words(self.lower_not_tried.then_some(self.from))
     }
 }
 
-/// Returns the words of a quote about factors below this one, which may overturn the structure.
-pub(super) fn lower_in_words(from: f64) -> String {
-    format!(", lower factors than {} not tried", plain(from))
+/// Returns the words of a quote about factors below this one, which may overturn the structure; empty without it.
+pub(super) fn lower_in_words(from: Option<f64>) -> String {
+    from.map_or(String::new(), |from| {
+        format!(", lower factors than {} not tried", plain(from))
+    })
 }
 
 fn sampled_in_words(from: &str, to: &str, stride: f64) -> String {

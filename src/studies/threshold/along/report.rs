@@ -12,7 +12,6 @@ use crate::studies::page::{Page, PageCases, input_in_words};
 use crate::studies::quotable::{
     self, ModelAnswer, SlipWords, SurvivorFriction, directions_in_words, restitution_in_words,
 };
-use crate::studies::threshold::factors::LEAST;
 use crate::studies::threshold::report::lower_in_words;
 use crate::studies::threshold::{Factors, rounded, rounded_down, rounded_edge};
 use crate::studies::{
@@ -169,12 +168,10 @@ impl Along<'_> {
                 true => directions_in_words(scenario.simulation.direction, edge.direction),
                 false => "",
             };
-            let from = self.options.factors.from.unwrap_or(LEAST);
-            let lower = edge.lower_not_tried.then(|| lower_in_words(from));
             format!(
                 "survives up to {} g{stiffness}{directions}{}, the lowest of {} values of {} (at {})",
                 rounded_down(safe_g),
-                lower.unwrap_or_default(),
+                lower_in_words(edge.tried_from),
                 rows.len(),
                 along.key,
                 plain(value)
