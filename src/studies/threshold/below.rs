@@ -314,7 +314,7 @@ mod tests {
         });
         let Ok(found) = found;
         // Estimates of all histories hold within a factor of 2.5, and end with their number.
-        let good = expected.iter().map(|all| *all as f64 / histories as f64);
+        let mut good = expected.iter().map(|all| *all as f64 / histories as f64);
         assert!(
             good.clone().all(|over| (0.4..2.5).contains(&over)),
             "{expected:?}"
