@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
+use std::sync::{Arc, Mutex, OnceLock};
 
 /// The program with these arguments, in a folder, without a keyboard.
 pub fn command(folder: &Path, arguments: &[&str]) -> Command {
@@ -172,15 +173,35 @@ pub fn assert_shown_output_is_printed(page: &str, folder: &Path) -> usize {
     shown_output(&fs::read_to_string(page).unwrap(), folder).len()
 }
 
+/// All that a command prints, which must end well.
+#[track_caller]
+fn all_printed(folder: &Path, arguments: &[&str]) -> String {
+    let output = archrock(folder, arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    String::from_utf8(output.stdout.clone()).unwrap() + &stderr(&output)
+}
+
 /// Runs the commands of a text, as printed there, in a folder; each must print the lines shown, in their order. Returns all that they print.
+/// A threshold that two pages show is computed once.
 #[track_caller]
 pub fn shown_output(text: &str, folder: &Path) -> Vec<String> {
+    type Known = OnceLock<String>;
+    static THRESHOLDS: Mutex<BTreeMap<Vec<String>, Arc<Known>>> = Mutex::new(BTreeMap::new());
     let commands = shown_commands(text).into_iter();
     let outputs = commands.map(|(command, shown)| {
         let arguments: Vec<&str> = command.iter().map(String::as_str).collect();
-        let output = archrock(folder, &arguments);
-        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
-        let said = String::from_utf8(output.stdout.clone()).unwrap() + &stderr(&output);
+        let known = match arguments[0] {
+            "threshold" => THRESHOLDS
+                .lock()
+                .unwrap()
+                .entry(command.clone())
+                .or_default()
+                .clone(),
+            _ => Arc::default(),
+        };
+        let said = known
+            .get_or_init(|| all_printed(folder, &arguments))
+            .clone();
         let mut lines = said.lines();
         assert!(!shown.is_empty(), "{arguments:?}");
         for line in shown {

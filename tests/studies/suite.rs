@@ -1438,6 +1438,44 @@ fn spectral(duration_s: f64, period_s: f64, damping: f64) -> f64 {
     omega * omega * peak
 }
 
+/// Five levels step over the band in which the weakest record overturns a block from 0.2426 g on, as single histories say. The search finds it, for
+/// every record up to the lowest edge; other capacities are those of the levels.
+#[test]
+fn a_band_between_few_levels_is_found() {
+    let folder = folder();
+    let at = folder.path();
+    let block = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n";
+    for (peak_g, verdict) in [(0.2420, Verdict::Survives), (0.2430, Verdict::Overturns)] {
+        let record =
+            format!("{block}[ground.record]\nfile = 'records/wave-1.at2'\npeak_g = {peak_g}\n");
+        write(at, "one.toml", &record);
+        let scenario = Scenario::read(&at.join("one.toml")).unwrap();
+        let ending = Ending::of(
+            &*scenario.model().unwrap(),
+            scenario.ground_motion(),
+            &scenario.request(),
+        );
+        assert_eq!(ending.unwrap().verdict(), verdict, "{peak_g}");
+    }
+    let levels = "peaks_g = { from = 0.2, to = 3.0, count = 5, spacing = 'logarithmic' }";
+    let suite = format!("{block}[suite]\nrecords = 'records/*.at2'\n{levels}\n");
+    write(at, "s.toml", &suite);
+    done(at, &["suite", "s.toml", "--out", "o"]);
+    let found = json(&at.join("o/fragility.json"));
+    let survivals = found["survivals"].as_array().unwrap();
+    let safe = |one: &Value| one["survives_up_to"].as_f64().unwrap();
+    let weakest = safe(&survivals[0]);
+    assert!((weakest / 0.2424 - 1.0).abs() < 2e-3, "{weakest}");
+    let quote = found["to_quote"].as_str().unwrap();
+    assert!(
+        quote.contains("0.242") && !quote.contains("of the levels tried"),
+        "{quote}"
+    );
+    let of_levels = survivals.iter().map(|one| one["levels_only"] == true);
+    assert_eq!(of_levels.collect::<Vec<_>>(), [false, false, true]);
+    assert!(safe(&survivals[2]) > 0.5);
+}
+
 /// The share of peaks up to a value, for peaks in any order; overturned cases count as infinite.
 fn share(peaks: &[f64], up_to: f64) -> f64 {
     peaks.iter().filter(|peak| **peak <= up_to).count() as f64 / peaks.len() as f64
@@ -1450,12 +1488,12 @@ fn share(peaks: &[f64], up_to: f64) -> f64 {
 fn distributions_of_models_are_compared() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
-    for (name, second) in [("a", 0.9), ("b", 0.4), ("c", 0.2)] {
+    for (name, second) in [("a", 0.9), ("c", 0.2)] {
         let table = format!("0.0,0.0\n0.3,1.0\n0.6,{second}\n0.9,-0.8\n1.2,0.0\n");
         write(at, &format!("{name}.csv"), &table);
     }
     let suite = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[simulation]\nduration_s = 30.0\n[suite]\nrecords = '?.csv'\nunit = 'g'\n\
-                 both_signs = false\npeaks_g = [0.22, 0.26, 0.3, 0.35, 1.2]\n[impact]\n";
+                 both_signs = false\npeaks_g = [0.22, 0.3, 0.37]\n[impact]\n";
     write(at, "s.toml", suite);
     let said = done(
         at,
@@ -1496,22 +1534,24 @@ fn distributions_of_models_are_compared() {
             assert!((printed - known).abs() < 1e-9, "{name}: {printed} {known}");
         }
         assert_eq!(of(words).len(), finite.count());
-        assert!((6..15).contains(&of(words).len()), "{name}");
+        assert_eq!(of(words).len(), 5, "{name}");
         all.push(peaks);
     }
     let finite = || all.iter().flatten().filter(|peak| peak.is_finite());
     let apart = finite().map(|peak| (share(&all[0], *peak) - share(&all[1], *peak)).abs());
     let distance = pair["kolmogorov_distance"].as_f64().unwrap();
     assert!((apart.fold(0.0, f64::max) - distance).abs() < 1e-12);
-    // Small differences of peaks from the steps of the row may exchange two neighbours of the fifteen.
-    assert!(distance < 1.01 / 15.0, "{pair}");
+    // Small differences of peaks from the steps of the row may exchange two neighbours of the six.
+    assert!(distance < 1.01 / 6.0, "{pair}");
     for name in ["models/peaks.svg", "four/suite.csv", "free/peaks.svg"] {
         assert!(at.join("r").join(name).exists(), "{name}");
     }
 
     // The same comparison for the samples of a run, with a model that differs.
-    let run = suite.replace("[suite]\nrecords = '?.csv'\nunit = 'g'\nboth_signs = false\npeaks_g = [0.22, 0.26, 0.3, 0.35, 1.2]\n", "")
-        + "model = 'prescribed'\nrestitution = 0.3\n[ground.one_sine]\namplitude_g = 0.3\nduration_s = 0.8\n\
+    let run = suite.replace(
+        "[suite]\nrecords = '?.csv'\nunit = 'g'\nboth_signs = false\npeaks_g = [0.22, 0.3, 0.37]\n",
+        "",
+    ) + "model = 'prescribed'\nrestitution = 0.3\n[ground.one_sine]\namplitude_g = 0.3\nduration_s = 0.8\n\
            [uncertain]\nsamples = 16\n'ground.one_sine.duration_s' = { from = 0.4, to = 0.9 }\n";
     write(at, "run.toml", &run);
     let options = [

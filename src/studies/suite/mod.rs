@@ -217,7 +217,8 @@ impl Study for RecordSuite<'_> {
                 Measure::PeakG => (level / own_g, level),
             };
             let searched_from = self.search_from(*index, &result, edge);
-            let found_below = searched_from.and_then(|at| self.search_below(*index, &result, at));
+            let found_below =
+                searched_from.and_then(|at| self.search_below(*index, (&result, edge), at));
             CaseRow {
                 record: series.name.clone(),
                 mirrored: direction == Direction::Mirrored,
@@ -318,9 +319,6 @@ struct Edge {
 /// Relative width to which bisection encloses an edge: much less than the scatter of records.
 const EDGE_WIDTH: f64 = 2e-3;
 
-/// Largest strength of a finer search, over the lowest edge of all records: those next to the lowest one are searched too.
-const SEARCHED: f64 = 1.25;
-
 impl RecordSuite<'_> {
     fn heading(&self) -> Heading {
         let has_both = self.directions.len() > 1;
@@ -388,7 +386,7 @@ impl RecordSuite<'_> {
     }
 
     /// Returns the level from which on a finer search goes down to the level below: a level that survives, or the safe level of the edge below one that
-    /// overturns; at most a little above the lowest edge of all records, because the quote is the least of them. `None` if there is nothing to search.
+    /// overturns; at most the lowest edge of all records, because the quote is the least of them. `None` if there is nothing to search.
     fn search_from(
         &self,
         index: usize,
@@ -400,22 +398,27 @@ impl RecordSuite<'_> {
             .as_ref()
             .is_ok_and(|own| own.verdict() == Verdict::Survives);
         let safe = edge.map_or(survives.then_some(level), |edge| edge.safe)?;
-        let at = safe.min(SEARCHED * self.lowest());
+        let at = safe.min(self.lowest());
         self.level_below(index)
             .is_some_and(|below| below < at)
             .then_some(at)
     }
 
-    /// Searches finely between this level and the level below.
+    /// Searches finely from `at` down to the level below. `None` if nothing is found; or if `at` does not survive, nor does the level below.
     fn search_below(
         &self,
         index: usize,
-        own: &Result<Ending, NoHistory>,
-        safe: f64,
+        (own, edge): (&Result<Ending, NoHistory>, Option<Edge>),
+        at: f64,
     ) -> Option<FirstEdge> {
         let (level, record, direction) = self.place(index);
         let from = self.level_below(index)?;
-        let (_, request) = case(self.scenario, self.suite, record, safe, direction);
+        let first = match at == level {
+            true => own.clone(),
+            false => self.ending(record, at, direction),
+        };
+        let survives = first.as_ref().ok()?.verdict() == Verdict::Survives;
+        let (_, request) = case(self.scenario, self.suite, record, at, direction);
         let histories = |levels: &[f64], _| {
             let ground = |level| Ok(case(self.scenario, self.suite, record, level, direction).0);
             let found = FineHistory::of_all(&*self.model, &request, levels, ground);
@@ -425,11 +428,19 @@ impl RecordSuite<'_> {
             let close = histories(&[safe], 0)?[0].close;
             below_edge((safe, close), from, Fineness::LEVELS, histories)
         };
-        let history = |at: f64| match own {
-            Ok(own) if at == level => Ok(own.clone().into()),
-            _ => self.ending(record, at, direction).map(TriedHistory::from),
+        let history = |strength: f64| match strength == at {
+            true => first.clone().map(TriedHistory::from),
+            false => self
+                .ending(record, strength, direction)
+                .map(TriedHistory::from),
         };
-        let found = FirstEdge::search(&[safe], EDGE_WIDTH, history, below).ok()?;
+        let strengths = &[from, at][usize::from(survives)..];
+        let mut found = FirstEdge::search(strengths, EDGE_WIDTH, history, below).ok()?;
+        if !survives {
+            found.survives_up_to?;
+            // The structure survives again from the safe level above on.
+            found.tried_to = edge.and_then(|edge| edge.safe).unwrap_or(level);
+        }
         (found.factor.is_some() || found.uncertain_from.is_some()).then_some(found)
     }
 

@@ -34,8 +34,8 @@ impl Fineness {
     };
     /// Steps between the levels of a suite, whose records scatter far more than an edge.
     pub const LEVELS: Self = Self {
-        step: 0.03,
-        finest_step: 0.002,
+        step: 0.01,
+        finest_step: 0.0015,
         reach: 0.0,
     };
 
