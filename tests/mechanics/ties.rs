@@ -117,8 +117,9 @@ fn extreme_push(row: &Row, sway: Sway, bounds: &[[f64; 2]], sign: f64) -> Option
             for (anchor, towards) in tie.ends.iter().zip([tie.along(), -tie.along()]) {
                 if anchor.block == Some(index) {
                     let pull = wrench(anchor.at_m, towards);
-                    for axis in 0..3 {
-                        by_unknown[4 + number][axis] += pull[axis];
+                    let sums = by_unknown[4 + number].iter_mut();
+                    for (sum, pull) in sums.zip(&pull) {
+                        *sum += pull;
                     }
                 }
             }

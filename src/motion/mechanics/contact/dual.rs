@@ -80,10 +80,10 @@ impl ContactProgram {
         let mut fastest = None;
         let mut least = -tolerance;
         for (index, (pin, rates)) in self.factor.pins.iter().zip(&self.answer.rates).enumerate() {
-            for edge in 0..2 {
+            for (edge, rate) in rates.iter().enumerate() {
                 let free = touching[pin.joint][edge] && !self.active[pin.joint][edge];
-                if free && rates[edge] < least {
-                    least = rates[edge];
+                if free && *rate < least {
+                    least = *rate;
                     fastest = Some((index, edge));
                 }
             }
