@@ -1488,12 +1488,12 @@ fn share(peaks: &[f64], up_to: f64) -> f64 {
 fn distributions_of_models_are_compared() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
-    for (name, second) in [("a", 0.9), ("c", 0.2)] {
+    for (name, second) in [("a", 0.9), ("b", 0.4), ("c", 0.2)] {
         let table = format!("0.0,0.0\n0.3,1.0\n0.6,{second}\n0.9,-0.8\n1.2,0.0\n");
         write(at, &format!("{name}.csv"), &table);
     }
     let suite = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[simulation]\nduration_s = 30.0\n[suite]\nrecords = '?.csv'\nunit = 'g'\n\
-                 both_signs = false\npeaks_g = [0.22, 0.3, 0.37]\n[impact]\n";
+                 both_signs = false\npeaks_g = [0.22, 0.26, 0.3, 0.35, 1.2]\n[impact]\n";
     write(at, "s.toml", suite);
     let said = done(
         at,
@@ -1534,24 +1534,22 @@ fn distributions_of_models_are_compared() {
             assert!((printed - known).abs() < 1e-9, "{name}: {printed} {known}");
         }
         assert_eq!(of(words).len(), finite.count());
-        assert_eq!(of(words).len(), 5, "{name}");
+        assert!((6..15).contains(&of(words).len()), "{name}");
         all.push(peaks);
     }
     let finite = || all.iter().flatten().filter(|peak| peak.is_finite());
     let apart = finite().map(|peak| (share(&all[0], *peak) - share(&all[1], *peak)).abs());
     let distance = pair["kolmogorov_distance"].as_f64().unwrap();
     assert!((apart.fold(0.0, f64::max) - distance).abs() < 1e-12);
-    // Small differences of peaks from the steps of the row may exchange two neighbours of the six.
-    assert!(distance < 1.01 / 6.0, "{pair}");
+    // Small differences of peaks from the steps of the row may exchange two neighbours of the fifteen.
+    assert!(distance < 1.01 / 15.0, "{pair}");
     for name in ["models/peaks.svg", "four/suite.csv", "free/peaks.svg"] {
         assert!(at.join("r").join(name).exists(), "{name}");
     }
 
     // The same comparison for the samples of a run, with a model that differs.
-    let run = suite.replace(
-        "[suite]\nrecords = '?.csv'\nunit = 'g'\nboth_signs = false\npeaks_g = [0.22, 0.3, 0.37]\n",
-        "",
-    ) + "model = 'prescribed'\nrestitution = 0.3\n[ground.one_sine]\namplitude_g = 0.3\nduration_s = 0.8\n\
+    let run = suite.replace("[suite]\nrecords = '?.csv'\nunit = 'g'\nboth_signs = false\npeaks_g = [0.22, 0.26, 0.3, 0.35, 1.2]\n", "")
+        + "model = 'prescribed'\nrestitution = 0.3\n[ground.one_sine]\namplitude_g = 0.3\nduration_s = 0.8\n\
            [uncertain]\nsamples = 16\n'ground.one_sine.duration_s' = { from = 0.4, to = 0.9 }\n";
     write(at, "run.toml", &run);
     let options = [
