@@ -1473,7 +1473,50 @@ fn a_band_between_few_levels_is_found() {
     );
     let of_levels = survivals.iter().map(|one| one["levels_only"] == true);
     assert_eq!(of_levels.collect::<Vec<_>>(), [false, false, true]);
+    let table = Table::read(at.join("o/capacities.csv"));
+    let of_levels = table.rows.iter().map(|row| row["levels_only"].to_owned());
+    assert_eq!(of_levels.collect::<Vec<_>>(), ["no", "no", "yes"]);
     assert!(safe(&survivals[2]) > 0.5);
+}
+
+/// The edge of a record may lie in a band of another one that survives both levels: the search of the other goes down from there, and the band ends
+/// below its level.
+#[test]
+fn a_search_may_begin_in_a_band() {
+    let folder = folder();
+    let at = folder.path();
+    for name in ["wave-2.at2", "wave-5.at2"] {
+        fs::copy(scenarios().join("records").join(name), at.join(name)).unwrap();
+    }
+    let suite = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[suite]\nscales = [0.667, 1.312]\n[[suite.record]]\nfile = 'wave-5.at2'\n\
+                 [[suite.record]]\nfile = 'wave-2.at2'\nscale = 0.8\n";
+    write(at, "s.toml", suite);
+    done(at, &["suite", "s.toml", "--out", "o"]);
+    let found = json(&at.join("o/fragility.json"));
+    let survival = &found["survivals"][0];
+    assert_eq!(survival["levels_only"], false);
+    let from = survival["overturns_from"].as_f64().unwrap();
+    let scenario = |scale: f64| {
+        let text = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[ground.record]\nfile = 'wave-5.at2'";
+        write(at, "one.toml", &format!("{text}\nscale = {scale}\n"));
+        Scenario::read(&at.join("one.toml")).unwrap()
+    };
+    // Single histories: the edge, and the band above it.
+    for (scale, verdict) in [
+        (0.998 * from, Verdict::Survives),
+        (from, Verdict::Overturns),
+        (1.01 * from, Verdict::Overturns),
+        (1.312, Verdict::Survives),
+    ] {
+        let one = scenario(scale);
+        let ending = Ending::of(&*one.model().unwrap(), one.ground_motion(), &one.request());
+        assert_eq!(ending.unwrap().verdict(), verdict, "{scale}");
+    }
+    let last = survival["ranges"].as_array().unwrap().last().unwrap();
+    assert_eq!(
+        [&last["verdict"], &last["from"]],
+        [&Value::from("survives"), &Value::from(1.312)]
+    );
 }
 
 /// The share of peaks up to a value, for peaks in any order; overturned cases count as infinite.
