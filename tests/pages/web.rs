@@ -5,7 +5,7 @@ use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::{TcpListener, TcpStream};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::process::Stdio;
+use std::process::{Command, Stdio};
 use std::sync::mpsc::{self, Sender};
 use std::thread;
 use std::time::Duration;
@@ -182,10 +182,19 @@ fn assert_page(part: &str, single: bool, settings: &[&str], data: &Value, least:
     let Some((mut command, _profile)) = browser(&all, &opened) else {
         return;
     };
+    // Debian's command is a script that starts the browser, so its whole group of processes is ended.
+    #[cfg(unix)]
+    std::os::unix::process::CommandExt::process_group(&mut command, 0);
     let output = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn();
     let mut browser = output.unwrap();
     let verdict = receiver.recv_timeout(Duration::from_secs(300));
-    browser.kill().unwrap();
+    if cfg!(unix) {
+        let group = format!("-{}", browser.id());
+        let kill = Command::new("kill").args(["-KILL", "--", &group]).status();
+        assert!(kill.unwrap().success());
+    } else {
+        browser.kill().unwrap();
+    }
     browser.wait().unwrap();
     let verdict: Value =
         serde_json::from_str(&verdict.expect("the page sends its verdict")).unwrap();

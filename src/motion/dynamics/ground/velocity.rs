@@ -1,5 +1,7 @@
 //! Velocity of the ground: exact integral of its acceleration.
 
+use std::cell::Cell;
+
 use nalgebra::Vector2;
 
 use super::motion::GroundMotion;
@@ -11,6 +13,8 @@ pub struct GroundVelocity<'a> {
     ground: &'a GroundMotion,
     /// Velocities at the starts of the pieces, in m/s.
     at_starts_m_s: Vec<Vector2<f64>>,
+    /// Piece of the last time: times ascend in small steps, and a record has thousands of pieces.
+    last: Cell<usize>,
 }
 
 impl<'a> GroundVelocity<'a> {
@@ -29,13 +33,22 @@ impl<'a> GroundVelocity<'a> {
         Self {
             ground,
             at_starts_m_s,
+            last: Cell::new(0),
         }
     }
 
     /// Returns the velocity in m/s, horizontal and vertical (positive to the right and upwards), at a time not before the start. For feet that move
     /// differently it is that of the left foot.
     pub fn at(&self, time_s: f64) -> Vector2<f64> {
-        let index = self.ground.piece_at(time_s);
+        let last = self.last.get();
+        let is_near = |index: &usize| {
+            let starts = |at: usize| self.ground.pieces.get(at).map(|piece| piece.start_s);
+            let later = starts(index + 1).is_none_or(|start_s| time_s < start_s);
+            later && starts(*index).is_some_and(|start_s| start_s <= time_s)
+        };
+        let near = [last, last + 1].into_iter().find(is_near);
+        let index = near.unwrap_or_else(|| self.ground.piece_at(time_s));
+        self.last.set(index);
         self.at_starts_m_s[index] + self.ground.pieces[index].velocity_gained_m_s(time_s)
     }
 
