@@ -51,7 +51,9 @@ impl Fineness {
 const WIDE: f64 = 1.5;
 /// Closeness below which a history hides no band beside it.
 const FAR: f64 = 0.3;
-/// Expected number of histories after the first steps, over that of these steps: for estimates of the time left.
+/// Number of first steps whose histories are computed together: they tell how many are halved later.
+const BATCH: usize = 24;
+/// Expected number of halved steps, over that of first steps, before any is known: for estimates of the time left.
 const AFTER_STEPS: f64 = 1.0;
 /// Expected number of histories of a halving, over that of the halving before.
 const GROWTH: f64 = 1.5;
@@ -240,23 +242,29 @@ pub fn below_edge<E>(
         let last = tried[tried.len() - 1].factor;
         let steps =
             std::iter::successors(Some(last), |factor| Some(factor / (1.0 + fineness.step)));
-        let next: Vec<f64> = steps
+        let mut next: Vec<f64> = steps
             .skip(1)
             .take_while(|factor| *factor >= least)
             .collect();
-        let (next, later) = match next.is_empty() {
-            true => {
-                halvings += 1;
-                let next = middles(&tried[lowest..], fineness.finest_step);
-                (next, fineness.after_halving(halvings))
-            }
-            false => (next, AFTER_STEPS),
-        };
+        let mut later = 0.0;
+        let halved = || middles(&tried[lowest..], fineness.finest_step);
+        if next.is_empty() {
+            halvings += 1;
+            next = halved();
+            later = fineness.after_halving(halvings) * next.len() as f64;
+        } else {
+            let steps = next.len();
+            next.truncate(BATCH);
+            let halved = match tried.len() {
+                ..=BATCH => AFTER_STEPS * steps as f64,
+                _ => (1.0 + fineness.after_halving(1)) * halved().len() as f64,
+            };
+            later += halved + (steps - next.len()) as f64;
+        }
         if next.is_empty() {
             return Ok(search);
         }
-        let later = (later * next.len() as f64) as usize;
-        search.histories.extend(histories(&next, later)?);
+        search.histories.extend(histories(&next, later as usize)?);
         search
             .histories
             .sort_by(|a, b| b.factor.total_cmp(&a.factor));
