@@ -13,8 +13,8 @@ use archrock::{
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let column = Column::new(4.0, 0.8)?;
     let rocking = RockingColumn::new(&column, ImpactModel::MaxRestitution)?;
-    let drums = FreeHinges::of_column(&column.with_drums(2)?)?;
-    let models: [(&str, &dyn Model); 2] = [("one block", &rocking), ("two drums", &drums)];
+    let drums = FreeHinges::of_column(&column.with_drums(4)?)?;
+    let models: [(&str, &dyn Model); 2] = [("one block", &rocking), ("four drums", &drums)];
     let ground = Pulse::OneSine.lasting_s(0.5).horizontal_m_s2(0.2 * 9.81)?;
     // From the pulse itself to twenty times as strong, in strides of 5 %.
     let (factors, request) = (Factors::new(1.0, 20.0, 0.05)?, Request::default());

@@ -51,9 +51,9 @@ impl Fineness {
 const WIDE: f64 = 1.5;
 /// Closeness below which a history hides no band beside it.
 const FAR: f64 = 0.3;
-/// Number of first steps whose histories are computed together: they tell how many are halved later.
-const BATCH: usize = 24;
-/// Expected number of halved steps, over that of first steps, before any is known: for estimates of the time left.
+/// Number of first steps in a group. After each group, the steps that will be halved are counted.
+const GROUP: usize = 24;
+/// Expected number of histories after the first steps, over that of first steps: for estimates of the time left before the first group is computed.
 const AFTER_STEPS: f64 = 1.0;
 /// Expected number of histories of a halving, over that of the halving before.
 const GROWTH: f64 = 1.5;
@@ -246,21 +246,20 @@ pub fn below_edge<E>(
             .skip(1)
             .take_while(|factor| *factor >= least)
             .collect();
-        let mut later = 0.0;
         let halved = || middles(&tried[lowest..], fineness.finest_step);
-        if next.is_empty() {
+        let later = if next.is_empty() {
             halvings += 1;
             next = halved();
-            later = fineness.after_halving(halvings) * next.len() as f64;
+            fineness.after_halving(halvings) * next.len() as f64
         } else {
             let steps = next.len();
-            next.truncate(BATCH);
-            let halved = match tried.len() {
-                ..=BATCH => AFTER_STEPS * steps as f64,
+            next.truncate(GROUP);
+            let after_steps = match tried.len() {
+                ..=GROUP => AFTER_STEPS * steps as f64,
                 _ => (1.0 + fineness.after_halving(1)) * halved().len() as f64,
             };
-            later += halved + (steps - next.len()) as f64;
-        }
+            after_steps + (steps - next.len()) as f64
+        };
         if next.is_empty() {
             return Ok(search);
         }

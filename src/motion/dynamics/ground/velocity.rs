@@ -13,7 +13,7 @@ pub struct GroundVelocity<'a> {
     ground: &'a GroundMotion,
     /// Velocities at the starts of the pieces, in m/s.
     at_starts_m_s: Vec<Vector2<f64>>,
-    /// Piece of the last time: times ascend in small steps, and a record has thousands of pieces.
+    /// Piece of the latest time: times ascend in small steps, so the next one is mostly in the same piece or the next.
     last: Cell<usize>,
 }
 
