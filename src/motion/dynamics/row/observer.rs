@@ -385,7 +385,7 @@ impl<'a> MotionObserver<'a> {
         sway: f64,
     ) {
         let largest = self.note_peaks(rotations_rad);
-        if potential >= self.potential {
+        if potential > self.potential {
             self.rising = true;
         } else if self.rising {
             self.rising = false;
