@@ -186,7 +186,7 @@ impl Question for FirstEdges {
     }
 
     fn answer(&self, scenario: &Scenario) -> Result<FirstEdge, NoAnswer> {
-        let edge = FirstEdge::of(scenario, &self.factors, Fineness::SAMPLES)?;
+        let edge = FirstEdge::of(scenario, &self.factors, |_| Fineness::SAMPLES)?;
         match edge.is_outside_model() {
             true => Err(NoAnswer::OutsideModel),
             false => Ok(edge),

@@ -13,7 +13,7 @@ use crate::output::{Column, column};
 use crate::studies::ending::columns::yes;
 use crate::studies::ending::{Ending, NoAnswer, NoHistory, Verdict};
 use crate::studies::statistics::ascending_weighted;
-use crate::{GroundMotion, Scenario, SimulationError};
+use crate::{GroundMotion, Model, Scenario, SimulationError};
 
 /// The strengths of a ground motion that a structure certainly survives, and the smallest one that overturns it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -99,14 +99,14 @@ impl FirstEdge {
     }
 
     /// Finds the first edge of a scenario that starts from rest, among these factors on its ground motion. At every factor the worse direction of the
-    /// ground motion counts. The search below the edge has these steps.
+    /// ground motion counts. The search below the edge has the steps for its model.
     ///
     /// # Errors
     /// The reason why there is no answer.
     pub fn of(
         scenario: &Scenario,
         factors: &Factors,
-        fineness: Fineness,
+        fineness: impl Fn(&dyn Model) -> Fineness,
     ) -> Result<Self, NoAnswer> {
         let model = scenario.model().map_err(NoAnswer::without_model)?;
         let ground = scenario.ground_motion();
@@ -136,7 +136,7 @@ impl FirstEdge {
         };
         let below = |safe| {
             let edge = (safe, Closeness::EDGE);
-            below_edge(edge, searched.from, fineness, histories)
+            below_edge(edge, searched.from, fineness(&*model), histories)
         };
         let edge = Self::search(&searched.values(), EDGE_WIDTH, history, below)?;
         Ok(Self {

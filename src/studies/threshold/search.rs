@@ -203,7 +203,12 @@ impl Shaking<'_> {
             found
         };
         let edge = (safe, Closeness::EDGE);
-        let fine = below_edge(edge, self.searched.from, Fineness::THRESHOLD, histories)?;
+        let fine = below_edge(
+            edge,
+            self.searched.from,
+            Fineness::of_threshold(self.model),
+            histories,
+        )?;
         let mut lower: Vec<FactorSample> = Vec::new();
         let repeated = |factor: f64| {
             lower.splice(0..0, self.samples(&[factor]));

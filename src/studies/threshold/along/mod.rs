@@ -225,7 +225,7 @@ impl Along<'_> {
             value,
             peak_g: scenario.as_ref().ok().map(|one| super::peak_g(one)),
             no_impact: self.options.no_impact.then(no_impact),
-            edge: edge.and_then(|one| FirstEdge::of(one, factors, Fineness::THRESHOLD)),
+            edge: edge.and_then(|one| FirstEdge::of(one, factors, Fineness::of_threshold)),
         }
     }
 }
