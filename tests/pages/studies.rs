@@ -481,7 +481,7 @@ fn hinges_of_limit_analysis_are_marked() {
     assert!(output.status.success(), "{}", stderr(&output));
     let html = fs::read_to_string(at.join("flat/limit.html")).unwrap();
     assert!(
-        html.contains("<p id=\"outcome\">no push to the right moves it without sliding; no push")
+        html.contains("<p id=\"outcome\">no push to the right moves it without sliding: a straight line fits into it")
     );
     assert!(!html.contains("spot hinge"));
     assert_eq!(data_of(&html)["cases"].as_array().unwrap().len(), 1);

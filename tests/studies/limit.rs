@@ -6,7 +6,7 @@
 use std::fs;
 
 use crate::common;
-use crate::common::program::{printed, scenarios};
+use crate::common::program::{archrock, printed, scenarios};
 use crate::common::prose::shows;
 use crate::common::{Random, assert_hinges, climb, parsed, ring};
 use archrock::Sway;
@@ -720,4 +720,71 @@ fn the_friction_of_four_links_is_that_of_their_thrust_line() {
     let line = said.lines().find(|line| line.contains("friction")).unwrap();
     shows(line, &[continuous[0]]);
     assert!(line.contains("to either side"), "{line}");
+}
+
+/// No push moves an arch into which a straight line fits. In an even number of voussoirs that line is level: it passes below the extrados of the
+/// springings and above the intrados of the crown. Any other such arch has a positive push of first motion.
+#[test]
+fn no_push_moves_an_arch_into_which_a_straight_line_fits() {
+    let mut random = Random(58);
+    let mut straight = 0;
+    for _ in 0..120 {
+        let (thickness, embrace_deg) = (random.within(0.06, 0.4), random.within(8.0, 110.0));
+        let half = 0.5 * f64::to_radians(embrace_deg);
+        let room = (1.0 + 0.5 * thickness) * half.cos() - (1.0 - 0.5 * thickness);
+        let voussoirs = 2 * (2 + random.pick(40));
+        let found = numbers_of(&format!(
+            "[arch]\nmean_radius_m = 3.0\nthickness_ratio = {thickness}\nembrace_deg = {embrace_deg}\n\
+             voussoirs = {voussoirs}\n[free_hinges]\n"
+        ));
+        for side in ["right", "left"] {
+            let push_g = found["incipient_acceleration_g"][side].as_f64();
+            let case = format!("{thickness} {embrace_deg} {voussoirs}: {push_g:?}");
+            assert_eq!(push_g.is_none(), room > 0.0, "{case}");
+            assert!(push_g.is_none_or(|push_g| push_g > 0.0), "{case}");
+            assert!(
+                room < 0.0 || found["friction_demand"][side].is_null(),
+                "{case}"
+            );
+        }
+        assert_eq!(found["no_push_because"].is_string(), room > 0.0);
+        straight += usize::from(room > 0.0);
+    }
+    assert!((30..90).contains(&straight), "{straight}");
+}
+
+/// Every command says so of such an arch, of 150 voussoirs: `limit` once printed pushes of -6.50 and -16.7 g.
+#[test]
+fn commands_agree_that_no_push_moves_a_flat_arch() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = "[arch]\nmean_radius_m = 1.0\nthickness_ratio = 0.2\nembrace_deg = 10.0\nvoussoirs = 150\n[free_hinges]\n\
+                [demand]\nsoil = 'B'\ntopography = 'T1'\n[demand.slv]\nag_g = 0.25\nf0 = 2.4\ntc_star_s = 0.35\n\
+                [ground.rectangular]\namplitude_g = 2.0\nduration_s = 0.2\n";
+    fs::write(folder.path().join("flat.toml"), text).unwrap();
+    let of = |command: &str| {
+        let output = archrock(folder.path(), &[command, "flat.toml"]);
+        String::from_utf8([output.stdout, output.stderr].concat()).unwrap()
+    };
+    let limit = of("limit");
+    for side in ["right", "left"] {
+        let line =
+            format!("no push to the {side} moves it without sliding: a straight line fits into it");
+        assert!(limit.contains(&line), "{limit}");
+    }
+    let run = of("run");
+    assert!(
+        run.contains("never moves: no push moves it without sliding"),
+        "{run}"
+    );
+    for (command, reason) in [
+        ("capacity", "no horizontal push moves it"),
+        ("verify", "no push moves it"),
+        ("threshold", "no push moves the structure"),
+    ] {
+        let refused = of(command);
+        assert!(
+            refused.starts_with("error: flat.toml: ") && refused.contains(reason),
+            "{refused}"
+        );
+    }
 }

@@ -9,10 +9,14 @@ use nalgebra::{DMatrix, DVector, Vector2};
 use thiserror::Error;
 
 use super::contact::{ContactError, ContactProgram, Load};
-use crate::mechanics::{Edge, Placement, Row, RowState, Sway, TieLine, Twist};
+use super::geometry::hull::are_apart;
+use crate::mechanics::{Edge, Joint, Placement, Row, RowState, Supports, Sway, TieLine, Twist};
 
 /// Velocities below this fraction of those without contact count as zero.
 const STANDSTILL: f64 = 1e-9;
+/// Distance between the hulls of all intrados and of all extrados corners, over the thickness of the thinnest joint, from which on a straight line
+/// fits between them.
+const STRAIGHT_RATIO: f64 = 1e-9;
 
 /// Joint that opens in a mechanism.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,8 +75,23 @@ pub(crate) fn collapse_mechanism_at(
     Ok(moves.map(|_| trial.openings()))
 }
 
+/// Returns whether a straight line fits into an undeformed row between two supports, inside all its joints. No load moves such a row without sliding:
+/// the thrust along that line can be as large as the load needs.
+///
+/// There is no mechanism either. Its hinges would turn by `w > 0` at the intrados and by `-w` at the extrados, and the supports stay, so that both
+/// kinds have the same sum of `w` and of `w` times position: a point in both convex hulls. Between these is the line.
+pub fn is_straight(row: &Row) -> bool {
+    let [intrados, extrados] = [Edge::Intrados, Edge::Extrados].map(|edge| {
+        let corners = row.joints.iter().map(|joint| joint.corner_m(edge));
+        corners.collect::<Vec<_>>()
+    });
+    let thicknesses_m = row.joints.iter().map(Joint::thickness_m);
+    let thinnest_m = thicknesses_m.fold(f64::INFINITY, f64::min);
+    row.supports == Supports::Both && are_apart([&intrados, &extrados], STRAIGHT_RATIO * thinnest_m)
+}
+
 /// Returns the least horizontal ground acceleration at which the undeformed row starts to sway to a side, with the tie forces at rest. `None` if no
-/// push moves the row without sliding.
+/// push moves the row without sliding, as where a straight line fits into it.
 ///
 /// # Errors
 /// When the row does not stand, or the velocities of a trial are not found.
@@ -90,6 +109,10 @@ pub fn onset_at(
     stance: &RowState,
     sway: Sway,
 ) -> Result<Option<RowOnset>, StabilityError> {
+    let placement = &stance.placement;
+    if placement.open_corners() == 0 && is_straight(row) {
+        return Ok(None);
+    }
     let mut trial = Trial::new(row, stance);
     if trial.moves(Vector2::new(0.0, -1.0), true)?.is_some() {
         return Err(StabilityError::CannotStand(trial.openings()));

@@ -11,9 +11,12 @@ pub use self::report::{
 };
 use super::results::{PrintedResult, StudyError};
 use crate::mechanics::friction::{self, FrictionOnset};
-use crate::mechanics::stability::{limit_with_yielding_ties, onset, onset_at};
+use crate::mechanics::stability::{is_straight, limit_with_yielding_ties, onset, onset_at};
 use crate::mechanics::{Follower, FrictionError, Movements, RowOnset, Sides, StabilityError};
 use crate::{FourLinkError, Row, RowModelError, Scenario, Sway};
+
+/// The reason why no push starts an arch in which limit analysis has no mechanism.
+const STRAIGHT: &str = "a straight line fits into it, along which any thrust may act";
 
 /// Computes the onset of motion of the structure of a scenario, to both sides, and the coefficient of friction that it needs; with slipping joints,
 /// also the onset for their coefficient of friction.
@@ -93,6 +96,7 @@ fn of_row(scenario: &Scenario, row: &Row) -> Result<Summary, StabilityError> {
     let mechanism = onsets.map(|onset| open_joints(row, onset.as_ref()));
     let mut summary = Summary {
         wall_behind,
+        no_push_because: is_straight(row).then(|| STRAIGHT.to_owned()),
         ..Summary::new(starts_g, mechanism, gravity_m_s2)
     };
     if !row.bars().is_empty() {

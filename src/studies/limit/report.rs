@@ -23,6 +23,9 @@ pub struct Summary {
     pub incipient_acceleration_g: Sides<Option<f64>>,
     /// Ground acceleration that starts the structure, in m/s2; null if no push starts it.
     pub incipient_acceleration_m_s2: Sides<Option<f64>>,
+    /// The reason why no push starts the structure; absent if one does, to one side at least.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub no_push_because: Option<String>,
     /// Hinges of the mechanism that starts, from left to right.
     pub mechanism: Sides<Vec<MechanismHinge>>,
     /// Smallest coefficient of friction with which no joint slides at rest, or before this mechanism starts; null if no push starts the structure, or the
@@ -285,7 +288,12 @@ impl Summary {
             None if self.wall_behind == Some(*sway) => {
                 format!("no push to the {name} moves it: a wall stands there")
             }
-            None => format!("no push to the {name} moves it without sliding"),
+            None => {
+                let moves = format!("no push to the {name} moves it without sliding");
+                let reason = self.no_push_because.iter();
+                let reason = reason.map(|reason| format!(": {reason}"));
+                iter::once(moves).chain(reason).collect()
+            }
             Some(_) if is_moved && self.mechanism.to(*sway).is_empty() => {
                 format!("any push to the {name} moves it")
             }

@@ -242,6 +242,12 @@ impl Summary {
         feet.filter(|(_, at_s)| *at_s < self.ground.end_s).collect()
     }
 
+    /// Returns whether no push starts the structure to either side.
+    fn no_push_starts_it(&self) -> bool {
+        let Sides { right, left } = self.incipient_acceleration_g;
+        right.or(left).is_none()
+    }
+
     /// Returns the acceleration that starts the structure; `None` if it differs between the sides.
     fn common_start_g(&self) -> Option<f64> {
         let Sides { right, left } = self.incipient_acceleration_g;
