@@ -322,11 +322,11 @@ pub fn results(
         .collect::<Result<_, _>>()
         .map_err(StudyError::scenario)?;
     let moves_otherwise = ground.has_vertical() || ground.right_foot().is_some();
-    let stays = |model: &Box<dyn Model>| {
+    let stays = |model: &dyn Model| {
         let starts = |sway| model.incipient_acceleration_g(sway).is_some();
         !model.is_elastic() && !starts(Sway::Right) && !starts(Sway::Left)
     };
-    if !moves_otherwise && models.iter().all(stays) {
+    if !moves_otherwise && models.iter().map(|model| &**model).all(stays) {
         let reason = "there is no threshold: no push moves the structure without sliding";
         return Err(StudyError::Scenario(reason.to_owned()));
     }
