@@ -779,7 +779,7 @@ fn commands_agree_that_no_push_moves_a_flat_arch() {
     for (command, reason) in [
         ("capacity", "no horizontal push moves it"),
         ("verify", "no push moves it"),
-        ("threshold", "no push moves the structure"),
+        ("threshold", "no push of the ground moves the structure"),
     ] {
         let refused = of(command);
         assert!(

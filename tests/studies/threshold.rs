@@ -202,6 +202,11 @@ impl Model for Rule {
         None
     }
 
+    /// As with elastic joints, the onset of motion is unknown.
+    fn is_elastic(&self) -> bool {
+        true
+    }
+
     fn simulate(
         &self,
         ground: &GroundMotion,
@@ -245,6 +250,10 @@ impl Model for Doubtful {
 
     fn incipient_acceleration_g(&self, _: Sway) -> Option<f64> {
         None
+    }
+
+    fn is_elastic(&self) -> bool {
+        true
     }
 
     fn repetitions(&self) -> Vec<Repetition> {

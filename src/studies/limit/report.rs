@@ -23,7 +23,7 @@ pub struct Summary {
     pub incipient_acceleration_g: Sides<Option<f64>>,
     /// Ground acceleration that starts the structure, in m/s2; null if no push starts it.
     pub incipient_acceleration_m_s2: Sides<Option<f64>>,
-    /// The reason why no push starts the structure; absent if one does, to one side at least.
+    /// The reason why no push starts an arch into which a straight line fits; absent otherwise.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub no_push_because: Option<String>,
     /// Hinges of the mechanism that starts, from left to right.
@@ -289,10 +289,9 @@ impl Summary {
                 format!("no push to the {name} moves it: a wall stands there")
             }
             None => {
-                let moves = format!("no push to the {name} moves it without sliding");
-                let reason = self.no_push_because.iter();
-                let reason = reason.map(|reason| format!(": {reason}"));
-                iter::once(moves).chain(reason).collect()
+                let reason = self.no_push_because.as_ref();
+                let reason = reason.map_or(String::new(), |reason| format!(": {reason}"));
+                format!("no push to the {name} moves it without sliding{reason}")
             }
             Some(_) if is_moved && self.mechanism.to(*sway).is_empty() => {
                 format!("any push to the {name} moves it")

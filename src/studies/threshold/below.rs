@@ -20,7 +20,7 @@ pub struct Fineness {
 }
 
 impl Fineness {
-    /// Steps below the edge of a threshold of a mechanism.
+    /// Steps below the edge of a threshold of a mechanism, or of elastic joints.
     const THRESHOLD: Self = Self {
         step: 0.005,
         finest_step: 0.0005,
@@ -30,8 +30,9 @@ impl Fineness {
     /// hardly shows how close its neighbours come to overturning.
     pub fn of_threshold(model: &dyn Model) -> Self {
         let has_free_hinges = model.as_mechanisms().is_none() && !model.is_elastic();
+        let part = if has_free_hinges { 0.5 } else { 1.0 };
         Self {
-            step: if has_free_hinges { 0.5 } else { 1.0 } * Self::THRESHOLD.step,
+            step: part * Self::THRESHOLD.step,
             ..Self::THRESHOLD
         }
     }

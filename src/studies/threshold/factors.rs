@@ -79,8 +79,14 @@ impl Factors {
     /// Returns the factors of a search for a structure that never moves below its [onset](onset_factor), if that is known.
     ///
     /// # Errors
-    /// If the last factor is not above the first.
+    /// If no factor moves the structure, or the last factor is not above the first.
     pub fn searched(&self, onset: Option<f64>) -> Result<SearchedFactors, String> {
+        if onset == Some(f64::INFINITY) {
+            return Err(
+                "there is no threshold: no push of the ground moves the structure without sliding"
+                    .to_owned(),
+            );
+        }
         let start = onset.map(|onset| onset * (1.0 - EDGE_WIDTH));
         let from = self.from.or(start).unwrap_or(LEAST);
         let to = self.to.unwrap_or(MOST * from.max(1.0));
@@ -134,8 +140,8 @@ impl SearchedFactors {
 }
 
 /// Returns the factor on a ground motion below which a structure at rest never moves, in any of these directions: the largest push of the ground is
-/// that of incipient motion. `None` where it is unknown: with elastic joints, with vertical motion, with feet that move apart,
-/// and for a motion that does not start from rest.
+/// that of incipient motion. Infinity if none of its pushes moves the structure. `None` where it is unknown: with elastic joints, with vertical
+/// motion, with feet that move apart, and for a motion that does not start from rest.
 pub fn onset_factor(
     model: &dyn Model,
     directions: Directions,
@@ -155,8 +161,8 @@ pub fn onset_factor(
     let over = over
         .zip(starts_g)
         .filter_map(|(push_m_s2, start_g)| Some(push_m_s2 / (start_g? * request.gravity_m_s2)));
-    let factor = 1.0 / over.reduce(f64::max)?;
-    (factor.is_finite() && factor > 0.0).then_some(factor)
+    let factor = 1.0 / over.fold(0.0, f64::max);
+    (factor > 0.0).then_some(factor)
 }
 
 #[cfg(test)]
