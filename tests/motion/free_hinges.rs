@@ -8,7 +8,9 @@ use crate::common::between_faces;
 use crate::common::random_history;
 use crate::common::random_row;
 use crate::common::ring;
-use archrock::dynamics::{Event, GroundMotion, Impact, Outcome, Pulse, Recorder, Sample, Summary};
+use archrock::dynamics::{
+    Event, EventKind, GroundMotion, Impact, Outcome, Pulse, Recorder, Sample, Summary,
+};
 use archrock::mechanics::four_link::{
     FourLink, HingeSites, ImpactModel, Linkage, incipient, joints_rad, project,
 };
@@ -16,7 +18,7 @@ use archrock::mechanics::stability::{StabilityError, collapse_mechanism, onset};
 use archrock::mechanics::{
     Block, Drum, Edge, Joint, Mechanism as _, Ring, Row, RowError, Side, Supports, Sway, Twist,
 };
-use archrock::{Column, Model, Request, RockingColumn, RowMotionError};
+use archrock::{Column, FreeHinges, Model, Request, RockingColumn, RowMotionError, RowOptions};
 use archrock_motion::internals::contact::{ContactProgram, Load};
 use archrock_motion::internals::free_hinges::{Settings, simulate};
 use clarabel::algebra::CscMatrix;
@@ -767,11 +769,7 @@ fn a_row_overturns_at_the_last_maximum_of_its_potential_energy() {
             output_step_s: Some(STEP_S),
             ..Settings::to_landings(&row, GRAVITY, 6.0)
         };
-        let mut potential = Potential {
-            row: &row,
-            at: Vec::new(),
-            impacts_s: Vec::new(),
-        };
+        let mut potential = Potential::of(&row);
         let run = simulate(
             &row,
             &ground,
@@ -794,12 +792,15 @@ fn a_row_overturns_at_the_last_maximum_of_its_potential_energy() {
             (time_s - maximum_s).abs() < 2.0 * STEP_S,
             "{case}: {time_s} {maximum_s}"
         );
-        let before = potential
-            .impacts_s
-            .iter()
-            .filter(|at_s| **at_s <= time_s)
-            .count();
-        assert_eq!(run.impacts, before, "{case}");
+        potential.assert_ends(&run, EventKind::Overturned);
+        let state = potential.events.last().unwrap();
+        let after = potential.rotations_rad.iter();
+        let after = after.zip(&potential.at).find(|(_, at)| at.0 >= time_s);
+        let (after_rad, _) = after.unwrap();
+        for (at_rad, after_rad) in state.rotations_rad.iter().zip(after_rad) {
+            // Blocks turn by less than 2 rad/s.
+            assert!((at_rad - after_rad).abs() < 2.0 * STEP_S, "{case}");
+        }
         let peaks_rad = run.peak_rotations_rad.iter().copied();
         let largest_rad = peaks_rad.fold(0.0, f64::max);
         // A block turns by some mrad between two samples.
@@ -811,14 +812,120 @@ fn a_row_overturns_at_the_last_maximum_of_its_potential_energy() {
     assert!(overturned > 15, "{overturned}");
 }
 
+/// A row rests from its last impact on, with and without friction: no event is later than the rest.
+#[test]
+fn a_row_rests_after_its_last_impact() {
+    let mut random = Random(582);
+    let mut rested = 0;
+    for case in 0..24 {
+        let row = match case % 2 {
+            0 => arch(random.within(130.0, 180.0), 0.18, 5 + random.pick(5), 2.2),
+            _ => column(2 + random.pick(3)),
+        };
+        let text_g = random.within(0.3, 0.6);
+        let ground = Pulse::OneSine.lasting_s(random.within(0.2, 0.4));
+        let ground = ground.horizontal_m_s2(text_g * GRAVITY).unwrap();
+        let options = RowOptions {
+            friction_coefficient: (case % 3 == 0).then_some(0.7),
+            ..RowOptions::default()
+        };
+        let model = FreeHinges::new(row.clone()).unwrap();
+        let model = model.with_options(options).unwrap();
+        let request = Request {
+            gravity_m_s2: GRAVITY,
+            end_s: 12.0,
+            outcome_by_s: None,
+            output_step_s: 0.01,
+            initial: None,
+            relative_tolerance: 1e-10,
+            rest_energy_ratio: 1e-8,
+        };
+        let mut potential = Potential::of(&row);
+        let run = model.simulate(&ground, &request, Some(&mut potential));
+        let run = run.unwrap();
+        if run.outcome == Outcome::Rest {
+            rested += 1;
+            potential.assert_ends(&run, EventKind::Rest);
+        }
+    }
+    assert!(rested > 15, "{rested}");
+}
+
+/// Between two half cycles the blocks turn back: the potential energy, from their positions, falls to half of its largest value in the half cycle. If
+/// the centre of gravity changes its side higher up, the half cycle goes on; it was once cut in two.
+#[test]
+fn the_blocks_turn_back_between_half_cycles() {
+    let mut random = Random(583);
+    let (mut ended, mut joined) = (0, 0);
+    for _ in 0..40 {
+        let row = arch(
+            random.within(130.0, 180.0),
+            random.within(0.13, 0.2),
+            7 + random.pick(8),
+            2.2,
+        );
+        let ground = Pulse::OneSine.lasting_s(random.within(0.2, 0.5));
+        let ground = ground.horizontal_m_s2(random.within(0.4, 0.8) * GRAVITY);
+        let settings = Settings {
+            output_step_s: Some(STEP_S),
+            ..Settings::to_landings(&row, GRAVITY, 4.0)
+        };
+        let mut potential = Potential::of(&row);
+        let watched = Some(&mut potential as &mut dyn Recorder);
+        let run = simulate(&row, &ground.unwrap(), GRAVITY, &settings, None, watched).unwrap();
+        let row = run.row().unwrap();
+        let cycles = row.joined_half_cycles();
+        joined += row.half_cycles.len() - cycles.len();
+        let largest_rad = run.largest_rotation_rad();
+        for pair in cycles.windows(2) {
+            // Smaller ones are shorter than some samples.
+            if pair[0].peak_rad < 0.05 * largest_rad {
+                continue;
+            }
+            let from = (potential.at).partition_point(|at| at.0 < pair[0].start_s);
+            let to = (potential.at).partition_point(|at| at.0 < pair[1].start_s);
+            let rise = |at: &(f64, f64, f64)| at.1 - potential.at[0].1;
+            let highest = potential.at[from..to].iter().map(rise).fold(0.0, f64::max);
+            let end = rise(&potential.at[to]);
+            assert!(end < 0.55 * highest, "{pair:?} {end} {highest}");
+            ended += 1;
+        }
+    }
+    assert!(ended > 20 && joined > 5, "{ended} {joined}");
+}
+
 /// Time between samples of a fall.
 const STEP_S: f64 = 5e-4;
 
-/// Output times with the potential energy and the largest rotation up to then, and times of impacts.
+/// Output times with the height of the centre of gravity times the mass, in kg m, and the largest rotation up to then; rotations at these times; all events.
 struct Potential<'a> {
     row: &'a Row,
     at: Vec<(f64, f64, f64)>,
-    impacts_s: Vec<f64>,
+    rotations_rad: Vec<Vec<f64>>,
+    events: Vec<Event>,
+}
+
+impl<'a> Potential<'a> {
+    fn of(row: &'a Row) -> Self {
+        Self {
+            row,
+            at: Vec::new(),
+            rotations_rad: Vec::new(),
+            events: Vec::new(),
+        }
+    }
+
+    /// Asserts that the events of a motion end with this one, at the time of the outcome, and that their impacts are those of the summary.
+    fn assert_ends(&self, run: &Summary, kind: EventKind) {
+        let last = self.events.last().unwrap();
+        assert_eq!((last.kind, last.time_s), (kind, run.outcome_time_s));
+        assert!(
+            self.events
+                .is_sorted_by(|one, next| one.time_s <= next.time_s)
+        );
+        let impacts = self.events.iter().filter(|event| event.impact.is_some());
+        assert_eq!(run.impacts, impacts.count());
+    }
 }
 
 impl Recorder for Potential<'_> {
@@ -833,12 +940,12 @@ impl Recorder for Potential<'_> {
         let rotations_rad = sample.rotations_rad.iter().map(|rotation| rotation.abs());
         let peak_rad = rotations_rad.fold(before_rad, f64::max);
         self.at.push((sample.time_s, rises.sum(), peak_rad));
+        self.rotations_rad.push(sample.rotations_rad.clone());
         ControlFlow::Continue(())
     }
 
     fn event(&mut self, event: &Event) -> ControlFlow<()> {
-        self.impacts_s
-            .extend(event.impact.is_some().then_some(event.time_s));
+        self.events.push(event.clone());
         ControlFlow::Continue(())
     }
 }

@@ -9,7 +9,7 @@ use crate::dynamics::{
     Case, Model, Outcome, Recorder, Repetition, Request, SimulationError, Summary,
 };
 use crate::dynamics::{Details, EndCondition, GroundMotion, Job, Jobs, RowSummary};
-use crate::mechanics::{Row, Sway};
+use crate::mechanics::{Row, Sides, Sway};
 
 named! {
     /// Direction of the horizontal ground motion.
@@ -154,6 +154,13 @@ impl Summary {
     #[must_use]
     pub fn mirrored(mut self, row: Option<&Row>) -> Self {
         self.outcome = self.outcome.mirrored();
+        if let Details::Mechanisms(of) = &mut self.details {
+            let Sides { right, left } = of.largest_shifts_kg_m;
+            of.largest_shifts_kg_m = Sides {
+                right: left,
+                left: right,
+            };
+        }
         let Some(row) = row else { return self };
         self.peak_rotations_rad = (0..self.peak_rotations_rad.len())
             .map(|block| self.peak_rotations_rad[row.opposite(block)])

@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 use serde::{Deserialize, Serialize, Serializer};
 
 use crate::dynamics::{FrictionRecord, ThrustRecord};
-use crate::mechanics::{Demand, Hinge, Lanes, Pose, Sway, Tie, TieMemory};
+use crate::mechanics::{Demand, Hinge, Lanes, Pose, Sides, Sway, Tie, TieMemory};
 
 /// Outcome of a history.
 ///
@@ -172,7 +172,7 @@ pub struct Sample {
     /// Displacement of the right foot relative to the left one, to the right and upwards in m; only if the feet move
     /// differently.
     pub feet_apart_m: Vector2<f64>,
-    /// Number of events up to this time.
+    /// Number of transitions up to this time, including those of a fall, which are no events.
     pub phase: usize,
     /// Rest, rocking or overturned.
     pub state: State,
@@ -470,7 +470,7 @@ pub struct Summary {
     pub end_s: f64,
     /// True if the simulation ended early, at an [`EndCondition`](super::EndCondition): the structure may still move afterwards.
     pub is_cut: bool,
-    /// Number of impacts.
+    /// Number of impacts up to the time of the outcome.
     pub impacts: usize,
     /// Largest rotations of the bodies, without sign, in radians.
     pub peak_rotations_rad: Vec<f64>,
@@ -499,6 +499,8 @@ pub struct MechanismSummary {
     /// Energy at the end over the least energy barrier of the moving mechanism and of all that may follow it, if it is below 1: the structure cannot
     /// overturn any more. `None` for other outcomes than [`Outcome::StillRocking`], and below a quarter of the barrier.
     pub remaining_over_barrier: Option<f64>,
+    /// Largest sum of the masses times their horizontal displacements to each side, in kg m; of a side to which the structure overturns, an arbitrary one.
+    pub largest_shifts_kg_m: Sides<f64>,
 }
 
 /// Results of one kind of model only.
@@ -593,11 +595,13 @@ impl Summary {
     /// Returns the half cycles of a row of blocks with peaks of at least a thousandth of the largest peak; empty for other structures. Smaller half
     /// cycles are vibration, and their number is arbitrary.
     pub fn half_cycles(&self) -> Vec<HalfCycle> {
-        let all = self.row().map_or(&[][..], |row| &row.half_cycles);
-        let peaks_rad = all.iter().map(|cycle| cycle.peak_rad);
+        let mut cycles = self
+            .row()
+            .map_or_else(Vec::new, RowSummary::joined_half_cycles);
+        let peaks_rad = cycles.iter().map(|cycle| cycle.peak_rad);
         let least_rad = LEAST_PEAK_RATIO * peaks_rad.fold(0.0, f64::max);
-        let counts = |cycle: &&HalfCycle| cycle.peak_rad >= least_rad;
-        all.iter().filter(counts).copied().collect()
+        cycles.retain(|cycle| cycle.peak_rad >= least_rad);
+        cycles
     }
 }
 
@@ -613,7 +617,7 @@ pub struct Cost {
 /// Additional summary of a row of blocks.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RowSummary {
-    /// All half cycles of any size; [`Summary::half_cycles`] omits vibration.
+    /// Half cycles of any size, each up to a change of the side of the centre of gravity; see [`Self::joined_half_cycles`].
     #[serde(skip)]
     pub half_cycles: Vec<HalfCycle>,
     /// Number of half cycles, including those of the fall after the row has overturned.
@@ -674,7 +678,7 @@ const fn is_infinite(number: &f64) -> bool {
     number.is_infinite()
 }
 
-/// Half cycle: motion between successive passages of the centre of gravity through its undeformed position.
+/// Half cycle: motion between passages of the centre of gravity through its undeformed position.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct HalfCycle {
     /// Side of the sway.
@@ -689,9 +693,39 @@ pub struct HalfCycle {
     pub peak_time_s: f64,
     /// Energy at the end over that at the start; `None` for the first and the last half cycle.
     pub energy_ratio: Option<f64>,
+    /// True if the blocks have not turned back at the start, so that the half cycle before goes on.
+    #[serde(skip)]
+    pub continues: bool,
+}
+
+impl RowSummary {
+    /// Returns the half cycles of any size; [`Summary::half_cycles`] omits vibration. If the centre of gravity changes its side before the blocks have
+    /// turned back, the half cycle goes on, and is to the side of its largest rotation.
+    pub fn joined_half_cycles(&self) -> Vec<HalfCycle> {
+        let mut joined: Vec<HalfCycle> = Vec::new();
+        for cycle in &self.half_cycles {
+            match joined.last_mut() {
+                Some(last) if cycle.continues => last.extend(cycle),
+                _ => joined.push(*cycle),
+            }
+        }
+        joined
+    }
 }
 
 impl HalfCycle {
+    /// Extends this half cycle by the one that follows it.
+    fn extend(&mut self, next: &Self) {
+        self.duration_s = next.end_s() - self.start_s;
+        let ratios = self.energy_ratio.zip(next.energy_ratio);
+        self.energy_ratio = ratios.map(|(own, of_next)| own * of_next);
+        if next.peak_rad > self.peak_rad {
+            self.sway = next.sway;
+            self.peak_rad = next.peak_rad;
+            self.peak_time_s = next.peak_time_s;
+        }
+    }
+
     /// Returns the end of the half cycle, in seconds.
     pub fn end_s(&self) -> f64 {
         self.start_s + self.duration_s

@@ -282,10 +282,6 @@ pub trait MechanismModel: Model {
     /// Returns the first mechanism to a side at a fraction `part` of the rotation at its unstable equilibrium; `None` without such a mechanism.
     fn displaced(&self, sway: Sway, part: f64) -> Option<Displaced>;
 
-    /// Returns the mass times the horizontal displacement of the centre of gravity, in kg m towards the side of the sway, at a coordinate of the
-    /// mechanism after `impacts` impacts and a first sway to a side. `None` without such a mechanism.
-    fn shift_kg_m(&self, first: Sway, impacts: usize, q_rad: f64) -> Option<f64>;
-
     /// Returns the rigid bodies of the first mechanism to a side; `None` without such a mechanism.
     fn moving_bodies(&self, sway: Sway) -> Option<Vec<MovingBody>>;
 

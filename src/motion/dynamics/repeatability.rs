@@ -17,7 +17,7 @@ use super::model::{Case, Job, Jobs};
 use super::until::EndCondition;
 use super::variation::{PendingMotion, start_motion};
 use crate::dynamics::{
-    Details, Directions, GroundMotion, HalfCycle, Model, Outcome, Repetition, Request,
+    Details, Directions, GroundMotion, HalfCycle, Model, Outcome, Repetition, Request, RowSummary,
     SimulationError, Sliding, Summary,
 };
 
@@ -214,10 +214,12 @@ impl Repeatability {
         let peaks_rad = cycles.iter().map(|cycle| cycle.peak_rad);
         let least_rad = LEAST_PEAK_RATIO * peaks_rad.fold(0.0, f64::max);
         cycles.retain(|cycle| cycle.peak_rad >= least_rad);
+        let rows = others.iter().map(|other| other.row());
+        let joined = rows.map(|row| row.map_or_else(Vec::new, RowSummary::joined_half_cycles));
+        let others_cycles: Vec<_> = joined.collect();
         let beside = |own: HalfCycle| {
-            let peak_rad =
-                |other: &&Summary| Some(own.counterpart(&other.row()?.half_cycles)?.peak_rad);
-            let peaks_rad: Option<Vec<f64>> = others.iter().map(peak_rad).collect();
+            let peak_rad = |other: &Vec<HalfCycle>| Some(own.counterpart(other)?.peak_rad);
+            let peaks_rad: Option<Vec<f64>> = others_cycles.iter().map(peak_rad).collect();
             let peak_rad = peaks_rad.map(|peaks_rad| RepeatedValue::of(own.peak_rad, peaks_rad));
             RepeatedHalfCycle {
                 peak_time_s: own.peak_time_s,
@@ -307,7 +309,7 @@ fn path_repeats(one: &Summary, other: &Summary) -> bool {
 /// Returns whether the half cycles of a motion up to its largest have counterparts with the same peaks in another motion.
 fn follows(own: &Summary, other: &Summary) -> bool {
     let others = other.row().map_or(&[][..], |row| &row.half_cycles);
-    let cycles = own.half_cycles();
+    let cycles = own.row().map_or(&[][..], |row| &row.half_cycles);
     let peaks_rad = cycles.iter().map(|cycle| cycle.peak_rad);
     let largest_rad = peaks_rad.fold(0.0, f64::max);
     let largest = cycles.iter().position(|one| one.peak_rad == largest_rad);

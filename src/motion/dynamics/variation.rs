@@ -36,6 +36,7 @@ pub(super) fn start_motion(
 }
 
 /// Motions of variations that are being computed.
+#[derive(Default)]
 pub struct Variations(Vec<(String, Result<PendingMotion, String>)>);
 
 impl Variations {

@@ -52,15 +52,11 @@ impl NotableImpacts {
         }
     }
 
-    /// Returns the first impact, and the impact of a row that takes the most energy, if this is another one. Impacts after overturning do not count.
-    pub(super) fn before_the_end(&self, history: &History) -> [Option<ImpactSummary>; 2] {
-        let until_s = history.overturned_s().unwrap_or(f64::INFINITY);
-        let impacts = self.0.iter().map(|(_, impact)| impact);
-        let mut before = impacts
-            .take_while(|impact| impact.time_s <= until_s)
-            .cloned();
-        let first = before.next();
-        [first, before.last().filter(|_| history.row().is_some())]
+    /// Returns the first impact, and the impact of a row that takes the most energy, if this is another one.
+    pub(super) fn first_and_hardest(&self, history: &History) -> [Option<ImpactSummary>; 2] {
+        let mut impacts = self.0.iter().map(|(_, impact)| impact).cloned();
+        let first = impacts.next();
+        [first, impacts.last().filter(|_| history.row().is_some())]
     }
 }
 

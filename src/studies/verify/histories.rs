@@ -11,16 +11,14 @@ use serde::{Deserialize, Serialize};
 use super::mechanism::Mechanism;
 use super::spectrum::Spectrum;
 use super::{CheckInput, SideCheck, VerifyError};
+use crate::dynamics::Details;
 use crate::dynamics::demand::peak_displacement;
 use crate::mechanics::Sides;
 use crate::scenario::{LimitState, Series, StateRule};
 use crate::studies::remarks::ModelCheck;
 use crate::studies::runner::in_parallel;
 use crate::studies::statistics::{bootstrap, interval};
-use crate::{
-    EventKind, FourLinkError, GroundMotion, MechanismModel, Outcome, Request, SimulationError,
-    State, Sway,
-};
+use crate::{FourLinkError, GroundMotion, MechanismModel, Outcome, Request, SimulationError, Sway};
 
 /// Smallest number of records for which the mean of the peaks counts. With fewer records the largest peak counts (NTC 2018, § 7.3.5).
 pub const FOR_THE_MEAN: usize = 7;
@@ -30,9 +28,6 @@ pub const SPECTRUM_MARGIN: [f64; 2] = [0.9, 1.3];
 const FROM_S: f64 = 0.15;
 /// Number of intervals between the periods at which spectra are compared.
 const PERIODS: u32 = 60;
-/// Output interval of the histories, in seconds. The error of a peak is about half its acceleration, at most a few m/s2, times the square of
-/// half the interval.
-const STEP_S: f64 = 0.002;
 /// Shortest time after a record until which histories are computed, in seconds.
 const AFTER_S: f64 = 10.0;
 
@@ -249,7 +244,6 @@ fn record_peaks(
         let request = scenario.request_on(&ground, &scenario.structure);
         let request = Request {
             end_s: request.end_s.max(ground.end_s() + AFTER_S),
-            output_step_s: STEP_S,
             ..request
         };
         peaks(model, &ground, &request, mechanisms)
@@ -332,42 +326,22 @@ fn peaks(
     request: &Request,
     mechanisms: &BTreeMap<Sway, Mechanism>,
 ) -> Result<(Sides<Peak>, Option<f64>), SimulationError> {
-    let history = model.history(ground, request)?;
-    // The chain of mechanisms starts with the side of the latest uplift.
-    let mut first = Sway::Right;
-    let links = history.events.iter().map(|event| {
-        if event.kind == EventKind::Uplift {
-            first = event.state.sway().unwrap_or(first);
-        }
-        Some((first, event.mechanism?))
+    let summary = model.simulate(ground, request, None)?;
+    let shifts_kg_m = match &summary.details {
+        Details::Mechanisms(of) => of.largest_shifts_kg_m,
+        Details::Rigid(_) | Details::Elastic(..) => Sides::default(),
+    };
+    let mut peaks = Sides::of(|sway| Peak {
+        displacement_m: (mechanisms.get(&sway))
+            .map_or(0.0, |own| shifts_kg_m.to(sway) / own.m_star_kg),
+        ..Peak::default()
     });
-    let links: Vec<Option<(Sway, usize)>> = links.collect();
-    let mut peaks = Sides::<Peak>::default();
-    for sample in history.samples.iter() {
-        let State::Rocking(sway) = sample.state else {
-            continue;
-        };
-        let Some(mechanism) = mechanisms.get(&sway) else {
-            continue;
-        };
-        let shift = || {
-            let (first, impacts) = (*links.get(sample.phase.checked_sub(1)?)?)?;
-            let rotation_rad = match sway {
-                Sway::Right => sample.rotations_rad.first()?,
-                Sway::Left => sample.rotations_rad.last()?,
-            };
-            model.shift_kg_m(first, impacts, rotation_rad.abs())
-        };
-        let displacement_m = shift().unwrap_or_default() / mechanism.m_star_kg;
-        let peak = peaks.to_mut(sway);
-        peak.displacement_m = peak.displacement_m.max(displacement_m);
-    }
-    match history.summary.outcome {
+    match summary.outcome {
         Outcome::Overturned(sway) => peaks.to_mut(sway).overturned = true,
         Outcome::Incomplete => [peaks.right.incomplete, peaks.left.incomplete] = [true; 2],
         _ => {}
     }
-    Ok((peaks, history.summary.thrust_excess_ratio()))
+    Ok((peaks, summary.thrust_excess_ratio()))
 }
 
 /// Computes the smallest and the largest ratio of the mean 5 % spectrum of records to another spectrum; `None` if the other spectrum is unknown

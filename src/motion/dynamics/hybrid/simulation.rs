@@ -24,7 +24,7 @@ use crate::mechanics::column::RockingColumn;
 use crate::mechanics::equivalent::equivalent_towards;
 use crate::mechanics::{
     Displaced, Equivalent, FourLinks, Hinge, Link, Mechanism, MechanismChain, MovingBody,
-    MovingForce, Sway,
+    MovingForce, Sides, Sway,
 };
 
 /// Maximum number of transitions of a history; more would be chatter.
@@ -95,11 +95,6 @@ macro_rules! models {
                 displaced(self, sway, part)
             }
 
-            fn shift_kg_m(&self, first: Sway, impacts: usize, q_rad: f64) -> Option<f64> {
-                let mechanism = &self.link_from(first, impacts)?.mechanism;
-                Some(mechanism.displacement(q_rad).x * self.mass_unit_kg() * self.length_m())
-            }
-
             fn moving_bodies(&self, sway: Sway) -> Option<Vec<MovingBody>> {
                 moving_bodies(self, sway)
             }
@@ -145,6 +140,7 @@ fn history_of<C: MechanismChain + MechanismModel>(
         sampler: recorder.map(|recorder| Sampler::new(&rocking, every_s, recorder)),
         impacts: 0,
         peaks: (vec![0.0; C::Mechanism::BODIES.len()], 0.0),
+        shifts: Sides::default(),
         excess_ratio: 0.0,
         excess_at_peak: 0.0,
         last_passage: None,
@@ -198,6 +194,9 @@ fn history_of<C: MechanismChain + MechanismModel>(
             peak_over_critical,
             thrust_excess_ratio: C::THRUSTS.then_some(excess_ratio),
             remaining_over_barrier: remaining_over_barrier.filter(|_| !is_incomplete),
+            largest_shifts_kg_m: collector
+                .shifts
+                .map(|shift| shift * chain.mass_unit_kg() * chain.length_m()),
         }),
     })
 }
@@ -370,6 +369,8 @@ struct SummaryCollector<'r, 'a, C: MechanismChain> {
     impacts: usize,
     /// Largest rotations of the bodies, and largest rotation over the critical one.
     peaks: (Vec<f64>, f64),
+    /// Largest sums of the masses times their horizontal displacements, in units of the structure.
+    shifts: Sides<f64>,
     /// Largest excess of the thrust line up to now, over the thickness, at rotations below the critical one.
     excess_ratio: f64,
     /// Largest excess of the thrust line up to the largest rotation.
@@ -400,6 +401,8 @@ impl<'a, C: MechanismChain> SummaryCollector<'_, 'a, C> {
             for (peak, rotation) in peaks.iter_mut().zip(rotations.as_ref()) {
                 *peak = peak.max(rotation.abs());
             }
+            let shift = self.shifts.to_mut(sway);
+            *shift = shift.max(link.mechanism.displacement(state[0]).x);
             let reached = state[0] / link.critical_rad;
             self.friction.note_rotation(reached);
             if reached > *over_critical {

@@ -19,6 +19,8 @@ pub const SWAY_RATIO: f64 = 1e-9;
 /// Duration, over the square root of size over gravity, in which the largest kinetic energy counts if no barrier is known. It is longer than the time
 /// between turning points.
 const RECENT_RATIO: f64 = 2.0;
+/// Potential energy, over the largest one of a half cycle, above which the blocks have not turned back when the centre of gravity changes its side.
+const TURNED_BACK: f64 = 0.5;
 /// Kinetic energy, over weight times size, below which a row may be at rest.
 pub const REST_ENERGY_RATIO: f64 = 1e-9;
 /// Duration of small kinetic energy, over the square root of size over gravity, after which a row is at rest. It is longer than a turning point.
@@ -62,7 +64,15 @@ pub struct MotionObserver<'a> {
     pub shut: Vec<Hinge>,
     /// Joints that open in a step, with the edge about which they turn; `None` for parted joints.
     pub opened: Vec<Hinge>,
-    pub impacts: usize,
+    /// Impacts up to the last time at which the row could return.
+    settled_impacts: usize,
+    /// Times of the impacts since then, and of the last impact; in seconds.
+    late_impacts_s: Vec<f64>,
+    last_impact_s: f64,
+    /// Events since then: they are reported once it is certain that they do not belong to a fall.
+    late_events: Vec<Event>,
+    /// State at the last time at which the row could return; `None` if no events are wanted.
+    last_return: Option<Event>,
     /// Least potential energy up to now, in J.
     least_potential_j: f64,
     pub cost: Cost,
@@ -85,6 +95,8 @@ pub struct MotionObserver<'a> {
     /// Results up to the last time from which the row may have fallen without return.
     before_fall: PartialResults,
     cycle: Option<HalfCycle>,
+    /// Largest potential energy of the current half cycle, in J.
+    cycle_highest_j: f64,
     cycle_energy: Option<f64>,
     rising: bool,
     highest_s: f64,
@@ -114,7 +126,6 @@ pub struct MotionObserver<'a> {
 struct PartialResults {
     time_s: f64,
     peak_rotations_rad: Vec<f64>,
-    impacts: usize,
     /// Number of completed half cycles, and the current one.
     half_cycles: usize,
     cycle: Option<HalfCycle>,
@@ -182,6 +193,7 @@ impl<'a> MotionObserver<'a> {
                 ..PartialResults::default()
             },
             cycle: None,
+            cycle_highest_j: 0.0,
             cycle_energy: None,
             rising: false,
             highest_s: start_s,
@@ -197,7 +209,11 @@ impl<'a> MotionObserver<'a> {
             pending_events: None,
             thrust: ThrustRecord::default(),
             friction: FrictionDemands::default(),
-            impacts: 0,
+            settled_impacts: 0,
+            late_impacts_s: Vec::new(),
+            last_impact_s: start_s,
+            late_events: Vec::new(),
+            last_return: None,
             least_potential_j: 0.0,
             peak_rotations_rad: vec![0.0; row.blocks.len()],
             energy_defect_ratio: 0.0,
@@ -234,6 +250,7 @@ impl<'a> MotionObserver<'a> {
         if self.time >= self.input.ground.end_s()
             && let Some(time_s) = at_rest_since_s()
         {
+            let time_s = time_s.max(self.last_impact_s);
             let rest = (Outcome::Rest, time_s);
             return Some(closed.map_or(rest, |closed| (closed, self.time)));
         }
@@ -410,11 +427,16 @@ impl<'a> MotionObserver<'a> {
         if sway.abs() > self.least_sway_kg_m {
             let side = side_of(sway);
             if self.cycle.is_none_or(|cycle| cycle.sway != side) {
+                let feet_part = self.input.ground.right_foot_of(self.input.row).is_some();
+                let is_high = potential > TURNED_BACK * self.cycle_highest_j;
+                let continues = self.cycle.is_some() && is_high && !feet_part;
                 self.end_cycle(Some(kinetic + potential));
+                self.cycle_highest_j = potential;
                 self.cycle = Some(HalfCycle {
                     sway: side,
                     start_s: self.time,
                     peak_time_s: self.time,
+                    continues,
                     ..HalfCycle::default()
                 });
             }
@@ -424,6 +446,7 @@ impl<'a> MotionObserver<'a> {
         {
             (cycle.peak_rad, cycle.peak_time_s) = (largest, self.time);
         }
+        self.cycle_highest_j = self.cycle_highest_j.max(potential);
         if self.highest_s == self.time && self.overturned_below_j > f64::NEG_INFINITY {
             self.save_results_before_fall();
         }
@@ -474,7 +497,6 @@ impl<'a> MotionObserver<'a> {
         before_fall.time_s = self.time;
         let peaks_rad = &self.peak_rotations_rad;
         before_fall.peak_rotations_rad.clone_from(peaks_rad);
-        before_fall.impacts = self.impacts;
         before_fall.half_cycles = self.row_summary.half_cycles.len();
         before_fall.cycle = self.cycle;
         before_fall.thrust = self.thrust;
@@ -485,12 +507,46 @@ impl<'a> MotionObserver<'a> {
             before_fall.largest_slips_m.clone_from(slips_m);
         }
         before_fall.ties.clone_from(&self.row_summary.ties);
+        self.settle(self.time);
+    }
+
+    /// Records an impact at this time.
+    pub fn note_impact(&mut self) {
+        self.last_impact_s = self.time;
+        self.late_impacts_s.push(self.time);
+    }
+
+    /// Returns the number of impacts up to now.
+    pub const fn impacts(&self) -> usize {
+        self.settled_impacts + self.late_impacts_s.len()
+    }
+
+    /// Counts the impacts and reports the events up to a time, in seconds.
+    fn settle(&mut self, until_s: f64) {
+        let impacts = (self.late_impacts_s).partition_point(|time_s| *time_s <= until_s);
+        self.late_impacts_s.drain(..impacts);
+        self.settled_impacts += impacts;
+        let events = (self.late_events).partition_point(|event| event.time_s <= until_s);
+        for event in self.late_events.drain(..events) {
+            if let Some(recorder) = &mut self.recorder {
+                self.stopped |= recorder.event(&event).is_break();
+            }
+        }
+    }
+
+    /// Returns whether the row can still return at this time.
+    pub fn returns(&self) -> bool {
+        self.before_fall.time_s == self.time
+    }
+
+    /// Records the state at this time, from which the row can still return.
+    pub fn note_return(&mut self, state: Event) {
+        self.last_return = Some(state);
     }
 
     /// Resets the results to those at the last time at which the row could still return.
     fn restore_results(&mut self, before_fall: PartialResults) {
         self.peak_rotations_rad = before_fall.peak_rotations_rad;
-        self.impacts = before_fall.impacts;
         self.row_summary
             .half_cycles
             .truncate(before_fall.half_cycles);
@@ -505,8 +561,7 @@ impl<'a> MotionObserver<'a> {
             sliding.largest_offsets_m = before_fall.largest_slips_m;
         }
         for (tie, before) in self.row_summary.ties.iter_mut().zip(before_fall.ties) {
-            tie.peak_force_n = before.peak_force_n;
-            tie.peak_force_time_s = before.peak_force_time_s;
+            *tie = before;
         }
     }
 
@@ -626,11 +681,9 @@ impl<'a> MotionObserver<'a> {
         if pending_events.is_none() {
             self.phase += 1;
         }
-        if let Some(recorder) = &mut self.recorder {
-            for event in [event].into_iter().chain(pending_events.iter().flatten()) {
-                self.stopped |= recorder.event(event).is_break();
-            }
-        }
+        self.late_events.push(event.clone());
+        self.late_events
+            .extend(pending_events.into_iter().flatten());
     }
 
     /// Begins the phase of an impact that is reported after the next step, when its energy is known.
@@ -671,6 +724,12 @@ impl<'a> MotionObserver<'a> {
             _ => None,
         };
         self.end_cycle(None);
+        let settled_s = match outcome {
+            Outcome::Overturned(_) => outcome_time_s,
+            _ => f64::INFINITY,
+        };
+        self.settle(settled_s);
+        self.late_events.clear();
         let outcome = match outcome {
             Outcome::Overturned(_) | Outcome::Rest => outcome,
             _ if self.is_incomplete() => Outcome::Incomplete,
@@ -686,7 +745,7 @@ impl<'a> MotionObserver<'a> {
             outcome_time_s,
             end_s: self.time,
             is_cut: self.is_safe,
-            impacts: self.impacts,
+            impacts: self.settled_impacts,
             peak_rotations_rad: self.peak_rotations_rad.clone(),
             energy_defect_ratio: self.energy_defect_ratio,
             thrust: self.recorder.is_some().then_some(self.thrust),
@@ -697,22 +756,41 @@ impl<'a> MotionObserver<'a> {
                 Some(_) => Details::Elastic(row, self.elastic),
             },
         };
-        let ending = match outcome {
-            Outcome::Rest => Some((EventKind::Rest, State::Rest)),
-            Outcome::Overturned(sway) => Some((EventKind::Overturned, State::Overturned(sway))),
-            _ => None,
+        let (kind, state, at) = match outcome {
+            Outcome::Rest => (EventKind::Rest, State::Rest, self.sampled()),
+            Outcome::Overturned(sway) => {
+                let at = self.last_return.take();
+                let state = State::Overturned(sway);
+                (
+                    EventKind::Overturned,
+                    state,
+                    at.unwrap_or_else(|| self.sampled()),
+                )
+            }
+            _ => return summary,
         };
-        if let (Some((kind, state)), Some(recorder)) = (ending, &mut self.recorder) {
+        if let Some(recorder) = &mut self.recorder {
             // The history ends here in any case.
             let _ = recorder.event(&Event {
-                rotations_rad: self.sample.rotations_rad.clone(),
-                rates_rad_s: self.sample.rates_rad_s.clone(),
-                energy_j: self.sample.energy_j,
-                hinges: self.sample.hinges.iter().map(|open| open.hinge).collect(),
-                ..Event::new(self.time, kind, state)
+                time_s: outcome_time_s,
+                kind,
+                state,
+                ..at
             });
         }
         summary
+    }
+
+    /// Returns the state of the last sample as an event.
+    fn sampled(&self) -> Event {
+        let sample = &self.sample;
+        Event {
+            rotations_rad: sample.rotations_rad.clone(),
+            rates_rad_s: sample.rates_rad_s.clone(),
+            energy_j: sample.energy_j,
+            hinges: sample.hinges.iter().map(|open| open.hinge).collect(),
+            ..Event::new(self.time, EventKind::Rest, State::Rest)
+        }
     }
 }
 

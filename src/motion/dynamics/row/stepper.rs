@@ -158,6 +158,14 @@ pub trait Stepper<'a>: Sized {
         }
     }
 
+    /// Records the state of a row that can still return.
+    fn note_return(&mut self) {
+        if self.observer().returns() && self.observer().reports_events() {
+            let state = self.event(EventKind::Overturned, true);
+            self.observer_mut().note_return(state);
+        }
+    }
+
     /// Sends the poses of the blocks after a step to the recorder. `poses` is reused.
     fn report_poses(&mut self, poses: &mut Vec<Pose>) {
         poses.clear();
@@ -206,6 +214,7 @@ where
     let now = |stepper: &S| stepper.observer().recorder.as_ref()?.clock();
     let mut longest_step = now(&stepper).map(|_| Duration::ZERO);
     let mut poses = Vec::new();
+    stepper.note_return();
     let (outcome, outcome_time_s) = loop {
         let observer = stepper.observer();
         let time = observer.time;
@@ -226,6 +235,7 @@ where
         }
         let begun = now(&stepper);
         stepper.step(marks.next_s())?;
+        stepper.note_return();
         if let Some((begun, ended)) = begun.zip(now(&stepper)) {
             longest_step = longest_step.max(Some(ended.saturating_sub(begun)));
         }

@@ -544,10 +544,12 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
                 dissipation: taken,
                 ..landing
             });
-            self.observer.impacts += 1;
             self.observer.await_impact();
         }
         let tie_events = self.drift(step);
+        if self.landing.is_some() {
+            self.observer.note_impact();
+        }
         if let Some((from_s, energy_j, rotations_and_rates)) = stood {
             self.note_uplift(from_s, energy_j, rotations_and_rates);
         } else {
