@@ -129,6 +129,22 @@ fn verify_has_constant_forces_as_external_forces() {
     }
     let bare = verify(&parsed(&format!("{WALL}{ROOF}{DEMAND}"))).unwrap();
     assert!(bare.mechanisms.values().all(|own| own.forces.is_empty()));
+    // Displacements grow with the height: 4 m for the wall, 8 m for the roof.
+    let [first, second] =
+        [1, 2].map(|power| BLOCK_KG * 4_f64.powi(power) + 1500.0 * 8_f64.powi(power));
+    let fraction = first * first / second / (BLOCK_KG + 1500.0);
+    assert!(fraction < 0.92);
+    for joints in ["", "[free_hinges]\n"] {
+        let check = verify(&parsed(&format!("{WALL}{ROOF}{DEMAND}{joints}"))).unwrap();
+        for own in check.mechanisms.values() {
+            let apart_g = own.a0_with_separate_loads_over_fc_g.unwrap();
+            let due_g = own.a0_over_fc_g / fraction;
+            assert!((apart_g / due_g - 1.0).abs() < 1e-12, "{apart_g} {due_g}");
+        }
+    }
+    let alone = verify(&parsed(&format!("{WALL}{DEMAND}"))).unwrap();
+    let mut alone = alone.mechanisms.values();
+    assert!(alone.all(|own| own.a0_with_separate_loads_over_fc_g.is_none()));
 }
 
 #[test]

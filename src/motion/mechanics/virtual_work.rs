@@ -18,6 +18,13 @@ pub struct MovingBody {
     pub rotation: f64,
 }
 
+impl MovingBody {
+    /// Returns the virtual displacement, in the direction of the sway, of a point of the body at a height in metres.
+    pub fn displacement_at(&self, height_m: f64) -> f64 {
+        self.displacement.x + self.rotation * (height_m - self.centre_m.y)
+    }
+}
+
 /// Tie of a mechanism.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MovingTie {

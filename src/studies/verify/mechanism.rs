@@ -155,8 +155,11 @@ pub struct Mechanism {
     pub e_star: f64,
     /// Participating mass `M*` [C8.7.1.5], in kg.
     pub m_star_kg: f64,
-    /// `a_0 / FC = alpha0 / (e* FC)`, in g.
+    /// `a_0 / FC = alpha0 / (e* FC)`, in g. Loads are part of the bodies that carry them, which is on the safe side.
     pub a0_over_fc_g: f64,
+    /// `a_0 / FC` with the loads as separate weights in `e*`, in g; absent without such loads. It is larger and not used.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub a0_with_separate_loads_over_fc_g: Option<f64>,
     /// Displacement of the common centre at the unstable equilibrium, in metres; `None` without a capacity curve.
     pub d_c0_m: Option<f64>,
     /// Displacement of the oscillator at the unstable equilibrium, in metres.
@@ -299,6 +302,7 @@ impl Mechanism {
         let weight_kn = |mass_kg: f64| mass_kg * input.gravity_m_s2 / 1000.0;
         let alpha0 = found.alpha0();
         let participation = Participation::of_bodies(&found.bodies);
+        let a0_over_fc_g = |fraction: f64| alpha0 / (fraction * input.settings.confidence_factor);
         let scale = per_displacement_of_centre(&found.bodies);
         let bodies = found.bodies.iter().enumerate().map(|(index, body)| Body {
             mass_kg: body.mass_kg,
@@ -357,7 +361,10 @@ impl Mechanism {
             moving_mass_kg: participation.moving_mass_kg,
             e_star: participation.mass_fraction,
             m_star_kg: participation.participating_mass_kg,
-            a0_over_fc_g: alpha0 / (participation.mass_fraction * input.settings.confidence_factor),
+            a0_over_fc_g: a0_over_fc_g(participation.mass_fraction),
+            a0_with_separate_loads_over_fc_g: found
+                .fraction_with_separate_loads(&input.scenario.structure)
+                .map(a0_over_fc_g),
             d_c0_m: end.map(|end| end.displacement_m),
             d0_m: end.map(|end| end.oscillator_displacement_m),
             d_c0_crown_m: crown.map(|end| end.displacement_m),
@@ -378,6 +385,37 @@ impl VirtualMechanism {
     /// Computes the load multiplier [C8.7.1.1].
     fn alpha0(&self) -> f64 {
         load_multiplier(&self.bodies, &self.ties, &self.forces)
+    }
+
+    /// Returns `e*` with the loads at points as separate weights [C8.7.1.5, with n + m weights]; `None` if no body carries such a load.
+    fn fraction_with_separate_loads(&self, structure: &Structure) -> Option<f64> {
+        let (outlines, loads) = structure.fill_and_loads();
+        let carried = outlines.loads_m.iter().zip(loads);
+        let points = carried.filter(|(_, load)| load.moves && load.width_m == 0.0);
+        let mut weights: Vec<(f64, f64)> = Vec::new();
+        let mut without: Vec<MovingBody> = self.bodies.clone();
+        for ((block, at_m), load) in points.filter(|(_, load)| load.mass_kg > 0.0) {
+            let carries = |body: &usize| match self.blocks_of(*body) {
+                Some([first, last]) => (first..=last).contains(&(block + 1)),
+                None => self.bodies.len() == 1,
+            };
+            let Some(body) = (0..self.bodies.len()).find(carries) else {
+                continue;
+            };
+            let displacement = self.bodies[body].displacement_at(at_m.y);
+            weights.push((load.mass_kg, displacement));
+            let rest = &mut without[body];
+            let mass_kg = rest.mass_kg - load.mass_kg;
+            rest.displacement.x =
+                (rest.mass_kg * rest.displacement.x - load.mass_kg * displacement) / mass_kg;
+            rest.mass_kg = mass_kg;
+        }
+        let bodies = without
+            .iter()
+            .map(|body| (body.mass_kg, body.displacement.x));
+        let all = || bodies.clone().chain(weights.iter().copied());
+        (!weights.is_empty() && all().all(|(mass_kg, _)| mass_kg > 0.0))
+            .then(|| Participation::of(all()).mass_fraction)
     }
 
     /// Returns the numbers of the first and the last block of a body, from 1; `None` for a ring.
