@@ -1249,6 +1249,34 @@ fn spread_reports_the_collapse_movement_and_the_remaining_push() {
     assert!((at - 0.558_230_9).abs() < 1e-6);
 }
 
+/// From moved supports `spread` prints the further movement, and the command of a point on the page repeats the total one.
+#[test]
+fn spread_from_moved_supports_prints_the_further_movement() {
+    let folder = tempfile::tempdir().unwrap();
+    let moved = format!("{SEMICIRCLE}[free_hinges]\n[supports]\nright = {{ spread_m = 0.1 }}\n");
+    std::fs::write(folder.path().join("arch.toml"), moved).unwrap();
+    let words = printed(folder.path(), &["--quiet", "spread", "arch.toml"]);
+    let reported = json(&folder.path().join("results/arch/spread.json"));
+    let path = &reported["paths"][0];
+    let falls_at_m = path["falls_at_m"].as_f64().unwrap();
+    assert!((falls_at_m + 0.1 - 0.558_230_9).abs() < 1e-6);
+    assert!(words.starts_with("right springing outwards, further than `[supports]`: falls at"));
+    assert!(words.contains("\n  further m "));
+    let page = std::fs::read_to_string(folder.path().join("results/arch/spread.html")).unwrap();
+    let total_m = 0.1 + path["stages"][20]["movement_m"].as_f64().unwrap();
+    let digits = format!("{total_m:?}");
+    assert!(
+        page.contains(&format!("spread_m = {}", &digits[..10])),
+        "{total_m}"
+    );
+    // An arch on piers stands on feet.
+    let piers = format!("{SEMICIRCLE}[piers]\nheight_m = 2.0\nwidth_m = 2.5\n");
+    std::fs::write(folder.path().join("piers.toml"), piers).unwrap();
+    let words = printed(folder.path(), &["--quiet", "spread", "piers.toml"]);
+    assert!(words.starts_with("right foot outwards: "), "{words}");
+    assert!(words.contains("joint from 0 at the left foot"), "{words}");
+}
+
 /// Shallow arches lose their thrust as a springing moves inwards. Their capacity then equals the push of the first motion, for
 /// every radius. Rounding once made the program miss it.
 #[test]

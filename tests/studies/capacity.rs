@@ -329,6 +329,8 @@ fn the_capacity_of_a_tied_arch_is_the_slope_of_its_energy() {
     for (own, other) in untied.iter().zip(&loose) {
         let (own_m, other_m) = (own.end().displacement_m, other.end().displacement_m);
         assert!((own_m / other_m - 1.0).abs() < 1e-6, "{own_m} {other_m}");
+        // The rotation of the body at the same end, with and without ties, to either side.
+        assert!((own.end().q_rad / other.end().q_rad - 1.0).abs() < 1e-6);
         assert!((own.participating_mass_kg / other.participating_mass_kg - 1.0).abs() < 1e-6);
         for part in [0.0, 0.3, 0.7] {
             let [own_g, other_g] = [own, other].map(|side| side.oscillator_acceleration_g(part));

@@ -29,7 +29,7 @@ use crate::mechanics::{
 /// Structure displaced along its first mechanism, in equilibrium with a horizontal acceleration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Displaced {
-    /// The coordinate of the mechanism, in radians.
+    /// Rotation of the body at the end away from which the structure sways, without sign, in radians: of the left body if it sways to the right.
     pub q_rad: f64,
     /// Horizontal ground acceleration against the sway at which the structure is in equilibrium, in multiples of gravity.
     pub acceleration_g: f64,
@@ -156,7 +156,7 @@ impl Control {
 /// Point of the capacity curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CurvePoint {
-    /// The coordinate of the mechanism, in radians.
+    /// Rotation of the body at the end away from which the structure sways, in radians; see [`Displaced::q_rad`].
     pub q_rad: f64,
     /// Displacement of the control point in the direction of the sway, in metres.
     pub displacement_m: f64,

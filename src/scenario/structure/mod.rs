@@ -170,6 +170,18 @@ impl Structure {
         !matches!(self, Self::Column(_))
     }
 
+    /// Returns the name of each of its two supports: springing, foot of a pier, or support of given blocks.
+    pub fn support_name(&self) -> &'static str {
+        match self {
+            Self::Masonry(masonry) => match masonry.springing_joints() {
+                None => "support",
+                Some([0, last]) if last + 1 == masonry.row.joints.len() => "springing",
+                Some(_) => "foot",
+            },
+            Self::Arch(_) | Self::Column(_) => "springing",
+        }
+    }
+
     /// Returns true if the structure stands on one support, as a column does.
     pub fn stands_on_one_support(&self) -> bool {
         self.row().is_ok_and(|row| row.supports == Supports::Left)

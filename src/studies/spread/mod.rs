@@ -73,7 +73,7 @@ impl Direction {
 /// The arch at a movement of a springing.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stage {
-    /// Movement of the springing, in metres.
+    /// Movement of the support from its initial position, undeformed or that of `[supports]`, in metres.
     pub movement_m: f64,
     /// Open hinges; none before the first movement.
     pub hinges: Vec<HingeOpening>,
@@ -142,7 +142,7 @@ pub struct SpreadPath {
     /// The direction of the movement.
     #[serde(flatten)]
     pub direction: Direction,
-    /// Movement at which the arch collapses, in metres; `None` if it exceeds the clear span or is unknown.
+    /// Movement from the initial position at which the arch collapses, in metres; `None` if it exceeds the clear span or is unknown.
     pub falls_at_m: Option<f64>,
     /// Movement at which the arch collapses, over the clear span; `None` as `falls_at_m`.
     pub falls_at_part_of_clear_span: Option<f64>,
@@ -164,6 +164,8 @@ pub struct Summary {
     pub clear_span_m: f64,
     /// Weight of the arch, in N.
     pub weight_n: f64,
+    /// Name of the supports: `springing`, `foot` of a pier, or `support` of given blocks.
+    pub support: String,
     /// Coefficient of friction of the scenario; absent if joints cannot slip.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub friction_coefficient: Option<f64>,
@@ -195,6 +197,7 @@ pub fn spread(scenario: &Scenario, directions: &[Direction]) -> Result<Summary, 
         paths: paths.map_err(StudyError::scenario)?,
         clear_span_m,
         weight_n,
+        support: scenario.structure.support_name().to_owned(),
         warnings: scenario.unlikely(),
         scenario: scenario.to_json(),
         friction_coefficient: scenario.motion.options.friction_coefficient(),
@@ -310,6 +313,13 @@ fn stage(follower: &Follower<'_>, movement_m: f64, weight_n: f64) -> Stage {
     }
 }
 
+impl Summary {
+    /// Returns whether the movement is further to that of `[supports]`.
+    fn is_further(&self) -> bool {
+        !self.scenario["supports"].is_null()
+    }
+}
+
 impl Stage {
     /// Returns the smaller push of both sides; `None` if no push moves the arch, or one of the pushes was not found.
     fn smaller_push(&self, push: Push) -> Option<f64> {
@@ -336,6 +346,12 @@ impl Stage {
 }
 
 impl SpreadPath {
+    /// Returns the moving support, whose name is `support`, and its direction.
+    fn moving(&self, support: &str) -> String {
+        let Direction { springing, .. } = self.direction;
+        format!("{} {support} {}", springing.name(), self.direction.label())
+    }
+
     /// Returns the stages that words show.
     fn shown(&self) -> impl Iterator<Item = &Stage> {
         let last = self.stages.len() - 1;

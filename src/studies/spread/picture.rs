@@ -36,7 +36,7 @@ pub(super) fn draw(
     for paths in spread.paths.chunks(columns) {
         let cells: Vec<Cell<'_>> = paths
             .iter()
-            .filter_map(|path| Cell::new(row, scene, path, cell_px))
+            .filter_map(|path| Cell::new((row, scene), (spread, path), cell_px))
             .collect();
         let heights_px = cells.iter().map(|cell| cell.height_px);
         let height_px = heights_px.fold(0.0, f64::max);
@@ -64,11 +64,7 @@ fn pushes(figure: Figure, spread: &Summary, spots: &[Spot]) -> Chart {
     let thin = |color| Stroke::new(color, FIRST_MOTION_PX, "3 3");
     let (mut marks, mut keys) = (Vec::new(), Vec::new());
     for (path, stroke) in spread.paths.iter().zip(CURVES.into_iter().cycle()) {
-        let direction = format!(
-            "{} {}",
-            path.direction.springing.name(),
-            path.direction.label()
-        );
+        let direction = path.moving(&spread.support);
         let solid = Stroke::new(stroke.color, stroke.width, "");
         for (push, stroke) in [
             (Push::Capacity, solid),
@@ -83,8 +79,9 @@ fn pushes(figure: Figure, spread: &Summary, spots: &[Spot]) -> Chart {
         keys.push(Key::line(direction, solid));
     }
     keys.push(Key::line("dashed: first motion", thin(color::BLACK)));
-    let labels = ["movement of the springing (m)", "push (g)"];
-    let mut chart = Chart::around(figure, 300.0, labels, marks);
+    let further = if spread.is_further() { "further " } else { "" };
+    let movement = format!("{further}movement of the {} (m)", spread.support);
+    let mut chart = Chart::around(figure, 300.0, [&movement, "push (g)"], marks);
     let stages = spread.paths.iter().flat_map(|path| &path.stages);
     chart.marks.extend(stages.zip(spots).map(|(stage, spot)| {
         let push_g = stage.smaller_push(Push::Capacity);
@@ -99,13 +96,19 @@ struct Cell<'a> {
     scene: &'a Scene,
     path: &'a SpreadPath,
     stage: &'a Stage,
+    /// True if the movement is further to that of `[supports]`.
+    is_further: bool,
     /// Lower left and upper right corner of the undeformed and the moved arch, in metres.
     bounds_m: [Vector2<f64>; 2],
     height_px: f64,
 }
 
 impl<'a> Cell<'a> {
-    fn new(row: &'a Row, scene: &'a Scene, path: &'a SpreadPath, width_px: f64) -> Option<Self> {
+    fn new(
+        (row, scene): (&'a Row, &'a Scene),
+        (spread, path): (&Summary, &'a SpreadPath),
+        width_px: f64,
+    ) -> Option<Self> {
         let stage = path.stages.last()?;
         // Fill and loads hardly move farther than the blocks.
         let blocks = scene.pieces(&[]).into_iter();
@@ -118,6 +121,7 @@ impl<'a> Cell<'a> {
             scene,
             path,
             stage,
+            is_further: spread.is_further(),
             bounds_m,
             height_px: scale * across_m.y,
         })
@@ -154,7 +158,9 @@ impl<'a> Cell<'a> {
                 drawing.circle("hinge", at, HINGE_PX, HINGE);
             }
         }
-        let (words, end_m) = (self.path.direction.label(), self.stage.movement_m);
+        let further = if self.is_further { ", further" } else { "" };
+        let words = format!("{}{further}", self.path.direction.label());
+        let end_m = self.stage.movement_m;
         let text = match (self.path.falls_at_m, &self.path.lost) {
             (Some(at_m), _) => format!("{words} {at_m:.3} m: falls"),
             (None, Some(_)) => format!("{words} {end_m:.3} m: not followed further"),

@@ -3,7 +3,7 @@
 use serde_json::json;
 
 use super::picture::draw;
-use super::{Direction, Push, SpreadPath, Stage, Summary};
+use super::{Push, SpreadPath, Stage, Summary};
 use crate::argument::plain;
 use crate::mechanics::Sides;
 use crate::output::page::SpotKind;
@@ -31,13 +31,13 @@ pub fn report(
     let others = [drawn(figure, &[]).into_bytes(), table(spread)?];
     let results = Results::new(&FILES[1..], spread, others)?;
     let mut cases = PageCases::default();
+    let settled = scenario.motion.supports().unwrap_or_default();
+    let further = if spread.is_further() { " further" } else { "" };
     for (path, stage) in rows(spread) {
-        let Direction { springing, .. } = path.direction;
         let push_g = stage.smaller_push(Push::Capacity);
         let words = format!(
-            "{} springing {} {} m: {}",
-            springing.name(),
-            path.direction.label(),
+            "{}{further} {} m: {}",
+            path.moving(&spread.support),
             plain(stage.movement_m),
             push_g.map_or("no push found".to_owned(), |g| format!(
                 "falls at {} g",
@@ -46,7 +46,7 @@ pub fn report(
         );
         cases.push((SpotKind::Point, false), words, || {
             let mut moved = scenario.to_json();
-            moved["supports"] = json!(path.direction.movements(stage.movement_m));
+            moved["supports"] = json!(settled + path.direction.movements(stage.movement_m));
             Some(moved)
         });
     }

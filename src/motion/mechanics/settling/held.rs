@@ -108,12 +108,18 @@ impl<'a> Held<'a> {
         };
         let before = self.before(q_rad);
         let state = self.pins.state_at(self.row, &condition, &poses, before);
+        let hinges_m = self.pins.positions_m(&poses);
+        let poses = poses[1..=self.bodies()].to_vec();
+        let from = match self.sway {
+            Sway::Right => poses.first(),
+            Sway::Left => poses.last(),
+        };
         Displaced {
-            q_rad,
+            q_rad: from.map_or(q_rad, |pose| pose.rotation_rad().abs().copysign(q_rad)),
             // A breaking tie may remove all strength at once, so the computed push may not be zero here.
             acceleration_g: if part == 1.0 { 0.0 } else { push_g },
-            hinges_m: self.pins.positions_m(&poses),
-            poses: poses[1..=self.bodies()].to_vec(),
+            hinges_m,
+            poses,
             friction: state.map_or(0.0, |state| state.friction),
         }
     }
