@@ -13,7 +13,7 @@ use archrock::dynamics::{Recording, Samples};
 use archrock::mechanics::Demand;
 use archrock::output::{FilmFormat, Scene, StructurePoint, check_named_file, write_named_file};
 use archrock::studies::run::{
-    self, ComputedRun, Film, FilmOptions, MirroredSummary, OutcomeSummary, Report, ReportPage,
+    self, ComputedRun, Film, FilmOptions, MirroredSummary, OutcomeSummary, Report, ReportPage, VariedRun,
 };
 use archrock::{Event, GroundMotion, Model, Recorder, Sample, SimulationError, State};
 use numpy::{Element, PyArray1, PyArrayMethods as _, PyUntypedArrayMethods as _};
@@ -142,6 +142,8 @@ pub struct History {
     repeated: OnceLock<Repeated>,
     /// The result under the mirrored ground motion, which is computed when first needed; `None` without a second direction.
     mirrored: OnceLock<Option<MirroredSummary>>,
+    /// The results with other properties, which are computed when first needed.
+    varied: OnceLock<Vec<VariedRun>>,
     events: Vec<Event>,
     /// Number of samples, of bodies, of joints with gaps, of joints that slip, of joints with contact forces, and of ties.
     counts: [usize; 6],
@@ -322,22 +324,44 @@ impl History {
         Ok(self.mirrored.get().and_then(Option::as_ref))
     }
 
-    /// The history in a scenario, with its repetitions and the mirrored ground motion if they are given.
-    fn computed<'a>(
-        &'a self,
-        scenario: &'a archrock::Scenario,
-        repeated: Option<&'a Repeated>,
-        mirrored: Option<&MirroredSummary>,
-    ) -> ComputedRun<'a> {
+    /// The results with other properties.
+    fn varied(&self, py: Python<'_>) -> PyResult<&[VariedRun]> {
+        if self.varied.get().is_none() {
+            let (scenario, model) = (self.shaken(), Arc::clone(&self.model));
+            let found = watched(py, None, move |_| {
+                run::varied(&scenario, &*model).map_err(failed)
+            })?;
+            // Another thread may have computed them meanwhile, with equal results.
+            let _ = self.varied.set(found);
+        }
+        Ok(self.varied.get().map_or(&[][..], |varied| varied))
+    }
+
+    /// The history alone in a scenario.
+    fn alone<'a>(&'a self, scenario: &'a archrock::Scenario) -> ComputedRun<'a> {
         ComputedRun {
             scenario,
             model: &*self.model,
             history: &self.summary,
             impacts: self.events.iter().collect(),
-            repeated: repeated.and_then(Option::as_ref),
+            repeated: None,
             varied: &[],
-            mirrored: mirrored.cloned(),
+            mirrored: None,
         }
+    }
+
+    /// The history in a scenario, with its repetitions, the mirrored ground motion and other properties.
+    fn computed<'a>(
+        &'a self,
+        py: Python<'_>,
+        scenario: &'a archrock::Scenario,
+    ) -> PyResult<ComputedRun<'a>> {
+        Ok(ComputedRun {
+            repeated: self.repeated(py)?.as_ref(),
+            mirrored: self.mirrored(py)?.cloned(),
+            varied: self.varied(py)?,
+            ..self.alone(scenario)
+        })
     }
 
     /// Simulates a scenario in one direction again, and makes its page with this verdict.
@@ -465,6 +489,7 @@ impl History {
             summary,
             repeated: OnceLock::new(),
             mirrored: OnceLock::new(),
+            varied: OnceLock::new(),
             events,
             counts: [
                 count,
@@ -531,15 +556,17 @@ impl History {
     /// `summary.json` of the program; without `repeat`, `verdict` is that of the history alone.
     fn summary_json(&self, py: Python<'_>, repeat: bool) -> PyResult<String> {
         let scenario = self.shaken();
-        let repeated = repeat.then(|| self.repeated(py)).transpose()?;
-        let mirrored = repeat.then(|| self.mirrored(py)).transpose()?.flatten();
-        let summary = run::summary(&self.computed(&scenario, repeated, mirrored));
+        let computed = match repeat {
+            true => self.computed(py, &scenario)?,
+            false => self.alone(&scenario),
+        };
+        let summary = run::summary(&computed);
         Ok(summary.map_err(not_written)?.to_string())
     }
 
     /// `warnings` of `summary.json`.
     fn warnings(&self, py: Python<'_>) -> Vec<String> {
-        py.detach(|| run::Summary::of(&self.computed(&self.shaken(), None, None)).warnings)
+        py.detach(|| run::Summary::of(&self.alone(&self.shaken())).warnings)
     }
 
     /// Writes a film; `factors` are its speed and that on the displacements. Simulates the history again, with the line of thrust.
@@ -575,8 +602,8 @@ impl History {
     /// `report.html` with the verdict on it, which opens with the worse direction. Simulates the history again, with the line of thrust.
     fn report(&self, py: Python<'_>) -> PyResult<String> {
         let scenario = self.shaken();
-        let (repeated, mirrored) = (self.repeated(py)?, self.mirrored(py)?);
-        let summary = run::Summary::of(&self.computed(&scenario, Some(repeated), mirrored));
+        let mirrored = self.mirrored(py)?;
+        let summary = run::Summary::of(&self.computed(py, &scenario)?);
         let verdict = summary.verdict_line();
         let own = self.page(py, &scenario, &verdict)?;
         let computed = mirrored.filter(|mirrored| mirrored.failed.is_none());

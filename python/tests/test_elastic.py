@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
+import json
+import pickle
+from pathlib import Path
+from typing import Any
+
 import numpy as np
 import pytest
 
 from archrock import Arch, Column, Pulse, Scenario, simulate
+
+from .conftest import Program, run_by
 
 PULSE = Pulse("rectangular", amplitude_g=-0.3, duration_s=0.2)
 STACK = Column(height_m=4.0, width_m=0.8, drums=4, density_kg_m3=2000.0)
@@ -76,3 +83,17 @@ def test_tie_forces_equal_the_table_of_joints() -> None:
     early = forces_n.argmax()
     np.testing.assert_allclose(forces_n[:early], 5000.0 + 1e7 * elongations_m[:early], rtol=1e-9)
     assert simulate(STACK, PULSE, model="free_hinges", duration_s=0.1).tie_forces.shape[1] == 0
+
+
+def test_the_answer_rests_on_other_stiffnesses_as_in_the_program(program: Program, tmp_path: Path) -> None:
+    joints: dict[str, Any] = {"model": "elastic_joints", "normal_stiffness_gpa_m": 10.0, "duration_s": 2.0}
+    history = simulate(STACK, PULSE, **joints)
+    run_by(program, history.scenario, tmp_path)
+    told = json.loads((tmp_path / "o" / "summary.json").read_text())
+    assert history.to_quote == told["to_quote"] and history.verdict == told["verdict"]
+    variations = history.summary["variations"]
+    assert variations == told["variations"] and len(variations) > 1
+    once = simulate(STACK, PULSE, repeat=False, **joints)
+    assert once == history
+    assert once.to_quote == "to quote: no answer with elastic joints: the run is not repeated yet"
+    assert "variations" not in once.summary and pickle.loads(pickle.dumps(once)).to_quote == once.to_quote

@@ -64,10 +64,11 @@ class History(Summarised):
     x to the right, y upwards.
     """
 
-    __slots__ = ("_cache", "_native", "_scenario")
+    __slots__ = ("_cache", "_native", "_repeat", "_scenario")
 
-    def __init__(self, native: _native.History, scenario: Callable[[_native.Scenario], Scenario]) -> None:
+    def __init__(self, native: _native.History, scenario: Callable[[_native.Scenario], Scenario], repeat: bool) -> None:
         self._native: _native.History | None = native
+        self._repeat = repeat
         # Makes the scenario when it is needed.
         self._scenario: Callable[[_native.Scenario], Scenario] | None = scenario
         self._cache: dict[str, Any] | None = None
@@ -269,12 +270,13 @@ class History(Summarised):
         """The contents of the program's ``summary.json`` (a copy), with :attr:`verdict` and ``repeatability``.
 
         At its first use a history with free hinges or elastic joints is simulated again in other, equally good ways, such as with double
-        steps, as the program does. Single numbers, such as ``history.steps``, need no repetitions.
+        steps, and elastic joints with other stiffnesses, as the program does. Single numbers, such as ``history.steps``, need no
+        repetitions. With ``repeat=False`` nothing is simulated again, and :attr:`to_quote` is no answer.
         """
         if "summary" not in self._kept:
-            native = self._native or self.scenario.run()._native
+            native = self._native or self.scenario.run(repeat=self._repeat)._native
             assert native is not None, "a history that was run is there"
-            self._kept["summary"] = native.summary_json(True)
+            self._kept["summary"] = native.summary_json(self._repeat)
         return Summary._parse(self._kept["summary"])
 
     @property
@@ -463,7 +465,7 @@ class History(Summarised):
             RuntimeError: when the encoder fails.
             KeyboardInterrupt: on Ctrl-C, within a second.
         """
-        native = self._native or self.scenario.run()._native
+        native = self._native or self.scenario.run(repeat=self._repeat)._native
         assert native is not None, "a history that was run is there"
         native.film(path, size, (speed, exaggerate), background, caption)
 
@@ -515,6 +517,7 @@ class History(Summarised):
             "events": self.events,
             "numbers": self._numbers(),
             "scenario": self.scenario,
+            "repeat": self._repeat,
         }
         if "summary" in self._kept:
             kept["summary"] = self._kept["summary"]
@@ -527,5 +530,6 @@ def _restored(kept: dict[str, Any]) -> History:
     history = History.__new__(History)
     history._native = None
     history._scenario = None
+    history._repeat = kept["repeat"]
     history._cache = kept
     return history

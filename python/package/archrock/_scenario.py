@@ -174,11 +174,12 @@ class Scenario(Described):
         # Statics of drums and of moved springings need no model: the tables choose the model unless the caller gives one.
         return cls(tables, files=held, model=cast(Model, long_name(chosen.model)) if "model" in settings else None)
 
-    def run(self, *, memory_gb: float = MEMORY_GB) -> History:
+    def run(self, *, memory_gb: float = MEMORY_GB, repeat: bool = True) -> History:
         """Simulates the scenario and returns its history.
 
         Args:
             memory_gb: memory that the history may take, in units of 1e9 bytes; see :meth:`memory_gb`.
+            repeat: whether its verdict rests on repetitions; see :attr:`History.summary`.
 
         Raises:
             ValueError: when nothing moves the structure, its record or its model of motion could not be read, or the motion cannot be
@@ -187,7 +188,7 @@ class Scenario(Described):
             KeyboardInterrupt: on Ctrl-C, within a second.
         """
         native = NativeHistory.of(self._native, None, _bytes(memory_gb))
-        return _history(native, self._files, self._folder)
+        return _history(native, self._files, repeat, self._folder)
 
     def memory_gb(self) -> float:
         """Largest memory that the samples of its history take, in units of 1e9 bytes; events need some more.
@@ -293,7 +294,7 @@ def _not_a_ground(given: object) -> TypeError:
     return TypeError(f"`ground` must be a Pulse or a Record, not {type(given).__name__}")
 
 
-def _history(native: NativeHistory, files: dict[str, bytes], folder: str | None = None) -> History:
+def _history(native: NativeHistory, files: dict[str, bytes], repeat: bool, folder: str | None = None) -> History:
     """A history that can make its scenario."""
 
     def scenario(native: NativeScenario) -> Scenario:
@@ -301,7 +302,7 @@ def _history(native: NativeHistory, files: dict[str, bytes], folder: str | None 
         made._take(native, files, folder, None)
         return made
 
-    return History(native, scenario)
+    return History(native, scenario, repeat)
 
 
 def simulate(
@@ -337,6 +338,7 @@ def simulate(
     direction: Literal["both", "as_given", "mirrored"] = "both",
     point: tuple[float, float] | None = None,
     memory_gb: float = MEMORY_GB,
+    repeat: bool = True,
 ) -> History:
     """The history of a structure on moving ground, bit-identical to the program's.
 
@@ -382,6 +384,7 @@ def simulate(
             :attr:`History.verdict` is the worse of both directions. ``"mirrored"`` gives all horizontal accelerations the opposite sign.
         point: a point of the undeformed structure, ``(x, y)`` in m, to observe: see :attr:`History.point`.
         memory_gb: memory that the history may take, in units of 1e9 bytes.
+        repeat: whether the verdict rests on repetitions; see :attr:`History.summary`.
 
     Returns:
         The history.
@@ -422,7 +425,7 @@ def simulate(
     if right is not None or supports is not None:
         settings = Settings(*key)._asdict()
         scenario = Scenario.of(structure, ground, right=right, supports=supports, **settings)
-        return _history(NativeHistory.of(scenario._native, None, _bytes(memory_gb), point), scenario._files)
+        return _history(NativeHistory.of(scenario._native, None, _bytes(memory_gb), point), scenario._files, repeat)
     try:
         base = structure._bases[key]
     except (KeyError, TypeError, AttributeError):
@@ -431,8 +434,8 @@ def simulate(
         base = structure._base(key)
     memory_bytes = _bytes(memory_gb)
     if ground is None:
-        return _history(NativeHistory.of(base, None, memory_bytes, point), structure._files)
+        return _history(NativeHistory.of(base, None, memory_bytes, point), structure._files, repeat)
     if not isinstance(ground, Ground):
         raise _not_a_ground(ground)
     native = NativeHistory.of(base, ground._native, memory_bytes, point)
-    return _history(native, {**structure._files, **ground._files})
+    return _history(native, {**structure._files, **ground._files}, repeat)

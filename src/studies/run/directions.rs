@@ -76,13 +76,8 @@ impl MirroredSummary {
 }
 
 /// Returns each result with other properties, with that under the mirrored ground motion if there is one.
-pub(super) fn in_pairs(
-    own: Vec<VariationResult>,
-    mirrored: Option<&FinishedMirrored>,
-) -> Vec<VariedRun> {
-    let mut turned = mirrored
-        .into_iter()
-        .flat_map(|run| run.varied.iter().cloned());
+pub(super) fn in_pairs(own: Vec<VariationResult>, turned: &[VariationResult]) -> Vec<VariedRun> {
+    let mut turned = turned.iter().cloned();
     own.into_iter().map(|own| (own, turned.next())).collect()
 }
 
@@ -149,7 +144,7 @@ impl<'a> MirroredRun<'a> {
             model,
             motion,
             repetitions: repeats.then(|| Repetitions::start(model, ground, request)),
-            variations: run.variations(scenario, request)?,
+            variations: run.variations(scenario)?,
         }))
     }
 

@@ -60,7 +60,7 @@ use crate::output::{
     Figure, Folder, Named, NewFile, OutputError, Scene, Subject, pretty, render, summary_of,
 };
 use crate::scenario::{ModelKind, Scenario};
-use crate::{Event, Model, OpenHinge, Pose, Recorder, Request, Sample, Summary as History, Sway};
+use crate::{Event, Model, OpenHinge, Pose, Recorder, Sample, Summary as History, Sway};
 
 const ROTATIONS: &str = "rotations.csv";
 const REPORT: &str = "report.html";
@@ -224,6 +224,27 @@ pub fn repeat(scenario: &Scenario, model: &dyn Model, history: &History) -> Opti
     Some(Repetitions::start(model, ground, &request).compare(history))
 }
 
+/// Computes a history of a scenario with other properties as a run does, in all directions of the scenario.
+///
+/// # Errors
+/// When the structure with another property has no model of motion.
+pub fn varied(scenario: &Scenario, model: &dyn Model) -> Result<Vec<VariedRun>, StudyError> {
+    let turned = scenario
+        .has_second_direction(model)
+        .then(|| scenario.in_directions(Directions::Mirrored));
+    let own = variations(scenario)?;
+    let turned = turned.as_ref().map(variations).transpose()?;
+    let turned = turned.map_or_else(Vec::new, Variations::wait);
+    Ok(directions::in_pairs(own.wait(), &turned))
+}
+
+/// Starts the motions of a scenario with other properties.
+fn variations(scenario: &Scenario) -> Result<Variations, StudyError> {
+    let variations = scenario.variations().map_err(StudyError::failed)?;
+    let (ground, request) = (scenario.ground_motion(), scenario.request());
+    Ok(Variations::start(variations, ground, &request))
+}
+
 impl<'a> Run<'a> {
     fn new(
         scenario: &'a Scenario,
@@ -296,7 +317,7 @@ impl<'a> Run<'a> {
         let mirrored_request = self.mirrored.as_ref().map(Scenario::request);
         let has_page = names.contains(&REPORT);
         let mirrored = MirroredRun::start(self, mirrored_request.as_ref(), has_page)?;
-        let variations = self.variations(scenario, &request)?;
+        let variations = self.variations(scenario)?;
         let duration_ms = (request.end_s * MILLISECONDS).round() as usize;
         let (history, rows) = {
             let streamed = sinks.rotations.map(|output| (ROTATIONS, output));
@@ -318,7 +339,10 @@ impl<'a> Run<'a> {
             repetitions.compare(&history)
         });
         let mirrored = mirrored.map(MirroredRun::finish);
-        let varied = directions::in_pairs(variations.wait(), mirrored.as_ref());
+        let varied = {
+            let turned = mirrored.as_ref().map(|run| &run.varied[..]);
+            directions::in_pairs(variations.wait(), turned.unwrap_or_default())
+        };
         let mut summary = Summary::of(&ComputedRun {
             scenario,
             model,
@@ -367,13 +391,11 @@ impl<'a> Run<'a> {
     }
 
     /// Starts the motions with other properties, in the direction of a scenario.
-    fn variations(&self, scenario: &Scenario, request: &Request) -> Result<Variations, StudyError> {
-        let variations = match self.options.no_repeat {
-            true => Vec::new(),
-            false => scenario.variations().map_err(StudyError::failed)?,
-        };
-        let ground = scenario.ground_motion();
-        Ok(Variations::start(variations, ground, request))
+    fn variations(&self, scenario: &Scenario) -> Result<Variations, StudyError> {
+        match self.options.no_repeat {
+            true => Ok(Variations::default()),
+            false => variations(scenario),
+        }
     }
 
     /// Adds what a summary has of this computation and of the other models and samples.
