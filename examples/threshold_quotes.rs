@@ -5,7 +5,11 @@
 //! Half of the structures have a pulse, half an artificial record of 9 s. A quote is wrong if an unrepeated history overturns more than 1 % below it,
 //! among factors in steps of 0.1 % (mechanisms) or 0.25 % (rows of blocks), down to the onset of motion or half of it where that is unknown.
 
-#![allow(clippy::print_stdout, reason = "an example prints its results")]
+#![allow(
+    clippy::print_stderr,
+    clippy::print_stdout,
+    reason = "an example prints its progress and results"
+)]
 #![allow(
     clippy::disallowed_methods,
     reason = "digits of an example may depend on the machine"
@@ -226,6 +230,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             continue;
         };
         quotes += 1;
+        eprintln!("{class} {index}: {own} factors, quote {quote:.4}");
         let first = found.factors.from;
         let last = if found.factors.lower_not_tried {
             0.5

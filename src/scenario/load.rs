@@ -3,7 +3,7 @@
 use super::back_wall::wrong_wall;
 use super::prelude::*;
 use crate::mechanics::stability::collapse_mechanism;
-use crate::mechanics::{ColumnLoadError, LARGEST_THRUST_N, PlacedLoad};
+use crate::mechanics::{ColumnLoadError, Edge, LARGEST_THRUST_N, PlacedLoad};
 use crate::{Column, Sway};
 
 /// A `[[load]]`.
@@ -114,9 +114,24 @@ pub(super) fn loaded_column(
         let row = column.row().map_err(|error| error.to_string());
         let falls = row.and_then(|row| collapse_mechanism(&row).map_err(|error| error.to_string()));
         let falls = falls.map_err(|wrong| format!("cannot be checked to stand: {wrong}"));
-        let falls = table.accept("load", falls)?.is_some();
-        let wrong = "opens joints of the column under its own weight and its loads, without ground motion; give less load, or less eccentricity";
-        table.refuse(falls, "load", wrong)?;
+        if let Some(openings) = table.accept("load", falls)? {
+            // The intrados of a column is its left side.
+            let edge = |side| match side {
+                Sway::Left => Some(Edge::Intrados),
+                Sway::Right => Some(Edge::Extrados),
+            };
+            let leans = |side: &Sway| openings.iter().all(|open| open.hinge == edge(*side));
+            let wrong = match wall.filter(leans) {
+                Some(side) => format!(
+                    "leans the column on the wall on its {} before the ground moves, and columns with joints must stand by themselves; give less load, \
+                     or leave [elastic_joints] out",
+                    side.name()
+                ),
+                None => "opens joints of the column under its own weight and its loads, without ground motion; give less load, or less eccentricity"
+                    .to_owned(),
+            };
+            return Err(table.wrong("load", wrong));
+        }
     }
     Ok(column)
 }

@@ -10,7 +10,7 @@
 
 use super::document::Entries;
 use super::prelude::*;
-use crate::mechanics::MeasuredAt;
+use crate::mechanics::{EMBRACE_DEG as ALLOWED_DEG, MeasuredAt};
 
 const LINES: &str = " beside it: \"intrados\", \"mean\" or \"extrados\"";
 const POSITIVE: Number = between(Excluded(0.0), Unbounded);
@@ -120,8 +120,14 @@ fn embrace_deg(span_m: f64, rise_m: f64) -> f64 {
 /// Returns the embrace angle of an arc with this span and rise, in degrees. A fault is recorded if it is out of range.
 fn checked_embrace_deg(table: &mut Table<'_>, span_m: f64, rise_m: f64) -> ReadResult<f64> {
     let embrace_deg = embrace_deg(span_m, rise_m);
+    // The rise at the smallest angle, from the inverse of the formula above.
+    let least_m = 0.5 * span_m * libm::tan((0.25 * ALLOWED_DEG.start()).to_radians());
+    let bound = match embrace_deg < *ALLOWED_DEG.start() {
+        true => format!("at least {} m for this span", short(least_m)),
+        false => "at most half the span".to_owned(),
+    };
     let wrong = format!(
-        "makes an embrace angle of {} degrees; must be from 1 to 180, which is a rise of at most half the span",
+        "makes an embrace angle of {} degrees; must be from 1 to 180, which is a rise of {bound}",
         plain(embrace_deg)
     );
     table.refuse(!EMBRACE_DEG.contains(embrace_deg), "rise_m", wrong)?;

@@ -4,7 +4,7 @@ use archrock::dynamics::Details;
 use archrock::mechanics::PlacedLoad;
 use archrock::{
     BackWall, Column, ElasticJoints, ElasticProperties, GroundMotion, History, ImpactModel,
-    Initial, Model as _, Outcome, Pulse, Request, RockingColumn, Sample, Sway,
+    Initial, Model as _, Outcome, Pulse, Request, RockingColumn, Sample, Scenario, Sway,
 };
 use nalgebra::{Matrix3, Vector2, Vector3};
 
@@ -378,6 +378,16 @@ fn columns_that_a_wall_does_not_hold_are_refused() {
         roofed.contains("3.75 m, the centre of the top drum"),
         "{roofed}"
     );
+    // A thrust that the wall carries: the column would fall to the left without it, and to the right away from it.
+    let leaning = |thrust_n: f64| {
+        let text = format!(
+            "[column]\nheight_m = 8\nwidth_m = 0.6\n[column.back]\nside = 'left'\n[[load]]\nmass_kg = 1000\nthrust_n = {thrust_n}\n\
+             [elastic_joints]\nnormal_stiffness_gpa_m = 10\n"
+        );
+        Scenario::parse(&text, "s.toml").unwrap_err().to_string()
+    };
+    assert!(leaning(-8000.0).contains("leans the column on the wall on its left"));
+    assert!(!leaning(8000.0).contains("leans the column"));
     // One block needs no restitution.
     let low = column(1, Some(wall(Sway::Left, 2.5)));
     assert!(low.wall_rate_ratio().is_err());

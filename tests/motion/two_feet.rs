@@ -592,7 +592,9 @@ fn assert_reports_feet(folder: &Path) -> String {
     let last = summary["feet_apart_at_end_m"][0].as_f64().unwrap();
     assert!((last - apart_m.last().unwrap()).abs() < 1e-12);
     // Then the ends of both records.
-    shows(&said, &[reported.abs(), last, 0.5, 0.8]);
+    shows(&said, &[reported.abs(), last.abs(), 0.5, 0.8]);
+    let side = if last < 0.0 { "left" } else { "right" };
+    assert!(said.contains(&format!(" m to the {side} and ")), "{said}");
     assert!(summary["right_foot_j"].as_f64().unwrap().abs() > 1.0);
     assert!(summary["peak_potential_over_barrier"].is_null());
     let picture = fs::read_to_string(folder.join("r/history.svg")).unwrap();

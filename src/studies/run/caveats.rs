@@ -9,13 +9,26 @@ use crate::output::filters;
 use crate::scenario::FREE_HINGES;
 use crate::studies::quotable::condition_of;
 
-/// Returns a coefficient of friction as text. Values above 10, which no stone has, occur at almost unloaded joints.
+/// Largest coefficient of friction with digits. No stone has more; larger demands occur at almost unloaded joints.
+const MOST_FRICTION: f64 = 10.0;
+
+/// Returns a coefficient of friction as text.
 pub(super) fn coefficient(friction: &f64, decimals: usize) -> String {
-    if *friction > 10.0 {
-        "more than 10".to_owned()
+    if *friction > MOST_FRICTION {
+        format!("more than {MOST_FRICTION}")
     } else {
         format!("{friction:.decimals$}")
     }
+}
+
+/// Returns the largest coefficient of friction as text, to three digits.
+pub(super) fn largest_coefficient(friction: &f64) -> String {
+    let bound = if *friction > MOST_FRICTION {
+        ""
+    } else {
+        "at most "
+    };
+    format!("{bound}{}", coefficient(friction, 3))
 }
 
 /// A caveat.

@@ -406,7 +406,7 @@ impl Summary {
         let (scenario, model, history) = (computed.scenario, computed.model, computed.history);
         let names = columns(&model.bodies(), "peak_rotation", "rad");
         let peaks_rad = history.peak_rotations_rad.iter().copied();
-        let [first_impact, hardest_impact] = computed.impacts.before_the_end(history);
+        let [first_impact, hardest_impact] = computed.impacts.first_and_hardest(history);
         let mut summary = Self {
             program: env!("CARGO_PKG_NAME").to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -646,6 +646,24 @@ impl RepeatabilitySummary {
     pub(super) fn other_side(&self) -> Option<(Sway, String)> {
         let mut others = self.other_outcomes().into_iter();
         others.find_map(|(other, names)| Some((other.overturning_sway()?, names)))
+    }
+
+    /// Returns whether a repetition has another verdict, or overturns to the other side.
+    pub(super) fn differs(&self) -> bool {
+        let own = self.own_outcome();
+        let differs = |(other, _): &(Outcome, String)| {
+            Some(Verdict::from(*other)) != own.map(Verdict::from)
+                || Some(other.overturning_sway()) != own.map(|own| own.overturning_sway())
+        };
+        self.other_outcomes().iter().any(differs)
+    }
+
+    /// Returns the outcome of the motion itself.
+    fn own_outcome(&self) -> Option<Outcome> {
+        let kinds = self.outcomes.0.iter();
+        let mut outcomes = kinds.zip(&self.overturning_sways.0);
+        let ((_, kind), (_, sway)) = outcomes.next()?;
+        Some(kind.to(*sway))
     }
 
     /// Returns the other outcomes, including those that differ in the side of overturning alone, each with the names of its repetitions.

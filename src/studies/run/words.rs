@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 use serde::Deserialize as _;
 use serde_json::{Map, Value};
 
-use super::caveats::{Caveat, coefficient};
+use super::caveats::{Caveat, coefficient, largest_coefficient};
 use super::comparison::Comparison;
 use super::impacts::ImpactSummary;
 use super::points::place;

@@ -125,10 +125,14 @@ impl Along<'_> {
         let (mark, words) = match &row.edge {
             Ok(edge) => {
                 let [safe, first] = rounded_edge([edge.survives_up_to, edge.factor]);
+                let overturns = match edge.at_most {
+                    true => "certainly overturns from at most",
+                    false => "certainly overturns from",
+                };
                 let parts = [
                     ("survives up to", safe),
                     ("UNCERTAIN from", edge.uncertain_from.map(rounded)),
-                    ("certainly overturns from", first),
+                    (overturns, first),
                 ];
                 let parts = parts.into_iter();
                 let parts = parts.filter_map(|(what, at)| Some(format!("{what} factor {}", at?)));
@@ -242,6 +246,20 @@ impl Summary {
         let first = ends(|point| point.overturns_from_g);
         let edge = |end: usize| rounded_edge([safe, first].map(|ends| Some(ends[end]?.0)));
         let ([safe_low, first_low], [safe_high, first_high]) = (edge(0), edge(1));
+        // Where the smallest factor tried overturns it already, the threshold is an upper bound.
+        let bounded = |in_g: Option<String>, end: Option<(f64, f64)>| {
+            let (_, at) = end?;
+            let is_bound = points
+                .iter()
+                .any(|point| point.value == at && point.at_most);
+            Some(format!(
+                "{}{}",
+                if is_bound { "at most " } else { "" },
+                in_g?
+            ))
+        };
+        let [least, most] = first;
+        let first_in_g = [bounded(first_low, least), bounded(first_high, most)];
         let count = |what: &str, at: fn(&&Point) -> bool| {
             let count = points.iter().filter(at).count();
             let values = ["value", "values"][usize::from(count > 1)];
@@ -261,7 +279,7 @@ impl Summary {
             count("uncertain above", |point| {
                 point.uncertain_from_factor.is_some()
             }),
-            range("certainly overturns from", first, [first_low, first_high]),
+            range("certainly overturns from", first, first_in_g),
             count("no factor certainly overturns it", |point| {
                 let reached = point.tried_to_factor.is_some() && !point.failed_beyond;
                 reached && point.overturns_from_g.is_none()
