@@ -14,6 +14,8 @@ fuzz_target!(|input: &[u8]| {
     const FORMATS: [Format; 8] = [
         Format::Smc,
         Format::Csmip,
+        Format::Usc,
+        Format::Bhrc,
         Format::Cosmos,
         Format::Geonet,
         Format::Afad,

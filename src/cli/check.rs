@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use archrock::dynamics::Intensity;
 use archrock::output::{Scene, draw_elevation, draw_record};
-use archrock::scenario::{Format, Layout, Scenario, Series};
+use archrock::scenario::{Format, Layout, Scenario, ScenarioErrors, Series};
 use archrock::studies::{StudyError, record};
 use archrock::{GroundMotion, Request};
 use serde_json::Value;
@@ -17,7 +17,7 @@ use super::{
 
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// Scenario files (TOML; `-` for standard input), or record files (AT2, ASC, K-NET, SMC, CSMIP, COSMOS, GeoNet, AFAD, CWB, CSMNC, or tables in CSV and TXT).
+    /// Scenario files (TOML; `-` for standard input), or record files (AT2, ASC, K-NET, SMC, CSMIP, USC, BHRC, COSMOS, GeoNet, AFAD, CWB, CSMNC, UNAM, or tables in CSV and TXT).
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
     #[command(flatten)]
@@ -25,7 +25,7 @@ pub struct Arguments {
     /// Draw the structure with its dimensions and the numbers of its joints, or the record, to this file (SVG).
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
-    /// Output format; JSON for several files is an array.
+    /// Output format; JSON for several files or channels is an array.
     #[arg(long, value_enum, default_value_t)]
     format: Printed,
     #[command(flatten)]
@@ -41,7 +41,8 @@ pub fn check(arguments: &Arguments) -> Result<(), Failure> {
     }
     let (mut texts, mut contents, mut wrong) = (Vec::new(), Vec::new(), Vec::new());
     for file in &arguments.files {
-        if let Some((text, json)) = collect_input_error(check_file(file, arguments), &mut wrong)? {
+        let described = collect_input_error(check_file(file, arguments), &mut wrong)?;
+        for (text, json) in described.into_iter().flatten() {
             texts.push(text);
             contents.push(json);
         }
@@ -54,11 +55,17 @@ pub fn check(arguments: &Arguments) -> Result<(), Failure> {
     check_no_errors(&wrong)
 }
 
-/// Returns the contents of a file, as text and as JSON.
-fn check_file(file: &Path, arguments: &Arguments) -> Result<(String, Value), Failure> {
+/// The contents of a scenario or of a record, as text and as JSON.
+type Described = (String, Value);
+
+/// Returns the contents of a file. A record file has those of all its channels.
+fn check_file(file: &Path, arguments: &Arguments) -> Result<Vec<Described>, Failure> {
     let format = Format::of_file(file);
     if format.is_some() || is_format_given(arguments) {
         return check_record(file, format, arguments);
+    }
+    if let Some(errors) = Format::unknown(file) {
+        return Err(with_hint(&errors));
     }
     let scenario = read(&arguments.set.open(file)?)?;
     super::warn(&scenario.unlikely());
@@ -75,10 +82,10 @@ fn check_file(file: &Path, arguments: &Arguments) -> Result<(String, Value), Fai
     }
     let notes = scenario.structure.tie_places();
     let notes: String = notes.iter().map(|note| format!("# {note}\n")).collect();
-    Ok((
+    Ok(vec![(
         notes + &scenario.to_resolved_toml(),
         scenario.to_resolved_json(),
-    ))
+    )])
 }
 
 /// Reads the scenario. If its only faults concern motion, prints them as warnings and reads it for static analysis.
@@ -144,12 +151,19 @@ fn is_format_given(arguments: &Arguments) -> bool {
     keys.any(|assignment| assignment.key() == "format")
 }
 
-/// Returns the contents of a record file, as text and as JSON.
+/// Returns the error of a record file, with the way to give keys.
+fn with_hint(errors: &ScenarioErrors) -> Failure {
+    let hint =
+        "keys of [ground.record] are given with --set, as in --set unit=cm/s2 --set skip_rows=3";
+    Failure::Input(format!("{errors}\n{hint}"))
+}
+
+/// Returns the contents of a record file: of all its channels unless one is chosen.
 fn check_record(
     file: &Path,
     format: Option<Format>,
     arguments: &Arguments,
-) -> Result<(String, Value), Failure> {
+) -> Result<Vec<Described>, Failure> {
     // Keys of tables do not apply to files of other formats among the arguments.
     let is_table = |format: Option<Format>| match format {
         Some(format) => format == Format::Csv,
@@ -169,10 +183,22 @@ fn check_record(
             file.display()
         )]);
     }
-    let series = Series::read_file(file, &keys).map_err(|errors| {
-        let hint = "keys of [ground.record] are given with --set, as in --set unit=cm/s2 --set skip_rows=3";
-        Failure::Input(format!("{errors}\n{hint}"))
-    })?;
+    let all = Series::read_file(file, &keys).map_err(|errors| with_hint(&errors))?;
+    if arguments.plot.is_some() && all.len() > 1 {
+        let count = all.len();
+        let wrong = format!(
+            "{}: --plot draws one channel of {count}: set its number, as in --set channel=1",
+            file.display()
+        );
+        return Err(Failure::Input(wrong));
+    }
+    let all = all.iter();
+    all.map(|series| describe(file, series, arguments))
+        .collect()
+}
+
+/// Returns the contents of a record, and draws it if that is requested.
+fn describe(file: &Path, series: &Series, arguments: &Arguments) -> Result<Described, Failure> {
     super::warn(&series.unlikely(GRAVITY_M_S2));
     let samples = series.accelerations_m_s2(GRAVITY_M_S2);
     let intensity = Intensity::of(&samples, GRAVITY_M_S2);
@@ -182,7 +208,7 @@ fn check_record(
         let picture = draw_record(figure, &title, &samples, &intensity, GRAVITY_M_S2);
         named_files::write_picture(plot, &picture)?;
     }
-    let found = record(&series, &intensity, GRAVITY_M_S2);
+    let found = record(series, &intensity, GRAVITY_M_S2);
     let found = found.map_err(StudyError::from)?;
     Ok((found.text, found.json))
 }

@@ -138,7 +138,7 @@ impl<'a> Document<'a> {
             // Only the error about too deep nesting has no position.
             let start = |error: &toml::de::Error| error.span().map_or(0, |span| span.start);
             let Some(first) = errors.into_iter().min_by_key(start) else {
-                if let Some(fault) = not_a_scenario(&legible, &faults) {
+                if let Some(fault) = not_a_scenario([text, &legible], &faults) {
                     return Err(vec![fault]);
                 }
                 let mut parser = Parser::default();
@@ -165,7 +165,7 @@ impl<'a> Document<'a> {
             let blank = " ".repeat(line.len());
             legible.replace_range(line, &blank);
         }
-        match not_a_scenario(&legible, &faults) {
+        match not_a_scenario([text, &legible], &faults) {
             Some(fault) => Err(vec![fault]),
             None => Err(faults),
         }
@@ -267,17 +267,28 @@ impl<'a> Document<'a> {
     }
 }
 
-/// Returns the single fault of a text that is not a scenario, such as a record: several lines are not valid, and no line begins a table. `None`
-/// for other texts.
-fn not_a_scenario(legible: &str, faults: &[Fault]) -> Option<Fault> {
+/// Returns true unless a text is something else than a scenario, such as a record.
+pub(super) fn is_scenario(text: &str) -> bool {
+    let is_other = |fault: &Fault| fault.message.starts_with(NO_SCENARIO);
+    Document::parse(text, &Files::default())
+        .map_or_else(|faults| !faults.iter().any(is_other), |_| true)
+}
+
+/// The beginning of the message about a text that is not a scenario.
+const NO_SCENARIO: &str = "this is no scenario";
+
+/// Returns the single fault of a text that is not a scenario, such as a record: several lines are not valid, or none sets a key, and no line begins a
+/// table. `None` for other texts.
+fn not_a_scenario([text, legible]: [&str; 2], faults: &[Fault]) -> Option<Fault> {
     const FEW: usize = 2;
-    let first = faults.first().filter(|_| faults.len() > FEW)?;
+    let has_keys = text.contains('=');
+    let first = faults.first().filter(|_| faults.len() > FEW || !has_keys)?;
     let mut lines = legible.lines();
     if lines.any(|line| line.trim_start().starts_with('[')) {
         return None;
     }
     let message = format!(
-        "this is no scenario: {}. If it is a record, name it as `file` in [ground.record] of a scenario; if its extension \
+        "{NO_SCENARIO}: {}. If it is a record, name it as `file` in [ground.record] of a scenario; if its extension \
          is unknown, give `format` as well, such as format=csv",
         first.message
     );

@@ -46,6 +46,7 @@ mod masonry;
 mod meanings;
 mod model_kind;
 mod models;
+mod plain_text;
 mod prelude;
 mod record;
 mod relation;

@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use super::error::{Fault, ScenarioErrors};
 use super::files::{Files, read_at_most, without_current_folders};
+use super::plain_text::not_plain;
 
 /// The text of a scenario, and its name in errors.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -70,8 +71,7 @@ impl Source {
     pub fn of_reader(reader: impl Read, name: &str) -> Result<Self, ScenarioErrors> {
         let unreadable = |wrong: String| ScenarioErrors::unreadable(name, wrong);
         let bytes = read_at_most(reader, 1, "scenario").map_err(unreadable)?;
-        let wrong = not_plain(&bytes).map(str::to_owned);
-        wrong.map(unreadable).map_or(Ok(()), Err)?;
+        not_plain(&bytes).map(unreadable).map_or(Ok(()), Err)?;
         let text = String::from_utf8(bytes).map_err(|error| {
             // The lossy text is identical up to the fault.
             let text = String::from_utf8_lossy(error.as_bytes());
@@ -85,20 +85,6 @@ impl Source {
             text,
         })
     }
-}
-
-/// Returns the reason why a file is not plain text, from its first bytes and its line ends; `None` for plain text.
-pub(super) fn not_plain(bytes: &[u8]) -> Option<&'static str> {
-    let is_utf_16 = bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff");
-    // In UTF-16 without a mark, every other byte of letters and digits is zero.
-    if is_utf_16 || bytes.iter().take(100).any(|byte| *byte == 0) {
-        return Some(
-            "the file is UTF-16 text, as some programs export it, or no text: save it as UTF-8 or plain text",
-        );
-    }
-    (bytes.contains(&b'\r') && !bytes.contains(&b'\n')).then_some(
-        "the lines end with a carriage return alone (CR), as on old Macs: save the file with line ends LF or CR LF",
-    )
 }
 
 /// Returns the files in the folder of a file.

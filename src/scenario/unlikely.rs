@@ -188,7 +188,14 @@ impl Series {
         let mut unlikely = Vec::new();
         if !PEAK_G.contains(&peak_g) {
             let might_be = match self.scaling {
+                Scaling::Factor(1.0) if self.states_unit && peak_g < *PEAK_G.start() => {
+                    "weaker motions than 0.01 g move no masonry".to_owned()
+                }
+                Scaling::Factor(1.0) if self.states_unit => "are its samples damaged?".to_owned(),
                 Scaling::Factor(1.0) => format!("is its unit {unit:?}?"),
+                Scaling::Factor(scale) if self.states_unit => {
+                    format!("is `scale` {}?", plain(scale))
+                }
                 Scaling::Factor(scale) => {
                     format!("is its unit {unit:?}, and `scale` {}?", plain(scale))
                 }

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::results::PrintedResult;
 use crate::dynamics::Intensity;
 use crate::output::{OutputError, filters};
-use crate::scenario::{Baseline, Format, RecordedQuantity, Series};
+use crate::scenario::{Baseline, Format, RecordedQuantity, Series, Unit, shown};
 
 /// Report on a record. Velocity and displacement are integrated from zero.
 #[derive(Serialize, Deserialize, Template)]
@@ -18,6 +18,20 @@ pub struct Summary {
     format: String,
     /// Number of samples and their interval, in words.
     sampling: String,
+    /// Number of the channel from 1; null for formats without channels.
+    channel: Option<usize>,
+    /// Name of the channel; null for formats without channels.
+    channel_name: Option<String>,
+    /// Quantity of the samples.
+    quantity: RecordedQuantity,
+    /// Unit of the samples in the file.
+    unit: Unit,
+    /// Number of samples.
+    samples: usize,
+    /// Time between samples, in seconds; null if it is not constant.
+    dt_s: Option<f64>,
+    /// Time from the first to the last sample, in seconds.
+    duration_s: f64,
     /// Gravity, in m/s2.
     gravity_m_s2: f64,
     /// Peak acceleration, in m/s2.
@@ -60,10 +74,19 @@ pub fn record(
     gravity_m_s2: f64,
 ) -> Result<PrintedResult, OutputError> {
     let [significant_from_s, significant_to_s] = intensity.significant_s;
+    let sampling = series.sampling();
+    let (channel, channel_name) = series.channel.clone().unzip();
     PrintedResult::of(&Summary {
-        file: series.name().to_owned(),
+        file: shown(&series.file),
         format: format(series),
-        sampling: series.sampling().to_string(),
+        sampling: sampling.to_string(),
+        channel,
+        channel_name,
+        quantity: series.layout.quantity,
+        unit: series.unit,
+        samples: sampling.count,
+        dt_s: sampling.step_s.map(without_error),
+        duration_s: sampling.duration_s,
         gravity_m_s2,
         peak_acceleration_m_s2: intensity.acceleration_m_s2.value,
         peak_acceleration_time_s: intensity.acceleration_m_s2.time_s,
@@ -82,6 +105,11 @@ pub fn record(
     })
 }
 
+/// Returns a step without the rounding error of a mean: the time over the number of steps.
+fn without_error(step_s: f64) -> f64 {
+    format!("{step_s:.11e}").parse().unwrap_or(step_s)
+}
+
 /// Returns format and unit of a record, in words.
 fn format(series: &Series) -> String {
     let format = match series.layout.format {
@@ -90,6 +118,8 @@ fn format(series: &Series) -> String {
         Format::Knet => "file of K-NET",
         Format::Smc => "SMC file (USGS)",
         Format::Csmip => "file of CSMIP",
+        Format::Usc => "file of USC",
+        Format::Bhrc => "file of BHRC",
         Format::Cosmos => "COSMOS file",
         Format::Geonet => "file of GeoNet",
         Format::Afad => "file of AFAD",

@@ -9,6 +9,9 @@ use archrock::scenario::{
     Contents, Format, Layout, LineFault, RecordedQuantity, Scenario, TableColumn, Unit,
 };
 
+use serde_json::{Value, json};
+
+use crate::common::ARCH;
 use crate::common::program::{archrock, refusal, stderr, stdout};
 
 /// Accelerations of all files, in cm/s2.
@@ -19,11 +22,13 @@ const VELOCITIES: [f64; 10] = [
 ];
 
 /// The files, their formats and units, and the value of 1 cm/s2 in the file.
-const FILES: [(&str, Format, Unit, f64); 8] = [
+const FILES: [(&str, Format, Unit, f64); 10] = [
     ("smc.smc", Format::Smc, Unit::CentimetrePerS2, 1.0),
     ("csmip.v1", Format::Csmip, Unit::Gravity, 0.001),
     ("csmip.v2", Format::Csmip, Unit::CentimetrePerS2, 1.0),
     ("renadic.v1", Format::Csmip, Unit::Gravity, 0.1),
+    ("usc.m0a", Format::Usc, Unit::Gravity, 0.1),
+    ("usc.s0a", Format::Usc, Unit::CentimetrePerS2, 1.0),
     ("cosmos.v2", Format::Cosmos, Unit::CentimetrePerS2, 1.0),
     ("geonet.v1a", Format::Geonet, Unit::MillimetrePerS2, 10.0),
     ("geonet.v2a", Format::Geonet, Unit::MillimetrePerS2, 10.0),
@@ -238,6 +243,13 @@ fn headers_are_compared_with_the_samples() {
         announces,
     );
     assert_fault("renadic.v1", ("=     10 ", "=     12 "), 29, announces);
+    assert_fault("usc.m0a", ("=     10 ", "=     12 "), 29, announces);
+    assert_fault(
+        "usc.s0a",
+        ("10 POINTS OF ACC", "11 POINTS OF ACC"),
+        48,
+        announces,
+    );
     assert_fault("cosmos.v2", ("10 acc", "11 acc"), 47, announces);
     let wrong = (
         "      10       0       0      10",
@@ -284,6 +296,7 @@ fn headers_are_compared_with_the_samples() {
         ("csmip.v1", "Max  =   .003 g", "Max  =   .013 g"),
         ("csmip.v2", "=    -2.500 ", "=    -2.600 "),
         ("renadic.v1", "MAX  = -0.250", "MAX  = -0.350"),
+        ("usc.s0a", "=    -2.50000  CMS", "=    -2.60000  CMS"),
         (
             "cosmos.v2",
             "    -2.500000     0.05",
@@ -480,7 +493,59 @@ fn one_of_several_channels_is_chosen() {
     )
     .unwrap();
     let check = |keys: &[&str]| archrock(folder.path(), &[&["check", "two.v2"], keys].concat());
-    assert!(refusal(&check(&[])).contains("1 `90 Deg`, 2 `Up`"));
+    let of = |channel: &str| {
+        format!("two.v2: file of CSMIP, accelerations in cm/s2 of channel {channel}`\n")
+    };
+    let said = stdout(&check(&[]));
+    let [first, second] = ["1 of 2 `90 Deg", "2 of 2 `Up"].map(of);
+    assert!(said.starts_with(&first) && said.contains(&second), "{said}");
+    let all: Value = serde_json::from_str(&stdout(&check(&["--format", "json"]))).unwrap();
+    for (index, name) in ["90 Deg", "Up"].into_iter().enumerate() {
+        let channel = &all[index];
+        assert_eq!(channel["channel"], index + 1);
+        assert_eq!(channel["channel_name"], name);
+        let own = [
+            "--format",
+            "json",
+            "--set",
+            &format!("channel={}", index + 1),
+        ];
+        let own: Value = serde_json::from_str(&stdout(&check(&own))).unwrap();
+        assert_eq!(channel, &own);
+        assert_eq!(
+            [&own["samples"], &own["unit"]],
+            [&json!(10), &json!("cm/s2")]
+        );
+        assert_eq!(
+            [&own["dt_s"], &own["duration_s"]],
+            [&json!(0.01), &json!(0.09)]
+        );
+        // The peak of both is 2.5 cm/s2.
+        let peak_m_s2 = own["peak_acceleration_m_s2"].as_f64().unwrap();
+        assert!((peak_m_s2 - 0.025).abs() < 1e-15, "{peak_m_s2}");
+    }
+    // Each warning names its channel.
+    let warnings = stderr(&check(&[]));
+    for number in 1..=2 {
+        let warning = format!("warning: two.v2, channel {number} peaks at 0.00254842 g");
+        assert!(warnings.contains(&warning), "{warnings}");
+    }
+    let said = refusal(&check(&["--plot", "two.svg"]));
+    assert!(
+        said.contains("two.v2: --plot draws one channel of 2"),
+        "{said}"
+    );
+    // A motion needs one of them.
+    fs::write(
+        folder.path().join("s.toml"),
+        format!("{ARCH}[ground.record]\nfile = 'two.v2'\n"),
+    )
+    .unwrap();
+    let said = refusal(&archrock(folder.path(), &["run", "s.toml"]));
+    assert!(
+        said.contains("set `channel`") && said.contains("1 `90 Deg`, 2 `Up`"),
+        "{said}"
+    );
     let said = stdout(&check(&["--set", "channel=up"]));
     assert!(
         said.contains("two.v2: file of CSMIP, accelerations in cm/s2 of channel 2 of 2 `Up`"),
@@ -510,6 +575,7 @@ fn files_say_which_quantity_they_hold() {
     // Corrected files hold velocities as well.
     for (name, unit, factor) in [
         ("csmip.v2", Unit::CentimetrePerS, 1.0),
+        ("usc.s0a", Unit::CentimetrePerS, 1.0),
         ("geonet.v2a", Unit::MillimetrePerS, 10.0),
     ] {
         let contents = parse(&velocities(format(name)), &text(name)).expect(name);
@@ -695,9 +761,9 @@ fn texts_of_networks_are_compared_with_their_header() {
     );
     fault(
         "cwb.dat",
-        ("     0.020", "     0.010"),
+        ("     0.020", "     0.005"),
         17,
-        "the time does not increase",
+        "the time does not increase: 0.005 s follows 0.01 s",
     );
     for (old, new, line, words) in [
         ("/10/10/10", "/11/11/11", 44, "is 10: line 24 announces 11"),
@@ -1055,4 +1121,140 @@ fn suites_list_all_differences() {
         assert!(said.contains(words), "{words}: {said}");
     }
     assert_eq!(said.matches("states a peak").count(), 2, "{said}");
+}
+
+/// Three channels, of which the others are -0.5 and 2 times the first. Two digits of exponents, as in real files, leave no blank before a minus sign.
+#[test]
+fn files_of_bhrc_hold_three_channels() {
+    let text = text("bhrc.v1");
+    assert_eq!(Format::of_contents(text.as_bytes()), Some(Format::Bhrc));
+    for (number, name, factor) in [(1, "L1", 0.1), (2, "V2", -0.05), (3, "T3", 0.2)] {
+        for channel in [
+            TableColumn::Number(number),
+            TableColumn::Name(name.to_owned()),
+        ] {
+            for text in [text.clone(), text.replace('\n', "\r\n")] {
+                let layout = Layout {
+                    channel: Some(channel.clone()),
+                    ..Layout::new(Format::Bhrc)
+                };
+                let contents = parse(&layout, &text).unwrap();
+                assert_eq!(contents.unit, Unit::Gravity);
+                assert_values(&contents, &SAMPLES, factor);
+                assert_eq!(contents.samples[3].0, 0.03);
+            }
+        }
+    }
+    for (old, new, line, words) in [
+        (
+            "POINTS =     10",
+            "POINTS =     11",
+            28,
+            "is 10: line 11 announces 11",
+        ),
+        (
+            "DURATION =    .100",
+            "DURATION =    .000",
+            11,
+            "the duration per sample is 0 s",
+        ),
+        (
+            "DURATION =    .100",
+            "DURATION",
+            11,
+            "is not a finite number",
+        ),
+        (
+            "SECONDS AND G/10",
+            "SECONDS AND counts",
+            11,
+            "the unit is counts",
+        ),
+        (
+            "-1.250000E+00",
+            "-1.25.000E+00",
+            28,
+            "is not a finite number",
+        ),
+    ] {
+        assert!(text.contains(old), "{old}");
+        let damaged = text.replacen(old, new, 1);
+        let fault = parse(&choose(Format::Bhrc, 1), &damaged).expect_err(words);
+        assert!(fault.message.contains(words), "{fault:?}");
+        assert_eq!(fault.line, line, "{fault:?}");
+    }
+}
+
+/// In volume 2 of USC the line before samples may have their unit.
+#[test]
+fn volume_2_of_usc_has_its_unit_in_either_line() {
+    let without = text("usc.s0a");
+    let named = without.replace(
+        "OF ACC DATA EQUALLY SPACED AT   .010 SEC.",
+        "OF ACC DATA EQUALLY SPACED AT   .010 SEC.  IN UNITS CM/SEC/SEC",
+    );
+    assert_ne!(without, named);
+    let layout = Layout::new(Format::Usc);
+    assert_eq!(parse(&layout, &without), parse(&layout, &named));
+    let unknown = without.replace("CMS/SEC/SEC", "counts");
+    let fault = parse(&layout, &unknown).unwrap_err();
+    assert!(fault.message.contains("the unit is counts"), "{fault:?}");
+}
+
+/// Of two samples at one time the first stays: 1.5 at 0.02 s here.
+#[test]
+fn a_repeated_time_drops_its_second_sample() {
+    let pairs = text("smc.smc").replacen("0.1000000E+03", "0.1700000E+39", 1);
+    let (header, _) = pairs.split_once(" 5.0000E-1").unwrap();
+    let rows = " 0.0000E+0-2.0000E+0 1.0000E-2 5.0000E-1 2.0000E-2 1.5000E+0 2.0000E-2-2.5000E+0\n 3.0000E-2 0.0000E+0\n";
+    let contents = parse(&Layout::new(Format::Smc), &format!("{header}{rows}")).unwrap();
+    let expected = [(0.0, -2.0), (0.01, 0.5), (0.02, 1.5), (0.03, 0.0)];
+    assert_eq!(contents.samples, expected);
+    let warning = "repeats the time 0.02 s on line 30: its second sample, -2.5, is left out";
+    assert_eq!(contents.difference.as_deref(), Some(warning));
+    let twice = text("cwb.dat").replacen("     0.020", "     0.010", 1);
+    let contents = parse(&choose(Format::Cwb, 2), &twice).unwrap();
+    let samples = SAMPLES.iter().zip(0..).filter(|(_, index)| *index != 2);
+    assert_eq!(contents.samples.len(), 9);
+    for (sample, (expected, _)) in contents.samples.iter().zip(samples) {
+        assert_eq!(sample.1, *expected);
+    }
+    assert!(
+        contents
+            .difference
+            .unwrap()
+            .starts_with("repeats the time 0.01 s on line 17")
+    );
+}
+
+/// Real files of uncorrected accelerations end with a line that is left from another record.
+#[test]
+fn samples_beyond_the_announced_number_have_a_remedy() {
+    let pairs = text("smc.smc").replacen("0.1000000E+03", "0.1700000E+39", 1);
+    let (header, _) = pairs.split_once(" 5.0000E-1").unwrap();
+    let rows = " 0.0000E+0-2.0000E+0 1.0000E-2 5.0000E-1 2.0000E-2 1.5000E+0 3.0000E-2-2.5000E+0\n 4.0000E-2 0.0000E+0\n";
+    let left = " 1.0000E-2 3.0000E-1 2.0000E-2 1.0000E-1\n";
+    let remedy = "the number of samples is 7: line 14 announces 5 (samples); delete the last 2, if they are not of this record, or correct line 14";
+    let fault = parse(&Layout::new(Format::Smc), &format!("{header}{rows}{left}")).unwrap_err();
+    assert_eq!((fault.line, &*fault.message), (32, remedy));
+    // Fewer samples than announced have no such remedy.
+    let fault = parse(
+        &Layout::new(Format::Smc),
+        &format!("{header}{rows}").replace(" 4.0000E-2 0.0000E+0\n", ""),
+    )
+    .unwrap_err();
+    assert!(
+        fault.message.ends_with("announces 5 (samples)"),
+        "{fault:?}"
+    );
+}
+
+#[test]
+fn a_unit_may_end_with_a_stop() {
+    let text = text("cosmos.v2");
+    assert!(text.contains("units=cm/sec2(04)"));
+    let stop = text.replace("units=cm/sec2(04)", "units=g.     (02)");
+    let contents = parse(&Layout::new(Format::Cosmos), &stop).unwrap();
+    assert_eq!(contents.unit, Unit::Gravity);
+    assert_values(&contents, &SAMPLES, 1.0);
 }

@@ -3,6 +3,7 @@
 mod changes;
 mod check_record;
 mod corrections;
+mod doubtful_records;
 mod files;
 mod files_in_memory;
 mod formats;
@@ -12,3 +13,4 @@ mod records;
 mod set;
 mod span;
 mod suite_records;
+mod unknown_records;

@@ -24,8 +24,10 @@ fn folder() -> tempfile::TempDir {
         let file = file.unwrap();
         fs::copy(file.path(), all.join(file.file_name())).unwrap();
     }
-    // One of its times differs.
-    fs::remove_file(all.join("renadic.v1")).unwrap();
+    // One of the times of the first differs, and all have tenths of g.
+    for other in ["renadic.v1", "usc.m0a", "bhrc.v1"] {
+        fs::remove_file(all.join(other)).unwrap();
+    }
     let (mut timed, mut even) = (String::from("t;up;north\n"), String::from("made up\n"));
     for (index, sample) in SAMPLES.into_iter().enumerate() {
         let time_s = 0.01 * index as f64;
@@ -85,6 +87,7 @@ fn a_folder_may_mix_formats() {
         "all/geonet.v1a",
         "all/geonet.v2a",
         "all/smc.smc",
+        "all/usc.s0a",
         "all/afad.txt",
         "all/cwb.dat",
         "all/unam.asa",
@@ -107,7 +110,7 @@ fn a_folder_may_mix_formats() {
         .map(|series| series.layout.format)
         .collect();
     formats.dedup();
-    assert_eq!(formats.len(), 9, "{formats:?}");
+    assert_eq!(formats.len(), 10, "{formats:?}");
 }
 
 /// The samples of all files are equal, so all records have the same results; parts of the suite and the whole as well.
@@ -118,7 +121,7 @@ fn results_do_not_depend_on_the_format_of_a_record() {
     read(folder, ALL).unwrap();
     done(folder, &["suite", "s.toml", "--out", "whole"]);
     let table = Table::read(folder.join("whole/suite.csv"));
-    assert_eq!(table.rows.len(), 12 * 2);
+    assert_eq!(table.rows.len(), 13 * 2);
     for rows in table.rows.chunks(2) {
         for (row, first) in rows.iter().zip(&table.rows) {
             assert_eq!(row["outcome"], first["outcome"]);

@@ -15,7 +15,7 @@ from ._tables import Tables, arguments, to_toml
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-Unit = Literal["g", "m/s2", "cm/s2", "mm/s2", "mg", "in/s2", "ft/s2", "m/s", "cm/s", "mm/s"]
+Unit = Literal["g", "m/s2", "cm/s2", "mm/s2", "mg", "g/10", "in/s2", "ft/s2", "m/s", "cm/s", "mm/s"]
 Quantity = Literal["acceleration", "velocity"]
 Baseline = Literal["mean", "linear"]
 
@@ -274,8 +274,8 @@ class Record(Ground):
         time: times in s, rising by at least a microsecond, shape ``(samples,)``, 2 to 1,800,000; anything like an
             array.
         acceleration: accelerations in ``unit``, or velocities if ``quantity`` says so, shape ``(samples,)``.
-        unit: ``"g"``, ``"mg"``, ``"m/s2"``, ``"cm/s2"``, ``"mm/s2"``, ``"in/s2"`` or ``"ft/s2"``; ``"m/s"``, ``"cm/s"`` or
-            ``"mm/s"`` for velocities.
+        unit: ``"g"``, ``"mg"``, ``"g/10"``, ``"m/s2"``, ``"cm/s2"``, ``"mm/s2"``, ``"in/s2"`` or ``"ft/s2"``; ``"m/s"``,
+            ``"cm/s"`` or ``"mm/s"`` for velocities.
         quantity: the quantity of the samples. Between samples of ``"velocity"`` the acceleration is constant.
         baseline: subtracted from the accelerations: their ``"mean"`` over time, or the ``"linear"`` line of least squares.
         high_pass_hz: corner of a high-pass filter of the accelerations; the record then begins before its time zero, so it

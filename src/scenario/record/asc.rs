@@ -4,7 +4,10 @@
 
 use std::collections::HashMap;
 
-use super::samples::{Contents, LineFault, Parsed, Values, checked_step, number, words};
+use super::samples::{
+    Contents, IF_TABLE, LineFault, Parsed, Values, checked_step, different_peak, number, peak_of,
+    words,
+};
 use super::unit::{RecordedQuantity, Unit};
 use crate::scenario::prelude::*;
 
@@ -24,7 +27,8 @@ pub(super) fn parse(text: &str, quantity: RecordedQuantity) -> Parsed<Contents> 
         }
     }
     let needed = |key: &str| {
-        let missing = || format!("the header has no {key} up to here: is this an ASC file?");
+        let missing =
+            || format!("the header has no {key} up to here: is this an ASC file? {IF_TABLE}");
         let found = header.get(key).copied();
         found.ok_or_else(|| LineFault::on(last.max(1))(missing()))
     };
@@ -42,7 +46,15 @@ pub(super) fn parse(text: &str, quantity: RecordedQuantity) -> Parsed<Contents> 
         let count = number(count).map_err(LineFault::on(*line))?;
         values.check_count((*line, count), "NDATA")?;
     }
-    Ok(Contents::new(values.evenly(step_s, step_line, STEP)?, unit))
+    let stated = match unit {
+        Unit::CentimetrePerS2 => header.get("PGA_CM/S^2"),
+        Unit::CentimetrePerS => header.get("PGV_CM/S"),
+        _ => None,
+    };
+    let found = peak_of(&values.values, 0.0);
+    let difference = stated.and_then(|(_, peak)| different_peak(peak, found, unit, ""));
+    let contents = Contents::new(values.evenly(step_s, step_line, STEP)?, unit);
+    Ok(contents.doubted(difference))
 }
 
 fn check_quantity(held: &str, quantity: RecordedQuantity) -> Result<(), String> {

@@ -5,7 +5,8 @@
 //! a minus sign separates two numbers.
 
 use super::samples::{
-    Contents, LineFault, MAX_SAMPLES, Parsed, Values, checked_step, header_words, number, words,
+    Contents, IF_TABLE, LineFault, MAX_SAMPLES, Parsed, Values, checked_step, header_words, number,
+    words,
 };
 use super::unit::{RecordedQuantity, Unit};
 use crate::scenario::prelude::*;
@@ -24,11 +25,15 @@ pub(super) fn parse(
     let (line, [count, step_s], named) = header(text, unit, quantity)?;
     let gravity = Some(Unit::Gravity).filter(|_| quantity == RecordedQuantity::Acceleration);
     let missing = "the header names no unit up to here; give `unit`: what the velocities are in";
+    let states_unit = unit.is_none() && named.is_some();
     let unit = unit.or(named).or(gravity);
     let unit = unit.ok_or_else(|| LineFault::on(line)(missing))?;
     let values = Values::below(text, line, |line| line.split(',').flat_map(words))?;
     values.check_count((line, count), "NPTS")?;
-    Ok(Contents::new(values.evenly(step_s, line, "DT")?, unit))
+    Ok(Contents {
+        states_unit,
+        ..Contents::new(values.evenly(step_s, line, "DT")?, unit)
+    })
 }
 
 const COUNT: &str = "NPTS";
@@ -77,8 +82,10 @@ fn header(
         }
     }
     let message = match items.is_empty() {
-        true => "there is no NPTS (number of samples) up to here: is this an AT2 file?",
-        false => "the header has no DT (time step) up to here",
+        true => format!(
+            "there is no NPTS (number of samples) up to here: is this an AT2 file? {IF_TABLE}"
+        ),
+        false => "the header has no DT (time step) up to here".to_owned(),
     };
     Err(LineFault::on(last)(message))
 }

@@ -21,7 +21,7 @@ pub(super) fn parse(text: &str, layout: &Layout) -> Parsed<Contents> {
     };
     let chosen = [times.column(), layout.acceleration_column.as_ref()];
     let by_name = chosen.iter().flatten().any(|column| column.is_name());
-    let contents = parse_table(&table, layout, times, unit, by_name);
+    let contents = parse_table((text, &table), layout, times, unit, by_name);
     // Times that increase are not the whole parts of decimal numbers.
     let is_sure = by_name || contents.is_ok() && matches!(times, Times::Column(_));
     let row = decimal_commas(&table, layout.decimal).filter(|_| !is_sure);
@@ -34,8 +34,9 @@ pub(super) fn parse(text: &str, layout: &Layout) -> Parsed<Contents> {
     })
 }
 
+/// Reads the samples of a table, which is a part of a whole text.
 fn parse_table(
-    text: &str,
+    (whole, text): (&str, &str),
     layout: &Layout,
     times: &Times,
     unit: Unit,
@@ -47,10 +48,12 @@ fn parse_table(
     let first = rows.peek().ok_or_else(|| nothing(text, line))?;
     let columns = Columns::find(layout, times.column(), names.as_ref(), first)?;
     let unit_s = columns.time_unit_s();
-    unit.check_name(columns.name(columns.acceleration))
+    let states_unit = unit
+        .check_name(columns.name(columns.acceleration))
         .map_err(LineFault::on(line.max(1)))?;
-    let (mut times_s, mut values) = (Vec::new(), Values::default());
-    values.line = first.line;
+    let (mut clock, mut values) = (Clock::default(), Values::default());
+    let first_line = first.line;
+    values.line = first_line;
     while let Some(row) = rows.next() {
         let is_last = rows.peek().is_none();
         columns
@@ -65,26 +68,40 @@ fn parse_table(
             values.push(row.line, value)?;
         }
         if columns.time.is_some() {
-            let time_s = time_s * unit_s;
-            check_time(time_s, times_s.last().copied()).map_err(LineFault::on(row.line))?;
-            times_s.push(time_s);
+            clock.push(row.line, time_s * unit_s)?;
         }
     }
-    let samples = match *times {
+    let last_line = values.line;
+    let gap = clock.gap();
+    let (samples, repeated) = match *times {
         Times::Step(step_s) => {
             columns.check_header(&values, step_s)?;
-            let line = values.line;
-            values.evenly(step_s, line, "`dt_s`")?
+            (values.evenly(step_s, last_line, "`dt_s`")?, None)
         }
-        Times::Column(_) => {
-            values.check_enough()?;
-            times_s.into_iter().zip(values.values).collect()
-        }
+        Times::Column(_) => clock.samples(values)?,
     };
-    let columns = columns.described();
-    Ok(Contents {
-        columns,
+    let blank = blank_line(whole, [first_line, last_line], samples.len());
+    let contents = Contents {
+        columns: columns.described(),
+        states_unit,
         ..Contents::new(samples, unit)
+    };
+    Ok(contents.doubted(repeated.into_iter().chain(gap).chain(blank)))
+}
+
+/// Returns a warning about blank lines between the first and the last row of a table, as a phrase that follows the name of the file; `None` if a
+/// blank line follows every row.
+fn blank_line(text: &str, [first, last]: [usize; 2], rows: usize) -> Option<String> {
+    let lines = text.lines().zip(1..).take(last).skip(first);
+    let mut blank = lines.filter(|(line, _)| line.trim().is_empty());
+    let (_, line) = blank.next()?;
+    let others = blank.count();
+    let more = match others {
+        0 => String::new(),
+        _ => format!(" and {others} more"),
+    };
+    (others + 2 < rows).then(|| {
+        format!("has a blank line among its samples (line {line}{more}): are rows missing?")
     })
 }
 
@@ -540,7 +557,10 @@ fn hint(
         let mut words = row.text.split(BETWEEN).filter(|word| !word.is_empty());
         words.all(is_number)
     };
-    let row = rows.find(|row| row.line > wrong.line && (is_of_table(row) || is_of_numbers(row)));
+    // If the first row has numbers as well, numbers alone do not begin the table.
+    let has_words = !is_of_numbers(wrong);
+    let begins = |row: &Row<'_>| is_of_table(row) || has_words && is_of_numbers(row);
+    let row = rows.find(|row| row.line > wrong.line && begins(row));
     row.map_or_else(String::new, |row| {
         let (line, skipped) = (row.line, row.line - 1);
         format!("; numbers begin on line {line}: give `skip_rows = {skipped}` if the table does")

@@ -6,7 +6,8 @@ use std::ops::Range;
 
 use super::layout::{Layout, TableColumn};
 use super::samples::{
-    Contents, LineFault, Parsed, Values, check_time, checked_step, in_range, number, words,
+    Clock, Contents, LineFault, Parsed, Values, checked_step, different_peak, in_range, number,
+    peak_of, words,
 };
 use super::unit::{RecordedQuantity, Unit};
 use crate::scenario::prelude::*;
@@ -39,12 +40,22 @@ pub(super) struct History {
     pub(super) width: usize,
 }
 
+/// Finds the histories in the lines of a file.
+pub(super) type Finder = fn(&[&str]) -> Parsed<Vec<History>>;
+
+/// Returns the number of channels of a file: of its histories of the wanted quantity.
+pub(super) fn count(text: &str, layout: &Layout, histories: Finder) -> Parsed<usize> {
+    let lines: Vec<&str> = text.lines().collect();
+    let histories = histories(&lines)?;
+    let wanted = layout.quantity.name();
+    Ok(histories
+        .iter()
+        .filter(|one| one.quantity == wanted)
+        .count())
+}
+
 /// Reads the history that the layout chooses among those of a file.
-pub(super) fn read(
-    text: &str,
-    layout: &Layout,
-    histories: fn(&[&str]) -> Parsed<Vec<History>>,
-) -> Parsed<Contents> {
+pub(super) fn read(text: &str, layout: &Layout, histories: Finder) -> Parsed<Contents> {
     let lines: Vec<&str> = text.lines().collect();
     let histories = histories(&lines)?;
     ensure(!histories.is_empty(), || {
@@ -67,15 +78,14 @@ pub(super) fn read(
         let factor = plain(history.factor);
         fault(format!("the factor {factor} is not from 1e-6 to 1e6"))
     })?;
-    let (times_s, values) = history.numbers(&lines)?;
+    let (clock, values) = history.numbers(&lines)?;
     values.check_count((history.line, history.count), "samples")?;
-    let difference = history.difference(&values.values, unit);
-    let samples = match history.step_s {
-        Some(step_s) => values.evenly(step_s, history.line, "the step")?,
-        None => {
-            values.check_enough()?;
-            times_s.into_iter().zip(values.values).collect()
-        }
+    let peak = history.peak.as_deref();
+    let difference =
+        peak.and_then(|peak| different_peak(peak, peak_of(&values.values, 0.0), unit, ""));
+    let (samples, repeated) = match history.step_s {
+        Some(step_s) => (values.evenly(step_s, history.line, "the step")?, None),
+        None => clock.samples(values)?,
     };
     let (count, name) = (fitting.len(), excerpt(&history.name));
     let columns = match (count, &*name) {
@@ -83,11 +93,12 @@ pub(super) fn read(
         (1, name) => format!(" of channel `{name}`"),
         (count, name) => format!(" of channel {} of {count} `{name}`", index + 1),
     };
-    Ok(Contents {
+    let contents = Contents {
         columns,
-        difference,
+        channel: Some((index + 1, history.name.clone())).filter(|_| layout.format.has_channels()),
         ..Contents::new(samples, unit)
-    })
+    };
+    Ok(contents.doubted(repeated.into_iter().chain(difference)))
 }
 
 /// Returns the index of the channel that is chosen, or of the only one.
@@ -201,8 +212,8 @@ impl History {
     }
 
     /// Reads the numbers: the times, if the file has them, and the samples.
-    fn numbers(&self, lines: &[&str]) -> Parsed<(Vec<f64>, Values)> {
-        let (mut times_s, (of_sample, wanted)) = (Vec::new(), self.columns);
+    fn numbers(&self, lines: &[&str]) -> Parsed<(Clock, Values)> {
+        let (mut clock, (of_sample, wanted)) = (Clock::default(), self.columns);
         let mut values = Values {
             line: self.data.start.max(1),
             ..Values::default()
@@ -222,36 +233,17 @@ impl History {
             for (at, word) in row.into_iter().enumerate() {
                 let value = number(word).and_then(in_range).map_err(fault)?;
                 let column = at % of_sample;
-                if column == 0 && self.step_s.is_none() {
-                    check_time(value, times_s.last().copied()).map_err(fault)?;
-                    times_s.push(value);
+                // The times of samples beyond their number mean nothing.
+                let is_counted = (values.values.len() as f64) < self.count;
+                if column == 0 && self.step_s.is_none() && is_counted {
+                    clock.push(index + 1, value)?;
                 }
                 if column == wanted {
                     values.push(index + 1, value * self.factor)?;
                 }
             }
         }
-        Ok((times_s, values))
-    }
-
-    /// Compares the peak in the header with the samples. Returns a warning if they differ by more than the rounding. It is no error: headers may
-    /// state the peak before an offset was subtracted, and the number of samples is checked.
-    fn difference(&self, samples: &[f64], unit: Unit) -> Option<String> {
-        const TOLERANCE: f64 = 0.01;
-        let stated = self.peak.as_ref()?;
-        let peak = number(stated).ok()?.abs();
-        let decimals = stated.split('.').nth(1).map_or(0, str::len);
-        let rounding = match stated.contains(['e', 'E', 'd', 'D']) {
-            true => 0.0,
-            false => 0.5 * 0.1_f64.powi(decimals as i32),
-        };
-        let magnitudes = samples.iter().map(|sample| sample.abs());
-        let found = magnitudes.fold(0.0, f64::max);
-        let differs = (found - peak).abs() > rounding + TOLERANCE * peak.max(found);
-        differs.then(|| {
-            let ([found, peak], unit) = ([found, peak].map(plain), unit.name());
-            format!("reaches {found} {unit}, but its header states a peak of {peak} {unit}: are samples damaged?")
-        })
+        Ok((clock, values))
     }
 }
 
@@ -293,10 +285,11 @@ pub(super) fn header_fields<'t>(
     Ok(fields)
 }
 
-/// Returns the lines with numbers from an index on: those before the next line with words.
+/// Returns the lines with numbers from an index on: those before the next line with words, or with the mark `/&` of an end.
 pub(super) fn lines_of_numbers(lines: &[&str], from: usize) -> Range<usize> {
     let from = from.min(lines.len());
-    let end = lines[from..].iter().position(|line| is_text(line));
+    let ends = |line: &&str| is_text(line) || line.starts_with("/&");
+    let end = lines[from..].iter().position(ends);
     from..end.map_or(lines.len(), |end| from + end)
 }
 

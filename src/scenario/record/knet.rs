@@ -1,9 +1,13 @@
 //! The files of K-NET and KiK-net (NIED, Japan).
 //!
 //! The header has lines with a name of up to 18 characters and a value; its last line begins with `Memo.`. Integers follow, several per line.
-//! Multiplied by the `Scale Factor`, such as `3920(gal)/6182761`, they are accelerations in gal, including the offset of the instrument.
+//! Multiplied by the `Scale Factor`, such as `3920(gal)/6182761`, they are accelerations in gal, including the offset of the instrument. For
+//! `Max. Acc. (gal)` their mean is subtracted. Source: the descriptions of both formats (NIED, kyoshin.bosai.go.jp).
 
-use super::samples::{Contents, LineFault, Parsed, Values, number, step_of_rate, words};
+use super::samples::{
+    Contents, IF_TABLE, LineFault, Parsed, Values, different_peak, number, peak_of, step_of_rate,
+    surplus, words,
+};
 use super::unit::Unit;
 use crate::scenario::prelude::*;
 
@@ -13,6 +17,8 @@ const MAX_HEADER_LINES: usize = 64;
 const FREQUENCY: &str = "Sampling Freq(Hz)";
 const SCALE: &str = "Scale Factor";
 const DURATION: &str = "Duration Time(s)";
+/// The peak, as files and as the description spell it.
+const PEAKS: [&str; 2] = ["Max. Acc. (gal)", "Max Acc. (gal)"];
 const LAST: &str = "Memo.";
 
 /// Reads the samples; the first is at time zero.
@@ -22,7 +28,7 @@ pub(super) fn parse(text: &str) -> Parsed<Contents> {
     header.truncate(end.map_or(header.len(), |end| end + 1));
     let lines = header.len();
     let missing = |key: &str| {
-        let message = format!("there is no {key} up to here: is this a file of K-NET?");
+        let message = format!("there is no {key} up to here: is this a file of K-NET? {IF_TABLE}");
         LineFault::on(lines.max(1))(message)
     };
     end.ok_or_else(|| missing(LAST))?;
@@ -38,21 +44,36 @@ pub(super) fn parse(text: &str) -> Parsed<Contents> {
     let mut values = Values::below(text, lines, words)?;
     values.values.iter_mut().for_each(|value| *value *= scale);
     values.check_enough()?;
-    // The header gives the duration in whole seconds.
-    if let Some((line, duration)) = find(DURATION) {
-        let duration_s = number(duration).map_err(LineFault::on(line))?;
-        let count = values.values.len();
-        let lasts_s = count as f64 * step_s;
-        ensure((lasts_s - duration_s).abs() <= 1.0, || {
-            let [lasts_s, duration_s] = [lasts_s, duration_s].map(plain);
-            values.fault(format!(
-                "the file ends after {count} samples, {lasts_s} s: line {line} announces {duration_s} s ({DURATION})"
-            ))
-        })?;
-    }
+    let other_length = find(DURATION).map(|duration| check_duration(&values, step_s, duration));
+    let other_length = other_length.transpose()?.flatten();
+    let mean = values.values.iter().sum::<f64>() / values.values.len() as f64;
+    let (found, unit) = (peak_of(&values.values, mean), Unit::CentimetrePerS2);
+    let stated = PEAKS.iter().find_map(|key| find(key));
+    let difference =
+        stated.and_then(|(_, peak)| different_peak(peak, found, unit, " without its mean"));
     let last = values.line;
     let samples = values.evenly(step_s, last, FREQUENCY)?;
-    Ok(Contents::new(samples, Unit::CentimetrePerS2))
+    Ok(Contents::new(samples, unit).doubted(other_length.into_iter().chain(difference)))
+}
+
+/// Compares the number of samples with the duration on a line of the header. One sample more or less, as some programs count them, is a warning, a
+/// phrase that follows the name of the file; more are a fault.
+fn check_duration(
+    values: &Values,
+    step_s: f64,
+    (line, duration): (usize, &str),
+) -> Parsed<Option<String>> {
+    let duration_s = number(duration).map_err(LineFault::on(line))?;
+    let (found, announced) = (values.values.len() as f64, (duration_s / step_s).round());
+    let more = found - announced;
+    ensure(more.abs() <= 1.0, || {
+        let [lasts_s, duration_s, announced] = [found * step_s, duration_s, announced].map(plain);
+        values.fault(format!(
+            "the file ends after {found} samples, {lasts_s} s: line {line} announces {duration_s} s ({DURATION}), {announced} samples{}",
+            surplus(more, line)
+        ))
+    })?;
+    Ok((more != 0.0).then(|| format!("has {found} samples, but its header announces {announced}")))
 }
 
 fn read_step(frequency: &str) -> Result<f64, String> {

@@ -23,6 +23,10 @@ named! {
         Smc = "smc",
         /// California Strong Motion Instrumentation Program (V1, V2), RENADIC.
         Csmip = "csmip",
+        /// University of Southern California, California Institute of Technology (Volumes I and II).
+        Usc = "usc",
+        /// Building and Housing Research Center, Iran (V1).
+        Bhrc = "bhrc",
         /// COSMOS strong-motion format (V1, V2).
         Cosmos = "cosmos",
         /// GeoNet, New Zealand (V1A, V2A).
@@ -201,7 +205,7 @@ impl Layout {
         let has_header = !matches!(format, Format::At2 | Format::Csv) && table.gives("unit");
         let _ = table.refuse(has_header, "unit", header);
         let has_channels = formats.iter().any(|format| format.has_channels());
-        let wrong = "applies to formats with several channels only: \"csmip\", \"cosmos\", \"geonet\", \"afad\", \"cwb\" and \"unam\"";
+        let wrong = "applies to formats with several channels only: \"csmip\", \"usc\", \"bhrc\", \"cosmos\", \"geonet\", \"afad\", \"cwb\" and \"unam\"";
         let _ = table.refuse(!has_channels && layout.channel.is_some(), "channel", wrong);
         if is_table {
             let wrong = "cannot be combined with `time_column`; give one of them";
@@ -313,7 +317,14 @@ impl Format {
     pub(in crate::scenario) const fn has_channels(&self) -> bool {
         matches!(
             self,
-            Self::Csmip | Self::Cosmos | Self::Geonet | Self::Afad | Self::Cwb | Self::Unam
+            Self::Csmip
+                | Self::Usc
+                | Self::Bhrc
+                | Self::Cosmos
+                | Self::Geonet
+                | Self::Afad
+                | Self::Cwb
+                | Self::Unam
         )
     }
 

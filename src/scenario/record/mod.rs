@@ -45,15 +45,16 @@ use std::sync::Arc;
 
 pub use correction::Baseline;
 pub use layout::{Decimal, Format, Layout, TableColumn, Times};
-use samples::MAX_TIME_S;
 pub use samples::{Contents, LineFault};
+use samples::{MAX_TIME_S, Parsed, is_step};
 pub use unit::{RecordedQuantity, Unit};
 
 use super::assignment::Assignment;
+use super::document::is_scenario;
 use super::error::ScenarioErrors;
 use super::files::Files;
+use super::plain_text::{binary_kind, not_plain};
 use super::prelude::*;
-use super::source::not_plain;
 use super::table;
 use crate::GroundMotion;
 
@@ -124,7 +125,13 @@ pub struct Series {
     /// The columns of a table or the channel of a file, in words that follow the unit; empty without a choice.
     #[serde(skip)]
     pub columns: String,
-    /// A difference between header and samples, as a phrase that follows the name of the file.
+    /// True if the file states the unit: its header, or the name of the column.
+    #[serde(skip)]
+    pub states_unit: bool,
+    /// Number from 1 and name of the channel, of formats with channels.
+    #[serde(skip)]
+    pub channel: Option<(usize, String)>,
+    /// Differences between header and samples and doubtful samples, as a phrase that follows the name of the file.
     #[serde(skip)]
     pub difference: Option<String>,
     /// Ascending times in s, and accelerations or velocities in the unit of the file, corrected as the layout demands.
@@ -148,8 +155,6 @@ pub struct Sampling {
 impl Sampling {
     /// Returns number and spacing of at least two samples.
     fn of(samples: &[(f64, f64)]) -> Self {
-        /// Relative tolerance for a constant step, because times in files are rounded.
-        const EVEN: f64 = 1e-3;
         let steps = || samples.windows(2).map(|pair| pair[1].0 - pair[0].0);
         let [first_s, last_s] = [samples.first(), samples.last()].map(|s| s.map_or(0.0, |s| s.0));
         let duration_s = last_s - first_s;
@@ -157,7 +162,7 @@ impl Sampling {
         Self {
             count: samples.len(),
             step_s: steps()
-                .all(|step_s| (step_s - mean_s).abs() <= EVEN * mean_s)
+                .all(|step_s| is_step(step_s, mean_s, last_s))
                 .then_some(mean_s),
             least_step_s: steps().fold(f64::INFINITY, f64::min),
             duration_s,
@@ -285,16 +290,18 @@ impl Series {
             scaling: Scaling::Factor(1.0),
             unit: contents.unit,
             columns: contents.columns,
+            states_unit: contents.states_unit,
+            channel: contents.channel,
             difference: contents.difference,
             samples: contents.samples.into(),
         }
     }
 
-    /// Reads a file without a scenario, with the keys of `[ground.record]` that describe it.
+    /// Reads a file without a scenario, with the keys of `[ground.record]` that describe it. Returns all channels of the file unless one is chosen.
     ///
     /// # Errors
     /// All faults of the keys, or the fault of the file. Each has the assignment or the file, without a line.
-    pub fn read_file(path: &Path, keys: &[Assignment]) -> Result<Self, ScenarioErrors> {
+    pub fn read_file(path: &Path, keys: &[Assignment]) -> Result<Vec<Self>, ScenarioErrors> {
         let name = path.display().to_string();
         let layout = table::read_text(("", &Files::default()), keys, |table| {
             table.rename("the record");
@@ -304,10 +311,22 @@ impl Series {
         .map_err(|faults| ScenarioErrors::placed(("", &name), keys, faults).without_places())?;
         let bytes = Files::default().read(path);
         let bytes = bytes.map_err(|wrong| ScenarioErrors::unreadable(&name, wrong))?;
-        let contents = layout.parse(&bytes).map_err(|fault| {
+        let read = |layouts: Vec<Layout>| {
+            let count = layouts.len();
+            let series = layouts.into_iter().zip(1..).map(|(layout, number)| {
+                let contents = layout.parse(&bytes)?;
+                let mut series = Self::new(name.clone(), layout, contents);
+                if count > 1 {
+                    series.name = format!("{name}, channel {number}");
+                }
+                Ok(series)
+            });
+            series.collect()
+        };
+        let series: Result<Vec<Self>, LineFault> = layout.by_channel(&bytes).and_then(read);
+        series.map_err(|fault| {
             ScenarioErrors::unreadable(&format!("{name}:{}", fault.line), fault.message)
-        })?;
-        Ok(Self::new(name, layout, contents))
+        })
     }
 
     /// Returns the name of the record, with hidden characters escaped.
@@ -465,19 +484,12 @@ impl Layout {
     /// The first fault in the bytes.
     pub fn parse(&self, bytes: &[u8]) -> Result<Contents, LineFault> {
         let text = legible(bytes)?;
-        let mut contents = match self.format {
-            Format::At2 => at2::parse(&text, self.unit, self.quantity),
-            Format::Asc => asc::parse(&text, self.quantity),
-            Format::Knet => knet::parse(&text),
-            Format::Csv => csv::parse(&text, self),
-            Format::Smc => histories::read(&text, self, smc::histories),
-            Format::Csmip => histories::read(&text, self, csmip::histories),
-            Format::Cosmos => histories::read(&text, self, cosmos::histories),
-            Format::Geonet => histories::read(&text, self, geonet::histories),
-            Format::Afad => histories::read(&text, self, networks::afad),
-            Format::Cwb => histories::read(&text, self, networks::cwb),
-            Format::Csmnc => histories::read(&text, self, networks::csmnc),
-            Format::Unam => histories::read(&text, self, networks::unam),
+        let mut contents = match (self.format, self.format.histories()) {
+            (_, Some(histories)) => histories::read(&text, self, histories),
+            (Format::At2, None) => at2::parse(&text, self.unit, self.quantity),
+            (Format::Asc, None) => asc::parse(&text, self.quantity),
+            (Format::Knet, None) => knet::parse(&text),
+            (_, None) => csv::parse(&text, self),
         }?;
         let unit = contents.unit;
         ensure(unit.quantity() == self.quantity, || {
@@ -494,22 +506,79 @@ impl Layout {
     }
 }
 
+impl Layout {
+    /// Returns the layout of each channel of a file: this layout alone if it chooses a channel, or if there is only one.
+    fn by_channel(&self, bytes: &[u8]) -> Parsed<Vec<Self>> {
+        let histories = self.format.histories().filter(|_| self.channel.is_none());
+        let count = histories.map_or(Ok(1), |histories| {
+            histories::count(&legible(bytes)?, self, histories)
+        })?;
+        if count < 2 {
+            return Ok(vec![self.clone()]);
+        }
+        let channel = |number| Self {
+            channel: Some(TableColumn::Number(number)),
+            ..self.clone()
+        };
+        Ok((1..=count).map(channel).collect())
+    }
+}
+
 impl Format {
+    /// Returns the function that finds the histories of a file of this format; `None` for formats whose files have one record.
+    fn histories(self) -> Option<histories::Finder> {
+        Some(match self {
+            Self::At2 | Self::Asc | Self::Knet | Self::Csv => return None,
+            Self::Smc => smc::histories,
+            Self::Csmip | Self::Usc | Self::Bhrc => csmip::histories,
+            Self::Cosmos => cosmos::histories,
+            Self::Geonet => geonet::histories,
+            Self::Afad => networks::afad,
+            Self::Cwb => networks::cwb,
+            Self::Csmnc => networks::csmnc,
+            Self::Unam => networks::unam,
+        })
+    }
+
     /// Returns the format of a file from its contents, or else from its extension. The error is a phrase that follows the name.
     ///
     /// With the keys of tables, files with an extension of tables are tables. The contents of a scenario are ignored, because it may quote a header.
     pub(super) fn find(files: &Files, file: &str, has_table_keys: bool) -> Result<Self, String> {
-        /// Number of bytes of a header that are searched.
-        const SEARCHED: usize = 4096;
         let by_ending = Self::of_ending(file);
-        let ending = Path::new(file).extension().unwrap_or_default();
-        if has_table_keys && by_ending == Ok(Self::Csv) || ending.eq_ignore_ascii_case("toml") {
+        let is_table = has_table_keys && by_ending == Ok(Self::Csv);
+        if is_table || has_scenario_ending(Path::new(file)) {
             return by_ending;
         }
-        let contents = files.start(&files.path(file), SEARCHED).ok();
-        contents
-            .and_then(|bytes| Self::of_contents(&bytes))
-            .map_or(by_ending, Ok)
+        let contents = files.start(&files.path(file), SEARCHED);
+        let contents = contents.unwrap_or_default();
+        let kind = binary_kind(&contents).filter(|_| by_ending.is_err());
+        match (Self::of_contents(&contents), kind) {
+            (Some(format), _) => Ok(format),
+            (None, Some(kind)) => Err(format!("is {kind}")),
+            (None, None) => by_ending,
+        }
+    }
+
+    /// Returns the error of a file on disk that is neither a scenario nor a record of a known format; `None` for other files.
+    pub fn unknown(file: &Path) -> Option<ScenarioErrors> {
+        if Self::of_file(file).is_some() || has_scenario_ending(file) {
+            return None;
+        }
+        let bytes = Files::default().start(file, SEARCHED).ok()?;
+        let start = String::from_utf8_lossy(&bytes);
+        let wrong = match not_plain(&bytes) {
+            Some(wrong) => wrong,
+            None if is_scenario(&start) => return None,
+            None => {
+                let known: Vec<_> = Self::ALL.iter().map(|format| format.name()).collect();
+                let known = known.join(", ");
+                format!("unknown record format; known: {known}; a table needs `format = \"csv\"`")
+            }
+        };
+        Some(ScenarioErrors::unreadable(
+            &file.display().to_string(),
+            wrong,
+        ))
     }
 
     /// Returns the format of a file on disk from its contents, or else from its extension; `None` if they are not those of a record.
@@ -533,6 +602,8 @@ impl Format {
             (Self::Smc, smc::begins(first)),
             (Self::Cosmos, cosmos::begins(first)),
             (Self::Geonet, geonet::begins(&lines)),
+            (Self::Usc, csmip::is_usc(&lines)),
+            (Self::Bhrc, csmip::is_bhrc(first)),
             (Self::Csmip, csmip::begins(first)),
             (Self::Afad, is_afad),
             (Self::Cwb, is_cwb),
@@ -545,6 +616,15 @@ impl Format {
         let mut formats = shown.into_iter().filter(|(_, is_shown)| *is_shown);
         formats.next().map(|(format, _)| format)
     }
+}
+
+/// Number of bytes of a header that are searched.
+const SEARCHED: usize = 4096;
+
+/// Returns true for the usual ending of scenarios.
+fn has_scenario_ending(file: &Path) -> bool {
+    let ending = file.extension().unwrap_or_default();
+    ending.eq_ignore_ascii_case("toml")
 }
 
 /// Returns the text of a file. Headers may have any encoding with the digits of ASCII.
@@ -645,6 +725,8 @@ mod tests {
                     Layout::new(Format::Knet),
                     Layout::new(Format::Smc),
                     Layout::new(Format::Csmip),
+                    Layout::new(Format::Usc),
+                    Layout::new(Format::Bhrc),
                     Layout::new(Format::Cosmos),
                     Layout::new(Format::Geonet),
                     Layout::new(Format::Afad),
@@ -685,6 +767,9 @@ mod tests {
         "2 CORRECTED ACCELEROGRAM\n",
         "Corrected accelerogram\n",
         "3 points of accel data equally spaced at .01 sec, in cm/sec2. (8f10.6)\n",
+        "3 POINTS OF ACC DATA EQUALLY SPACED AT .01 SEC.\n",
+        "* VOL1DS FILE\n",
+        "NO. OF POINTS = 2 DURATION = .02\nUNITS ARE SECONDS AND G/10\n",
         "NO. OF POINTS = 2\nUNITS OF UNCOR ACCEL ARE SEC AND G/10.\n",
         "/& End of data\n",
         "1 Real-header values follow on 8 lines, Format= (8F13.6)\n",

@@ -129,7 +129,7 @@ pub(super) fn cwb(lines: &[&str]) -> Parsed<Vec<History>> {
         let peaks = header.iter().find_map(|line| rest(line, &phrase));
         History {
             name: name.clone(),
-            unit: unit.trim_end_matches('.').to_owned(),
+            unit: unit.clone(),
             columns: (names.len() + 1, index + 1),
             is_table: true,
             peak: largest(peaks.unwrap_or_default().split('~').map(str::trim)),

@@ -20,6 +20,9 @@ pub(super) const MIN_STEP_S: f64 = 1e-6;
 /// Largest magnitude of a sample in any unit: products and squares of samples stay in the range of an `f64`.
 pub(super) const MAX_SAMPLE: f64 = 1e12;
 
+/// The remedy for a table whose name ends as that of another format.
+pub(super) const IF_TABLE: &str = "Give `format = \"csv\"` if it is a table";
+
 /// The contents of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Contents {
@@ -29,7 +32,11 @@ pub struct Contents {
     pub unit: Unit,
     /// The columns of a table or the channel of a file, in words that follow the unit: ` from column 2`. Empty without a choice.
     pub columns: String,
-    /// A difference between header and samples, as a phrase that follows the name of the file.
+    /// True if the file states the unit: its header, or the name of the column.
+    pub states_unit: bool,
+    /// Number from 1 and name of the channel, of formats with channels.
+    pub channel: Option<(usize, String)>,
+    /// Differences between header and samples and doubtful samples, as a phrase that follows the name of the file.
     pub difference: Option<String>,
 }
 
@@ -39,9 +46,44 @@ impl Contents {
             samples,
             unit,
             columns: String::new(),
+            states_unit: true,
+            channel: None,
             difference: None,
         }
     }
+
+    /// Adds phrases about doubtful samples to [`Contents::difference`].
+    pub(super) fn doubted(mut self, doubts: impl IntoIterator<Item = String>) -> Self {
+        let all = self.difference.into_iter().chain(doubts);
+        self.difference = all.reduce(|first, next| {
+            let stop = if first.ends_with('?') { "" } else { "." };
+            format!("{first}{stop} It also {next}")
+        });
+        self
+    }
+}
+
+/// Compares the peak that a header states with that of the samples, in one unit. Returns a warning if they differ by more than the rounding. It is no
+/// error: headers may state the peak before an offset was subtracted. `what` describes the compared samples, after a blank.
+pub(super) fn different_peak(stated: &str, found: f64, unit: Unit, what: &str) -> Option<String> {
+    const TOLERANCE: f64 = 0.01;
+    let peak = number(stated).ok()?.abs();
+    let decimals = stated.split('.').nth(1).map_or(0, str::len);
+    let rounding = match stated.contains(['e', 'E', 'd', 'D']) {
+        true => 0.0,
+        false => 0.5 * 0.1_f64.powi(decimals as i32),
+    };
+    let differs = (found - peak).abs() > rounding + TOLERANCE * peak.max(found);
+    differs.then(|| {
+        let ([found, peak], unit) = ([found, peak].map(plain), unit.name());
+        format!("reaches {found} {unit}{what}, but its header states a peak of {peak} {unit}: are samples damaged?")
+    })
+}
+
+/// Returns the largest magnitude of values, as differences from `offset`.
+pub(super) fn peak_of(values: &[f64], offset: f64) -> f64 {
+    let magnitudes = values.iter().map(|value| (value - offset).abs());
+    magnitudes.fold(0.0, f64::max)
 }
 
 /// A fault on a line of a record file.
@@ -116,7 +158,8 @@ impl Values {
         ensure(count == found as f64, || {
             let announced = plain(count);
             self.fault(format!(
-                "the number of samples is {found}: line {line} announces {announced} ({key})"
+                "the number of samples is {found}: line {line} announces {announced} ({key}){}",
+                surplus(found as f64 - count, line)
             ))
         })
     }
@@ -142,6 +185,110 @@ impl Values {
         })?;
         Ok(times_s.zip(self.values).collect())
     }
+}
+
+/// Returns the remedy for more samples than a line of the header announces; empty for fewer.
+pub(super) fn surplus(more: f64, line: usize) -> String {
+    match more > 0.0 {
+        true => format!(
+            "; delete the last {}, if they are not of this record, or correct line {line}",
+            plain(more)
+        ),
+        false => String::new(),
+    }
+}
+
+/// The times of samples, each with the line of its row.
+#[derive(Default)]
+pub(super) struct Clock {
+    times: Vec<(usize, f64)>,
+}
+
+impl Clock {
+    /// Adds the time of the sample on a line. It may repeat the time before, but not be earlier.
+    pub(super) fn push(&mut self, line: usize, time_s: f64) -> Parsed<()> {
+        let before_s = self.times.last().map(|time| time.1);
+        if before_s != Some(time_s) {
+            check_time(time_s, before_s).map_err(LineFault::on(line))?;
+        }
+        self.times.push((line, time_s));
+        Ok(())
+    }
+
+    /// Joins times and samples. Of samples at the same time the first stays. Returns a warning about the others, as a phrase that follows the name of
+    /// the file. Many of them are an error: such times are rounded.
+    pub(super) fn samples(self, values: Values) -> Parsed<(Samples, Option<String>)> {
+        /// Number of samples at the time before that are no error in a short record, and their largest share in any.
+        const FEW: (usize, f64) = (3, 0.01);
+        values.check_enough()?;
+        let count = self.times.len() as f64;
+        let rows = || self.times.iter().zip(&values.values);
+        let repeats = || {
+            rows()
+                .zip(rows().skip(1))
+                .filter(|(one, next)| one.0.1 == next.0.1)
+        };
+        let repeated = repeats().count();
+        let Some((_, (&(line, time_s), left_out))) = repeats().next() else {
+            let samples = rows().map(|(time, value)| (time.1, *value));
+            return Ok((samples.collect(), None));
+        };
+        let are_few = repeated <= FEW.0 || repeated as f64 <= FEW.1 * count;
+        ensure(are_few && 4 * repeated < self.times.len(), || {
+            let [time, least] = [time_s, MIN_STEP_S].map(short);
+            let remedy =
+                "if times are rounded, give them with more digits, or the step (`dt_s` of tables)";
+            LineFault::on(line)(format!(
+                "the time does not increase: {time} s follows {time} s, as {repeated} of {count} times repeat the one before; allowed are steps of at \
+                 least {least} s: {remedy}"
+            ))
+        })?;
+        let [time, left_out] = [time_s, *left_out].map(plain);
+        let others = match repeated {
+            1 => String::new(),
+            _ => format!(", as are those at {} more", repeated - 1),
+        };
+        let mut samples: Samples = rows().map(|(time, value)| (time.1, *value)).collect();
+        samples.dedup_by(|next, one| next.0 == one.0);
+        Ok((
+            samples,
+            Some(format!(
+                "repeats the time {time} s on line {line}: its second sample, {left_out}, is left out{others}"
+            )),
+        ))
+    }
+
+    /// Returns a warning if most steps are equal and others longer, as a phrase that follows the name of the file.
+    pub(super) fn gap(&self) -> Option<String> {
+        let last_s = self.times.last()?.1;
+        let pairs = self.times.windows(2);
+        let steps = pairs.map(|pair| (pair[1].0, pair[1].1 - pair[0].1));
+        let steps: Vec<_> = steps.filter(|step| step.1 > 0.0).collect();
+        let mut equal: Vec<f64> = steps.iter().map(|step| step.1).collect();
+        equal.sort_by(f64::total_cmp);
+        let median_s = *equal.get(equal.len() / 2)?;
+        equal.retain(|step_s| is_step(*step_s, median_s, last_s));
+        let is_regular = 3 * equal.len() >= 2 * steps.len();
+        let usual_s = equal.iter().sum::<f64>() / equal.len() as f64;
+        let mut long = steps.iter().filter(|step| step.1 > 1.5 * usual_s);
+        let (line, first_s) = long.next().filter(|_| is_regular)?;
+        let others = match long.count() {
+            0 => String::new(),
+            others => format!(", and {others} more such steps"),
+        };
+        let [first, usual] = [*first_s, usual_s].map(plain);
+        Some(format!(
+            "has a step of {first} s up to line {line}{others}, but the others take {usual} s: are rows missing?"
+        ))
+    }
+}
+
+/// Returns true if a step equals the usual one of a record that ends at `last_s`: to a thousandth, and to the rounding of times to six digits. A step of
+/// twice the usual one is never equal.
+pub(super) fn is_step(step_s: f64, usual_s: f64, last_s: f64) -> bool {
+    const EVEN: f64 = 1e-3;
+    let rounding_s = libm::pow(10.0, libm::log10(last_s.abs()).floor() - 5.0);
+    (step_s - usual_s).abs() <= EVEN * usual_s + rounding_s.min(0.4 * usual_s)
 }
 
 /// Returns the words of a line. Fortran writes numbers with a fixed width, so that only a sign may separate two of them: a sign begins a word,

@@ -29,6 +29,8 @@ named! {
         MillimetrePerS2 = "mm/s2",
         /// Thousandths of the gravity of the simulation.
         MilliGravity = "mg",
+        /// Tenths of the gravity of the simulation.
+        TenthGravity = "g/10",
         /// Inches per second squared, of 0.0254 m.
         InchPerS2 = "in/s2",
         /// Feet per second squared, of 0.3048 m.
@@ -61,6 +63,7 @@ impl Unit {
             Self::CentimetrePerS2 | Self::CentimetrePerS => 0.01,
             Self::MillimetrePerS2 | Self::MillimetrePerS => 0.001,
             Self::MilliGravity => 0.001 * gravity_m_s2,
+            Self::TenthGravity => 0.1 * gravity_m_s2,
             Self::InchPerS2 => 0.0254,
             Self::FootPerS2 => 0.3048,
         }
@@ -89,17 +92,22 @@ impl Unit {
             Some(unit) => format!(", {}", unit.other_quantity()),
             None => format!("; {remedy}"),
         };
-        Err(format!("the unit is {}{wrong}", excerpt(text)))
+        let text = excerpt(text.trim_end_matches('.'));
+        Err(format!("the unit is {text}{wrong}"))
     }
 
-    /// Returns an error if the name of a column contains another unit, as in `acc (g)` or `acc_gal`.
-    pub(super) fn check_name(self, name: &str) -> Result<(), String> {
+    /// Checks the unit in the name of a column, as in `acc (g)` or `acc_gal`. Returns true if it is this unit, and false if there is none.
+    ///
+    /// # Errors
+    /// When it is another unit.
+    pub(super) fn check_name(self, name: &str) -> Result<bool, String> {
         let bracket = name
             .strip_suffix([')', ']'])
             .and_then(|name| name.rsplit(['(', '[']).next());
         let last = name.rsplit([' ', '_', ',']).next();
         let given = bracket.or(last).unwrap_or_default();
-        let is_other = match Self::written(given) {
+        let written = Self::written(given);
+        let is_other = match written {
             Some(unit) => unit != self,
             // A unit without a name in scenarios.
             None => given.eq_ignore_ascii_case("%g"),
@@ -110,22 +118,25 @@ impl Unit {
             format!(
                 "the column is named `{name}`, but `unit` is {own:?}: give `unit` as {given}, or correct the name"
             )
-        })
+        })?;
+        Ok(written == Some(self))
     }
 
-    /// Parses one of the spellings in files: `cm/s^2`, `CM/SEC/SEC`, `gal`.
+    /// Parses one of the spellings in files: `cm/s^2`, `CM/SEC/SEC`, `gal`, `g.`.
     pub(super) fn written(text: &str) -> Option<Self> {
+        let text = text.trim_end_matches('.');
         let plain = text.replace(|c: char| c.is_whitespace() || "^*()[]".contains(c), "");
         match plain.to_ascii_lowercase().replace("sec", "s").as_str() {
             "g" => Some(Self::Gravity),
             "m/s2" | "m/s/s" => Some(Self::MetrePerS2),
-            "cm/s2" | "cm/s/s" | "gal" | "gals" => Some(Self::CentimetrePerS2),
+            "cm/s2" | "cm/s/s" | "cms/s/s" | "gal" | "gals" => Some(Self::CentimetrePerS2),
             "mm/s2" | "mm/s/s" => Some(Self::MillimetrePerS2),
             "mg" => Some(Self::MilliGravity),
+            "g/10" => Some(Self::TenthGravity),
             "in/s2" | "in/s/s" => Some(Self::InchPerS2),
             "ft/s2" | "ft/s/s" => Some(Self::FootPerS2),
             "m/s" => Some(Self::MetrePerS),
-            "cm/s" => Some(Self::CentimetrePerS),
+            "cm/s" | "cms/s" => Some(Self::CentimetrePerS),
             "mm/s" => Some(Self::MillimetrePerS),
             _ => None,
         }
@@ -151,7 +162,7 @@ mod tests {
     #[test]
     fn units_are_read_as_files_write_them() {
         for (unit, texts) in [
-            (Unit::Gravity, &["g", "G", " g "][..]),
+            (Unit::Gravity, &["g", "G", " g ", "g."][..]),
             (Unit::MetrePerS2, &["m/s2", "m/s^2", "M/SEC/SEC", "m/s**2"]),
             (
                 Unit::CentimetrePerS2,
@@ -163,6 +174,7 @@ mod tests {
                     "gal",
                     "Gal",
                     "(cm/sec^2)",
+                    "CMS/SEC/SEC",
                 ],
             ),
             (
@@ -170,17 +182,21 @@ mod tests {
                 &["mm/s2", "mm/s/s", "MM/SEC^2", "(mm/s^2)"],
             ),
             (Unit::MilliGravity, &["mg", "MG", "(mg)"]),
+            (Unit::TenthGravity, &["g/10", "G/10.", "(g/10)"]),
             (Unit::InchPerS2, &["in/s2", "IN/SEC/SEC", "in/s^2"]),
             (Unit::FootPerS2, &["ft/s2", "FT/SEC2", "ft/s/s"]),
             (Unit::MetrePerS, &["m/s", "M/SEC"]),
-            (Unit::CentimetrePerS, &["cm/s", "CM/SEC", "(cm/s)"]),
+            (
+                Unit::CentimetrePerS,
+                &["cm/s", "CM/SEC", "(cm/s)", "CMS/SEC"],
+            ),
             (Unit::MillimetrePerS, &["mm/s", "MM/SEC"]),
         ] {
             for text in texts {
                 assert_eq!(Unit::written(text), Some(unit), "{text}");
             }
         }
-        for text in ["", "cm", "mm", "in", "%g", "in/s", "g/10", "counts"] {
+        for text in ["", ".", "cm", "mm", "in", "%g", "in/s", "g/5", "counts"] {
             assert_eq!(Unit::written(text), None, "{text}");
         }
     }
@@ -194,6 +210,7 @@ mod tests {
             (Unit::CentimetrePerS2, 980.665),
             (Unit::MillimetrePerS2, 9806.65),
             (Unit::MilliGravity, 1000.0),
+            (Unit::TenthGravity, 10.0),
             (Unit::InchPerS2, 386.088_583),
             (Unit::FootPerS2, 32.174_048_6),
         ] {
