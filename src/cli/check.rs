@@ -17,7 +17,8 @@ use super::{
 
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// Scenario files (TOML; `-` for standard input), or record files (AT2, ASC, K-NET, SMC, CSMIP, USC, BHRC, COSMOS, GeoNet, AFAD, CWB, CSMNC, UNAM, or tables in CSV and TXT).
+    /// Scenario files (TOML; `-` for standard input), or record files (AT2, ASC, K-NET, SMC, CSMIP, USC, BHRC, COSMOS, GeoNet, AFAD,
+    /// CWB, CSMNC, UNAM, or tables in CSV and TXT).
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
     #[command(flatten)]

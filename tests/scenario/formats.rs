@@ -879,7 +879,11 @@ fn the_length_of_a_record_is_that_of_the_header() {
     for (rows, line, words) in [
         (&rows[..905], 919, "the file ends after 9.05 s"),
         (&rows[..998], 1012, "the file ends after 9.98 s"),
-        (&record(1002, 0.01), 1016, "the file ends after 10.02 s"),
+        (
+            &record(1002, 0.01),
+            1016,
+            "line 7 announces 10 s; delete the last 2, if they are not of this record, or correct line 7",
+        ),
         (&record(1000, 0.02), 1014, "1000 rows take 19.98 s: line 8"),
         (
             &[&rows[..500], &rows[501..]].concat(),

@@ -9,7 +9,7 @@ use std::ops::Range;
 use super::histories::{
     History, count_and_step, fields, is_text, largest, rest, squeezed, word_after,
 };
-use super::samples::{LineFault, Parsed, number, step_of_rate, words};
+use super::samples::{LineFault, Parsed, number, step_of_rate, surplus, words};
 use super::unit::Unit;
 use crate::scenario::prelude::*;
 
@@ -99,9 +99,10 @@ pub(super) fn cwb(lines: &[&str]) -> Parsed<Vec<History>> {
     let last_line = rows.last().map_or(data.end.max(1), |index| index + 1);
     // The header gives only the length: the step times the number of samples, or of steps between them.
     ensure((count * step_s - lasts_s).abs() <= 1.5 * step_s, || {
+        let remedy = surplus((count - lasts_s / step_s).round(), line);
         let [found_s, lasts_s] = [count * step_s, lasts_s].map(plain);
         LineFault::on(last_line)(format!(
-            "the file ends after {found_s} s at the rate on line {rate_line}: line {line} announces {lasts_s} s"
+            "the file ends after {found_s} s at the rate on line {rate_line}: line {line} announces {lasts_s} s{remedy}"
         ))
     })?;
     let time_s = |row: Option<&usize>| {

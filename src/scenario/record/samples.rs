@@ -218,8 +218,6 @@ impl Clock {
     /// Joins times and samples. Of samples at the same time the first stays. Returns a warning about the others, as a phrase that follows the name of
     /// the file. Many of them are an error: such times are rounded.
     pub(super) fn samples(self, values: Values) -> Parsed<(Samples, Option<String>)> {
-        /// Number of samples at the time before that are no error in a short record, and their largest share in any.
-        const FEW: (usize, f64) = (3, 0.01);
         values.check_enough()?;
         let count = self.times.len() as f64;
         let rows = || self.times.iter().zip(&values.values);
@@ -233,14 +231,15 @@ impl Clock {
             let samples = rows().map(|(time, value)| (time.1, *value));
             return Ok((samples.collect(), None));
         };
-        let are_few = repeated <= FEW.0 || repeated as f64 <= FEW.1 * count;
-        ensure(are_few && 4 * repeated < self.times.len(), || {
+        // A hundredth, and three in short records, if they are no large part of it.
+        let most = (0.01 * count).max(3.0).min(0.25 * count);
+        ensure(repeated as f64 <= most, || {
             let [time, least] = [time_s, MIN_STEP_S].map(short);
             let remedy =
                 "if times are rounded, give them with more digits, or the step (`dt_s` of tables)";
             LineFault::on(line)(format!(
-                "the time does not increase: {time} s follows {time} s, as {repeated} of {count} times repeat the one before; allowed are steps of at \
-                 least {least} s: {remedy}"
+                "the time does not increase: {time} s follows {time} s, and {repeated} of {count} times repeat the one before; \
+                 allowed are steps of at least {least} s: {remedy}"
             ))
         })?;
         let [time, left_out] = [time_s, *left_out].map(plain);
