@@ -7,7 +7,7 @@ use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use archrock::output::{Background, FilmFormat, Origin, PrintError, check_named_file};
-use archrock::scenario::Scenario;
+use archrock::scenario::{Scenario, Varied};
 use archrock::studies::run::{Film, FilmOptions};
 use archrock::studies::{Progress, StudyError};
 
@@ -66,7 +66,7 @@ pub fn film(arguments: &Arguments) -> Result<(), Failure> {
     let scenario = arguments.models.read_one(&input, "a film")?;
     let ready = scenario.check_for_run();
     ready.map_err(|message| input.input_error(message))?;
-    warn_of(std::slice::from_ref(&scenario));
+    warn_of(std::slice::from_ref(&scenario), &Varied::default());
     let name = format!("{FILM}.{}", format.name());
     let folder = match out {
         Some(file) => {

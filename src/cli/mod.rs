@@ -21,6 +21,7 @@ mod studies;
 mod study;
 mod threshold;
 
+use std::fmt::Display;
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -254,10 +255,10 @@ fn with_suggestion(mut error: clap::Error) -> clap::Error {
 /// Largest number of typing mistakes in a command.
 const FAR: usize = 2;
 
-/// Prints warnings about unlikely values in a scenario or a record.
-fn warn(unlikely: &[String]) {
-    for unlikely in unlikely {
-        progress::print_status(&format!("warning: {unlikely}"));
+/// Prints warnings, such as those about unlikely values in a scenario or a record.
+fn warn(warnings: &[impl Display]) {
+    for warning in warnings {
+        progress::print_status(&format!("warning: {warning}"));
     }
 }
 

@@ -1,6 +1,6 @@
 //! The option `--hinges`, which chooses models of motion.
 
-use archrock::scenario::{MODELS, ModelKind, Scenario};
+use archrock::scenario::{MODELS, ModelKind, Scenario, Varied};
 use clap::builder::{PossibleValuesParser, TypedValueParser as _};
 
 use super::Failure;
@@ -75,10 +75,14 @@ fn with_known_restitution(scenarios: Vec<Scenario>) -> Vec<Scenario> {
     known.collect()
 }
 
-/// Prints warnings about unlikely numbers of a scenario, and about a table that its model ignores.
-pub fn warn_of(scenarios: &[Scenario]) {
-    super::warn(&scenarios[0].unlikely());
-    if let Some(ignored) = scenarios.iter().find_map(Scenario::ignored) {
+/// Prints the warnings about unlikely numbers of these scenarios, each once, and about a table that a model ignores. `study` are options that are not part
+/// of the scenarios.
+pub fn warn_of<'s, I>(scenarios: I, study: &Varied<'_>)
+where
+    I: IntoIterator<Item = &'s Scenario> + Clone,
+{
+    super::warn(&Scenario::unlikely_of_all(scenarios.clone(), study));
+    if let Some(ignored) = scenarios.into_iter().find_map(Scenario::ignored) {
         print_status(ignored);
     }
 }

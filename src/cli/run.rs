@@ -4,7 +4,7 @@ use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 use archrock::output::{Folder, Origin};
-use archrock::scenario::{Scenario, shown_lines};
+use archrock::scenario::{Scenario, Varied, shown_lines};
 use archrock::studies::run::{RunOptions, check, heading};
 use archrock::studies::{Options, RUN, Style, UNCERTAIN};
 use nalgebra::Vector2;
@@ -117,9 +117,10 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
             let folder = job.root.as_ref().map(|root| task.folder(root));
             job.check_results([RUN, UNCERTAIN], &task.scenarios, folder.as_ref())?;
         }
+        let scenarios = tasks.iter().flat_map(|task| &task.scenarios);
+        super::warn(&Scenario::unlikely_of_all(scenarios, &Varied::default()));
         for (index, task) in tasks.iter().enumerate() {
             let scenarios = &task.scenarios;
-            super::warn(&scenarios[0].unlikely());
             let folder = job.root.as_ref().map(|root| task.folder(root));
             let earlier_parts = job.finished_parts.len();
             let found = job.compute_with_samples([RUN, UNCERTAIN], scenarios, folder.as_ref());

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::slice;
 
 use archrock::output::{Figure, Folder, Manifest, Origin, pretty};
-use archrock::scenario::Scenario;
+use archrock::scenario::{Scenario, Varied};
 use archrock::studies::ensemble::CellsOfSamples;
 use archrock::studies::map::OverturningMap;
 use archrock::studies::{
@@ -113,7 +113,7 @@ pub fn map(arguments: &MapArguments) -> Result<(), Failure> {
     let study = &arguments.study;
     let input = study.open()?;
     let scenario = study.models.read_one(&input, "map")?;
-    warn_of(slice::from_ref(&scenario));
+    warn_of(slice::from_ref(&scenario), &Varied::default());
     OverturningMap::of(&scenario).map_err(|message| input.input_error(message))?;
     let style = arguments.map.style(&scenario, study.figure.get()?)?;
     if scenario.uncertain.is_some() {
@@ -129,7 +129,7 @@ pub fn suite(study: &StudyArguments) -> Result<(), Failure> {
     let mut known = scenarios.iter().map(Scenario::check_restitution);
     let known = known.find(Result::is_err).unwrap_or(Ok(()));
     known.map_err(|message| input.input_error(message))?;
-    warn_of(&scenarios);
+    warn_of(&scenarios, &Varied::default());
     let style = Style::of(study.figure.get()?);
     let kinds = [SUITE, UNCERTAIN_SUITE];
     compute(kinds, study, &input, &scenarios, style)

@@ -1,7 +1,6 @@
 //! The command `threshold`.
 
 use archrock::output::Origin;
-use archrock::scenario::Scenario;
 use archrock::studies::threshold::{AlongOptions, Factors, KeyRange, check};
 use archrock::studies::{Options, Style, THRESHOLD, THRESHOLD_ALONG, UNCERTAIN_THRESHOLD};
 
@@ -65,16 +64,13 @@ pub fn threshold(arguments: &Arguments) -> Result<(), Failure> {
     })?;
     let root = input.results(study.out.as_deref());
     check_distinct(tasks.iter().map(|task| task.place(&root)))?;
-    let mut scenarios = tasks.iter().flat_map(|task| &task.scenarios);
-    if let Some(ignored) = scenarios.find_map(Scenario::ignored) {
-        print_status(ignored);
-    }
+    let scenarios = tasks.iter().flat_map(|task| &task.scenarios);
+    warn_of(scenarios, &options.varied());
     let title = tasks[0].scenarios[0].title.as_deref();
     let title = title.map_or(String::new(), |title| format!("{title}\n"));
     let mut job = study.job(&input, style, options, THRESHOLD, origin)?;
     let mut all = Vec::new();
     for task in &tasks {
-        super::warn(&task.scenarios[0].unlikely());
         let folder = job.root.as_ref().map(|root| task.folder(root));
         let kinds = [THRESHOLD, UNCERTAIN_THRESHOLD];
         let found = job.compute_with_samples(kinds, &task.scenarios, folder.as_ref())?;
@@ -111,7 +107,7 @@ fn thresholds_along(
         let message = "--along varies one key and ignores [uncertain]: give --no-uncertain";
         return Err(input.input_error(message));
     }
-    warn_of(std::slice::from_ref(&scenario));
+    warn_of(std::slice::from_ref(&scenario), &options.varied());
     let job = study.job(
         input,
         style,

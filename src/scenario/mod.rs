@@ -109,6 +109,7 @@ pub use suite::{Measure, Spectral, Suite};
 pub use tie::{TieEnds, TieTable};
 pub(crate) use toml_text::toml_text;
 pub use uncertain::{Distribution, DistributionForm, MAX_DEVIATIONS, Uncertain, UncertainKey};
+pub use unlikely::{Unlikely, Varied};
 pub(crate) use variant::replaces;
 pub use verify::{
     BEHAVIOUR_FACTOR, Building, BuildingMode, ByState, CONFIDENCE_FACTOR, CheckedSides, CodeDemand,

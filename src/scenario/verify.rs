@@ -189,6 +189,11 @@ impl Records {
         self.0.get(&state).map_or(&[], Vec::as_slice)
     }
 
+    /// Returns the records of all limit states.
+    pub(super) fn all(&self) -> impl Iterator<Item = &Series> + Clone {
+        self.0.values().flatten()
+    }
+
     fn read(table: &mut Table<'_>, gravity_m_s2: Option<f64>) -> ReadResult<Self> {
         let patterns =
             RECORDS.map(|(_, key)| Some((key, table.optional(key, &one_or_more(&text()))?)));

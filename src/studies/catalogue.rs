@@ -20,7 +20,7 @@ use super::suite::{Heading, RecordSuite};
 use super::threshold::along::{Along, AlongOptions};
 use super::threshold::{self, Factors};
 use super::{ReportedStudy, Results, Runner, StudyError, Style, Task, Watch, verify};
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, Varied};
 
 /// Options of studies that are not part of the scenario.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -38,6 +38,14 @@ pub struct Options {
     /// The files and pictures of a run.
     #[serde(skip)]
     pub run: RunOptions,
+}
+
+impl Options {
+    /// Returns the options that warnings about unlikely numbers need.
+    pub fn varied(&self) -> Varied<'_> {
+        let along = self.along.as_ref().map(AlongOptions::varied);
+        along.unwrap_or_else(|| self.factors.varied())
+    }
 }
 
 /// The source of the rows of a study.

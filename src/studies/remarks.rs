@@ -12,6 +12,7 @@ use super::ending::columns::{
 use super::ending::{Ending, NoHistory, Verdict, outcome_name};
 use super::quotable::{SurvivorFriction, directions_in_words};
 use crate::dynamics::{Directions, EXCESS_LEVELS, MODEL_LIMIT, OutcomeCount};
+use crate::scenario::{Unlikely, Varied};
 use crate::{Outcome, Scenario};
 
 /// A failed or uncertain case, as results list it.
@@ -254,6 +255,8 @@ pub(crate) struct CaseSummary {
     scenario: Value,
     /// Warnings about unlikely numbers, limits of the model, and histories without a verdict.
     warnings: Vec<String>,
+    /// The numbers of the warnings about unlikely input, which come first in `warnings`, in their order.
+    unlikely: Vec<Unlikely>,
     /// Name and checksum of each record file.
     record_checksums: Vec<String>,
     /// The only direction of the ground motion that was computed, in words; absent if both count.
@@ -268,15 +271,16 @@ pub(crate) struct CaseSummary {
 }
 
 impl CaseSummary {
-    /// Makes the summary, with warnings about the results.
+    /// Makes the summary, with warnings about the results. `study` are options that are not part of the scenario.
     pub(crate) fn new(
-        scenario: &Scenario,
+        (scenario, study): (&Scenario, &Varied<'_>),
         cases: usize,
         remarks: Remarks,
         friction: SurvivorFriction,
         warnings: impl IntoIterator<Item = String>,
     ) -> Self {
         let one_direction = one_direction(scenario);
+        let unlikely = scenario.unlikely_in(study);
         let warnings = warnings.into_iter();
         let warnings = warnings.chain(friction.friction_condition.clone());
         let warnings = warnings.chain(one_direction.clone());
@@ -284,7 +288,11 @@ impl CaseSummary {
             program: env!("CARGO_PKG_NAME").to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             scenario: scenario.to_json(),
-            warnings: scenario.unlikely().into_iter().chain(warnings).collect(),
+            warnings: Unlikely::sentences(&unlikely)
+                .into_iter()
+                .chain(warnings)
+                .collect(),
+            unlikely,
             record_checksums: scenario.record_checksums(),
             one_direction,
             cases,

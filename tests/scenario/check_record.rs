@@ -299,10 +299,6 @@ fn unlikely_input_is_pointed_out() {
             Some("the mean radius is 5000 m: is it in millimetres?"),
         ),
         (
-            usual.replace("= 5.0", "= 5000"),
-            Some("the thickness is 750 m: is it in millimetres?"),
-        ),
-        (
             format!("[column]\nheight_m = 4000\nwidth_m = 800\n{pulse}"),
             Some("the column measures 4000 m: is it in millimetres?"),
         ),
@@ -310,7 +306,7 @@ fn unlikely_input_is_pointed_out() {
             format!(
                 "{ARCH}voussoirs = 8\n[piers]\nheight_m = 3000\nwidth_m = 2000\n[free_hinges]\n{pulse}"
             ),
-            Some("the structure measures 4009.25 m: is it in millimetres?"),
+            Some("the height of [piers] is 3000 m: is it in millimetres?"),
         ),
         (
             usual.replace("180.0", "3.14159"),

@@ -14,3 +14,4 @@ mod set;
 mod span;
 mod suite_records;
 mod unknown_records;
+mod unlikely;

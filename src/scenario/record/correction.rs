@@ -18,7 +18,7 @@ named! {
 
 impl Baseline {
     /// Subtracts the baseline from accelerations that straight lines join.
-    pub(super) fn subtract(self, samples: &mut [(f64, f64)]) {
+    pub(in crate::scenario) fn subtract(self, samples: &mut [(f64, f64)]) {
         let [(first_s, _), .., (last_s, _)] = *samples else {
             return;
         };

@@ -12,6 +12,7 @@ use crate::output::page::{Spot, SpotKind};
 use crate::output::{
     CURVES, Chart, Figure, Mark, Named, OutputError, column, csv, fields, filters,
 };
+use crate::scenario::{Unlikely, Varied};
 use crate::studies::page::{Page, PageCases};
 use crate::studies::results::Results;
 use crate::{Scenario, Sway};
@@ -34,6 +35,8 @@ pub struct Summary {
     pub masses: String,
     /// Warnings about unlikely numbers of the scenario.
     pub warnings: Vec<String>,
+    /// The numbers of the warnings about unlikely input, which come first in `warnings`, in their order.
+    pub unlikely: Vec<Unlikely>,
     /// The scenario with all defaults.
     pub scenario: Value,
 }
@@ -112,13 +115,15 @@ pub fn report(
         Ok(Some(row)) => row.parts_in_words(),
         _ => scenario.structure.as_parts().parts_in_words(),
     };
+    let unlikely = scenario.unlikely_in(&Varied::default());
     let summary = Summary {
         capacity: sides.map(|side| {
             let side = side.as_ref();
             side.map(|side| CapacitySide::of(side, scenario.gravity_m_s2()))
         }),
         masses,
-        warnings: scenario.unlikely(),
+        warnings: Unlikely::sentences(&unlikely),
+        unlikely,
         scenario: scenario.to_json(),
     };
     let title = scenario.title.as_deref().unwrap_or("Capacity");

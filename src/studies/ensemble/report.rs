@@ -7,6 +7,7 @@ use super::influence::{InfluencedAnswer, Influences, NumberInfluence, percent};
 use super::samples::ReasonCounts;
 use super::{NoAnswer, SampleRow, Samples};
 use crate::output::{Cell, Column, Figure, OutputError, column, csv, list};
+use crate::scenario::{Unlikely, Varied};
 use crate::studies::quotable::SurvivorFriction;
 use crate::studies::statistics::Share;
 use crate::studies::{ModelCheck, one_direction};
@@ -65,6 +66,8 @@ pub(super) struct SampleSummary {
     scenario: Value,
     /// Warnings about unlikely numbers, limits of the model, and histories without a verdict.
     warnings: Vec<String>,
+    /// The numbers of the warnings about unlikely input, which come first in `warnings`, in their order.
+    unlikely: Vec<Unlikely>,
     /// The only direction of the ground motion that was computed, in words; absent if both count.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) one_direction: Option<String>,
@@ -111,8 +114,9 @@ struct WithoutAnswer {
 
 impl SampleSummary {
     /// Makes the summary of samples. `checked` are the histories whose `model` is checked, in words, and `no_verdict` is the warning about incomplete ones.
+    /// `study` are options that are not part of the scenario.
     pub(super) fn new<A, const N: usize>(
-        samples: &Samples<'_, A>,
+        (samples, study): (&Samples<'_, A>, &Varied<'_>),
         model: ModelCheck,
         friction: SurvivorFriction,
         (checked, no_verdict): (&str, Option<String>),
@@ -124,6 +128,7 @@ impl SampleSummary {
         let limits = [outside_in_words(&model, checked), no_verdict];
         let limits = limits.into_iter().flatten().chain(condition);
         let limits = limits.chain(one_direction.clone());
+        let unlikely = scenario.unlikely_in(study);
         let own = samples.own.as_ref().err();
         let without = samples.without().map(|(sample, why)| WithoutAnswer {
             sample,
@@ -134,7 +139,11 @@ impl SampleSummary {
             program: env!("CARGO_PKG_NAME").to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             scenario: scenario.to_json(),
-            warnings: scenario.unlikely().into_iter().chain(limits).collect(),
+            warnings: Unlikely::sentences(&unlikely)
+                .into_iter()
+                .chain(limits)
+                .collect(),
+            unlikely,
             one_direction,
             samples: samples.rows.len(),
             answered: samples.answers().count(),

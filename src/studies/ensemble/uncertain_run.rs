@@ -18,7 +18,7 @@ use crate::output::{
     Figure, Key, Mark, OutputError, Panels, Scale, Sign, Stroke, Subject, color, column, csv, each,
     filters, list,
 };
-use crate::scenario::{MotionModel, Scenario, Structure};
+use crate::scenario::{MotionModel, Scenario, Structure, Varied};
 use crate::studies::Results;
 use crate::studies::ending::columns::{self, OUTCOMES, OVERTURNED};
 use crate::studies::page::kind_of;
@@ -123,7 +123,13 @@ impl Question for Histories {
         let friction = SurvivorFriction::of(demands, samples.scenario, study);
         let limits = (CHECKED, samples.no_verdict());
         let report = Summary {
-            all: SampleSummary::new(samples, model, friction, limits, influences),
+            all: SampleSummary::new(
+                (samples, &Varied::default()),
+                model,
+                friction,
+                limits,
+                influences,
+            ),
             own: samples.own.as_ref().ok().map(OwnHistory::of),
             outcomes: outcomes.collect(),
             peak_rotation_rad: each(band(samples.answers().map(peak_rad).collect(), fractile))

@@ -12,7 +12,7 @@ use super::{NoAnswer, Question, Samples};
 use crate::dynamics::{Direction, Directions};
 use crate::output::page::SpotKind;
 use crate::output::{Chart, Figure, Key, Mark, OutputError, Scale, Stroke, color, column, csv};
-use crate::scenario::{Measure, Scenario, Suite, shown};
+use crate::scenario::{Measure, Scenario, Suite, Varied, shown};
 use crate::studies::intervals::{FRACTILES, FractileIntervals};
 use crate::studies::quotable::{
     self, ModelAnswer, SlipWords, SurvivorFriction, directions_in_words,
@@ -192,7 +192,13 @@ impl Question for Capacities {
         let demand = friction.friction_demand;
         let quoted = self.quoted(samples, &fragility.both, excess.reduce(f64::max), demand);
         let report = Summary {
-            all: SampleSummary::new(samples, model, friction, limits, influences),
+            all: SampleSummary::new(
+                (samples, &Varied::default()),
+                model,
+                friction,
+                limits,
+                influences,
+            ),
             intensity: self.suite.measure,
             to_quote: quotable::in_words(std::slice::from_ref(&quoted)),
             quote: "both".to_owned(),

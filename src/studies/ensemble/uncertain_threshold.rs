@@ -139,7 +139,13 @@ impl Question for FirstEdges {
         let condition = SlipWords::of(samples.scenario).condition(friction.friction_demand, &study);
         let quoted = quoted.with_friction(condition);
         let report = Summary {
-            all: SampleSummary::new(samples, model, friction, limits, influences),
+            all: SampleSummary::new(
+                (samples, &self.factors.varied()),
+                model,
+                friction,
+                limits,
+                influences,
+            ),
             to_quote: quotable::in_words(std::slice::from_ref(&quoted)),
             lower_limit,
             survives_up_to_factor: each(band(

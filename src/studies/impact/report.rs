@@ -14,6 +14,7 @@ use crate::mechanics::four_link::{HingeSites, Impact, ImpulseLine, Projection};
 use crate::mechanics::{Edge, Profile};
 use crate::output::mechanisms::{HINGES, degrees};
 use crate::output::{Cell, OutputError, column, csv, filters};
+use crate::scenario::{Unlikely, Varied};
 use crate::{Hinge, ImpactModel, MechanismModel, Scenario, Sway};
 
 /// Impacts of the structure of a scenario.
@@ -33,6 +34,8 @@ pub struct Summary {
     pub certificate: Option<Certificate>,
     /// Warnings about unlikely numbers of the scenario.
     pub warnings: Vec<String>,
+    /// The numbers of the warnings about unlikely input, which come first in `warnings`, in their order.
+    pub unlikely: Vec<Unlikely>,
     /// The mechanism before the first impact of each chain.
     pub starts: Vec<SwayingMechanism>,
     /// The requested number of impacts.
@@ -410,12 +413,14 @@ impl Summary {
         let starts = sides
             .iter()
             .map(|side| SwayingMechanism::of(model, *side, 0));
+        let unlikely = scenario.unlikely_in(&Varied::default());
         Self {
             impacts: chain(sides[0]),
             impacts_after_left: sides.get(1).map(|side| chain(*side)),
             models: None,
             certificate: None,
-            warnings: scenario.unlikely(),
+            warnings: Unlikely::sentences(&unlikely),
+            unlikely,
             starts: starts.collect(),
             count,
             chosen: None,

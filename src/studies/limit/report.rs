@@ -12,6 +12,7 @@ use crate::mechanics::settling::Pin;
 use crate::mechanics::{Edge, Equivalent, RowOnset, Sides};
 use crate::output::mechanisms::{HINGES, by_body, columns, degrees};
 use crate::output::{Named, Scene, filters};
+use crate::scenario::Unlikely;
 use crate::{Hinge, MechanismModel, Row, Sway};
 
 /// The onset of motion of a structure, to either side.
@@ -64,6 +65,8 @@ pub struct Summary {
     pub friction: Option<Friction>,
     /// Warnings about unlikely numbers of the scenario.
     pub warnings: Vec<String>,
+    /// The numbers of the warnings about unlikely input, which come first in `warnings`, in their order.
+    pub unlikely: Vec<Unlikely>,
     /// Names of the bodies of the first mechanism, from left to right; absent unless the structure moves as four links or as a column.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub bodies: Vec<String>,

@@ -7,7 +7,7 @@ use super::picture::{self, ColoredCells};
 use super::{CellRow, OverturningMap, page};
 use crate::argument::plain;
 use crate::output::{Column, OutputError, column, csv};
-use crate::scenario::{Quantity, Scenario};
+use crate::scenario::{Quantity, Scenario, Varied};
 use crate::studies::ending::Verdict;
 use crate::studies::ending::columns::{self, FAILED};
 use crate::studies::quotable::SurvivorFriction;
@@ -55,7 +55,13 @@ impl ReportedStudy for OverturningMap<'_> {
             mirrored: cells.iter().filter(|cell| cell.is_mirrored()).count(),
             for_looking,
             other_outcomes_in_repetitions: self.repeat.then(|| doubtful.count()),
-            all: CaseSummary::new(scenario, cells.len(), remarks, friction, warnings),
+            all: CaseSummary::new(
+                (scenario, &Varied::default()),
+                cells.len(),
+                remarks,
+                friction,
+                warnings,
+            ),
         };
         let colored = ColoredCells::of_outcomes(&cells, style);
         let picture = |style| picture::drawn(title, self, &cells, &colored, style);

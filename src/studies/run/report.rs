@@ -25,7 +25,7 @@ use crate::output::page::{
 };
 use crate::output::scene::FARTHEST;
 use crate::output::{Envelope, Piece, Scene, filters, render};
-use crate::scenario::DimensionSide;
+use crate::scenario::{DimensionSide, Unlikely, Varied};
 use crate::{
     GroundMotion, Hinge, Model, OpenHinge, Pose, Sample, Scenario, State, Summary as History, Sway,
 };
@@ -191,11 +191,12 @@ impl Report {
         // Rotation and displacement of each body, each section, each closed joint, time, ground and the rest, in base 64.
         let bytes = 4 * (6 * bodies.len() + 3 * (scene.sections.len() + pressing) + 24) / 3;
         let most = (FRAME_BYTES / bytes).clamp(MIN_FRAMES, MAX_FRAMES);
+        let unlikely = scenario.unlikely_in(&Varied::of_model(model));
         Self {
             scene,
             bodies,
             gravity_m_s2: scenario.gravity_m_s2(),
-            warnings: scenario.unlikely_of(Some(model)),
+            warnings: Unlikely::sentences(&unlikely),
             motion: Animation::new(most),
             fall: Animation::new(most / FALL_SHARE),
             fall_end: None,

@@ -14,7 +14,7 @@ use crate::dynamics::{
 use crate::mechanics::Sides;
 use crate::output::mechanisms::columns;
 use crate::output::{Named, OutputError, summary_of};
-use crate::scenario::{ELASTIC_JOINTS, Ground, ModelKind, Scenario};
+use crate::scenario::{ELASTIC_JOINTS, Ground, ModelKind, Scenario, Unlikely, Varied};
 use crate::studies::quotable::{self, ModelAnswer, QUOTED_PEAK, SlipWords, restitution_in_words};
 use crate::{MechanismModel, Model, Outcome, Summary as History, Sway, Verdict};
 
@@ -57,6 +57,8 @@ pub struct Summary {
     pub verdict: Verdict,
     /// Warnings about unlikely numbers of the scenario, and about limits of its history.
     pub warnings: Vec<String>,
+    /// The numbers of the warnings about unlikely input, which come first in `warnings`, in their order.
+    pub unlikely: Vec<Unlikely>,
     /// Outcome of the motion.
     #[serde(flatten)]
     pub outcome: OutcomeSummary,
@@ -407,6 +409,7 @@ impl Summary {
         let names = columns(&model.bodies(), "peak_rotation", "rad");
         let peaks_rad = history.peak_rotations_rad.iter().copied();
         let [first_impact, hardest_impact] = computed.impacts.first_and_hardest(history);
+        let unlikely = scenario.unlikely_in(&Varied::of_model(model));
         let mut summary = Self {
             program: env!("CARGO_PKG_NAME").to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -414,7 +417,8 @@ impl Summary {
             scenario: scenario.to_json(),
             record_checksums: scenario.record_checksums(),
             verdict: Verdict::Incomplete,
-            warnings: scenario.unlikely_of(Some(model)),
+            warnings: Unlikely::sentences(&unlikely),
+            unlikely,
             outcome: OutcomeSummary::of(history),
             mirrored: computed.mirrored.clone(),
             end_s: history.end_s,

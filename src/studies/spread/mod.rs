@@ -14,6 +14,7 @@ use super::runner::in_parallel;
 use crate::mechanics::settling::{HingeState, Movement, Pin, Snap};
 use crate::mechanics::{Follower, Movements, Parts as _, SettlingError, Sides};
 use crate::output::filters;
+use crate::scenario::{Unlikely, Varied};
 use crate::{Pose, Row, Scenario, Sway};
 
 /// Number of equal parts of a movement, with a stage at the end of each.
@@ -173,6 +174,8 @@ pub struct Summary {
     pub paths: Vec<SpreadPath>,
     /// Warnings about unlikely numbers of the scenario.
     pub warnings: Vec<String>,
+    /// The numbers of the warnings about unlikely input, which come first in `warnings`, in their order.
+    pub unlikely: Vec<Unlikely>,
     /// The scenario with all defaults.
     pub scenario: Value,
 }
@@ -193,12 +196,14 @@ pub fn spread(scenario: &Scenario, directions: &[Direction]) -> Result<Summary, 
     let compute = |direction: &Direction| path(&row, settled, *direction, sizes);
     let paths = in_parallel(directions, compute).into_iter();
     let paths = paths.collect::<Result<_, _>>();
+    let unlikely = scenario.unlikely_in(&Varied::default());
     Ok(Summary {
         paths: paths.map_err(StudyError::scenario)?,
         clear_span_m,
         weight_n,
         support: scenario.structure.support_name().to_owned(),
-        warnings: scenario.unlikely(),
+        warnings: Unlikely::sentences(&unlikely),
+        unlikely,
         scenario: scenario.to_json(),
         friction_coefficient: scenario.motion.options.friction_coefficient(),
     })

@@ -8,7 +8,7 @@ use crate::argument::plain;
 use crate::dynamics::{Direction, Directions};
 use crate::output::caption::caption;
 use crate::output::{Figure, Scale};
-use crate::scenario::{Measure, ModelKind, Scenario, Spacing, Spectral, Suite};
+use crate::scenario::{Measure, ModelKind, Scenario, Spacing, Spectral, Suite, Unlikely, Varied};
 use crate::studies::page::under_factor;
 use crate::studies::quotable::{SlipWords, restitution_in_words};
 
@@ -30,6 +30,9 @@ pub struct Heading {
     pub(super) spectral: Spectral,
     /// Warnings about the scenario.
     pub(super) warnings: Vec<String>,
+    /// Their numbers.
+    #[serde(default)]
+    pub(super) unlikely: Vec<Unlikely>,
     /// The scenario in one line.
     #[serde(default)]
     pub(super) what: String,
@@ -47,6 +50,7 @@ pub struct Heading {
 impl Heading {
     /// Makes the heading of a scenario with this suite. `has_both` is true if each record acts in both directions, in cases of their own.
     pub(super) fn new(scenario: &Scenario, suite: &Suite, has_both: bool) -> Self {
+        let unlikely = scenario.unlikely_in(&Varied::default());
         Self {
             title: scenario.title.clone(),
             scenario: scenario.to_json(),
@@ -57,7 +61,8 @@ impl Heading {
             has_both,
             directions: scenario.simulation.direction,
             spectral: suite.spectral,
-            warnings: scenario.unlikely(),
+            warnings: Unlikely::sentences(&unlikely),
+            unlikely,
             // The records of the suite replace the ground motion of the scenario.
             what: caption(&scenario.with_ground(None), &[]),
             slip: SlipWords::of(scenario),

@@ -13,7 +13,7 @@ use super::{
 use crate::argument::plain;
 use crate::dynamics::Direction;
 use crate::output::{Column, Figure, OutputError, column, csv, each, fields, list};
-use crate::scenario::{Measure, Spectral, shown};
+use crate::scenario::{Measure, Spectral, Unlikely, shown};
 use crate::studies::ending::columns::{self, FAILED, yes};
 use crate::studies::page::{DrawPicture, Page, PageCases};
 use crate::studies::quotable::{self, ModelAnswer, directions_in_words};
@@ -57,6 +57,8 @@ pub struct Summary {
     scenario: Value,
     /// Warnings about unlikely numbers, limits of the model, and histories without a verdict.
     warnings: Vec<String>,
+    /// The numbers of the warnings about unlikely input, which come first in `warnings`, in their order.
+    unlikely: Vec<Unlikely>,
     /// The answer that may be quoted, in words.
     to_quote: Option<String>,
     /// Largest friction coefficient that the surviving cases up to the quoted intensity and their repetitions require without slip; null if joints slip
@@ -219,6 +221,7 @@ impl Heading {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             scenario: self.scenario.clone(),
             warnings: self.warnings.iter().cloned().chain(limits).collect(),
+            unlikely: self.unlikely.clone(),
             to_quote: quotable::in_words(std::slice::from_ref(&answer)),
             friction_demand,
             outcomes: OutcomeCounts::of(results.cases.iter().map(|case| &case.result)),

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::argument::{ArgumentError, above, plain, within};
 use crate::dynamics::Directions;
+use crate::scenario::Varied;
 use crate::{GroundMotion, Model, Request, Sway};
 
 /// Relative width to which bisection encloses the edge between neighbouring factors with different certain verdicts.
@@ -58,6 +59,14 @@ impl Factors {
         }
         let stride = within("stride", stride, 1e-4..=1.0)?;
         Ok(Self { from, to, stride })
+    }
+
+    /// Returns the largest factor, for warnings about it.
+    pub(in crate::studies) fn varied(&self) -> Varied<'static> {
+        Varied {
+            factor: self.to,
+            ..Varied::default()
+        }
     }
 
     /// Returns the options of a command that searches these factors, with a space before each; empty for the default.

@@ -13,7 +13,7 @@ use super::{
 use crate::argument::plain;
 use crate::dynamics::{Direction, MODEL_LIMIT, OutcomeCount};
 use crate::output::{Figure, OutputError, column, csv, fields};
-use crate::scenario::{Ground, ModelKind, Scenario};
+use crate::scenario::{Ground, ModelKind, Scenario, Unlikely};
 use crate::studies::ending::columns::{GROUND_FALLS, OVERTURNED};
 use crate::studies::ending::{NoHistory, Verdict, outcome_name};
 use crate::studies::page::{Page, PageCases, input_in_words, under_factor};
@@ -52,6 +52,8 @@ pub struct Summary {
     free_fall_factor: Option<f64>,
     /// Warnings about unlikely numbers, limits of the models, and histories without a verdict.
     warnings: Vec<String>,
+    /// The numbers of the warnings about unlikely input, which come first in `warnings`, in their order.
+    unlikely: Vec<Unlikely>,
     /// The answer that may be quoted, in words.
     to_quote: Option<String>,
     /// The threshold of each model.
@@ -211,10 +213,9 @@ pub fn report(
     let models: Vec<ModelSummary> = models
         .map(|(threshold, scenario)| threshold.summary(scenario, peak_g))
         .collect();
-    let falls = |sample: &FactorSample| matches!(sample.result, Err(NoHistory::GroundFalls(_)));
-    let all = thresholds.iter().flat_map(Threshold::directions);
-    let falls = all.flat_map(|one| &one.samples).any(falls);
+    let falls = ground_falls(thresholds);
     let (ground, gravity_m_s2) = (scenario.ground_motion(), scenario.gravity_m_s2());
+    let unlikely = Scenario::unlikely_of_all(scenarios, &factors.varied());
     let report = Summary {
         program: env!("CARGO_PKG_NAME").to_owned(),
         version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -225,7 +226,8 @@ pub fn report(
         peak_acceleration_g: peak_g,
         factors: *factors,
         free_fall_factor: ground.free_fall_factor(gravity_m_s2).filter(|_| falls),
-        warnings: warnings(scenarios, &models, frictions),
+        warnings: warnings(&unlikely, &models, frictions),
+        unlikely,
         to_quote: quotable::in_words(&answers),
         models,
     };
@@ -264,6 +266,13 @@ pub fn report(
     Ok(results.with_page(FILES[0], page, &cases, (&draw, &[])))
 }
 
+/// Returns true if the ground falls as fast as a free body under a factor that was tried.
+fn ground_falls(thresholds: &[Threshold]) -> bool {
+    let falls = |sample: &FactorSample| matches!(sample.result, Err(NoHistory::GroundFalls(_)));
+    let all = thresholds.iter().flat_map(Threshold::directions);
+    all.flat_map(|one| &one.samples).any(falls)
+}
+
 /// Makes the table of the samples, ordered by model and direction, then by factor.
 fn table(models: &[ModelSummary]) -> Result<Vec<u8>, OutputError> {
     type Row<'a> = (&'a str, &'a TriedFactor, Direction);
@@ -294,18 +303,13 @@ fn table(models: &[ModelSummary]) -> Result<Vec<u8>, OutputError> {
     csv(columns, &rows.collect::<Vec<_>>())
 }
 
-/// Returns the warnings of all models without duplicates, histories without a verdict, and conditions on friction.
+/// Returns the warnings about unlikely numbers, histories without a verdict, and conditions on friction.
 fn warnings(
-    scenarios: &[Scenario],
+    unlikely: &[Unlikely],
     models: &[ModelSummary],
     frictions: Vec<Option<FrictionCondition>>,
 ) -> Vec<String> {
-    let mut warnings: Vec<String> = Vec::new();
-    for warning in scenarios.iter().flat_map(Scenario::unlikely) {
-        if !warnings.contains(&warning) {
-            warnings.push(warning);
-        }
-    }
+    let mut warnings = Unlikely::sentences(unlikely);
     warnings.extend(
         models
             .iter()

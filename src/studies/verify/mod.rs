@@ -28,7 +28,7 @@ use crate::dynamics::{GroundSpectrum, Site};
 use crate::mechanics::Capacity;
 use crate::scenario::{
     CheckedSides, Demand, FreeStanding, InputFile, Language, LimitState, Scenario, StateRule,
-    Verify, sha256,
+    Unlikely, Varied, Verify, sha256,
 };
 pub use geometry::{FillGeometry, Geometry, LoadAt, PlacedBlock, RingGeometry};
 pub use histories::{ComparedPeak, Histories, HistorySide, MeanSpectrum, Peak, RecordPeaks};
@@ -169,6 +169,8 @@ pub struct Summary {
     pub states: BTreeMap<LimitState, StateCheck>,
     /// Assumptions that do not hold, and input that is unlikely or ignored.
     pub warnings: Vec<String>,
+    /// The numbers of the warnings about unlikely input, which come first in `warnings`, in their order.
+    pub unlikely: Vec<Unlikely>,
     /// Decisions where the text leaves a choice.
     pub decisions: Vec<Decision>,
     /// Assumptions of the check.
@@ -265,6 +267,7 @@ pub fn verify(scenario: &Scenario) -> Result<Summary, VerifyError> {
         mechanisms,
         states,
         warnings: Vec::new(),
+        unlikely: scenario.unlikely_in(&Varied::default()),
         decisions: Vec::new(),
         assumptions: Vec::new(),
         not_covered: Vec::new(),
@@ -282,7 +285,7 @@ pub fn verify(scenario: &Scenario) -> Result<Summary, VerifyError> {
         Some(_) => Vec::new(),
         None => input.settings.records.keys(),
     };
-    report::add_notes(&mut summary, scenario.unlikely(), &unused);
+    report::add_notes(&mut summary, &unused);
     Ok(summary)
 }
 

@@ -22,6 +22,7 @@ use crate::dynamics::demand::damping_factor;
 use crate::output::{Figure, OutputError, filters, render, render_in};
 use crate::scenario::{
     CONFIDENCE_FACTOR, CheckedSides, FreeStanding, Language, LimitState, Scenario, StateRule,
+    Unlikely,
 };
 use crate::studies::{Results, no_verdict};
 use crate::{Hinge, Sway};
@@ -353,13 +354,9 @@ impl Notes<'_> {
     }
 }
 
-/// Adds decisions, assumptions, gaps and warnings to a check, and the reason if it has no `zeta_E`. `unlikely` are warnings about the scenario,
-/// `unused_records` the keys of records whose histories are not computed.
-pub(super) fn add_notes(
-    check: &mut Summary,
-    unlikely: Vec<String>,
-    unused_records: &[&'static str],
-) {
+/// Adds decisions, assumptions, gaps and warnings to a check, and the reason if it has no `zeta_E`. `unused_records` are
+/// the keys of records whose histories are not computed.
+pub(super) fn add_notes(check: &mut Summary, unused_records: &[&'static str]) {
     if check.zeta_e.is_none() {
         let why = render_in(&NoRatio { check }, check.language);
         check.no_zeta_e_because = Some(why.trim().to_owned());
@@ -381,7 +378,7 @@ pub(super) fn add_notes(
     check.decisions = decisions.collect();
     check.assumptions = part();
     check.not_covered = part();
-    check.warnings = [unlikely, part()].concat();
+    check.warnings = [Unlikely::sentences(&check.unlikely), part()].concat();
 }
 
 /// Returns true if the left side is the mirror image of the right one, including all numbers.

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{CellCounts, CellRow, CellsOfSamples, Crossing, LEVELS, Samples, outcome_of};
 use crate::output::{Key, Mark, OutputError, Stroke, color, column, csv, each, list};
+use crate::scenario::Varied;
 use crate::studies::ending::columns::{OUTCOMES, yes};
 use crate::studies::ensemble::influence::{InfluencedAnswer, percent};
 use crate::studies::ensemble::report::{Band, SampleSummary};
@@ -128,7 +129,13 @@ pub(super) fn report(
     };
     let parts = samples.answers().map(|part| part.share);
     let report = Summary {
-        all: SampleSummary::new(samples, model, friction, limits, influences),
+        all: SampleSummary::new(
+            (samples, &Varied::default()),
+            model,
+            friction,
+            limits,
+            influences,
+        ),
         axes: study.map.axes.map(|axis| axis.key.clone()),
         cells,
         cells_at_levels: LEVELS.map(|level| at_least(level).count()),

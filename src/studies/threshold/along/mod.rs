@@ -17,7 +17,7 @@ use super::check;
 use super::factors::Factors;
 use super::first_edge::FirstEdge;
 use crate::dynamics::Direction;
-use crate::scenario::{Scenario, Sequence, Spacing};
+use crate::scenario::{Scenario, Sequence, Spacing, Varied};
 use crate::studies::{NoAnswer, Study};
 
 /// Equally spaced values of a key of the scenario, ends included.
@@ -93,6 +93,18 @@ pub struct AlongOptions {
     pub factors: Factors,
     /// True to find also the smallest factor that overturns the structure before any impact.
     pub no_impact: bool,
+}
+
+impl AlongOptions {
+    /// Returns the key, and the largest factor.
+    pub(in crate::studies) fn varied(&self) -> Varied<'_> {
+        let KeyRange { key, from, to, .. } = &self.along;
+        Varied {
+            along: Some((key, [*from, *to])),
+            factor: self.factors.to,
+            ..Varied::default()
+        }
+    }
 }
 
 /// The thresholds of a scenario along a range of values.

@@ -66,7 +66,13 @@ impl ReportedStudy for Along<'_> {
         let condition = SlipWords::of(self.scenario).condition(friction.friction_demand, &study);
         let answer = self.answer(&rows).with_friction(condition);
         let report = Summary {
-            all: CaseSummary::new(self.scenario, rows.len(), remarks, friction, limits),
+            all: CaseSummary::new(
+                (self.scenario, &self.options.varied()),
+                rows.len(),
+                remarks,
+                friction,
+                limits,
+            ),
             to_quote: quotable::in_words(&[answer]),
             values_without_verdict,
             along,

@@ -1,0 +1,331 @@
+//! Warnings about input that is possible but unlikely, such as a length in centimetres.
+
+mod ground;
+mod series;
+mod structure;
+mod usual;
+
+use std::fmt;
+use std::ops::RangeInclusive;
+
+use serde::Deserialize;
+
+use self::usual::{USUAL, Usual, usual_forces};
+use super::prelude::*;
+use super::structure::bounds_m;
+use super::{MotionModel, Quantity, Scenario, Structure};
+use crate::Model;
+use crate::mechanics::Shape;
+
+/// Gravity on Earth, from the equator to the poles, and the rounded one of many papers, in m/s2.
+const GRAVITY_M_S2: RangeInclusive<f64> = 9.75..=10.0;
+/// Number of steps beyond which a computation takes minutes.
+const STEPS: f64 = 1e7;
+/// Duration beyond which a computation with four links takes minutes, in s.
+const DURATION_S: f64 = 1e5;
+
+/// An unlikely number of the input. Its `Display` is the warning.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Unlikely {
+    /// Key of the scenario with its table, or the name of the record.
+    pub key: String,
+    /// The unlikely number; null if the warning is about several.
+    pub value: Option<f64>,
+    /// Unit of the number; empty without a unit.
+    pub unit: String,
+    /// The unit in which the number was probably meant; null if that is unknown.
+    pub likely: Option<String>,
+    /// The warning.
+    #[serde(skip)]
+    warning: String,
+}
+
+impl Unlikely {
+    fn new(key: impl Into<String>, value: f64, unit: &str, warning: impl Into<String>) -> Self {
+        Self {
+            key: key.into(),
+            value: Some(value),
+            unit: unit.to_owned(),
+            likely: None,
+            warning: warning.into(),
+        }
+    }
+
+    /// Returns the warnings about unlikely numbers.
+    pub fn sentences(unlikely: &[Self]) -> Vec<String> {
+        unlikely.iter().map(Self::to_string).collect()
+    }
+
+    fn in_unit(self, likely: &str) -> Self {
+        self.in_likely(Some(likely))
+    }
+
+    fn in_likely(self, likely: Option<&str>) -> Self {
+        let likely = likely.map(str::to_owned);
+        Self { likely, ..self }
+    }
+
+    /// Returns the outermost table of the key.
+    fn table(&self) -> &str {
+        self.key.split('.').next().unwrap_or_default()
+    }
+}
+
+impl fmt::Display for Unlikely {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.warning)
+    }
+}
+
+/// The options of a study that are not part of the scenario.
+#[derive(Clone, Copy, Default)]
+pub struct Varied<'a> {
+    /// The model of motion, if it is known already.
+    pub model: Option<&'a dyn Model>,
+    /// A key, and the ends of the range along which it varies.
+    pub along: Option<(&'a str, [f64; 2])>,
+    /// The largest factor on the ground motion.
+    pub factor: Option<f64>,
+}
+
+impl<'a> Varied<'a> {
+    /// Returns no options, for a known model of motion.
+    pub fn of_model(model: &'a dyn Model) -> Self {
+        Self {
+            model: Some(model),
+            ..Self::default()
+        }
+    }
+}
+
+impl Scenario {
+    /// Returns sentences about unlikely values, each with the probably intended unit.
+    pub fn unlikely(&self) -> Vec<String> {
+        Unlikely::sentences(&self.unlikely_in(&Varied::default()))
+    }
+
+    /// Returns the unlikely values of a study: of the structure, the ground motion, the levels of a suite, the axes of a map and the options. Each mistake
+    /// has one warning.
+    pub fn unlikely_in(&self, study: &Varied<'_>) -> Vec<Unlikely> {
+        let json = self.to_json();
+        let mut numbers = Numbers::of(&json);
+        numbers.add_computed(&self.structure);
+        numbers.add_ranges(self, study);
+        let mut unlikely: Vec<Unlikely> = Vec::new();
+        let mut by_key = numbers.unlikely(&[]);
+        // Weights and pushes depend on size and density.
+        let is_sized = !by_key
+            .iter()
+            .any(|one| ["m", "kg/m3"].contains(&&*one.unit));
+        if is_sized {
+            by_key = numbers.unlikely(&self.usual_forces(&numbers));
+        }
+        let all = by_key.into_iter().chain(self.unlikely_together(&numbers));
+        for one in all.chain(self.unlikely_gravity()) {
+            // The lengths of a table are usually in one unit, so one warning suffices.
+            let is_known =
+                |known: &Unlikely| (known.table(), &known.unit) == (one.table(), &one.unit);
+            if !unlikely.iter().any(is_known) {
+                unlikely.push(one);
+            }
+        }
+        unlikely.extend(self.unlikely_ground(study, is_sized));
+        unlikely.extend(self.takes_long());
+        unlikely
+    }
+
+    /// Returns the usual masses and forces of the loads and ties of this structure; empty without loads, ties and blow.
+    fn usual_forces(&self, numbers: &Numbers) -> Vec<Usual> {
+        let has_forces = numbers.0.iter().any(|(path, _)| {
+            let tables = ["load.", "tie.", "initial.impulse"];
+            tables.iter().any(|table| path.starts_with(table))
+        });
+        let row = has_forces.then(|| self.structure.row().ok()).flatten();
+        row.map_or_else(Vec::new, |row| {
+            let (_, loads) = self.structure.fill_and_loads();
+            let moving_kg = loads
+                .iter()
+                .filter(|load| load.moves)
+                .map(|load| load.mass_kg);
+            let mass_kg = row.mass_kg() - moving_kg.sum::<f64>();
+            usual_forces(mass_kg, self.structure.size_m(), self.gravity_m_s2()).into()
+        })
+    }
+
+    /// Returns the unlikely values of a study of several scenarios, each once.
+    pub fn unlikely_of_all<'s>(
+        scenarios: impl IntoIterator<Item = &'s Self>,
+        study: &Varied<'_>,
+    ) -> Vec<Unlikely> {
+        let mut all: Vec<Unlikely> = Vec::new();
+        for scenario in scenarios {
+            let mut own = scenario.unlikely_in(study);
+            // Models of motion differ in the push that starts them, so in words.
+            own.retain(|one| {
+                let mut known = all.iter();
+                !known.any(|known| (&known.key, &known.unit) == (&one.key, &one.unit))
+            });
+            all.append(&mut own);
+        }
+        all
+    }
+
+    fn unlikely_gravity(&self) -> Option<Unlikely> {
+        let gravity_m_s2 = self.simulation.gravity_m_s2;
+        (!GRAVITY_M_S2.contains(&gravity_m_s2)).then(|| {
+            let gravity = plain(gravity_m_s2);
+            let warning = format!("gravity is {gravity} m/s2, not that of the Earth");
+            Unlikely::new("simulation.gravity_m_s2", gravity_m_s2, "m/s2", warning)
+        })
+    }
+
+    /// Returns a warning if a motion up to the end of the simulation takes long to compute.
+    fn takes_long(&self) -> Option<Unlikely> {
+        let request = self.request();
+        let begin = format!("the simulation lasts {} s", plain(request.end_s));
+        let warning = if self.motion.kind.has_joints {
+            let MotionModel { options, site, .. } = &self.motion;
+            let longest_s = options.longest_step_s(&self.structure, site, &request)?;
+            let steps = request.end_s / longest_s;
+            (steps > STEPS).then(|| {
+                format!(
+                    "{begin}, some {steps:.0e} steps of {longest_s:.1e} s: unless it rests or overturns before, every \
+                     million of them takes several seconds"
+                )
+            })
+        } else {
+            (request.end_s > DURATION_S).then(|| {
+                format!("{begin}: unless it rests or overturns before, that takes minutes or more")
+            })
+        };
+        warning.map(|warning| Unlikely::new("simulation.duration_s", request.end_s, "s", warning))
+    }
+}
+
+/// All numbers of a scenario, each with its key and tables, such as `load.1.mass_kg`, in their order.
+struct Numbers(Vec<(String, f64)>);
+
+impl Numbers {
+    fn of(json: &Value) -> Self {
+        let mut numbers = Self(Vec::new());
+        let tables = json.as_object().into_iter().flatten();
+        // The numbers of maps and samples are those of other tables.
+        for (name, table) in tables.filter(|(name, _)| !["map", "uncertain"].contains(&&***name)) {
+            numbers.add(name, table);
+        }
+        numbers
+    }
+
+    fn add(&mut self, path: &str, value: &Value) {
+        match value {
+            Value::Object(table) => {
+                for (key, value) in table {
+                    self.add(&format!("{path}.{key}"), value);
+                }
+            }
+            Value::Array(values) => {
+                for (index, value) in values.iter().enumerate() {
+                    match value.as_f64() {
+                        Some(number) => self.0.push((path.to_owned(), number)),
+                        None => self.add(&format!("{path}.{}", index + 1), value),
+                    }
+                }
+            }
+            value => self
+                .0
+                .extend(value.as_f64().map(|number| (path.to_owned(), number))),
+        }
+    }
+
+    /// Adds the thickness of an arch that has a ratio instead, and the size of blocks from files.
+    fn add_computed(&mut self, structure: &Structure) {
+        let (key, length_m) = match structure {
+            Structure::Arch(arch) if self.get("arch.thickness_m").is_none() => (
+                "arch.thickness_m",
+                arch.mean_radius_m * arch.thickness_ratio,
+            ),
+            Structure::Masonry(masonry) if matches!(masonry.shape, Shape::Blocks(_)) => {
+                let [low_m, high_m] = bounds_m(&masonry.row);
+                ("blocks.joints", (high_m - low_m).max())
+            }
+            _ => return,
+        };
+        self.0.push((key.to_owned(), length_m));
+    }
+
+    /// Adds the ends of the axes of a map, of uniform distributions and of the range of a study.
+    fn add_ranges(&mut self, scenario: &Scenario, study: &Varied<'_>) {
+        let axes = scenario.map.iter().flat_map(|map| [&map.x, &map.y]);
+        for axis in axes {
+            let path = axis.path(scenario.ground.as_ref());
+            let values = axis.sequence.values();
+            let ends = [values.first(), values.last()].into_iter().flatten();
+            let inverse = axis.quantity == Quantity::Frequency;
+            let ends = ends.map(|value| if inverse { 1.0 / value } else { *value });
+            self.0.extend(ends.map(|value| (path.clone(), value)));
+        }
+        let uncertain = json!(scenario.uncertain);
+        for (key, range) in uncertain.as_object().into_iter().flatten() {
+            let ends = [&range["from"], &range["to"]]
+                .into_iter()
+                .filter_map(Value::as_f64);
+            self.0.extend(ends.map(|value| (key.clone(), value)));
+        }
+        if let Some((key, ends)) = study.along {
+            self.0.extend(ends.map(|value| (key.to_owned(), value)));
+        }
+    }
+
+    /// Returns the number of a key, of the scenario itself.
+    fn get(&self, key: &str) -> Option<f64> {
+        let mut numbers = self.0.iter();
+        numbers
+            .find(|(path, _)| path == key)
+            .map(|(_, number)| *number)
+    }
+
+    /// Returns the numbers outside the usual range of their key. `forces` are the usual forces of the structure.
+    fn unlikely(&self, forces: &[Usual]) -> Vec<Unlikely> {
+        let numbers = self.0.iter().filter_map(|(path, value)| {
+            let mut all = USUAL.iter().chain(forces);
+            let usual = all.find(|usual| usual.fits(path))?;
+            let magnitude = value.abs();
+            let is_usual =
+                usual.range.contains(&magnitude) || usual.on_purpose.contains(&magnitude);
+            (!is_usual).then(|| usual.warning(path, *value))
+        });
+        numbers.collect()
+    }
+}
+
+impl Usual {
+    /// Returns true if these are the usual numbers of a key with its tables.
+    fn fits(&self, path: &str) -> bool {
+        let mut given = path.split('.').rev();
+        let (mut own, last) = (self.key.split('.').rev(), given.next());
+        // Tables of entries, sides and pulses may stand between.
+        own.next() == last && own.all(|table| given.any(|given| given == table))
+    }
+
+    /// Returns the warning about an unusual value.
+    fn warning(&self, path: &str, value: f64) -> Unlikely {
+        let table = path.rsplit_once('.').map_or("", |(table, _)| table);
+        let of = match table.rsplit_once('.') {
+            Some((entries, number)) if number.parse::<usize>().is_ok() => {
+                format!("{entries} {number}")
+            }
+            _ => format!("[{table}]"),
+        };
+        let what = self.what.replace("{of}", &of);
+        let unit = match self.unit {
+            "" => String::new(),
+            unit => format!(" {unit}"),
+        };
+        let likely = self.likely(value.abs());
+        let end = likely.map_or(", which is unlikely".to_owned(), |unit| {
+            format!(": is it in {unit}?")
+        });
+        let warning = format!("{what} {}{unit}{end}", plain(value));
+        Unlikely::new(path, value, self.unit, warning).in_likely(likely)
+    }
+}

@@ -1,0 +1,96 @@
+//! Mistakes in the structure, its joints and the demand on it that only several numbers together show.
+
+use super::{Numbers, Unlikely, plain};
+use crate::Column;
+use crate::scenario::Scenario;
+
+impl Scenario {
+    /// Returns the mistakes that only several numbers together show.
+    pub(super) fn unlikely_together(&self, numbers: &Numbers) -> Vec<Unlikely> {
+        let column = self.structure.column();
+        let alone = column
+            .into_iter()
+            .flat_map(|column| [exchanged(column), beyond_balance(column, numbers)]);
+        let loads = column.into_iter().flat_map(loads_beside);
+        let found = alone.flatten().chain(loads);
+        let others = [stiff_mortar(numbers), falling_hazard(numbers)];
+        found.chain(others.into_iter().flatten()).collect()
+    }
+}
+
+/// Returns a warning about a column that is wider than twice its height: it rocks under no ground motion below 2 g.
+fn exchanged(column: &Column) -> Option<Unlikely> {
+    let (height_m, width_m) = (column.height_m, column.width_m);
+    (width_m > 2.0 * height_m).then(|| {
+        let [height, width] = [height_m, width_m].map(plain);
+        let warning = format!(
+            "the column is {height} m high and {width} m wide: are height and width exchanged?"
+        );
+        Unlikely::new("column.width_m", width_m, "m", warning)
+    })
+}
+
+/// Returns a warning about a column that is released beyond its unstable equilibrium, from where it falls.
+fn beyond_balance(column: &Column, numbers: &Numbers) -> Option<Unlikely> {
+    let key = "initial.rotation_rad";
+    let rotation_rad = numbers.get(key).filter(|_| column.is_one_prism())?;
+    let slenderness_rad = column.slenderness_rad();
+    (rotation_rad > slenderness_rad).then(|| {
+        let [rotation, slenderness] = [rotation_rad, slenderness_rad].map(plain);
+        let warning =
+            format!("the initial rotation is {rotation} rad, beyond the balance of the column at {slenderness} rad: is it in degrees?");
+        Unlikely::new(key, rotation_rad, "rad", warning).in_unit("degrees")
+    })
+}
+
+/// Returns warnings about loads that are more than its width outside of the faces of a column.
+fn loads_beside(column: &Column) -> impl Iterator<Item = Unlikely> {
+    let width_m = column.width_m;
+    let loads = (1..).zip(&column.loads);
+    let beside = loads.filter(move |(_, load)| load.x_m.abs() > 1.5 * width_m);
+    beside.map(move |(number, load)| {
+        let (x, width) = (plain(load.x_m), plain(width_m));
+        let warning = format!(
+            "load {number} is at x = {x} m, far beside the column, {width} m wide: is it in metres from the axis?"
+        );
+        Unlikely::new(format!("load.{number}.x_m"), load.x_m, "m", warning)
+    })
+}
+
+/// Returns a warning about mortar that is stiffer than the blocks between it.
+fn stiff_mortar(numbers: &Numbers) -> Option<Unlikely> {
+    let key = "elastic_joints.mortar_modulus_gpa";
+    let mortar_gpa = numbers.get(key)?;
+    let stone_gpa = numbers.get("elastic_joints.stone_modulus_gpa")?;
+    (mortar_gpa > stone_gpa).then(|| {
+        let [mortar, stone] = [mortar_gpa, stone_gpa].map(plain);
+        let warning =
+            format!("the modulus of the mortar is {mortar} GPa, that of the stone {stone} GPa: are they exchanged?");
+        Unlikely::new(key, mortar_gpa, "GPa", warning)
+    })
+}
+
+/// Returns a warning about a rarer limit state with a weaker ground motion.
+fn falling_hazard(numbers: &Numbers) -> Option<Unlikely> {
+    let states = ["sld", "slv", "slc"].map(|state| {
+        let key = format!("demand.{state}.ag_g");
+        (numbers.get(&key), key, state)
+    });
+    let given: Vec<_> = states
+        .into_iter()
+        .filter_map(|(ag_g, key, state)| Some((ag_g?, key, state)))
+        .collect();
+    let mut pairs = given.windows(2);
+    pairs.find_map(|pair| {
+        let [(often_g, key, often), (rare_g, _, rare)] = pair else {
+            return None;
+        };
+        (often_g > rare_g).then(|| {
+            let [first, second] = [often_g, rare_g].map(|ag_g| plain(*ag_g));
+            let [often, rare] = [often, rare].map(|state| state.to_uppercase());
+            let warning =
+                format!("ag is {first} g at {often} and {second} g at {rare}, which is rarer: are they exchanged?");
+            Unlikely::new(key.clone(), *often_g, "g", warning)
+        })
+    })
+}
