@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use archrock::dynamics::Intensity;
 use archrock::output::{Scene, draw_elevation, draw_record};
 use archrock::scenario::{Format, Layout, Scenario, ScenarioErrors, Series};
+use archrock::studies::run::{self, RunOptions};
 use archrock::studies::{StudyError, record};
 use archrock::{GroundMotion, Request};
 use serde_json::Value;
@@ -89,31 +90,44 @@ fn check_file(file: &Path, arguments: &Arguments) -> Result<Vec<Described>, Fail
     )])
 }
 
-/// Reads the scenario. If its only faults concern motion, prints them as warnings and reads it for static analysis.
+/// Reads the scenario, and refuses what `run` refuses. Without a motion of the ground or of the structure, faults that concern motion alone are
+/// warnings: the scenario is for static analysis.
 fn read(input: &Input<'_>) -> Result<Scenario, Failure> {
-    let wrong = match input.read(None) {
-        Err(Failure::Input(wrong)) => wrong,
-        // The reader has tried elastic joints, whose equilibrium takes long to find.
-        Ok(scenario) if !scenario.motion.kind.is_rigid => return Ok(scenario),
-        Ok(scenario) => {
-            if let Err(missing) = scenario.check_restitution() {
-                super::warn(&[missing]);
-                return Ok(scenario);
-            }
-            match scenario.model() {
-                Err(error) => error.to_string(),
-                Ok(_) => return Ok(scenario),
-            }
+    let refused = match input.read(None) {
+        Ok(scenario) => match why_not_run(&scenario) {
+            None => return Ok(scenario),
+            Some(wrong) => input.input_error(wrong),
+        },
+        Err(refused) => refused,
+    };
+    let Failure::Input(wrong) = &refused else {
+        return Err(refused);
+    };
+    match input.read_statics() {
+        Ok(scenario) if !scenario.gives_motion() => {
+            super::warn(&[format!(
+                "the structure cannot be moved, only `limit`, `spread` and `capacity` can: {wrong}"
+            )]);
+            Ok(scenario)
         }
-        failed => return failed,
-    };
-    let Ok(scenario) = input.read_statics() else {
-        return Err(Failure::Input(wrong));
-    };
-    super::warn(&[format!(
-        "the structure cannot be moved, only `limit`, `spread` and `capacity` can: {wrong}"
-    )]);
-    Ok(scenario)
+        _ => Err(refused),
+    }
+}
+
+/// Returns the reason for which `run` refuses the structure of a scenario.
+fn why_not_run(scenario: &Scenario) -> Option<String> {
+    // The reader has tried elastic joints, whose equilibrium takes long to find.
+    if !scenario.motion.kind.is_rigid {
+        return None;
+    }
+    match scenario.check_restitution() {
+        // `threshold --along` computes the scenario for several restitutions.
+        Err(missing) => {
+            super::warn(&[missing]);
+            None
+        }
+        Ok(()) => run::check(scenario, &RunOptions::default()).err(),
+    }
 }
 
 /// Returns the blocks of the model of motion, or the structure itself if the model has no blocks. On moved supports blocks are in their

@@ -188,6 +188,12 @@ impl Scenario {
         record.into_iter().chain(right).flat_map(Record::series)
     }
 
+    /// Returns true if the text gives a motion of the ground or of the structure, even one whose files cannot be read.
+    pub fn gives_motion(&self) -> bool {
+        let shakes = self.ground.is_some() || self.unread_ground.is_some();
+        shakes || self.initial.is_some() || self.suite.is_some()
+    }
+
     /// Returns name and checksum of each record file of the ground and of the suite, separated by a space.
     pub fn record_checksums(&self) -> Vec<String> {
         let named = |series: &Series| format!("{} {:08x}", series.file, series.checksum());

@@ -7,7 +7,7 @@ use std::path::Path;
 use archrock::scenario::{Scenario, Unlikely, Varied};
 use serde_json::Value;
 
-use crate::common::program::{archrock, scenario_files, scenarios, stderr, stdout};
+use crate::common::program::{archrock, refusal, scenario_files, scenarios, stderr, stdout};
 
 const COLUMN: &str = "[column]\nheight_m = 4.0\nwidth_m = 0.8\ndensity_kg_m3 = 2500\n";
 const PULSE: &str = "[ground.half_sine]\namplitude_g = 0.3\nduration_s = 0.5\n";
@@ -338,4 +338,31 @@ fn commands_print_the_warnings_of_their_study_once() {
         let due = serde_json::json!({ "key": "column.density_kg_m3", "value": 25.0, "unit": "kg/m3", "likely": "kN/m3" });
         assert_eq!(of_density, Some(&due), "{arguments:?}");
     }
+}
+
+/// `check` refuses a scenario whose motion `run` refuses, with the same message.
+#[test]
+fn check_refuses_what_run_refuses() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    fs::write(at.join("damaged.csv"), "0,0\n0.01,x\n0.02,0\n").unwrap();
+    let thick =
+        "[arch]\nmean_radius_m = 5\nthickness_ratio = 0.25\nembrace_deg = 100\nvoussoirs = 7\n";
+    let record = |file: &str| format!("{COLUMN}[ground.record]\nfile = '{file}'\nunit = 'g'\n");
+    for (text, words) in [
+        (record("nowhere.csv"), "nowhere.csv"),
+        (record("damaged.csv"), "damaged.csv:2"),
+        (format!("{COLUMN}drums = 3\n{PULSE}"), "[free_hinges]"),
+        (format!("{thick}{PULSE}"), "four"),
+    ] {
+        fs::write(at.join("s.toml"), &text).unwrap();
+        let [checked, run] =
+            ["check", "run"].map(|command| refusal(&archrock(at, &[command, "s.toml"])));
+        assert!(checked.contains(words), "{checked}");
+        assert_eq!(checked, run);
+    }
+    // Without a motion the structure is for `limit`.
+    fs::write(at.join("s.toml"), format!("{COLUMN}drums = 3\n")).unwrap();
+    let output = archrock(at, &["check", "s.toml"]);
+    assert!(output.status.success() && stderr(&output).contains("the structure cannot be moved"));
 }

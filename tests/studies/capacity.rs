@@ -439,12 +439,7 @@ fn statics_need_no_ground_motion_and_no_model_of_motion() {
         program::refused(path, &["run", file], &[missing]);
     }
     for file in [&of_right_foot, &of_arch, &of_drums, &of_moved] {
-        let output = program::archrock(path, &["check", file]);
-        assert!(output.status.success());
-        let warned = String::from_utf8(output.stderr).unwrap();
-        assert!(warned.contains(missing), "{warned}");
-        let printed = String::from_utf8(output.stdout).unwrap();
-        assert!(printed.contains("file = \"nowhere.at2\""), "{printed}");
+        program::refused(path, &["check", file], &[missing]);
     }
     // Errors in the scenario itself are errors in all of them.
     let wrong = write("wrong", &format!("{arch}{record}scael = 2.0\n"));
