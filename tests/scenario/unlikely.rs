@@ -1,5 +1,6 @@
 //! Warnings about unlikely input: a mistake has one, with its key and the likely unit; correct scenarios have none.
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
@@ -183,10 +184,13 @@ fn unlikely(folder: &Path, text: &str) -> Vec<Unlikely> {
 fn each_mistake_has_one_warning_with_its_key_and_the_likely_unit() {
     let folder = tempfile::tempdir().unwrap();
     write_records(folder.path());
+    let mut known = BTreeSet::new();
     for [name, right, wrong, key, likely] in MISTAKES {
         let text = correct(name);
         assert!(text.contains(right), "{name}: {right}");
-        assert_eq!(unlikely(folder.path(), &text), [], "{name}");
+        if known.insert(name) {
+            assert_eq!(unlikely(folder.path(), &text), [], "{name}");
+        }
         let found = unlikely(folder.path(), &text.replacen(right, wrong, 1));
         let [one] = &found[..] else {
             panic!("{name}, {wrong}: {found:#?}");
