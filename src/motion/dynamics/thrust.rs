@@ -71,8 +71,7 @@ impl HalfCycles {
 /// Friction demands of the steps of a row.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FrictionDemands {
-    /// Demands of the steps, each with the duration of its step in seconds.
-    demands: Vec<[f32; 2]>,
+    demands: Thinned,
     until: Until,
     /// Part that counts for sure.
     counted: Until,
@@ -92,7 +91,7 @@ pub(super) struct Until {
 impl FrictionDemands {
     /// Adds a step of a row that ends at `time_s` and lasts `lasts_s`, in seconds. The row `moves` or is at rest.
     pub fn note(&mut self, demand: f64, [time_s, lasts_s]: [f64; 2], moves: bool) {
-        self.demands.push([demand as f32, lasts_s as f32]);
+        self.demands.push(demand as f32, lasts_s as f32);
         self.until.steps += 1;
         self.until.largest.note(demand, time_s);
         if moves {
@@ -120,11 +119,63 @@ impl FrictionDemands {
             false => self.counted,
         };
         let counted = overturned.unwrap_or(of_motion);
-        let demands = self.demands.get_mut(..counted.steps)?;
+        let demands = self.demands.first(counted.steps);
         (!demands.is_empty()).then(|| FrictionRecord {
             largest: counted.largest,
             lasting: Some(exceeded_for(demands, LASTING * counted.moving_s)),
         })
+    }
+}
+
+/// Largest number of demands that a history keeps, 32 MiB of memory. A history of more steps keeps every second one, then every fourth and so on.
+const MOST_DEMANDS: usize = 1 << 22;
+
+/// Demands of steps, each with the duration in seconds for which it stands: that of its own step, or of the `stride` steps up to it.
+#[derive(Clone, Debug)]
+struct Thinned {
+    kept: Vec<[f32; 2]>,
+    /// Number of steps for which a kept demand stands: a power of two.
+    stride: usize,
+    /// Number and duration of the steps after the last kept one.
+    after: (usize, f32),
+}
+
+impl Default for Thinned {
+    fn default() -> Self {
+        Self {
+            kept: Vec::new(),
+            stride: 1,
+            after: (0, 0.0),
+        }
+    }
+}
+
+impl Thinned {
+    /// Adds the demand of the next step.
+    fn push(&mut self, demand: f32, lasts_s: f32) {
+        let (steps, before_s) = self.after;
+        let lasts_s = before_s + lasts_s;
+        if steps + 1 < self.stride {
+            self.after = (steps + 1, lasts_s);
+            return;
+        }
+        self.after = (0, 0.0);
+        self.kept.push([demand, lasts_s]);
+        if self.kept.len() == MOST_DEMANDS {
+            self.stride *= 2;
+            for index in 0..MOST_DEMANDS / 2 {
+                let [[_, one_s], [demand, other_s]] =
+                    [self.kept[2 * index], self.kept[2 * index + 1]];
+                self.kept[index] = [demand, one_s + other_s];
+            }
+            self.kept.truncate(MOST_DEMANDS / 2);
+        }
+    }
+
+    /// Returns the kept demands of the first steps.
+    fn first(&mut self, steps: usize) -> &mut [[f32; 2]] {
+        let count = (steps / self.stride).min(self.kept.len());
+        &mut self.kept[..count]
     }
 }
 
@@ -165,5 +216,42 @@ impl ThrustRecord {
     /// Returns the fractions of the time in motion in which the excess is at most each of [`EXCESS_LEVELS`]; `None` if no sample is in motion.
     pub fn shares_within(&self) -> Option<[f64; 2]> {
         (self.moving > 0).then(|| self.within.map(|count| count as f64 / self.moving as f64))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A long history keeps a bounded number of demands, and the demand that a sine exceeds for a hundredth of its time: `cos(pi / 200)`.
+    #[test]
+    fn demands_of_a_long_history_take_bounded_memory() {
+        let mut demands = FrictionDemands::default();
+        let steps = 5 * MOST_DEMANDS / 2;
+        for step in 0..steps {
+            let time_s = 1e-3 * step as f64;
+            // Steps of different lengths, as those at impacts.
+            let lasts_s = if step % 7 == 0 { 1e-4 } else { 1e-3 };
+            demands.note(libm::sin(0.37 * time_s).abs(), [time_s, lasts_s], true);
+        }
+        assert!(demands.demands.kept.len() <= MOST_DEMANDS);
+        let lasts_s: f64 = demands
+            .demands
+            .kept
+            .iter()
+            .map(|[_, lasts_s]| f64::from(*lasts_s))
+            .sum();
+        let moving_s = demands.until.moving_s;
+        assert!(
+            (lasts_s / moving_s - 1.0).abs() < 1e-5,
+            "{lasts_s} {moving_s}"
+        );
+        let record = demands.record(None).unwrap();
+        let exceeded = libm::cos(std::f64::consts::PI / 200.0);
+        assert!(
+            (record.lasting.unwrap() - exceeded).abs() < 1e-5,
+            "{record:?}"
+        );
+        assert!(record.largest.value > 1.0 - 1e-6);
     }
 }
