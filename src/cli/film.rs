@@ -12,14 +12,12 @@ use archrock::studies::run::{Film, FilmOptions};
 use archrock::studies::{Progress, StudyError};
 
 use super::Failure;
+use super::interrupts::{INTERRUPTED, INTERRUPTED_CODE, listen_to_interrupts};
 use super::models::{ModelsOption, warn_of};
 use super::named_files::write_named;
-use super::progress::{
-    Display, INTERRUPTED, INTERRUPTED_CODE, listen_to_interrupts, print_always, print_status,
-    progress_text,
-};
+use super::progress::{Display, print_always, print_status, progress_text};
 use super::scenario_file::ScenarioFile;
-use super::study::{PATIENCE, simulated};
+use super::study::{PATIENCE, publish, simulated};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -95,7 +93,7 @@ pub fn film(arguments: &Arguments) -> Result<(), Failure> {
     let mut path = arguments.out.clone().unwrap_or_default();
     if let Some(folder) = folder {
         folder.add(&name, &film)?;
-        folder.publish()?;
+        publish(&folder)?;
         path = folder.path().join(name);
     } else {
         write_named(&path, &film, "--out")?;

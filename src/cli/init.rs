@@ -5,6 +5,7 @@ use std::io::{self, ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 
 use archrock::Scenario;
+use archrock::output::OutputError;
 use clap::ValueEnum;
 
 use super::progress::print_status;
@@ -99,6 +100,10 @@ fn write_new(path: &Path, text: &str) -> Result<(), Failure> {
             "{} exists already: give another name for the scenario, as in `archrock init arch other.toml`",
             path.display()
         )),
+        ErrorKind::NotFound => {
+            let folder = path.parent().unwrap_or(path).to_owned();
+            Failure::Input(OutputError::NoFolder(path.to_owned(), folder).to_string())
+        }
         _ => cannot_write(path, &error),
     };
     let mut file = File::create_new(path).map_err(cannot)?;

@@ -10,6 +10,7 @@ mod figure;
 mod film;
 mod impact;
 mod init;
+mod interrupts;
 mod limit;
 mod models;
 mod named_files;
@@ -144,10 +145,16 @@ impl From<ScenarioErrors> for Failure {
 impl From<OutputError> for Failure {
     fn from(error: OutputError) -> Self {
         let other = "choose another folder with --out";
+        if let OutputError::Unpublished(cause, files) = error {
+            return Self::from(*cause).map(|cause| format!("{cause}; {files}"));
+        }
         Self::Input(match &error {
             error if error.is_closed_pipe() => return Self::ClosedPipe,
             OutputError::OfOtherScenario(..) => format!("{error}: {other}, or remove that one"),
-            OutputError::Taken { .. } | OutputError::NoManifest(_) => {
+            OutputError::Taken { .. }
+            | OutputError::NoFile(_)
+            | OutputError::IsLink(_)
+            | OutputError::NoManifest(_) => {
                 format!("{error}; move what is there, or {other}")
             }
             OutputError::Unusable { .. } | OutputError::InUse(_) | OutputError::IsInput(_) => {
@@ -155,6 +162,17 @@ impl From<OutputError> for Failure {
             }
             error => return Self::Work(error.to_string()),
         })
+    }
+}
+
+impl Failure {
+    /// Returns the failure with another message.
+    fn map(self, message: impl FnOnce(String) -> String) -> Self {
+        match self {
+            Self::Input(own) => Self::Input(message(own)),
+            Self::Work(own) => Self::Work(message(own)),
+            Self::ClosedPipe => Self::ClosedPipe,
+        }
     }
 }
 
@@ -183,6 +201,7 @@ fn check_no_errors(wrong: &[String]) -> Result<(), Failure> {
 /// Runs the program.
 pub fn main() -> ExitCode {
     let arguments = Arguments::try_parse().unwrap_or_else(|error| with_suggestion(error).exit());
+    interrupts::receive_signals();
     progress::set_quiet(arguments.quiet);
     let result = match arguments.command {
         Command::Init(init) => init::init(&init),

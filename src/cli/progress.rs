@@ -1,10 +1,10 @@
-//! The progress of long computations on the terminal, and Ctrl-C.
+//! The progress of long computations on the terminal.
 
 use std::io::{self, IsTerminal as _, Write as _};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
+use std::thread;
 use std::time::{Duration, Instant};
-use std::{process, thread};
 
 use archrock::scenario::shown_lines;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -16,22 +16,6 @@ static QUIET: AtomicBool = AtomicBool::new(false);
 pub fn set_quiet(quiet: bool) {
     QUIET.store(quiet, Ordering::Relaxed);
 }
-
-/// True after Ctrl-C.
-pub static INTERRUPTED: AtomicBool = AtomicBool::new(false);
-
-/// Installs the handler of Ctrl-C: the first one ends the work between two lines of its file, the second one ends the program.
-pub fn listen_to_interrupts() {
-    // Without the handler Ctrl-C ends the program without a message.
-    let _ = ctrlc::set_handler(|| {
-        if INTERRUPTED.swap(true, Ordering::Relaxed) {
-            process::exit(INTERRUPTED_CODE);
-        }
-    });
-}
-
-/// Exit code of shells for a program that was ended by Ctrl-C.
-pub const INTERRUPTED_CODE: i32 = 130;
 
 /// Prints a line on standard error, unless the program is quiet.
 pub fn print_status(text: &str) {
@@ -135,11 +119,19 @@ pub fn progress_text(done: usize, left: usize, elapsed: Duration) -> String {
         1.0.. => format!("{rate:.1} a second"),
         _ => format!("one in {:.1} s", each.as_secs_f64()),
     };
-    format!("{rate}, {} left", HumanDuration(each.mul_f64(left as f64)))
+    format!("{rate}, {}", time_left(each.as_secs_f64() * left as f64))
 }
 
-/// Returns the remaining time, from the completed fraction of the work.
-pub fn remaining_time(part: f64, elapsed: Duration) -> HumanDuration {
-    // At the beginning the estimate is arbitrary, so it is limited.
-    HumanDuration(elapsed.mul_f64((1.0 / part - 1.0).clamp(0.0, 1e6)))
+/// Returns the remaining time in words, such as "3 minutes left", from the completed fraction of the work.
+pub fn remaining_time(part: f64, elapsed: Duration) -> String {
+    time_left(elapsed.as_secs_f64() * (1.0 / part - 1.0).max(0.0))
+}
+
+fn time_left(left_s: f64) -> String {
+    const YEAR_S: f64 = 365.25 * 86_400.0;
+    // At the beginning the estimate is arbitrary, and nobody waits for years.
+    match left_s < YEAR_S {
+        true => format!("{} left", HumanDuration(Duration::from_secs_f64(left_s))),
+        false => "more than a year left".to_owned(),
+    }
 }

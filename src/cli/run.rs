@@ -113,6 +113,7 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
             root,
             finished_parts: Vec::new(),
         };
+        let mut failed = Vec::new();
         for task in &tasks {
             let folder = job.root.as_ref().map(|root| task.folder(root));
             job.check_results([RUN, UNCERTAIN], &task.scenarios, folder.as_ref())?;
@@ -130,13 +131,13 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
                     folder.iter().for_each(Folder::abandon);
                     // The file with the samples of the failed scenario stays, for --resume.
                     job.finished_parts.truncate(earlier_parts);
-                    failures.push(format!("{}: {message}", task.name));
+                    failed.push(format!("{}: {message}", task.name));
                     None
                 }
-                found => found?,
+                found => found.map_err(|failure| job.failed(failure))?,
             };
             // All results in a folder replace the earlier ones together, once the last of them is complete.
-            if index + 1 == tasks.len() {
+            if index + 1 == tasks.len() && failed.is_empty() {
                 job.publish()?;
             }
             let Some(found) = found else { continue };
@@ -146,6 +147,10 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
             if matches!(arguments.format, Format::Json) {
                 summaries.push(found.summary(RUN)?);
             }
+        }
+        if !failed.is_empty() {
+            failures.append(&mut failed);
+            failures.extend(job.unpublished());
         }
     }
     printed?;

@@ -9,7 +9,7 @@ use archrock::studies::ensemble::CellsOfSamples;
 use archrock::studies::map::OverturningMap;
 use archrock::studies::{
     MAP, Options, SUITE, StudyKind, Style, UNCERTAIN_MAP, UNCERTAIN_SUITE, merge as merged,
-    quoted_in_words,
+    quoted_in_words, read_header,
 };
 use clap::ValueEnum;
 use serde_json::Value;
@@ -18,7 +18,7 @@ use super::figure::FigureOption;
 use super::models::warn_of;
 use super::progress::print_status;
 use super::scenario_file::{Destination, Input};
-use super::study::{CommandResults, StudyArguments, describe};
+use super::study::{CommandResults, StudyArguments, describe, publish};
 use super::{Failure, Format, print};
 
 #[derive(clap::Args)]
@@ -202,7 +202,9 @@ pub fn merge(arguments: &MergeArguments) -> Result<(), Failure> {
     let mut style =
         |kind, scenario: Option<&Scenario>| arguments.map.merged(kind, scenario, figure);
     let (kind, results) = merged(parts, None, &mut style)?;
-    let origin = Origin::of_summary(&results.summary);
+    let header = read_header(&parts[0])?;
+    let origin = Origin::of_summary(&results.summary).with_records(header.inputs);
+    let origin = origin.with_inputs(parts);
     // Samples are merged into a folder inside that of their command.
     let around = destination.path.parent();
     if let Some(around) = around.filter(|_| destination.path.ends_with(kind.name)) {
@@ -212,7 +214,7 @@ pub fn merge(arguments: &MergeArguments) -> Result<(), Failure> {
     let folder = destination.lock(kind.name, origin, arguments.figure.figure_format, false)?;
     folder.check(kind.files)?;
     results.write(&folder)?;
-    folder.publish()?;
+    publish(&folder)?;
     let found = CommandResults::alone(results);
     show(&found, kind, Some(&folder), arguments.format)
 }

@@ -21,11 +21,9 @@ use serde::Serialize;
 use serde_json::{Map, Value, json};
 
 use super::figure::FigureOption;
+use super::interrupts::{INTERRUPTED, INTERRUPTED_CODE, listen_to_interrupts, uninterrupted};
 use super::models::ModelsOption;
-use super::progress::{
-    Display, INTERRUPTED, INTERRUPTED_CODE, listen_to_interrupts, print_always, print_status,
-    progress_text, remaining_time,
-};
+use super::progress::{Display, print_always, print_status, progress_text, remaining_time};
 use super::scenario_file::{DirectionOption, Input, ScenarioFile};
 use super::{Failure, Format, show};
 
@@ -245,9 +243,28 @@ pub fn describe(folder: &Folder, results: &Results) -> String {
 impl StudyJob<'_> {
     /// Publishes all results.
     pub fn publish(&mut self) -> Result<(), Failure> {
-        self.root.as_ref().map_or(Ok(()), Folder::publish)?;
+        self.root.as_ref().map_or(Ok(()), publish)?;
         let mut parts = self.finished_parts.drain(..);
         Ok(parts.try_for_each(PartFile::remove)?)
+    }
+
+    /// Adds to the failure of a task the complete results of other tasks, which stay under hidden names.
+    pub fn failed(&self, failure: Failure) -> Failure {
+        failure.map(|message| match self.unpublished() {
+            Some(kept) => format!("{message}\nerror: {kept}"),
+            None => message,
+        })
+    }
+
+    /// Leaves the complete results of other tasks under hidden names, because a task failed, and returns the message about them; `None` without
+    /// such results.
+    pub fn unpublished(&self) -> Option<String> {
+        let root = self.root.as_ref()?;
+        let files = root.keep()?;
+        let path = root.path().display();
+        Some(format!(
+            "{path}: nothing was published, so earlier results stay; {files}"
+        ))
     }
 
     /// Returns an error if the results of a study cannot be written to the folder. Of a run, only the last name is known in advance.
@@ -257,8 +274,11 @@ impl StudyJob<'_> {
         } else {
             0
         };
-        let folder = folder.filter(|_| !self.work.is_part());
-        Ok(folder.map_or(Ok(()), |folder| folder.check(&kind.files[first..]))?)
+        let names = match self.work.is_part() {
+            true => &[],
+            false => &kind.files[first..],
+        };
+        Ok(folder.map_or(Ok(()), |folder| folder.check(names))?)
     }
 
     /// Returns an error if results cannot be written: those of each scenario (one for each model of motion), of its samples, or of the comparison of
@@ -484,6 +504,11 @@ impl StudyJob<'_> {
     }
 }
 
+/// Publishes the results in a locked folder. Signals wait until it is done.
+pub fn publish(folder: &Folder) -> Result<(), Failure> {
+    Ok(uninterrupted(|| folder.publish())?)
+}
+
 /// Returns the folder for the comparison of models of motion: `models`, or another one if another command has compared models there.
 fn comparison_folder(folder: &Folder, kind: StudyKind) -> Folder {
     let models = folder.within("models");
@@ -546,7 +571,7 @@ pub fn simulated(Progress { done, all, .. }: Progress, elapsed: Duration) -> Str
     }
     let [time_s, end_s] = [done, all].map(|time| time as f64 / 1e3);
     let left = remaining_time(time_s / end_s, elapsed);
-    format!("{time_s:.2} of {end_s} s simulated, {left} left")
+    format!("{time_s:.2} of {end_s} s simulated, {left}")
 }
 
 fn stdout() -> Box<dyn io::Write> {

@@ -73,7 +73,13 @@ pub fn threshold(arguments: &Arguments) -> Result<(), Failure> {
     for task in &tasks {
         let folder = job.root.as_ref().map(|root| task.folder(root));
         let kinds = [THRESHOLD, UNCERTAIN_THRESHOLD];
-        let found = job.compute_with_samples(kinds, &task.scenarios, folder.as_ref())?;
+        let found = job.compute_with_samples(kinds, &task.scenarios, folder.as_ref());
+        let found = found.map_err(|failure| match failure {
+            Failure::Work(message) if tasks.len() > 1 => {
+                job.failed(Failure::Work(format!("{}: {message}", task.name)))
+            }
+            failure => job.failed(failure),
+        })?;
         all.extend(found.map(|found| (found, folder)));
     }
     job.publish()?;

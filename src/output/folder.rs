@@ -1,16 +1,18 @@
 //! Folders of results. All files of one command get their names together.
 
 use std::cell::RefCell;
+use std::collections::{BTreeSet, VecDeque};
 use std::fs::{self, File, TryLockError};
 use std::io::{self, BufWriter, IntoInnerError, Write as _};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
+use std::{fmt, mem};
 
-use tempfile::{NamedTempFile, TempPath};
+use tempfile::TempPath;
 
 use super::manifest::{MANIFEST, Manifest, Origin, command_line};
 use super::print::PictureFormat;
-use super::{OutputError, pretty};
+use super::{OutputError, is_too_many_files, pretty};
 use crate::scenario::ModelKind;
 
 /// The folder for the results of one command, or a folder inside it.
@@ -18,11 +20,11 @@ use crate::scenario::ModelKind;
 /// The folder and everything below it stay locked while this value or a clone of it exists: no other command writes there. The system unlocks
 /// the folder when the program ends, even if the program is killed.
 ///
-/// Every file is written under a hidden name. [`Folder::publish`] removes the results of the last run of the same command, which the
-/// [`Manifest`] of the folder lists, and then renames all files. The manifest is written last. It is the seal: results that it calls complete
-/// are those of one run. A file that it does not list, or that the scenario needs, is never removed or replaced.
+/// Every file is written under a hidden name. [`Folder::publish`] gives all files their names: they replace the results of the last run of the
+/// same command, which the [`Manifest`] of the folder lists. The manifest is the seal: results that it calls complete are those of one run. A
+/// file that it does not list, or that the scenario needs, is never removed or replaced, and no result is written through a link.
 ///
-/// A killed run leaves its hidden files; the next run removes them.
+/// A run that is killed, or cannot publish its results, leaves its hidden files; the next run removes them.
 #[derive(Clone, Debug)]
 pub struct Folder {
     path: PathBuf,
@@ -46,19 +48,45 @@ struct LockedFolder {
     /// Folders that were created for the results, the outermost first.
     made: Vec<PathBuf>,
     /// The complete files, still under hidden names, with their final names relative to the folder.
-    prepared: Vec<(String, TempPath)>,
+    prepared: VecDeque<(String, TempPath)>,
 }
+
+/// The paths of complete results that stay under hidden names until the next run, because they could not get their names.
+#[derive(Debug)]
+pub struct UnpublishedFiles(Vec<PathBuf>);
 
 /// A file of results that is being written, under a hidden name.
 #[derive(Debug)]
 pub(crate) struct NewFile {
     /// The path that it will have.
     path: PathBuf,
-    pub(crate) writer: BufWriter<NamedTempFile>,
+    hidden: TempPath,
+    pub(crate) writer: BufWriter<File>,
 }
 
 /// Prefix of the hidden names.
 const PREFIX: &str = ".archrock-";
+/// Largest number of characters that a hidden name has from the name of its result.
+const HIDDEN_CHARACTERS: usize = 50;
+
+/// The paths, in a sentence about them.
+impl fmt::Display for UnpublishedFiles {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        /// Largest number of files that are listed.
+        const LISTED: usize = 12;
+        let listed = self.0.iter().take(LISTED);
+        let listed: Vec<_> = listed.map(|path| path.display().to_string()).collect();
+        let paths = listed.join(", ");
+        write!(
+            f,
+            "complete results stay under hidden names until the next run: {paths}"
+        )?;
+        match self.0.len() - listed.len() {
+            0 => Ok(()),
+            more => write!(f, ", and {more} more"),
+        }
+    }
+}
 
 impl Folder {
     /// Locks the folder and everything below it for the results of a command, exclusively if `alone`, otherwise shared. Creates the folder if
@@ -81,11 +109,10 @@ impl Folder {
             alone,
             locks: Vec::new(),
             made: Vec::new(),
-            prepared: Vec::new(),
+            prepared: VecDeque::new(),
         };
         locked.make_and_lock()?;
-        if let Some(other) = locked.manifest.other_scenario_file(&locked.origin) {
-            let other = other.to_owned();
+        if let Some(other) = locked.manifest.other_scenario(command, &locked.origin) {
             return Err(OutputError::OfOtherScenario(path.to_owned(), other));
         }
         locked.check_last()?;
@@ -123,9 +150,10 @@ impl Folder {
     /// Returns an error if files with these names cannot be written here.
     ///
     /// # Errors
-    /// When one of them is an input of the scenario, or is there and is no earlier result of the command.
+    /// When one of them is an input of the scenario, or is there and is no earlier result of the command, or a folder in its path is a link.
     pub fn check(&self, names: &[&str]) -> Result<(), OutputError> {
         let locked = self.locked.borrow();
+        locked.check_folders(&self.path)?;
         let mut paths = names.iter().map(|name| self.path.join(name));
         paths.try_for_each(|path| locked.check(&path))
     }
@@ -170,25 +198,28 @@ impl Folder {
             locked.make_and_lock()?;
         }
         locked.check(&path)?;
-        let name_alone = path.file_name().unwrap_or_default().to_string_lossy();
-        // The system's message would name the hidden file.
-        let file = hidden_file(&locked.path, &name_alone)
-            .map_err(|error| OutputError::unusable(cannot_write(&path))(error.kind().into()))?;
+        let (file, hidden) = hidden_file(&locked.path, &locked.relative(&path))
+            .map_err(OutputError::unusable(cannot_write(&path)))?;
         let writer = BufWriter::new(file);
-        Ok(NewFile { path, writer })
+        Ok(NewFile {
+            path,
+            hidden,
+            writer,
+        })
     }
 
     /// Completes a file. It gets its name when the results are published.
     ///
     /// # Errors
     /// When the system reports an error.
-    pub(crate) fn complete(&self, NewFile { path, writer }: NewFile) -> Result<(), OutputError> {
-        let file = writer.into_inner().map_err(IntoInnerError::into_error);
-        let synced = file.and_then(|file| file.as_file().sync_data().map(|()| file));
-        let file = synced.map_err(OutputError::io(cannot_write(&path)))?;
+    pub(crate) fn complete(&self, file: NewFile) -> Result<(), OutputError> {
+        let written = file.writer.into_inner();
+        let written = written.map_err(IntoInnerError::into_error);
+        let synced = written.and_then(|written| written.sync_data());
+        synced.map_err(OutputError::io(cannot_write(&file.path)))?;
         let mut locked = self.locked.borrow_mut();
-        let name = locked.relative(&path);
-        locked.prepared.push((name, file.into_temp_path()));
+        let name = locked.relative(&file.path);
+        locked.prepared.push_back((name, file.hidden));
         Ok(())
     }
 
@@ -219,38 +250,34 @@ impl Folder {
         self.add(name, contents)
     }
 
-    /// Removes the results of the last run of the command, then gives all complete files their names. Does nothing if there are none.
+    /// Gives all complete files their names, in place of the results of the last run of the command. Does nothing if there are none.
+    ///
+    /// The manifest calls the results incomplete until all new files have replaced the earlier ones, and those without a successor are removed.
     ///
     /// # Errors
-    /// When the system reports an error. The manifest then calls the results incomplete, or they are unchanged.
+    /// When the system reports an error, or as for [`Folder::check`]. The manifest then calls the results incomplete, or they are unchanged. All
+    /// files that have not got their names stay under hidden names, which the error lists.
     pub fn publish(&self) -> Result<(), OutputError> {
-        let mut locked = self.locked.borrow_mut();
-        let failed = |path: &Path| OutputError::io(cannot_write(path));
-        let prepared = std::mem::take(&mut locked.prepared);
-        let new: Vec<String> = prepared.iter().map(|(name, _)| name.clone()).collect();
-        if new.is_empty() {
+        if self.locked.borrow().prepared.is_empty() {
             return Ok(());
         }
-        new.iter()
-            .try_for_each(|name| locked.check(&locked.path.join(name)))?;
-        let last = locked.last().to_vec();
-        locked.list([&last[..], &new].concat(), false)?;
-        // The last file was written last: without it, the others are incomplete.
-        for path in last.iter().rev().map(|name| locked.path.join(name)) {
-            remove_if_there(&path).map_err(failed(&path))?;
-            let folders = path.ancestors().skip(1);
-            for folder in folders.take_while(|folder| *folder != locked.path) {
-                // A folder with other files stays.
-                let _ = fs::remove_dir(folder);
-            }
-        }
-        for (name, file) in prepared {
-            let path = locked.path.join(name);
-            fs::create_dir_all(path.parent().unwrap_or(&path)).map_err(failed(&path))?;
-            file.persist(&path)
-                .map_err(|error| failed(&path)(error.error))?;
-        }
-        locked.list(new, true)
+        let exchanged = self.locked.borrow_mut().exchange();
+        exchanged.map_err(|cause| match self.keep() {
+            None => cause,
+            Some(files) => OutputError::Unpublished(Box::new(cause), files),
+        })
+    }
+
+    /// Leaves all complete files under hidden names until the next run. Returns their paths; `None` if there are none.
+    pub fn keep(&self) -> Option<UnpublishedFiles> {
+        let mut locked = self.locked.borrow_mut();
+        let prepared = mem::take(&mut locked.prepared);
+        let kept = prepared.into_iter().filter_map(|(_, file)| {
+            let kept = file.keep().ok()?;
+            Some(locked.path.join(kept.file_name()?))
+        });
+        let kept: Vec<PathBuf> = kept.collect();
+        (!kept.is_empty()).then_some(UnpublishedFiles(kept))
     }
 
     /// Deletes all files that are complete but not published, in this folder and below it.
@@ -311,23 +338,71 @@ impl LockedFolder {
         parts.collect::<Vec<_>>().join("/")
     }
 
-    /// Returns an error if a result with this path would replace an input of the scenario, or another file than an earlier result of the command.
+    /// Returns an error if a result with this path would replace an input of the scenario, or anything else than an earlier result of the command,
+    /// or would be written through a link.
     fn check(&self, path: &Path) -> Result<(), OutputError> {
         if self.origin.is_input(path) {
             return Err(OutputError::IsInput(path.to_owned()));
         }
-        let is_there = path.symlink_metadata().is_ok();
-        let is_foreign = is_there && !self.last().contains(&self.relative(path));
-        let folders = path.ancestors().skip(1);
+        self.check_folders(path.parent().unwrap_or(path))?;
+        match path.symlink_metadata() {
+            Err(_) => Ok(()),
+            Ok(_) if !self.last().contains(&self.relative(path)) => Err(self.taken(path)),
+            Ok(found) if found.is_file() => Ok(()),
+            Ok(_) => Err(OutputError::NoFile(path.to_owned())),
+        }
+    }
+
+    /// Returns an error if one of these folders, up to the locked one, is a link or another file.
+    fn check_folders(&self, folder: &Path) -> Result<(), OutputError> {
+        let folders = folder.ancestors();
         let mut folders = folders.take_while(|folder| *folder != self.path);
-        let taken = folders.find(|folder| folder.exists() && !folder.is_dir());
-        let taken = taken.or(is_foreign.then_some(path));
-        taken.map_or(Ok(()), |path| {
-            Err(OutputError::Taken {
-                path: path.to_owned(),
-                command: command_line(&self.command).to_owned(),
-            })
+        folders.try_for_each(|folder| match folder.symlink_metadata() {
+            Ok(found) if found.is_symlink() => Err(OutputError::IsLink(folder.to_owned())),
+            Ok(found) if !found.is_dir() => Err(self.taken(folder)),
+            _ => Ok(()),
         })
+    }
+
+    fn taken(&self, path: &Path) -> OutputError {
+        OutputError::Taken {
+            path: path.to_owned(),
+            command: command_line(&self.command).to_owned(),
+        }
+    }
+
+    /// Gives the complete files their names between two manifests, of which the first calls the results incomplete. On an error the others stay
+    /// prepared.
+    fn exchange(&mut self) -> Result<(), OutputError> {
+        let names = self.prepared.iter().map(|(name, _)| name.clone());
+        let new: Vec<String> = names.collect();
+        let mut paths = new.iter().chain(self.last());
+        paths.try_for_each(|name| self.check(&self.path.join(name)))?;
+        let kept: BTreeSet<&String> = new.iter().collect();
+        let last = self.last().iter().filter(|name| !kept.contains(name));
+        let stale: Vec<String> = last.cloned().collect();
+        self.list([&stale[..], &new].concat(), false)?;
+        while let Some((name, file)) = self.prepared.pop_front() {
+            let path = self.path.join(&name);
+            let placed = match prepare_place(&path) {
+                Ok(()) => file.persist(&path).map_err(|it| (it.error, it.path)),
+                Err(error) => Err((error, file)),
+            };
+            placed.map_err(|(error, file)| {
+                self.prepared.push_front((name, file));
+                OutputError::io(cannot_write(&path))(error)
+            })?;
+        }
+        for path in stale.iter().map(|name| self.path.join(name)) {
+            let cannot = format!("cannot remove {}", path.display());
+            remove_if_there(&path).map_err(OutputError::io(cannot))?;
+            let folders = path.ancestors().skip(1);
+            for folder in folders.take_while(|folder| *folder != self.path) {
+                // A folder with other files stays.
+                let _ = fs::remove_dir(folder);
+            }
+        }
+        self.list(new, true)
     }
 
     /// Writes the manifest with these results of the command.
@@ -357,15 +432,25 @@ fn cannot_write(path: &Path) -> String {
     format!("cannot write {}", path.display())
 }
 
-/// Creates a file under a hidden name in a folder.
-fn hidden_file(folder: &Path, name: &str) -> io::Result<NamedTempFile> {
+/// Makes the folder of a result that gets its name.
+fn prepare_place(path: &Path) -> io::Result<()> {
+    #[cfg(test)]
+    tests::before_change(path)?;
+    fs::create_dir_all(path.parent().unwrap_or(path))
+}
+
+/// Creates a file under a hidden name in a folder, for a result with this name.
+fn hidden_file(folder: &Path, name: &str) -> io::Result<(File, TempPath)> {
+    let name = name.replace('/', "-");
+    let skipped = name.chars().count().saturating_sub(HIDDEN_CHARACTERS);
+    let name: String = name.chars().skip(skipped).collect();
     let prefix = format!("{PREFIX}{name}-");
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(&prefix);
-    // Temporary files are private by default; results get the usual permissions, to which the system applies the user's umask.
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    builder.tempfile_in(folder)
+    // Temporary files are private by default; results get the usual permissions.
+    let mut named = tempfile::Builder::new();
+    let named = named
+        .prefix(&prefix)
+        .make_in(folder, |path| File::create_new(path))?;
+    Ok(named.into_parts())
 }
 
 /// Writes a file that no manifest lists, because the user named it. It replaces only an earlier one that begins alike, or a film by a film.
@@ -386,8 +471,9 @@ pub fn write_named_file(path: &Path, contents: &[u8]) -> Result<(), OutputError>
             return Err(OutputError::NotWrittenHere(path.to_owned()));
         }
     }
+    check_folder_of(path)?;
     let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
-    write_whole(&path, contents).map_err(|error| cannot()(error.kind().into()))
+    write_whole(&path, contents).map_err(cannot())
 }
 
 /// Checks, before long work, that a film can be written to a file that the user named: its folder exists, and the file is absent or an earlier film.
@@ -395,9 +481,7 @@ pub fn write_named_file(path: &Path, contents: &[u8]) -> Result<(), OutputError>
 /// # Errors
 /// When the folder does not exist, or the file is there and was not written by this program.
 pub fn check_named_file(path: &Path) -> Result<(), OutputError> {
-    let folder = path.parent().filter(|it| !it.as_os_str().is_empty());
-    let found = folder.map_or(Ok(()), |folder| fs::metadata(folder).map(drop));
-    found.map_err(OutputError::unusable(cannot_write(path)))?;
+    check_folder_of(path)?;
     if !path.exists() {
         return Ok(());
     }
@@ -408,6 +492,21 @@ pub fn check_named_file(path: &Path) -> Result<(), OutputError> {
     }
 }
 
+/// Returns an error if there is no folder for a file that the user named.
+fn check_folder_of(path: &Path) -> Result<(), OutputError> {
+    match folder_of(path) {
+        folder if folder.is_dir() => Ok(()),
+        folder => Err(OutputError::NoFolder(path.to_owned(), folder.to_owned())),
+    }
+}
+
+/// Returns the folder of a file; `.` for a name alone.
+fn folder_of(path: &Path) -> &Path {
+    let folder = path.parent();
+    let folder = folder.filter(|folder| !folder.as_os_str().is_empty());
+    folder.unwrap_or(Path::new("."))
+}
+
 /// Returns true if a file names this program, as films do.
 fn names_program(contents: &[u8]) -> bool {
     let name = env!("CARGO_PKG_NAME").as_bytes();
@@ -416,15 +515,13 @@ fn names_program(contents: &[u8]) -> bool {
 
 /// Writes a file under a hidden name, and then gives it its name, so the file is complete or absent.
 fn write_whole(path: &Path, contents: &[u8]) -> io::Result<()> {
-    let folder = path
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty());
+    #[cfg(test)]
+    tests::before_change(path)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let mut file = hidden_file(folder.unwrap_or(Path::new(".")), &name)?;
+    let (mut file, hidden) = hidden_file(folder_of(path), &name)?;
     file.write_all(contents)?;
-    file.as_file().sync_data()?;
-    file.persist(path)?;
-    Ok(())
+    file.sync_data()?;
+    Ok(hidden.persist(path)?)
 }
 
 /// Returns what files of one kind have in common: the first line of a text without its numbers, and the first bytes of other files.
@@ -445,8 +542,13 @@ fn beginning(contents: &[u8]) -> String {
 /// Locks a folder, exclusively or shared; `None` if the folder cannot be locked. The system unlocks it when the program ends, even if it is
 /// killed.
 fn lock(path: &Path, alone: bool) -> Result<Option<File>, OutputError> {
-    let Ok(folder) = File::open(path) else {
-        return Ok(None);
+    let folder = match File::open(path) {
+        Ok(folder) => folder,
+        Err(error) if is_too_many_files(&error) => {
+            let what = format!("cannot lock the folder {}", path.display());
+            return Err(OutputError::io(what)(error));
+        }
+        Err(_) => return Ok(None),
     };
     let locked = match alone {
         true => folder.try_lock(),
@@ -474,6 +576,8 @@ fn remove_abandoned(path: &Path) {
 }
 
 fn remove_if_there(path: &Path) -> io::Result<()> {
+    #[cfg(test)]
+    tests::before_change(path)?;
     match fs::remove_file(path) {
         Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
         _ => Ok(()),
@@ -482,7 +586,196 @@ fn remove_if_there(path: &Path) -> io::Result<()> {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeMap;
+
     use super::*;
+
+    /// Called with the path before a file is written at once, gets its name or is removed. An error prevents the change.
+    type BeforeChange = Box<dyn FnMut(&Path) -> io::Result<()>>;
+
+    thread_local! {
+        static BEFORE_CHANGE: RefCell<Option<BeforeChange>> = const { RefCell::new(None) };
+    }
+
+    pub(super) fn before_change(path: &Path) -> io::Result<()> {
+        BEFORE_CHANGE.with_borrow_mut(|hook| hook.as_mut().map_or(Ok(()), |hook| hook(path)))
+    }
+
+    /// Does work with this action before each change.
+    fn with_changes<T>(hook: BeforeChange, work: impl FnOnce() -> T) -> T {
+        BEFORE_CHANGE.set(Some(hook));
+        let done = work();
+        BEFORE_CHANGE.set(None);
+        done
+    }
+
+    /// All files below a folder, by their paths relative to it.
+    fn contents(folder: &Path) -> BTreeMap<String, String> {
+        let mut all = BTreeMap::new();
+        for name in names(folder) {
+            let path = folder.join(&name);
+            if path.is_dir() {
+                let inner = contents(&path).into_iter();
+                all.extend(inner.map(|(inner, text)| (format!("{name}/{inner}"), text)));
+            } else {
+                all.insert(name, fs::read_to_string(&path).unwrap());
+            }
+        }
+        all
+    }
+
+    /// Copies a folder as a kill would leave it.
+    fn copy(from: &Path, to: &Path) {
+        for (name, text) in contents(from) {
+            fs::create_dir_all(to.join(&name).parent().unwrap()).unwrap();
+            fs::write(to.join(name), text).unwrap();
+        }
+    }
+
+    const OLD: [&str; 4] = ["a/x.csv", "b/x.csv", "x.csv", "seal.json"];
+    const NEW: [&str; 4] = ["b/x.csv", "c/x.csv", "x.csv", "seal.json"];
+    /// Changes when the new files replace the old ones: of two manifests, of the names of four files, and the removal of a file.
+    const CHANGES: usize = 7;
+
+    /// Asserts that a folder has the old results, the new ones, or an incomplete seal. Returns true for a complete seal.
+    #[track_caller]
+    fn assert_of_one_run(folder: &Path, name: &str) -> bool {
+        let mut found = contents(folder);
+        found.retain(|name, _| !name.starts_with(PREFIX));
+        let seal = found.remove(MANIFEST).unwrap();
+        let seal: serde_json::Value = serde_json::from_str(&seal).unwrap();
+        let all = |names: [&str; 4], text: &str| {
+            let all = names.map(|name| (name.to_owned(), text.to_owned()));
+            found == BTreeMap::from(all)
+        };
+        let is_complete = seal["results"]["run"]["complete"] == true;
+        assert!(
+            !is_complete || all(OLD, "old") || all(NEW, "new"),
+            "{name}: {found:?}"
+        );
+        is_complete
+    }
+
+    /// Asserts that the next run replaces whatever is in a folder.
+    #[track_caller]
+    fn assert_next_run(folder: &Path) {
+        write(folder, &NEW, "new").unwrap();
+        assert!(assert_of_one_run(folder, "next run"));
+        assert!(names(folder).iter().all(|name| !name.starts_with(PREFIX)));
+    }
+
+    #[test]
+    fn a_kill_at_any_change_leaves_results_of_one_run_or_an_incomplete_seal() {
+        let root = tempfile::tempdir().unwrap();
+        let (path, kills) = (root.path().join("o"), root.path().join("kills"));
+        write(&path, &OLD, "old").unwrap();
+        let (from, to) = (path.clone(), kills.clone());
+        let mut count = 0;
+        let kill = Box::new(move |_: &Path| {
+            copy(&from, &to.join(count.to_string()));
+            count += 1;
+            Ok(())
+        });
+        with_changes(kill, || write(&path, &NEW, "new")).unwrap();
+        assert!(assert_of_one_run(&path, "the end"));
+        assert_eq!(names(&kills).len(), CHANGES);
+        for (index, name) in names(&kills).into_iter().enumerate() {
+            let killed = kills.join(&name);
+            assert_eq!(assert_of_one_run(&killed, &name), index == 0, "{name}");
+            assert_next_run(&killed);
+        }
+    }
+
+    #[test]
+    fn a_failure_at_any_change_keeps_all_new_files() {
+        for failing in 0..CHANGES {
+            let root = tempfile::tempdir().unwrap();
+            let path = root.path().join("o");
+            write(&path, &OLD, "old").unwrap();
+            let mut count = 0;
+            let fails = Box::new(move |_: &Path| {
+                count += 1;
+                let is_failing = count == failing + 1;
+                let full = io::Error::from(io::ErrorKind::StorageFull);
+                if is_failing { Err(full) } else { Ok(()) }
+            });
+            let error = with_changes(fails, || write(&path, &NEW, "new")).unwrap_err();
+            assert_eq!(assert_of_one_run(&path, "failure"), failing == 0);
+            let found = contents(&path);
+            let hidden: Vec<_> = found
+                .keys()
+                .filter(|name| name.starts_with(PREFIX))
+                .collect();
+            // Each new file is whole, under its name or a hidden one.
+            let new = found.values().filter(|text| *text == "new").count();
+            assert_eq!((new, hidden.len()), (4, [4, 4, 3, 2, 1, 0, 0][failing]));
+            let said = error.to_string();
+            for name in hidden {
+                assert!(
+                    said.contains(&path.join(name).display().to_string()),
+                    "{said}"
+                );
+            }
+            assert!(said.contains("df -i"), "{said}");
+            assert_next_run(&path);
+        }
+    }
+
+    #[test]
+    fn no_result_replaces_a_folder_or_is_written_through_a_link() {
+        let root = tempfile::tempdir().unwrap();
+        let path = root.path().join("o");
+        write(&path, &OLD, "old").unwrap();
+        fs::remove_file(path.join("x.csv")).unwrap();
+        fs::create_dir(path.join("x.csv")).unwrap();
+        let before = contents(&path);
+        let error = write(&path, &NEW, "new").unwrap_err();
+        assert!(matches!(error, OutputError::NoFile(_)), "{error}");
+        assert_eq!(contents(&path), before);
+        // The folder appears during the computation.
+        fs::remove_dir(path.join("x.csv")).unwrap();
+        let folder = lock(&path).unwrap();
+        NEW.iter()
+            .try_for_each(|name| folder.write(name, b"new"))
+            .unwrap();
+        fs::create_dir(path.join("x.csv")).unwrap();
+        let error = folder.publish().unwrap_err();
+        drop(folder);
+        assert!(matches!(error, OutputError::Unpublished(..)), "{error}");
+        let kept = contents(&path);
+        assert_eq!(kept.len(), before.len() + NEW.len());
+        assert!(
+            before
+                .iter()
+                .all(|(name, text)| kept.get(name) == Some(text))
+        );
+        fs::remove_dir(path.join("x.csv")).unwrap();
+        assert_next_run(&path);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_inside_a_folder_are_refused() {
+        use std::os::unix::fs::symlink;
+        let root = tempfile::tempdir().unwrap();
+        let (path, outside) = (root.path().join("o"), root.path().join("outside"));
+        write(&outside, &["x.csv", "seal.json"], "mine").unwrap();
+        let mine = contents(&outside);
+        write(&path, &OLD, "old").unwrap();
+        fs::remove_dir_all(path.join("b")).unwrap();
+        // To a folder, to a file, and to nothing.
+        for (link, to) in [("b", ""), ("x.csv", "x.csv"), ("seal.json", "none")] {
+            let _ = fs::remove_file(path.join(link));
+            symlink(outside.join(to), path.join(link)).unwrap();
+            let before = names(&path);
+            write(&path, &NEW, "new").unwrap_err();
+            assert_eq!((contents(&outside), names(&path)), (mine.clone(), before));
+            fs::remove_file(path.join(link)).unwrap();
+        }
+        // The folder itself may be a link.
+        symlink(&path, root.path().join("link")).unwrap();
+        assert_next_run(&root.path().join("link"));
+    }
 
     fn names(path: &Path) -> Vec<String> {
         let entries = fs::read_dir(path).unwrap();

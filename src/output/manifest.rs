@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::OutputError;
-use crate::scenario::{self, STUDY_TABLES, Scenario};
+use crate::scenario::{self, STUDY_TABLES, Scenario, shown};
 
 /// Name of the list.
 pub(super) const MANIFEST: &str = "archrock.json";
@@ -80,12 +80,19 @@ impl Manifest {
         self.results.get(command).map_or(&[], |it| &it.files)
     }
 
-    /// Returns another scenario file of the same name whose results are in the folder; `None` if the user chose the folder.
-    pub(super) fn other_scenario_file(&self, origin: &Origin) -> Option<&str> {
-        let own = origin.scenario_file.as_deref()?;
+    /// Returns the other scenario of the same name whose results are in the folder, in words; `None` if the user chose the folder.
+    pub(super) fn other_scenario(&self, command: &str, own: &Origin) -> Option<String> {
+        let file = own.scenario_file.as_deref()?;
         let results = self.results.values();
         let mut files = results.filter_map(|it| it.origin.scenario_file.as_deref());
-        files.find(|file| *file != own)
+        if let Some(other) = files.find(|other| *other != file) {
+            return Some(shown(other));
+        }
+        // Results that the command would replace, and that got there by a choice of the folder.
+        let last = &self.results.get(command)?.origin;
+        let difference = own.difference(last)?;
+        let chosen = || format!("another scenario, put there by --out or Python ({difference})");
+        last.scenario_file.is_none().then(chosen)
     }
 
     /// Returns true if the results of another command contain this file.
@@ -159,6 +166,20 @@ impl Origin {
             records: records.map(str::to_owned).collect(),
             ..Self::of_tables(&summary["scenario"])
         }
+    }
+
+    /// Adds files that results must not replace.
+    #[must_use]
+    pub fn with_inputs(mut self, paths: &[PathBuf]) -> Self {
+        let paths = paths.iter().filter_map(|path| path.canonicalize().ok());
+        self.inputs.extend(paths);
+        self
+    }
+
+    /// Sets name and checksum of each record file, separated by a space.
+    #[must_use]
+    pub fn with_records(self, records: Vec<String>) -> Self {
+        Self { records, ..self }
     }
 
     fn of_tables(scenario: &Value) -> Self {

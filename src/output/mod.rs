@@ -37,7 +37,7 @@ pub use figure::{Figure, Height, Panel};
 pub use film::FilmFormat;
 pub(crate) use film::Reel;
 pub(crate) use folder::NewFile;
-pub use folder::{Folder, check_named_file, write_named_file};
+pub use folder::{Folder, UnpublishedFiles, check_named_file, write_named_file};
 pub use manifest::{Manifest, Origin};
 pub use panels::Subject;
 pub(crate) use panels::{Panels, StateHistory};
@@ -58,14 +58,14 @@ pub(crate) use template::{filters, render, render_in};
 pub use text::text_px;
 use thiserror::Error;
 
-use crate::scenario::{shown, shown_lines};
+use crate::scenario::shown_lines;
 
 /// Errors of writing results.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum OutputError {
     /// The system reported an error.
-    #[error("{what}: {source}")]
+    #[error("{what}: {}", in_words(source))]
     Io {
         /// The failed action, with the path.
         what: String,
@@ -73,7 +73,7 @@ pub enum OutputError {
         source: io::Error,
     },
     /// The system does not let the program write to the folder for the results.
-    #[error("{what}: {source}")]
+    #[error("{what}: {}", in_words(source))]
     Unusable {
         /// The failed action, with the path.
         what: String,
@@ -81,13 +81,13 @@ pub enum OutputError {
         source: io::Error,
     },
     /// The folder is named after a scenario file, and has the results of another one.
-    #[error("{} holds the results of {}", .0.display(), shown(.1))]
+    #[error("{} holds the results of {}", .0.display(), .1)]
     OfOtherScenario(PathBuf, String),
-    /// Another run is writing to the folder.
-    #[error("the folder {} is being written to by another run", .0.display())]
+    /// Another run is writing to the folder, or another program has locked it.
+    #[error("the folder {} is being written to by another run, or a program such as `flock` has locked it", .0.display())]
     InUse(PathBuf),
     /// A result would replace an input of the scenario.
-    #[error("{} is an input of the scenario, and a result has its name", .0.display())]
+    #[error("{} is an input of the scenario or a part to be merged, and a result has its name", .0.display())]
     IsInput(PathBuf),
     /// A result would replace a file that the command has not written.
     #[error("{} is there, and archrock.json does not list it as a result of `archrock {command}`", path.display())]
@@ -97,9 +97,21 @@ pub enum OutputError {
         /// The command.
         command: String,
     },
+    /// The place of an earlier result has something else than a file, such as a folder or a link.
+    #[error("{} is not a file, but archrock.json lists a result of this name", .0.display())]
+    NoFile(PathBuf),
+    /// A folder inside the one for the results is a link, which may lead anywhere.
+    #[error("{} is a link, and no result is written through it", .0.display())]
+    IsLink(PathBuf),
+    /// Complete results could not get their names, for this reason.
+    #[error("{0}; {1}")]
+    Unpublished(Box<OutputError>, UnpublishedFiles),
     /// A file with the name of a manifest is none.
     #[error("{} does not list results of this program", .0.display())]
     NoManifest(PathBuf),
+    /// There is no folder for a file that the user named.
+    #[error("cannot write {}: there is no folder {}", .0.display(), .1.display())]
+    NoFolder(PathBuf, PathBuf),
     /// A file that the user named is there and was not written by this program.
     #[error("{} is there, and archrock did not write it", .0.display())]
     NotWrittenHere(PathBuf),
@@ -120,7 +132,11 @@ impl OutputError {
     }
 
     fn unusable(what: String) -> impl FnOnce(io::Error) -> Self {
-        |source| Self::Unusable { what, source }
+        |source| match is_too_many_files(&source) {
+            // Another folder would not help.
+            true => Self::Io { what, source },
+            false => Self::Unusable { what, source },
+        }
     }
 
     fn csv(what: impl Into<String>) -> impl FnOnce(csv::Error) -> Self {
@@ -133,6 +149,23 @@ impl OutputError {
             })
         }
     }
+}
+
+/// Returns an error of the system in words, with a remedy for the errors that do not name the exhausted resource.
+fn in_words(error: &io::Error) -> String {
+    match error.kind() {
+        io::ErrorKind::StorageFull => {
+            format!("{error}: free some, or inodes if space is left (`df -i`)")
+        }
+        _ if is_too_many_files(error) => format!("{error}: allow more with `ulimit -n`"),
+        _ => error.to_string(),
+    }
+}
+
+/// Returns true if the program or the system has too many open files.
+fn is_too_many_files(error: &io::Error) -> bool {
+    // ENFILE and EMFILE, which have no `ErrorKind`.
+    cfg!(unix) && matches!(error.raw_os_error(), Some(23 | 24))
 }
 
 /// Formats JSON for people: indented, with invisible characters escaped.

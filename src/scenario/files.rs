@@ -1,5 +1,6 @@
 //! The files that a scenario names, in a folder or in memory.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::{self, Read};
@@ -17,7 +18,39 @@ pub(super) struct Files {
     /// The folder to which names are relative; empty for files in memory.
     pub(super) folder: PathBuf,
     /// The contents of the files by name; `None` if they are on disk.
-    pub(super) in_memory: Option<Arc<BTreeMap<PathBuf, Vec<u8>>>>,
+    pub(super) in_memory: Option<Arc<BTreeMap<PathBuf, FileContents>>>,
+}
+
+/// The contents of a file in memory.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FileContents {
+    /// The bytes of the file.
+    Bytes(Vec<u8>),
+    /// Times in s, and accelerations or velocities in the unit that the scenario gives: a record that is checked, but not written and parsed.
+    Samples(Vec<(f64, f64)>),
+}
+
+impl From<Vec<u8>> for FileContents {
+    fn from(bytes: Vec<u8>) -> Self {
+        Self::Bytes(bytes)
+    }
+}
+
+/// Equal contents have equal bits, also those of samples that are no numbers.
+impl Eq for FileContents {}
+
+impl FileContents {
+    /// Returns the bytes of the file: of samples, a table with a column of times and one of values, whose numbers have all digits.
+    pub fn bytes(&self) -> Cow<'_, [u8]> {
+        match self {
+            Self::Bytes(bytes) => bytes.into(),
+            Self::Samples(samples) => {
+                let rows = samples.iter();
+                let rows = rows.map(|(time_s, value)| format!("{time_s:?},{value:?}\n"));
+                rows.collect::<String>().into_bytes().into()
+            }
+        }
+    }
 }
 
 impl Files {
@@ -41,12 +74,19 @@ impl Files {
         read.map(|_| start).map_err(unreadable)
     }
 
+    /// Returns the samples that a program has given in place of a file.
+    pub(super) fn samples(&self, path: &Path) -> Option<&[(f64, f64)]> {
+        match self.in_memory.as_ref()?.get(path)? {
+            FileContents::Bytes(_) => None,
+            FileContents::Samples(samples) => Some(samples),
+        }
+    }
+
     fn open(&self, path: &Path) -> Result<Box<dyn Read + '_>, String> {
         if let Some(in_memory) = &self.in_memory {
             let contents = in_memory.get(path);
-            let contents = contents
-                .ok_or("is not among the given files: choose it, because a link holds no files")?;
-            return Ok(Box::new(contents.as_slice()));
+            let contents = contents.ok_or("is not among the given files")?;
+            return Ok(Box::new(io::Cursor::new(contents.bytes())));
         }
         let is_file = fs::metadata(path).map_err(unreadable)?.is_file();
         ensure(is_file, || "is not a file")?;

@@ -68,6 +68,7 @@ mod unlikely;
 mod variant;
 mod verify;
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -80,6 +81,7 @@ pub use assignment::Assignment;
 use document::Entries;
 pub use elastic_joints::ELASTIC_JOINTS;
 pub use error::{ScenarioError, ScenarioErrors, TextPosition};
+pub use files::FileContents;
 pub use free_hinges::FREE_HINGES;
 use given::Given;
 pub(crate) use given::STUDY_TABLES;
@@ -194,15 +196,20 @@ impl Scenario {
         shakes || self.initial.is_some() || self.suite.is_some()
     }
 
-    /// Returns name and checksum of each record file of the ground and of the suite, separated by a space.
+    /// Returns name and checksum of each record file of the ground, of the suite and of the check, separated by a space.
     pub fn record_checksums(&self) -> Vec<String> {
         let named = |series: &Series| format!("{} {:08x}", series.file, series.checksum());
-        self.all_series().map(named).collect()
+        let mut seen = BTreeSet::new();
+        let mut all: Vec<String> = self.all_series().map(named).collect();
+        // A record may be used several times.
+        all.retain(|record| seen.insert(record.clone()));
+        all
     }
 
     fn all_series(&self) -> impl Iterator<Item = &Series> {
         let suite = self.suite.iter().flat_map(|suite| &suite.records);
-        self.series().chain(suite)
+        let checked = self.verify.iter().flat_map(|verify| verify.records.all());
+        self.series().chain(suite).chain(checked)
     }
 
     /// Returns the paths of all files from which the scenario was read.

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::error::{Fault, ScenarioErrors};
-use super::files::{Files, read_at_most, without_current_folders};
+use super::files::{FileContents, Files, read_at_most, without_current_folders};
 use super::plain_text::not_plain;
 
 /// The text of a scenario, and its name in errors.
@@ -30,9 +30,12 @@ impl Source {
 
     /// Makes a source that reads no files from disk, but these contents by the names in the scenario.
     #[must_use]
-    pub fn with_files(self, contents: impl IntoIterator<Item = (PathBuf, Vec<u8>)>) -> Self {
+    pub fn with_files<C: Into<FileContents>>(
+        self,
+        contents: impl IntoIterator<Item = (PathBuf, C)>,
+    ) -> Self {
         let contents = contents.into_iter();
-        let named = contents.map(|(name, bytes)| (without_current_folders(&name), bytes));
+        let named = contents.map(|(name, one)| (without_current_folders(&name), one.into()));
         let files = Files {
             folder: PathBuf::new(),
             in_memory: Some(Arc::new(named.collect())),

@@ -19,6 +19,7 @@ use super::error::{Fault, ensure, excerpt};
 use super::files::Files;
 use super::input_file::InputFile;
 use super::rule::{Rule, did_you_mean};
+use super::shown;
 
 /// Error of a value that could not be read; its reason is recorded as a [`Fault`].
 #[derive(Clone, Copy, Debug)]
@@ -453,6 +454,9 @@ impl<'a> Table<'a> {
             Value::Object(_) if key.contains('.') => format!("`{key}`"),
             Value::Object(_) => format!("table `{key}`"),
             _ if self.document.is_array_of_tables(&path, value) => format!("`[[{key}]]`"),
+            Value::String(name) if key == "file" && self.has_samples(name) => {
+                format!("the record \"{}\"", shown(name))
+            }
             _ => format!("`{key} = {}`", self.document.quote(&path, value)),
         };
         let assigned = value.is_array().then(|| self.document.assigned(&path));
@@ -506,6 +510,12 @@ impl<'a> Table<'a> {
         let place = self.place(key).unwrap_or(self.place);
         let message = format!("`{key}` cannot be combined with `{other}`; {remedy}");
         self.fault(place, message);
+    }
+
+    /// Returns true if a program has given samples in place of the file with this name.
+    fn has_samples(&self, name: &str) -> bool {
+        let files = self.files();
+        files.samples(&files.path(name)).is_some()
     }
 
     /// Records that the whole table is wrong. `message` follows its name.

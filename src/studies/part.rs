@@ -266,6 +266,10 @@ impl<'p> Lines<'p> {
             bytes.map_err(|error| unusable(path, format!("cannot be read: {error}")))?;
         // An incomplete last line was being written when the program was killed.
         let last = bytes.iter().rposition(|byte| *byte == b'\n');
+        let begins_header = bytes.starts_with(HEADER) || HEADER.starts_with(&bytes);
+        if last.is_none() && !begins_header {
+            return Err(unusable(path, NO_PART));
+        }
         bytes.truncate(last.map_or(0, |last| last + 1));
         let text = String::from_utf8(bytes).map_err(|_| unusable(path, NO_PART))?;
         Ok(Self { path, text })
@@ -324,6 +328,9 @@ impl<'p> Lines<'p> {
     }
 }
 
+/// Beginning of a header.
+const HEADER: &[u8] = concat!("{\"program\":\"", env!("CARGO_PKG_NAME"), "\"").as_bytes();
+
 const NO_PART: &str = "is not a part of a study (a .part file of archrock)";
 
 /// Reads the header of a part file. The rows may be incomplete.
@@ -369,6 +376,12 @@ impl PartFile {
         resume: bool,
     ) -> Result<(Self, Rows<R>), PartError> {
         check_file(path)?;
+        if path.is_symlink() {
+            return Err(unusable(
+                path,
+                "is a link, and no part is written through it",
+            ));
+        }
         let file = OpenOptions::new()
             .create(true)
             .read(true)

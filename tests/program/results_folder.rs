@@ -2,6 +2,7 @@
 #![cfg(unix)]
 
 use std::fs;
+use std::os::unix::fs::symlink;
 use std::path::Path;
 use std::process::Child;
 use std::thread::sleep;
@@ -712,4 +713,258 @@ fn a_killed_suite_leaves_the_last_results() {
         succeeds(at, &line);
         assert_eq!(contents(&out), before);
     }
+}
+
+/// A folder in the place of a result, which no file can replace, costs neither the earlier results nor a computation.
+#[test]
+fn a_result_that_cannot_be_replaced_loses_nothing() {
+    let root = tempfile::tempdir().unwrap();
+    let at = root.path();
+    fs::write(at.join("strong.toml"), column(0.9, 4)).unwrap();
+    fs::write(at.join("weak.toml"), column(0.05, 4)).unwrap();
+    succeeds(at, &["run", "strong.toml", "--out", "o", "--quiet"]);
+    fs::remove_file(at.join("o/events.csv")).unwrap();
+    fs::create_dir(at.join("o/events.csv")).unwrap();
+    fs::write(at.join("o/events.csv/x"), "mine").unwrap();
+    let before = contents(&at.join("o"));
+    let weak = ["run", "weak.toml", "--out", "o"];
+    refused(at, &weak, &["o/events.csv is not a file", "--out"]);
+    assert_eq!(contents(&at.join("o")), before);
+    fs::remove_dir_all(at.join("o/events.csv")).unwrap();
+    succeeds(at, &weak);
+    assert_all_come_from(&at.join("o"), 0.05);
+}
+
+/// A folder in which one record of a suite fails keeps the earlier results of all.
+#[test]
+fn a_suite_with_a_failing_record_publishes_nothing() {
+    let root = tempfile::tempdir().unwrap();
+    let at = root.path();
+    suite(at, "s.toml", &["a.csv", "b.csv"], 0.8);
+    succeeds(at, &["run", "s.toml", "--suite", "--out", "o", "--quiet"]);
+    let before = contents(&at.join("o"));
+    // The rotations of the second record are longer than the largest file.
+    let text = fs::read_to_string(at.join("s.toml")).unwrap();
+    let text = text.replace("duration_s = 1", "output_step_s = 0.001");
+    fs::write(at.join("s.toml"), text).unwrap();
+    let long: String = (0..200).map(|s| format!("{s},{}\n", s % 2)).collect();
+    fs::write(at.join("b.csv"), long).unwrap();
+    let limited =
+        "trap '' XFSZ; ulimit -f 4096; exec \"$0\" run s.toml --suite --no-report --out o --quiet";
+    let output = std::process::Command::new("sh")
+        .current_dir(at)
+        .args(["-c", limited, env!("CARGO_BIN_EXE_archrock")])
+        .output()
+        .unwrap();
+    let said = stderr(&output);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(
+        said.starts_with("error: s.toml, b.csv: cannot write"),
+        "{said}"
+    );
+    assert!(said.contains("error: o: nothing was published"), "{said}");
+    let (hidden, shown): (Vec<_>, Vec<_>) = contents(&at.join("o"))
+        .into_iter()
+        .partition(|(name, _)| name.starts_with(".archrock-"));
+    assert_eq!(shown, before);
+    assert!(
+        hidden
+            .iter()
+            .all(|(name, _)| said.contains(&format!("o/{name}")))
+    );
+    let of_first = |name: &str| {
+        let prefix = format!(".archrock-a.csv-{name}-");
+        let mut found = hidden.iter().filter(|(name, _)| name.starts_with(&prefix));
+        found
+            .next()
+            .map_or_else(Vec::new, |(_, contents)| contents.clone())
+    };
+    assert!(of_first("rotations.csv").len() > 10_000);
+    assert_eq!(hidden.len(), RUN_FILES.len() - 1, "{said}");
+    assert!(of_first("summary.json").starts_with(b"{"));
+}
+
+/// Signals that end the program wait while results get their names.
+#[test]
+fn a_signal_never_leaves_an_incomplete_seal() {
+    let root = tempfile::tempdir().unwrap();
+    let at = root.path();
+    fs::write(at.join("strong.toml"), column(0.9, 4)).unwrap();
+    fs::write(at.join("weak.toml"), column(0.05, 4)).unwrap();
+    let run = |name| {
+        let options = ["--film", "50", "--no-report", "--quiet", "--out", "o"];
+        command(at, &[&["run", name][..], &options].concat())
+    };
+    let begun = std::time::Instant::now();
+    assert!(run("strong.toml").status().unwrap().success());
+    let whole = begun.elapsed();
+    let mut ended = 0;
+    for (turn, signal) in (0..30_u32).zip(["-INT", "-TERM", "-HUP"].into_iter().cycle()) {
+        let name = ["weak.toml", "strong.toml"][turn as usize % 2];
+        let mut child = run(name).spawn().unwrap();
+        // Most of the delays are at the end of the run.
+        sleep(whole.mul_f64(0.7 + 0.4 * f64::from(turn) / 30.0));
+        let id = child.id().to_string();
+        let _ = std::process::Command::new("kill")
+            .args([signal, &id])
+            .output();
+        ended += u32::from(!child.wait().unwrap().success());
+        let seal = json(&at.join("o/archrock.json"));
+        let results = &seal["results"]["run"];
+        assert_eq!(results["complete"], true, "{turn} {signal}");
+        let files = results["files"].as_array().unwrap().iter();
+        for file in files.filter_map(|file| file.as_str()) {
+            assert!(at.join("o").join(file).exists(), "{turn} {signal}: {file}");
+        }
+    }
+    assert!(ended > 0, "no run was ended by a signal");
+}
+
+/// The default folder of a scenario file is safe from other files of its name, even if --out put the results there.
+#[test]
+fn a_default_folder_filled_by_out_belongs_to_its_scenario() {
+    let root = tempfile::tempdir().unwrap();
+    let at = root.path();
+    for (folder, amplitude_g) in [("a", 0.05), ("b", 0.9)] {
+        fs::create_dir(at.join(folder)).unwrap();
+        fs::write(at.join(folder).join("x.toml"), column(amplitude_g, 2)).unwrap();
+    }
+    succeeds(at, &["run", "a/x.toml", "--out", "results/x", "--quiet"]);
+    let before = contents(&at.join("results/x"));
+    let words = [
+        "results/x holds the results of another scenario",
+        "[ground] differs",
+        "--out",
+    ];
+    refused(at, &["run", "b/x.toml"], &words);
+    assert_eq!(contents(&at.join("results/x")), before);
+    // Its own scenario may replace them, and the user may choose the folder.
+    succeeds(at, &["run", "a/x.toml", "--quiet"]);
+    succeeds(at, &["run", "b/x.toml", "--out", "results/x", "--quiet"]);
+    assert_all_come_from(&at.join("results/x"), 0.9);
+}
+
+/// Parts are inputs of `merge`, and files that are no parts are never written to.
+#[test]
+fn no_result_replaces_a_part_and_no_part_another_file() {
+    let root = tempfile::tempdir().unwrap();
+    let at = root.path();
+    let map = "[map]\namplitude_g = [0.2, 0.4]\nduration_s = [0.2, 0.3]\n";
+    let text = column(0.4, 2)
+        .split("[uncertain]")
+        .next()
+        .unwrap()
+        .to_owned();
+    fs::write(at.join("s.toml"), text + map).unwrap();
+    succeeds(at, &["map", "s.toml", "--out", "o"]);
+    for part in ["1/2", "2/2"] {
+        succeeds(at, &["map", "s.toml", "--shard", part, "--out", "p"]);
+    }
+    // A part has the place of an earlier result.
+    fs::copy(at.join("p/map-1-of-2.part"), at.join("o/map.csv")).unwrap();
+    let before = contents(&at.join("o"));
+    let merge = ["merge", "o/map.csv", "p/map-2-of-2.part", "--out", "o"];
+    refused(
+        at,
+        &merge,
+        &["o/map.csv is an input", "a part to be merged"],
+    );
+    assert_eq!(contents(&at.join("o")), before);
+    succeeds(
+        at,
+        &[
+            "merge",
+            "p/map-1-of-2.part",
+            "p/map-2-of-2.part",
+            "--out",
+            "q",
+        ],
+    );
+    // A file without a line end; an empty file and the beginning of a header are of a killed program.
+    let again = ["map", "s.toml", "--out", "r"];
+    fs::create_dir(at.join("r")).unwrap();
+    for mine in ["my notes", "{\"program\":\"other\"", "\u{feff}{"] {
+        fs::write(at.join("r/map.part"), mine).unwrap();
+        for more in [&[][..], &["--resume"]] {
+            let line = [&again[..], more].concat();
+            refused(at, &line, &["r/map.part: is not a part of a study"]);
+            assert_eq!(fs::read_to_string(at.join("r/map.part")).unwrap(), mine);
+        }
+    }
+    for killed in ["", "{\"prog", "{\"program\":\"archrock\",\"row_fo"] {
+        fs::write(at.join("r/map.part"), killed).unwrap();
+        succeeds(at, &again);
+    }
+    // Links lead out of the folder.
+    fs::write(at.join("mine"), "").unwrap();
+    symlink(at.join("mine"), at.join("r/map.part")).unwrap();
+    refused(at, &again, &["r/map.part: is a link"]);
+    fs::create_dir(at.join("away")).unwrap();
+    fs::write(at.join("u.toml"), column(0.4, 4)).unwrap();
+    fs::create_dir(at.join("l")).unwrap();
+    symlink(at.join("away"), at.join("l/uncertain")).unwrap();
+    for more in [&[][..], &["--shard", "1/2"]] {
+        let line = [&["run", "u.toml", "--out", "l"][..], more].concat();
+        refused(at, &line, &["l/uncertain is a link", "--out"]);
+    }
+    assert!(names(&at.join("away")).is_empty());
+    assert_eq!(fs::read(at.join("mine")).unwrap(), b"");
+}
+
+/// A page may be opened elsewhere: it names no folder of the machine that made it.
+#[test]
+fn no_page_names_the_folder_of_its_results() {
+    let root = tempfile::tempdir().unwrap();
+    let at = root.path();
+    fs::write(at.join("s.toml"), column(0.3, 4)).unwrap();
+    let out = "a-folder-of-my-own";
+    succeeds(
+        at,
+        &[
+            "run",
+            "s.toml",
+            "--hinges",
+            "four,free",
+            "--out",
+            out,
+            "--quiet",
+        ],
+    );
+    let all = contents(&at.join(out));
+    let pages = all.iter().filter(|(name, _)| name.ends_with(".html"));
+    assert_eq!(pages.clone().count(), 6, "{:?}", below(&at.join(out)));
+    for (name, page) in pages {
+        assert!(!String::from_utf8_lossy(page).contains(out), "{name}");
+    }
+}
+
+/// The seal of a check lists the records of its histories.
+#[test]
+fn the_seal_of_a_check_lists_its_records() {
+    let root = tempfile::tempdir().unwrap();
+    let at = root.path();
+    let copied = ["semicircle-verify.toml", "records"];
+    for name in copied.map(|name| scenarios().join(name)) {
+        let status = std::process::Command::new("cp")
+            .arg("-rL")
+            .arg(name)
+            .arg(at)
+            .status();
+        assert!(status.unwrap().success());
+    }
+    let line = ["verify", "semicircle-verify.toml", "--out", "o"];
+    assert!(archrock(at, &line).status.success());
+    let list = json(&at.join("o/archrock.json"));
+    let listed = list["results"]["verify"]["records"].as_array().unwrap();
+    let check = json(&at.join("o/verify.json"));
+    let files = check["files"].as_array().unwrap().iter();
+    let files = files.filter_map(|file| file["file"].as_str());
+    let records: Vec<&str> = files.filter(|name| name.ends_with(".at2")).collect();
+    assert!(records.len() >= 3, "{records:?}");
+    let names = listed.iter().filter_map(|it| it.as_str()?.rsplit_once(' '));
+    let mut names: Vec<&str> = names.map(|(name, _)| name).collect();
+    // The first is that of the ground motion, which is one of them.
+    assert_eq!(names[0], "records/slv-5.at2");
+    names.sort_unstable();
+    assert_eq!(names, records);
 }

@@ -1,7 +1,7 @@
 //! The program in adverse conditions: killed, without a reader of its output, on a full disk, and with very long output.
 #![cfg(target_os = "linux")]
 use crate::common::program::{names, result_names, skip_without};
-use crate::common::results::{Row, Table, summary};
+use crate::common::results::{Row, Table, json, summary};
 use std::fs::{self, OpenOptions};
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
@@ -33,8 +33,8 @@ fn rows(path: &Path) -> Vec<Row> {
     Table::parse(text).rows
 }
 
-/// Checks that result files in the folder are complete, and, if the summary is there, that all of
-/// them come from one run. Returns whether the summary is there.
+/// Checks that result files in the folder are complete, and, if the seal calls them complete, that all of
+/// them come from one run. Returns whether it does.
 fn check_results(folder: &Path, duration_s: f64) -> bool {
     let found = |name: &str| folder.join(name).exists();
     if found("rotations.csv") {
@@ -47,7 +47,9 @@ fn check_results(folder: &Path, duration_s: f64) -> bool {
             assert!(first > 0, "{name} has no rows");
         }
     }
-    if !found("summary.json") {
+    if !found("archrock.json")
+        || json(&folder.join("archrock.json"))["results"]["run"]["complete"] != true
+    {
         return false;
     }
     let summary = summary(folder);
@@ -296,7 +298,8 @@ fn a_second_program_writing_to_one_folder_is_refused() {
         assert_eq!(
             said,
             format!(
-                "error: the folder {folder} is being written to by another run; choose another folder with --out\n"
+                "error: the folder {folder} is being written to by another run, or a program such as `flock` has locked it; choose another \
+                 folder with --out\n"
             )
         );
     });
@@ -478,4 +481,58 @@ fn a_study_shows_its_pace_on_a_terminal() {
     assert!(said.contains(" cases, none finished yet"), "{said}");
     assert!(said.contains(" a second, "), "{said}");
     assert!(said.contains(" left"), "{said}");
+}
+
+/// Errors of the system name the exhausted resource and its remedy, and the result, not its hidden file.
+#[test]
+fn exhausted_resources_are_named() {
+    let root = tempfile::tempdir().unwrap();
+    let scenario = root.path().join("s.toml");
+    fs::write(&scenario, endless(0.1, 40.0, 1e-3)).unwrap();
+    let limited = |limit: &str, more: &[&str]| {
+        let line = format!("trap '' XFSZ; {limit}; exec \"$0\" run s.toml --quiet \"$@\"");
+        let mut shell = Command::new("sh");
+        let output = shell
+            .current_dir(root.path())
+            .args(["-c", &line, PROGRAM])
+            .args(more);
+        let output = output.output().unwrap();
+        (
+            output.status.code(),
+            String::from_utf8(output.stderr).unwrap(),
+        )
+    };
+    for files in 5..9 {
+        let (code, said) = limited(&format!("ulimit -n {files}"), &["--out", "o"]);
+        assert_eq!(code, Some(1), "{files} files: {said}");
+        let words = "Too many open files (os error 24): allow more with `ulimit -n`\n";
+        assert!(said.ends_with(words) && !said.contains("--out"), "{said}");
+    }
+    let (code, said) = limited("ulimit -f 64", &["--out", "o"]);
+    assert_eq!(code, Some(1), "{said}");
+    assert!(
+        said.contains("File too large") && !said.contains(".archrock-"),
+        "{said}"
+    );
+    let output = program(&["init", "column", "none/s.toml"])
+        .current_dir(root.path())
+        .stderr(Stdio::piped())
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(
+        String::from_utf8(output.stderr).unwrap(),
+        "error: cannot write none/s.toml: there is no folder none\n"
+    );
+    let output = program(&["impact", "--line", "none/line.csv"])
+        .arg(crate::common::program::scenarios().join("semicircle-pulse.toml"))
+        .current_dir(root.path())
+        .stderr(Stdio::piped())
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(
+        String::from_utf8(output.stderr).unwrap(),
+        "error: cannot write none/line.csv: there is no folder none; choose another file with --line\n"
+    );
 }

@@ -230,8 +230,11 @@ impl Answer {
     }
 
     fn of_errors(ScenarioErrors(errors): ScenarioErrors) -> Self {
+        // A link to the page holds the text of the scenario alone.
+        let missing = "is not among the given files";
+        let chosen = format!("{missing}: choose it, because a link holds no files");
         let errors = errors.into_iter().map(|error| PlacedError {
-            message: error.message,
+            message: error.message.replace(missing, &chosen),
             line: error.place.map(|place| place.line),
             column: error.place.map(|place| place.column),
         });

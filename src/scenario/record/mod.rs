@@ -276,10 +276,20 @@ impl Series {
     /// Reads the unscaled samples of a file. The error is a phrase that follows the name of the file.
     pub(super) fn of_file(files: &Files, file: String, layout: Layout) -> Result<Self, String> {
         let path = files.path(&file);
-        let contents = layout.parse(&files.read(&path)?);
-        contents
-            .map(|contents| Self::new(file, layout, contents))
-            .map_err(|fault| faulty(&path, &fault))
+        let contents = match files.samples(&path).zip(layout.unit) {
+            Some((samples, unit)) if layout == layout.of_samples() => {
+                let contents = samples::checked(samples, unit);
+                let contents = contents.and_then(|contents| layout.corrected(contents));
+                contents.map_err(|LineFault { line, message }| {
+                    format!("is faulty: sample {line}: {message}")
+                })
+            }
+            _ => {
+                let contents = layout.parse(&files.read(&path)?);
+                contents.map_err(|fault| faulty(&path, &fault))
+            }
+        };
+        contents.map(|contents| Self::new(file, layout, contents))
     }
 
     fn new(file: String, layout: Layout, contents: Contents) -> Self {
@@ -484,13 +494,30 @@ impl Layout {
     /// The first fault in the bytes.
     pub fn parse(&self, bytes: &[u8]) -> Result<Contents, LineFault> {
         let text = legible(bytes)?;
-        let mut contents = match (self.format, self.format.histories()) {
+        let contents = match (self.format, self.format.histories()) {
             (_, Some(histories)) => histories::read(&text, self, histories),
             (Format::At2, None) => at2::parse(&text, self.unit, self.quantity),
             (Format::Asc, None) => asc::parse(&text, self.quantity),
             (Format::Knet, None) => knet::parse(&text),
             (_, None) => csv::parse(&text, self),
         }?;
+        self.corrected(contents)
+    }
+
+    /// Returns the layout of samples that a program gives in place of a file: a table of times and values, with the corrections of this layout.
+    fn of_samples(&self) -> Self {
+        Self {
+            times: Some(Times::Column(TableColumn::Number(1))),
+            unit: self.unit,
+            quantity: self.quantity,
+            baseline: self.baseline,
+            high_pass_hz: self.high_pass_hz,
+            ..Self::new(Format::Csv)
+        }
+    }
+
+    /// Checks the unit of samples, and corrects them as the layout demands.
+    fn corrected(&self, mut contents: Contents) -> Result<Contents, LineFault> {
         let unit = contents.unit;
         ensure(unit.quantity() == self.quantity, || {
             let (unit, other) = (unit.name(), unit.other_quantity());

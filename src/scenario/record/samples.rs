@@ -290,6 +290,27 @@ pub(super) fn is_step(step_s: f64, usual_s: f64, last_s: f64) -> bool {
     (step_s - usual_s).abs() <= EVEN * usual_s + rounding_s.min(0.4 * usual_s)
 }
 
+/// Checks samples that a program gives in place of a table, and returns the contents of that table. A fault has the number of its sample, from 1.
+pub(super) fn checked(samples: &[(f64, f64)], unit: Unit) -> Parsed<Contents> {
+    let finite = |value: f64| {
+        let message = || format!("`{value}` is not a finite number").to_lowercase();
+        ensure(value.is_finite(), message).map(|()| value)
+    };
+    let (mut values, mut before_s) = (Values::default(), None);
+    for (number, &(time_s, value)) in (1..).zip(samples) {
+        let checked = finite(time_s).and_then(|time_s| check_time(time_s, before_s));
+        let value = checked.and_then(|()| finite(value)).and_then(in_range);
+        values.push(number, value.map_err(LineFault::on(number))?)?;
+        before_s = Some(time_s);
+    }
+    values.line = values.line.max(1);
+    values.check_enough()?;
+    Ok(Contents {
+        columns: " from column 2, times from column 1".to_owned(),
+        ..Contents::new(samples.to_vec(), unit)
+    })
+}
+
 /// Returns the words of a line. Fortran writes numbers with a fixed width, so that only a sign may separate two of them: a sign begins a word,
 /// except in an exponent.
 pub(super) fn words(line: &str) -> impl Iterator<Item = &str> {

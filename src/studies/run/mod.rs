@@ -206,14 +206,22 @@ pub fn results(
     if comparison.is_some() && all[0].files.is_some() {
         results.files = vec![(OVERLAY, overlay(figure, &runs, &all, &[]).into_bytes())];
     }
-    let printed = all.iter().map(|one| (&one.summary, one.files.as_ref()));
-    results.words = super::results::words_of(&Printed {
-        comparison: comparison.as_ref(),
-        runs: printed.collect(),
-    });
+    let words = |with_files: bool| {
+        let printed = all.iter().map(|one| {
+            let files = one.files.as_ref().filter(|_| with_files);
+            (&one.summary, files)
+        });
+        super::results::words_of(&Printed {
+            comparison: comparison.as_ref(),
+            runs: printed.collect(),
+        })
+    };
     if comparison.is_some() && !results.files.is_empty() && !options.no_report {
+        // The page may be opened elsewhere, so its words name no folder.
+        results.words = words(false);
         results = comparison::with_page(results, &runs, &all);
     }
+    results.words = words(true);
     Ok(results)
 }
 
