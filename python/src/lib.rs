@@ -22,7 +22,7 @@ mod _native {
     #[pymodule_export]
     use crate::history::History;
     #[pymodule_export]
-    use crate::scenario::{Ground, Scenario};
+    use crate::scenario::{Ground, Scenario, file_of};
     #[pymodule_export]
     use crate::studies::{compute_part, merge, save, study};
 

@@ -1,47 +1,75 @@
 //! Scenarios and ground motions, read from text.
 
 use std::collections::BTreeMap;
-use std::fs;
-use std::path::{Component, Path};
+use std::path::{Component, Path, PathBuf};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use archrock::scenario::{Assignment, MODELS, ModelKind, ReadOptions, ScenarioErrors, Source};
+use archrock::scenario::{
+    Assignment, FileContents, MODELS, ModelKind, ReadOptions, ScenarioErrors, Source,
+};
 use archrock::studies::{impact_chain, limit};
 use archrock::{GroundMotion, MechanismModel, Model, Sway};
-use numpy::{PyArray1, PyArrayMethods as _};
+use numpy::{PyArray1, PyArrayMethods as _, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use pyo3::types::PyBytes;
 use serde_json::json;
-use tempfile::TempDir;
 
 use crate::error::{in_words, refused};
 
 /// Files of a scenario that are held in memory, by the names that the scenario uses.
-pub type Files = BTreeMap<String, Vec<u8>>;
+pub type Files<'py> = BTreeMap<String, Held<'py>>;
+
+/// What takes the place of a file.
+#[derive(FromPyObject)]
+pub enum Held<'py> {
+    /// Samples of a record: a column of times and one of values.
+    Samples {
+        /// The columns.
+        table: PyReadonlyArray2<'py, f64>,
+    },
+    /// The contents of a file.
+    File(Vec<u8>),
+}
+
+impl From<Held<'_>> for FileContents {
+    fn from(held: Held<'_>) -> Self {
+        match held {
+            Held::File(bytes) => Self::Bytes(bytes),
+            Held::Samples { table } => {
+                let table = table.as_array();
+                let rows = table.rows().into_iter();
+                let pair =
+                    |row: numpy::ndarray::ArrayView1<'_, f64>| Some((*row.get(0)?, *row.get(1)?));
+                Self::Samples(rows.filter_map(pair).collect())
+            }
+        }
+    }
+}
+
+/// Returns the contents of a file with these samples.
+#[pyfunction]
+pub fn file_of<'py>(py: Python<'py>, samples: Held<'py>) -> Bound<'py, PyBytes> {
+    let contents = FileContents::from(samples);
+    PyBytes::new(py, &contents.bytes())
+}
 
 /// The text of a scenario, and the place of its files.
 struct Text {
     source: Source,
-    /// Holds the files that came with the text while it is being read.
-    folder: Option<TempDir>,
     /// Whether a person wrote the text and can look up a line in it.
     placed: bool,
 }
 
 impl Text {
     /// A text; `name` stands for its file. If files come with it, it reads no others.
-    fn new(text: &str, name: Option<&str>, files: &Files) -> PyResult<Self> {
+    fn new(text: &str, name: Option<&str>, files: Files<'_>) -> PyResult<Self> {
         let placed = name.is_some();
-        let name = name.unwrap_or("the arguments");
+        let source = Source::of_text(text, name.unwrap_or("the arguments"));
         if files.is_empty() {
-            return Ok(Self {
-                source: Source::of_text(text, name),
-                folder: None,
-                placed,
-            });
+            return Ok(Self { source, placed });
         }
-        let folder = tempfile::tempdir()?;
-        for (file, contents) in files {
+        for file in files.keys() {
             let plain = Path::new(file)
                 .components()
                 .all(|part| matches!(part, Component::Normal(_)));
@@ -50,18 +78,10 @@ impl Text {
                     "{file:?} is no name of a file in a folder: leave out `..` and what makes it absolute"
                 )));
             }
-            let path = folder.path().join(file);
-            if let Some(parent) = path.parent() {
-                fs::create_dir_all(parent)?;
-            }
-            fs::write(path, contents)?;
         }
-        let name = folder.path().join(name).display().to_string();
-        Ok(Self {
-            source: Source::of_text(text, &name),
-            folder: Some(folder),
-            placed,
-        })
+        let files = files.into_iter();
+        let source = source.with_files(files.map(|(name, held)| (PathBuf::from(name), held)));
+        Ok(Self { source, placed })
     }
 
     /// Reads the text with the library's reader.
@@ -69,14 +89,7 @@ impl Text {
         &self,
         read: impl FnOnce(&Source) -> Result<T, ScenarioErrors>,
     ) -> Result<T, String> {
-        read(&self.source).map_err(|errors| {
-            let words = in_words(&errors, self.placed);
-            match &self.folder {
-                // Messages should not name the temporary folder of the files.
-                Some(folder) => words.replace(&format!("{}/", folder.path().display()), ""),
-                None => words,
-            }
-        })
+        read(&self.source).map_err(|errors| in_words(&errors, self.placed))
     }
 }
 
@@ -163,7 +176,7 @@ impl Scenario {
         py: Python<'_>,
         text: &str,
         name: Option<&str>,
-        files: Files,
+        files: Files<'_>,
         model: Option<&str>,
         changes: Vec<String>,
         unmovable: Option<String>,
@@ -174,7 +187,7 @@ impl Scenario {
             .map(|change| change.parse::<Assignment>())
             .collect::<Result<Vec<_>, _>>()
             .map_err(refused)?;
-        let text = Text::new(text, name, &files)?;
+        let text = Text::new(text, name, files)?;
         let read = |statics: bool| {
             let changes = ReadOptions {
                 model,
@@ -306,8 +319,8 @@ type TimesAndSamples<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>
 impl Ground {
     /// Reads the tables of `[ground]`.
     #[new]
-    fn read(py: Python<'_>, text: &str, files: Files) -> PyResult<Self> {
-        let text = Text::new(text, None, &files)?;
+    fn read(py: Python<'_>, text: &str, files: Files<'_>) -> PyResult<Self> {
+        let text = Text::new(text, None, files)?;
         let inner = py
             .detach(|| text.read(|source| archrock::scenario::Ground::of(source, GRAVITY_M_S2)))
             .map_err(refused)?;

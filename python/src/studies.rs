@@ -81,7 +81,7 @@ fn compute(
     })
 }
 
-/// Computes a study of a scenario, all in memory. `factors` are those of a threshold, and `along` its range and whether impacts are left
+/// Computes a study of a scenario, all in memory. Returns its files, and their origin as JSON. `factors` are those of a threshold, and `along` its range and whether impacts are left
 /// out.
 #[pyfunction]
 pub fn study<'py>(
@@ -92,7 +92,7 @@ pub fn study<'py>(
     along: Option<(String, bool)>,
     threads: Option<u16>,
     progress: Option<Py<PyAny>>,
-) -> PyResult<Files<'py>> {
+) -> PyResult<(Files<'py>, String)> {
     let (kind, runner) = (kind_of(kind)?, runner(threads));
     let factors = factors.map(|(from, to, stride)| Factors::new(from, to, stride));
     let factors = factors.transpose().map_err(refused)?.unwrap_or_default();
@@ -115,7 +115,9 @@ pub fn study<'py>(
     };
     let done = compute(py, progress, kind, scenario, options, (runner, None))?;
     match done {
-        Computation::Complete(results, _) => Ok(to_python(py, *results)),
+        Computation::Complete(results, _) => {
+            Ok((to_python(py, *results), to_json(&Origin::of(scenario))?))
+        }
         Computation::Partial { .. } => unreachable!("a computation in memory is no part"),
     }
 }
@@ -147,45 +149,51 @@ pub fn compute_part(
     }
 }
 
-/// Joins the parts of a study: returns its name and the files of its results. The scenario is needed only if its records
+/// Joins the parts of a study: returns its name, the files of its results, and their origin as JSON. The scenario is needed only if its records
 /// cannot be found from here.
 #[pyfunction]
 pub fn merge<'py>(
     py: Python<'py>,
     parts: Vec<PathBuf>,
     scenario: Option<&Scenario>,
-) -> PyResult<(String, Files<'py>)> {
+) -> PyResult<(String, Files<'py>, String)> {
     let scenario = scenario.map(|scenario| scenario.moving().map(Arc::clone));
     let scenario = scenario.transpose()?;
     if parts.is_empty() {
         return Err(PyValueError::new_err("no parts given"));
     }
-    let (kind, results) = watched(py, None, move |_| {
-        studies::merge(&parts, scenario.as_deref(), &mut |_, _| Ok(STYLE)).map_err(failed)
+    let (kind, results, origin) = watched(py, None, move |_| {
+        let merged = studies::merge(&parts, scenario.as_deref(), &mut |_, _| Ok(STYLE));
+        let (kind, results) = merged.map_err(failed)?;
+        let header = studies::read_header(&parts[0]).map_err(unusable)?;
+        let origin = Origin::of_summary(&results.summary).with_records(header.inputs);
+        Ok((kind, results, origin))
     })?;
-    Ok((kind.name.to_owned(), to_python(py, results)))
+    let files = to_python(py, results);
+    Ok((kind.name.to_owned(), files, to_json(&origin)?))
 }
 
-/// Writes files into a folder: all of them, or none. They replace everything that the last run of the same command left there. Returns
+fn to_json(origin: &Origin) -> PyResult<String> {
+    serde_json::to_string(origin).map_err(refused)
+}
+
+/// Writes files of this origin into a folder: all of them, or none. They replace everything that the last run of the same command left there. Returns
 /// warnings of results of other commands beside them that come from another scenario.
 #[pyfunction]
 pub fn save(
     py: Python<'_>,
     folder: PathBuf,
     files: Vec<(String, Vec<u8>)>,
+    origin: &str,
 ) -> PyResult<Vec<String>> {
-    py.detach(|| write(&folder, &files))
+    let origin = serde_json::from_str(origin).map_err(refused)?;
+    py.detach(|| write(&folder, &files, origin))
 }
 
-fn write(path: &Path, files: &[(String, Vec<u8>)]) -> PyResult<Vec<String>> {
+fn write(path: &Path, files: &[(String, Vec<u8>)], origin: Origin) -> PyResult<Vec<String>> {
     let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
     let command = StudyKind::of_files(&names).map_or("python", |kind| kind.name);
-    let mut of_json = files.iter().filter(|(name, _)| name.ends_with(".json"));
-    let summary = of_json.next().map(|(_, text)| serde_json::from_slice(text));
-    let summary: Option<serde_json::Value> = summary.and_then(Result::ok);
-    let origin = summary.map(|summary| Origin::of_summary(&summary));
-    let folder =
-        Folder::lock(path, command, origin.unwrap_or_default(), true).map_err(not_written)?;
+    let folder = Folder::lock(path, command, origin, true).map_err(not_written)?;
     let warnings = folder.warnings();
     for (name, contents) in files {
         folder.write(name, contents).map_err(not_written)?;

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import gc
+import pickle
 from typing import Any
 
 import numpy as np
 import pytest
 
-from archrock import Arch, Column, Pulse, Record, simulate
+from archrock import Arch, Column, Pulse, Record, Scenario, simulate
+from archrock._samples import Samples
 
+COLUMN: dict[str, Any] = {"column": {"height_m": 4.0, "width_m": 0.8}}
 TIME = np.arange(50) * 0.02
 ACCELERATION = np.round(np.sin(7.0 * TIME), 3)
 
@@ -75,6 +78,46 @@ def test_series_of_pandas_are_arrays() -> None:
 def test_values_that_are_not_numeric_arrays_are_refused(wrong: Any) -> None:
     with pytest.raises((TypeError, ValueError), match="`acceleration`"):
         Record([0.0, 1.0], wrong, unit="g")
+
+
+@pytest.mark.parametrize(
+    ("time", "acceleration", "words"),
+    [
+        ([0.0, 1.0], [0.1, np.nan], "the record \"mine\" is faulty: sample 2: `nan` is not a finite number"),
+        ([0.0, 1.0, 1.0], [0.1, 0.2, 0.3], "the record \"mine\" is faulty: sample 3: the time does not increase"),
+        ([0.0], [0.1], "the number of samples is 1; must be at least 2"),
+        ([0.0, 1.0], [0.1, 1e5], "the record \"mine\" reaches"),
+        ([-1.0, 1.0], [0.1, 0.2], "the record \"mine\" begins at -1 s"),
+    ],
+)
+def test_messages_about_arrays_name_samples_and_no_file(time: Any, acceleration: Any, words: str) -> None:
+    with pytest.raises(ValueError) as caught:
+        Record(time, acceleration, unit="g", name="mine")
+    assert words in str(caught.value) and "file" not in str(caught.value), str(caught.value)
+
+
+def test_samples_stay_arrays_until_a_file_is_needed() -> None:
+    count = 1_000_000
+    record = Record(np.arange(count) * 0.001, np.sin(np.arange(count)), unit="m/s2")
+    samples = record._files["record"]
+    # Two numbers a sample, without a text.
+    assert isinstance(samples, Samples) and samples.table.nbytes == 16 * count
+    assert len(pickle.dumps(record)) < 17 * count
+    assert pickle.loads(pickle.dumps(record)) == record
+    small = Record(TIME, ACCELERATION, unit="m/s2")
+    rows = small.files["record"].decode().splitlines()
+    assert [tuple(map(float, row.split(","))) for row in rows] == list(zip(TIME, ACCELERATION))
+    # The same record from a file with these contents.
+    tables = small.tables["record"]
+    assert Scenario({**COLUMN, "ground": small.tables}, files=small.files) == Scenario.of(Column(4.0, 0.8), small)
+    assert tables["format"] == "csv"
+
+
+def test_a_file_that_never_ends_is_refused() -> None:
+    with pytest.raises(ValueError, match="larger than 64 MiB, too large for a record"):
+        Record.read("/dev/zero", format="csv", unit="g")
+    with pytest.raises(ValueError, match="larger than 1 MiB, too large for a scenario"):
+        Scenario.read("/dev/zero")
 
 
 def test_arrays_are_taken_and_not_copied(arch: Arch, pulse: Pulse) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import pickle
 from pathlib import Path
@@ -30,6 +31,7 @@ from archrock import (
     suite,
     threshold,
     threshold_along,
+    verify,
 )
 
 from .conftest import ROOT, Program, issued
@@ -354,6 +356,42 @@ def test_results_replace_those_of_the_same_study(arch: Arch, pulse: Pulse, progr
     assert warned.startswith(f"{folder} holds results of `archrock map` from another scenario")
     assert {path.name for path in folder.iterdir()} == names | set(capacity(arch).files)
     assert issued(lambda: capacity(column).save(tmp_path / "other")) == []
+
+
+def seal(folder: Path, command: str) -> dict[str, Any]:
+    """The origin of the results of a command in a folder."""
+    listed: dict[str, Any] = json.loads((folder / "archrock.json").read_text())["results"][command]
+    assert listed["complete"] is True
+    return {key: listed[key] for key in ("scenario", "records", "version")}
+
+
+def test_seals_are_those_of_the_program(program: Program, tmp_path: Path) -> None:
+    """The list of a folder has the scenario and its records, whether the program or Python writes it, at once or from parts."""
+    (tmp_path / "spectrum.csv").write_text("period_s,acceleration_g\n0,0.2\n1,0.3\n4,0.1\n")
+    names = []
+    for index in range(3):
+        names.append(f"r{index}.csv")
+        (tmp_path / names[-1]).write_text("".join(f"{0.02 * i},{0.5 * (i % (7 + index)) - 1.5}\n" for i in range(200)))
+    (tmp_path / "s.toml").write_text(
+        "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[simulation]\nduration_s = 5.0\n"
+        f"[suite]\nrecords = {names}\nunit = 'm/s2'\npeaks_g = [0.1, 0.3]\n"
+        f"[verify]\nslv_records = {names}\nunit = 'm/s2'\n"
+        "[demand]\nsoil = 'B'\ntopography = 'T1'\n[demand.slv]\nag_g = 0.1\nf0 = 2.4\ntc_star_s = 0.3\n"
+    )
+    scenario = Scenario.read(tmp_path / "s.toml")
+    for command, found in (("suite", suite(scenario)), ("verify", verify(scenario)), ("capacity", capacity(scenario))):
+        ran = program(command, tmp_path / "s.toml", "--out", tmp_path / "o")
+        assert ran.returncode == 0, ran.stderr
+        found.save(tmp_path / "p")
+        pickle.loads(pickle.dumps(found)).save(tmp_path / "q")
+        own = seal(tmp_path / "o", command)
+        assert own == seal(tmp_path / "p", command) == seal(tmp_path / "q", command)
+        assert [name.split(" ")[0] for name in own["records"]] == names and "column" in own["scenario"]
+    parts = [compute_part(scenario, "suite", (index, 2), tmp_path / "parts") for index in (1, 2)]
+    merge(parts).save(tmp_path / "m")
+    ran = program("merge", *parts, "--out", tmp_path / "n")
+    assert ran.returncode == 0, ran.stderr
+    assert seal(tmp_path / "m", "suite") == seal(tmp_path / "n", "suite") == seal(tmp_path / "o", "suite")
 
 
 @pytest.mark.skipif(os.name == "nt", reason="folders cannot be locked")

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any, TypeVar
 
+from ._samples import Held, Samples, as_files
 from ._tables import Tables, plain, to_toml
 
 Self = TypeVar("Self", bound="Described")
@@ -20,10 +21,10 @@ class Described:
     __slots__ = ("_files", "_tables", "_text")
 
     _tables: Tables
-    _files: dict[str, bytes]
+    _files: Held
     _text: str
 
-    def _describe(self, tables: Mapping[str, Any], files: Mapping[str, bytes]) -> None:
+    def _describe(self, tables: Mapping[str, Any], files: Mapping[str, bytes | Samples]) -> None:
         self._tables = plain(tables)
         self._files = dict(files)
         self._text = to_toml(self._tables)
@@ -37,7 +38,7 @@ class Described:
     @property
     def files(self) -> dict[str, bytes]:
         """The files that the tables name and that are held in memory, by their names (a copy)."""
-        return dict(self._files)
+        return as_files(self._files)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Described) or type(other) is not type(self):
@@ -48,12 +49,12 @@ class Described:
         return hash((type(self), self._text))
 
     @classmethod
-    def _restored(cls: type[Self], tables: Tables, files: dict[str, bytes]) -> Self:
+    def _restored(cls: type[Self], tables: Tables, files: Held) -> Self:
         described = cls.__new__(cls)
         described._read(tables, files)
         return described
 
-    def _read(self, tables: Tables, files: dict[str, bytes]) -> None:
+    def _read(self, tables: Tables, files: Held) -> None:
         """Restores an object from its tables and files."""
         raise NotImplementedError
 
@@ -61,10 +62,16 @@ class Described:
         return type(self)._restored, (self._tables, self._files)
 
 
-def read_file(path: str | Path) -> bytes:
-    """The contents of a file.
+def read_file(path: str | os.PathLike[str], what: str = "record", mib: int = 64) -> bytes:
+    """The contents of a file of at most ``mib`` MiB.
 
     Raises:
         OSError: when it cannot be read.
+        ValueError: when it is larger, as a device that never ends.
     """
-    return Path(path).read_bytes()
+    most = mib << 20
+    with open(os.fspath(path), "rb") as file:
+        contents = file.read(most + 1)
+    if len(contents) > most:
+        raise ValueError(f"{path} is larger than {mib} MiB, too large for a {what}")
+    return contents

@@ -10,6 +10,7 @@ import numpy as np
 
 from ._described import Described, read_file
 from ._native import Ground as NativeGround
+from ._samples import Held, Samples
 from ._tables import Tables, arguments, to_toml
 
 if TYPE_CHECKING:
@@ -27,7 +28,7 @@ class Ground(Described):
 
     _native: NativeGround
 
-    def _read(self, tables: Tables, files: dict[str, bytes]) -> None:
+    def _read(self, tables: Tables, files: Held) -> None:
         self._native = NativeGround(to_toml({"ground": tables}), files)
         self._describe(json.loads(self._native.to_json()), files)
 
@@ -290,7 +291,7 @@ class Record(Ground):
         vertical: a record of the vertical component, with its own scaling and the time zero of this record.
 
     Raises:
-        ValueError: when samples are not valid, with the library's explanation; a line number there is that of the sample.
+        ValueError: when samples are not valid, with the library's explanation; samples count from 1.
         TypeError: when samples are not numbers.
     """
 
@@ -328,13 +329,13 @@ class Record(Ground):
             "scale": scale,
             "peak_g": peak_g,
         }
-        files = {name: _csv(time, acceleration)}
+        files: Held = {name: Samples.of(time, acceleration)}
         if vertical is not None:
             table["vertical"], held = vertical._as_vertical(name)
             files.update(held)
         self._read({"record": {**table, "start_s": start_s, "component": component}}, files)
 
-    def _as_vertical(self, beside: str) -> tuple[Tables, dict[str, bytes]]:
+    def _as_vertical(self, beside: str) -> tuple[Tables, Held]:
         table: Tables = dict(self._tables["record"])
         if "vertical" in table:
             raise ValueError("`vertical` has a vertical record itself: give one record per direction")
@@ -346,10 +347,10 @@ class Record(Ground):
             table["file"] = f"vertical-{name}"
         return table, {table["file"]: self._files[name]}
 
-    def _as_right(self, beside: Ground) -> tuple[Tables, dict[str, bytes]]:
+    def _as_right(self, beside: Ground) -> tuple[Tables, Held]:
         """The table ``[ground.right]`` of this record, with its files under names that the other ground does not use."""
         table: Tables = dict(self._tables["record"])
-        files: dict[str, bytes] = {}
+        files: Held = {}
 
         def held(name: str) -> str:
             other = name
@@ -386,7 +387,7 @@ class Record(Ground):
             ValueError: when it is faulty, with the line.
         """
         name = Path(path).name
-        files = {name: read_file(path)}
+        files: Held = {name: read_file(path)}
         table: Tables = {"file": name, **keys}
         if isinstance(vertical, (str, Path)):
             own = ("scale", "peak_g", "start_s", "component", "acceleration_column", "channel")
@@ -470,30 +471,3 @@ class Record(Ground):
     def __repr__(self) -> str:
         count, last_s = len(self.time), self.time[-1]
         return f"<Record {self.name!r}: {count} samples in {self.unit} until {last_s:g} s>"
-
-
-def _csv(time: npt.ArrayLike, acceleration: npt.ArrayLike) -> bytes:
-    """A table of samples, one per line, as the library reads it; every number keeps all its digits."""
-    times, accelerations = _column("time", time), _column("acceleration", acceleration)
-    if len(times) != len(accelerations):
-        raise ValueError(
-            f"`time` has {len(times)} samples and `acceleration` {len(accelerations)}: give one for each"
-        )
-    rows = zip(times.tolist(), accelerations.tolist())
-    return "".join(f"{t!r},{a!r}\n" for t, a in rows).encode()
-
-
-def _column(name: str, values: npt.ArrayLike) -> npt.NDArray[np.float64]:
-    try:
-        if isinstance(values, np.ma.MaskedArray):
-            # The library refuses samples that are no numbers, with their place.
-            values = np.ma.filled(values.astype(np.float64), np.nan)
-        array = np.asarray(values)
-        if array.dtype.kind not in "fiub":
-            raise TypeError
-        array = array.astype(np.float64, casting="unsafe")
-    except (TypeError, ValueError):
-        raise TypeError(f"`{name}` is no array of real numbers: {type(values).__name__}") from None
-    if array.ndim != 1:
-        raise ValueError(f"`{name}` has shape {array.shape}: it must be (samples,)")
-    return array

@@ -9,6 +9,8 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
+from ._samples import Samples
+
 Progress = Callable[[int, int], object]
 
 MEMORY_GB: float
@@ -19,7 +21,7 @@ class Scenario:
         self,
         text: str,
         name: str | None,
-        files: Mapping[str, bytes],
+        files: Mapping[str, bytes | Samples],
         model: str | None,
         changes: Sequence[str],
         unmovable: str | None = None,
@@ -35,7 +37,7 @@ class Scenario:
     def bodies(self) -> list[str]: ...
 
 class Ground:
-    def __init__(self, text: str, files: Mapping[str, bytes]) -> None: ...
+    def __init__(self, text: str, files: Mapping[str, bytes | Samples]) -> None: ...
     def to_json(self) -> str: ...
     def unit(self) -> str | None: ...
     def samples(
@@ -78,7 +80,7 @@ def study(
     along: tuple[str, bool] | None,
     threads: int | None,
     progress: Progress | None,
-) -> list[tuple[str, bytes]]: ...
+) -> tuple[list[tuple[str, bytes]], str]: ...
 def compute_part(
     scenario: Scenario,
     kind: str,
@@ -89,7 +91,8 @@ def compute_part(
 ) -> str: ...
 def merge(
     parts: Sequence[str | os.PathLike[str]], scenario: Scenario | None
-) -> tuple[str, list[tuple[str, bytes]]]: ...
+) -> tuple[str, list[tuple[str, bytes]], str]: ...
 def save(
-    folder: str | os.PathLike[str], files: Sequence[tuple[str, bytes]]
+    folder: str | os.PathLike[str], files: Sequence[tuple[str, bytes]], origin: str
 ) -> list[str]: ...
+def file_of(samples: Samples) -> bytes: ...

@@ -7,13 +7,14 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path, PurePosixPath
 from typing import Any, Literal, cast
 
-from ._described import Described
+from ._described import Described, read_file
 from ._ground import Ground, Record
 from ._hinge import Limit
 from ._history import History
 from ._native import MEMORY_GB
 from ._native import History as NativeHistory
 from ._native import Scenario as NativeScenario
+from ._samples import Held, Samples
 from ._settings import Settings, long_name
 from ._structure import Model, Structure
 from ._tables import Tables, to_toml
@@ -49,16 +50,16 @@ class Scenario(Described):
         self,
         tables: Mapping[str, Any],
         *,
-        files: Mapping[str, bytes] | None = None,
+        files: Mapping[str, bytes | Samples] | None = None,
         model: Model | None = None,
     ) -> None:
-        held = dict(files or {})
+        held: Held = dict(files or {})
         self._take(NativeScenario(to_toml(tables), None, held, model, ()), held, None, model)
 
     def _take(
         self,
         native: NativeScenario,
-        files: dict[str, bytes],
+        files: Held,
         folder: str | None,
         model: str | None,
     ) -> None:
@@ -90,7 +91,7 @@ class Scenario(Described):
         """
         # `open` alone would also take a number, for the descriptor of an open file, and close that file.
         path = Path(path)
-        text = path.read_text(encoding="utf-8")
+        text = read_file(path, "scenario", 1).decode("utf-8")
         return cls.parse(text, str(path), model=model, changes=changes)
 
     @classmethod
@@ -215,7 +216,7 @@ class Scenario(Described):
         """
         return self._native.to_toml()
 
-    def _read(self, tables: Tables, files: dict[str, bytes]) -> None:
+    def _read(self, tables: Tables, files: Held) -> None:
         raise NotImplementedError("scenarios are restored with their folder")
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -240,7 +241,7 @@ class Scenario(Described):
 
 def _restored(
     tables: Tables,
-    files: dict[str, bytes],
+    files: Held,
     folder: str | None,
     model: str | None,
     unmovable: str | None = None,
@@ -270,13 +271,13 @@ def _names(tables: Tables) -> list[str]:
     return [name for name in names if name is not None]
 
 
-def _contents(tables: Tables, folder: str | None, *, missing: bool) -> dict[str, bytes]:
+def _contents(tables: Tables, folder: str | None, *, missing: bool) -> Held:
     """The contents of all files that the tables name, empty if some lie outside the folder; without missing files if ``missing``."""
     names = _names(tables)
     if any(".." in PurePosixPath(name).parts or Path(name).is_absolute() for name in names):
         return {}
     paths = {name: Path(folder or ".") / name for name in names}
-    return {name: path.read_bytes() for name, path in paths.items() if path.is_file() or not missing}
+    return {name: read_file(path) for name, path in paths.items() if path.is_file() or not missing}
 
 
 def _bytes(memory_gb: float) -> int:
@@ -294,7 +295,7 @@ def _not_a_ground(given: object) -> TypeError:
     return TypeError(f"`ground` must be a Pulse or a Record, not {type(given).__name__}")
 
 
-def _history(native: NativeHistory, files: dict[str, bytes], repeat: bool, folder: str | None = None) -> History:
+def _history(native: NativeHistory, files: Held, repeat: bool, folder: str | None = None) -> History:
     """A history that can make its scenario."""
 
     def scenario(native: NativeScenario) -> Scenario:

@@ -14,8 +14,10 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar, Union
 import numpy as np
 
 from . import _native
-from ._ground import Ground, Pulse, Record, _csv
+from ._described import read_file
+from ._ground import Ground, Pulse, Record
 from ._history import _axes
+from ._samples import Held, Samples
 from ._scenario import Scenario
 from ._structure import Structure
 from ._summary import Summarised, Summary
@@ -50,12 +52,13 @@ def span(
 class Files(Summarised):
     """Files as the program writes them, held in memory. The keys of :attr:`summary` are attributes too."""
 
-    __slots__ = ("_files",)
+    __slots__ = ("_files", "_origin")
 
     _json: str
 
-    def __init__(self, files: Iterable[tuple[str, bytes]]) -> None:
+    def __init__(self, files: Iterable[tuple[str, bytes]], origin: str) -> None:
         self._files = tuple((name, bytes(contents)) for name, contents in files)
+        self._origin = origin
 
     @property
     def files(self) -> dict[str, bytes]:
@@ -71,7 +74,7 @@ class Files(Summarised):
         Raises:
             OSError: when they cannot be written, or another run is writing to the folder.
         """
-        warn(_native.save(folder, self._files))
+        warn(_native.save(folder, self._files, self._origin))
 
     @property
     def summary(self) -> Summary:
@@ -90,7 +93,7 @@ class Files(Summarised):
         return hash(self._files)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return type(self), (self._files,)
+        return type(self), (self._files, self._origin)
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__}: {', '.join(self.files)}>"
@@ -583,7 +586,7 @@ class Check(Files):
 
 
 _StudyResults = Union[OverturningMap, ProbabilityMap, ThresholdAlong, Suite, Ensemble]
-_KINDS: dict[str, Callable[[Iterable[tuple[str, bytes]]], _StudyResults]] = {
+_KINDS: dict[str, Callable[[Iterable[tuple[str, bytes]], str], _StudyResults]] = {
     "map": OverturningMap,
     "threshold_along": ThresholdAlong,
     "suite": Suite,
@@ -616,7 +619,8 @@ def _study(
     progress: Progress | None = None,
     factors: tuple[float | None, float | None, float] | None = None,
     along: tuple[str, bool] | None = None,
-) -> list[tuple[str, bytes]]:
+) -> tuple[list[tuple[str, bytes]], str]:
+    """The files of a study, and their origin for the list of a folder."""
     if progress is not None and not callable(progress):
         raise TypeError("`progress` must be a function of two numbers")
     return _native.study(scenario._native, kind, factors, along, _allowed(threads), progress)
@@ -700,12 +704,12 @@ def overturning_map(
     """
     if _whole(of, {"ground": ground, "axes": axes, "repeat": repeat, **settings}):
         assert isinstance(of, Scenario)
-        return _warned(OverturningMap(_study("map", of, threads, progress)))
+        return _warned(OverturningMap(*_study("map", of, threads, progress)))
     assert isinstance(of, Structure)
     if ground is None or axes is None:
         raise ValueError("a map needs a ground motion and two axes")
     scenario = map_scenario(of, ground, axes, repeat=bool(repeat), **settings)
-    return _warned(OverturningMap(_study("map", scenario, threads, progress)))
+    return _warned(OverturningMap(*_study("map", scenario, threads, progress)))
 
 
 def suite_scenario(
@@ -764,7 +768,7 @@ def suite(
     others = {"records": records, "peaks_g": peaks_g, "scales": scales, "both_signs": both_signs}
     if _whole(of, {**others, **settings}):
         assert isinstance(of, Scenario)
-        return _warned(Suite(_study("suite", of, threads, progress)))
+        return _warned(Suite(*_study("suite", of, threads, progress)))
     assert isinstance(of, Structure)
     scenario = suite_scenario(
         of,
@@ -774,7 +778,7 @@ def suite(
         both_signs=both_signs,
         **settings,
     )
-    return _warned(Suite(_study("suite", scenario, threads, progress)))
+    return _warned(Suite(*_study("suite", scenario, threads, progress)))
 
 
 def threshold(
@@ -806,7 +810,7 @@ def threshold(
     """
     scenario = _complete(of, ground, settings)
     factors = (from_factor, to_factor, stride)
-    return _warned(Threshold(_study("threshold", scenario, threads, progress, factors)))
+    return _warned(Threshold(*_study("threshold", scenario, threads, progress, factors)))
 
 
 def threshold_along(
@@ -850,7 +854,7 @@ def threshold_along(
     along = f"{key}={start!r}..{end!r}:{count}"
     factors = (from_factor, to_factor, stride)
     found = _study("threshold_along", scenario, threads, progress, factors, (along, no_impact))
-    return _warned(ThresholdAlong(found))
+    return _warned(ThresholdAlong(*found))
 
 
 def ensemble(
@@ -875,7 +879,7 @@ def ensemble(
     """
     if not isinstance(scenario, Scenario):
         raise TypeError(f"`scenario` must be a Scenario, not {type(scenario).__name__}")
-    return _warned(Histories(_study("uncertain", scenario, threads, progress)))
+    return _warned(Histories(*_study("uncertain", scenario, threads, progress)))
 
 
 def verify(
@@ -911,7 +915,7 @@ def verify(
     records = {"slv_records": slv_records, "slc_records": slc_records}
     if _whole(of, {"demand": demand, "title": title, **records, **how}):
         assert isinstance(of, Scenario)
-        return _warned(Check(_study("verify", of)))
+        return _warned(Check(*_study("verify", of)))
     assert isinstance(of, Structure)
     if demand is None:
         raise ValueError("a check needs a demand")
@@ -929,32 +933,31 @@ def verify(
     scenario = Scenario.of(
         of, title=title, demand=table, verify=how or None, files=files, model=of._model
     )
-    return _warned(Check(_study("verify", scenario)))
+    return _warned(Check(*_study("verify", scenario)))
 
 
-def _with_points(demand: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, bytes]]:
+def _with_points(demand: Mapping[str, Any]) -> tuple[dict[str, Any], Held]:
     """The table ``[demand]``, and the contents of the files that it names."""
     table: dict[str, Any] = dict(demand)
-    files: dict[str, bytes] = {}
+    files: Held = {}
     for state in ("sld", "slv", "slc"):
         given = table.get(state)
         if not isinstance(given, Mapping) or "spectrum" not in given:
             continue
         points = given["spectrum"]
         if isinstance(points, (str, os.PathLike)):
-            contents = Path(points).read_bytes()
+            contents: bytes | Samples = read_file(points, "spectrum")
         else:
-            periods, accelerations = points
-            contents = _csv(periods, accelerations)
+            contents = Samples.of(*points)
         name = f"{state}.csv"
         files[name] = contents
         table[state] = {**given, "spectrum": name}
     return table, files
 
 
-def _record_files(records: Sequence[Record]) -> tuple[list[dict[str, Any]], dict[str, bytes]]:
-    """An entry for each record, by its name, and the contents of their files by name."""
-    files: dict[str, bytes] = {}
+def _record_files(records: Sequence[Record]) -> tuple[list[dict[str, Any]], Held]:
+    """An entry for each record, by its name, and their samples by name."""
+    files: Held = {}
     entries: list[dict[str, Any]] = []
     for record in records:
         if not isinstance(record, Record):
@@ -964,7 +967,7 @@ def _record_files(records: Sequence[Record]) -> tuple[list[dict[str, Any]], dict
             raise ValueError(f"{record.name!r}: the records must be horizontal")
         if record.name in files:
             raise ValueError(f"{record.name!r} is the name of two records: give each its own")
-        files[record.name] = _csv(*record._samples())
+        files[record.name] = Samples.of(*record._samples())
         keys = {"file": record.name, "format": "csv", "unit": record.unit, "quantity": record.quantity}
         entries.append({**keys, **{key: table[key] for key in ("scale", "peak_g") if key in table}})
     return sorted(entries, key=lambda entry: entry["file"]), files
@@ -994,7 +997,7 @@ def capacity(of: Structure | Scenario) -> Capacity:
     """
     if not isinstance(of, (Structure, Scenario)):
         raise TypeError(f"give a structure or a scenario, not {type(of).__name__}")
-    return _warned(Capacity(_study("capacity", of)))
+    return _warned(Capacity(*_study("capacity", of)))
 
 
 def compute_part(
@@ -1054,5 +1057,5 @@ def merge(
     if not isinstance(scenario, (Scenario, type(None))):
         raise TypeError(f"`scenario` must be a Scenario, not {type(scenario).__name__}")
     native = None if scenario is None else scenario._native
-    study, files = _native.merge(list(parts), native)
-    return _warned(_KINDS[study](files))
+    study, files, origin = _native.merge(list(parts), native)
+    return _warned(_KINDS[study](files, origin))
