@@ -353,3 +353,29 @@ fn filtered_records_may_be_uncertain() {
         assert_eq!(found["samples"], 8, "{key}");
     }
 }
+
+/// A filtered record begins three periods of the corner earlier, so `start_s = 3/f` puts its begin to time zero, in spite of rounding errors.
+#[test]
+fn a_filtered_record_may_begin_at_time_zero() {
+    let folder = tempfile::tempdir().unwrap();
+    for dt_s in [0.005, 0.01, 0.02] {
+        let samples: String = (0..1000)
+            .map(|step| format!("{}\n", (0.3 * f64::from(step)).sin()))
+            .collect();
+        fs::write(folder.path().join("a.csv"), samples).unwrap();
+        for corner_hz in [
+            0.05, 0.06, 0.075, 0.1, 0.12, 0.15, 0.2, 0.24, 0.25, 0.3, 0.5, 0.6,
+        ] {
+            let start_s = 3.0 / corner_hz;
+            let text = format!(
+                "[ground.record]\nfile = 'a.csv'\nunit = 'm/s2'\ndt_s = {dt_s}\nstart_s = {start_s}\nhigh_pass_hz = {corner_hz}\n"
+            );
+            let scenario = read(folder.path(), &text).unwrap();
+            assert_eq!(
+                scenario.ground_motion().start_s(),
+                0.0,
+                "{dt_s} {corner_hz}"
+            );
+        }
+    }
+}

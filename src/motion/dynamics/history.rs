@@ -231,7 +231,7 @@ impl TieSample {
     }
 }
 
-/// Largest force of a tie in a history, and its state at the end.
+/// Largest force of a tie in a history, and its state at the end, or at overturning.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct TieSummary {
     /// Largest tension, in N, including the tension at which the tie breaks.
@@ -242,11 +242,11 @@ pub struct TieSummary {
     pub yielded_s: Option<f64>,
     /// Time of the break, in s; `None` if the tie does not break.
     pub broken_s: Option<f64>,
-    /// Plastic elongation at the end, in m.
+    /// Plastic elongation at the end or at overturning, in m.
     pub yielded_m: f64,
-    /// Tension at the end, in N.
+    /// Tension at the end or at overturning, in N.
     pub force_n: f64,
-    /// Elastic energy of the tie at the end, in J.
+    /// Elastic energy of the tie at the end or at overturning, in J.
     pub elastic_j: f64,
     /// Energy dissipated by yield and break, in J.
     pub taken_j: f64,

@@ -105,7 +105,8 @@ pub(super) fn high_pass(samples: &[(f64, f64)], corner_hz: f64) -> Parsed<Sample
             "`high_pass_hz = {corner}` must be below half of the rate of the samples, {highest} Hz"
         ))
     })?;
-    let pad = (PADS / (corner_hz * step_s)).ceil();
+    // A whole number of steps stays whole in spite of rounding errors.
+    let pad = ((1.0 - 1e-12) * PADS / (corner_hz * step_s)).ceil();
     let count = 2.0 * pad + samples.len() as f64;
     ensure(count <= MAX_SAMPLES as f64, || {
         let (corner, count) = (plain(corner_hz), short(count));

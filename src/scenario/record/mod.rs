@@ -58,6 +58,8 @@ use super::prelude::*;
 use super::table;
 use crate::GroundMotion;
 
+/// Rounding error of the time at which a record begins, in s; shorter than any step.
+const ROUNDING_S: f64 = 1e-9;
 /// Largest acceleration of the ground, in g; beyond it the unit is probably wrong.
 pub(crate) const MAX_ACCELERATION_G: f64 = 1e3;
 pub(super) const SCALE: Number = within(&(-1e6..=1e6));
@@ -232,9 +234,22 @@ impl Record {
     pub(crate) fn ground_motion(&self, gravity_m_s2: f64) -> GroundMotion {
         let [main, vertical] = [Some(&self.main), self.vertical.as_ref()]
             .map(|series| series.map_or_else(Vec::new, |it| it.accelerations_m_s2(gravity_m_s2)));
+        let start_s = self.exact_start_s();
         match self.component {
-            Component::Vertical => GroundMotion::polylines(&[], &main, self.start_s),
-            Component::Horizontal => GroundMotion::polylines(&main, &vertical, self.start_s),
+            Component::Vertical => GroundMotion::polylines(&[], &main, start_s),
+            Component::Horizontal => GroundMotion::polylines(&main, &vertical, start_s),
+        }
+    }
+
+    /// Returns the time of the file's time zero, without the rounding error of a record that begins at time zero.
+    fn exact_start_s(&self) -> f64 {
+        let first_s = self
+            .series()
+            .map(Series::first_s)
+            .fold(f64::INFINITY, f64::min);
+        match (-ROUNDING_S..0.0).contains(&(self.start_s + first_s)) {
+            true => -first_s,
+            false => self.start_s,
         }
     }
 
@@ -482,7 +497,7 @@ impl Series {
             short(first_s),
             short(-first_s)
         );
-        table.refuse(start_s + first_s < 0.0, "file", wrong)
+        table.refuse(start_s + first_s < -ROUNDING_S, "file", wrong)
     }
 }
 

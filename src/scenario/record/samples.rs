@@ -307,6 +307,7 @@ pub(super) fn checked(samples: &[(f64, f64)], unit: Unit) -> Parsed<Contents> {
     values.check_enough()?;
     Ok(Contents {
         columns: " from column 2, times from column 1".to_owned(),
+        states_unit: false,
         ..Contents::new(samples.to_vec(), unit)
     })
 }
