@@ -399,6 +399,17 @@ impl Event {
         }
     }
 
+    /// Returns the state of a sample, as an event of rest.
+    pub(super) fn of_sample(sample: &Sample) -> Self {
+        Self {
+            rotations_rad: sample.rotations_rad.clone(),
+            rates_rad_s: sample.rates_rad_s.clone(),
+            energy_j: sample.energy_j,
+            hinges: sample.hinges.iter().map(|open| open.hinge).collect(),
+            ..Self::new(sample.time_s, EventKind::Rest, State::Rest)
+        }
+    }
+
     /// Returns the memory of the event, in bytes.
     pub(super) fn bytes(&self) -> u64 {
         let impact = self.impact.as_ref().map_or(0, |impact| {

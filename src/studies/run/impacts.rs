@@ -56,7 +56,10 @@ impl NotableImpacts {
     pub(super) fn first_and_hardest(&self, history: &History) -> [Option<ImpactSummary>; 2] {
         let mut impacts = self.0.iter().map(|(_, impact)| impact).cloned();
         let first = impacts.next();
-        [first, impacts.last().filter(|_| history.row().is_some())]
+        [
+            first,
+            impacts.next_back().filter(|_| history.row().is_some()),
+        ]
     }
 }
 

@@ -347,10 +347,8 @@ impl<'a> Run<'a> {
             repetitions.compare(&history)
         });
         let mirrored = mirrored.map(MirroredRun::finish);
-        let varied = {
-            let turned = mirrored.as_ref().map(|run| &run.varied[..]);
-            directions::in_pairs(variations.wait(), turned.unwrap_or_default())
-        };
+        let turned = mirrored.as_ref().map_or(&[][..], |run| &run.varied);
+        let varied = directions::in_pairs(variations.wait(), turned);
         let mut summary = Summary::of(&ComputedRun {
             scenario,
             model,
@@ -371,14 +369,12 @@ impl<'a> Run<'a> {
         let named = sinks.folder.as_ref().map(|folder| {
             let film_pictures = drawings.add_film(self, folder)?;
             write(folder, &names, mem::take(&mut files.on_disk), &texts)?;
-            let snapshots = drawings.snapshots.as_ref();
             Ok::<_, OutputError>(Files {
                 folder: folder.path().to_owned(),
                 names,
                 rows,
                 film_pictures,
-                outside_times_s: snapshots
-                    .map_or_else(Default::default, Snapshots::outside_times_s),
+                outside_times_s: drawings.outside_times_s(),
             })
         });
         Ok(ModelResults {
@@ -492,6 +488,12 @@ struct Drawings {
 }
 
 impl Drawings {
+    /// Returns the times of snapshots before the start and after the end, in seconds.
+    fn outside_times_s(&self) -> [Vec<f64>; 2] {
+        let snapshots = self.snapshots.as_ref();
+        snapshots.map_or_else(Default::default, Snapshots::outside_times_s)
+    }
+
     /// The page, the film and the snapshots are collected only for files.
     fn new(run: &Run<'_>, files: &[&str]) -> Self {
         let (model, options) = (&*run.model, &run.options);

@@ -302,7 +302,6 @@ impl Mechanism {
         let weight_kn = |mass_kg: f64| mass_kg * input.gravity_m_s2 / 1000.0;
         let alpha0 = found.alpha0();
         let participation = Participation::of_bodies(&found.bodies);
-        let a0_over_fc_g = |fraction: f64| alpha0 / (fraction * input.settings.confidence_factor);
         let scale = per_displacement_of_centre(&found.bodies);
         let bodies = found.bodies.iter().enumerate().map(|(index, body)| Body {
             mass_kg: body.mass_kg,
@@ -328,9 +327,7 @@ impl Mechanism {
         let forces = forces.map(|force| ConstantForce::new(force, scale, input.gravity_m_s2));
         let curves = found.curves.as_ref().ok();
         let furthest_part = input.parts_of_d0().fold(0.0, f64::max);
-        let crown = curves
-            .and_then(|curves| curves.crown.as_ref())
-            .map(Capacity::end);
+        let crown = curves.and_then(|curves| Some(curves.crown.as_ref()?.end()));
         let end = curves.map(|curves| curves.centre.end());
         let yielding = curves.and_then(|curves| input.yielding(curves));
         let hinges = found.hinges.iter().map(|(hinge, at_m)| PlacedHinge {
@@ -361,10 +358,8 @@ impl Mechanism {
             moving_mass_kg: participation.moving_mass_kg,
             e_star: participation.mass_fraction,
             m_star_kg: participation.participating_mass_kg,
-            a0_over_fc_g: a0_over_fc_g(participation.mass_fraction),
-            a0_with_separate_loads_over_fc_g: found
-                .fraction_with_separate_loads(&input.scenario.structure)
-                .map(a0_over_fc_g),
+            a0_over_fc_g: alpha0 / (participation.mass_fraction * input.settings.confidence_factor),
+            a0_with_separate_loads_over_fc_g: found.a0_with_separate_loads_over_fc_g(input),
             d_c0_m: end.map(|end| end.displacement_m),
             d0_m: end.map(|end| end.oscillator_displacement_m),
             d_c0_crown_m: crown.map(|end| end.displacement_m),
@@ -385,6 +380,12 @@ impl VirtualMechanism {
     /// Computes the load multiplier [C8.7.1.1].
     fn alpha0(&self) -> f64 {
         load_multiplier(&self.bodies, &self.ties, &self.forces)
+    }
+
+    /// Returns `a_0 / FC` with the loads at points as separate weights, in g; `None` if no body carries such a load.
+    fn a0_with_separate_loads_over_fc_g(&self, input: &CheckInput<'_>) -> Option<f64> {
+        let fraction = self.fraction_with_separate_loads(&input.scenario.structure)?;
+        Some(self.alpha0() / (fraction * input.settings.confidence_factor))
     }
 
     /// Returns `e*` with the loads at points as separate weights [C8.7.1.5, with n + m weights]; `None` if no body carries such a load.

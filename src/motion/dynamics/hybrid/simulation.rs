@@ -140,7 +140,7 @@ fn history_of<C: MechanismChain + MechanismModel>(
         sampler: recorder.map(|recorder| Sampler::new(&rocking, every_s, recorder)),
         impacts: 0,
         peaks: (vec![0.0; C::Mechanism::BODIES.len()], 0.0),
-        shifts: Sides::default(),
+        shifts_kg_m: Sides::default(),
         excess_ratio: 0.0,
         excess_at_peak: 0.0,
         last_passage: None,
@@ -194,9 +194,7 @@ fn history_of<C: MechanismChain + MechanismModel>(
             peak_over_critical,
             thrust_excess_ratio: C::THRUSTS.then_some(excess_ratio),
             remaining_over_barrier: remaining_over_barrier.filter(|_| !is_incomplete),
-            largest_shifts_kg_m: collector
-                .shifts
-                .map(|shift| shift * chain.mass_unit_kg() * chain.length_m()),
+            largest_shifts_kg_m: collector.shifts_kg_m,
         }),
     })
 }
@@ -369,8 +367,8 @@ struct SummaryCollector<'r, 'a, C: MechanismChain> {
     impacts: usize,
     /// Largest rotations of the bodies, and largest rotation over the critical one.
     peaks: (Vec<f64>, f64),
-    /// Largest sums of the masses times their horizontal displacements, in units of the structure.
-    shifts: Sides<f64>,
+    /// Largest sums of the masses times their horizontal displacements.
+    shifts_kg_m: Sides<f64>,
     /// Largest excess of the thrust line up to now, over the thickness, at rotations below the critical one.
     excess_ratio: f64,
     /// Largest excess of the thrust line up to the largest rotation.
@@ -401,8 +399,10 @@ impl<'a, C: MechanismChain> SummaryCollector<'_, 'a, C> {
             for (peak, rotation) in peaks.iter_mut().zip(rotations.as_ref()) {
                 *peak = peak.max(rotation.abs());
             }
-            let shift = self.shifts.to_mut(sway);
-            *shift = shift.max(link.mechanism.displacement(state[0]).x);
+            let unit_kg_m = self.rocking.chain.mass_unit_kg() * self.rocking.chain.length_m();
+            let shift_kg_m = link.mechanism.displacement(state[0]).x * unit_kg_m;
+            let largest_kg_m = self.shifts_kg_m.to_mut(sway);
+            *largest_kg_m = largest_kg_m.max(shift_kg_m);
             let reached = state[0] / link.critical_rad;
             self.friction.note_rotation(reached);
             if reached > *over_critical {

@@ -2,6 +2,8 @@
 
 use std::mem;
 
+use super::events::EventLog;
+use super::last_maximum::LastMaximum;
 use crate::dynamics::history::{ElasticSummary, RowSummary, Stress, TieSummary};
 use crate::dynamics::recorder::Recorder;
 use crate::dynamics::request::later_end_s;
@@ -64,15 +66,7 @@ pub struct MotionObserver<'a> {
     pub shut: Vec<Hinge>,
     /// Joints that open in a step, with the edge about which they turn; `None` for parted joints.
     pub opened: Vec<Hinge>,
-    /// Impacts up to the last time at which the row could return.
-    settled_impacts: usize,
-    /// Times of the impacts since then, and of the last impact; in seconds.
-    late_impacts_s: Vec<f64>,
-    last_impact_s: f64,
-    /// Events since then: they are reported once it is certain that they do not belong to a fall.
-    late_events: Vec<Event>,
-    /// State at the last time at which the row could return; `None` if no events are wanted.
-    last_return: Option<Event>,
+    pub events: EventLog,
     /// Least potential energy up to now, in J.
     least_potential_j: f64,
     pub cost: Cost,
@@ -114,9 +108,6 @@ pub struct MotionObserver<'a> {
     pub(super) is_falling: bool,
     /// Sample, reused to avoid allocations.
     pub(super) sample: Sample,
-    phase: usize,
-    /// Events held back until an impact is reported; `None` if no impact is pending.
-    pending_events: Option<Vec<Event>>,
     thrust: ThrustRecord,
     friction: FrictionDemands,
 }
@@ -134,24 +125,6 @@ struct PartialResults {
     largest_slips_m: Vec<f64>,
     largest_stress: Stress,
     ties: Vec<TieSummary>,
-}
-
-/// Last maximum of the height before the final descent.
-pub struct LastMaximum {
-    pub time: f64,
-    highest: f64,
-    /// Lowest height since then.
-    lowest: f64,
-}
-
-impl LastMaximum {
-    pub const fn new(height: f64, time: f64) -> Self {
-        Self {
-            time,
-            highest: height,
-            lowest: height,
-        }
-    }
 }
 
 /// Returns right for a positive value, left for any other.
@@ -205,15 +178,9 @@ impl<'a> MotionObserver<'a> {
             stopped: false,
             is_falling: false,
             sample: Sample::default(),
-            phase: 0,
-            pending_events: None,
             thrust: ThrustRecord::default(),
             friction: FrictionDemands::default(),
-            settled_impacts: 0,
-            late_impacts_s: Vec::new(),
-            last_impact_s: start_s,
-            late_events: Vec::new(),
-            last_return: None,
+            events: EventLog::default(),
             least_potential_j: 0.0,
             peak_rotations_rad: vec![0.0; row.blocks.len()],
             energy_defect_ratio: 0.0,
@@ -250,7 +217,7 @@ impl<'a> MotionObserver<'a> {
         if self.time >= self.input.ground.end_s()
             && let Some(time_s) = at_rest_since_s()
         {
-            let time_s = time_s.max(self.last_impact_s);
+            let time_s = time_s.max(self.events.last_impact_s.unwrap_or(time_s));
             let rest = (Outcome::Rest, time_s);
             return Some(closed.map_or(rest, |closed| (closed, self.time)));
         }
@@ -458,12 +425,8 @@ impl<'a> MotionObserver<'a> {
     pub fn note_height(&mut self, height: Option<f64>) {
         let (least, last_maximum) = (LEAST_RETURN * self.energy_unit, &mut self.last_maximum);
         if let Some(height) = height {
-            last_maximum.lowest = last_maximum.lowest.min(height);
             let begins = self.cycle.is_some_and(|cycle| cycle.start_s == self.time);
-            let returns = (begins && height >= -least) || height >= last_maximum.lowest + least;
-            if returns || height >= last_maximum.highest {
-                *last_maximum = LastMaximum::new(height, self.time);
-            }
+            last_maximum.note((height, self.time), least, begins && height >= -least);
         } else if self.kinetic < least {
             last_maximum.time = self.time;
         }
@@ -512,22 +475,12 @@ impl<'a> MotionObserver<'a> {
 
     /// Records an impact at this time.
     pub fn note_impact(&mut self) {
-        self.last_impact_s = self.time;
-        self.late_impacts_s.push(self.time);
+        self.events.note_impact(self.time);
     }
 
-    /// Returns the number of impacts up to now.
-    pub const fn impacts(&self) -> usize {
-        self.settled_impacts + self.late_impacts_s.len()
-    }
-
-    /// Counts the impacts and reports the events up to a time, in seconds.
+    /// Counts the impacts and sends the events up to a time, in seconds.
     fn settle(&mut self, until_s: f64) {
-        let impacts = (self.late_impacts_s).partition_point(|time_s| *time_s <= until_s);
-        self.late_impacts_s.drain(..impacts);
-        self.settled_impacts += impacts;
-        let events = (self.late_events).partition_point(|event| event.time_s <= until_s);
-        for event in self.late_events.drain(..events) {
+        for event in self.events.settle(until_s) {
             if let Some(recorder) = &mut self.recorder {
                 self.stopped |= recorder.event(&event).is_break();
             }
@@ -537,11 +490,6 @@ impl<'a> MotionObserver<'a> {
     /// Returns whether the row can still return at this time.
     pub fn returns(&self) -> bool {
         self.before_fall.time_s == self.time
-    }
-
-    /// Records the state at this time, from which the row can still return.
-    pub fn note_return(&mut self, state: Event) {
-        self.last_return = Some(state);
     }
 
     /// Resets the results to those at the last time at which the row could still return.
@@ -636,7 +584,7 @@ impl<'a> MotionObserver<'a> {
         let mut sample = mem::take(&mut self.sample);
         let ground = self.input.ground;
         let (ground_m_s2, _) = ground.pieces[ground.piece_at(self.time)].at(self.time);
-        sample.begin(self.time, ground_m_s2, self.phase);
+        sample.begin(self.time, ground_m_s2, self.events.phase);
         let recorder = self.recorder.as_ref();
         let thrust_line = recorder.is_some_and(|recorder| recorder.wants_thrust_line());
         (sample, thrust_line)
@@ -665,32 +613,17 @@ impl<'a> MotionObserver<'a> {
         }
     }
 
-    /// Sends an event that begins a phase to the recorder. Events after a pending impact are held back until the impact is reported.
+    /// Records an event that begins a phase. The recorder receives it once it is certain that it does not belong to a fall.
     pub(super) fn report(&mut self, event: &Event) {
-        if self.is_falling {
-            return;
+        if !self.is_falling {
+            self.events.report(event);
         }
-        let pending_events = match &mut self.pending_events {
-            Some(pending_events) if event.impact.is_none() => {
-                self.phase += 1;
-                pending_events.push(event.clone());
-                return;
-            }
-            pending_events => pending_events.take(),
-        };
-        if pending_events.is_none() {
-            self.phase += 1;
-        }
-        self.late_events.push(event.clone());
-        self.late_events
-            .extend(pending_events.into_iter().flatten());
     }
 
     /// Begins the phase of an impact that is reported after the next step, when its energy is known.
     pub fn await_impact(&mut self) {
         if self.reports_events() && !self.is_falling {
-            self.phase += 1;
-            self.pending_events = Some(Vec::new());
+            self.events.await_impact();
         }
     }
 
@@ -729,7 +662,7 @@ impl<'a> MotionObserver<'a> {
             _ => f64::INFINITY,
         };
         self.settle(settled_s);
-        self.late_events.clear();
+        self.events.drop_late();
         let outcome = match outcome {
             Outcome::Overturned(_) | Outcome::Rest => outcome,
             _ if self.is_incomplete() => Outcome::Incomplete,
@@ -745,7 +678,7 @@ impl<'a> MotionObserver<'a> {
             outcome_time_s,
             end_s: self.time,
             is_cut: self.is_safe,
-            impacts: self.settled_impacts,
+            impacts: self.events.impacts(),
             peak_rotations_rad: self.peak_rotations_rad.clone(),
             energy_defect_ratio: self.energy_defect_ratio,
             thrust: self.recorder.is_some().then_some(self.thrust),
@@ -757,40 +690,24 @@ impl<'a> MotionObserver<'a> {
             },
         };
         let (kind, state, at) = match outcome {
-            Outcome::Rest => (EventKind::Rest, State::Rest, self.sampled()),
+            Outcome::Rest => (EventKind::Rest, State::Rest, None),
             Outcome::Overturned(sway) => {
-                let at = self.last_return.take();
-                let state = State::Overturned(sway);
-                (
-                    EventKind::Overturned,
-                    state,
-                    at.unwrap_or_else(|| self.sampled()),
-                )
+                let at = self.events.last_return.take();
+                (EventKind::Overturned, State::Overturned(sway), at)
             }
             _ => return summary,
         };
         if let Some(recorder) = &mut self.recorder {
-            // The history ends here in any case.
-            let _ = recorder.event(&Event {
+            let ending = Event {
                 time_s: outcome_time_s,
                 kind,
                 state,
-                ..at
-            });
+                ..at.unwrap_or_else(|| Event::of_sample(&self.sample))
+            };
+            // The history ends here in any case.
+            let _ = recorder.event(&ending);
         }
         summary
-    }
-
-    /// Returns the state of the last sample as an event.
-    fn sampled(&self) -> Event {
-        let sample = &self.sample;
-        Event {
-            rotations_rad: sample.rotations_rad.clone(),
-            rates_rad_s: sample.rates_rad_s.clone(),
-            energy_j: sample.energy_j,
-            hinges: sample.hinges.iter().map(|open| open.hinge).collect(),
-            ..Event::new(self.time, EventKind::Rest, State::Rest)
-        }
     }
 }
 

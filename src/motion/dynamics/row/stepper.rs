@@ -162,7 +162,7 @@ pub trait Stepper<'a>: Sized {
     fn note_return(&mut self) {
         if self.observer().returns() && self.observer().reports_events() {
             let state = self.event(EventKind::Overturned, true);
-            self.observer_mut().note_return(state);
+            self.observer_mut().events.last_return = Some(state);
         }
     }
 

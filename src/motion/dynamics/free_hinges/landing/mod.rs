@@ -263,7 +263,7 @@ impl<'a> LandingStepper<'a> {
 
     /// Returns whether the last step ended at an impact.
     fn has_just_landed(&self) -> bool {
-        self.kicked_s == self.observer.time && self.observer.impacts() > 0
+        self.kicked_s == self.observer.time && self.observer.events.impacts() > 0
     }
 
     /// Constrains the corners in contact.
@@ -760,7 +760,7 @@ mod tests {
                 stepper.step(60.0).unwrap();
             }
             assert!(
-                fastest > 0.05 && stepper.observer.impacts() > 3,
+                fastest > 0.05 && stepper.observer.events.impacts() > 3,
                 "{fastest}"
             );
             // The solver stops when its objective is accurate to 1e-14, so the errors are some 1e-7 for velocities of 1 m/s.

@@ -19,7 +19,8 @@ use super::rest::{InitialPosition, touching};
 use super::right_support::RightSupport;
 use super::ties::Ties;
 use crate::dynamics::recorder::Recorder;
-use crate::dynamics::row::observer::{LastMaximum, REST_ENERGY_RATIO, SWAY_RATIO};
+use crate::dynamics::row::last_maximum::LastMaximum;
+use crate::dynamics::row::observer::{REST_ENERGY_RATIO, SWAY_RATIO};
 use crate::dynamics::row::standing::Release;
 use crate::dynamics::row::stepper::{eccentricity_ratio, equal_step};
 use crate::dynamics::{
