@@ -71,8 +71,8 @@ impl Capacities {
             (Some(_), Some(_)) => Ok(format!(
                 "overturns with 50 % at {} {}, dispersion {} (95 %){OF_LEVELS}, over {} and {} samples{}",
                 self.suite.measure.name(),
-                estimated(&both.median, &both.median_interval),
-                estimated(&both.dispersion, &both.dispersion_interval),
+                estimated(&both.median, &both.median_interval, self.suite.measure.unit()),
+                estimated(&both.dispersion, &both.dispersion_interval, ""),
                 records_in_words(self.suite.records.len()),
                 samples.answers().count(),
                 directions_in_words(self.directions, Direction::AsGiven)
@@ -332,11 +332,14 @@ impl Fragilities {
     }
 }
 
-/// Returns a number and its interval in words.
-fn estimated(number: &Option<f64>, ends: &Option<[f64; 2]>) -> String {
+/// Returns a number with its unit and its interval in words.
+fn estimated(number: &Option<f64>, ends: &Option<[f64; 2]>, unit: &str) -> String {
     let ends = ends.map(rounded_range);
-    let ends = ends.map_or(String::new(), |[low, high]| format!(" ({low} to {high})"));
-    number.map_or("not known".to_owned(), rounded) + &ends
+    let ends = ends.map_or(String::new(), |[low, high]| {
+        format!(" ({low} to {high}{unit})")
+    });
+    let number = number.map(|number| rounded(number) + unit);
+    number.unwrap_or("not known".to_owned()) + &ends
 }
 
 /// Computes median and dispersion of overturning intensities from their 16, 50 and 84 % fractiles. The dispersion is half the logarithm of the

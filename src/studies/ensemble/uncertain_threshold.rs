@@ -75,8 +75,8 @@ impl StrengthBand {
         }
     }
 
-    /// Returns a quantile, counted from 0, in words that follow `at`: `at 0.5028`, `at or below 0.2000`, or `beyond`.
-    pub(super) fn in_words(&self, which: usize, at: &str, beyond: &str) -> String {
+    /// Returns a quantile, counted from 0, between the words `at` and its unit: `at 0.5028`, `at or below peak_g 0.2000 g`, or `beyond`.
+    pub(super) fn in_words(&self, which: usize, around: &[&str; 2], beyond: &str) -> String {
         let Band {
             quantile_05,
             median,
@@ -84,14 +84,14 @@ impl StrengthBand {
         } = self.quantiles;
         let strength = [quantile_05, median, quantile_95][which];
         strength.map_or(beyond.to_owned(), |strength| {
-            strength_in_words(strength, self.at_most[which], at)
+            strength_in_words(strength, self.at_most[which], *around)
         })
     }
 }
 
-fn strength_in_words(strength: f64, at_most: bool, at: &str) -> String {
+fn strength_in_words(strength: f64, at_most: bool, [at, unit]: [&str; 2]) -> String {
     let or_below = if at_most { "at or below" } else { "at" };
-    format!("{or_below} {at}{}", rounded(strength))
+    format!("{or_below} {at}{}{unit}", rounded(strength))
 }
 
 impl Question for FirstEdges {
@@ -330,13 +330,13 @@ impl Summary {
     /// Returns a quantile of the first factors, counted from 0, in words.
     fn first(&self, which: usize) -> String {
         let beyond = format!("beyond {}", rounded(self.tried_to_factor.unwrap_or(0.0)));
-        self.first_factor.in_words(which, "", &beyond)
+        self.first_factor.in_words(which, &[""; 2], &beyond)
     }
 
     /// Returns the first factor of the scenario itself in words.
     fn own_first(&self) -> String {
         match (self.own_first_factor, &self.all.own_without_answer) {
-            (Some(factor), _) => strength_in_words(factor, self.own_first_factor_at_most, ""),
+            (Some(factor), _) => strength_in_words(factor, self.own_first_factor_at_most, [""; 2]),
             (None, None) => "at no factor that was tried".to_owned(),
             (None, Some(_)) => "has no answer".to_owned(),
         }
