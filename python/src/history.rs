@@ -13,7 +13,8 @@ use archrock::dynamics::{Recording, Samples};
 use archrock::mechanics::Demand;
 use archrock::output::{FilmFormat, Scene, StructurePoint, check_named_file, write_named_file};
 use archrock::studies::run::{
-    self, ComputedRun, Film, FilmOptions, MirroredSummary, OutcomeSummary, Report, ReportPage, VariedRun,
+    self, ComputedRun, Film, FilmOptions, MirroredSummary, OutcomeSummary, Report, ReportPage,
+    VariedRun,
 };
 use archrock::{Event, GroundMotion, Model, Recorder, Sample, SimulationError, State};
 use numpy::{Element, PyArray1, PyArrayMethods as _, PyUntypedArrayMethods as _};
