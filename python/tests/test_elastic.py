@@ -91,9 +91,9 @@ def test_the_answer_rests_on_other_stiffnesses_as_in_the_program(program: Progra
     run_by(program, history.scenario, tmp_path)
     told = json.loads((tmp_path / "o" / "summary.json").read_text())
     assert history.to_quote == told["to_quote"] and history.verdict == told["verdict"]
-    variations = history.summary["variations"]
+    variations = history.variations
     assert variations == told["variations"] and len(variations) > 1
     once = simulate(STACK, PULSE, repeat=False, **joints)
     assert once == history
     assert once.to_quote == "to quote: no answer with elastic joints: the run is not repeated yet"
-    assert "variations" not in once.summary and pickle.loads(pickle.dumps(once)).to_quote == once.to_quote
+    assert once.variations == [] and pickle.loads(pickle.dumps(once)).to_quote == once.to_quote

@@ -304,6 +304,12 @@ class History(Summarised):
         to_quote: str = self.summary["to_quote"]
         return to_quote
 
+    @property
+    def variations(self) -> list[Summary]:
+        """The results with other stiffness and contact of elastic joints, as ``variations`` of :attr:`summary`; empty for other histories."""
+        variations: list[Summary] = self.summary.get("variations", [])
+        return variations
+
     def _numbers(self) -> Summary:
         """The summary of the history alone, which has no verdict."""
 

@@ -127,7 +127,7 @@ class Scenario(Described):
         demand: Mapping[str, Any] | None = None,
         verify: Mapping[str, Any] | None = None,
         uncertain: Mapping[str, Any] | None = None,
-        files: Mapping[str, bytes] | None = None,
+        files: Mapping[str, bytes | Samples] | None = None,
         **settings: Any,
     ) -> Scenario:
         """The scenario of a structure on a ground.

@@ -10,6 +10,7 @@ from typing import Any, Literal
 from ._described import Described, read_file
 from ._hinge import ChainLink, Limit
 from ._native import Scenario as NativeScenario
+from ._samples import Held
 from ._settings import Settings, long_name
 from ._tables import Tables, arguments, plain_table, to_toml
 from ._warnings import warn
@@ -46,7 +47,7 @@ class Structure(Described):
 
     def __init__(self, **tables: Mapping[str, Any] | Sequence[Mapping[str, Any]]) -> None:
         read = plain_table(tables)
-        files: dict[str, bytes] = {}
+        files: Held = {}
         blocks = read.get("blocks")
         if isinstance(blocks, dict):
             for key in ("joints", "outlines"):
@@ -56,7 +57,7 @@ class Structure(Described):
                     files[path.name] = read_file(path)
         self._read(read, files)
 
-    def _read(self, tables: Tables, files: dict[str, bytes]) -> None:
+    def _read(self, tables: Tables, files: Held) -> None:
         arch = tables.get("arch")
         whole = set(tables) == {"arch"} and isinstance(arch, dict)
         # If hinges may open anywhere, there are no blocks.
