@@ -11,7 +11,7 @@ fuzz_target!(|input: &[u8]| {
     let Some((settings, contents)) = input.split_first() else {
         return;
     };
-    const FORMATS: [Format; 8] = [
+    const FORMATS: [Format; 10] = [
         Format::Smc,
         Format::Csmip,
         Format::Usc,
