@@ -20,7 +20,7 @@ use crate::error::{in_words, refused};
 /// Files of a scenario that are held in memory, by the names that the scenario uses.
 pub type Files<'py> = BTreeMap<String, Held<'py>>;
 
-/// What takes the place of a file.
+/// Contents of a file, or samples in its place.
 #[derive(FromPyObject)]
 pub enum Held<'py> {
     /// Samples of a record: a column of times and one of values.

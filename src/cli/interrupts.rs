@@ -63,7 +63,7 @@ pub fn receive_signals() {
                 continue;
             }
             let _locked = exchange();
-            // The system does what it does without this thread: it ends the program, or ignores the signal, as with `nohup`.
+            // The default effect of the signal: the program ends, or under `nohup` goes on.
             let alone = SigSet::from(signal);
             let raised = alone.thread_unblock().and_then(|()| raise(signal));
             if raised.and_then(|()| alone.thread_block()).is_err() {

@@ -106,6 +106,23 @@ impl Parser {
     }
 }
 
+/// Reason why a text gives no document.
+pub(super) enum ParseError {
+    /// It is something else than a scenario, such as a record.
+    NoScenario(Fault),
+    /// No part of it is TOML.
+    NoToml(Vec<Fault>),
+}
+
+impl From<ParseError> for Vec<Fault> {
+    fn from(error: ParseError) -> Self {
+        match error {
+            ParseError::NoScenario(fault) => vec![fault],
+            ParseError::NoToml(faults) => faults,
+        }
+    }
+}
+
 /// A TOML text with its assignments.
 #[derive(Debug, Default)]
 pub(super) struct Document<'a> {
@@ -127,8 +144,8 @@ impl<'a> Document<'a> {
     /// parsed again.
     ///
     /// # Errors
-    /// When no part of the text is TOML: an error covers several lines, such as an unclosed bracket, or there are too many errors.
-    pub(super) fn parse(text: &'a str, files: &Files) -> Result<Self, Vec<Fault>> {
+    /// When the text is no scenario, or no part of it is TOML: an error covers several lines, such as an unclosed bracket, or there are too many errors.
+    pub(super) fn parse(text: &'a str, files: &Files) -> Result<Self, ParseError> {
         // Each fault needs another pass over the text.
         const MAX_SYNTAX_FAULTS: usize = 20;
         let mut legible = text.to_owned();
@@ -139,7 +156,7 @@ impl<'a> Document<'a> {
             let start = |error: &toml::de::Error| error.span().map_or(0, |span| span.start);
             let Some(first) = errors.into_iter().min_by_key(start) else {
                 if let Some(fault) = not_a_scenario([text, &legible], &faults) {
-                    return Err(vec![fault]);
+                    return Err(ParseError::NoScenario(fault));
                 }
                 let mut parser = Parser::default();
                 return Ok(Self {
@@ -166,8 +183,8 @@ impl<'a> Document<'a> {
             legible.replace_range(line, &blank);
         }
         match not_a_scenario([text, &legible], &faults) {
-            Some(fault) => Err(vec![fault]),
-            None => Err(faults),
+            Some(fault) => Err(ParseError::NoScenario(fault)),
+            None => Err(ParseError::NoToml(faults)),
         }
     }
 
@@ -269,13 +286,9 @@ impl<'a> Document<'a> {
 
 /// Returns true unless a text is something else than a scenario, such as a record.
 pub(super) fn is_scenario(text: &str) -> bool {
-    let is_other = |fault: &Fault| fault.message.starts_with(NO_SCENARIO);
-    Document::parse(text, &Files::default())
-        .map_or_else(|faults| !faults.iter().any(is_other), |_| true)
+    let parsed = Document::parse(text, &Files::default());
+    !matches!(parsed, Err(ParseError::NoScenario(_)))
 }
-
-/// The beginning of the message about a text that is not a scenario.
-const NO_SCENARIO: &str = "this is no scenario";
 
 /// Returns the single fault of a text that is not a scenario, such as a record: several lines are not valid, or none sets a key, and no line begins a
 /// table. `None` for other texts.
@@ -288,7 +301,7 @@ fn not_a_scenario([text, legible]: [&str; 2], faults: &[Fault]) -> Option<Fault>
         return None;
     }
     let message = format!(
-        "{NO_SCENARIO}: {}. If it is a record, name it as `file` in [ground.record] of a scenario; if its extension \
+        "this is no scenario: {}. If it is a record, name it as `file` in [ground.record] of a scenario; if its extension \
          is unknown, give `format` as well, such as format=csv",
         first.message
     );

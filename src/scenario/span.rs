@@ -10,6 +10,7 @@
 
 use super::document::Entries;
 use super::prelude::*;
+use crate::argument::rounded_up;
 use crate::mechanics::{EMBRACE_DEG as ALLOWED_DEG, MeasuredAt};
 
 const LINES: &str = " beside it: \"intrados\", \"mean\" or \"extrados\"";
@@ -123,7 +124,7 @@ fn checked_embrace_deg(table: &mut Table<'_>, span_m: f64, rise_m: f64) -> ReadR
     // The rise at the smallest angle, from the inverse of the formula above.
     let least_m = 0.5 * span_m * libm::tan((0.25 * ALLOWED_DEG.start()).to_radians());
     let bound = match embrace_deg < *ALLOWED_DEG.start() {
-        true => format!("at least {} m for this span", short(least_m)),
+        true => format!("at least {} m for this span", short(rounded_up(least_m))),
         false => "at most half the span".to_owned(),
     };
     let wrong = format!(

@@ -135,7 +135,7 @@ fn may_slip(coefficient: f64) -> bool {
 
 /// Returns a needed friction coefficient in words, and whether joints of stone may slip under weaker motions. `need` is a verb with its subject.
 fn needed(coefficient: f64, need: &str) -> String {
-    let need = match coefficient > MOST {
+    let need = match coefficient > MOST_FRICTION {
         true => need.trim_end_matches(" up to"),
         false => need,
     };
@@ -154,12 +154,12 @@ pub(super) fn condition_of(demand: Option<f64>) -> Option<String> {
 }
 
 /// Coefficient of friction above which values are not printed. No stone has them; they occur at almost unloaded joints.
-const MOST: f64 = 10.0;
+pub(super) const MOST_FRICTION: f64 = 10.0;
 
 /// Returns a needed coefficient of friction as text, rounded up: with less, joints slip.
 fn in_digits(coefficient: f64) -> String {
-    match coefficient > MOST {
-        true => format!("more than {MOST}"),
+    match coefficient > MOST_FRICTION {
+        true => format!("more than {MOST_FRICTION}"),
         false => format!("{:.2}", libm::ceil(100.0 * coefficient - 1e-9) / 100.0),
     }
 }

@@ -852,7 +852,7 @@ fn a_row_rests_after_its_last_impact() {
 }
 
 /// Between two half cycles the blocks turn back: the potential energy, from their positions, falls to half of its largest value in the half cycle. If
-/// the centre of gravity changes its side higher up, the half cycle goes on; it was once cut in two.
+/// the centre of gravity changes its side higher up, the half cycle continues. An earlier version cut it in two.
 #[test]
 fn the_blocks_turn_back_between_half_cycles() {
     let mut random = Random(583);

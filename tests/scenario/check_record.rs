@@ -369,7 +369,7 @@ fn unlikely_input_is_pointed_out() {
             ),
             Some(
                 "the simulation lasts 1e6 s, some 1e9 steps of 1.0e-3 s: unless it rests or overturns before, they take about \
-                 50 minutes, and some 0.1 GB of memory",
+                 35 minutes, and some 0.1 GB of memory",
             ),
         ),
         (

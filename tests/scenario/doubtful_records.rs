@@ -270,7 +270,7 @@ fn repeated_times_of_a_table_drop_their_second_sample() {
         found.ends_with("is left out, as are those at 2 more"),
         "{found}"
     );
-    // Together with a gap both are told.
+    // A file that also has a gap gets both phrases.
     let found = timed().parse([&rows[..50], &rows[51..]].concat().concat().as_bytes());
     let found = found.unwrap().difference.unwrap();
     assert!(

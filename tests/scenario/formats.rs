@@ -1205,7 +1205,7 @@ fn volume_2_of_usc_has_its_unit_in_either_line() {
     assert!(fault.message.contains("the unit is counts"), "{fault:?}");
 }
 
-/// Of two samples at one time the first stays: 1.5 at 0.02 s here.
+/// The first of two samples at the same time is kept: 1.5 at 0.02 s here.
 #[test]
 fn a_repeated_time_drops_its_second_sample() {
     let pairs = text("smc.smc").replacen("0.1000000E+03", "0.1700000E+39", 1);

@@ -77,6 +77,12 @@ fn conflicting_dimensions_are_refused() {
             "s.toml:4:10: `rise_m = 3.1` makes an embrace angle of 183.757 degrees; must be from 1 to 180, which is a \
              rise of at most half the span",
         ),
+        // span/2 tan(1/4 degree), rounded up so that it is allowed.
+        (
+            format!("{SPAN}rise_m = 0.001\nthickness_m = 0.001"),
+            "s.toml:4:10: `rise_m = 0.001` makes an embrace angle of 0.0763944 degrees; must be from 1 to 180, which is a \
+             rise of at least 0.0131 m for this span",
+        ),
         (
             "mean_radius_m = 3\nrise_m = 2\nembrace_deg = 150\nthickness_m = 0.9".to_owned(),
             "s.toml:3:10: `rise_m = 2` needs `span_m`",

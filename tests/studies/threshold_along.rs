@@ -396,6 +396,27 @@ fn faults_are_refused_with_a_remedy() {
     assert!(!at.join("results").exists());
 }
 
+/// Where the smallest factor overturns the structure, its threshold is an upper bound, in words as in the table: three times 0.5 g here.
+#[test]
+fn an_upper_bound_reads_at_most() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = format!("{COLUMN}[ground.half_sine]\namplitude_g = 0.5\nduration_s = 0.5\n");
+    fs::write(folder.path().join("s.toml"), text).unwrap();
+    let along = "column.width_m=0.30..0.40:2";
+    let words = |range: &[&str]| {
+        let arguments = [&["threshold", "s.toml", "--along", along][..], range].concat();
+        printed(folder.path(), &arguments)
+    };
+    let bound = words(&["--from", "3", "--to", "4"]);
+    assert!(
+        bound.contains("certainly overturns from at most 1.500 g (lowest, at 0.3)"),
+        "{bound}"
+    );
+    let known = words(&["--from", "0.1", "--to", "4", "--stride", "0.2"]);
+    assert!(known.contains("certainly overturns from "), "{known}");
+    assert!(!known.contains("at most"), "{known}");
+}
+
 /// Names of earlier versions are errors that name what replaces them.
 #[test]
 fn replaced_names_have_a_successor() {

@@ -38,6 +38,38 @@ fn same_words(at: &Path, arguments: &[&str], reports: &[(&str, WordsOf)]) {
     fs::remove_dir_all(at.join("r")).unwrap();
 }
 
+/// Another outcome with the same verdict is no doubt, and another verdict is one.
+#[test]
+fn repetitions_with_another_outcome_are_named_by_their_verdict() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = scenarios().join("free-hinges.toml").display().to_string();
+    let output = archrock(folder.path(), &["run", &file, "--no-report", "--out", "r"]);
+    assert!(output.status.success());
+    let mut summary = json(&folder.path().join("r/summary.json"));
+    let outcomes = |summary: &Value| {
+        let words = archrock::studies::run::words_of(summary).unwrap();
+        let (_, after) = words
+            .split_once("repeated (mirrored; landings merged): ")
+            .unwrap();
+        after.split(", peak").next().unwrap().to_owned()
+    };
+    assert_eq!(outcomes(&summary), "the same outcome");
+    let repeated = &mut summary["repeatability"];
+    assert_eq!(repeated["outcomes"]["mirrored"], "rest");
+    repeated["outcomes"]["mirrored"] = "still_rocking".into();
+    assert_eq!(
+        outcomes(&summary),
+        "the same verdict, still rocking with mirrored"
+    );
+    let repeated = &mut summary["repeatability"];
+    repeated["outcomes"]["mirrored"] = "overturned".into();
+    repeated["overturning_sways"]["mirrored"] = "left".into();
+    assert_eq!(
+        outcomes(&summary),
+        "DIFFERENT OUTCOME, overturned to the left with mirrored"
+    );
+}
+
 #[test]
 fn studies_have_the_words_of_their_json() {
     let folder = tempfile::tempdir().unwrap();

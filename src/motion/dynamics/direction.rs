@@ -155,11 +155,8 @@ impl Summary {
     pub fn mirrored(mut self, row: Option<&Row>) -> Self {
         self.outcome = self.outcome.mirrored();
         if let Details::Mechanisms(of) = &mut self.details {
-            let Sides { right, left } = of.largest_shifts_kg_m;
-            of.largest_shifts_kg_m = Sides {
-                right: left,
-                left: right,
-            };
+            let own_kg_m = of.largest_shifts_kg_m;
+            of.largest_shifts_kg_m = Sides::of(|sway| *own_kg_m.to(sway.opposite()));
         }
         let Some(row) = row else { return self };
         self.peak_rotations_rad = (0..self.peak_rotations_rad.len())

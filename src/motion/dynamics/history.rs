@@ -172,7 +172,7 @@ pub struct Sample {
     /// Displacement of the right foot relative to the left one, to the right and upwards in m; only if the feet move
     /// differently.
     pub feet_apart_m: Vector2<f64>,
-    /// Number of transitions up to this time, including those of a fall, which are no events.
+    /// Number of transitions up to this time. Those of a fall count, although they are not reported as events.
     pub phase: usize,
     /// Rest, rocking or overturned.
     pub state: State,
@@ -399,7 +399,7 @@ impl Event {
         }
     }
 
-    /// Returns the state of a sample, as an event of rest.
+    /// Returns an event of rest with the state of a sample.
     pub(super) fn of_sample(sample: &Sample) -> Self {
         Self {
             rotations_rad: sample.rotations_rad.clone(),
@@ -510,7 +510,7 @@ pub struct MechanismSummary {
     /// Energy at the end over the least energy barrier of the moving mechanism and of all that may follow it, if it is below 1: the structure cannot
     /// overturn any more. `None` for other outcomes than [`Outcome::StillRocking`], and below a quarter of the barrier.
     pub remaining_over_barrier: Option<f64>,
-    /// Largest sum of the masses times their horizontal displacements to each side, in kg m; of a side to which the structure overturns, an arbitrary one.
+    /// Largest sum of the masses times their horizontal displacements to each side, in kg m; arbitrary for the side to which the structure overturns.
     pub largest_shifts_kg_m: Sides<f64>,
 }
 
@@ -704,14 +704,14 @@ pub struct HalfCycle {
     pub peak_time_s: f64,
     /// Energy at the end over that at the start; `None` for the first and the last half cycle.
     pub energy_ratio: Option<f64>,
-    /// True if the blocks have not turned back at the start, so that the half cycle before goes on.
+    /// True if this part continues the half cycle before it, because the blocks have not turned back between them.
     #[serde(skip)]
     pub continues: bool,
 }
 
 impl RowSummary {
-    /// Returns the half cycles of any size; [`Summary::half_cycles`] omits vibration. If the centre of gravity changes its side before the blocks have
-    /// turned back, the half cycle goes on, and is to the side of its largest rotation.
+    /// Returns the half cycles of any size; [`Summary::half_cycles`] omits vibration. A half cycle continues when the centre of gravity changes its side
+    /// before the blocks have turned back. Its side is that of its largest rotation.
     pub fn joined_half_cycles(&self) -> Vec<HalfCycle> {
         let mut joined: Vec<HalfCycle> = Vec::new();
         for cycle in &self.half_cycles {

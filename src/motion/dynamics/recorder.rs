@@ -8,8 +8,8 @@ use crate::mechanics::Pose;
 
 /// Receives the samples and events of a history. Breaking ends the history there.
 ///
-/// Samples arrive in order of time, and so do events, but not together: a sample before an event may arrive after it, and events of a row of blocks
-/// arrive once it is certain that they do not belong to its fall.
+/// Samples arrive in order of time, and so do events. A sample may arrive after a later event, and events of a row of blocks arrive late: once it is
+/// certain that they do not belong to its fall.
 pub trait Recorder {
     /// Receives a sample: one at every multiple of the output step from zero on, and the last one at the end.
     fn sample(&mut self, _sample: &Sample) -> ControlFlow<()> {

@@ -43,7 +43,7 @@ pub struct Samples {
     pub vertical_acceleration_m_s2: Vec<f64>,
     /// Displacement of the right foot relative to the left one, to the right and upwards, in m.
     pub feet_apart_m: Vec<[f64; 2]>,
-    /// Number of transitions up to each sample, including those of a fall, which are no events.
+    /// Number of transitions up to each sample. Those of a fall count, although they are not reported as events.
     pub phase: Vec<usize>,
     /// Rest, rocking or overturned.
     pub state: Vec<State>,

@@ -130,11 +130,11 @@ impl FrictionDemands {
 /// Largest number of demands that a history keeps, 32 MiB of memory. A history of more steps keeps every second one, then every fourth and so on.
 const MOST_DEMANDS: usize = 1 << 22;
 
-/// Demands of steps, each with the duration in seconds for which it stands: that of its own step, or of the `stride` steps up to it.
+/// Demands of steps, each with a duration in seconds: that of its step, or after thinning of the `stride` steps up to it.
 #[derive(Clone, Debug)]
 struct Thinned {
     kept: Vec<[f32; 2]>,
-    /// Number of steps for which a kept demand stands: a power of two.
+    /// Number of steps for each kept demand: a power of two.
     stride: usize,
     /// Number and duration of the steps after the last kept one.
     after: (usize, f32),

@@ -215,7 +215,7 @@ impl Clock {
         Ok(())
     }
 
-    /// Joins times and samples. Of samples at the same time the first stays. Returns a warning about the others, as a phrase that follows the name of
+    /// Joins times and samples. Keeps the first of several samples at the same time. Returns a warning about the others, as a phrase that follows the name of
     /// the file. Many of them are an error: such times are rounded.
     pub(super) fn samples(self, values: Values) -> Parsed<(Samples, Option<String>)> {
         values.check_enough()?;

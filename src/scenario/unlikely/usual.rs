@@ -1,7 +1,7 @@
-//! The usual numbers of every key with a unit, and the units with which that of the key is confused.
+//! The usual numbers of keys with a unit, and the units with which users confuse it.
 //!
 //! The ranges contain the structures of all documents and examples, those of published codes for blocks and arches, and small models in laboratories. A
-//! key without a row has no range that would be free of false alarms: see "Not noticed" in docs/records.md.
+//! key is missing if every range has false alarms: see "Not noticed" in docs/records.md.
 
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
@@ -47,7 +47,7 @@ const fn usual(
     range: RangeInclusive<f64>,
     others: &'static [(&'static str, f64)],
 ) -> Usual {
-    /// Of most keys only zero is chosen on purpose: without prestress, damping or mass.
+    /// Zero is chosen on purpose for most keys: no prestress, no damping, no mass.
     const ZERO: RangeInclusive<f64> = 0.0..=0.0;
     Usual {
         key,
@@ -61,14 +61,7 @@ const fn usual(
 
 impl Usual {
     const fn unless(self, on_purpose: RangeInclusive<f64>) -> Self {
-        Self {
-            key: self.key,
-            what: self.what,
-            unit: self.unit,
-            range: self.range,
-            others: self.others,
-            on_purpose,
-        }
+        Self { on_purpose, ..self }
     }
 }
 
@@ -123,7 +116,7 @@ pub(super) fn usual_forces(mass_kg: f64, size_m: f64, gravity_m_s2: f64) -> [Usu
     ]
 }
 
-/// Peaks of ground motions, in g, and the units with which they are confused.
+/// Peaks of ground motions, in g, and the units with which users confuse it.
 pub(super) const PEAK: Usual = usual(
     "",
     "",
@@ -136,254 +129,69 @@ pub(super) const PEAK: Usual = usual(
     ],
 );
 
+/// Makes a table of usual numbers, one key on each line: key, subject and verb, unit, range and other units, and numbers that are chosen on purpose.
+macro_rules! usual_numbers {
+    ($($key:literal, $what:literal, $unit:literal, $range:expr, $others:expr $(, unless $on_purpose:expr)?;)*) => {
+        &[$(usual($key, $what, $unit, $range, $others)$(.unless($on_purpose))?),*]
+    };
+}
+
 /// The usual numbers; the first row that fits a key counts.
-pub(super) const USUAL: &[Usual] = &[
+pub(super) const USUAL: &[Usual] = usual_numbers! {
     // The largest masonry arches span 146 m (Danhe bridge), the smallest models of laboratories 0.2 m.
-    usual(
-        "mean_radius_m",
-        "the mean radius is",
-        "m",
-        0.1..=100.0,
-        LENGTHS,
-    ),
-    usual("span_m", "the span is", "m", 0.1..=200.0, LENGTHS),
-    usual("rise_m", "the rise is", "m", 0.05..=100.0, LENGTHS),
+    "mean_radius_m", "the mean radius is", "m", 0.1..=100.0, LENGTHS;
+    "span_m", "the span is", "m", 0.1..=200.0, LENGTHS;
+    "rise_m", "the rise is", "m", 0.05..=100.0, LENGTHS;
     // Vaults of one brick in models are 1 cm thick, bridges up to 3 m.
-    usual("thickness_m", "the thickness is", "m", 0.005..=5.0, LENGTHS),
-    usual(
-        "embrace_deg",
-        "the embrace angle is",
-        "degrees",
-        LIKELY_EMBRACE_DEG..=360.0,
-        RADIANS,
-    ),
-    usual(
-        "crown_deg",
-        "the angle of the middle arc is",
-        "degrees",
-        5.0..=180.0,
-        RADIANS,
-    ),
+    "thickness_m", "the thickness is", "m", 0.005..=5.0, LENGTHS;
+    "embrace_deg", "the embrace angle is", "degrees", LIKELY_EMBRACE_DEG..=360.0, RADIANS;
+    "crown_deg", "the angle of the middle arc is", "degrees", 5.0..=180.0, RADIANS;
     // Masonry towers are up to 100 m high and 20 m wide.
-    usual(
-        "column.height_m",
-        "the column measures",
-        "m",
-        0.05..=100.0,
-        LENGTHS,
-    ),
-    usual(
-        "column.width_m",
-        "the width of the column is",
-        "m",
-        0.01..=20.0,
-        LENGTHS,
-    ),
-    usual(
-        "piers.height_m",
-        "the height of {of} is",
-        "m",
-        0.05..=100.0,
-        LENGTHS,
-    ),
-    usual(
-        "piers.width_m",
-        "the width of {of} is",
-        "m",
-        0.02..=30.0,
-        LENGTHS,
-    ),
-    usual(
-        "blocks.joints",
-        "the structure measures",
-        "m",
-        0.05..=200.0,
-        LENGTHS,
-    ),
-    usual(
-        "fill.height_m",
-        "the height of {of} is",
-        "m",
-        0.05..=30.0,
-        LENGTHS,
-    ),
-    usual(
-        "above_crown_m",
-        "the fill above the crown is",
-        "m",
-        0.01..=20.0,
-        LENGTHS,
-    ),
-    usual(
-        "load.width_m",
-        "the width of {of} is",
-        "m",
-        0.01..=50.0,
-        LENGTHS,
-    ),
+    "column.height_m", "the column measures", "m", 0.05..=100.0, LENGTHS;
+    "column.width_m", "the width of the column is", "m", 0.01..=20.0, LENGTHS;
+    "piers.height_m", "the height of {of} is", "m", 0.05..=100.0, LENGTHS;
+    "piers.width_m", "the width of {of} is", "m", 0.02..=30.0, LENGTHS;
+    "blocks.joints", "the structure measures", "m", 0.05..=200.0, LENGTHS;
+    "fill.height_m", "the height of {of} is", "m", 0.05..=30.0, LENGTHS;
+    "above_crown_m", "the fill above the crown is", "m", 0.01..=20.0, LENGTHS;
+    "load.width_m", "the width of {of} is", "m", 0.01..=50.0, LENGTHS;
     // Barrel vaults and bridges are up to 60 m deep.
-    usual("depth_m", "the depth of {of} is", "m", 0.02..=60.0, LENGTHS),
+    "depth_m", "the depth of {of} is", "m", 0.02..=60.0, LENGTHS;
     // From aerated concrete to steel blocks of laboratories; at most 1 is a unit of density.
-    usual(
-        "density_kg_m3",
-        "the density of {of} is",
-        "kg/m3",
-        300.0..=9000.0,
-        &[
-            ("kN/m3", 1000.0 / 9.81),
-            ("t/m3", 1e3),
-            ("N/m3", 1.0 / 9.81),
-        ],
-    )
-    .unless(0.0..=1.0),
+    "density_kg_m3", "the density of {of} is", "kg/m3", 300.0..=9000.0, &[("kN/m3", 1000.0 / 9.81), ("t/m3", 1e3), ("N/m3", 1.0 / 9.81)], unless 0.0..=1.0;
     // Stone on stone has 0.3 to 1; from 90 on it is no angle, but "never slips".
-    usual(
-        "friction_coefficient",
-        "the friction coefficient is",
-        "",
-        0.05..=2.0,
-        DEGREES,
-    )
-    .unless(90.0..=f64::INFINITY),
+    "friction_coefficient", "the friction coefficient is", "", 0.05..=2.0, DEGREES, unless 90.0..=f64::INFINITY;
     // From earth blocks to basalt; steel, with 210, is no stone.
-    usual(
-        "stone_modulus_gpa",
-        "the modulus of the stone is",
-        "GPa",
-        0.02..=150.0,
-        GIGAPASCALS,
-    ),
-    usual(
-        "mortar_modulus_gpa",
-        "the modulus of the mortar is",
-        "GPa",
-        1e-3..=60.0,
-        GIGAPASCALS,
-    ),
+    "stone_modulus_gpa", "the modulus of the stone is", "GPa", 0.02..=150.0, GIGAPASCALS;
+    "mortar_modulus_gpa", "the modulus of the mortar is", "GPa", 1e-3..=60.0, GIGAPASCALS;
     // Byzantine joints have up to 7 cm.
-    usual(
-        "mortar_thickness_m",
-        "the thickness of the mortar is",
-        "m",
-        2e-4..=0.1,
-        LENGTHS,
-    ),
+    "mortar_thickness_m", "the thickness of the mortar is", "m", 2e-4..=0.1, LENGTHS;
     // From earth blocks to basalt.
-    usual(
-        "compressive_strength_mpa",
-        "the compressive strength is",
-        "MPa",
-        0.2..=400.0,
-        &[("kPa", 1e-3), ("Pa", 1e-6)],
-    ),
-    usual(
-        "free_standing.modulus_gpa",
-        "the modulus of {of} is",
-        "GPa",
-        0.02..=150.0,
-        GIGAPASCALS,
-    ),
+    "compressive_strength_mpa", "the compressive strength is", "MPa", 0.2..=400.0, &[("kPa", 1e-3), ("Pa", 1e-6)];
+    "free_standing.modulus_gpa", "the modulus of {of} is", "GPa", 0.02..=150.0, GIGAPASCALS;
     // From wires of 2.5 mm to several bars of 100 mm.
-    usual(
-        "area_mm2",
-        "the area of {of} is",
-        "mm2",
-        5.0..=5e4,
-        &[("cm2", 1e2), ("m2", 1e6)],
-    ),
+    "area_mm2", "the area of {of} is", "mm2", 5.0..=5e4, &[("cm2", 1e2), ("m2", 1e6)];
     // From ropes of polymer to carbon fibres.
-    usual(
-        "tie.modulus_gpa",
-        "the modulus of {of} is",
-        "GPa",
-        0.5..=700.0,
-        GIGAPASCALS,
-    ),
-    usual(
-        "yield_stress_mpa",
-        "the yield stress of {of} is",
-        "MPa",
-        20.0..=5e3,
-        &[("GPa", 1e3), ("kPa", 1e-3), ("Pa", 1e-6)],
-    ),
-    usual(
-        "breaks_at_strain",
-        "the strain at which {of} breaks is",
-        "",
-        1e-4..=0.99,
-        PERCENT,
-    ),
+    "tie.modulus_gpa", "the modulus of {of} is", "GPa", 0.5..=700.0, GIGAPASCALS;
+    "yield_stress_mpa", "the yield stress of {of} is", "MPa", 20.0..=5e3, &[("GPa", 1e3), ("kPa", 1e-3), ("Pa", 1e-6)];
+    "breaks_at_strain", "the strain at which {of} breaks is", "", 1e-4..=0.99, PERCENT;
     // Larger movements of springings leave no arch.
-    usual(
-        "supports.rotation_rad",
-        "the rotation of {of} is",
-        "rad",
-        0.0..=0.3,
-        DEGREES,
-    ),
-    usual("spread_m", "the spread of {of} is", "m", 0.0..=1.0, LENGTHS),
-    usual(
-        "settlement_m",
-        "the settlement of {of} is",
-        "m",
-        0.0..=1.0,
-        LENGTHS,
-    ),
+    "supports.rotation_rad", "the rotation of {of} is", "rad", 0.0..=0.3, DEGREES;
+    "spread_m", "the spread of {of} is", "m", 0.0..=1.0, LENGTHS;
+    "settlement_m", "the settlement of {of} is", "m", 0.0..=1.0, LENGTHS;
     // A rate of 3 rad/s overturns every column that is higher than 1 m and than its width.
-    usual(
-        "rate_rad_s",
-        "the initial rate is",
-        "rad/s",
-        0.0..=3.0,
-        DEGREES,
-    ),
+    "rate_rad_s", "the initial rate is", "rad/s", 0.0..=3.0, DEGREES;
     // Dominant pulses of earthquakes last 0.1 to 10 s; longer ones push slowly.
-    usual(
-        "ground.duration_s",
-        "the pulse lasts",
-        "s",
-        0.01..=60.0,
-        TIMES,
-    ),
+    "ground.duration_s", "the pulse lasts", "s", 0.01..=60.0, TIMES;
     // Corners of the processing of records are 0.02 to 1 Hz.
-    usual(
-        "high_pass_hz",
-        "the corner of the high-pass filter is",
-        "Hz",
-        0.01..=5.0,
-        &[],
-    ),
+    "high_pass_hz", "the corner of the high-pass filter is", "Hz", 0.01..=5.0, &[];
     // Feet 1 km apart in the slowest wave.
-    usual(
-        "delay_s",
-        "the delay of the right foot is",
-        "s",
-        0.0..=10.0,
-        TIMES,
-    ),
+    "delay_s", "the delay of the right foot is", "s", 0.0..=10.0, TIMES;
     // Slowest shear waves in mud; an infinite velocity is often written as 1e6.
-    usual(
-        "apparent_velocity_m_s",
-        "the apparent velocity is",
-        "m/s",
-        40.0..=1e6,
-        &[("km/s", 1e3)],
-    ),
+    "apparent_velocity_m_s", "the apparent velocity is", "m/s", 40.0..=1e6, &[("km/s", 1e3)];
     // Periods and damping of code spectra and of soft or damped structures.
-    usual(
-        "spectral_period_s",
-        "the period of the spectral acceleration is",
-        "s",
-        0.02..=20.0,
-        TIMES,
-    ),
-    usual(
-        "spectral_damping_percent",
-        "the damping of the spectral acceleration is",
-        "%",
-        0.3..=50.0,
-        FRACTION,
-    ),
+    "spectral_period_s", "the period of the spectral acceleration is", "s", 0.02..=20.0, TIMES;
+    "spectral_damping_percent", "the damping of the spectral acceleration is", "%", 0.3..=50.0, FRACTION;
     // Tables of NTC 2008: 0.15 to 0.6 s.
-    usual("tc_star_s", "T_C* of {of} is", "s", 0.05..=2.0, TIMES),
-];
+    "tc_star_s", "T_C* of {of} is", "s", 0.05..=2.0, TIMES;
+};

@@ -7,28 +7,24 @@ use crate::Verdict;
 use crate::dynamics::{EXCESS_LEVELS, OutcomeKind};
 use crate::output::filters;
 use crate::scenario::FREE_HINGES;
-use crate::studies::quotable::condition_of;
-
-/// Largest coefficient of friction with digits. No stone has more; larger demands occur at almost unloaded joints.
-const MOST_FRICTION: f64 = 10.0;
+use crate::studies::quotable::{MOST_FRICTION, condition_of};
 
 /// Returns a coefficient of friction as text.
-pub(super) fn coefficient(friction: &f64, decimals: usize) -> String {
-    if *friction > MOST_FRICTION {
-        format!("more than {MOST_FRICTION}")
-    } else {
-        format!("{friction:.decimals$}")
+pub(super) fn coefficient(friction: &f64) -> String {
+    match *friction > MOST_FRICTION {
+        true => format!("more than {MOST_FRICTION}"),
+        false => format!("{friction:.3}"),
     }
 }
 
-/// Returns the largest coefficient of friction as text, to three digits.
+/// Returns the largest coefficient of friction as text.
 pub(super) fn largest_coefficient(friction: &f64) -> String {
     let bound = if *friction > MOST_FRICTION {
         ""
     } else {
         "at most "
     };
-    format!("{bound}{}", coefficient(friction, 3))
+    bound.to_owned() + &coefficient(friction)
 }
 
 /// A caveat.
@@ -119,5 +115,16 @@ impl Summary {
         let varied = self.variations.iter();
         let varied = varied.filter(|one| one.verdict() == verdict);
         varied.map(|one| one.with.as_str()).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_coefficient_that_no_stone_has_is_no_upper_bound() {
+        assert_eq!(largest_coefficient(&0.5746), "at most 0.575");
+        assert_eq!(largest_coefficient(&28.24), "more than 10");
     }
 }

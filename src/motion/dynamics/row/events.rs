@@ -1,4 +1,4 @@
-//! Events and impacts of a row. They count once it is certain that they do not belong to its fall.
+//! Events and impacts of a row, held back until it is certain that they do not belong to its fall.
 
 use std::vec::Drain;
 
@@ -58,7 +58,7 @@ impl EventLog {
         self.pending = Some(Vec::new());
     }
 
-    /// Counts the impacts up to a time, in seconds, for certain. Returns the events up to then.
+    /// Settles the impacts up to a time, in seconds, and returns the events up to then: they do not belong to a fall.
     pub fn settle(&mut self, until_s: f64) -> Drain<'_, Event> {
         let impacts = (self.late_impacts_s).partition_point(|time_s| *time_s <= until_s);
         self.late_impacts_s.drain(..impacts);
