@@ -514,25 +514,24 @@ fn exhausted_resources_are_named() {
         said.contains("File too large") && !said.contains(".archrock-"),
         "{said}"
     );
-    let output = program(&["init", "column", "none/s.toml"])
-        .current_dir(root.path())
-        .stderr(Stdio::piped())
-        .output()
-        .unwrap();
-    assert_eq!(output.status.code(), Some(2));
-    assert_eq!(
-        String::from_utf8(output.stderr).unwrap(),
-        "error: cannot write none/s.toml: there is no folder none\n"
-    );
-    let output = program(&["impact", "--line", "none/line.csv"])
-        .arg(crate::common::program::scenarios().join("semicircle-pulse.toml"))
-        .current_dir(root.path())
-        .stderr(Stdio::piped())
-        .output()
-        .unwrap();
-    assert_eq!(output.status.code(), Some(2));
-    assert_eq!(
-        String::from_utf8(output.stderr).unwrap(),
-        "error: cannot write none/line.csv: there is no folder none; choose another file with --line\n"
-    );
+    let pulse = crate::common::program::scenarios().join("semicircle-pulse.toml");
+    let pulse = pulse.to_str().unwrap();
+    for (arguments, words) in [
+        (
+            ["init", "column", "none/s.toml"].as_slice(),
+            "error: cannot write none/s.toml: there is no folder none\n",
+        ),
+        (
+            &["impact", "--line", "none/line.csv", pulse],
+            "error: cannot write none/line.csv: there is no folder none; choose another file with --line\n",
+        ),
+    ] {
+        let output = program(arguments)
+            .current_dir(root.path())
+            .stderr(Stdio::piped())
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(2));
+        assert_eq!(String::from_utf8(output.stderr).unwrap(), words);
+    }
 }
