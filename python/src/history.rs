@@ -567,7 +567,12 @@ impl History {
 
     /// `warnings` of `summary.json`.
     fn warnings(&self, py: Python<'_>) -> Vec<String> {
-        py.detach(|| run::Summary::of(&self.alone(&self.shaken())).warnings)
+        py.detach(|| {
+            run::Summary::of(&self.alone(&self.shaken()))
+                .warnings
+                .all()
+                .to_vec()
+        })
     }
 
     /// Writes a film; `factors` are its speed and that on the displacements. Simulates the history again, with the line of thrust.

@@ -23,11 +23,16 @@ use crate::watched::watched;
 /// The files of results with their names; the seal comes last.
 type Files<'py> = Vec<(&'static str, Bound<'py, PyBytes>)>;
 
-fn to_python(py: Python<'_>, results: Results) -> Files<'_> {
+/// The columns with text of each table, by the name of its file.
+type TextColumns = Vec<(String, Vec<String>)>;
+
+fn to_python(py: Python<'_>, results: Results) -> (Files<'_>, TextColumns) {
+    let texts = results.text_columns();
+    let texts = texts.map(|(name, columns)| (name.to_owned(), columns.to_vec()));
+    let texts = texts.collect();
     let files = results.files.into_iter();
-    files
-        .map(|(name, contents)| (name, PyBytes::new(py, &contents)))
-        .collect()
+    let files = files.map(|(name, contents)| (name, PyBytes::new(py, &contents)));
+    (files.collect(), texts)
 }
 
 fn kind_of(name: &str) -> PyResult<StudyKind> {
@@ -81,7 +86,7 @@ fn compute(
     })
 }
 
-/// Computes a study of a scenario, all in memory. Returns its files, and their origin as JSON. `factors` are those of a threshold, and `along` its range and whether impacts are left
+/// Computes a study of a scenario, all in memory. Returns its files, their origin as JSON, and the columns with text. `factors` are those of a threshold, and `along` its range and whether impacts are left
 /// out.
 #[pyfunction]
 pub fn study<'py>(
@@ -92,7 +97,7 @@ pub fn study<'py>(
     along: Option<(String, bool)>,
     threads: Option<u16>,
     progress: Option<Py<PyAny>>,
-) -> PyResult<(Files<'py>, String)> {
+) -> PyResult<(Files<'py>, String, TextColumns)> {
     let (kind, runner) = (kind_of(kind)?, runner(threads));
     let factors = factors.map(|(from, to, stride)| Factors::new(from, to, stride));
     let factors = factors.transpose().map_err(refused)?.unwrap_or_default();
@@ -116,7 +121,8 @@ pub fn study<'py>(
     let done = compute(py, progress, kind, scenario, options, (runner, None))?;
     match done {
         Computation::Complete(results, _) => {
-            Ok((to_python(py, *results), to_json(&Origin::of(scenario))?))
+            let (files, texts) = to_python(py, *results);
+            Ok((files, to_json(&Origin::of(scenario))?, texts))
         }
         Computation::Partial { .. } => unreachable!("a computation in memory is no part"),
     }
@@ -149,28 +155,25 @@ pub fn compute_part(
     }
 }
 
-/// Joins the parts of a study: returns its name, the files of its results, and their origin as JSON. The scenario is needed only if its records
+/// Joins the parts of a study: returns its name, the files of its results, their origin as JSON, and the columns with text. The scenario is needed only if its records
 /// cannot be found from here.
 #[pyfunction]
 pub fn merge<'py>(
     py: Python<'py>,
     parts: Vec<PathBuf>,
     scenario: Option<&Scenario>,
-) -> PyResult<(String, Files<'py>, String)> {
+) -> PyResult<(String, Files<'py>, String, TextColumns)> {
     let scenario = scenario.map(|scenario| scenario.moving().map(Arc::clone));
     let scenario = scenario.transpose()?;
     if parts.is_empty() {
         return Err(PyValueError::new_err("no parts given"));
     }
-    let (kind, results, origin) = watched(py, None, move |_| {
-        let merged = studies::merge(&parts, scenario.as_deref(), &mut |_, _| Ok(STYLE));
-        let (kind, results) = merged.map_err(failed)?;
-        let header = studies::read_header(&parts[0]).map_err(unusable)?;
-        let origin = Origin::of_summary(&results.summary).with_records(header.inputs);
-        Ok((kind, results, origin))
+    let merged = watched(py, None, move |_| {
+        studies::merge(&parts, scenario.as_deref(), &mut |_, _| Ok(STYLE)).map_err(failed)
     })?;
-    let files = to_python(py, results);
-    Ok((kind.name.to_owned(), files, to_json(&origin)?))
+    let (files, texts) = to_python(py, merged.results);
+    let (name, origin) = (merged.kind.name.to_owned(), to_json(&merged.origin)?);
+    Ok((name, files, origin, texts))
 }
 
 fn to_json(origin: &Origin) -> PyResult<String> {

@@ -3,15 +3,15 @@
 use std::path::PathBuf;
 
 use archrock::Sway;
-use archrock::output::Origin;
 use archrock::studies::{CAPACITY, Direction, Options, SPREAD, StudyKind, Style, VERIFY};
 use nalgebra::Vector2;
 
+use super::execution::Execution;
 use super::figure::FigureOption;
 use super::parsers::{number, point_m, side};
 use super::scenario_file::ScenarioFile;
-use super::study::{StudyJob, WorkOptions};
-use super::{Failure, Format, warn};
+use super::study::WorkOptions;
+use super::{Failure, Format};
 
 /// Options of commands without long histories.
 #[derive(clap::Args)]
@@ -94,7 +94,7 @@ pub fn verify(arguments: &CommonArguments) -> Result<(), Failure> {
 }
 
 /// Computes a study, writes its results and prints their summary.
-pub fn run(
+fn run(
     kind: StudyKind,
     arguments: &CommonArguments,
     figure: FigureOption,
@@ -105,22 +105,25 @@ pub fn run(
         true => input.read(None)?,
         false => input.read_statics()?,
     };
-    warn(&scenario.unlikely());
-    let style = Style::of(figure.get()?);
     let destination = input.results(arguments.out.as_deref());
-    let root = destination.lock(
-        kind.name,
-        Origin::of(&scenario),
-        figure.figure_format,
-        false,
-    )?;
-    let job = StudyJob {
-        input: Some(&input),
-        work: WorkOptions::default(),
-        style,
+    let file = input.task(vec![scenario], Some(destination));
+    execution(kind, arguments, figure, options)?.of(vec![file])
+}
+
+/// Returns the execution of a study without samples.
+pub fn execution(
+    kind: StudyKind,
+    arguments: &CommonArguments,
+    figure: FigureOption,
+    options: Options,
+) -> Result<Execution, Failure> {
+    Ok(Execution {
+        kind,
+        style: Style::of(figure.get()?),
         options,
-        root: Some(root),
-        finished_parts: Vec::new(),
-    };
-    job.finish(kind, &scenario, arguments.format)
+        work: WorkOptions::default(),
+        pictures: figure.figure_format,
+        format: arguments.format,
+        has_words_apart: false,
+    })
 }

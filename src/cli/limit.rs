@@ -4,14 +4,15 @@ use std::path::PathBuf;
 
 use archrock::output::Scene;
 use archrock::scenario::Scenario;
-use archrock::studies::{LIMIT, Options, draw_limit, limit as compute};
+use archrock::studies::{LIMIT, Options, draw_limit};
 use archrock::{FourLinkError, FourLinks};
 
-use super::capacity_spread_verify::{CommonArguments, run};
+use super::Failure;
+use super::capacity_spread_verify::{CommonArguments, execution};
 use super::figure::FigureOption;
 use super::named_files::write_picture;
 use super::parsers::FirstOption;
-use super::{Failure, show, warn};
+use super::scenario_file::Destination;
 
 #[derive(clap::Args)]
 #[command(mut_arg("out", |out| out
@@ -30,26 +31,22 @@ pub struct LimitArguments {
 }
 
 pub fn limit(arguments: &LimitArguments) -> Result<(), Failure> {
-    let (common, figure) = (&arguments.common, arguments.figure);
-    if common.out.is_some() {
-        return run(LIMIT, common, figure, Options::default());
-    }
+    let common = &arguments.common;
     let input = common.scenario.open()?;
     let mut scenario = input.read_statics()?;
-    if arguments.plot.is_some() {
-        scenario = input.without_moved_springings(scenario)?;
-    }
-    warn(&scenario.unlikely());
     if let Some(plot) = &arguments.plot {
+        scenario = input.without_moved_springings(scenario)?;
         let first = arguments.first.sway.unwrap_or_default();
         let model =
             four_links(&scenario, "--plot is").map_err(|wrong| input.with_file_name(wrong))?;
-        let (figure, scene) = (figure.get()?, Scene::new(&scenario.structure));
+        let (figure, scene) = (arguments.figure.get()?, Scene::new(&scenario.structure));
         let picture = draw_limit(figure, &model, first, &scene);
         write_picture(plot, &picture)?;
     }
-    let found = compute(&scenario).map_err(|wrong| input.with_file_name(wrong.into()))?;
-    show(&found.json, &found.text, common.format)
+    let out = common.out.as_deref();
+    let file = input.task(vec![scenario], out.map(Destination::of));
+    let execution = execution(LIMIT, common, arguments.figure, Options::default())?;
+    execution.of(vec![file])
 }
 
 /// Makes the four-link model of a scenario. `what` is the subject and verb of the error for a column.

@@ -6,6 +6,7 @@
 mod capacity_spread_verify;
 mod check;
 mod examples;
+mod execution;
 mod figure;
 mod film;
 mod impact;
@@ -16,6 +17,7 @@ mod models;
 mod named_files;
 mod parsers;
 mod progress;
+mod results;
 mod run;
 mod scenario_file;
 mod studies;
@@ -205,7 +207,7 @@ pub fn main() -> ExitCode {
     progress::set_quiet(arguments.quiet);
     let result = match arguments.command {
         Command::Init(init) => init::init(&init),
-        Command::Run(run) => run::run(&run, arguments.quiet),
+        Command::Run(run) => run::run(&run),
         Command::Film(film) => film::film(&film),
         Command::Limit(limit) => limit::limit(&limit),
         Command::Impact(arguments) => impact::impact(&arguments),

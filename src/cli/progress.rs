@@ -17,9 +17,14 @@ pub fn set_quiet(quiet: bool) {
     QUIET.store(quiet, Ordering::Relaxed);
 }
 
+/// Returns true if only errors and results are printed.
+pub fn is_quiet() -> bool {
+    QUIET.load(Ordering::Relaxed)
+}
+
 /// Prints a line on standard error, unless the program is quiet.
 pub fn print_status(text: &str) {
-    if !QUIET.load(Ordering::Relaxed) {
+    if !is_quiet() {
         print_always(text);
     }
 }
@@ -50,7 +55,7 @@ const WHOLE: u64 = 1000;
 impl Display {
     /// Makes a display without a bar. The bar appears if the computation takes longer than `patience`.
     pub fn new(patience: Duration) -> Self {
-        let quiet = QUIET.load(Ordering::Relaxed);
+        let quiet = is_quiet();
         let on_terminal = io::stderr().is_terminal();
         let bar = ProgressBar::with_draw_target(Some(WHOLE), ProgressDrawTarget::hidden());
         let style = ProgressStyle::with_template("{bar:40} {msg}");

@@ -1,22 +1,20 @@
 //! The command `run`.
 
-use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
-use archrock::output::{Folder, Origin};
-use archrock::scenario::{Scenario, Varied, shown_lines};
-use archrock::studies::run::{RunOptions, check, heading};
-use archrock::studies::{Options, RUN, Style, UNCERTAIN};
+use archrock::output::Origin;
+use archrock::scenario::Scenario;
+use archrock::studies::run::{RunOptions, check};
+use archrock::studies::{Options, RUN, Style};
 use nalgebra::Vector2;
 
+use super::execution::{Execution, FileTasks};
 use super::figure::{FigureOption, PanelsOption};
 use super::models::ModelsOption;
 use super::parsers::{number, point_m};
-use super::scenario_file::{
-    Destination, DirectionOption, ScenarioTask, SetOption, SuiteOption, check_distinct,
-};
-use super::study::{StudyJob, WorkOptions};
-use super::{Failure, Format, check_no_errors, collect_input_error, print, print_all};
+use super::scenario_file::{Destination, DirectionOption, SetOption, SuiteOption, check_distinct};
+use super::study::WorkOptions;
+use super::{Failure, Format, check_no_errors, collect_input_error};
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -79,7 +77,7 @@ pub struct Arguments {
     panels: PanelsOption,
 }
 
-pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let style = Style::of(arguments.panels.of(arguments.figure.get()?));
     let options = Options {
         run: arguments.options()?,
@@ -102,76 +100,17 @@ pub fn run(arguments: &Arguments, quiet: bool) -> Result<(), Failure> {
     let places = roots.flat_map(|(tasks, root)| tasks.iter().map(|task| task.place(root)));
     collect_input_error(check_distinct(places), &mut wrong)?;
     check_no_errors(&wrong)?;
-    let (mut summaries, mut failures) = (Vec::new(), Vec::new());
-    let mut printed = Ok(());
-    for (root, tasks) in arguments.locked(files)? {
-        let mut job = StudyJob {
-            input: None,
-            work: arguments.work,
-            style,
-            options: options.clone(),
-            root,
-            finished_parts: Vec::new(),
-        };
-        let mut failed = Vec::new();
-        for task in &tasks {
-            let folder = job.root.as_ref().map(|root| task.folder(root));
-            job.check_results([RUN, UNCERTAIN], &task.scenarios, folder.as_ref())?;
-        }
-        let scenarios = tasks.iter().flat_map(|task| &task.scenarios);
-        super::warn(&Scenario::unlikely_of_all(scenarios, &Varied::default()));
-        for (index, task) in tasks.iter().enumerate() {
-            let scenarios = &task.scenarios;
-            let folder = job.root.as_ref().map(|root| task.folder(root));
-            let earlier_parts = job.finished_parts.len();
-            let found = job.compute_with_samples([RUN, UNCERTAIN], scenarios, folder.as_ref());
-            let found = match found {
-                // The other scenarios are still run.
-                Err(Failure::Work(message)) if count > 1 => {
-                    folder.iter().for_each(Folder::abandon);
-                    // The file with the samples of the failed scenario stays, for --resume.
-                    job.finished_parts.truncate(earlier_parts);
-                    failed.push(format!("{}: {message}", task.name));
-                    None
-                }
-                found => found.map_err(|failure| job.failed(failure))?,
-            };
-            // All results in a folder replace the earlier ones together, once the last of them is complete.
-            if index + 1 == tasks.len() && failed.is_empty() {
-                job.publish()?;
-            }
-            let Some(found) = found else { continue };
-            let words = heading(scenarios) + &found.words("  ") + "\n";
-            // A closed pipe ends the words, not the work.
-            printed = printed.and_then(|()| arguments.print(&words, quiet));
-            if matches!(arguments.format, Format::Json) {
-                summaries.push(found.summary(RUN)?);
-            }
-        }
-        if !failed.is_empty() {
-            failures.append(&mut failed);
-            failures.extend(job.unpublished());
-        }
-    }
-    printed?;
-    if !summaries.is_empty() {
-        print_all(summaries)?;
-    }
-    match failures.is_empty() {
-        true => Ok(()),
-        false => Err(Failure::Work(failures.join("\nerror: "))),
-    }
+    let execution = Execution {
+        kind: RUN,
+        style,
+        options,
+        work: arguments.work,
+        pictures: arguments.figure.figure_format,
+        format: arguments.format,
+        has_words_apart: arguments.to_stdout(),
+    };
+    execution.of(files)
 }
-
-/// The tasks of a scenario file, and the folder around their results, if files are written.
-struct FileTasks {
-    tasks: Vec<ScenarioTask>,
-    origin: Origin,
-    destination: Option<Destination>,
-}
-
-/// Tasks with one locked folder around their results, if files are written.
-type LockedTasks = (Option<Folder>, Vec<ScenarioTask>);
 
 impl Arguments {
     /// Whether the rotations go to standard output.
@@ -182,21 +121,6 @@ impl Arguments {
     /// Whether files are written.
     const fn has_folder(&self) -> bool {
         self.out.is_some() || !(self.to_stdout() || matches!(self.format, Format::Json))
-    }
-
-    /// Prints the words about a scenario.
-    fn print(&self, words: &str, quiet: bool) -> Result<(), Failure> {
-        match self.format {
-            Format::Json => Ok(()),
-            Format::Text if quiet => Ok(()),
-            // Standard output carries the rotations and nothing else.
-            Format::Text if self.to_stdout() => {
-                // When standard error fails there is nowhere to report it.
-                let _ = io::stderr().write_all(shown_lines(words).as_bytes());
-                Ok(())
-            }
-            Format::Text => print(words),
-        }
     }
 
     /// The options of a run.
@@ -228,28 +152,6 @@ impl Arguments {
         })
     }
 
-    /// Locks the folders around the results, and returns the tasks in each. Files of one name share a folder.
-    fn locked(&self, files: Vec<FileTasks>) -> Result<Vec<LockedTasks>, Failure> {
-        let mut all: Vec<LockedTasks> = Vec::new();
-        for file in files {
-            let path = file.destination.as_ref().map(|one| &*one.path);
-            let mut known = all.iter_mut();
-            let shared =
-                known.find(|(root, _)| path.is_some() && root.as_ref().map(Folder::path) == path);
-            if let Some((root, tasks)) = shared {
-                if let Some(root) = root {
-                    root.protect(&file.origin)?;
-                }
-                tasks.extend(file.tasks);
-                continue;
-            }
-            let (pictures, is_part) = (self.figure.figure_format, self.work.is_part());
-            let lock = |one: Destination| one.lock(RUN.name, file.origin, pictures, is_part);
-            all.push((file.destination.map(lock).transpose()?, file.tasks));
-        }
-        Ok(all)
-    }
-
     /// Reads the scenarios of a file.
     fn read(&self, path: &Path, options: &RunOptions) -> Result<FileTasks, Failure> {
         let input = self.set.open(path)?.in_direction(self.direction);
@@ -271,6 +173,7 @@ impl Arguments {
             check(scenario, options)
         };
         Ok(FileTasks {
+            name: input.name(),
             tasks: self.suite.tasks(&input, models, check)?,
             origin,
             destination: self.has_folder().then_some(destination),

@@ -9,6 +9,7 @@ use archrock::output::{Folder, Origin, PictureFormat};
 use archrock::scenario::{Assignment, ModelKind, ReadOptions, Scenario, Source};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
+use super::execution::FileTasks;
 use super::progress::with_notice;
 use super::{Failure, check_no_errors};
 
@@ -103,6 +104,15 @@ pub struct ScenarioTask {
 }
 
 impl ScenarioTask {
+    /// Makes the task of a scenario file.
+    pub fn of(input: &Input<'_>, scenarios: Vec<Scenario>) -> Self {
+        Self {
+            name: input.path.display().to_string(),
+            scenarios,
+            subfolder: None,
+        }
+    }
+
     /// Returns the folder for the results of the task.
     pub fn folder(&self, root: &Folder) -> Folder {
         let subfolder = self.subfolder.as_ref();
@@ -141,11 +151,7 @@ impl SuiteOption {
             }
         }
         if !self.suite {
-            tasks.push(ScenarioTask {
-                name: file,
-                scenarios: models,
-                subfolder: None,
-            });
+            tasks.push(ScenarioTask::of(input, models));
         } else if tasks.is_empty() {
             let message = "--suite is for a scenario with a table [suite], which names records";
             return Err(input.input_error(message));
@@ -224,6 +230,21 @@ impl Input<'_> {
             Failure::Input(message) => Failure::Input(format!("{}: {message}", self.source.name())),
             other => other,
         }
+    }
+
+    /// Returns the task of scenarios that differ only in their models, with the folder for its results.
+    pub fn task(&self, scenarios: Vec<Scenario>, destination: Option<Destination>) -> FileTasks {
+        FileTasks {
+            name: self.name(),
+            origin: Origin::of(&scenarios[0]),
+            tasks: vec![ScenarioTask::of(self, scenarios)],
+            destination,
+        }
+    }
+
+    /// Returns the name of the scenario file.
+    pub fn name(&self) -> String {
+        self.source.name().to_owned()
     }
 
     /// Returns the name of the folder for the results.

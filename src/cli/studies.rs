@@ -1,24 +1,20 @@
 //! The commands `map` and `suite`, and `merge`, which joins the parts of a study.
 
 use std::path::{Path, PathBuf};
-use std::slice;
 
-use archrock::output::{Figure, Folder, Manifest, Origin, pretty};
-use archrock::scenario::{Scenario, Varied};
+use archrock::output::{Figure, Manifest, pretty};
+use archrock::scenario::Scenario;
+use archrock::studies;
 use archrock::studies::ensemble::CellsOfSamples;
 use archrock::studies::map::OverturningMap;
-use archrock::studies::{
-    MAP, Options, SUITE, StudyKind, Style, UNCERTAIN_MAP, UNCERTAIN_SUITE, merge as merged,
-    quoted_in_words, read_header,
-};
+use archrock::studies::{MAP, Options, SUITE, StudyKind, Style, UNCERTAIN_MAP};
 use clap::ValueEnum;
-use serde_json::Value;
 
 use super::figure::FigureOption;
-use super::models::warn_of;
-use super::progress::print_status;
-use super::scenario_file::{Destination, Input};
-use super::study::{CommandResults, StudyArguments, describe, publish};
+use super::progress::is_quiet;
+use super::results::{CommandResults, Heading, describe};
+use super::scenario_file::Destination;
+use super::study::{StudyArguments, publish};
 use super::{Failure, Format, print};
 
 #[derive(clap::Args)]
@@ -112,15 +108,19 @@ impl MapOption {
 pub fn map(arguments: &MapArguments) -> Result<(), Failure> {
     let study = &arguments.study;
     let input = study.open()?;
-    let scenario = study.models.read_one(&input, "map")?;
-    warn_of(slice::from_ref(&scenario), &Varied::default());
-    OverturningMap::of(&scenario).map_err(|message| input.input_error(message))?;
-    let style = arguments.map.style(&scenario, study.figure.get()?)?;
-    if scenario.uncertain.is_some() {
-        CellsOfSamples::of(&scenario).map_err(|message| input.input_error(message))?;
+    let scenarios = study.models.read(&input)?;
+    let figure = study.figure.get()?;
+    let mut style = Style::of(figure);
+    for scenario in &scenarios {
+        OverturningMap::of(scenario).map_err(|message| input.input_error(message))?;
+        style = arguments.map.style(scenario, figure)?;
+        if scenario.uncertain.is_some() {
+            CellsOfSamples::of(scenario).map_err(|message| input.input_error(message))?;
+        }
     }
-    let kinds = [MAP, UNCERTAIN_MAP];
-    compute(kinds, study, &input, &[scenario], style)
+    let file = study.file(&input, scenarios);
+    let execution = study.execution(MAP, style, Options::default());
+    execution.of(vec![file])
 }
 
 pub fn suite(study: &StudyArguments) -> Result<(), Failure> {
@@ -129,68 +129,10 @@ pub fn suite(study: &StudyArguments) -> Result<(), Failure> {
     let mut known = scenarios.iter().map(Scenario::check_restitution);
     let known = known.find(Result::is_err).unwrap_or(Ok(()));
     known.map_err(|message| input.input_error(message))?;
-    warn_of(&scenarios, &Varied::default());
     let style = Style::of(study.figure.get()?);
-    let kinds = [SUITE, UNCERTAIN_SUITE];
-    compute(kinds, study, &input, &scenarios, style)
-}
-
-/// Computes a study and the study of its samples, for each of the scenarios, which differ in their models of motion. Publishes and prints the
-/// results.
-fn compute(
-    kinds: [StudyKind; 2],
-    study: &StudyArguments,
-    input: &Input<'_>,
-    scenarios: &[Scenario],
-    style: Style,
-) -> Result<(), Failure> {
-    let mut job = study.job(
-        input,
-        style,
-        Options::default(),
-        kinds[0],
-        Origin::of(&scenarios[0]),
-    )?;
-    let (root, several) = (job.root.clone(), scenarios.len() > 1);
-    let mut all = Vec::new();
-    for one in scenarios.chunks(1) {
-        let model = one[0].motion.kind;
-        let folder = root.as_ref().map(|root| root.of_model(model, several));
-        let found = job.compute_with_samples(kinds, one, folder.as_ref())?;
-        all.extend(found.map(|found| (&one[0], folder, found)));
-    }
-    let models = all.iter().map(|(one, _, found)| (*one, &found.own));
-    let models: Vec<_> = models.collect();
-    let compared = job.compare(kinds[0], &models, root.as_ref())?;
-    job.publish()?;
-    if let (false, [(_, folder, found)]) = (several, &all[..]) {
-        return show(found, kinds[0], folder.as_ref(), study.format);
-    }
-    let mut summaries = Vec::new();
-    for (one, folder, found) in &all {
-        let model = one.motion.kind;
-        print_status(model.label);
-        show(found, kinds[0], folder.as_ref(), Format::Text)?;
-        summaries.push((model.option.to_owned(), found.summary(kinds[0])?));
-    }
-    let answers = all
-        .iter()
-        .filter_map(|(.., found)| found.own.answer.clone());
-    let to_quote = quoted_in_words(&answers.collect::<Vec<_>>());
-    if let Some(compared) = compared {
-        print_status(&compared.words);
-        summaries.push(("peaks".to_owned(), compared.summary));
-    }
-    if let Some(to_quote) = to_quote {
-        print_status(&to_quote);
-        summaries.push(("to_quote".to_owned(), to_quote.into()));
-    }
-    match study.format {
-        Format::Json if !all.is_empty() => {
-            print(&pretty(&summaries.into_iter().collect::<Value>()))
-        }
-        _ => Ok(()),
-    }
+    let file = study.file(&input, scenarios);
+    let execution = study.execution(SUITE, style, Options::default());
+    execution.of(vec![file])
 }
 
 pub fn merge(arguments: &MergeArguments) -> Result<(), Failure> {
@@ -201,10 +143,9 @@ pub fn merge(arguments: &MergeArguments) -> Result<(), Failure> {
     let destination = Destination::of(arguments.out.as_deref().unwrap_or(beside));
     let mut style =
         |kind, scenario: Option<&Scenario>| arguments.map.merged(kind, scenario, figure);
-    let (kind, results) = merged(parts, None, &mut style)?;
-    let header = read_header(&parts[0])?;
-    let origin = Origin::of_summary(&results.summary).with_records(header.inputs);
-    let origin = origin.with_inputs(parts);
+    let merged = studies::merge(parts, None, &mut style)?;
+    let (kind, results) = (merged.kind, merged.results);
+    let origin = merged.origin.with_inputs(parts);
     // Samples are merged into a folder inside that of their command.
     let around = destination.path.parent();
     if let Some(around) = around.filter(|_| destination.path.ends_with(kind.name)) {
@@ -215,23 +156,14 @@ pub fn merge(arguments: &MergeArguments) -> Result<(), Failure> {
     folder.check(kind.files)?;
     results.write(&folder)?;
     publish(&folder)?;
-    let found = CommandResults::alone(results);
-    show(&found, kind, Some(&folder), arguments.format)
-}
-
-/// Prints published results.
-fn show(
-    found: &CommandResults,
-    kind: StudyKind,
-    folder: Option<&Folder>,
-    format: Format,
-) -> Result<(), Failure> {
-    if let Format::Json = format {
-        return print(&pretty(&found.summary(kind)?));
+    let place = describe(&folder, &results);
+    let found = CommandResults::alone(results, place);
+    let heading = Heading {
+        title: merged.title.as_deref(),
+        lines: String::new(),
+    };
+    match arguments.format {
+        Format::Json => print(&pretty(&found.summary(kind)?)),
+        Format::Text => print(&found.words(kind, &heading, is_quiet())),
     }
-    print_status(&found.words(""));
-    if let Some(folder) = folder {
-        print_status(&format!("  results in {}", describe(folder, &found.own)));
-    }
-    Ok(())
 }

@@ -8,8 +8,8 @@ use std::sync::atomic::Ordering;
 use std::time::Duration;
 use std::{mem, process, slice};
 
-use archrock::output::{Folder, Origin, PictureFormat};
-use archrock::scenario::{ModelKind, Scenario};
+use archrock::output::Folder;
+use archrock::scenario::Scenario;
 use archrock::studies::run::Sinks;
 use archrock::studies::{
     Computation, Options, PEAKS_FILES, PartError, PartErrorKind, PartFile, Progress, Results,
@@ -17,15 +17,14 @@ use archrock::studies::{
     peak_results, rows_in,
 };
 
-use serde::Serialize;
-use serde_json::{Map, Value, json};
-
+use super::execution::{Execution, FileTasks};
 use super::figure::FigureOption;
 use super::interrupts::{INTERRUPTED, INTERRUPTED_CODE, listen_to_interrupts, uninterrupted};
 use super::models::ModelsOption;
 use super::progress::{Display, print_always, print_status, progress_text, remaining_time};
+use super::results::{CommandResults, ModelResults, SampleResults, describe};
 use super::scenario_file::{DirectionOption, Input, ScenarioFile};
-use super::{Failure, Format, show};
+use super::{Failure, Format};
 
 /// Options of every study of many histories.
 #[derive(clap::Args)]
@@ -110,34 +109,31 @@ impl StudyArguments {
         Ok(self.scenario.open()?.in_direction(self.direction))
     }
 
-    /// Locks the folder for the results of a study, and prepares the computation.
-    pub fn job<'s>(
-        &self,
-        input: &'s Input<'s>,
-        style: Style,
-        mut options: Options,
-        kind: StudyKind,
-        origin: Origin,
-    ) -> Result<StudyJob<'s>, Failure> {
-        options.run.no_report = self.no_report;
+    /// Returns the task of a scenario file, with the folder for its results.
+    pub fn file(&self, input: &Input<'_>, scenarios: Vec<Scenario>) -> FileTasks {
         let destination = input.results(self.out.as_deref());
-        let (pictures, is_part) = (self.figure.figure_format, self.work.is_part());
-        let root = destination.lock(kind.name, origin, pictures, is_part)?;
-        Ok(StudyJob {
-            input: Some(input),
-            work: self.work,
+        input.task(scenarios, Some(destination))
+    }
+
+    /// Returns the options with which the command executes a study.
+    pub fn execution(&self, kind: StudyKind, style: Style, mut options: Options) -> Execution {
+        options.run.no_report = self.no_report;
+        Execution {
+            kind,
             style,
             options,
-            root: Some(root),
-            finished_parts: Vec::new(),
-        })
+            work: self.work,
+            pictures: self.figure.figure_format,
+            format: self.format,
+            has_words_apart: false,
+        }
     }
 }
 
 /// Computes the studies of a command.
-pub struct StudyJob<'s> {
-    /// The scenario file, which errors about the scenario name.
-    pub input: Option<&'s Input<'s>>,
+pub struct StudyJob {
+    /// Name of the scenario file, for errors about the scenario.
+    pub file: String,
     pub work: WorkOptions,
     pub style: Style,
     pub options: Options,
@@ -147,100 +143,7 @@ pub struct StudyJob<'s> {
     pub finished_parts: Vec<PartFile>,
 }
 
-/// The results of a command on scenarios that differ only in their models of motion.
-pub struct CommandResults {
-    /// The results on the samples of each model that has `[uncertain]`.
-    samples: Vec<SampleResults>,
-    /// The comparison of the models by the largest rotations of their samples.
-    compared: Option<Results>,
-    /// The results on the scenario itself.
-    pub own: Results,
-}
-
-/// The results on the samples of a model.
-struct SampleResults {
-    model: &'static ModelKind,
-    results: Results,
-    /// Their folder, and the names of their files, in words.
-    place: String,
-}
-
-/// Heading of the report on the scenario without uncertainty, after that on its samples.
-const NOMINAL_HEADING: &str = "the scenario with its given numbers:\n  ";
-
-/// JSON of all results: of the scenario itself, of its samples, and of the comparison of models.
-#[derive(Serialize)]
-struct Summary<'f> {
-    #[serde(flatten)]
-    own: &'f Value,
-    #[serde(flatten)]
-    samples: Map<String, Value>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    peaks: Option<&'f Value>,
-}
-
-impl CommandResults {
-    /// Makes the results of a study without samples.
-    pub const fn alone(own: Results) -> Self {
-        Self {
-            samples: Vec::new(),
-            compared: None,
-            own,
-        }
-    }
-
-    /// Returns the report on the samples, which has the probability of overturning, and then that on the scenario itself. `indent` precedes the report
-    /// if there are no samples.
-    pub fn words(&self, indent: &str) -> String {
-        let mut words = String::new();
-        for one in &self.samples {
-            if self.samples.len() > 1 {
-                words += &format!("{}\n", one.model.label);
-            }
-            let place = &one.place;
-            words += &format!("  {}\n  results in {place}\n", one.results.words);
-        }
-        if let Some(compared) = &self.compared {
-            words += &format!("{}\n", compared.words);
-        }
-        let heading = match words.is_empty() {
-            true => indent,
-            false => NOMINAL_HEADING,
-        };
-        words + heading + &self.own.words
-    }
-
-    /// Returns the JSON of all results. A run has that of its samples already.
-    pub fn summary(&self, kind: StudyKind) -> Result<Value, Failure> {
-        let samples = self.samples.iter().filter(|_| !kind.is_history);
-        let samples = samples.map(|one| {
-            let summary = one.results.summary.clone();
-            match self.samples.len() {
-                1 => ("uncertain".to_owned(), summary),
-                _ => (one.model.option.to_owned(), json!({ "uncertain": summary })),
-            }
-        });
-        let summary = Summary {
-            own: &self.own.summary,
-            samples: samples.collect(),
-            peaks: self.compared.as_ref().map(|compared| &compared.summary),
-        };
-        serde_json::to_value(summary).map_err(|error| Failure::Work(error.to_string()))
-    }
-}
-
-/// Returns the folder with its result files, in words.
-pub fn describe(folder: &Folder, results: &Results) -> String {
-    let also = match folder.pictures {
-        None | Some(PictureFormat::Svg) => "",
-        Some(PictureFormat::Pdf) => ", pictures also as PDF",
-        Some(PictureFormat::Png) => ", pictures also as PNG",
-    };
-    let (path, names) = (folder.path().display(), results.names().join(", "));
-    format!("{path}: {names}{also}")
-}
-
-impl StudyJob<'_> {
+impl StudyJob {
     /// Publishes all results.
     pub fn publish(&mut self) -> Result<(), Failure> {
         self.root.as_ref().map_or(Ok(()), publish)?;
@@ -285,23 +188,23 @@ impl StudyJob<'_> {
     /// the models.
     pub fn check_results(
         &self,
-        [kind, samples]: [StudyKind; 2],
+        kind: StudyKind,
         scenarios: &[Scenario],
         folder: Option<&Folder>,
     ) -> Result<(), Failure> {
         let Some(folder) = folder else { return Ok(()) };
-        let several = scenarios.len() > 1;
+        let (several, divided) = (scenarios.len() > 1, self.is_divided(kind, scenarios));
+        let mut are_compared = several && divided && kind.has_rotations;
         for scenario in scenarios {
             let model = scenario.motion.kind;
-            let own = folder.of_model(model, several && kind.is_history);
+            let own = folder.of_model(model, divided || (several && kind.is_history));
             self.check_names(kind, Some(&own))?;
-            if scenario.uncertain.is_some() {
+            if let Some(samples) = kind.samples.filter(|_| has_uncertain(scenario)) {
                 let samples_folder = folder.of_model(model, several).within(samples.name);
-                self.check_names(samples, Some(&samples_folder))?;
+                self.check_names(*samples, Some(&samples_folder))?;
+                are_compared |= several && !divided && samples.has_rotations;
             }
         }
-        let are_compared =
-            several && (!kind.is_history || scenarios.iter().any(|one| one.uncertain.is_some()));
         if are_compared && !self.work.is_part() {
             comparison_folder(folder, kind).check(&PEAKS_FILES)?;
         }
@@ -373,9 +276,9 @@ impl StudyJob<'_> {
         let rows = RowSource::Compute(runner, task, &mut watch);
         let done = kind.compute(scenarios, &self.options, self.style, rows, sinks);
         drop(shown);
-        let done = done.map_err(|error| match (error, self.input) {
-            (StudyError::Scenario(message), Some(input)) => input.input_error(message),
-            (error, _) => error.into(),
+        let done = done.map_err(|error| match error {
+            StudyError::Scenario(message) => Failure::Input(format!("{}: {message}", self.file)),
+            error => error.into(),
         });
         match done? {
             Computation::Complete(mut results, part) => {
@@ -393,33 +296,53 @@ impl StudyJob<'_> {
         }
     }
 
-    /// Computes a study of one scenario, publishes its results and prints them.
-    pub fn finish(
-        mut self,
+    /// Computes a study of scenarios that differ in their models of motion, and its comparison of the models. Of a part, returns `None`.
+    pub fn compute_all(
+        &mut self,
         kind: StudyKind,
-        scenario: &Scenario,
-        format: Format,
-    ) -> Result<(), Failure> {
-        let root = self.root.clone();
-        let found = self.compute(kind, slice::from_ref(scenario), root.as_ref())?;
-        self.publish()?;
-        let Some(found) = found else { return Ok(()) };
-        if let Some(root) = root {
-            print_status(&format!("results in {}", describe(&root, &found)));
+        scenarios: &[Scenario],
+        folder: Option<&Folder>,
+    ) -> Result<Option<CommandResults>, Failure> {
+        let (mut of_models, several) = (Vec::new(), self.is_divided(kind, scenarios));
+        let groups = match several {
+            true => scenarios.chunks(1),
+            false => scenarios.chunks(scenarios.len()),
+        };
+        for group in groups {
+            let folder = folder.map(|root| root.of_model(group[0].motion.kind, several));
+            of_models.extend(self.compute_with_samples(kind, group, folder.as_ref())?);
         }
-        show(&found.summary, &(found.words + "\n"), format)
+        if of_models.is_empty() {
+            return Ok(None);
+        }
+        let results = of_models.iter().map(|one| &one.own);
+        let models: Vec<_> = scenarios.iter().zip(results).collect();
+        let compared = match several && kind.has_rotations {
+            true => self.compare(kind, &models, folder)?,
+            false => None,
+        };
+        Ok(Some(CommandResults {
+            of_models,
+            compared,
+        }))
+    }
+
+    /// Returns true if each model is computed alone, with results in a folder of its own.
+    fn is_divided(&self, kind: StudyKind, scenarios: &[Scenario]) -> bool {
+        scenarios.len() > 1 && !kind.takes_models
     }
 
     /// Computes a study of scenarios that differ in their models of motion, after the samples of those that have `[uncertain]`, whose results
     /// are in folders of their own inside `folder`. Of a part, only the samples are computed if there are any; without a folder there are none.
-    pub fn compute_with_samples(
+    fn compute_with_samples(
         &mut self,
-        [kind, samples]: [StudyKind; 2],
+        kind: StudyKind,
         scenarios: &[Scenario],
         folder: Option<&Folder>,
-    ) -> Result<Option<CommandResults>, Failure> {
+    ) -> Result<Option<ModelResults>, Failure> {
         let several = scenarios.len() > 1;
-        let has_samples = scenarios.iter().any(|one| one.uncertain.is_some());
+        let samples = kind.samples.filter(|_| scenarios.iter().any(has_uncertain));
+        let has_samples = samples.is_some();
         if self.work.is_part() && folder.is_none() {
             return Err("--shard writes a file: name a folder for it with --out".into());
         }
@@ -432,18 +355,17 @@ impl StudyJob<'_> {
             let message = "--resume continues the samples of [uncertain], which the scenario lacks: leave it out";
             return Err(message.into());
         }
-        if let Some(folder) = folder.filter(|_| !has_samples) {
-            warn_of_rows(folder, samples);
+        if let Some((folder, samples)) = folder.zip(kind.samples).filter(|_| !has_samples) {
+            warn_of_rows(folder, *samples);
         }
-        // Samples may take long, so the names of other results are checked before them.
-        self.check_results([kind, samples], scenarios, folder)?;
         let (mut models, mut of_samples) = (Vec::new(), Vec::new());
-        let with_samples = scenarios.iter().filter(|one| one.uncertain.is_some());
-        for (scenario, folder) in with_samples.flat_map(|one| Some(one).zip(folder)) {
+        let with_samples = scenarios.iter().filter(|one| has_uncertain(one));
+        let with_samples = with_samples.flat_map(|one| samples.zip(folder).map(|it| (one, it)));
+        for (scenario, (samples, folder)) in with_samples {
             let model = scenario.motion.kind;
             let folder = folder.of_model(model, several).within(samples.name);
             if let Some(results) =
-                self.compute(samples, slice::from_ref(scenario), Some(&folder))?
+                self.compute(*samples, slice::from_ref(scenario), Some(&folder))?
             {
                 models.push((model, describe(&folder, &results)));
                 of_samples.push(results);
@@ -465,15 +387,19 @@ impl StudyJob<'_> {
                 place,
             });
         let of_samples: Vec<SampleResults> = of_samples.collect();
-        // Of the studies of samples, only that of histories has rotations.
-        let with_samples = scenarios.iter().filter(|one| one.uncertain.is_some());
-        let compared = with_samples.zip(&of_samples).filter(|_| kind.is_history);
+        let with_samples = scenarios.iter().filter(|one| has_uncertain(one));
+        let compared = with_samples.zip(&of_samples);
+        let compared = compared.filter(|_| samples.is_some_and(|samples| samples.has_rotations));
         let models: Vec<_> = compared
             .map(|(scenario, one)| (scenario, &one.results))
             .collect();
-        Ok(Some(CommandResults {
+        // The words of a run name its files.
+        let folder_of_own = folder.filter(|_| !kind.is_history);
+        Ok(Some(ModelResults {
+            model: Some(scenarios[0].motion.kind),
             compared: self.compare(kind, &models, folder)?,
             samples: of_samples,
+            place: folder_of_own.map(|folder| describe(folder, &own)),
             own,
         }))
     }
@@ -517,6 +443,10 @@ fn comparison_folder(folder: &Folder, kind: StudyKind) -> Folder {
         true => folder.within(format!("models_{}", kind.name)),
         false => models,
     }
+}
+
+fn has_uncertain(scenario: &Scenario) -> bool {
+    scenario.uncertain.is_some()
 }
 
 /// Warns about rows of an interrupted study of samples. A command without samples does not remove them.

@@ -2,13 +2,12 @@
 
 use archrock::output::Origin;
 use archrock::studies::threshold::{AlongOptions, Factors, KeyRange, check};
-use archrock::studies::{Options, Style, THRESHOLD, THRESHOLD_ALONG, UNCERTAIN_THRESHOLD};
+use archrock::studies::{Options, Style, THRESHOLD, THRESHOLD_ALONG};
 
-use super::models::warn_of;
-use super::progress::print_status;
+use super::Failure;
+use super::execution::FileTasks;
 use super::scenario_file::{Input, SuiteOption, check_distinct};
-use super::study::{StudyArguments, describe};
-use super::{Failure, Format, print, print_all};
+use super::study::StudyArguments;
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -64,41 +63,13 @@ pub fn threshold(arguments: &Arguments) -> Result<(), Failure> {
     })?;
     let root = input.results(study.out.as_deref());
     check_distinct(tasks.iter().map(|task| task.place(&root)))?;
-    let scenarios = tasks.iter().flat_map(|task| &task.scenarios);
-    warn_of(scenarios, &options.varied());
-    let title = tasks[0].scenarios[0].title.as_deref();
-    let title = title.map_or(String::new(), |title| format!("{title}\n"));
-    let mut job = study.job(&input, style, options, THRESHOLD, origin)?;
-    let mut all = Vec::new();
-    for task in &tasks {
-        let folder = job.root.as_ref().map(|root| task.folder(root));
-        let kinds = [THRESHOLD, UNCERTAIN_THRESHOLD];
-        let found = job.compute_with_samples(kinds, &task.scenarios, folder.as_ref());
-        let found = found.map_err(|failure| match failure {
-            Failure::Work(message) if tasks.len() > 1 => {
-                job.failed(Failure::Work(format!("{}: {message}", task.name)))
-            }
-            failure => job.failed(failure),
-        })?;
-        all.extend(found.map(|found| (found, folder)));
-    }
-    job.publish()?;
-    for (found, folder) in &all {
-        if let Some(folder) = folder {
-            print_status(&format!("results in {}", describe(folder, &found.own)));
-        }
-    }
-    match study.format {
-        Format::Json => {
-            let summaries = all.iter().map(|(found, _)| found.summary(THRESHOLD));
-            print_all(summaries.collect::<Result<Vec<_>, _>>()?)
-        }
-        Format::Text => {
-            let words = all.iter().map(|(found, _)| found.words("  ") + "\n");
-            let words: String = words.collect();
-            print(&format!("{title}{words}"))
-        }
-    }
+    let file = FileTasks {
+        name: input.name(),
+        tasks,
+        origin,
+        destination: Some(root),
+    };
+    study.execution(THRESHOLD, style, options).of(vec![file])
 }
 
 /// Computes the threshold for each value of a key.
@@ -113,13 +84,7 @@ fn thresholds_along(
         let message = "--along varies one key and ignores [uncertain]: give --no-uncertain";
         return Err(input.input_error(message));
     }
-    warn_of(std::slice::from_ref(&scenario), &options.varied());
-    let job = study.job(
-        input,
-        style,
-        options,
-        THRESHOLD_ALONG,
-        Origin::of(&scenario),
-    )?;
-    job.finish(THRESHOLD_ALONG, &scenario, study.format)
+    let file = study.file(input, vec![scenario]);
+    let execution = study.execution(THRESHOLD_ALONG, style, options);
+    execution.of(vec![file])
 }

@@ -11,12 +11,23 @@ type Varies<'a> = &'a dyn Fn(&str) -> bool;
 
 /// Returns the caption without the values that vary along the axes.
 pub fn caption(scenario: &Scenario, axes: &[&Axis]) -> String {
+    let others = caption_without_model(scenario, axes);
+    format!("{others}; {}", model(scenario, &varied_in(axes)))
+}
+
+/// Returns the caption without the model of motion.
+pub fn caption_without_model(scenario: &Scenario, axes: &[&Axis]) -> String {
+    let varies = varied_in(axes);
+    let structure = structure(&scenario.structure, &varies);
+    let ground = ground(scenario, &varies);
+    let parts = [structure].into_iter().chain(ground);
+    parts.collect::<Vec<_>>().join("; ")
+}
+
+/// Returns a function that is true for keys that vary along the axes.
+fn varied_in(axes: &[&Axis]) -> impl Fn(&str) -> bool {
     let varied: Vec<String> = axes.iter().map(|axis| varied_key(axis)).collect();
-    let varies = |key: &str| varied.iter().any(|varied| varied == key);
-    let mut parts = vec![structure(&scenario.structure, &varies)];
-    parts.extend(ground(scenario, &varies));
-    parts.push(model(scenario, &varies));
-    parts.join("; ")
+    move |key| varied.iter().any(|varied| varied == key)
 }
 
 /// Returns the key that an axis varies.

@@ -156,18 +156,6 @@ impl Origin {
         }
     }
 
-    /// Reads the origin of results from their summary.
-    pub fn of_summary(summary: &Value) -> Self {
-        let of_models = summary.pointer("/models/0");
-        let summary = of_models.unwrap_or(summary);
-        let records = summary["record_checksums"].as_array();
-        let records = records.into_iter().flatten().filter_map(Value::as_str);
-        Self {
-            records: records.map(str::to_owned).collect(),
-            ..Self::of_tables(&summary["scenario"])
-        }
-    }
-
     /// Adds files that results must not replace.
     #[must_use]
     pub fn with_inputs(mut self, paths: &[PathBuf]) -> Self {
@@ -182,7 +170,8 @@ impl Origin {
         Self { records, ..self }
     }
 
-    fn of_tables(scenario: &Value) -> Self {
+    /// Returns the origin of results of a scenario as JSON, without its records.
+    pub(crate) fn of_tables(scenario: &Value) -> Self {
         let checksum =
             |table: &Value| format!("{:08x}", crc32fast::hash(table.to_string().as_bytes()));
         let tables = scenario.as_object().into_iter().flatten();

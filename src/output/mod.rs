@@ -52,7 +52,7 @@ pub(crate) use summary::{Named, summary_of};
 pub use svg::Background;
 pub(crate) use svg::{Anchor, CURVES, Drawing, Frame, Stroke, color};
 pub(crate) use table::{
-    Cell, Column, TableWriter, column, csv, each, fields, list, numbers, row_number, several,
+    Cell, Column, Table, TableWriter, column, each, fields, list, numbers, row_number, several,
 };
 pub(crate) use template::{filters, render, render_in};
 pub use text::text_px;

@@ -6,6 +6,7 @@ use std::io::Write;
 use serde::Serialize;
 
 use super::OutputError;
+use crate::argument::plain;
 
 /// One or several columns of a table: their names, and the cells of a row.
 pub(crate) struct Column<'a, R> {
@@ -22,7 +23,7 @@ type Cells<'a, R> = Box<dyn for<'r> Fn(&'r R, usize, &mut Vec<Cell<'r>>) + 'a>;
 pub(crate) enum Cell<'r> {
     Nothing,
     Text(Cow<'static, str>),
-    Count(usize),
+    Integer(i64),
     Number(f64),
     Numbers(Cow<'r, [f64]>),
 }
@@ -112,7 +113,13 @@ impl From<bool> for Cell<'_> {
 
 impl From<usize> for Cell<'_> {
     fn from(count: usize) -> Self {
-        Self::Count(count)
+        Self::Integer(i64::try_from(count).unwrap_or(i64::MAX))
+    }
+}
+
+impl From<i64> for Cell<'_> {
+    fn from(number: i64) -> Self {
+        Self::Integer(number)
     }
 }
 
@@ -134,21 +141,100 @@ impl<C: Into<Self>> From<Option<C>> for Cell<'_> {
     }
 }
 
-/// Returns the bytes of a table.
-///
-/// # Errors
-/// When a number is not finite.
-pub(crate) fn csv<'a, 'r, R: 'r>(
-    columns: impl Into<Vec<Column<'a, R>>>,
-    rows: impl IntoIterator<Item = &'r R>,
-) -> Result<Vec<u8>, OutputError> {
-    let mut bytes = Vec::new();
-    let mut table = TableWriter::new(&mut bytes, "cannot make a table", columns.into())?;
-    for row in rows {
-        table.write(row)?;
+/// A table in memory: the contents of its file, and the cells of its first rows.
+#[derive(Debug, Default)]
+pub(crate) struct Table {
+    /// The table as CSV.
+    pub(crate) csv: Vec<u8>,
+    /// Names of the columns.
+    pub(crate) header: Vec<String>,
+    /// The cells of the first rows, at most [`Table::FIRST`].
+    pub(crate) first: Vec<Vec<Cell<'static>>>,
+    /// Number of all rows.
+    pub(crate) rows: usize,
+    /// Whether each column has text in any row.
+    pub(crate) is_text: Vec<bool>,
+}
+
+impl Table {
+    /// Largest number of rows whose cells are kept.
+    pub(crate) const FIRST: usize = 1000;
+
+    /// Makes a table of all rows.
+    ///
+    /// # Errors
+    /// When a number is not finite.
+    pub(crate) fn new<'a, 'r, R: 'r>(
+        columns: impl Into<Vec<Column<'a, R>>>,
+        rows: impl IntoIterator<Item = &'r R>,
+    ) -> Result<Self, OutputError> {
+        let (mut csv, columns) = (Vec::new(), columns.into());
+        let names = columns.iter().flat_map(|column| &column.names);
+        let header: Vec<String> = names.map(|name| name.to_string()).collect();
+        let mut table = Self {
+            is_text: vec![false; header.len()],
+            header,
+            ..Self::default()
+        };
+        let mut writer = TableWriter::new(&mut csv, "cannot make a table", columns)?;
+        for row in rows {
+            writer.write_and_see(row, |cells| table.note(cells))?;
+        }
+        table.rows = writer.finish()?;
+        Ok(Self { csv, ..table })
     }
-    table.finish()?;
-    Ok(bytes)
+
+    /// Notes the cells of the next row.
+    fn note(&mut self, cells: &[Cell<'_>]) {
+        let mut at = 0;
+        for cell in cells {
+            self.is_text[at] |= matches!(cell, Cell::Text(_));
+            at += cell.width();
+        }
+        if self.first.len() < Self::FIRST {
+            self.first
+                .push(cells.iter().flat_map(Cell::alone).collect());
+        }
+    }
+
+    /// Returns the names of the columns with text.
+    pub(crate) fn text_columns(&self) -> Vec<String> {
+        let columns = self.header.iter().zip(&self.is_text);
+        let with_text = columns.filter(|(_, is_text)| **is_text);
+        with_text.map(|(name, _)| name.clone()).collect()
+    }
+}
+
+impl Cell<'_> {
+    /// Returns the number of columns.
+    fn width(&self) -> usize {
+        match self {
+            Self::Numbers(numbers) => numbers.len(),
+            _ => 1,
+        }
+    }
+
+    /// Returns each cell alone: several numbers as one cell each.
+    fn alone(&self) -> Vec<Cell<'static>> {
+        match self {
+            Self::Nothing => vec![Cell::Nothing],
+            Self::Text(text) => vec![Cell::Text(text.clone())],
+            Self::Integer(number) => vec![Cell::Integer(*number)],
+            Self::Number(number) => vec![Cell::Number(*number)],
+            Self::Numbers(numbers) => numbers.iter().map(|number| Cell::Number(*number)).collect(),
+        }
+    }
+
+    /// Returns the cell as text, with numbers rounded to six digits.
+    pub(crate) fn rounded(&self) -> String {
+        match self {
+            Self::Nothing => String::new(),
+            Self::Text(text) => text.to_string(),
+            Self::Integer(number) => number.to_string(),
+            Self::Number(number) => plain(*number),
+            Self::Numbers(numbers) => numbers.iter().map(|number| plain(*number)).collect(),
+        }
+    }
 }
 
 /// Writes a table row by row.
@@ -180,6 +266,11 @@ impl<'a, R, W: Write> TableWriter<'a, R, W> {
 
     /// Writes a row.
     pub(crate) fn write(&mut self, row: &R) -> Result<(), OutputError> {
+        self.write_and_see(row, |_| ())
+    }
+
+    /// Writes a row, and passes its cells to a function.
+    fn write_and_see(&mut self, row: &R, see: impl FnOnce(&[Cell<'_>])) -> Result<(), OutputError> {
         self.rows += 1;
         let mut cells = Vec::with_capacity(self.columns.len());
         for column in &self.columns {
@@ -199,6 +290,7 @@ impl<'a, R, W: Write> TableWriter<'a, R, W> {
             }
             at += width;
         }
+        see(&cells);
         let written = self.csv.serialize(cells);
         written.map_err(OutputError::csv(&*self.what))
     }
@@ -227,7 +319,7 @@ mod tests {
             .map(|row| (row.to_string(), [0.5, f64::from(row)]))
             .collect();
         rows.push((text.to_owned(), [1.0, number]));
-        Ok(String::from_utf8(csv(columns, &rows)?).unwrap())
+        Ok(String::from_utf8(Table::new(columns, &rows)?.csv).unwrap())
     }
 
     #[test]

@@ -156,12 +156,6 @@ pub(crate) mod filters {
         })
     }
 
-    /// Formats a number in decimal notation with at most six digits.
-    #[filter_fn]
-    pub fn plain(number: &f64, _: &dyn Values) -> Result<String> {
-        Ok(argument::plain(*number))
-    }
-
     /// Formats a number with the fewest digits that read back as the same number.
     #[filter_fn]
     pub fn exact(number: &f64, _: &dyn Values) -> Result<String> {

@@ -20,6 +20,7 @@ use super::suite::{Heading, RecordSuite};
 use super::threshold::along::{Along, AlongOptions};
 use super::threshold::{self, Factors};
 use super::{ReportedStudy, Results, Runner, StudyError, Style, Task, Watch, verify};
+use crate::output::Origin;
 use crate::scenario::{Scenario, Varied};
 
 /// Options of studies that are not part of the scenario.
@@ -109,8 +110,16 @@ pub struct StudyKind {
     pub is_history: bool,
     /// True if the scenario needs a ground motion.
     pub needs_motion: bool,
+    /// True if its words stand below the title of the scenario, indented; otherwise they are a table without a title.
+    pub has_title: bool,
     /// True if its rows are kept in a file, so the work can be divided and resumed.
     pub has_parts: bool,
+    /// True if it computes scenarios that differ in their models of motion together; otherwise each alone.
+    pub takes_models: bool,
+    /// True if it has the largest rotation of each case, by which models of motion are compared.
+    pub has_rotations: bool,
+    /// The study of the samples of `[uncertain]`; `None` without one.
+    pub samples: Option<&'static Self>,
     compute: Compute,
 }
 
@@ -125,6 +134,8 @@ impl Eq for StudyKind {}
 /// The history of a scenario, with one or several models of motion.
 pub const RUN: StudyKind = StudyKind {
     is_history: true,
+    takes_models: true,
+    samples: Some(&UNCERTAIN),
     ..StudyKind::whole(
         "run",
         &run::FILES,
@@ -136,32 +147,43 @@ pub const RUN: StudyKind = StudyKind {
     )
 };
 /// The map of the pulses that overturn the structure, over two quantities.
-pub const MAP: StudyKind = StudyKind::of::<OverturningMap<'_>>(|scenarios, _, style, rows, _| {
-    let map = OverturningMap::of(&scenarios[0]);
-    let RowSource::Given(rows) = rows else {
-        return computed(map, style, rows);
-    };
-    let rows = rows.iter().map(|row| serde_json::from_str(row));
-    let rows: Result<_, _> = rows.collect();
-    let map = map.map_err(StudyError::Scenario)?;
-    Ok(map
-        .results(rows.map_err(StudyError::failed)?, style)?
-        .into())
-});
+pub const MAP: StudyKind = StudyKind {
+    samples: Some(&UNCERTAIN_MAP),
+    ..StudyKind::of::<OverturningMap<'_>>(|scenarios, _, style, rows, _| {
+        let map = OverturningMap::of(&scenarios[0]);
+        let RowSource::Given(rows) = rows else {
+            return computed(map, style, rows);
+        };
+        let rows = rows.iter().map(|row| serde_json::from_str(row));
+        let rows: Result<_, _> = rows.collect();
+        let map = map.map_err(StudyError::Scenario)?;
+        Ok(map
+            .results(rows.map_err(StudyError::failed)?, style)?
+            .into())
+    })
+};
 /// The records that overturn the structure.
-pub const SUITE: StudyKind = StudyKind::of::<RecordSuite<'_>>(|scenarios, _, style, rows, _| {
-    computed(RecordSuite::of(&scenarios[0]), style, rows)
-});
+pub const SUITE: StudyKind = StudyKind {
+    has_rotations: true,
+    samples: Some(&UNCERTAIN_SUITE),
+    ..StudyKind::of::<RecordSuite<'_>>(|scenarios, _, style, rows, _| {
+        computed(RecordSuite::of(&scenarios[0]), style, rows)
+    })
+};
 /// The factors by which the ground motion overturns the structure, for one or several models of motion.
-pub const THRESHOLD: StudyKind = StudyKind::whole(
-    "threshold",
-    &threshold::FILES,
-    |scenarios, options, style, rows, _| {
-        let (runner, watch) = rows.at_once()?;
-        let factors = &options.factors;
-        Ok(threshold::results(scenarios, factors, style.figure, &runner, watch)?.into())
-    },
-);
+pub const THRESHOLD: StudyKind = StudyKind {
+    takes_models: true,
+    samples: Some(&UNCERTAIN_THRESHOLD),
+    ..StudyKind::whole(
+        "threshold",
+        &threshold::FILES,
+        |scenarios, options, style, rows, _| {
+            let (runner, watch) = rows.at_once()?;
+            let factors = &options.factors;
+            Ok(threshold::results(scenarios, factors, style.figure, &runner, watch)?.into())
+        },
+    )
+};
 /// The threshold for each value of a key along a range.
 pub const THRESHOLD_ALONG: StudyKind =
     StudyKind::of::<Along<'_>>(|scenarios, options, style, rows, _| {
@@ -174,6 +196,7 @@ pub const THRESHOLD_ALONG: StudyKind =
 /// The push that starts the structure, and its mechanism.
 pub const LIMIT: StudyKind = StudyKind {
     needs_motion: false,
+    has_title: false,
     ..StudyKind::whole("limit", &limit::FILES, |scenarios, _, style, _, _| {
         Ok(limit::results(&scenarios[0], style.figure)?.into())
     })
@@ -181,6 +204,7 @@ pub const LIMIT: StudyKind = StudyKind {
 /// The capacity curves of the first mechanism.
 pub const CAPACITY: StudyKind = StudyKind {
     needs_motion: false,
+    has_title: false,
     ..StudyKind::whole(
         "capacity",
         &capacity::FILES,
@@ -195,6 +219,7 @@ pub const CAPACITY: StudyKind = StudyKind {
 /// The movement of a springing at which the arch falls.
 pub const SPREAD: StudyKind = StudyKind {
     needs_motion: false,
+    has_title: false,
     ..StudyKind::whole(
         "spread",
         &spread::FILES,
@@ -206,8 +231,9 @@ pub const SPREAD: StudyKind = StudyKind {
     )
 };
 /// The check of the first mechanism by the Circolare 7/2019.
-pub const VERIFY: StudyKind =
-    StudyKind::whole("verify", &verify::FILES, |scenarios, _, _, _, _| {
+pub const VERIFY: StudyKind = StudyKind {
+    has_title: false,
+    ..StudyKind::whole("verify", &verify::FILES, |scenarios, _, _, _, _| {
         let scenario = &scenarios[0];
         scenario.check_as_built().map_err(StudyError::Scenario)?;
         if scenario.right_foot.is_some() {
@@ -217,9 +243,13 @@ pub const VERIFY: StudyKind =
         }
         let check = verify::verify(scenario).map_err(StudyError::scenario)?;
         Ok(verify::report(scenario, &check)?.into())
-    });
+    })
+};
 /// Endings and courses of histories for samples of the uncertain numbers.
-pub const UNCERTAIN: StudyKind = StudyKind::of_samples::<Histories>();
+pub const UNCERTAIN: StudyKind = StudyKind {
+    has_rotations: true,
+    ..StudyKind::of_samples::<Histories>()
+};
 /// The factor from which samples of the uncertain numbers overturn.
 pub const UNCERTAIN_THRESHOLD: StudyKind = StudyKind::of_samples::<FirstEdges>();
 /// The records that overturn samples of the uncertain numbers.
@@ -266,7 +296,11 @@ impl StudyKind {
             files,
             is_history: false,
             needs_motion: true,
+            has_title: true,
             has_parts: false,
+            takes_models: false,
+            has_rotations: false,
+            samples: None,
             compute,
         }
     }
@@ -334,6 +368,19 @@ fn computed<S: ReportedStudy>(
     Ok(Computation::Complete(results, part))
 }
 
+/// The results of parts that were joined.
+#[derive(Debug)]
+pub struct Merged {
+    /// The study.
+    pub kind: StudyKind,
+    /// The results of all cases.
+    pub results: Results,
+    /// Title of the scenario.
+    pub title: Option<String>,
+    /// The scenario of the results, and its records.
+    pub origin: Origin,
+}
+
 /// Joins the parts of a study. The scenario is `given`, or is read from the parts; a suite needs none, because its records
 /// may have moved.
 ///
@@ -343,7 +390,7 @@ pub fn merge(
     parts: &[PathBuf],
     given: Option<&Scenario>,
     style: ChooseStyle<'_>,
-) -> Result<(StudyKind, Results), StudyError> {
+) -> Result<Merged, StudyError> {
     let header = parts.first().map(|part| part::read_header(part));
     let header = header.transpose()?;
     let study = header.as_ref().map_or("", |header| &header.study);
@@ -361,7 +408,12 @@ pub fn merge(
         let style = style(kind, None).map_err(StudyError::Scenario)?;
         let (header, rows) = part::merge(parts)?;
         let heading: Heading = serde_json::from_value(header.options).map_err(damaged)?;
-        return Ok((kind, heading.report(rows, style.figure)?));
+        return Ok(Merged {
+            kind,
+            results: heading.report(rows, style.figure)?,
+            title: heading.title.clone(),
+            origin: heading.origin().with_records(header.inputs),
+        });
     }
     let scenario = match given {
         None => Scenario::parse(&header.scenario, "the scenario of the parts")?,
@@ -382,7 +434,12 @@ pub fn merge(
         RowSource::Merge(parts),
         Sinks::default(),
     )? {
-        Computation::Complete(results, _) => Ok((kind, *results)),
+        Computation::Complete(results, _) => Ok(Merged {
+            kind,
+            results: *results,
+            title: scenario.title.clone(),
+            origin: Origin::of(&scenario).with_records(header.inputs.clone()),
+        }),
         Computation::Partial { .. } => unreachable!("all parts are joined"),
     }
 }

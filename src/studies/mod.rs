@@ -32,6 +32,7 @@ mod pictures;
 mod quotable;
 mod record;
 mod remarks;
+mod report;
 mod results;
 pub mod run;
 mod runner;
@@ -43,7 +44,7 @@ pub mod verify;
 
 pub use capacity::{CapacityCurveError, Summary as CapacitySummary, capacity};
 pub use catalogue::{
-    CAPACITY, Computation, LIMIT, MAP, Options, RUN, RowSource, SPREAD, SUITE, StudyKind,
+    CAPACITY, Computation, LIMIT, MAP, Merged, Options, RUN, RowSource, SPREAD, SUITE, StudyKind,
     THRESHOLD, THRESHOLD_ALONG, UNCERTAIN, UNCERTAIN_MAP, UNCERTAIN_SUITE, UNCERTAIN_THRESHOLD,
     VERIFY, merge,
 };
@@ -63,6 +64,7 @@ pub use pictures::{impact as draw_impact, limit as draw_limit};
 pub use quotable::{ModelAnswer, in_words as quoted_in_words};
 pub use record::record;
 use remarks::{CaseSummary, ModelCheck, OutcomeCounts, Remark, Remarks, no_verdict, one_direction};
+pub use report::{Report, Statement, Warnings};
 use results::ReportedStudy;
 pub use results::{Results, StudyError, Style, words_of_json};
 use runner::Watch;

@@ -8,11 +8,12 @@ use askama::Template;
 use serde::{Deserialize, Serialize};
 
 use super::page::{Page, PageCases, input_in_words};
+use super::report::Report;
 use super::results::Results;
 use super::statistics::{ascending, fractile, shares_up_to};
 use crate::argument::fixed;
 use crate::output::page::Spot;
-use crate::output::{CURVES, Chart, Figure, Mark, OutputError, Scale, column, csv, filters};
+use crate::output::{CURVES, Chart, Figure, Mark, OutputError, Scale, Table, column};
 use crate::scenario::{ModelKind, Scenario};
 
 /// The name of a model in words, and the largest rotation of a body in each case, in radians, infinite if the case overturned.
@@ -63,12 +64,31 @@ pub const FILES: [&str; 4] = ["peaks.html", "peaks.svg", "peaks.csv", "peaks.jso
 
 /// Comparison of models of motion by the distributions of their largest rotations in the same cases.
 #[derive(Serialize, Deserialize, Template)]
-#[template(path = "studies/peaks.txt")]
+#[template(source = "", ext = "txt")]
 pub struct Summary {
     /// The distribution of each model.
     models: Vec<ModelSummary>,
     /// The distances between the distributions of any two models.
     pairs: Vec<Distance>,
+}
+
+impl Report for Summary {
+    fn verdict(&self) -> String {
+        let distances = self.pairs.iter().map(Distance::in_words);
+        distances.collect::<Vec<_>>().join("\n")
+    }
+}
+
+impl Distance {
+    fn in_words(&self) -> String {
+        let ([one, other], at_rad) = (&self.models, fixed(self.at_rotation_rad, 4));
+        let [one_there, other_there] = self.shares_there.map(|share| fixed(100.0 * share, 0));
+        format!(
+            "largest rotation, {one} against {other}: Kolmogorov distance {}, at {at_rad} rad, which {one_there} % and {other_there} % of \
+             the cases do not exceed",
+            fixed(self.kolmogorov_distance, 2)
+        )
+    }
 }
 
 /// The distribution of a model.
@@ -141,8 +161,9 @@ pub fn results(all: &[(&Scenario, &Results)], figure: Figure) -> Result<Results,
         .flat_map(|(model, all)| all.iter().map(|at| (*model, *at)))
         .collect();
     let draw = |figure, spots: &[Spot]| draw(figure, title, &distributions, spots);
-    let others = [draw(figure, &[]).into_bytes(), csv(columns, &rows)?];
-    let results = Results::new(&FILES[1..], &report, others)?;
+    let results = Results::of("peaks.json", &report)?
+        .with_table("peaks.csv", Table::new(columns, &rows)?)
+        .with_file("peaks.svg", draw(figure, &[]));
     let mut cases = PageCases::default();
     for ((_, found), (model, distribution)) in all.iter().zip(&distributions) {
         let known = found.largest_rotations_rad.iter().enumerate();
@@ -165,7 +186,8 @@ pub fn results(all: &[(&Scenario, &Results)], figure: Figure) -> Result<Results,
     let what = input_in_words(&[&still, &still]);
     let page = Page::new(title, what, &[&own], &kinds);
     let marked = |figure| draw(figure, &cases.spots);
-    Ok(results.with_page(FILES[0], page, &cases, (&marked, &[])))
+    let results = results.with_page("peaks.html", page, &cases, (&marked, &[]));
+    Ok(results.in_order(&FILES))
 }
 
 /// Name of a model, and its finite rotations with the share of cases up to each.

@@ -11,8 +11,9 @@ use super::ending::columns::{
 };
 use super::ending::{Ending, NoHistory, Verdict, outcome_name};
 use super::quotable::{SurvivorFriction, directions_in_words};
+use super::report::Warnings;
 use crate::dynamics::{Directions, EXCESS_LEVELS, MODEL_LIMIT, OutcomeCount};
-use crate::scenario::{Unlikely, Varied};
+use crate::scenario::Varied;
 use crate::{Outcome, Scenario};
 
 /// A failed or uncertain case, as results list it.
@@ -253,10 +254,8 @@ pub(crate) struct CaseSummary {
     version: String,
     /// The scenario with all defaults.
     scenario: Value,
-    /// Warnings about unlikely numbers, limits of the model, and histories without a verdict.
-    warnings: Vec<String>,
-    /// The numbers of the warnings about unlikely input, which come first in `warnings`, in their order.
-    unlikely: Vec<Unlikely>,
+    #[serde(flatten)]
+    pub(crate) warnings: Warnings,
     /// Name and checksum of each record file.
     record_checksums: Vec<String>,
     /// The only direction of the ground motion that was computed, in words; absent if both count.
@@ -280,7 +279,6 @@ impl CaseSummary {
         warnings: impl IntoIterator<Item = String>,
     ) -> Self {
         let one_direction = one_direction(scenario);
-        let unlikely = scenario.unlikely_in(study);
         let warnings = warnings.into_iter();
         let warnings = warnings.chain(friction.friction_condition.clone());
         let warnings = warnings.chain(one_direction.clone());
@@ -288,11 +286,7 @@ impl CaseSummary {
             program: env!("CARGO_PKG_NAME").to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             scenario: scenario.to_json(),
-            warnings: Unlikely::sentences(&unlikely)
-                .into_iter()
-                .chain(warnings)
-                .collect(),
-            unlikely,
+            warnings: Warnings::new(scenario.unlikely_in(study), warnings),
             record_checksums: scenario.record_checksums(),
             one_direction,
             cases,

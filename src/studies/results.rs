@@ -8,11 +8,13 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 use thiserror::Error;
 
+use super::page::PageTable;
 use super::page_cases::PageCases;
 use super::part::PartError;
+use super::report::{Report, Statement};
 use super::{ModelAnswer, RunnerError, Study};
 use crate::SimulationError;
-use crate::output::{Figure, Folder, OutputError, PrintError, pretty, render, summary_of};
+use crate::output::{Figure, Folder, OutputError, PrintError, Table, pretty, render, summary_of};
 use crate::scenario::ScenarioErrors;
 
 /// Errors of studies.
@@ -80,10 +82,14 @@ pub trait ReportedStudy: Study {
 pub struct Results {
     /// Names and contents of the files. A folder that contains the last file is complete.
     pub files: Vec<(&'static str, Vec<u8>)>,
+    /// The statements of the report.
+    pub statement: Statement,
     /// The report in words: the first line is not indented, the others are, and the last has no line break.
     pub words: String,
     /// The summary as JSON.
     pub summary: Value,
+    /// Tables for the page.
+    pub(super) tables: Vec<PageTable>,
     /// The largest rotation of each case of a suite, or of the scenario itself and each sample of a run, in radians, for the comparison of models of
     /// motion. Infinite if the case overturned; `None` for the scenario itself, and without a complete history.
     pub largest_rotations_rad: Vec<Option<f64>>,
@@ -94,31 +100,39 @@ pub struct Results {
 }
 
 impl Results {
-    /// Makes results of a report, whose JSON is a file and whose template gives the words, and of the contents of the other files, in the order of
-    /// `names`.
+    /// Makes results of a report, whose JSON is a file.
     ///
     /// # Errors
     /// When a number of the report is not finite.
-    pub(super) fn new(
-        names: &[&'static str],
-        report: &(impl Serialize + Template),
-        others: impl IntoIterator<Item = Vec<u8>>,
-    ) -> Result<Self, OutputError> {
-        let summary = summary_of(report)?;
-        let mut others = others.into_iter();
-        let file = |name: &&'static str| {
-            let contents = match name.ends_with(".json") {
-                true => pretty(&summary).into_bytes(),
-                false => others.next().expect("every file has its contents"),
-            };
-            (*name, contents)
-        };
+    pub(super) fn of<R: Report>(json: &'static str, report: &R) -> Result<Self, OutputError> {
+        let (summary, statement) = (summary_of(report)?, Statement::of(report));
         Ok(Self {
-            files: names.iter().map(file).collect(),
-            words: words_of(report),
+            files: vec![(json, pretty(&summary).into_bytes())],
+            words: statement.in_words(),
+            statement,
             summary,
             ..Self::default()
         })
+    }
+
+    /// Adds a file, such as a picture.
+    pub(super) fn with_file(mut self, name: &'static str, contents: impl Into<Vec<u8>>) -> Self {
+        self.files.push((name, contents.into()));
+        self
+    }
+
+    /// Adds a table. The page shows the first table first, with the cases in its rows.
+    pub(super) fn with_table(mut self, name: &'static str, table: Table) -> Self {
+        self.tables.push(PageTable::of(name, &table));
+        self.with_file(name, table.csv)
+    }
+
+    /// Puts the files into the order of a list of names, which has all of them.
+    pub(super) fn in_order(mut self, names: &[&'static str]) -> Self {
+        let place = |name: &str| names.iter().position(|known| *known == name);
+        debug_assert!(self.files.iter().all(|(name, _)| place(name).is_some()));
+        self.files.sort_by_key(|(name, _)| place(name));
+        self
     }
 
     /// Returns the names of the files, in their order.
@@ -134,14 +148,20 @@ impl Results {
         let mut files = self.files.iter();
         files.try_for_each(|(name, contents)| folder.write(name, contents))
     }
+
+    /// Returns the names of the columns with text, for each table.
+    pub fn text_columns(&self) -> impl Iterator<Item = (&str, &[String])> {
+        let tables = self.tables.iter();
+        tables.map(|table| (table.name.as_str(), table.text_columns.as_slice()))
+    }
 }
 
 /// Makes the words of a report of this type from its JSON alone.
 ///
 /// # Errors
 /// When it is not the JSON of such a report.
-pub fn words_of_json<R: DeserializeOwned + Template>(json: &Value) -> serde_json::Result<String> {
-    Ok(words_of(&R::deserialize(json)?))
+pub fn words_of_json<R: DeserializeOwned + Report>(json: &Value) -> serde_json::Result<String> {
+    Ok(Statement::of(&R::deserialize(json)?).in_words())
 }
 
 /// Returns the words of a report, without a line break at the end.

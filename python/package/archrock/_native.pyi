@@ -13,6 +13,8 @@ from ._samples import Samples
 
 Progress = Callable[[int, int], object]
 
+TextColumns = list[tuple[str, list[str]]]
+
 MEMORY_GB: float
 MODELS: list[tuple[str, str]]
 
@@ -80,7 +82,7 @@ def study(
     along: tuple[str, bool] | None,
     threads: int | None,
     progress: Progress | None,
-) -> tuple[list[tuple[str, bytes]], str]: ...
+) -> tuple[list[tuple[str, bytes]], str, TextColumns]: ...
 def compute_part(
     scenario: Scenario,
     kind: str,
@@ -91,7 +93,7 @@ def compute_part(
 ) -> str: ...
 def merge(
     parts: Sequence[str | os.PathLike[str]], scenario: Scenario | None
-) -> tuple[str, list[tuple[str, bytes]], str]: ...
+) -> tuple[str, list[tuple[str, bytes]], str, TextColumns]: ...
 def save(
     folder: str | os.PathLike[str], files: Sequence[tuple[str, bytes]], origin: str
 ) -> list[str]: ...

@@ -52,13 +52,19 @@ def span(
 class Files(Summarised):
     """Files as the program writes them, held in memory. The keys of :attr:`summary` are attributes too."""
 
-    __slots__ = ("_files", "_origin")
+    __slots__ = ("_files", "_origin", "_texts")
 
     _json: str
 
-    def __init__(self, files: Iterable[tuple[str, bytes]], origin: str) -> None:
+    def __init__(
+        self,
+        files: Iterable[tuple[str, bytes]],
+        origin: str,
+        texts: Iterable[tuple[str, Sequence[str]]] = (),
+    ) -> None:
         self._files = tuple((name, bytes(contents)) for name, contents in files)
         self._origin = origin
+        self._texts = {name: frozenset(columns) for name, columns in texts}
 
     @property
     def files(self) -> dict[str, bytes]:
@@ -93,7 +99,8 @@ class Files(Summarised):
         return hash(self._files)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return type(self), (self._files, self._origin)
+        texts = tuple((name, tuple(columns)) for name, columns in self._texts.items())
+        return type(self), (self._files, self._origin, texts)
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__}: {', '.join(self.files)}>"
@@ -109,10 +116,11 @@ class Results(Files):
 
     def columns(self, file: str | None = None) -> dict[str, npt.NDArray[Any]]:
         """The columns of a table, by default the study's main one; empty cells of numbers are NaN."""
-        rows = list(csv.reader(io.StringIO(self.files[file or self._table].decode())))
-        return {
-            name: _column([row[index] for row in rows[1:]]) for index, name in enumerate(rows[0])
-        }
+        file = file or self._table
+        header, *rows = csv.reader(io.StringIO(self.files[file].decode()))
+        texts = self._texts.get(file, frozenset())
+        columns = zip(header, zip(*rows)) if rows else ((name, ()) for name in header)
+        return {name: _column(cells, name in texts) for name, cells in columns}
 
     def to_pandas(self, file: str | None = None) -> pandas.DataFrame:
         """A table of the study, by default its main one. Needs pandas."""
@@ -134,11 +142,10 @@ class Results(Files):
         return self.files[self._picture].decode()
 
 
-def _column(cells: list[str]) -> npt.NDArray[Any]:
-    try:
-        return np.array([float(cell) if cell else np.nan for cell in cells])
-    except ValueError:
+def _column(cells: Sequence[str], is_text: bool) -> npt.NDArray[Any]:
+    if is_text:
         return np.array(cells)
+    return np.array([float(cell) if cell else np.nan for cell in cells])
 
 
 class _Plane(Results):
@@ -619,8 +626,8 @@ def _study(
     progress: Progress | None = None,
     factors: tuple[float | None, float | None, float] | None = None,
     along: tuple[str, bool] | None = None,
-) -> tuple[list[tuple[str, bytes]], str]:
-    """The files of a study, and their origin for the list of a folder."""
+) -> tuple[list[tuple[str, bytes]], str, list[tuple[str, list[str]]]]:
+    """The files of a study, their origin for the list of a folder, and the columns with text of each table."""
     if progress is not None and not callable(progress):
         raise TypeError("`progress` must be a function of two numbers")
     return _native.study(scenario._native, kind, factors, along, _allowed(threads), progress)
@@ -1057,5 +1064,5 @@ def merge(
     if not isinstance(scenario, (Scenario, type(None))):
         raise TypeError(f"`scenario` must be a Scenario, not {type(scenario).__name__}")
     native = None if scenario is None else scenario._native
-    study, files, origin = _native.merge(list(parts), native)
-    return _warned(_KINDS[study](files, origin))
+    study, *results = _native.merge(list(parts), native)
+    return _warned(_KINDS[study](*results))

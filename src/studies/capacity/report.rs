@@ -10,10 +10,11 @@ use crate::argument::{fixed, plain};
 use crate::mechanics::{Capacity, CurvePoint, Parts as _, Sides, TieEventDisplacements};
 use crate::output::page::{Spot, SpotKind};
 use crate::output::{
-    CURVES, Chart, Figure, Mark, Named, OutputError, column, csv, fields, filters,
+    CURVES, Chart, Figure, Mark, Named, OutputError, Table, column, fields, filters,
 };
-use crate::scenario::{Unlikely, Varied};
+use crate::scenario::Varied;
 use crate::studies::page::{Page, PageCases};
+use crate::studies::report::{Report, Warnings};
 use crate::studies::results::Results;
 use crate::{Scenario, Sway};
 
@@ -33,10 +34,9 @@ pub struct Summary {
     pub capacity: Sides<Option<CapacitySide>>,
     /// Parts of the structure whose centres carry the masses, in words.
     pub masses: String,
-    /// Warnings about unlikely numbers of the scenario.
-    pub warnings: Vec<String>,
-    /// The numbers of the warnings about unlikely input, which come first in `warnings`, in their order.
-    pub unlikely: Vec<Unlikely>,
+    /// The warnings.
+    #[serde(flatten)]
+    pub warnings: Warnings,
     /// The scenario with all defaults.
     pub scenario: Value,
 }
@@ -115,21 +115,20 @@ pub fn report(
         Ok(Some(row)) => row.parts_in_words(),
         _ => scenario.structure.as_parts().parts_in_words(),
     };
-    let unlikely = scenario.unlikely_in(&Varied::default());
     let summary = Summary {
         capacity: sides.map(|side| {
             let side = side.as_ref();
             side.map(|side| CapacitySide::of(side, scenario.gravity_m_s2()))
         }),
         masses,
-        warnings: Unlikely::sentences(&unlikely),
-        unlikely,
+        warnings: Warnings::new(scenario.unlikely_in(&Varied::default()), []),
         scenario: scenario.to_json(),
     };
     let title = scenario.title.as_deref().unwrap_or("Capacity");
     let picture = chart(sides, figure, &[]).draw(figure, title);
-    let others = [picture.into_bytes(), table(sides)?];
-    let results = Results::new(&FILES[1..], &summary, others)?;
+    let results = Results::of("capacity.json", &summary)?
+        .with_table("capacity.csv", table(sides)?)
+        .with_file("capacity.svg", picture);
     let mut cases = PageCases::default();
     for (sway, point) in points(sides) {
         let (d_m, a_g) = (plain(point.displacement_m), plain(point.acceleration_g));
@@ -145,23 +144,34 @@ pub fn report(
         .find_map(|(_, side)| Some(side.as_ref()?.control.at_m));
     let control_m = control_m.unwrap_or_default();
     let draw = |figure| chart(sides, figure, &cases.spots).draw(figure, title);
-    let sides_in_words = summary.sides().into_iter().map(|(sway, side)| {
-        let (start_g, end_m) = (side.acceleration_g, side.ultimate_displacement_m);
-        let (sway, start_g, end_m) = (sway.name(), fixed(start_g, 4), fixed(end_m, 4));
-        format!(
-            "to the {sway}: {start_g} g starts it, and it would fall at a displacement of {end_m} m"
-        )
-    });
-    let verdict: Vec<String> = sides_in_words.collect();
     let masses = format!("masses at the centres of {}", summary.masses);
     let what = scenario.structure.described();
     let mut page = Page::new(title, what, &[STATIC, &masses], &[]);
-    page.verdict = verdict.join("; ");
     page.command = format!(
         "capacity - --point {:?},{:?} --out case",
         control_m.x, control_m.y
     );
-    Ok(results.with_page(FILES[0], page, &cases, (&draw, &[])))
+    let results = results.with_page("capacity.html", page, &cases, (&draw, &[]));
+    Ok(results.in_order(&FILES))
+}
+
+impl Report for Summary {
+    const IS_TABLE: bool = true;
+
+    fn verdict(&self) -> String {
+        let sides = self.sides().into_iter().map(|(sway, side)| {
+            let (start_g, end_m) = (side.acceleration_g, side.ultimate_displacement_m);
+            let (sway, start_g, end_m) = (sway.name(), fixed(start_g, 4), fixed(end_m, 4));
+            format!(
+                "to the {sway}: {start_g} g starts it, and it would fall at a displacement of {end_m} m"
+            )
+        });
+        sides.collect::<Vec<_>>().join("; ")
+    }
+
+    fn warnings(&self) -> &Warnings {
+        &self.warnings
+    }
 }
 
 const STATIC: &str = "the first mechanism, held at each displacement without inertia and without slip; the hinges stay where they open";
@@ -194,7 +204,7 @@ fn chart(sides: &Sides<Option<Capacity>>, figure: Figure, spots: &[Spot]) -> Cha
 }
 
 /// Makes the table of the points of the curves, to the right first. The secant period is empty at the unstable equilibrium.
-fn table(sides: &Sides<Option<Capacity>>) -> Result<Vec<u8>, OutputError> {
+fn table(sides: &Sides<Option<Capacity>>) -> Result<Table, OutputError> {
     type Row<'a> = (Sway, &'a CurvePoint);
     let rows: Vec<Row<'_>> = points(sides).collect();
     let mut columns = vec![column("sway", |row: &Row<'_>| row.0.name())];
@@ -202,5 +212,5 @@ fn table(sides: &Sides<Option<Capacity>>) -> Result<Vec<u8>, OutputError> {
         |row: &Row<'_>| row.1 => q_rad, displacement_m, acceleration_g, oscillator_displacement_m,
         oscillator_acceleration_g, secant_period_s
     ));
-    csv(columns, &rows)
+    Table::new(columns, &rows)
 }

@@ -6,9 +6,10 @@ use serde_json::Value;
 use super::influence::{InfluencedAnswer, Influences, NumberInfluence, percent};
 use super::samples::ReasonCounts;
 use super::{NoAnswer, SampleRow, Samples};
-use crate::output::{Cell, Column, Figure, OutputError, column, csv, list};
-use crate::scenario::{Unlikely, Varied};
+use crate::output::{Cell, Column, Figure, OutputError, Table, column, list};
+use crate::scenario::Varied;
 use crate::studies::quotable::SurvivorFriction;
+use crate::studies::report::Warnings;
 use crate::studies::statistics::Share;
 use crate::studies::{ModelCheck, one_direction};
 
@@ -19,7 +20,7 @@ pub(super) type Line<'a, A> = (usize, &'a SampleRow<A>);
 pub(super) fn table<'a, A: 'a>(
     samples: &Samples<'a, A>,
     columns: impl IntoIterator<Item = Column<'a, Line<'a, A>>>,
-) -> Result<Vec<u8>, OutputError> {
+) -> Result<Table, OutputError> {
     let uncertain = &samples.uncertain.keys;
     let keys = uncertain.iter().map(|key| key.key.clone());
     let mut all = vec![
@@ -32,7 +33,7 @@ pub(super) fn table<'a, A: 'a>(
         }),
     ];
     all.extend(columns);
-    csv(all, &samples.lines().collect::<Vec<_>>())
+    Table::new(all, &samples.lines().collect::<Vec<_>>())
 }
 
 /// Returns a column of the answers; it is empty for samples without an answer.
@@ -64,10 +65,8 @@ pub(super) struct SampleSummary {
     version: String,
     /// The scenario with all defaults.
     scenario: Value,
-    /// Warnings about unlikely numbers, limits of the model, and histories without a verdict.
-    warnings: Vec<String>,
-    /// The numbers of the warnings about unlikely input, which come first in `warnings`, in their order.
-    unlikely: Vec<Unlikely>,
+    #[serde(flatten)]
+    pub(super) warnings: Warnings,
     /// The only direction of the ground motion that was computed, in words; absent if both count.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) one_direction: Option<String>,
@@ -128,7 +127,6 @@ impl SampleSummary {
         let limits = [outside_in_words(&model, checked), no_verdict];
         let limits = limits.into_iter().flatten().chain(condition);
         let limits = limits.chain(one_direction.clone());
-        let unlikely = scenario.unlikely_in(study);
         let own = samples.own.as_ref().err();
         let without = samples.without().map(|(sample, why)| WithoutAnswer {
             sample,
@@ -139,11 +137,7 @@ impl SampleSummary {
             program: env!("CARGO_PKG_NAME").to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             scenario: scenario.to_json(),
-            warnings: Unlikely::sentences(&unlikely)
-                .into_iter()
-                .chain(limits)
-                .collect(),
-            unlikely,
+            warnings: Warnings::new(scenario.unlikely_in(study), limits),
             one_direction,
             samples: samples.rows.len(),
             answered: samples.answers().count(),
@@ -163,9 +157,12 @@ impl SampleSummary {
         self.what_matters.draw(figure, title)
     }
 
-    /// Returns the number of histories outside the model of four links in words, as [`outside_in_words`].
-    pub(super) fn outside_in_words(&self, checked: &str) -> Option<String> {
-        outside_in_words(&self.model, checked)
+    /// Returns the verdict on the samples; that there is none without an answer.
+    pub(super) fn verdict(&self, verdict: impl FnOnce() -> String) -> String {
+        match self.answered {
+            0 => "no sample has a verdict".to_owned(),
+            _ => verdict(),
+        }
     }
 
     /// Returns the reason of the first sample that has no answer for this reason.
@@ -213,16 +210,15 @@ impl Share {
         }
     }
 
-    /// Returns the treatment of uncertain samples, and of samples without a verdict, in a probability of overturning, in words; empty without such
+    /// Returns the treatment of uncertain samples, and of samples without a verdict, in a probability of overturning, in words; `None` without such
     /// samples.
-    pub(super) fn doubts_in_words(&self) -> String {
+    pub(super) fn doubts_in_words(&self) -> Option<String> {
         let (uncertain, no_verdict) = (self.uncertain, self.no_verdict);
-        match uncertain + no_verdict {
-            0 => String::new(),
-            _ => format!(
-                ";\n    the interval holds whether {uncertain} uncertain samples, counted with the fraction of their repetitions that \
+        (uncertain + no_verdict > 0).then(|| {
+            format!(
+                "the interval holds whether {uncertain} uncertain samples, counted with the fraction of their repetitions that \
                  overturn, and {no_verdict} samples without a verdict survive or overturn"
-            ),
-        }
+            )
+        })
     }
 }

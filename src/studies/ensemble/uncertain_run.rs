@@ -15,14 +15,15 @@ use crate::dynamics::repeatability::{CheckedHistory, checked, repeated};
 use crate::dynamics::{Direction, EndCondition, WithoutDemand};
 use crate::output::panels::{MAIN, scale_around};
 use crate::output::{
-    Figure, Key, Mark, OutputError, Panels, Scale, Sign, Stroke, Subject, color, column, csv, each,
-    filters, list,
+    Figure, Key, Mark, OutputError, Panels, Scale, Sign, Stroke, Subject, Table, color, column,
+    each, filters, list,
 };
 use crate::scenario::{MotionModel, Scenario, Structure, Varied};
 use crate::studies::Results;
 use crate::studies::ending::columns::{self, OUTCOMES, OVERTURNED};
 use crate::studies::page::kind_of;
 use crate::studies::quotable::SurvivorFriction;
+use crate::studies::report::{Report, Warnings};
 use crate::studies::statistics::{Share, band, fractile, quantile};
 use crate::{Ending, Factors, Model, NoHistory, Sample, Verdict};
 
@@ -152,13 +153,11 @@ impl Question for Histories {
             false => of_answer("peak_rotation_rad", rotation),
         });
         let bands = self.bands(samples);
-        let others = [
-            self.draw(figure, samples, &bands).into_bytes(),
-            report.all.draw_influences(samples, figure).into_bytes(),
-            table(&bands)?,
-            report::table(samples, columns)?,
-        ];
-        let results = Results::new(&Self::FILES[1..], &report, others)?;
+        let results = Results::of("uncertain.json", &report)?
+            .with_table("samples.csv", report::table(samples, columns)?)
+            .with_table("bands.csv", table(&bands)?)
+            .with_file("bands.svg", self.draw(figure, samples, &bands))
+            .with_file("matters.svg", report.all.draw_influences(samples, figure));
         let page = SamplePage {
             title: samples.title(TITLE),
             label: "peak rotation (rad)",
@@ -168,7 +167,9 @@ impl Question for Histories {
         };
         Ok(Results {
             largest_rotations_rad,
-            ..page.add_to(results, samples, &report.all)
+            ..page
+                .add_to(results, samples, &report.all)
+                .in_order(Self::FILES)
         })
     }
 
@@ -432,6 +433,19 @@ impl OwnHistory {
     }
 }
 
+impl Report for Summary {
+    fn verdict(&self) -> String {
+        let share = self.outcomes.get(OVERTURNED);
+        let share = share.map_or(String::new(), Share::in_words);
+        let words = format!("overturns with a probability of {share} of [uncertain]");
+        self.all.verdict(|| words)
+    }
+
+    fn warnings(&self) -> &Warnings {
+        &self.all.warnings
+    }
+}
+
 impl Summary {
     /// Returns the outcomes of samples, in words, with their shares.
     fn outcomes(&self) -> impl Iterator<Item = (String, &Share)> {
@@ -453,7 +467,7 @@ struct BandAt {
     overturned: usize,
 }
 
-fn table(bands: &[BandAt]) -> Result<Vec<u8>, OutputError> {
+fn table(bands: &[BandAt]) -> Result<Table, OutputError> {
     let quantiles = ["quantile_05_rad", "median_rad", "quantile_95_rad"];
     let finite = |rad: f64| Some(rad).filter(|rad| rad.is_finite());
     let columns = [
@@ -462,7 +476,7 @@ fn table(bands: &[BandAt]) -> Result<Vec<u8>, OutputError> {
         list(quantiles, |at: &BandAt| at.band_rad.map(finite)),
         column("overturned", |at: &BandAt| at.overturned),
     ];
-    csv(columns, bands)
+    Table::new(columns, bands)
 }
 
 /// Returns a quantile of the largest rotation in words.

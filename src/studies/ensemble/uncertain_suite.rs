@@ -11,12 +11,13 @@ use super::uncertain_threshold::{StrengthBand, first_strength};
 use super::{NoAnswer, Question, Samples};
 use crate::dynamics::{Direction, Directions};
 use crate::output::page::SpotKind;
-use crate::output::{Chart, Figure, Key, Mark, OutputError, Scale, Stroke, color, column, csv};
+use crate::output::{Chart, Figure, Key, Mark, OutputError, Scale, Stroke, Table, color, column};
 use crate::scenario::{Measure, Scenario, Suite, Varied, shown};
 use crate::studies::intervals::{FRACTILES, FractileIntervals};
 use crate::studies::quotable::{
     self, ModelAnswer, SlipWords, SurvivorFriction, directions_in_words,
 };
+use crate::studies::report::{Report, Warnings};
 use crate::studies::statistics::{ascending_weighted, shares_up_to, weighted_fractile};
 use crate::studies::suite::strength::few;
 use crate::studies::suite::{OF_LEVELS, case, directions, records_in_words};
@@ -47,11 +48,11 @@ impl Capacities {
     }
 
     /// Returns the name and the sign of each record, in the order of the answers.
-    fn shakes(&self) -> impl Iterator<Item = (&str, &'static str)> {
+    fn shakes(&self) -> impl Iterator<Item = (&str, i64)> {
         let signs: &[_] = match self.directions {
-            Directions::Both => &["1", "-1"],
-            Directions::AsGiven => &["1"],
-            Directions::Mirrored => &["-1"],
+            Directions::Both => &[1, -1],
+            Directions::AsGiven => &[1],
+            Directions::Mirrored => &[-1],
         };
         let records = self.suite.records.iter();
         records.flat_map(move |series| signs.iter().map(|sign| (series.name.as_str(), *sign)))
@@ -85,8 +86,8 @@ impl Capacities {
     }
 
     /// Makes the table of all edges.
-    fn table(&self, samples: &Samples<'_, Edges>) -> Result<Vec<u8>, OutputError> {
-        type Row<'a> = (usize, &'a str, &'static str, &'a FirstEdge);
+    fn table(&self, samples: &Samples<'_, Edges>) -> Result<Table, OutputError> {
+        type Row<'a> = (usize, &'a str, i64, &'a FirstEdge);
         let mut rows: Vec<Row<'_>> = Vec::new();
         for (number, row) in samples.lines() {
             let edges = row.answer.iter().flatten().zip(self.shakes());
@@ -98,7 +99,7 @@ impl Capacities {
             column("sign", |row: &Row<'_>| row.2),
         ];
         columns.extend(FirstEdge::columns("intensity", |row: &Row<'_>| Some(row.3)));
-        csv(columns, &rows)
+        Table::new(columns, &rows)
     }
 
     /// Draws the share that overturns against the intensity: for the scenario itself under all records, for each sample, and for all samples
@@ -211,14 +212,12 @@ impl Question for Capacities {
         };
         let overturned = |edges: &Edges| edges.iter().filter(|edge| edge.factor.is_some()).count();
         let columns = [of_answer("overturned", overturned), why_not()];
-        let others = [
-            self.draw(figure, samples).into_bytes(),
-            report.all.draw_influences(samples, figure).into_bytes(),
-            counted.at_levels()?,
-            self.table(samples)?,
-            report::table(samples, columns)?,
-        ];
-        let results = Results::new(&Self::FILES[1..], &report, others)?;
+        let results = Results::of("uncertain.json", &report)?
+            .with_table("samples.csv", report::table(samples, columns)?)
+            .with_table("capacities.csv", self.table(samples)?)
+            .with_table("fragility.csv", counted.at_levels()?)
+            .with_file("fragility.svg", self.draw(figure, samples))
+            .with_file("matters.svg", report.all.draw_influences(samples, figure));
         let answer = |edges: &Edges| {
             let median = first_strength(edges.iter().filter(inside), 0.5);
             let median = median.map(|(strength, _)| strength);
@@ -236,7 +235,9 @@ impl Question for Capacities {
             answer: &answer,
             picture: &|figure| self.draw(figure, samples),
         };
-        Ok(page.add_to(results, samples, &report.all))
+        Ok(page
+            .add_to(results, samples, &report.all)
+            .in_order(Self::FILES))
     }
 
     fn answer(&self, scenario: &Scenario) -> Result<Edges, NoAnswer> {
@@ -288,6 +289,33 @@ pub struct Summary {
     edges: usize,
     /// Number of edges at the lowest level already.
     at_lowest_level: usize,
+}
+
+impl Report for Summary {
+    fn verdict(&self) -> String {
+        let (unit, name) = (self.intensity.unit(), self.intensity.name());
+        let at = |which, before: &str| {
+            let words = [before, unit];
+            self.first_intensity.in_words(which, &words, NOWHERE)
+        };
+        self.all.verdict(|| {
+            format!(
+                "overturns with a probability of 5 % {}, of 50 % {} (dispersion {}), over records and {} samples of [uncertain]",
+                at(0, &format!("{name} ")),
+                at(1, ""),
+                estimated(&self.fragility.both.dispersion, &None, ""),
+                self.all.samples
+            )
+        })
+    }
+
+    fn quote(&self) -> Option<&str> {
+        self.to_quote.as_deref()
+    }
+
+    fn warnings(&self) -> &Warnings {
+        &self.all.warnings
+    }
 }
 
 /// Words for an intensity at which too few records overturn.
@@ -461,7 +489,7 @@ impl<'a> Counted<'a> {
     }
 
     /// Makes the table of the shares that overturn up to each level: of the records with the scenario itself, and of all samples.
-    fn at_levels(&self) -> Result<Vec<u8>, OutputError> {
+    fn at_levels(&self) -> Result<Table, OutputError> {
         let share = |edges: Vec<&FirstEdge>, level: f64| {
             let overturned = edges.iter().filter_map(|edge| edge.overturns_up_to(level));
             (!edges.is_empty()).then(|| overturned.sum::<f64>() / edges.len() as f64)
@@ -474,7 +502,7 @@ impl<'a> Counted<'a> {
             column("record_to_record", own),
             column("both", all),
         ];
-        csv(columns, &self.question.levels)
+        Table::new(columns, &self.question.levels)
     }
 }
 

@@ -11,7 +11,7 @@ use super::report::{self, Band, Line, SampleSummary, why_not};
 use super::{NoAnswer, Question, Samples};
 use crate::dynamics::Direction;
 use crate::output::{
-    Chart, Figure, Key, Mark, OutputError, Scale, Sign, Stroke, color, column, csv, each, list,
+    Chart, Figure, Key, Mark, OutputError, Scale, Sign, Stroke, Table, color, column, each, list,
 };
 use crate::scenario::Scenario;
 use crate::studies::Results;
@@ -19,6 +19,7 @@ use crate::studies::intervals::{LEAST_FOR_LIMIT, rank_of_lower_limit};
 use crate::studies::quotable::{
     self, ModelAnswer, SlipWords, SurvivorFriction, directions_in_words,
 };
+use crate::studies::report::{Report, Warnings};
 use crate::studies::statistics::{
     BAND, Share, ascending, ascending_weighted, band, fractile, weighted_fractile,
 };
@@ -174,13 +175,11 @@ impl Question for FirstEdges {
         let direction =
             FirstEdge::direction_column(|(_, row): &Line<'_, FirstEdge>| row.answer.as_ref().ok());
         let columns = columns.into_iter().chain([direction, why_not()]);
-        let others = [
-            draw(figure, samples, &probabilities).into_bytes(),
-            report.all.draw_influences(samples, figure).into_bytes(),
-            csv(shares, &probabilities)?,
-            report::table(samples, columns)?,
-        ];
-        let results = Results::new(&Self::FILES[1..], &report, others)?;
+        let results = Results::of("uncertain.json", &report)?
+            .with_table("samples.csv", report::table(samples, columns)?)
+            .with_table("probability.csv", Table::new(shares, &probabilities)?)
+            .with_file("probability.svg", draw(figure, samples, &probabilities))
+            .with_file("matters.svg", report.all.draw_influences(samples, figure));
         let page = SamplePage {
             title: samples.title(TITLE),
             label: "first factor that overturns",
@@ -188,7 +187,9 @@ impl Question for FirstEdges {
             answer: &|edge: &FirstEdge| (edge.spot_kind(), false, edge.factor),
             picture: &|figure| draw(figure, samples, &probabilities),
         };
-        Ok(page.add_to(results, samples, &report.all))
+        Ok(page
+            .add_to(results, samples, &report.all)
+            .in_order(Self::FILES))
     }
 
     fn answer(&self, scenario: &Scenario) -> Result<FirstEdge, NoAnswer> {
@@ -316,6 +317,30 @@ fn share_up_to(samples: &Samples<'_, FirstEdge>, factor: f64) -> Option<Share> {
     let mut answers = samples.answers();
     let known = answers.all(|edge| edge.overturns_up_to(factor).is_some());
     known.then(|| samples.share(|edge| edge.overturns_up_to(factor).unwrap_or(0.0)))?
+}
+
+impl Report for Summary {
+    fn verdict(&self) -> String {
+        self.all.verdict(|| {
+            let Band {
+                quantile_05, median, ..
+            } = &self.survives_up_to_factor;
+            format!(
+                "95 % of the samples certainly survive up to {}, half of them up to {}, the scenario itself up to {}",
+                safe(quantile_05),
+                safe(median),
+                self.own_safe()
+            )
+        })
+    }
+
+    fn quote(&self) -> Option<&str> {
+        self.to_quote.as_deref()
+    }
+
+    fn warnings(&self) -> &Warnings {
+        &self.all.warnings
+    }
 }
 
 impl Summary {

@@ -13,8 +13,9 @@ use crate::argument::fixed;
 use crate::mechanics::four_link::{HingeSites, Impact, ImpulseLine, Projection};
 use crate::mechanics::{Edge, Profile};
 use crate::output::mechanisms::{HINGES, degrees};
-use crate::output::{Cell, OutputError, column, csv, filters};
-use crate::scenario::{Unlikely, Varied};
+use crate::output::{Cell, OutputError, Table, column, filters};
+use crate::scenario::Varied;
+use crate::studies::report::{Report, Warnings};
 use crate::{Hinge, ImpactModel, MechanismModel, Scenario, Sway};
 
 /// Impacts of the structure of a scenario.
@@ -32,10 +33,9 @@ pub struct Summary {
     /// The largest restitution of all admissible motions; absent unless requested.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub certificate: Option<Certificate>,
-    /// Warnings about unlikely numbers of the scenario.
-    pub warnings: Vec<String>,
-    /// The numbers of the warnings about unlikely input, which come first in `warnings`, in their order.
-    pub unlikely: Vec<Unlikely>,
+    /// The warnings.
+    #[serde(flatten)]
+    pub warnings: Warnings,
     /// The mechanism before the first impact of each chain.
     pub starts: Vec<SwayingMechanism>,
     /// The requested number of impacts.
@@ -397,6 +397,25 @@ impl Zone {
     }
 }
 
+impl Report for Summary {
+    const IS_TABLE: bool = true;
+
+    fn verdict(&self) -> String {
+        let first = self.impacts.first();
+        first.map_or(
+            "no mechanism can follow the first impact".to_owned(),
+            |first| {
+                let restitution = fixed(first.restitution, 4);
+                format!("energy after the first impact over that before: {restitution}")
+            },
+        )
+    }
+
+    fn warnings(&self) -> &Warnings {
+        &self.warnings
+    }
+}
+
 impl Summary {
     pub(super) fn new(
         scenario: &Scenario,
@@ -413,14 +432,12 @@ impl Summary {
         let starts = sides
             .iter()
             .map(|side| SwayingMechanism::of(model, *side, 0));
-        let unlikely = scenario.unlikely_in(&Varied::default());
         Self {
             impacts: chain(sides[0]),
             impacts_after_left: sides.get(1).map(|side| chain(*side)),
             models: None,
             certificate: None,
-            warnings: Unlikely::sentences(&unlikely),
-            unlikely,
+            warnings: Warnings::new(scenario.unlikely_in(&Varied::default()), []),
             starts: starts.collect(),
             count,
             chosen: None,
@@ -505,6 +522,6 @@ impl LinkImpact<'_> {
             column("normal_n_s_per_m", |place| at(place).normal * unit),
             column("tangential_n_s_per_m", |place| at(place).tangential * unit),
         ];
-        Some(csv(columns, &sections))
+        Some(Table::new(columns, &sections).map(|table| table.csv))
     }
 }

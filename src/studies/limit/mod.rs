@@ -9,11 +9,12 @@ pub use self::report::{
     FourLinkSide, FourLinks, Friction, FrictionLimit, FrictionSide, Summary, TieLimits, Ties,
     YieldingTies,
 };
+use super::report::Warnings;
 use super::results::{PrintedResult, StudyError};
 use crate::mechanics::friction::{self, FrictionOnset};
 use crate::mechanics::stability::{is_straight, limit_with_yielding_ties, onset, onset_at};
 use crate::mechanics::{Follower, FrictionError, Movements, RowOnset, Sides, StabilityError};
-use crate::scenario::{Unlikely, Varied};
+use crate::scenario::Varied;
 use crate::{FourLinkError, Row, RowModelError, Scenario, Sway};
 
 /// The reason why no push starts an arch in which limit analysis has no mechanism.
@@ -71,8 +72,7 @@ fn summary(scenario: &Scenario) -> Result<Summary, StudyError> {
     if let Some(coefficient) = coefficient {
         summary.friction = Some(with_friction(&row()?, coefficient, summary.wall_behind)?);
     }
-    summary.unlikely = scenario.unlikely_in(&Varied::default());
-    summary.warnings = Unlikely::sentences(&summary.unlikely);
+    summary.warnings = Warnings::new(scenario.unlikely_in(&Varied::default()), []);
     Ok(summary)
 }
 
@@ -204,8 +204,7 @@ fn of_moved_row(
         None => Ok(None),
     });
     let mut summary = Summary::new(starts_g, mechanism, scenario.gravity_m_s2());
-    summary.unlikely = scenario.unlikely_in(&Varied::default());
-    summary.warnings = Unlikely::sentences(&summary.unlikely);
+    summary.warnings = Warnings::new(scenario.unlikely_in(&Varied::default()), []);
     summary.capacity_g = Some(capacity.map(|found| found.as_ref().ok().copied().flatten()));
     summary.capacity_not_found =
         Some(capacity.map(|found| found.as_ref().err().map(ToString::to_string)));

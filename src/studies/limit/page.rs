@@ -6,7 +6,7 @@ use crate::output::elevation::draw_hinges;
 use crate::output::page::{Spot, SpotKind};
 use crate::output::{Figure, Scene};
 use crate::studies::draw_limit;
-use crate::studies::page::{DrawPicture, Page, PageCases};
+use crate::studies::page::{DrawPicture, Marked, Page, PageCases};
 use crate::studies::results::{Results, StudyError};
 use crate::{Scenario, Sway};
 
@@ -49,9 +49,9 @@ pub fn results(scenario: &Scenario, figure: Figure) -> Result<Results, StudyErro
     let model = model.ok().flatten().filter(|_| as_built);
     let rocking = |figure, sway| Some(draw_limit(figure, model.as_ref()?, sway, &scene));
     let picture = rocking(figure, Sway::Right).unwrap_or_else(|| at_rest(figure, &[]));
-    let results = Results::new(&FILES[1..], &summary, [picture.into_bytes()])?;
+    let results = Results::of("limit.json", &summary)?.with_file("limit.svg", picture);
     let mut page = Page::new(title, scenario.structure.described(), &[SLOWLY], &[]);
-    page.verdict = summary.verdict();
+    page.marked = Marked::Hinges;
     page.command = "limit - --out case".to_owned();
     let draw = |figure| at_rest(figure, &cases.spots);
     let right = |figure| rocking(figure, Sway::Right).unwrap_or_default();
@@ -60,5 +60,6 @@ pub fn results(scenario: &Scenario, figure: Figure) -> Result<Results, StudyErro
         true => &[&right, &left],
         false => &[],
     };
-    Ok(results.with_page(FILES[0], page, &cases, (&draw, more)))
+    let results = results.with_page("limit.html", page, &cases, (&draw, more));
+    Ok(results.in_order(&FILES))
 }

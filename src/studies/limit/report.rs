@@ -12,7 +12,7 @@ use crate::mechanics::settling::Pin;
 use crate::mechanics::{Edge, Equivalent, RowOnset, Sides};
 use crate::output::mechanisms::{HINGES, by_body, columns, degrees};
 use crate::output::{Named, Scene, filters};
-use crate::scenario::Unlikely;
+use crate::studies::report::{Report, Warnings};
 use crate::{Hinge, MechanismModel, Row, Sway};
 
 /// The onset of motion of a structure, to either side.
@@ -63,10 +63,9 @@ pub struct Summary {
     /// The onset of motion with slipping joints; absent unless joints may slip.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub friction: Option<Friction>,
-    /// Warnings about unlikely numbers of the scenario.
-    pub warnings: Vec<String>,
-    /// The numbers of the warnings about unlikely input, which come first in `warnings`, in their order.
-    pub unlikely: Vec<Unlikely>,
+    /// The warnings.
+    #[serde(flatten)]
+    pub warnings: Warnings,
     /// Names of the bodies of the first mechanism, from left to right; absent unless the structure moves as four links or as a column.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub bodies: Vec<String>,
@@ -193,6 +192,24 @@ pub struct FrictionSide {
     pub mechanism: Option<Vec<YieldingJoint>>,
 }
 
+impl Report for Summary {
+    const IS_TABLE: bool = true;
+
+    fn verdict(&self) -> String {
+        let friction = self.friction.as_ref().map(|friction| {
+            let [right, left] = Sides::of(|sway| friction.starts(&sway)).into();
+            format!("{}: {right}; {left}", friction.heading())
+        });
+        let all = self.pushes().into_iter();
+        let all = all.chain(self.needs_friction()).chain(friction);
+        all.collect::<Vec<_>>().join("; ")
+    }
+
+    fn warnings(&self) -> &Warnings {
+        &self.warnings
+    }
+}
+
 impl Summary {
     /// Makes a summary of the push that starts the structure and its mechanism.
     pub(super) fn new(
@@ -233,17 +250,6 @@ impl Summary {
             bodies,
             ..Self::new(starts_g, Sides::of(hinges), gravity_m_s2)
         }
-    }
-
-    /// Returns all pushes in one line.
-    pub(super) fn verdict(&self) -> String {
-        let friction = self.friction.as_ref().map(|friction| {
-            let [right, left] = Sides::of(|sway| friction.starts(&sway)).into();
-            format!("{}: {right}; {left}", friction.heading())
-        });
-        let all = self.pushes().into_iter();
-        let all = all.chain(self.needs_friction()).chain(friction);
-        all.collect::<Vec<_>>().join("; ")
     }
 
     /// Returns the coefficients of friction that the mechanisms need in words; `None` if none is known.

@@ -14,7 +14,9 @@ use crate::output::caption::caption;
 use crate::output::page::{BASE, PROGRAM, STYLE, script_safe};
 use crate::output::{Figure, filters, render};
 use crate::scenario::{Quantity, STUDY_TABLES, toml_text};
+use crate::studies::Statement;
 use crate::studies::ending::columns::NUMBERS;
+use crate::studies::page::assumptions;
 
 const SCRIPT: &str = include_str!("page/page.js");
 
@@ -28,12 +30,11 @@ struct Page {
     scenario: String,
     /// The input in one line.
     what: String,
-    /// The condition on friction, in words; `None` without condition.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    friction: Option<String>,
-    /// The use of a map of four links, in words; `None` for other models.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    for_looking: Option<String>,
+    verdict: String,
+    warnings: Vec<String>,
+    /// The details of the report in words.
+    words: String,
+    assumptions: Vec<String>,
     axes: [PageAxis; 2],
     /// The drawings for wide and for narrow screens.
     sheets: [PageSheet; 2],
@@ -86,13 +87,13 @@ pub fn page_of(picture: &str, data: &str) -> serde_json::Result<String> {
 pub(crate) type CellNumbers = (&'static str, Vec<Option<f64>>);
 
 impl ColoredCells {
-    /// Makes the page from a picture of any width, with a condition on friction, reasons for uncertain cells, and columns of numbers.
+    /// Makes the page from a picture of any width, with the statements of the report, reasons for uncertain cells, and columns of numbers.
     pub(crate) fn page(
         &self,
         title: &str,
         map: &OverturningMap<'_>,
         draw: impl Fn(Figure) -> Drawn,
-        friction: Option<String>,
+        said: &Statement,
         (doubts, columns): (
             BTreeMap<usize, String>,
             impl IntoIterator<Item = CellNumbers>,
@@ -135,8 +136,10 @@ impl ColoredCells {
                 edges_px: drawn.edges_px.clone(),
             }),
             what: caption(map.scenario, &map.axes),
-            friction,
-            for_looking: super::for_looking(map.scenario).map(str::to_owned),
+            verdict: said.verdict.clone(),
+            warnings: said.warnings.clone(),
+            words: said.details_outdented(),
+            assumptions: assumptions(&[], &[map.scenario.motion.kind]),
             kinds: BASE64_STANDARD.encode(kinds),
             doubts,
             outside: are(&self.outside),

@@ -6,11 +6,12 @@ use serde::{Deserialize, Serialize};
 use super::picture::{self, ColoredCells};
 use super::{CellRow, OverturningMap, page};
 use crate::argument::plain;
-use crate::output::{Column, OutputError, column, csv};
+use crate::output::{Column, OutputError, Table, column};
 use crate::scenario::{Quantity, Scenario, Varied};
 use crate::studies::ending::Verdict;
 use crate::studies::ending::columns::{self, FAILED};
 use crate::studies::quotable::SurvivorFriction;
+use crate::studies::report::{Report, Warnings};
 use crate::studies::run::Scales;
 use crate::studies::{CaseSummary, OutcomeCounts, Remark, Remarks, ReportedStudy, Results, Style};
 
@@ -65,20 +66,30 @@ impl ReportedStudy for OverturningMap<'_> {
         };
         let colored = ColoredCells::of_outcomes(&cells, style);
         let picture = |style| picture::drawn(title, self, &cells, &colored, style);
+        let results = Results::of(SUMMARY, &report)?;
         let (doubts, columns) = (page::doubts(&cells), page::columns(&cells));
         let page = colored.page(
             title,
             self,
             |figure| picture(style.with(figure)),
-            report.all.friction.friction_condition.clone(),
+            &results.statement,
             (doubts, columns),
         );
-        let others = [
-            picture(style).picture.into_bytes(),
-            page.into_bytes(),
-            csv(self.columns(), &cells)?,
-        ];
-        Results::new(Self::FILES, &report, others)
+        let results = results
+            .with_table("map.csv", Table::new(self.columns(), &cells)?)
+            .with_file("map.svg", picture(style).picture)
+            .with_file("map.html", page);
+        Ok(results.in_order(Self::FILES))
+    }
+}
+
+impl Report for Summary {
+    fn verdict(&self) -> String {
+        format!("{} cells: {}", self.all.cases, self.outcomes)
+    }
+
+    fn warnings(&self) -> &Warnings {
+        &self.all.warnings
     }
 }
 

@@ -88,9 +88,7 @@ pub(super) fn with_page(results: Results, runs: &[Run<'_>], all: &[ModelResults]
     let title = scenario.title.as_deref().unwrap_or("Comparison of models");
     let what = input_in_words(&runs.iter().map(|run| run.scenario).collect::<Vec<_>>());
     let draw = |figure| super::overlay(figure, runs, all, &cases.spots);
-    let warnings = all.iter().flat_map(|one| &one.summary.warnings);
-    let mut page = Page::new(title, what, &[own], &kinds);
-    page.warnings = warnings.cloned().collect();
+    let page = Page::new(title, what, &[own], &kinds);
     results.with_page(REPORT, page, &cases, (&draw, &[]))
 }
 

@@ -50,8 +50,9 @@ pub use self::summary::{
     ComputedRun, MirroredSummary, OutcomeSummary, Summary, VariedRun, summary,
 };
 use self::words::{Files, Printed, Words};
-pub use self::words::{heading, words_of};
+pub use self::words::{records_in_words, words_of};
 use super::quotable::{self, ModelAnswer};
+use super::report::{Statement, Warnings};
 use super::{Progress, Results, StudyError, Watch};
 use crate::dynamics::repeatability::Repetitions;
 use crate::dynamics::{Directions, FallEnd, Repeatability, Variations};
@@ -206,6 +207,10 @@ pub fn results(
     if comparison.is_some() && all[0].files.is_some() {
         results.files = vec![(OVERLAY, overlay(figure, &runs, &all, &[]).into_bytes())];
     }
+    let quote = match &comparison {
+        None => all[0].summary.to_quote.as_deref(),
+        Some(comparison) => comparison.to_quote.as_deref(),
+    };
     let words = |with_files: bool| {
         let printed = all.iter().map(|one| {
             let files = one.files.as_ref().filter(|_| with_files);
@@ -213,16 +218,43 @@ pub fn results(
         });
         super::results::words_of(&Printed {
             comparison: comparison.as_ref(),
+            quote: quote.filter(|_| with_files),
             runs: printed.collect(),
         })
     };
+    // The page may be opened elsewhere, so its words name no folder.
+    results.statement = statement(&all, quote, words(false));
+    results.words = words(true);
     if comparison.is_some() && !results.files.is_empty() && !options.no_report {
-        // The page may be opened elsewhere, so its words name no folder.
-        results.words = words(false);
         results = comparison::with_page(results, &runs, &all);
     }
-    results.words = words(true);
     Ok(results)
+}
+
+/// Returns the statements about all models, with the answer and these details.
+fn statement(all: &[ModelResults], quote: Option<&str>, details: String) -> Statement {
+    let summaries = || all.iter().map(|one| &one.summary);
+    let verdicts = summaries().map(|summary| {
+        let verdict = summary.verdict_line();
+        match all.len() {
+            1 => verdict.trim().to_owned(),
+            _ => format!("{}: {}", summary.label(), verdict.trim()),
+        }
+    });
+    let together = |of: fn(&Warnings) -> &[String]| -> Vec<String> {
+        summaries()
+            .flat_map(|summary| of(&summary.warnings))
+            .cloned()
+            .collect()
+    };
+    Statement {
+        verdict: verdicts.collect::<Vec<_>>().join("\n"),
+        details,
+        warnings: together(Warnings::all),
+        limits: together(Warnings::limits),
+        quote: quote.map(str::to_owned),
+        is_table: true,
+    }
 }
 
 /// Repeats a history of a scenario as a run does, which gives its verdict; `None` if the model has no repetitions.

@@ -14,8 +14,9 @@ use crate::dynamics::{
 use crate::mechanics::Sides;
 use crate::output::mechanisms::columns;
 use crate::output::{Named, OutputError, summary_of};
-use crate::scenario::{ELASTIC_JOINTS, Ground, ModelKind, Scenario, Unlikely, Varied};
+use crate::scenario::{ELASTIC_JOINTS, Ground, ModelKind, Scenario, Varied};
 use crate::studies::quotable::{self, ModelAnswer, QUOTED_PEAK, SlipWords, restitution_in_words};
+use crate::studies::report::Warnings;
 use crate::{MechanismModel, Model, Outcome, Summary as History, Sway, Verdict};
 
 /// A computed motion, with its repetitions and variations.
@@ -55,10 +56,9 @@ pub struct Summary {
     pub record_checksums: Vec<String>,
     /// Verdict on overturning; uncertain if the repetitions disagree. The worse one if the motion was computed in both directions.
     pub verdict: Verdict,
-    /// Warnings about unlikely numbers of the scenario, and about limits of its history.
-    pub warnings: Vec<String>,
-    /// The numbers of the warnings about unlikely input, which come first in `warnings`, in their order.
-    pub unlikely: Vec<Unlikely>,
+    /// The warnings.
+    #[serde(flatten)]
+    pub warnings: Warnings,
     /// Outcome of the motion.
     #[serde(flatten)]
     pub outcome: OutcomeSummary,
@@ -409,7 +409,6 @@ impl Summary {
         let names = columns(&model.bodies(), "peak_rotation", "rad");
         let peaks_rad = history.peak_rotations_rad.iter().copied();
         let [first_impact, hardest_impact] = computed.impacts.first_and_hardest(history);
-        let unlikely = scenario.unlikely_in(&Varied::of_model(model));
         let mut summary = Self {
             program: env!("CARGO_PKG_NAME").to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -417,8 +416,7 @@ impl Summary {
             scenario: scenario.to_json(),
             record_checksums: scenario.record_checksums(),
             verdict: Verdict::Incomplete,
-            warnings: Unlikely::sentences(&unlikely),
-            unlikely,
+            warnings: Warnings::new(scenario.unlikely_in(&Varied::of_model(model)), []),
             outcome: OutcomeSummary::of(history),
             mirrored: computed.mirrored.clone(),
             end_s: history.end_s,
@@ -454,7 +452,8 @@ impl Summary {
         let own = summary.own_verdict();
         let mirrored = summary.mirrored.as_ref();
         summary.verdict = mirrored.map_or(own, |mirrored| own.max(mirrored.verdict));
-        summary.warnings.extend(summary.caveats());
+        let caveats = summary.caveats();
+        summary.warnings.extend(caveats);
         summary.to_quote = quotable::in_words(&[summary.answer(scenario, model)]);
         summary
     }

@@ -26,21 +26,15 @@ use crate::scenario::{ELASTIC_JOINTS, FREE_HINGES, ModelKind, Scenario, Series};
 use crate::studies::quotable::STONE_FRICTION;
 use crate::{Outcome, Verdict};
 
-/// Returns the heading of the words for the runs of scenarios that differ in their models: title, one line per record, and a note about an
-/// ignored table.
-pub fn heading(scenarios: &[Scenario]) -> String {
-    let scenario = &scenarios[0];
-    let title = scenario.title.as_deref();
-    let mut text = title.map_or(String::new(), |title| format!("{title}\n"));
-    text.extend(scenario.series().map(|series: &Series| {
+/// Returns the records of a scenario, one line each.
+pub fn records_in_words(scenario: &Scenario) -> String {
+    let in_words = |series: &Series| {
         let (file, sampling) = (series.name(), series.sampling());
         let peak_g = series.peak_g(scenario.gravity_m_s2());
         let corrections = series.corrections();
         format!("  {file}: {sampling}, peak {peak_g:.4} g as scaled{corrections}\n")
-    }));
-    let ignored = scenarios.iter().find_map(Scenario::ignored);
-    text.extend(ignored.map(|ignored| format!("  {ignored}\n")));
-    text
+    };
+    scenario.series().map(in_words).collect()
 }
 
 /// The verdict: the outcome, its certainty, and the properties that may change it.
@@ -62,6 +56,8 @@ pub(super) struct Words<'a> {
 #[template(path = "studies/run/words/printed.txt")]
 pub(super) struct Printed<'a> {
     pub comparison: Option<&'a Comparison>,
+    /// The answer of the comparison; `None` on a page, which begins with it.
+    pub quote: Option<&'a str>,
     pub runs: Vec<(&'a Summary, Option<&'a Files>)>,
 }
 
@@ -97,6 +93,7 @@ pub fn words_of(json: &Value) -> serde_json::Result<String> {
     };
     Ok(super::super::results::words_of(&Printed {
         comparison: comparison.as_ref(),
+        quote: comparison.as_ref().and_then(|one| one.to_quote.as_deref()),
         runs: runs.iter().map(|summary| (summary, None)).collect(),
     }))
 }

@@ -9,12 +9,14 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 pub use self::report::{FILES, report};
+use super::report::{Report, Warnings};
 use super::results::StudyError;
 use super::runner::in_parallel;
+use crate::argument::fixed;
 use crate::mechanics::settling::{HingeState, Movement, Pin, Snap};
 use crate::mechanics::{Follower, Movements, Parts as _, SettlingError, Sides};
 use crate::output::filters;
-use crate::scenario::{Unlikely, Varied};
+use crate::scenario::Varied;
 use crate::{Pose, Row, Scenario, Sway};
 
 /// Number of equal parts of a movement, with a stage at the end of each.
@@ -172,10 +174,9 @@ pub struct Summary {
     pub friction_coefficient: Option<f64>,
     /// The path for each direction.
     pub paths: Vec<SpreadPath>,
-    /// Warnings about unlikely numbers of the scenario.
-    pub warnings: Vec<String>,
-    /// The numbers of the warnings about unlikely input, which come first in `warnings`, in their order.
-    pub unlikely: Vec<Unlikely>,
+    /// The warnings.
+    #[serde(flatten)]
+    pub warnings: Warnings,
     /// The scenario with all defaults.
     pub scenario: Value,
 }
@@ -196,14 +197,12 @@ pub fn spread(scenario: &Scenario, directions: &[Direction]) -> Result<Summary, 
     let compute = |direction: &Direction| path(&row, settled, *direction, sizes);
     let paths = in_parallel(directions, compute).into_iter();
     let paths = paths.collect::<Result<_, _>>();
-    let unlikely = scenario.unlikely_in(&Varied::default());
     Ok(Summary {
         paths: paths.map_err(StudyError::scenario)?,
         clear_span_m,
         weight_n,
         support: scenario.structure.support_name().to_owned(),
-        warnings: Unlikely::sentences(&unlikely),
-        unlikely,
+        warnings: Warnings::new(scenario.unlikely_in(&Varied::default()), []),
         scenario: scenario.to_json(),
         friction_coefficient: scenario.motion.options.friction_coefficient(),
     })
@@ -322,6 +321,41 @@ impl Summary {
     /// Returns whether the movement is further to that of `[supports]`.
     fn is_further(&self) -> bool {
         !self.scenario["supports"].is_null()
+    }
+
+    /// Returns the end of a path in words.
+    fn end_of(&self, path: &SpreadPath) -> String {
+        let (moving, span_m) = (path.moving(&self.support), fixed(self.clear_span_m, 3));
+        let further = match self.is_further() {
+            true => ", further than `[supports]`",
+            false => "",
+        };
+        let falls = path.falls_at_m.zip(path.falls_at_part_of_clear_span);
+        let end = match (falls, &path.lost, path.stages.last()) {
+            (Some((at_m, part)), ..) => {
+                let (at_m, part) = (fixed(at_m, 6), fixed(part, 5));
+                format!("falls at {at_m} m, {part} of the clear span of {span_m} m")
+            }
+            (None, Some(reason), Some(last)) => {
+                let up_to_m = fixed(last.movement_m, 6);
+                format!("stands up to {up_to_m} m, and cannot be followed further: {reason}")
+            }
+            _ => format!("does not fall up to the clear span of {span_m} m"),
+        };
+        format!("{moving}{further}: {end}")
+    }
+}
+
+impl Report for Summary {
+    const IS_TABLE: bool = true;
+
+    fn verdict(&self) -> String {
+        let ends = self.paths.iter().map(|path| self.end_of(path));
+        ends.collect::<Vec<_>>().join("\n")
+    }
+
+    fn warnings(&self) -> &Warnings {
+        &self.warnings
     }
 }
 

@@ -7,7 +7,7 @@ use super::{Push, SpreadPath, Stage, Summary};
 use crate::argument::plain;
 use crate::mechanics::Sides;
 use crate::output::page::SpotKind;
-use crate::output::{Cell, Figure, OutputError, Scene, column, csv, list, several};
+use crate::output::{Cell, Figure, OutputError, Scene, Table, column, list, several};
 use crate::scenario::Scenario;
 use crate::studies::page::{Page, PageCases};
 use crate::studies::results::{Results, StudyError};
@@ -28,8 +28,9 @@ pub fn report(
     let scene = Scene::of_row(&row, &scenario.structure);
     let title = scenario.title.as_deref().unwrap_or("Springings that move");
     let drawn = |figure, spots: &[_]| draw(figure, title, spread, (&row, &scene), spots);
-    let others = [drawn(figure, &[]).into_bytes(), table(spread)?];
-    let results = Results::new(&FILES[1..], spread, others)?;
+    let results = Results::of("spread.json", spread)?
+        .with_table("spread.csv", table(spread)?)
+        .with_file("spread.svg", drawn(figure, &[]));
     let mut cases = PageCases::default();
     let settled = scenario.motion.supports().unwrap_or_default();
     let further = if spread.is_further() { " further" } else { "" };
@@ -50,21 +51,14 @@ pub fn report(
             Some(moved)
         });
     }
-    // The line of each path is not indented; the last line explains the table.
-    let lines: Vec<&str> = results.words.lines().collect();
-    let paths = lines.iter().rev().skip(1).rev();
-    let verdict: Vec<String> = paths
-        .filter(|line| !line.starts_with(' '))
-        .map(|line| (*line).to_owned())
-        .collect();
     let own = "the supports move slowly, and joints do not slip; the arch rests on three hinges, or on more with ties, and snaps to others";
     let (what, picture) = (scenario.structure.described(), |figure| {
         drawn(figure, &cases.spots)
     });
     let mut page = Page::new(title, what, &[own], &[]);
-    page.verdict = verdict.join("; ");
     page.command = "limit -".to_owned();
-    Ok(results.with_page(FILES[0], page, &cases, (&picture, &[])))
+    let results = results.with_page("spread.html", page, &cases, (&picture, &[]));
+    Ok(results.in_order(&FILES))
 }
 
 /// Returns all stages of all paths.
@@ -74,7 +68,7 @@ fn rows(spread: &Summary) -> impl Iterator<Item = (&SpreadPath, &Stage)> {
 }
 
 /// Makes the table of all stages of all paths.
-fn table(spread: &Summary) -> Result<Vec<u8>, OutputError> {
+fn table(spread: &Summary) -> Result<Table, OutputError> {
     type Row<'a> = (&'a SpreadPath, &'a Stage);
     let rows: Vec<Row<'_>> = rows(spread).collect();
     // Arches with ties may have more than three hinges.
@@ -110,5 +104,5 @@ fn table(spread: &Summary) -> Result<Vec<u8>, OutputError> {
         sides("first_motion", |stage| &stage.first_motion_g),
         sides("capacity", |stage| &stage.capacity_g),
     ];
-    csv(columns, &rows)
+    Table::new(columns, &rows)
 }

@@ -7,7 +7,7 @@ use super::{CaseRow, SuiteFragility};
 use crate::argument::plain;
 use crate::dynamics::{Direction, Directions};
 use crate::output::caption::caption;
-use crate::output::{Figure, Scale};
+use crate::output::{Figure, Origin, Scale};
 use crate::scenario::{Measure, ModelKind, Scenario, Spacing, Spectral, Suite, Unlikely, Varied};
 use crate::studies::page::under_factor;
 use crate::studies::quotable::{SlipWords, restitution_in_words};
@@ -15,7 +15,7 @@ use crate::studies::quotable::{SlipWords, restitution_in_words};
 /// The parts of a scenario that the report of its suite needs. Part files keep them, so that `merge` needs no record files.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Heading {
-    title: Option<String>,
+    pub(in crate::studies) title: Option<String>,
     /// The scenario with all defaults.
     pub(super) scenario: Value,
     /// The model of motion.
@@ -28,9 +28,7 @@ pub struct Heading {
     has_both: bool,
     pub(super) directions: Directions,
     pub(super) spectral: Spectral,
-    /// Warnings about the scenario.
-    pub(super) warnings: Vec<String>,
-    /// Their numbers.
+    /// Unlikely numbers of the scenario.
     #[serde(default)]
     pub(super) unlikely: Vec<Unlikely>,
     /// The scenario in one line.
@@ -50,7 +48,6 @@ pub struct Heading {
 impl Heading {
     /// Makes the heading of a scenario with this suite. `has_both` is true if each record acts in both directions, in cases of their own.
     pub(super) fn new(scenario: &Scenario, suite: &Suite, has_both: bool) -> Self {
-        let unlikely = scenario.unlikely_in(&Varied::default());
         Self {
             title: scenario.title.clone(),
             scenario: scenario.to_json(),
@@ -61,14 +58,18 @@ impl Heading {
             has_both,
             directions: scenario.simulation.direction,
             spectral: suite.spectral,
-            warnings: Unlikely::sentences(&unlikely),
-            unlikely,
+            unlikely: scenario.unlikely_in(&Varied::default()),
             // The records of the suite replace the ground motion of the scenario.
             what: caption(&scenario.with_ground(None), &[]),
             slip: SlipWords::of(scenario),
             restitution: restitution_in_words(scenario),
             unit_grounds: suite.unit_grounds(scenario.gravity_m_s2()),
         }
+    }
+
+    /// Returns the origin of the results, without their records.
+    pub(in crate::studies) fn origin(&self) -> Origin {
+        Origin::of_tables(&self.scenario)
     }
 
     pub(super) fn title(&self) -> &str {

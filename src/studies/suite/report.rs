@@ -12,11 +12,12 @@ use super::{
 };
 use crate::argument::plain;
 use crate::dynamics::Direction;
-use crate::output::{Column, Figure, OutputError, column, csv, each, fields, list};
-use crate::scenario::{Measure, Spectral, Unlikely, shown};
+use crate::output::{Column, Figure, OutputError, Table, column, each, fields, list};
+use crate::scenario::{Measure, Spectral, shown};
 use crate::studies::ending::columns::{self, FAILED, yes};
 use crate::studies::page::{DrawPicture, Page, PageCases};
 use crate::studies::quotable::{self, ModelAnswer, directions_in_words};
+use crate::studies::report::{Report, Warnings};
 use crate::studies::threshold::rounded_range;
 use crate::studies::threshold::survival::{self, Survival};
 use crate::studies::{OutcomeCounts, Remarks, Results, Verdict, rounded, rounded_down};
@@ -29,6 +30,9 @@ const fn of_levels(levels_only: bool) -> &'static str {
 }
 
 const FRAGILITY: &str = "fragility.json";
+
+/// The treatment of cases without a verdict, in words.
+const AT_ENDS: &str = "they count only in the curves that take them as survived and as overturned";
 
 /// Names of the files, the seal last.
 pub const FILES: [&str; 11] = [
@@ -55,10 +59,8 @@ pub struct Summary {
     version: String,
     /// The scenario with all defaults.
     scenario: Value,
-    /// Warnings about unlikely numbers, limits of the model, and histories without a verdict.
-    warnings: Vec<String>,
-    /// The numbers of the warnings about unlikely input, which come first in `warnings`, in their order.
-    unlikely: Vec<Unlikely>,
+    #[serde(flatten)]
+    warnings: Warnings,
     /// The answer that may be quoted, in words.
     to_quote: Option<String>,
     /// Largest friction coefficient that the surviving cases up to the quoted intensity and their repetitions require without slip; null if joints slip
@@ -205,7 +207,10 @@ impl Heading {
         let remarks = self.remarks(&results);
         let (answer, friction_demand) = self.answer(&results);
         let friction = self.slip.condition(friction_demand, "suite FILE");
-        let limits = remarks.warnings("cases");
+        let incomplete = remarks.incomplete_in_words();
+        let incomplete = incomplete.map(|words| format!("{words}; {AT_ENDS}"));
+        let limits = [remarks.model.in_words("cases"), incomplete];
+        let limits = limits.into_iter().flatten();
         let limits = limits.chain(friction.as_ref().map(ToString::to_string));
         let is_uncertain = !self.scenario["uncertain"].is_null();
         let answer = answer
@@ -220,8 +225,7 @@ impl Heading {
             program: env!("CARGO_PKG_NAME").to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             scenario: self.scenario.clone(),
-            warnings: self.warnings.iter().cloned().chain(limits).collect(),
-            unlikely: self.unlikely.clone(),
+            warnings: Warnings::new(self.unlikely.clone(), limits),
             to_quote: quotable::in_words(std::slice::from_ref(&answer)),
             friction_demand,
             outcomes: OutcomeCounts::of(results.cases.iter().map(|case| &case.result)),
@@ -261,22 +265,32 @@ impl Heading {
         let names = ["peak_16", "peak_50", "peak_84"];
         fractiles.push(list(names, |at: &Fractiles| at.peaks));
         let peaks = [list(["peak", "share"], |at: &(f64, f64)| [at.0, at.1])];
-        let others = [
-            picture::draw(figure, self, &results, &caption).into_bytes(),
-            ida::draw(figure, self, &results, &[]).into_bytes(),
-            ida::draw_peaks(figure, self, &results).into_bytes(),
-            csv(fractiles, &ida::fractiles(&results))?,
-            csv(peaks, &ida::peaks(&results))?,
-            csv(capacity_columns(), &capacities)?,
-            csv(efficiency_columns(), &report.intensity_measures)?,
-            csv(self.level_columns(), &results.levels)?,
-            csv(self.case_columns(), &results.cases)?,
-        ];
-        let found = Results::new(&FILES[1..], &report, others)?;
+        let found = Results::of(FRAGILITY, &report)?
+            .with_table(
+                "suite.csv",
+                Table::new(self.case_columns(), &results.cases)?,
+            )
+            .with_table(
+                "fragility.csv",
+                Table::new(self.level_columns(), &results.levels)?,
+            )
+            .with_table(
+                "intensity.csv",
+                Table::new(efficiency_columns(), &report.intensity_measures)?,
+            )
+            .with_table(
+                "capacities.csv",
+                Table::new(capacity_columns(), &capacities)?,
+            )
+            .with_table("peaks.csv", Table::new(peaks, &ida::peaks(&results))?)
+            .with_table("ida.csv", Table::new(fractiles, &ida::fractiles(&results))?)
+            .with_file("suite.svg", picture::draw(figure, self, &results, &caption))
+            .with_file("ida.svg", ida::draw(figure, self, &results, &[]))
+            .with_file("peaks.svg", ida::draw_peaks(figure, self, &results));
         Ok(Results {
             largest_rotations_rad: ida::rotations_rad(&results.cases),
             answer: Some(answer),
-            ..self.with_page(found, &results, &caption)
+            ..self.with_page(found, &results, &caption).in_order(&FILES)
         })
     }
 
@@ -296,7 +310,7 @@ impl Heading {
             &|figure| picture::draw(figure, self, results, caption),
             &|figure| ida::draw_peaks(figure, self, results),
         ];
-        found.with_page(FILES[0], page, &cases, (&draw, &more))
+        found.with_page("suite.html", page, &cases, (&draw, &more))
     }
 
     /// Returns the answer that may be quoted: the largest intensity that is safe under all records. Also returns the largest friction demand of the
@@ -388,8 +402,8 @@ impl Heading {
 }
 
 /// Returns the sign of a record.
-const fn sign(mirrored: bool) -> &'static str {
-    if mirrored { "-1" } else { "1" }
+const fn sign(mirrored: bool) -> i64 {
+    if mirrored { -1 } else { 1 }
 }
 
 /// Returns the columns of `capacities.csv`, one row per record. Missing values are empty.
@@ -420,6 +434,21 @@ fn efficiency_columns() -> Vec<Column<'static, Efficiency>> {
     }));
     all.extend(fields!(|of: &Efficiency| of => best_share));
     all
+}
+
+impl Report for Summary {
+    fn verdict(&self) -> String {
+        let (cases, records) = (self.outcomes.total(), records_in_words(self.records));
+        format!("{cases} cases of {records}: {}", self.outcomes)
+    }
+
+    fn quote(&self) -> Option<&str> {
+        self.to_quote.as_deref()
+    }
+
+    fn warnings(&self) -> &Warnings {
+        &self.warnings
+    }
 }
 
 impl Summary {

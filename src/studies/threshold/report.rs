@@ -12,14 +12,15 @@ use super::{
 };
 use crate::argument::plain;
 use crate::dynamics::{Direction, MODEL_LIMIT, OutcomeCount};
-use crate::output::{Figure, OutputError, column, csv, fields};
-use crate::scenario::{Ground, ModelKind, Scenario, Unlikely};
+use crate::output::{Figure, OutputError, Table, column, fields};
+use crate::scenario::{Ground, ModelKind, Scenario};
 use crate::studies::ending::columns::{GROUND_FALLS, OVERTURNED};
 use crate::studies::ending::{NoHistory, Verdict, outcome_name};
 use crate::studies::page::{Page, PageCases, input_in_words, under_factor};
 use crate::studies::quotable::{
     self, FrictionCondition, ModelAnswer, SlipWords, directions_in_words, restitution_in_words,
 };
+use crate::studies::report::{Report, Warnings};
 use crate::studies::statistics::ascending;
 use crate::studies::{Remarks, Results};
 use crate::{Outcome, Sway};
@@ -50,10 +51,8 @@ pub struct Summary {
     /// The factor from which on the ground falls as fast as a free body at some time; absent without such a factor.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     free_fall_factor: Option<f64>,
-    /// Warnings about unlikely numbers, limits of the models, and histories without a verdict.
-    warnings: Vec<String>,
-    /// The numbers of the warnings about unlikely input, which come first in `warnings`, in their order.
-    unlikely: Vec<Unlikely>,
+    #[serde(flatten)]
+    warnings: Warnings,
     /// The answer that may be quoted, in words.
     to_quote: Option<String>,
     /// The threshold of each model.
@@ -226,14 +225,14 @@ pub fn report(
         peak_acceleration_g: peak_g,
         factors: *factors,
         free_fall_factor: ground.free_fall_factor(gravity_m_s2).filter(|_| falls),
-        warnings: warnings(&unlikely, &models, frictions),
-        unlikely,
+        warnings: Warnings::new(unlikely, limits(&models, frictions)),
         to_quote: quotable::in_words(&answers),
         models,
     };
     let picture = picture::draw(figure, title, peak_g, thresholds);
-    let others = [picture.into_bytes(), table(&report.models)?];
-    let results = Results::new(&FILES[1..], &report, others)?;
+    let results = Results::of("threshold.json", &report)?
+        .with_table("threshold.csv", table(&report.models)?)
+        .with_file("threshold.svg", picture);
     let mut cases = PageCases::default();
     for (threshold, model) in thresholds.iter().zip(&report.models) {
         for one in threshold.directions() {
@@ -263,7 +262,8 @@ pub fn report(
     let models: Vec<&ModelKind> = scenarios.iter().map(|one| one.motion.kind).collect();
     let what = input_in_words(&scenarios.iter().collect::<Vec<_>>());
     let page = Page::new(title, what, &[&edges], &models);
-    Ok(results.with_page(FILES[0], page, &cases, (&draw, &[])))
+    let results = results.with_page("threshold.html", page, &cases, (&draw, &[]));
+    Ok(results.in_order(&FILES))
 }
 
 /// Returns true if the ground falls as fast as a free body under a factor that was tried.
@@ -274,7 +274,7 @@ fn ground_falls(thresholds: &[Threshold]) -> bool {
 }
 
 /// Makes the table of the samples, ordered by model and direction, then by factor.
-fn table(models: &[ModelSummary]) -> Result<Vec<u8>, OutputError> {
+fn table(models: &[ModelSummary]) -> Result<Table, OutputError> {
     type Row<'a> = (&'a str, &'a TriedFactor, Direction);
     let rows = models.iter().flat_map(|model| {
         let all = model.directions();
@@ -300,21 +300,18 @@ fn table(models: &[ModelSummary]) -> Result<Vec<u8>, OutputError> {
         friction_demand
     ));
     columns.push(column("direction", |row: &Row<'_>| row.2.name()));
-    csv(columns, &rows.collect::<Vec<_>>())
+    Table::new(columns, &rows.collect::<Vec<_>>())
 }
 
-/// Returns the warnings about unlikely numbers, histories without a verdict, and conditions on friction.
-fn warnings(
-    unlikely: &[Unlikely],
-    models: &[ModelSummary],
-    frictions: Vec<Option<FrictionCondition>>,
-) -> Vec<String> {
-    let mut warnings = Unlikely::sentences(unlikely);
-    warnings.extend(
-        models
-            .iter()
-            .flat_map(|model| model.remarks.warnings("histories")),
-    );
+/// Returns warnings about the model and histories without a verdict, and conditions on friction.
+fn limits(models: &[ModelSummary], frictions: Vec<Option<FrictionCondition>>) -> Vec<String> {
+    let of_models = models.iter().flat_map(|model| {
+        let outside = model.outside_in_words();
+        outside
+            .into_iter()
+            .chain(model.remarks.incomplete_in_words())
+    });
+    let mut warnings: Vec<String> = of_models.collect();
     let frictions = frictions.into_iter().flatten();
     warnings.extend(frictions.map(|friction| friction.to_string()));
     let varied = models.iter().flat_map(|model| &model.variations);
@@ -322,6 +319,37 @@ fn warnings(
         varied.filter_map(|varied| Some(format!("with {}: {}", varied.with, varied.no_verdict()?))),
     );
     warnings
+}
+
+impl Report for Summary {
+    fn verdict(&self) -> String {
+        let mut lines = Vec::new();
+        for model in &self.models {
+            let label = (self.models.len() > 1).then(|| model.model.replace('_', " "));
+            let before: Vec<&str> = self
+                .record
+                .iter()
+                .chain(&label)
+                .map(String::as_str)
+                .collect();
+            let before = before.join(", ");
+            for strengths in model.strengths(&self.peak_acceleration_g) {
+                lines.push(match before.is_empty() {
+                    true => strengths,
+                    false => format!("{before}: {strengths}"),
+                });
+            }
+        }
+        lines.join("\n")
+    }
+
+    fn quote(&self) -> Option<&str> {
+        self.to_quote.as_deref()
+    }
+
+    fn warnings(&self) -> &Warnings {
+        &self.warnings
+    }
 }
 
 impl Threshold {
@@ -514,6 +542,16 @@ impl ModelSummary {
             self.histories().filter(rocking).count(),
             self.histories().count(),
         ]
+    }
+
+    /// Returns the number of histories outside the model of four links, and whether the first that overturns is one of them, in words; `None` if the
+    /// thrust line stays almost inside.
+    fn outside_in_words(&self) -> Option<String> {
+        let outside = self.remarks.model.in_words("histories")?;
+        Some(match self.overturns_outside_model() {
+            true => format!("{outside}; the first that overturns is one of them"),
+            false => outside,
+        })
     }
 
     /// Returns true if the first history that overturns the structure is outside the model of four links.

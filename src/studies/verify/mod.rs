@@ -28,8 +28,9 @@ use crate::dynamics::{GroundSpectrum, Site};
 use crate::mechanics::Capacity;
 use crate::scenario::{
     CheckedSides, Demand, FreeStanding, InputFile, Language, LimitState, Scenario, StateRule,
-    Unlikely, Varied, Verify, sha256,
+    Varied, Verify, sha256,
 };
+use crate::studies::report::Warnings;
 pub use geometry::{FillGeometry, Geometry, LoadAt, PlacedBlock, RingGeometry};
 pub use histories::{ComparedPeak, Histories, HistorySide, MeanSpectrum, Peak, RecordPeaks};
 pub use mechanism::{Body, CapacityCurves, HeldTie, Mechanism, PlacedHinge, Position, Sliding};
@@ -167,10 +168,9 @@ pub struct Summary {
     pub mechanisms: BTreeMap<Sway, Mechanism>,
     /// The limit states of the demand.
     pub states: BTreeMap<LimitState, StateCheck>,
-    /// Assumptions that do not hold, and input that is unlikely or ignored.
-    pub warnings: Vec<String>,
-    /// The numbers of the warnings about unlikely input, which come first in `warnings`, in their order.
-    pub unlikely: Vec<Unlikely>,
+    /// The warnings.
+    #[serde(flatten)]
+    pub warnings: Warnings,
     /// Decisions where the text leaves a choice.
     pub decisions: Vec<Decision>,
     /// Assumptions of the check.
@@ -266,8 +266,7 @@ pub fn verify(scenario: &Scenario) -> Result<Summary, VerifyError> {
         is_symmetric: report::are_mirrored(&mechanisms, &states),
         mechanisms,
         states,
-        warnings: Vec::new(),
-        unlikely: scenario.unlikely_in(&Varied::default()),
+        warnings: Warnings::new(scenario.unlikely_in(&Varied::default()), []),
         decisions: Vec::new(),
         assumptions: Vec::new(),
         not_covered: Vec::new(),

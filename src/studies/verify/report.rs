@@ -22,8 +22,8 @@ use crate::dynamics::demand::damping_factor;
 use crate::output::{Figure, OutputError, filters, render, render_in};
 use crate::scenario::{
     CONFIDENCE_FACTOR, CheckedSides, FreeStanding, Language, LimitState, Scenario, StateRule,
-    Unlikely,
 };
+use crate::studies::report::{Report, Warnings};
 use crate::studies::{Results, no_verdict};
 use crate::{Hinge, Sway};
 
@@ -43,12 +43,35 @@ const MOST_POINTS: usize = 40;
 pub fn report(scenario: &Scenario, check: &Summary) -> Result<Results, OutputError> {
     let today = clock::since_1970().map(|since| date_of(since.as_secs() / 86_400));
     let page = Page::new(scenario, check, today);
-    Results::new(&FILES, check, [page.html().into_bytes()])
+    let results = Results::of("verify.json", check)?.with_file("verify.html", page.html());
+    Ok(results.in_order(&FILES))
 }
 
 /// Returns the verdict in a sentence, then the result for each limit state, with the governing side.
 pub fn words(check: &Summary) -> String {
     render(check)
+}
+
+/// The verdict in a sentence.
+#[derive(Template)]
+#[template(
+    source = "{% import \"studies/verify/sentence.txt\" as verdict %}{% call verdict::sentence(check, false) %}{% endcall %}",
+    ext = "txt"
+)]
+struct Sentence<'a> {
+    check: &'a Summary,
+}
+
+impl Report for Summary {
+    const IS_TABLE: bool = true;
+
+    fn verdict(&self) -> String {
+        render(&Sentence { check: self }).trim().to_owned()
+    }
+
+    fn warnings(&self) -> &Warnings {
+        &self.warnings
+    }
 }
 
 /// The printed page.
@@ -378,7 +401,7 @@ pub(super) fn add_notes(check: &mut Summary, unused_records: &[&'static str]) {
     check.decisions = decisions.collect();
     check.assumptions = part();
     check.not_covered = part();
-    check.warnings = [Unlikely::sentences(&check.unlikely), part()].concat();
+    check.warnings.extend(part());
 }
 
 /// Returns true if the left side is the mirror image of the right one, including all numbers.

@@ -6,7 +6,7 @@ use askama::Template;
 use serde::{Deserialize, Serialize};
 
 use super::{CellCounts, CellRow, CellsOfSamples, Crossing, LEVELS, Samples, outcome_of};
-use crate::output::{Key, Mark, OutputError, Stroke, color, column, csv, each, list};
+use crate::output::{Key, Mark, OutputError, Stroke, Table, color, column, each, list};
 use crate::scenario::Varied;
 use crate::studies::ending::columns::{OUTCOMES, yes};
 use crate::studies::ensemble::influence::{InfluencedAnswer, percent};
@@ -16,6 +16,7 @@ use crate::studies::map::page::CellNumbers;
 use crate::studies::map::picture::{ColoredCells, Drawn, MapChart};
 use crate::studies::outcome_colors::OutcomeColor;
 use crate::studies::quotable::SurvivorFriction;
+use crate::studies::report::{Report, Warnings};
 use crate::studies::runner::Study as _;
 use crate::studies::statistics::{Share, band, quantile};
 use crate::studies::{ModelCheck, Results, Style, rounded};
@@ -156,25 +157,23 @@ pub(super) fn report(
         mirrored: Vec::new(),
     };
     let picture = |style| draw(title, study, &colored, &crossings, style);
+    let results = Results::of("uncertain.json", &report)?;
     let (on_page, columns) = (|figure| picture(style.with(figure)), page_columns(&counts));
     let page = colored.page(
         title,
         &study.map,
         on_page,
-        report.all.friction.friction_condition.clone(),
+        &results.statement,
         (BTreeMap::new(), columns),
     );
-    let others = [
-        picture(style).picture.into_bytes(),
-        page.into_bytes(),
-        report
-            .all
-            .draw_influences(samples, style.figure)
-            .into_bytes(),
-        crossing_table(study, &crossings)?,
-        table(study, &counts)?,
-    ];
-    Results::new(&FILES, &report, others)
+    let influences = report.all.draw_influences(samples, style.figure);
+    let results = results
+        .with_table("map.csv", table(study, &counts)?)
+        .with_table("probability.csv", crossing_table(study, &crossings)?)
+        .with_file("map.svg", picture(style).picture)
+        .with_file("map.html", page)
+        .with_file("matters.svg", influences);
+    Ok(results.in_order(&FILES))
 }
 
 /// Returns the number of cells that survive in the scenario itself, but overturn with a probability of at least 5 %.
@@ -197,10 +196,21 @@ fn at_columns(crossings: &[Crossing]) -> Vec<Crossing> {
     chosen.into_iter().map(|column| crossings[column]).collect()
 }
 
-impl Summary {
-    /// Returns the number of cells at each of the [`LEVELS`], with the level in words.
-    fn at_levels(&self) -> impl Iterator<Item = (String, &usize)> {
-        LEVELS.map(percent).into_iter().zip(&self.cells_at_levels)
+impl Report for Summary {
+    fn verdict(&self) -> String {
+        let [some, half, most] = self.cells_at_levels;
+        let [low, middle, high] = LEVELS.map(percent);
+        let (cells, samples) = (self.cells, self.all.samples);
+        self.all.verdict(|| {
+            format!(
+                "overturns with a probability of at least {low} in {some} of {cells} cells, {middle} in {half}, {high} in {most}, \
+                 from {samples} samples of [uncertain]"
+            )
+        })
+    }
+
+    fn warnings(&self) -> &Warnings {
+        &self.all.warnings
     }
 }
 
@@ -225,7 +235,7 @@ impl Crossing {
 const CHECKED: &str = "histories";
 
 /// Makes `map.csv`, with a row per cell as the map of the scenario: x varies slowly, y fast.
-fn table(study: &CellsOfSamples<'_>, counts: &[CellCounts]) -> Result<Vec<u8>, OutputError> {
+fn table(study: &CellsOfSamples<'_>, counts: &[CellCounts]) -> Result<Table, OutputError> {
     let axes = study.map.axes.map(|axis| axis.key.as_str());
     let columns = [
         list(axes, |cell: &CellCounts| cell.at),
@@ -244,7 +254,7 @@ fn table(study: &CellsOfSamples<'_>, counts: &[CellCounts]) -> Result<Vec<u8>, O
         column("outside_model", |cell: &CellCounts| cell.without.outside),
         column("mirrored", |cell: &CellCounts| cell.mirrored),
     ];
-    csv(columns, counts)
+    Table::new(columns, counts)
 }
 
 /// The share of overturned samples, with its interval, in the table and on the page.
@@ -254,7 +264,7 @@ const SHARE: [&str; 3] = ["overturned", "overturned_low", "overturned_high"];
 fn crossing_table(
     study: &CellsOfSamples<'_>,
     crossings: &[Crossing],
-) -> Result<Vec<u8>, OutputError> {
+) -> Result<Table, OutputError> {
     let [x, _] = study.map.axes.map(|axis| axis.key.as_str());
     let levels = ["05", "50", "95"];
     let columns = [
@@ -272,7 +282,7 @@ fn crossing_table(
             |crossing: &Crossing| crossing.at_most.map(yes),
         ),
     ];
-    csv(columns, crossings)
+    Table::new(columns, crossings)
 }
 
 fn draw(

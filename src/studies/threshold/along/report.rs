@@ -7,11 +7,12 @@ use super::{Along, AlongOptions, AlongRow, KeyRange, Point, picture};
 use crate::argument::plain;
 use crate::dynamics::Direction;
 use crate::output::page::SpotKind;
-use crate::output::{OutputError, column, csv, fields, filters};
+use crate::output::{OutputError, Table, column, fields};
 use crate::studies::page::{Page, PageCases, input_in_words};
 use crate::studies::quotable::{
     self, ModelAnswer, SlipWords, SurvivorFriction, directions_in_words, restitution_in_words,
 };
+use crate::studies::report::{Report, Warnings};
 use crate::studies::threshold::report::lower_in_words;
 use crate::studies::threshold::{Factors, rounded, rounded_down, rounded_edge};
 use crate::studies::{
@@ -98,9 +99,9 @@ impl ReportedStudy for Along<'_> {
             self.add_case(&mut cases, row);
         }
         let draw = |figure, spots: &[_]| picture::draw(figure, (title, key), &report.values, spots);
-        let picture = draw(style.figure, &[]).into_bytes();
-        let others = [picture, csv(columns, &report.values)?];
-        let results = Results::new(&Self::FILES[1..], &report, others)?;
+        let results = Results::of(SUMMARY, &report)?
+            .with_table("threshold_along.csv", Table::new(columns, &report.values)?)
+            .with_file("threshold_along.svg", draw(style.figure, &[]));
         let factors = &report.factors;
         let own = format!(
             "{}. Stronger motions are not searched for",
@@ -110,7 +111,8 @@ impl ReportedStudy for Along<'_> {
         let mut page = Page::new(title, what, &[&own], &[self.scenario.motion.kind]);
         page.command = factors.command();
         let marked = |figure| draw(figure, &cases.spots);
-        Ok(results.with_page(Self::FILES[0], page, &cases, (&marked, &[])))
+        let results = results.with_page("threshold_along.html", page, &cases, (&marked, &[]));
+        Ok(results.in_order(Self::FILES))
     }
 }
 
@@ -222,14 +224,24 @@ impl Along<'_> {
     }
 }
 
-impl Summary {
-    /// Returns the condition on friction if there is no answer, which would have it.
-    fn condition_without_answer(&self) -> Option<&String> {
-        let to_quote = self.to_quote.as_deref().unwrap_or_default();
-        let condition = self.all.friction.friction_condition.as_ref();
-        condition.filter(|_| to_quote.starts_with(quotable::NO_ANSWER))
+impl Report for Summary {
+    fn verdict(&self) -> String {
+        let KeyRange { key, from, to, .. } = &self.along;
+        let (from, to) = (plain(*from), plain(*to));
+        let (values, ranges) = (self.all.cases, self.ranges());
+        format!("{values} values of {key} from {from} to {to}: {ranges}")
     }
 
+    fn quote(&self) -> Option<&str> {
+        self.to_quote.as_deref()
+    }
+
+    fn warnings(&self) -> &Warnings {
+        &self.all.warnings
+    }
+}
+
+impl Summary {
     /// Returns the ranges of the thresholds, and the numbers of values without one, in words.
     fn ranges(&self) -> String {
         let points = &self.values;

@@ -1,0 +1,196 @@
+//! The results of a command, and their text and JSON on standard output.
+
+use archrock::output::{Folder, PictureFormat};
+use archrock::scenario::{ModelKind, Scenario};
+use archrock::studies::run::records_in_words;
+use archrock::studies::{ModelAnswer, Results, StudyKind, quoted_in_words};
+use serde::Serialize;
+use serde_json::{Map, Value, json};
+
+use super::Failure;
+
+/// The results of a study of scenarios that differ only in their models of motion.
+pub struct CommandResults {
+    /// The results of each model, or of all models together.
+    pub of_models: Vec<ModelResults>,
+    /// The comparison of the models by their largest rotations.
+    pub compared: Option<Results>,
+}
+
+/// The results of a model, or of all models together.
+pub struct ModelResults {
+    /// The model; `None` if it is unknown, as in parts that were merged.
+    pub model: Option<&'static ModelKind>,
+    /// The results on the samples of each model that has `[uncertain]`.
+    pub samples: Vec<SampleResults>,
+    /// The comparison of the models by the largest rotations of their samples.
+    pub compared: Option<Results>,
+    /// The results on the scenario itself.
+    pub own: Results,
+    /// Their folder and files in words; `None` without files, or if their words name them.
+    pub place: Option<String>,
+}
+
+/// The results on the samples of a model.
+pub struct SampleResults {
+    pub model: &'static ModelKind,
+    pub results: Results,
+    /// Their folder, and the names of their files, in words.
+    pub place: String,
+}
+
+/// Heading of the report on the scenario without uncertainty, after that on its samples.
+const NOMINAL_HEADING: &str = "the scenario with its given numbers:";
+
+impl ModelResults {
+    /// Returns the report on the samples, which has the probability of overturning, and then that on the scenario itself; only the statements that
+    /// `--quiet` leaves if it is `brief`.
+    fn words(&self, is_indented: bool, brief: bool) -> String {
+        let words = |results: &Results| match brief {
+            true => results.statement.in_brief(),
+            false => results.words.clone(),
+        };
+        let indent = if is_indented { "  " } else { "" };
+        let mut lines = Vec::new();
+        for one in &self.samples {
+            lines.extend((self.samples.len() > 1).then(|| one.model.label.to_owned()));
+            lines.push(format!("  {}", words(&one.results)));
+            lines.extend((!brief).then(|| format!("  results in {}", one.place)));
+        }
+        if let Some(compared) = self.compared.as_ref().filter(|_| !brief) {
+            lines.push(format!("  {}", compared.words));
+        }
+        lines.extend((!self.samples.is_empty()).then(|| NOMINAL_HEADING.to_owned()));
+        lines.push(format!("{indent}{}", words(&self.own)));
+        let place = self.place.as_ref().filter(|_| !brief);
+        lines.extend(place.map(|place| format!("{indent}results in {place}")));
+        lines.join("\n")
+    }
+
+    /// Returns the JSON of all results. A run has that of its samples already.
+    fn summary(&self, kind: StudyKind) -> Result<Value, Failure> {
+        let samples = self.samples.iter().filter(|_| !kind.is_history);
+        let samples = samples.map(|one| {
+            let summary = one.results.summary.clone();
+            match self.samples.len() {
+                1 => ("uncertain".to_owned(), summary),
+                _ => (one.model.option.to_owned(), json!({ "uncertain": summary })),
+            }
+        });
+        let summary = Summary {
+            own: &self.own.summary,
+            samples: samples.collect(),
+            peaks: self.compared.as_ref().map(|compared| &compared.summary),
+        };
+        serde_json::to_value(summary).map_err(|error| Failure::Work(error.to_string()))
+    }
+}
+
+/// JSON of all results: of the scenario itself, of its samples, and of the comparison of models.
+#[derive(Serialize)]
+struct Summary<'f> {
+    #[serde(flatten)]
+    own: &'f Value,
+    #[serde(flatten)]
+    samples: Map<String, Value>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    peaks: Option<&'f Value>,
+}
+
+impl CommandResults {
+    /// Makes the results of a study without samples, with their folder in words.
+    pub fn alone(own: Results, place: String) -> Self {
+        let of_model = ModelResults {
+            model: None,
+            samples: Vec::new(),
+            compared: None,
+            own,
+            place: Some(place),
+        };
+        Self {
+            of_models: vec![of_model],
+            compared: None,
+        }
+    }
+
+    /// Returns the results in words; only the statements that `--quiet` leaves if they are `brief`.
+    pub fn words(&self, kind: StudyKind, heading: &Heading<'_>, brief: bool) -> String {
+        let title = heading.title.filter(|_| kind.has_title);
+        let mut text = title.map_or(String::new(), |title| format!("{title}\n"));
+        text.extend((!brief).then_some(heading.lines.as_str()));
+        for one in &self.of_models {
+            let label = one.model.filter(|_| self.of_models.len() > 1);
+            let label = label.map(|model| model.label);
+            text.extend(label.map(|label| format!("{label}\n")));
+            text += &format!("{}\n", one.words(kind.has_title, brief));
+        }
+        if let Some(compared) = self.compared.as_ref().filter(|_| !brief) {
+            text += &format!("{}\n", compared.words);
+        }
+        text.extend(self.quote().map(|quote| format!("{quote}\n")));
+        text
+    }
+
+    /// Returns the answer of several models that may be quoted.
+    fn quote(&self) -> Option<String> {
+        let several = self.of_models.iter().filter(|_| self.of_models.len() > 1);
+        let answers = several.filter_map(|one| one.own.answer.clone());
+        quoted_in_words(&answers.collect::<Vec<ModelAnswer>>())
+    }
+
+    /// Returns the results as JSON.
+    pub fn summary(&self, kind: StudyKind) -> Result<Value, Failure> {
+        if let [one] = &self.of_models[..] {
+            return one.summary(kind);
+        }
+        let mut all = Map::new();
+        for one in &self.of_models {
+            let option = one.model.map_or("", |model| model.option);
+            all.insert(option.to_owned(), one.summary(kind)?);
+        }
+        let peaks = self.compared.as_ref();
+        all.extend(peaks.map(|peaks| ("peaks".to_owned(), peaks.summary.clone())));
+        all.extend(
+            self.quote()
+                .map(|quote| ("to_quote".to_owned(), quote.into())),
+        );
+        Ok(Value::Object(all))
+    }
+}
+
+/// The lines before the results of a task.
+pub struct Heading<'t> {
+    /// Title of the scenario.
+    pub title: Option<&'t str>,
+    /// The records of a history, and a table that a model ignores.
+    pub lines: String,
+}
+
+impl<'t> Heading<'t> {
+    /// Makes the lines before the results of scenarios that differ only in their models.
+    pub fn of(kind: StudyKind, scenarios: &'t [Scenario]) -> Self {
+        let records = scenarios.first().filter(|_| kind.is_history);
+        let ignored = scenarios.iter().find_map(Scenario::ignored);
+        let ignored = ignored.map(|ignored| format!("  {ignored}\n"));
+        let title = scenarios.first();
+        Self {
+            title: title.and_then(|one| one.title.as_deref()),
+            lines: records
+                .map(records_in_words)
+                .into_iter()
+                .chain(ignored)
+                .collect(),
+        }
+    }
+}
+
+/// Returns the folder with its result files, in words.
+pub fn describe(folder: &Folder, results: &Results) -> String {
+    let also = match folder.pictures {
+        None | Some(PictureFormat::Svg) => "",
+        Some(PictureFormat::Pdf) => ", pictures also as PDF",
+        Some(PictureFormat::Png) => ", pictures also as PNG",
+    };
+    let (path, names) = (folder.path().display(), results.names().join(", "));
+    format!("{path}: {names}{also}")
+}

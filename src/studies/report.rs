@@ -1,0 +1,128 @@
+//! The report of a study: a value that states verdict, warnings and the answer to quote. JSON, words and pages follow from it.
+
+use askama::Template;
+use serde::{Deserialize, Serialize};
+
+use crate::output::render;
+use crate::scenario::Unlikely;
+
+/// The report of a study. Its `Serialize` is the JSON, and its template gives the details in words.
+pub trait Report: Serialize + Template {
+    /// True if the template is a table in words, complete without the verdict.
+    const IS_TABLE: bool = false;
+
+    /// Returns the verdict: a line for each model and record.
+    fn verdict(&self) -> String;
+
+    /// Returns the answer that may be quoted, or the reason why there is none; `None` if the study has no answer to quote.
+    fn quote(&self) -> Option<&str> {
+        None
+    }
+
+    /// Returns the warnings; none by default.
+    fn warnings(&self) -> &Warnings {
+        const NONE: &Warnings = &Warnings {
+            warnings: Vec::new(),
+            unlikely: Vec::new(),
+        };
+        NONE
+    }
+}
+
+/// The warnings of a report.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Warnings {
+    /// Warnings about unlikely numbers, limits of the model, and histories without a verdict.
+    warnings: Vec<String>,
+    /// The numbers of the warnings about unlikely input, which come first in `warnings`, in their order.
+    unlikely: Vec<Unlikely>,
+}
+
+impl Warnings {
+    /// Makes the warnings about unlikely numbers, and about the limits of the answer.
+    pub(super) fn new(unlikely: Vec<Unlikely>, limits: impl IntoIterator<Item = String>) -> Self {
+        let mut warnings = Unlikely::sentences(&unlikely);
+        warnings.extend(limits);
+        Self { warnings, unlikely }
+    }
+
+    /// Returns all warnings.
+    pub fn all(&self) -> &[String] {
+        &self.warnings
+    }
+
+    /// Returns the warnings that limit the answer: all but those about unlikely numbers.
+    pub fn limits(&self) -> &[String] {
+        // A warning stands for each unlikely number.
+        self.warnings.get(self.unlikely.len()..).unwrap_or_default()
+    }
+
+    /// Adds warnings that limit the answer.
+    pub(super) fn extend(&mut self, limits: impl IntoIterator<Item = String>) {
+        self.warnings.extend(limits);
+    }
+}
+
+/// The statements of a report, in words.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Statement {
+    /// The verdict: a line for each model and record.
+    pub verdict: String,
+    /// Details, in indented lines; empty without details.
+    pub details: String,
+    /// All warnings.
+    pub warnings: Vec<String>,
+    /// The warnings that limit the answer, as opposed to those about unlikely numbers.
+    pub limits: Vec<String>,
+    /// The answer that may be quoted, or the reason why there is none.
+    pub quote: Option<String>,
+    /// True if the details are a table in words, complete without the verdict.
+    pub is_table: bool,
+}
+
+impl Statement {
+    /// Makes the statements of a report.
+    pub fn of<R: Report>(report: &R) -> Self {
+        let warnings = report.warnings();
+        Self {
+            verdict: report.verdict(),
+            details: render(report).trim_end().to_owned(),
+            warnings: warnings.all().to_vec(),
+            limits: warnings.limits().to_vec(),
+            quote: report.quote().map(str::to_owned),
+            is_table: R::IS_TABLE,
+        }
+    }
+
+    /// Returns the report in words: the first line is not indented, the others are, and the last has no line break.
+    pub fn in_words(&self) -> String {
+        match self.is_table {
+            true => self.details.clone(),
+            false => self.lines(&self.details),
+        }
+    }
+
+    /// Returns verdict, limits and answer in words, without details.
+    pub fn in_brief(&self) -> String {
+        self.lines("")
+    }
+
+    /// Returns the details without their indent.
+    pub(super) fn details_outdented(&self) -> String {
+        let lines = self.details.lines();
+        let lines = lines.map(|line| line.strip_prefix("  ").unwrap_or(line));
+        lines.collect::<Vec<_>>().join("\n")
+    }
+
+    fn lines(&self, details: &str) -> String {
+        let details = Some(details).filter(|details| !details.is_empty());
+        let verdict = self.verdict.replace('\n', "\n  ");
+        // The answer repeats some limits as its conditions.
+        let quote = self.quote.as_deref().unwrap_or_default();
+        let limits = self.limits.iter().filter(|limit| !quote.contains(*limit));
+        let after = limits.chain(&self.quote);
+        let lines = [verdict].into_iter().chain(details.map(str::to_owned));
+        let lines = lines.chain(after.map(|line| format!("  {line}")));
+        lines.collect::<Vec<_>>().join("\n")
+    }
+}
