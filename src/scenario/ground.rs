@@ -4,8 +4,10 @@ use nalgebra::Vector2;
 
 use super::error::ScenarioErrors;
 use super::prelude::*;
+use super::right_foot::RightFoot;
 use super::record::{KnownRecords, MAX_ACCELERATION_G, Record, free_fall};
 use super::source::Source;
+use super::Scenario;
 use super::table;
 use crate::argument::{self, ArgumentError};
 use crate::dynamics::{Pulse, PulseShape, WaveTrain};
@@ -91,6 +93,29 @@ impl Ground {
         table.apply_relations(&[OneOf(&kinds, None)])?;
         let record = record.map(|(record, motion)| (Self::Record(Box::new(record)), motion));
         found.or(record).ok_or(FaultRecorded)
+    }
+}
+
+impl Scenario {
+    /// Returns keys and values of `[ground]` that multiply all ground accelerations by a factor.
+    pub(crate) fn ground_values_times(&self, factor: f64) -> Vec<(String, f64)> {
+        let mut values = match &self.ground {
+            None => Vec::new(),
+            Some(Ground::Pulse(pulse)) => {
+                let key = |name: &str| format!("ground.{}.{name}", pulse.kind.name());
+                let amplitudes = [
+                    ("amplitude_g", pulse.amplitude_g),
+                    ("vertical_amplitude_g", pulse.vertical_amplitude_g),
+                ];
+                let moving = amplitudes.into_iter().filter(|(_, g)| *g != 0.0);
+                moving.map(|(name, g)| (key(name), factor * g)).collect()
+            }
+            Some(Ground::Record(record)) => record.values_times("ground.record", factor),
+        };
+        if let Some(RightFoot::Record(record)) = &self.right_foot {
+            values.extend(record.values_times("ground.right.record", factor));
+        }
+        values
     }
 }
 

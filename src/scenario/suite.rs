@@ -196,15 +196,20 @@ impl Suite {
         Ok((suite, named))
     }
 
-    /// Returns the ground motion of each record with a peak of 1 g, as the table `[ground]`, by the name of the record.
-    pub(crate) fn unit_grounds(&self, gravity_m_s2: f64) -> Vec<(String, Value)> {
+    /// Returns each record with a peak of 1 g, as the ground motion of a scenario.
+    pub(crate) fn unit_grounds(&self, gravity_m_s2: f64) -> Vec<UnitGround> {
         let records = self.records.iter();
         let unit = records.map(|series| {
             let unscaled = series.scaled(Scaling::Factor(1.0));
             let to_unit = Scaling::Factor(1.0 / unscaled.peak_g(gravity_m_s2));
             let record = scaled_record(&unscaled, to_unit);
-            let ground = super::given(json!({ "record": record }));
-            (series.name.clone(), ground)
+            let (key, value) = record.main.scaling.key_and_value();
+            UnitGround {
+                record: series.name.clone(),
+                key: format!("ground.record.{key}"),
+                value,
+                ground: super::given(json!({ "record": record })),
+            }
         });
         unit.collect()
     }
@@ -213,6 +218,19 @@ impl Suite {
     pub(crate) fn shake(&self, record: usize, level: f64) -> Record {
         scaled_record(&self.records[record], self.measure.scaling(level))
     }
+}
+
+/// A record with a peak of 1 g, as the ground motion of a scenario.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct UnitGround {
+    /// Name of the record.
+    pub(crate) record: String,
+    /// The key of its scaling.
+    pub(crate) key: String,
+    /// The value of that key.
+    pub(crate) value: f64,
+    /// The table `[ground]`.
+    pub(crate) ground: Value,
 }
 
 impl Serialize for Suite {

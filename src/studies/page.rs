@@ -5,10 +5,9 @@
 
 use askama::Template;
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
 
 use super::Results;
-pub(super) use super::page_cases::{PageCases, kind_of};
+pub(super) use super::page_cases::{CaseScenario, PageCases, kind_of};
 use crate::output::caption::{caption, caption_without_model};
 use crate::output::page::{BASE, OUTSIDE_MODEL, PROGRAM, STUDY, STYLE, SpotKind, script_safe};
 use crate::output::{Cell, Figure, Table, filters, render};
@@ -125,33 +124,6 @@ impl Page {
             ..Self::default()
         }
     }
-
-    /// Returns true if a command names record files.
-    fn has_files(&self) -> bool {
-        let mut texts = self.all.texts.iter();
-        texts.any(|text| text.contains("\nfile = "))
-    }
-}
-
-/// Returns a scenario whose ground accelerations are multiplied by a factor.
-pub(super) fn under_factor(scenario: &Value, factor: f64) -> Value {
-    fn multiply(table: &mut Value, factor: f64) {
-        let Value::Object(table) = table else { return };
-        if table.contains_key("file") && !table.contains_key("peak_g") {
-            table.entry("scale").or_insert(json!(1.0));
-        }
-        for (key, value) in table {
-            match (&**key, value.as_f64()) {
-                ("amplitude_g" | "vertical_amplitude_g" | "scale" | "peak_g", Some(number)) => {
-                    *value = json!(number * factor);
-                }
-                _ => multiply(value, factor),
-            }
-        }
-    }
-    let mut scenario = scenario.clone();
-    multiply(&mut scenario["ground"], factor);
-    scenario
 }
 
 /// Returns the assumptions of a study itself, of its models, and of all models.

@@ -1,21 +1,55 @@
-//! The cases of a page: their marks, and their scenarios as text.
+//! The cases of a page: their marks, and their scenarios, each a text with other values.
+
+use std::fmt::Display;
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::ending::{Ending, NoHistory, Verdict};
 use super::outcome_colors::OutcomeColor;
+use crate::dynamics::Direction;
 use crate::output::page::{Spot, SpotKind};
 use crate::scenario::{STUDY_TABLES, toml_text};
 
 /// Largest number of cases on a page, and of rows in its first table.
 pub(super) const MOST_CASES: usize = 1000;
 
-/// The scenario of a case: an earlier text with some other lines. Texts without a number have no valid scenario.
+/// The scenario of a case: a text with other values. Without a text there is no valid scenario.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct CaseText {
+pub(super) struct CaseScenario {
+    /// Index of the text.
     text: Option<usize>,
-    lines: Vec<(usize, String)>,
+    /// The other values, as arguments of `--set`.
+    set: Vec<String>,
+}
+
+impl CaseScenario {
+    /// Makes the scenario of a text, by its index, with other values of these keys.
+    pub(super) fn of<K: Display, V: Display>(
+        text: usize,
+        values: impl IntoIterator<Item = (K, V)>,
+    ) -> Self {
+        let values = values.into_iter();
+        Self {
+            text: Some(text),
+            set: values.map(|(key, value)| format!("{key}={value}")).collect(),
+        }
+    }
+
+    /// Makes the scenario of a text, by its index.
+    pub(super) const fn unchanged(text: usize) -> Self {
+        Self {
+            text: Some(text),
+            set: Vec::new(),
+        }
+    }
+
+    /// Returns the scenario in one direction of the ground motion.
+    pub(super) fn in_direction(mut self, direction: Direction) -> Self {
+        let name = direction.name();
+        self.set.push(format!("simulation.direction={name}"));
+        self
+    }
 }
 
 /// The cases of a page, in the order of the last table of its study.
@@ -23,57 +57,64 @@ pub(super) struct CaseText {
 pub(super) struct PageCases {
     #[serde(skip)]
     pub(super) spots: Vec<Spot>,
-    /// True if the command of a case is a suite.
-    #[serde(skip)]
-    pub(super) are_suites: bool,
     /// Number of all cases, also of those that are not on the page.
     pub(super) count: usize,
+    /// Scenarios as TOML, without studies.
     pub(super) texts: Vec<String>,
-    pub(super) cases: Vec<CaseText>,
+    pub(super) cases: Vec<CaseScenario>,
+    /// True if a text names record files.
+    has_files: bool,
 }
 
 impl PageCases {
-    /// Adds a case: its outcome, whether it is outside the model of four links, its words, and its scenario as JSON, unless it is not valid.
-    /// Only the first cases are on the page.
-    pub(super) fn push(
-        &mut self,
-        mark: (SpotKind, bool),
-        words: String,
-        scenario: impl FnOnce() -> Option<Value>,
-    ) {
-        let are_suites = self.are_suites;
-        self.push_text(mark, words, || {
-            let mut scenario = scenario()?;
-            if let Value::Object(tables) = &mut scenario {
-                tables.retain(|name, _| {
-                    let is_of_suites = are_suites && name == "suite";
-                    is_of_suites || !STUDY_TABLES.contains(&name.as_str())
-                });
-            }
-            Some(toml_text(&scenario))
-        });
+    /// Adds the text of a scenario, given as JSON, and returns its index. Tables of studies are left out, unless the cases are `suites`.
+    pub(super) fn add_text(&mut self, scenario: &Value, suites: bool) -> usize {
+        let mut scenario = scenario.clone();
+        if let Value::Object(tables) = &mut scenario {
+            tables.retain(|name, _| {
+                let is_of_suites = suites && name == "suite";
+                is_of_suites || !STUDY_TABLES.contains(&name.as_str())
+            });
+        }
+        self.has_files |= scenario.pointer("/ground/record").is_some() || suites;
+        self.texts.push(toml_text(&scenario));
+        self.texts.len() - 1
     }
 
-    /// Adds a case of another page, with words before its own.
-    pub(super) fn push_copy(&mut self, before: &str, other: &Self, row: usize) {
+    /// Returns true if a command names record files.
+    pub(super) const fn has_files(&self) -> bool {
+        self.has_files
+    }
+
+    /// Adds the texts of another page, and returns the index of the first.
+    pub(super) fn add_texts_of(&mut self, other: &Self) -> usize {
+        let first = self.texts.len();
+        self.texts.extend_from_slice(&other.texts);
+        self.has_files |= other.has_files;
+        first
+    }
+
+    /// Adds a case of another page, with words before its own. `first` is the index of the first text of that page.
+    pub(super) fn push_copy(&mut self, before: &str, (other, first): (&Self, usize), row: usize) {
         let spot = other.spots.get(row);
         let mark = spot.map_or((SpotKind::Unknown, false), |spot| (spot.kind, spot.outside));
         let words = spot.map_or("a case without a mark", |spot| &spot.words);
-        self.push_text(mark, format!("{before}{words}"), || {
-            let CaseText { text, lines } = other.cases.get(row)?;
-            let mut all: Vec<&str> = other.texts[(*text)?].split('\n').collect();
-            for (index, line) in lines {
-                all[*index] = line;
-            }
-            Some(all.join("\n"))
+        self.push(mark, format!("{before}{words}"), || {
+            let CaseScenario { text, set } = other.cases.get(row)?.clone();
+            Some(CaseScenario {
+                text: Some(first + text?),
+                set,
+            })
         });
     }
 
-    fn push_text(
+    /// Adds a case: its outcome, whether it is outside the model of four links, its words, and its scenario, unless it is not valid.
+    /// Only the first cases are on the page.
+    pub(super) fn push(
         &mut self,
         (kind, outside): (SpotKind, bool),
         words: String,
-        text: impl FnOnce() -> Option<String>,
+        scenario: impl FnOnce() -> Option<CaseScenario>,
     ) {
         self.count += 1;
         if self.spots.len() == MOST_CASES {
@@ -85,8 +126,7 @@ impl PageCases {
             outside,
             words,
         });
-        let case = text().map(|text| self.text(&text));
-        self.cases.push(case.unwrap_or_default());
+        self.cases.push(scenario().unwrap_or_default());
     }
 
     /// Adds the case of a history.
@@ -94,7 +134,7 @@ impl PageCases {
         &mut self,
         case: &str,
         result: &Result<Ending, NoHistory>,
-        scenario: impl FnOnce() -> Option<Value>,
+        scenario: impl FnOnce() -> Option<CaseScenario>,
     ) {
         let words = match result {
             Ok(ending) => match ending.doubt() {
@@ -114,25 +154,6 @@ impl PageCases {
             format!("{case}: {words}{beyond}"),
             scenario,
         );
-    }
-
-    /// Returns a text as the last one with other lines, or as a new one.
-    fn text(&mut self, text: &str) -> CaseText {
-        let last = self.texts.last().map_or("", |last| last);
-        let (old, new): (Vec<&str>, Vec<&str>) =
-            (last.split('\n').collect(), text.split('\n').collect());
-        if old.len() != new.len() || self.texts.is_empty() {
-            self.texts.push(text.to_owned());
-            return self.text(text);
-        }
-        let changed = new.iter().zip(old).enumerate();
-        let changed = changed.filter(|(_, (new, old))| *new != old);
-        CaseText {
-            text: Some(self.texts.len() - 1),
-            lines: changed
-                .map(|(index, (new, _))| (index, (*new).to_owned()))
-                .collect(),
-        }
     }
 }
 

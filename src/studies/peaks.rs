@@ -170,10 +170,11 @@ pub fn results(all: &[(&Scenario, &Results)], figure: Figure) -> Result<Results,
         let known = known.filter_map(|(row, peak)| Some(((*peak)?, row)));
         let mut ranked: Vec<(f64, usize)> = known.collect();
         ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let first = cases.add_texts_of(&found.cases);
         for ((_, row), (_, share)) in ranked.iter().zip(distribution) {
             let share = fixed(100.0 * share, 1);
             let before = format!("{model}, {share} % of the cases up to here; ");
-            cases.push_copy(&before, &found.cases, *row);
+            cases.push_copy(&before, (&found.cases, first), *row);
         }
     }
     let overturned = report.models.iter();

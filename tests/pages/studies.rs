@@ -100,14 +100,10 @@ impl Page {
         let (data, case) = (&self.data, &self.data["cases"][row]);
         let text = usize::try_from(case["text"].as_u64().unwrap()).unwrap();
         let text = data["texts"][text].as_str().unwrap();
-        let lines = text.split('\n').enumerate().map(|(index, line)| {
-            let mut changed = case["lines"].as_array().unwrap().iter();
-            let changed = changed.find(|changed| changed[0] == index);
-            changed.map_or(line, |changed| changed[1].as_str().unwrap())
-        });
-        let lines: Vec<&str> = lines.collect();
-        let command = data["command"].as_str().unwrap();
-        format!("archrock {command} <<'END'\n{}END\n", lines.join("\n"))
+        let values = case["set"].as_array().unwrap().iter();
+        let values = values.map(|value| format!(" --set {}", value.as_str().unwrap()));
+        let (command, values) = (data["command"].as_str().unwrap(), values.collect::<String>());
+        format!("archrock {command}{values} <<'END'\n{text}END\n")
     }
 
     /// Runs the command of a row in a shell, with further options; returns its standard output.

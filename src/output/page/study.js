@@ -7,13 +7,12 @@
   let chosen = 0;
   let stays = false;
 
-  /** The command that computes a case: the text of its scenario follows from that of an earlier one by some lines. */
+  /** The command that computes a case: a scenario with other values. */
   function command(row) {
-    const { text, lines } = data.cases[row];
+    const { text, set } = data.cases[row];
     if (text === null) return "There is no command: the values make no valid structure, or the page of the model has too many cases.";
-    const all = data.texts[text].split("\n");
-    for (const [index, line] of lines) all[index] = line;
-    return `archrock ${data.command} <<'END'\n${all.join("\n")}END\n`;
+    const values = set.map((value) => ` --set ${value}`).join("");
+    return `archrock ${data.command}${values} <<'END'\n${data.texts[text]}END\n`;
   }
 
   function show(row) {

@@ -97,6 +97,19 @@ impl Scaling {
         Ok(peak_g.map_or(Self::Factor(scale.unwrap_or(1.0)), Self::PeakG))
     }
 
+    /// Returns the scaling of accelerations that are multiplied by a factor.
+    fn times(self, factor: f64) -> Self {
+        Self::Factor(factor).after(self)
+    }
+
+    /// Returns its key, and the value.
+    pub(crate) const fn key_and_value(self) -> (&'static str, f64) {
+        match self {
+            Self::Factor(factor) => ("scale", factor),
+            Self::PeakG(peak_g) => ("peak_g", peak_g),
+        }
+    }
+
     /// Returns the scaling by `first` and then by this one. A factor multiplies `first`, and a peak replaces it.
     pub(super) fn after(self, first: Self) -> Self {
         match (self, first) {
@@ -207,6 +220,18 @@ impl Record {
     /// Returns the records, the horizontal one first.
     pub fn series(&self) -> impl Iterator<Item = &Series> {
         [&self.main].into_iter().chain(&self.vertical)
+    }
+
+    /// Returns keys and values of its table that multiply all accelerations by a factor.
+    pub(super) fn values_times(&self, table: &str, factor: f64) -> Vec<(String, f64)> {
+        let vertical = self.vertical.as_ref();
+        let vertical = vertical.map(|series| (format!("{table}.vertical"), series));
+        let all = [(table.to_owned(), &self.main)].into_iter().chain(vertical);
+        let value = |(table, series): (String, &Series)| {
+            let (key, value) = series.scaling.times(factor).key_and_value();
+            (format!("{table}.{key}"), value)
+        };
+        all.map(value).collect()
     }
 
     /// Returns the ground motion with another scaling of the main record; the vertical record is unchanged.

@@ -13,7 +13,7 @@ use crate::output::{
     CURVES, Chart, Figure, Mark, Named, OutputError, Table, column, fields, filters,
 };
 use crate::scenario::Varied;
-use crate::studies::page::{Page, PageCases};
+use crate::studies::page::{CaseScenario, Page, PageCases};
 use crate::studies::report::{Report, Warnings};
 use crate::studies::results::Results;
 use crate::{Scenario, Sway};
@@ -130,14 +130,14 @@ pub fn report(
         .with_table("capacity.csv", table(sides)?)
         .with_file("capacity.svg", picture);
     let mut cases = PageCases::default();
+    let text = CaseScenario::unchanged(cases.add_text(&summary.scenario, false));
     for (sway, point) in points(sides) {
         let (d_m, a_g) = (plain(point.displacement_m), plain(point.acceleration_g));
         let words = format!(
             "to the {}: a {a_g} g at a displacement of {d_m} m",
             sway.name()
         );
-        let scenario = || Some(summary.scenario.clone());
-        cases.push((SpotKind::Point, false), words, scenario);
+        cases.push((SpotKind::Point, false), words, || Some(text.clone()));
     }
     let control_m = sides
         .iter()

@@ -6,7 +6,7 @@ use crate::argument::plain;
 use crate::output::page::{Spot, SpotKind};
 use crate::output::{Chart, Figure, Mark, Scale};
 use crate::studies::Results;
-use crate::studies::page::{DrawPicture, Page, PageCases, input_in_words};
+use crate::studies::page::{CaseScenario, DrawPicture, Page, PageCases, input_in_words};
 
 /// The answer of a sample on a page: its outcome, true if it is outside the model of four links, and the number on the y axis, `None` if it is beyond
 /// the axis.
@@ -19,6 +19,8 @@ pub(super) struct SamplePage<'a, A> {
     pub(super) label: &'static str,
     /// The command of a sample, without `archrock` and its scenario.
     pub(super) command: String,
+    /// True if that is a suite.
+    pub(super) are_suites: bool,
     pub(super) answer: &'a dyn Fn(&A) -> PageAnswer,
     /// The picture of all samples.
     pub(super) picture: DrawPicture<'a>,
@@ -36,11 +38,9 @@ impl<A> SamplePage<'_, A> {
         all: &SampleSummary,
     ) -> Results {
         let scenario = samples.scenario;
-        let json = scenario.to_json();
-        let mut cases = PageCases {
-            are_suites: self.command.starts_with("suite"),
-            ..PageCases::default()
-        };
+        let mut cases = PageCases::default();
+        let text = cases.add_text(&scenario.to_json(), self.are_suites);
+        let keys = &samples.uncertain.keys;
         for (number, row) in samples.lines() {
             let case = match number {
                 0 => "the scenario itself".to_owned(),
@@ -59,15 +59,9 @@ impl<A> SamplePage<'_, A> {
                 Err(why) => (SpotKind::Unknown, false, why.reason().to_owned()),
             };
             cases.push((kind, outside), format!("{case}: {words}"), || {
-                if number == 0 {
-                    return Some(json.clone());
-                }
-                let sample = samples.uncertain.scenario(scenario, &row.values).ok()?;
-                let mut sample = sample.to_json();
-                if let Some(suite) = json.get("suite") {
-                    sample["suite"] = suite.clone();
-                }
-                Some(sample)
+                let is_valid = !matches!(row.answer, Err(NoAnswer::Invalid(_)));
+                let values = keys.iter().map(|key| &key.key).zip(&row.values);
+                is_valid.then(|| CaseScenario::of(text, values))
             });
         }
         let key = all.what_matters.strongest().unwrap_or(0);
@@ -77,7 +71,7 @@ impl<A> SamplePage<'_, A> {
             all.not_considered
         );
         // The records of a suite replace the ground motion of the scenario.
-        let what = match cases.are_suites {
+        let what = match self.are_suites {
             true => input_in_words(&[&scenario.with_ground(None)]),
             false => input_in_words(&[scenario]),
         };

@@ -162,6 +162,7 @@ impl Question for Histories {
             title: samples.title(TITLE),
             label: "peak rotation (rad)",
             command: "run - --out case".to_owned(),
+            are_suites: false,
             answer: &page_answer,
             picture: &|figure| self.draw(figure, samples, &bands),
         };

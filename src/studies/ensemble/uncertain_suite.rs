@@ -232,6 +232,7 @@ impl Question for Capacities {
             title: samples.title(TITLE),
             label: "median intensity that overturns",
             command: "suite - --out case".to_owned(),
+            are_suites: true,
             answer: &answer,
             picture: &|figure| self.draw(figure, samples),
         };

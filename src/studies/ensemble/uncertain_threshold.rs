@@ -184,6 +184,7 @@ impl Question for FirstEdges {
             title: samples.title(TITLE),
             label: "first factor that overturns",
             command: self.factors.command(),
+            are_suites: false,
             answer: &|edge: &FirstEdge| (edge.spot_kind(), false, edge.factor),
             picture: &|figure| draw(figure, samples, &probabilities),
         };

@@ -6,7 +6,7 @@ use crate::output::elevation::draw_hinges;
 use crate::output::page::{Spot, SpotKind};
 use crate::output::{Figure, Scene};
 use crate::studies::draw_limit;
-use crate::studies::page::{DrawPicture, Marked, Page, PageCases};
+use crate::studies::page::{CaseScenario, DrawPicture, Marked, Page, PageCases};
 use crate::studies::results::{Results, StudyError};
 use crate::{Scenario, Sway};
 
@@ -26,7 +26,8 @@ pub fn results(scenario: &Scenario, figure: Figure) -> Result<Results, StudyErro
     let (summary, scene) = (summary(scenario)?, Scene::new(&scenario.structure));
     let title = scenario.title.as_deref().unwrap_or("Limit analysis");
     let (mut hinges_m, mut cases) = (Vec::new(), PageCases::default());
-    let case = || Some(scenario.to_json());
+    let text = CaseScenario::unchanged(cases.add_text(&scenario.to_json(), false));
+    let case = || Some(text.clone());
     for (sway, hinges) in summary.mechanism.iter() {
         for (index, hinge) in hinges.iter().enumerate() {
             let (at_m, words, push) = (hinge.at_m(&scene), hinge.words(&index), sway.name());

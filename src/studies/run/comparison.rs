@@ -10,7 +10,7 @@ use crate::dynamics::OutcomeKind;
 use crate::output::{Named, filters};
 use crate::scenario::ModelKind;
 use crate::studies::Results;
-use crate::studies::page::{Page, PageCases, input_in_words, kind_of};
+use crate::studies::page::{CaseScenario, Page, PageCases, input_in_words, kind_of};
 
 /// The runs of one structure with several models of motion.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -79,7 +79,8 @@ pub(super) fn with_page(results: Results, runs: &[Run<'_>], all: &[ModelResults]
         let outside = one.summary.four_links() == Some(FourLinkQuality::Outside);
         let (label, verdict) = (run.scenario.motion.kind.label, one.summary.verdict_line());
         let words = format!("{label}: {}", verdict.trim());
-        let scenario = || Some(run.scenario.to_json());
+        let text = cases.add_text(&run.scenario.to_json(), false);
+        let scenario = || Some(CaseScenario::unchanged(text));
         cases.push((kind, outside), words, scenario);
     }
     let kinds: Vec<&ModelKind> = runs.iter().map(|run| run.scenario.motion.kind).collect();

@@ -1,15 +1,15 @@
 //! Files and words of moved springings.
 
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::picture::draw;
 use super::{Push, SpreadPath, Stage, Summary};
 use crate::argument::plain;
-use crate::mechanics::Sides;
+use crate::mechanics::{Movements, Sides};
 use crate::output::page::SpotKind;
 use crate::output::{Cell, Figure, OutputError, Scene, Table, column, list, several};
 use crate::scenario::Scenario;
-use crate::studies::page::{Page, PageCases};
+use crate::studies::page::{CaseScenario, Page, PageCases};
 use crate::studies::results::{Results, StudyError};
 
 /// Names of the files, the seal last.
@@ -32,6 +32,11 @@ pub fn report(
         .with_table("spread.csv", table(spread)?)
         .with_file("spread.svg", drawn(figure, &[]));
     let mut cases = PageCases::default();
+    let mut unmoved = scenario.to_json();
+    if let Value::Object(tables) = &mut unmoved {
+        tables.shift_remove("supports");
+    }
+    cases.add_text(&unmoved, false);
     let settled = scenario.motion.supports().unwrap_or_default();
     let further = if spread.is_further() { " further" } else { "" };
     for (path, stage) in rows(spread) {
@@ -45,10 +50,9 @@ pub fn report(
                 plain(g)
             )),
         );
+        let movements = settled + path.direction.movements(stage.movement_m);
         cases.push((SpotKind::Point, false), words, || {
-            let mut moved = scenario.to_json();
-            moved["supports"] = json!(settled + path.direction.movements(stage.movement_m));
-            Some(moved)
+            Some(CaseScenario::of(0, values_of(movements)))
         });
     }
     let own = "the supports move slowly, and joints do not slip; the arch rests on three hinges, or on more with ties, and snaps to others";
@@ -59,6 +63,19 @@ pub fn report(
     page.command = "limit -".to_owned();
     let results = results.with_page("spread.html", page, &cases, (&picture, &[]));
     Ok(results.in_order(&FILES))
+}
+
+/// Returns the keys and values of `[supports]`.
+fn values_of(movements: Movements) -> Vec<(String, f64)> {
+    let sides = json!(movements);
+    let sides = sides.as_object().into_iter().flatten();
+    let values = sides.flat_map(|(side, table)| {
+        let table = table.as_object().into_iter().flatten();
+        table.filter_map(move |(key, value)| {
+            Some((format!("supports.{side}.{key}"), value.as_f64()?))
+        })
+    });
+    values.collect()
 }
 
 /// Returns all stages of all paths.

@@ -1,15 +1,17 @@
 //! The parts of a scenario that the report of its suite needs.
 
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use super::{CaseRow, SuiteFragility};
 use crate::argument::plain;
 use crate::dynamics::{Direction, Directions};
 use crate::output::caption::caption;
 use crate::output::{Figure, Origin, Scale};
-use crate::scenario::{Measure, ModelKind, Scenario, Spacing, Spectral, Suite, Unlikely, Varied};
-use crate::studies::page::under_factor;
+use crate::scenario::{
+    Measure, ModelKind, Scenario, Spacing, Spectral, Suite, UnitGround, Unlikely, Varied,
+};
+use crate::studies::page::{CaseScenario, PageCases};
 use crate::studies::quotable::{SlipWords, restitution_in_words};
 
 /// The parts of a scenario that the report of its suite needs. Part files keep them, so that `merge` needs no record files.
@@ -40,9 +42,9 @@ pub struct Heading {
     /// The assumed restitution, in words; `None` unless the model is one rigid block.
     #[serde(default)]
     pub(super) restitution: Option<String>,
-    /// The ground motion of each record with a peak of 1 g, by the name of the record.
+    /// Each record with a peak of 1 g.
     #[serde(default)]
-    unit_grounds: Vec<(String, Value)>,
+    unit_grounds: Vec<UnitGround>,
 }
 
 impl Heading {
@@ -95,25 +97,36 @@ impl Heading {
         (label, scale)
     }
 
-    /// Returns the scenario of a case, without the suite.
-    pub(super) fn scenario_of(&self, case: &CaseRow) -> Option<Value> {
+    /// Adds a text for each record to the cases of a page: the scenario under this record. Returns the index of the first.
+    pub(super) fn add_texts(&self, cases: &mut PageCases) -> usize {
+        let first = cases.texts.len();
+        for unit in &self.unit_grounds {
+            let mut ground = unit.ground.clone();
+            // The right foot follows with its delay.
+            if let Some(right) = self.scenario["ground"].get("right") {
+                ground["right"] = right.clone();
+            }
+            let mut scenario = self.scenario.clone();
+            scenario["ground"] = ground;
+            cases.add_text(&scenario, false);
+        }
+        first
+    }
+
+    /// Returns the scenario of a case, whose text is among those of [`Heading::add_texts`].
+    pub(super) fn scenario_of(&self, case: &CaseRow, first: usize) -> Option<CaseScenario> {
         let mut known = self.unit_grounds.iter();
-        let (_, unit) = known.find(|(name, _)| *name == case.record)?;
-        let mut ground = unit.clone();
-        // The right foot follows with its delay.
-        if let Some(right) = self.scenario["ground"].get("right") {
-            ground["right"] = right.clone();
-        }
-        let mut scenario = self.scenario.clone();
-        scenario["ground"] = ground;
-        if self.has_both {
-            let direction = match case.mirrored {
-                true => Direction::Mirrored,
-                false => Direction::AsGiven,
-            };
-            scenario["simulation"]["direction"] = json!(direction);
-        }
-        Some(under_factor(&scenario, case.peak_g))
+        let record = known.position(|unit| unit.record == case.record)?;
+        let UnitGround { key, value, .. } = &self.unit_grounds[record];
+        let scenario = CaseScenario::of(first + record, [(key, value * case.peak_g)]);
+        let direction = match case.mirrored {
+            true => Direction::Mirrored,
+            false => Direction::AsGiven,
+        };
+        Some(match self.has_both {
+            true => scenario.in_direction(direction),
+            false => scenario,
+        })
     }
 
     /// Returns the level of a case in words.

@@ -297,9 +297,10 @@ impl Heading {
     /// Adds the page. `caption` has the fragility curves in words.
     fn with_page(&self, found: Results, results: &SuiteFragility, caption: &str) -> Results {
         let mut cases = PageCases::default();
+        let first = self.add_texts(&mut cases);
         for case in &results.cases {
             let words = format!("{}, {}", case.record_in_words(), self.level(case));
-            cases.push_history(&words, &case.result, || self.scenario_of(case));
+            cases.push_history(&words, &case.result, || self.scenario_of(case, first));
         }
         let own = "each record acts alone, at every level, and starts from rest; the lowest overturning level of a record is bisected between \
                    two levels, and a finer search below it finds bands, unless it is \"of the levels tried\"; the curve takes the records as equally \

@@ -2,7 +2,7 @@
 
 use askama::Template;
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
+use serde_json::Value;
 
 use super::digits::{rounded, rounded_down};
 use super::survival::{self, Survival, VerdictRange};
@@ -16,7 +16,7 @@ use crate::output::{Figure, OutputError, Table, column, fields};
 use crate::scenario::{Ground, ModelKind, Scenario};
 use crate::studies::ending::columns::{GROUND_FALLS, OVERTURNED};
 use crate::studies::ending::{NoHistory, Verdict, outcome_name};
-use crate::studies::page::{Page, PageCases, input_in_words, under_factor};
+use crate::studies::page::{CaseScenario, Page, PageCases, input_in_words};
 use crate::studies::quotable::{
     self, FrictionCondition, ModelAnswer, SlipWords, directions_in_words, restitution_in_words,
 };
@@ -234,17 +234,18 @@ pub fn report(
         .with_table("threshold.csv", table(&report.models)?)
         .with_file("threshold.svg", picture);
     let mut cases = PageCases::default();
-    for (threshold, model) in thresholds.iter().zip(&report.models) {
+    for (threshold, scenario) in thresholds.iter().zip(scenarios) {
+        let text = cases.add_text(&scenario.to_json(), false);
         for one in threshold.directions() {
             for sample in &one.samples {
                 let (name, factor) = (one.name_in_words(), sample.factor);
                 let case = format!("{name}, factor {}", at(&factor, &peak_g));
                 cases.push_history(&case, &sample.result, || {
-                    let mut scenario = under_factor(&model.scenario, factor);
-                    if threshold.mirrored.is_some() {
-                        scenario["simulation"]["direction"] = json!(one.direction);
-                    }
-                    Some(scenario)
+                    let case = CaseScenario::of(text, scenario.ground_values_times(factor));
+                    Some(match threshold.mirrored {
+                        Some(_) => case.in_direction(one.direction),
+                        None => case,
+                    })
                 });
             }
         }

@@ -8,7 +8,7 @@ use crate::argument::plain;
 use crate::dynamics::Direction;
 use crate::output::page::SpotKind;
 use crate::output::{OutputError, Table, column, fields};
-use crate::studies::page::{Page, PageCases, input_in_words};
+use crate::studies::page::{CaseScenario, Page, PageCases, input_in_words};
 use crate::studies::quotable::{
     self, ModelAnswer, SlipWords, SurvivorFriction, directions_in_words, restitution_in_words,
 };
@@ -95,6 +95,7 @@ impl ReportedStudy for Along<'_> {
         let title = self.scenario.title.as_deref();
         let title = title.unwrap_or("Threshold of overturning");
         let mut cases = PageCases::default();
+        cases.add_text(&self.scenario.to_json(), false);
         for row in &rows {
             self.add_case(&mut cases, row);
         }
@@ -155,7 +156,8 @@ impl Along<'_> {
         };
         let words = format!("{} {}: {words}", self.options.along.key, plain(row.value));
         cases.push(mark, words, || {
-            Some(self.variant(row.value).ok()?.to_json())
+            self.variant(row.value).ok()?;
+            Some(CaseScenario::of(0, [(&self.options.along.key, row.value)]))
         });
     }
 
