@@ -42,7 +42,7 @@ use serde_json::Value;
 #[derive(Parser)]
 #[command(version, arg_required_else_help = true)]
 struct Arguments {
-    /// Print only errors and results.
+    /// Print no progress and no details: only verdict, warnings that limit it, and the answer to quote.
     #[arg(long, global = true)]
     quiet: bool,
     #[command(subcommand)]

@@ -3,7 +3,7 @@
 use archrock::output::{Folder, PictureFormat};
 use archrock::scenario::{ModelKind, Scenario};
 use archrock::studies::run::records_in_words;
-use archrock::studies::{ModelAnswer, Results, StudyKind, quoted_in_words};
+use archrock::studies::{Comparison, ModelAnswer, Results, StudyKind, quoted_in_words};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
@@ -19,8 +19,8 @@ pub struct CommandResults {
 
 /// The results of a model, or of all models together.
 pub struct ModelResults {
-    /// The model; `None` if it is unknown, as in parts that were merged.
-    pub model: Option<&'static ModelKind>,
+    /// The model, or the first of several.
+    pub model: &'static ModelKind,
     /// The results on the samples of each model that has `[uncertain]`.
     pub samples: Vec<SampleResults>,
     /// The comparison of the models by the largest rotations of their samples.
@@ -98,10 +98,10 @@ struct Summary<'f> {
 }
 
 impl CommandResults {
-    /// Makes the results of a study without samples, with their folder in words.
-    pub fn alone(own: Results, place: String) -> Self {
+    /// Makes the results of a study of one model without samples, with their folder in words.
+    pub fn alone(model: &'static ModelKind, own: Results, place: String) -> Self {
         let of_model = ModelResults {
-            model: None,
+            model,
             samples: Vec::new(),
             compared: None,
             own,
@@ -119,8 +119,7 @@ impl CommandResults {
         let mut text = title.map_or(String::new(), |title| format!("{title}\n"));
         text.extend((!brief).then_some(heading.lines.as_str()));
         for one in &self.of_models {
-            let label = one.model.filter(|_| self.of_models.len() > 1);
-            let label = label.map(|model| model.label);
+            let label = (self.of_models.len() > 1).then_some(one.model.label);
             text.extend(label.map(|label| format!("{label}\n")));
             text += &format!("{}\n", one.words(kind.has_title, brief));
         }
@@ -143,18 +142,12 @@ impl CommandResults {
         if let [one] = &self.of_models[..] {
             return one.summary(kind);
         }
-        let mut all = Map::new();
-        for one in &self.of_models {
-            let option = one.model.map_or("", |model| model.option);
-            all.insert(option.to_owned(), one.summary(kind)?);
-        }
-        let peaks = self.compared.as_ref();
-        all.extend(peaks.map(|peaks| ("peaks".to_owned(), peaks.summary.clone())));
-        all.extend(
-            self.quote()
-                .map(|quote| ("to_quote".to_owned(), quote.into())),
-        );
-        Ok(Value::Object(all))
+        let models = self.of_models.iter();
+        let models = models.map(|one| Ok((one.model, one.summary(kind)?)));
+        let models = models.collect::<Result<Vec<_>, Failure>>()?;
+        let peaks = self.compared.as_ref().map(|peaks| peaks.summary.clone());
+        let all = Comparison::new(models, self.quote(), peaks);
+        serde_json::to_value(all).map_err(|error| Failure::Work(error.to_string()))
     }
 }
 

@@ -148,7 +148,6 @@ impl Arguments {
             exaggeration: self.exaggerate,
             poses: self.poses,
             points_m: self.points_m.clone(),
-            samples: Vec::new(),
         })
     }
 

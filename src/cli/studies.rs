@@ -157,7 +157,7 @@ pub fn merge(arguments: &MergeArguments) -> Result<(), Failure> {
     results.write(&folder)?;
     publish(&folder)?;
     let place = describe(&folder, &results);
-    let found = CommandResults::alone(results, place);
+    let found = CommandResults::alone(merged.model, results, place);
     let heading = Heading {
         title: merged.title.as_deref(),
         lines: String::new(),

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
-use std::{mem, process, slice};
+use std::{process, slice};
 
 use archrock::output::Folder;
 use archrock::scenario::Scenario;
@@ -211,12 +211,14 @@ impl StudyJob {
         Ok(())
     }
 
-    /// Computes a study, and prepares its results in the folder, if there is one. Of a part, reports the file and returns `None`.
+    /// Computes a study, and prepares its results in the folder, if there is one; those of a run include the results on `samples`. Of a part, reports
+    /// the file and returns `None`.
     pub fn compute(
         &mut self,
         kind: StudyKind,
         scenarios: &[Scenario],
         folder: Option<&Folder>,
+        samples: &[Results],
     ) -> Result<Option<Results>, Failure> {
         let work = self.work;
         let shard = work.shard.unwrap_or(Shard::WHOLE);
@@ -271,6 +273,7 @@ impl StudyJob {
         let sinks = Sinks {
             folder: folder.cloned(),
             rotations: self.options.run.no_rotations.then(stdout),
+            samples,
             ..Sinks::default()
         };
         let rows = RowSource::Compute(runner, task, &mut watch);
@@ -365,7 +368,7 @@ impl StudyJob {
             let model = scenario.motion.kind;
             let folder = folder.of_model(model, several).within(samples.name);
             if let Some(results) =
-                self.compute(*samples, slice::from_ref(scenario), Some(&folder))?
+                self.compute(*samples, slice::from_ref(scenario), Some(&folder), &[])?
             {
                 models.push((model, describe(&folder, &results)));
                 of_samples.push(results);
@@ -375,9 +378,8 @@ impl StudyJob {
             return Ok(None);
         }
         // The page of a run begins with the words about its samples, and its JSON contains theirs.
-        self.options.run.samples = of_samples;
-        let own = self.compute(kind, scenarios, folder)?;
-        let of_samples = mem::take(&mut self.options.run.samples).into_iter();
+        let own = self.compute(kind, scenarios, folder, &of_samples)?;
+        let of_samples = of_samples.into_iter();
         let Some(own) = own else { return Ok(None) };
         let of_samples = of_samples
             .zip(models)
@@ -396,7 +398,7 @@ impl StudyJob {
         // The words of a run name its files.
         let folder_of_own = folder.filter(|_| !kind.is_history);
         Ok(Some(ModelResults {
-            model: Some(scenarios[0].motion.kind),
+            model: scenarios[0].motion.kind,
             compared: self.compare(kind, &models, folder)?,
             samples: of_samples,
             place: folder_of_own.map(|folder| describe(folder, &own)),

@@ -2,12 +2,12 @@
 
 use nalgebra::Vector2;
 
+use super::Scenario;
 use super::error::ScenarioErrors;
 use super::prelude::*;
-use super::right_foot::RightFoot;
 use super::record::{KnownRecords, MAX_ACCELERATION_G, Record, free_fall};
+use super::right_foot::RightFoot;
 use super::source::Source;
-use super::Scenario;
 use super::table;
 use crate::argument::{self, ArgumentError};
 use crate::dynamics::{Pulse, PulseShape, WaveTrain};

@@ -107,6 +107,7 @@ pub use simulation::Simulation;
 pub use source::Source;
 pub use structure::{Dimension, DimensionSide, ModelError, Structure, metres};
 pub(crate) use structure::{forces_in_words, load_in_words};
+pub(crate) use suite::UnitGround;
 pub use suite::{Measure, Spectral, Suite};
 pub use tie::{TieEnds, TieTable};
 pub(crate) use toml_text::toml_text;

@@ -221,7 +221,7 @@ impl Suite {
 }
 
 /// A record with a peak of 1 g, as the ground motion of a scenario.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, serde::Deserialize)]
 pub(crate) struct UnitGround {
     /// Name of the record.
     pub(crate) record: String,

@@ -21,7 +21,7 @@ use super::threshold::along::{Along, AlongOptions};
 use super::threshold::{self, Factors};
 use super::{ReportedStudy, Results, Runner, StudyError, Style, Task, Watch, verify};
 use crate::output::Origin;
-use crate::scenario::{Scenario, Varied};
+use crate::scenario::{ModelKind, Scenario, Varied};
 
 /// Options of studies that are not part of the scenario.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -377,6 +377,8 @@ pub struct Merged {
     pub results: Results,
     /// Title of the scenario.
     pub title: Option<String>,
+    /// Model of motion.
+    pub model: &'static ModelKind,
     /// The scenario of the results, and its records.
     pub origin: Origin,
 }
@@ -412,6 +414,7 @@ pub fn merge(
             kind,
             results: heading.report(rows, style.figure)?,
             title: heading.title.clone(),
+            model: heading.model,
             origin: heading.origin().with_records(header.inputs),
         });
     }
@@ -438,6 +441,7 @@ pub fn merge(
             kind,
             results: *results,
             title: scenario.title.clone(),
+            model: scenario.motion.kind,
             origin: Origin::of(&scenario).with_records(header.inputs.clone()),
         }),
         Computation::Partial { .. } => unreachable!("all parts are joined"),

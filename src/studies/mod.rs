@@ -17,6 +17,7 @@
 
 mod capacity;
 mod catalogue;
+mod comparison;
 pub(crate) mod ending;
 pub mod ensemble;
 mod impact;
@@ -48,6 +49,7 @@ pub use catalogue::{
     THRESHOLD, THRESHOLD_ALONG, UNCERTAIN, UNCERTAIN_MAP, UNCERTAIN_SUITE, UNCERTAIN_THRESHOLD,
     VERIFY, merge,
 };
+pub use comparison::Comparison;
 use ending::NoAnswer;
 pub use ending::{Ending, NoHistory, Steps, Verdict, outcome_name};
 pub use impact::{

@@ -32,7 +32,9 @@ impl CaseScenario {
         let values = values.into_iter();
         Self {
             text: Some(text),
-            set: values.map(|(key, value)| format!("{key}={value}")).collect(),
+            set: values
+                .map(|(key, value)| format!("{key}={value}"))
+                .collect(),
         }
     }
 

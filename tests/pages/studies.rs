@@ -102,7 +102,10 @@ impl Page {
         let text = data["texts"][text].as_str().unwrap();
         let values = case["set"].as_array().unwrap().iter();
         let values = values.map(|value| format!(" --set {}", value.as_str().unwrap()));
-        let (command, values) = (data["command"].as_str().unwrap(), values.collect::<String>());
+        let (command, values) = (
+            data["command"].as_str().unwrap(),
+            values.collect::<String>(),
+        );
         format!("archrock {command}{values} <<'END'\n{text}END\n")
     }
 

@@ -1,26 +1,16 @@
 //! Comparison of several models of motion of one structure: the result of each, the most reliable one, and the differences of the others.
 
 use askama::Template;
-use serde::{Deserialize, Serialize};
 
 use super::summary::{FourLinkQuality, Summary};
 use super::{ModelResults, REPORT, Run};
 use crate::Verdict;
 use crate::dynamics::OutcomeKind;
-use crate::output::{Named, filters};
+use crate::output::filters;
 use crate::scenario::ModelKind;
 use crate::studies::Results;
+use crate::studies::comparison::Comparison;
 use crate::studies::page::{CaseScenario, Page, PageCases, input_in_words, kind_of};
-
-/// The runs of one structure with several models of motion.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Comparison {
-    /// The answer of the model with the fewest assumptions, in words.
-    pub to_quote: Option<String>,
-    /// The runs, by the name of the model.
-    #[serde(flatten)]
-    pub models: Named<Summary>,
-}
 
 /// The outcome of a run, with its time.
 #[derive(Template)]
@@ -29,16 +19,11 @@ struct OutcomeCell<'a> {
     summary: &'a Summary,
 }
 
-impl Comparison {
-    /// Returns the runs, in the order in which they were computed.
-    pub(super) fn summaries(&self) -> impl Iterator<Item = &Summary> {
-        self.models.0.iter().map(|(_, summary)| summary)
-    }
-
+impl Comparison<Summary> {
     /// Returns the rows of the table, and the widths of its first two columns.
     pub(super) fn table(&self) -> (Vec<(&Summary, String)>, [usize; 2]) {
         let rows = self
-            .summaries()
+            .models()
             .map(|summary| (summary, OutcomeCell { summary }.to_string()));
         let rows: Vec<_> = rows.collect();
         let widths = rows
@@ -51,11 +36,9 @@ impl Comparison {
 
     /// Returns pairs of the most reliable model and another one. Pairs without a verdict, and pairs in which nothing moves, are left out.
     pub(super) fn pairs(&self) -> Vec<[&Summary; 2]> {
-        let best = self.summaries().max_by_key(|one| one.model.rank());
+        let best = self.models().max_by_key(|one| one.model.rank());
         let pairs = best.into_iter().flat_map(|best| {
-            let others = self
-                .summaries()
-                .filter(move |other| other.model != best.model);
+            let others = self.models().filter(move |other| other.model != best.model);
             others.map(move |other| [best, other])
         });
         let differs = |[best, other]: &[&Summary; 2]| {

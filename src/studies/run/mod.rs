@@ -34,7 +34,6 @@ use std::sync::Arc;
 
 use nalgebra::Vector2;
 
-use self::comparison::Comparison;
 use self::directions::{MirroredPage, MirroredRun};
 pub use self::film::{Film, FilmOptions};
 pub use self::impacts::NotableImpacts;
@@ -51,6 +50,7 @@ pub use self::summary::{
 };
 use self::words::{Files, Printed, Words};
 pub use self::words::{records_in_words, words_of};
+use super::comparison::Comparison;
 use super::quotable::{self, ModelAnswer};
 use super::report::{Statement, Warnings};
 use super::{Progress, Results, StudyError, Watch};
@@ -58,7 +58,7 @@ use crate::dynamics::repeatability::Repetitions;
 use crate::dynamics::{Directions, FallEnd, Repeatability, Variations};
 use crate::output::page::Spot;
 use crate::output::{
-    Figure, Folder, Named, NewFile, OutputError, Scene, Subject, pretty, render, summary_of,
+    Figure, Folder, NewFile, OutputError, Scene, Subject, pretty, render, summary_of,
 };
 use crate::scenario::{ModelKind, Scenario};
 use crate::{Event, Model, OpenHinge, Pose, Recorder, Sample, Summary as History, Sway};
@@ -104,14 +104,12 @@ pub struct RunOptions {
     pub poses: bool,
     /// Points of the undeformed structure, in metres, whose displacements are reported: at most [`MAX_POINTS`].
     pub points_m: Vec<Vector2<f64>>,
-    /// The results on the samples of `[uncertain]` for each model, whose words begin the page and whose JSON ends the summary; empty without samples.
-    pub samples: Vec<Results>,
 }
 
 /// Receives the rotations in place of a file.
 pub type RotationsOutput<'w> = Option<Output<'w>>;
 
-/// The receivers of the tables of a run, which are written while it is computed.
+/// The receivers of the tables of a run, which are written while it is computed, and the results that its report includes.
 #[derive(Default)]
 pub struct Sinks<'w> {
     /// The folder; with several models of motion each has a folder inside it. `None`: no files are written.
@@ -120,6 +118,8 @@ pub struct Sinks<'w> {
     pub in_memory: &'w [String],
     /// The output for the rotations in place of a file.
     pub rotations: RotationsOutput<'w>,
+    /// The results on the samples of `[uncertain]` for each model, whose words begin the page and whose JSON ends the summary; empty without samples.
+    pub samples: &'w [Results],
 }
 
 /// The results of one model of motion.
@@ -176,7 +176,7 @@ pub fn results(
     for (number, run) in runs.iter().enumerate() {
         let folder = sinks.folder.as_ref();
         let folder = folder.map(|it| it.of_model(run.scenario.motion.kind, runs.len() > 1));
-        let samples = options.samples.get(number);
+        let samples = sinks.samples.get(number);
         let sinks = Sinks {
             folder,
             in_memory: match runs.len() {
@@ -184,6 +184,7 @@ pub fn results(
                 _ => &[],
             },
             rotations: sinks.rotations.take(),
+            samples: &[],
         };
         all.push(run.compute(sinks, samples, &mut *watch)?);
     }
@@ -194,11 +195,8 @@ pub fn results(
     let comparison = (all.len() > 1).then(|| {
         let answers: Vec<_> = all.iter().map(|one| one.answer.clone()).collect();
         let summaries = all.iter().map(|one| one.summary.clone());
-        let named = all_models.iter().map(|model| model.option.to_owned());
-        Comparison {
-            to_quote: quotable::in_words(&answers),
-            models: Named(named.zip(summaries).collect()),
-        }
+        let models = all_models.iter().copied().zip(summaries);
+        Comparison::new(models, quotable::in_words(&answers), None)
     });
     results.summary = match &comparison {
         None => summary_of(&all[0].summary)?,

@@ -5,10 +5,9 @@ use std::path::PathBuf;
 use askama::Template;
 use nalgebra::Vector2;
 use serde::Deserialize as _;
-use serde_json::{Map, Value};
+use serde_json::Value;
 
 use super::caveats::{Caveat, coefficient, largest_coefficient};
-use super::comparison::Comparison;
 use super::impacts::ImpactSummary;
 use super::points::place;
 use super::summary::{
@@ -23,6 +22,7 @@ use crate::mechanics::Sides;
 use crate::output::mechanisms::by_body;
 use crate::output::{filters, range_ends, render};
 use crate::scenario::{ELASTIC_JOINTS, FREE_HINGES, ModelKind, Scenario, Series};
+use crate::studies::comparison::Comparison;
 use crate::studies::quotable::STONE_FRICTION;
 use crate::{Outcome, Verdict};
 
@@ -55,7 +55,7 @@ pub(super) struct Words<'a> {
 #[derive(Template)]
 #[template(path = "studies/run/words/printed.txt")]
 pub(super) struct Printed<'a> {
-    pub comparison: Option<&'a Comparison>,
+    pub comparison: Option<&'a Comparison<Summary>>,
     /// The answer of the comparison; `None` on a page, which begins with it.
     pub quote: Option<&'a str>,
     pub runs: Vec<(&'a Summary, Option<&'a Files>)>,
@@ -78,17 +78,12 @@ pub(super) struct Files {
 /// # Errors
 /// When the JSON is not a summary of a run.
 pub fn words_of(json: &Value) -> serde_json::Result<String> {
-    let comparison: Option<Comparison> = match json.get("program") {
+    let comparison: Option<Comparison<Summary>> = match json.get("program") {
         Some(_) => None,
-        None => {
-            let mut models = Map::deserialize(json)?;
-            // A command adds the comparison of the samples, which is no model.
-            models.shift_remove("peaks");
-            Some(Comparison::deserialize(Value::Object(models))?)
-        }
+        None => Some(Comparison::deserialize(json)?),
     };
     let runs = match &comparison {
-        Some(comparison) => comparison.summaries().cloned().collect(),
+        Some(comparison) => comparison.models().cloned().collect(),
         None => vec![Summary::deserialize(json)?],
     };
     Ok(super::super::results::words_of(&Printed {

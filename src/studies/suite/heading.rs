@@ -21,7 +21,7 @@ pub struct Heading {
     /// The scenario with all defaults.
     pub(super) scenario: Value,
     /// The model of motion.
-    pub(super) model: &'static ModelKind,
+    pub(in crate::studies) model: &'static ModelKind,
     pub(super) is_arch: bool,
     /// The measure of the intensities.
     pub measure: Measure,
