@@ -1190,7 +1190,7 @@ const SEMICIRCLE: &str =
 fn spread_reports_the_collapse_movement_and_the_remaining_push() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("arch.toml"), SEMICIRCLE).unwrap();
-    let words = printed(folder.path(), &["--quiet", "spread", "arch.toml"]);
+    let words = printed(folder.path(), &["spread", "arch.toml"]);
     let reported = json(&folder.path().join("results/arch/spread.json"));
     let path = &reported["paths"][0];
     let falls_at_m = path["falls_at_m"].as_f64().unwrap();
@@ -1231,7 +1231,6 @@ fn spread_reports_the_collapse_movement_and_the_remaining_push() {
     let left = printed(
         folder.path(),
         &[
-            "--quiet",
             "spread",
             "arch.toml",
             "--springing",
@@ -1255,7 +1254,7 @@ fn spread_from_moved_supports_prints_the_further_movement() {
     let folder = tempfile::tempdir().unwrap();
     let moved = format!("{SEMICIRCLE}[free_hinges]\n[supports]\nright = {{ spread_m = 0.1 }}\n");
     std::fs::write(folder.path().join("arch.toml"), moved).unwrap();
-    let words = printed(folder.path(), &["--quiet", "spread", "arch.toml"]);
+    let words = printed(folder.path(), &["spread", "arch.toml"]);
     let reported = json(&folder.path().join("results/arch/spread.json"));
     let path = &reported["paths"][0];
     let falls_at_m = path["falls_at_m"].as_f64().unwrap();
@@ -1272,7 +1271,7 @@ fn spread_from_moved_supports_prints_the_further_movement() {
     // An arch on piers stands on feet.
     let piers = format!("{SEMICIRCLE}[piers]\nheight_m = 2.0\nwidth_m = 2.5\n");
     std::fs::write(folder.path().join("piers.toml"), piers).unwrap();
-    let words = printed(folder.path(), &["--quiet", "spread", "piers.toml"]);
+    let words = printed(folder.path(), &["spread", "piers.toml"]);
     assert!(words.starts_with("right foot outwards: "), "{words}");
     assert!(words.contains("joint from 0 at the left foot"), "{words}");
 }
@@ -1379,15 +1378,7 @@ fn a_push_that_is_not_found_is_omitted_with_its_reason() {
     std::fs::write(folder.path().join("flat.toml"), text).unwrap();
     let words = printed(
         folder.path(),
-        &[
-            "--quiet",
-            "spread",
-            "flat.toml",
-            "--angle",
-            "67",
-            "--angle",
-            "0",
-        ],
+        &["spread", "flat.toml", "--angle", "67", "--angle", "0"],
     );
     golden("spread", &words);
     let reported = json(&folder.path().join("results/flat/spread.json"));
@@ -1471,7 +1462,7 @@ fn a_flat_thick_arch_jams() {
     let text = "[arch]\nmean_radius_m = 4.0\nthickness_ratio = 0.41\nembrace_deg = 97.0\nvoussoirs = 12\n[free_hinges]\n";
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("flat.toml"), text).unwrap();
-    let words = printed(folder.path(), &["--quiet", "spread", "flat.toml"]);
+    let words = printed(folder.path(), &["spread", "flat.toml"]);
     let jammed = "right springing inwards: stands up to 0.000000 m, and cannot be followed further: the blocks jam";
     assert!(words.contains(jammed), "{words}");
     assert!(
@@ -1607,14 +1598,7 @@ fn a_scenario_can_give_the_movement_of_its_springings() {
     );
     let reported = printed(
         folder.path(),
-        &[
-            "--quiet",
-            "run",
-            "arch.toml",
-            "--no-repeat",
-            "--format",
-            "json",
-        ],
+        &["run", "arch.toml", "--no-repeat", "--format", "json"],
     );
     let reported: serde_json::Value = serde_json::from_str(&reported).unwrap();
     assert!(

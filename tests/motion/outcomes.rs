@@ -8,7 +8,7 @@ use archrock::scenario::Scenario;
 use archrock::{Outcome, Sample, Summary};
 use serde_json::Value;
 
-use crate::common::program::{archrock, printed, refused, stderr, stdout};
+use crate::common::program::{archrock, done, printed, refused, stderr, stdout};
 use crate::common::prose::{golden, shows};
 use crate::common::results::{Table, json, summary};
 
@@ -149,7 +149,7 @@ fn studies_follow_the_ground_motion_of_each_case() {
     let column = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[free_hinges]\n[ground.rectangular]\namplitude_g = 0.6\nduration_s = 0.2\n\
                   [simulation]\nduration_s = 10.2\n[map]\nduration_s = [0.2]\namplitude_g = [0.1, 0.6]\n";
     fs::write(at.join("k.toml"), column).unwrap();
-    let said = stderr(&archrock(at, &["map", "k.toml", "--out", "k"]));
+    let said = done(at, &["map", "k.toml", "--out", "k"]);
     assert!(said.contains("no verdict from 1 of 2 histories"), "{said}");
     assert_eq!(outcomes("k", "map.csv"), ["never_moved", "incomplete"]);
     assert!(warns_of_no_verdict(&at.join("k/map.json")));
@@ -164,7 +164,7 @@ fn studies_follow_the_ground_motion_of_each_case() {
         ("", "no", 0.0..0.002),
     ] {
         fs::write(at.join("b.toml"), format!("{column}{joints}")).unwrap();
-        let said = stderr(&archrock(at, &["suite", "b.toml", "--out", "b"]));
+        let said = done(at, &["suite", "b.toml", "--out", "b"]);
         assert_eq!(
             outcomes("b", "suite.csv")[..2],
             ["never_moved", "overturned"]
@@ -397,7 +397,7 @@ fn samples_without_a_verdict_are_counted_apart() {
     let counted = format!(", and {incomplete} samples without a verdict");
     assert!(said.contains(&counted), "{said}");
     assert!(!said.contains("could not be computed"), "{said}");
-    let threshold = ["threshold", "s.toml", "--out", "t", "--to", "3", "--quiet"];
+    let threshold = ["threshold", "s.toml", "--out", "t", "--to", "3"];
     let said = printed(at, &threshold);
     let told = json(&at.join("t/uncertain_threshold/uncertain.json"));
     assert!(
@@ -405,12 +405,12 @@ fn samples_without_a_verdict_are_counted_apart() {
         "{said}"
     );
     // The amplitude of a map cannot be uncertain as well.
-    let width = ["map", "s.toml", "--out", "m", "--quiet", "--set"];
+    let width = ["map", "s.toml", "--out", "m", "--set"];
     let text = fs::read_to_string(at.join("s.toml")).unwrap();
     let (kept, _) = text.split_once("\"ground.").unwrap();
     let text = format!("{kept}\"column.width_m\" = {{ from = 0.79, to = 0.81 }}\n");
     fs::write(at.join("s.toml"), text).unwrap();
-    let said = stderr(&archrock(at, &width[..5]));
+    let said = done(at, &width[..4]);
     let file = at.join("m/uncertain_map/uncertain.json");
     let left_out = json(&file)["histories_without_outcome"].clone();
     assert_eq!(

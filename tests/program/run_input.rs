@@ -33,8 +33,23 @@ fn the_summary_goes_to_standard_output_unless_data_do() {
     assert!(stdout(&run).contains("came to rest at 3.3656 s after 78 impacts"));
     assert!(run.stderr.is_empty());
 
+    // Verdict, limits and the answer to quote remain.
     let quiet = archrock(folder.path(), &["run", "s.toml", "--quiet"]);
-    assert!(stdout(&quiet).is_empty() && quiet.stderr.is_empty());
+    let (all, brief) = (stdout(&run), stdout(&quiet));
+    assert!(quiet.stderr.is_empty());
+    let reported = json(&folder.path().join("results/s/summary.json"));
+    let quote = reported["to_quote"].as_str().unwrap();
+    let limits = reported["warnings"].as_array().unwrap();
+    let limits = limits.iter().map(|limit| limit.as_str().unwrap());
+    let verdict = all.lines().find(|line| line.contains("survives")).unwrap();
+    let expected = [verdict.trim()].into_iter().chain(limits).chain([quote]);
+    let expected: Vec<&str> = expected.collect();
+    let lines: Vec<&str> = brief.lines().map(str::trim).collect();
+    assert!(lines.ends_with(&expected), "{brief}");
+    assert!(lines.len() <= 1 + expected.len(), "{brief}");
+    let quiet = ["run", "s.toml", "--rotations", "-", "--quiet"];
+    let quiet = archrock(folder.path(), &quiet);
+    assert!(stdout(&quiet).starts_with("time_s,") && quiet.stderr.is_empty());
 
     let data = archrock(folder.path(), &["run", "s.toml", "--rotations", "-"]);
     assert!(stdout(&data).starts_with("time_s,"));

@@ -609,10 +609,7 @@ fn statics_do_not_depend_on_the_vertical_ground() {
     for command in ["limit", "capacity", "spread"] {
         let words = ["0", "-0.5", "-1.2"].map(|amplitude_g| {
             let set = format!("ground.half_sine.vertical_amplitude_g={amplitude_g}");
-            printed(
-                folder.path(),
-                &["--quiet", command, "s.toml", "--set", &set],
-            )
+            printed(folder.path(), &[command, "s.toml", "--set", &set])
         });
         assert!(words[0] == words[1] && words[1] == words[2], "{words:#?}");
         assert!(!words[0].is_empty());

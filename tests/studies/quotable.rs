@@ -126,7 +126,7 @@ fn thresholds_and_runs_end_with_their_answer() {
         (ARCH, "with four links; compare with free hinges"),
     ] {
         fs::write(at.join("s.toml"), format!("{structure}{pulse}")).unwrap();
-        let said = printed(at, &["--quiet", "threshold", "s.toml", "--stride", "0.2"]);
+        let said = printed(at, &["threshold", "s.toml", "--stride", "0.2"]);
         let summary = json(&at.join("results/s/threshold.json"));
         let quoted = summary["to_quote"].as_str().unwrap();
         assert!(quoted.contains(named) && said.contains(quoted), "{said}");

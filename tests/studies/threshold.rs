@@ -569,15 +569,7 @@ fn files_agree_and_threads_change_nothing() {
     for known in ["0.5325", "0.2662", "1.98", "2.52"] {
         assert!(shown.iter().any(|shown| shown.starts_with(known)), "{said}");
     }
-    let json = [
-        "--out",
-        "r",
-        "--threads",
-        "3",
-        "--format",
-        "json",
-        "--quiet",
-    ];
+    let json = ["--out", "r", "--threads", "3", "--format", "json"];
     let result = printed(
         folder,
         &[
@@ -960,10 +952,7 @@ fn all_totals_of_histories_agree() {
     let text = "[column]\nheight_m = 4.0\nwidth_m = 1.0\n[free_hinges]\n[ground.half_sine]\namplitude_g = 0.9\n\
                 duration_s = 0.3\nvertical_amplitude_g = -0.9\n[simulation]\nduration_s = 3.0\n";
     fs::write(folder.path().join("s.toml"), text).unwrap();
-    let words = printed(
-        folder.path(),
-        &["--quiet", "threshold", "s.toml", "--to", "10"],
-    );
+    let words = printed(folder.path(), &["threshold", "s.toml", "--to", "10"]);
     assert!(
         words.contains("the ground falls as fast as a free body"),
         "{words}"
