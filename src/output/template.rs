@@ -25,14 +25,6 @@ fn language(values: &dyn Values) -> Language {
     language.copied().unwrap_or_default()
 }
 
-/// Replaces the decimal point of a number by the mark of the language.
-fn with_decimal_mark(number: String, values: &dyn Values) -> String {
-    match language(values) {
-        Language::English => number,
-        Language::Italian => number.replace('.', ","),
-    }
-}
-
 /// A number of a template; absent ones are printed as "-".
 pub(crate) trait Number {
     /// Returns the value; `None` if it is absent.
@@ -65,30 +57,25 @@ pub(crate) mod filters {
     use askama::{Result, Values, filter_fn};
 
     use super::super::text::escaped;
-    use super::{Number, language, with_decimal_mark};
+    use super::{Number, language};
     use crate::argument;
-    use crate::scenario::Language;
 
     /// Chooses between a phrase in English and in Italian.
     #[filter_fn]
     pub fn it(english: &str, values: &dyn Values, italian: &str) -> Result<Safe<String>> {
-        let phrase = match language(values) {
-            Language::English => english,
-            Language::Italian => italian,
-        };
-        Ok(Safe(phrase.to_owned()))
+        Ok(Safe(language(values).choose(english, italian).to_owned()))
     }
 
     /// Formats a number with its own digits, and the decimal mark of the language.
     #[filter_fn]
     pub fn shown(number: impl Display, values: &dyn Values) -> Result<String> {
-        Ok(with_decimal_mark(number.to_string(), values))
+        Ok(language(values).number(number.to_string()))
     }
 
     /// Formats a number with this many decimals; zero has no sign.
     #[filter_fn]
     pub fn fixed(number: impl Number, values: &dyn Values, decimals: usize) -> Result<String> {
-        let fixed = |number| with_decimal_mark(argument::fixed(number, decimals), values);
+        let fixed = |number| language(values).number(argument::fixed(number, decimals));
         Ok(number.value().map_or_else(|| "-".to_owned(), fixed))
     }
 
@@ -103,7 +90,7 @@ pub(crate) mod filters {
     #[filter_fn]
     pub fn data(number: impl Number, values: &dyn Values, decimals: usize) -> Result<Safe<String>> {
         let element = |number: f64| {
-            let shown = with_decimal_mark(argument::fixed(number, decimals), values);
+            let shown = language(values).number(argument::fixed(number, decimals));
             // Adding zero makes a negative zero positive.
             format!("<data value=\"{:?}\">{shown}</data>", number + 0.0)
         };

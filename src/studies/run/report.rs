@@ -25,7 +25,7 @@ use crate::output::page::{
 };
 use crate::output::scene::FARTHEST;
 use crate::output::{Envelope, Piece, Scene, filters, render};
-use crate::scenario::{DimensionSide, Unlikely, Varied};
+use crate::scenario::{DimensionSide, Language, Unlikely, Varied};
 use crate::{
     GroundMotion, Hinge, Model, OpenHinge, Pose, Sample, Scenario, State, Summary as History, Sway,
 };
@@ -254,7 +254,7 @@ impl Report {
         let dimensions = self.scene.dimensions.iter().map(|dimension| Size {
             ends_m: flat(dimension.ends_m),
             side: dimension.side,
-            text: dimension.text.clone(),
+            text: dimension.label(Language::English),
         });
         let ties = self.scene.ties(&[]).into_iter();
         let of_row = history.row().into_iter();

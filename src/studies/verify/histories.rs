@@ -177,7 +177,7 @@ pub(super) fn histories(
         error => failed(error.to_string()),
     })?;
     if let Some(why) = mechanisms.values().find_map(|one| one.no_curve.clone()) {
-        return Err(failed(why));
+        return Err(failed(why.into()));
     }
     let compute = |series: &Series| record_peaks(input, &*model, series, mechanisms);
     let found = in_parallel(records, compute).into_iter();
