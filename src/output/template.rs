@@ -4,6 +4,7 @@ use std::any::Any;
 
 use askama::{Template, Values, get_value};
 
+use crate::argument;
 use crate::scenario::Language;
 
 /// Fills a template in English. The text begins with its first line, and ends with one line break.
@@ -49,6 +50,49 @@ impl<N: Number> Number for &N {
     }
 }
 
+/// Limits with which a number of a template is compared; absent ones do not count.
+pub(crate) trait Limits {
+    /// Returns the limits.
+    fn limits(&self) -> Vec<f64>;
+}
+
+impl<N: Number> Limits for N {
+    fn limits(&self) -> Vec<f64> {
+        self.value().into_iter().collect()
+    }
+}
+
+impl Limits for [f64; 2] {
+    fn limits(&self) -> Vec<f64> {
+        self.to_vec()
+    }
+}
+
+/// Largest number of decimals: more than any two different numbers of a check need.
+const MOST_DECIMALS: usize = 30;
+
+/// Returns the fewest decimals, at least `least`, with which a number is printed unlike every limit that it does not equal, so that
+/// rounding never contradicts the verdict beside it.
+fn decimals_against(number: f64, least: usize, limits: &[f64]) -> usize {
+    let differ = |decimals: &usize| {
+        let printed = |number| argument::fixed(number, *decimals);
+        let mut limits = limits.iter();
+        limits.all(|limit| *limit == number || printed(*limit) != printed(number))
+    };
+    let enough = (least..MOST_DECIMALS).find(differ);
+    enough.unwrap_or(MOST_DECIMALS)
+}
+
+/// Returns an element that shows a number with these decimals and holds the full value.
+fn element(number: &impl Number, values: &dyn Values, decimals: impl Fn(f64) -> usize) -> String {
+    let Some(number) = number.value() else {
+        return "\u{2013}".to_owned();
+    };
+    let shown = language(values).number(argument::fixed(number, decimals(number)));
+    // Adding zero makes a negative zero positive.
+    format!("<data value=\"{:?}\">{shown}</data>", number + 0.0)
+}
+
 /// Filters of templates, such as `{{ force_n|fixed(3)|right(12) }}`.
 pub(crate) mod filters {
     use std::fmt::Display;
@@ -57,7 +101,7 @@ pub(crate) mod filters {
     use askama::{Result, Values, filter_fn};
 
     use super::super::text::escaped;
-    use super::{Number, language};
+    use super::{Limits, Number, decimals_against, element, language};
     use crate::argument;
 
     /// Chooses between a phrase in English and in Italian.
@@ -79,6 +123,21 @@ pub(crate) mod filters {
         Ok(number.value().map_or_else(|| "-".to_owned(), fixed))
     }
 
+    /// Formats a number beside its verdict as `fixed`, with more decimals if it would be printed as a limit that it does not equal.
+    #[filter_fn]
+    pub fn fixed_against<L: Limits>(
+        number: impl Number,
+        values: &dyn Values,
+        least: usize,
+        limits: L,
+    ) -> Result<String> {
+        let text = |number| {
+            let decimals = decimals_against(number, least, &limits.limits());
+            language(values).number(argument::fixed(number, decimals))
+        };
+        Ok(number.value().map_or_else(|| "-".to_owned(), text))
+    }
+
     /// Formats a number with this many decimals and a power of ten.
     #[filter_fn]
     pub fn scientific(number: impl Number, _: &dyn Values, decimals: usize) -> Result<String> {
@@ -89,15 +148,19 @@ pub(crate) mod filters {
     /// Formats a number for a page, with this many decimals, in an element that holds the full value.
     #[filter_fn]
     pub fn data(number: impl Number, values: &dyn Values, decimals: usize) -> Result<Safe<String>> {
-        let element = |number: f64| {
-            let shown = language(values).number(argument::fixed(number, decimals));
-            // Adding zero makes a negative zero positive.
-            format!("<data value=\"{:?}\">{shown}</data>", number + 0.0)
-        };
-        let text = number
-            .value()
-            .map_or_else(|| "\u{2013}".to_owned(), element);
-        Ok(Safe(text))
+        Ok(Safe(element(&number, values, |_| decimals)))
+    }
+
+    /// Formats a number beside its verdict as `data`, with more decimals if it would be printed as a limit that it does not equal.
+    #[filter_fn]
+    pub fn data_against<L: Limits>(
+        number: impl Number,
+        values: &dyn Values,
+        least: usize,
+        limits: L,
+    ) -> Result<Safe<String>> {
+        let decimals = |number| decimals_against(number, least, &limits.limits());
+        Ok(Safe(element(&number, values, decimals)))
     }
 
     /// Escapes text for a page: special characters of HTML and invisible characters.

@@ -91,6 +91,13 @@ pub struct HistorySide {
     pub overturned: bool,
 }
 
+impl HistorySide {
+    /// Returns the allowed displacements with which the demand is compared, in metres.
+    pub(super) const fn limits_m(&self) -> [f64; 2] {
+        [self.capacity_m, self.capacity_over_fc_m]
+    }
+}
+
 named! {
     /// The peak that is compared with the capacity.
     pub enum ComparedPeak {
