@@ -20,6 +20,17 @@ verify(archrock.chosen() === 1, 'next');
 verify(document.querySelectorAll('#rows tbody tr')[1].classList.contains('chosen'), 'row');
 holder.dispatchEvent(new PointerEvent('pointermove', middle(first)));
 verify(archrock.chosen() === 1, 'stays');
+// Marks, their legend and the legend of the picture have one colour for an outcome.
+const fillOf = (path) => getComputedStyle(path).fill;
+const keyTexts = { survives: 'comes to rest', overturns: 'overturns', uncertain: 'uncertain whether it overturns' };
+for (const key of document.querySelectorAll('.legend.marks .spot:not(:has(.outside))')) {
+  const kind = key.classList[1];
+  const fill = fillOf(key.querySelector('path'));
+  for (const path of holder.querySelectorAll(`.spot.${kind}:not(.chosen) path:last-child`)) verify(fillOf(path) === fill, `${kind}: ${fillOf(path)}`);
+  const words = [...holder.querySelectorAll('.wide text')].find((own) => own.textContent === keyTexts[kind]);
+  const sign = words?.previousElementSibling.previousElementSibling;
+  if (sign?.matches('rect')) verify(fillOf(sign) === fill, `${kind}: ${fillOf(sign)} in the legend of the picture`);
+}
 // No text is smaller than 12 px, and only tables are wider than the page.
 for (const element of document.querySelectorAll('p, td, th, li, pre, svg text, button, h1, h2')) {
   const box = element.getBoundingClientRect();
