@@ -193,6 +193,37 @@ fn an_arch_on_piers_on_a_phone_and_on_paper() {
     assert!(browser::sheets(&page).is_none_or(|sheets| sheets == 1));
 }
 
+/// Every plot has at least two numbers on its axis, on the screen and in print, for all strengths of the ground motion.
+#[test]
+fn plots_have_a_scale() {
+    let folder = tempfile::tempdir().unwrap();
+    let own = run(folder.path(), "semicircle-pulse.toml");
+    // The library of the plots keeps no list of them.
+    let recorded = "<script>window.plots = []; window.uPlot = new Proxy(uPlot, { construct(made, given) {\
+        const plot = new made(...given); plots.push(plot); return plot; } });</script><script>\"use strict\";";
+    let before = "<script>\"use strict\";";
+    assert_eq!(own.matches(before).count(), 1);
+    let page = folder.path().join("scales.html");
+    fs::write(&page, own.replace(before, recorded)).unwrap();
+    let script = "const encoded = (values) => btoa(String.fromCharCode(...new Uint8Array(new Float32Array(values).buffer)));
+const labels = (plot) => plot.axes[1]._values.filter((text) => text !== null && text !== '');
+const own = archrock.data;
+for (const shape of [[0, 1], [-1, 1], [-0.5, 1]]) {
+  for (let peak = 0.01; peak < 2; peak *= 1.03) {
+    const curve = encoded([0, 0.1, 0.2, 0.3, 0, ...shape.map((part) => part * peak), 0]);
+    plots.length = 0;
+    await archrock.renew({ ...own, curves: { ...own.curves, ground_g: curve } });
+    const shown = () => plots.every((plot) => labels(plot).length >= 2);
+    verify(shown(), `${shape} ${peak}: ${plots.map(labels).join('; ')}`);
+    dispatchEvent(new Event('beforeprint'));
+    await null;
+    verify(shown(), `in print, ${shape} ${peak}: ${plots.map(labels).join('; ')}`);
+    dispatchEvent(new Event('afterprint'));
+  }
+}";
+    browser::assert_checked(&page, script, "null", &[], 1000);
+}
+
 /// The frames of a film are numbered and evenly spaced in time, and the next run removes them.
 #[test]
 fn a_film_is_numbered_pictures() {
