@@ -42,3 +42,24 @@ for (const element of document.querySelectorAll('p, td, th, li, pre, svg text, b
 }
 verify(document.documentElement.scrollWidth <= innerWidth, `${document.documentElement.scrollWidth} px wide`);
 verify(document.getElementById('command').scrollWidth <= document.getElementById('command').clientWidth + 1, 'cut command');
+
+// In print there is no command, no table is cut, and a line says where the rows that are not printed are.
+const rowsOf = (table) => [...table.tBodies[0].rows].filter((row) => row.getBoundingClientRect().height > 0);
+const tables = [...document.querySelectorAll('.table')];
+dispatchEvent(new Event('beforeprint'));
+for (const id of ['command', 'copy']) verify(getComputedStyle(document.getElementById(id)).display === 'none', `${id} in print`);
+tables.forEach((holder, index) => {
+  const table = holder.querySelector('table');
+  const { name, all } = archrock.data.tables[index];
+  const printed = rowsOf(table).length;
+  const note = holder.querySelector('.printed')?.textContent;
+  const due = printed === 0 ? `${all} rows, all in ${name}` : `Rows 1 to ${printed} of ${all}, all in ${name}`;
+  verify(printed === all ? note === undefined : note === due, `${name}, ${printed} rows: ${note}`);
+  const [wide, room] = [table, holder.querySelector('.scroll')].map((box) => box.getBoundingClientRect().right);
+  verify(wide <= room + 1, `${name} ends at ${wide} of ${room}`);
+});
+dispatchEvent(new Event('afterprint'));
+for (const [index, holder] of tables.entries()) {
+  const own = rowsOf(holder.querySelector('table')).length;
+  verify(own === archrock.data.tables[index].rows.length && !holder.querySelector('.printed'), `${own} rows after print`);
+}
