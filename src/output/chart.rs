@@ -94,8 +94,8 @@ impl Chart {
                 y: self.y.1,
             };
             draw(drawing, &axes, &self.below);
-            axes.draw(drawing, &self.y.0, is_panel);
-            axes.label_x(drawing, &self.x.0);
+            axes.draw(drawing, figure.language, &self.y.0, is_panel);
+            axes.label_x(drawing, figure.language, &self.x.0);
             draw(drawing, &axes, &self.marks);
         })
     }

@@ -9,7 +9,7 @@ use super::sheet::{PartHeight, Sheet};
 use super::svg::{Anchor, Drawing, Frame, Stroke, color};
 use super::text::{TEXT_PX, Text, text_px};
 use crate::mechanics::BodyPoint;
-use crate::scenario::{Dimension, DimensionSide, metres};
+use crate::scenario::{Dimension, DimensionSide, Language, metres};
 use crate::{OpenHinge, Pose, Sway};
 
 /// Colour of blocks.
@@ -107,7 +107,7 @@ pub(crate) fn draw_hinges(
         let (poses, hinges) = &scene.stands;
         let place = SheetTransform::over([low_m, high_m], left_px + 0.5 * width_px, part);
         let view = View::new(scene, place, poses, hinges);
-        draw_dimensions(drawing, &view.place, scene);
+        draw_dimensions(drawing, &view.place, scene, figure.language);
         supports(drawing, &view.place, scene);
         view.draw_behind(drawing);
         if !poses.is_empty() {
@@ -331,7 +331,12 @@ pub(crate) fn room_px(scene: &Scene, side: DimensionSide) -> f64 {
 }
 
 /// Draws the dimensions of a structure beside it.
-pub(crate) fn draw_dimensions(drawing: &mut Drawing, place: &SheetTransform, scene: &Scene) {
+pub(crate) fn draw_dimensions(
+    drawing: &mut Drawing,
+    place: &SheetTransform,
+    scene: &Scene,
+    language: Language,
+) {
     let levels = levels(&scene.dimensions);
     let [low, high] = scene.frame_m().map(|corner| place.px(corner));
     for (dimension, level) in scene.dimensions.iter().zip(levels) {
@@ -350,7 +355,8 @@ pub(crate) fn draw_dimensions(drawing: &mut Drawing, place: &SheetTransform, sce
         drawing.curve("dimension", feet, DIMENSION);
         let middle = 0.5 * (feet[0] + feet[1]);
         let beside = 5.0;
-        let is_short = (feet[1].x - feet[0].x) < text_px(&dimension.text) + 2.0 * beside;
+        let label = dimension.label(language);
+        let is_short = (feet[1].x - feet[0].x) < text_px(&label) + 2.0 * beside;
         let outside = Vector2::new(beside + 0.75 * TEXT_PX, 0.0);
         let (at, anchor, turn_deg) = match dimension.side {
             // A text that does not fit between the ends is to their right.
@@ -363,7 +369,7 @@ pub(crate) fn draw_dimensions(drawing: &mut Drawing, place: &SheetTransform, sce
             DimensionSide::Left => (middle - Vector2::new(beside, 0.0), Anchor::Middle, 90.0),
             DimensionSide::Right => (middle + outside, Anchor::Middle, 90.0),
         };
-        drawing.label(at, anchor, turn_deg, &dimension.text);
+        drawing.label(at, anchor, turn_deg, label);
     }
 }
 

@@ -5,6 +5,7 @@ use std::str::FromStr;
 
 use super::svg::{Background, Frame};
 use super::text::TEXT_PX;
+use crate::scenario::Language;
 
 /// The size of a picture. The layout is in pixels, with text of 13 pixels. Wider pictures have more space, not larger text.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,6 +22,8 @@ pub struct Figure {
     pub panels: Option<[bool; Panel::ALL.len()]>,
     /// Colour behind everything.
     pub background: Background,
+    /// Language of its words and numbers.
+    pub(crate) language: Language,
 }
 
 /// Size of text in print, in points.
@@ -79,6 +82,7 @@ impl Figure {
         has_title: true,
         panels: None,
         background: Background::WHITE,
+        language: Language::English,
     };
 
     /// Picture on a page, below its title.
@@ -123,6 +127,11 @@ impl Figure {
             background,
             ..Self::SCREEN
         }
+    }
+
+    /// Changes the language of words and numbers.
+    pub(crate) const fn in_language(self, language: Language) -> Self {
+        Self { language, ..self }
     }
 
     /// Changes the size of text, in points.

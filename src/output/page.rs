@@ -49,6 +49,17 @@ impl SpotKind {
         }
     }
 
+    /// Returns the colour of its outcome, the same for marks, cells and legends; empty without one outcome. Cells have further colours for the
+    /// peak of a surviving case, and for the impacts before overturning.
+    pub(crate) const fn fill(self) -> &'static str {
+        match self {
+            Self::Survives => "#a9d3f5",
+            Self::Overturns => "#a6361c",
+            Self::Uncertain => "#009e73",
+            Self::Unknown | Self::Point | Self::Hinge => "",
+        }
+    }
+
     /// Returns its entry in the legend.
     pub(crate) const fn label(self) -> &'static str {
         match self {

@@ -257,9 +257,10 @@ impl Drawing {
         );
     }
 
-    /// Adds the mark of a case, whose colours are in the style of the page.
+    /// Adds the mark of a case, whose lines are in the style of the page.
     pub fn spot(&mut self, at: Vector2<f64>, spot: &Spot) {
         let (kind, row, words) = (spot.kind.name(), spot.row, escaped(&spot.words));
+        let fill = attribute("fill", spot.kind.fill());
         let outside = match spot.outside {
             true => format!("<path class=\"outside\" d=\"{OUTSIDE_MODEL}\"/>"),
             false => String::new(),
@@ -267,7 +268,7 @@ impl Drawing {
         let _ = writeln!(
             self.0,
             "<g class=\"spot {kind}\" data-row=\"{row}\" transform=\"translate({:.2} {:.2})\"><title>{words}</title>\
-             {outside}<path d=\"{}\"/></g>",
+             {outside}<path{fill} d=\"{}\"/></g>",
             at.x,
             at.y,
             spot.kind.shape(),

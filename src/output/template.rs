@@ -4,6 +4,7 @@ use std::any::Any;
 
 use askama::{Template, Values, get_value};
 
+use crate::argument;
 use crate::scenario::Language;
 
 /// Fills a template in English. The text begins with its first line, and ends with one line break.
@@ -23,14 +24,6 @@ pub(crate) fn render_in(template: &impl Template, language: Language) -> String 
 fn language(values: &dyn Values) -> Language {
     let language = get_value::<Language>(values, "language");
     language.copied().unwrap_or_default()
-}
-
-/// Replaces the decimal point of a number by the mark of the language.
-fn with_decimal_mark(number: String, values: &dyn Values) -> String {
-    match language(values) {
-        Language::English => number,
-        Language::Italian => number.replace('.', ","),
-    }
 }
 
 /// A number of a template; absent ones are printed as "-".
@@ -57,6 +50,49 @@ impl<N: Number> Number for &N {
     }
 }
 
+/// Limits with which a number of a template is compared; absent ones do not count.
+pub(crate) trait Limits {
+    /// Returns the limits.
+    fn limits(&self) -> Vec<f64>;
+}
+
+impl<N: Number> Limits for N {
+    fn limits(&self) -> Vec<f64> {
+        self.value().into_iter().collect()
+    }
+}
+
+impl Limits for [f64; 2] {
+    fn limits(&self) -> Vec<f64> {
+        self.to_vec()
+    }
+}
+
+/// Largest number of decimals: more than any two different numbers of a check need.
+const MOST_DECIMALS: usize = 30;
+
+/// Returns the fewest decimals, at least `least`, with which a number is printed unlike every limit that it does not equal, so that
+/// rounding never contradicts the verdict beside it.
+fn decimals_against(number: f64, least: usize, limits: &[f64]) -> usize {
+    let differ = |decimals: &usize| {
+        let printed = |number| argument::fixed(number, *decimals);
+        let mut limits = limits.iter();
+        limits.all(|limit| *limit == number || printed(*limit) != printed(number))
+    };
+    let enough = (least..MOST_DECIMALS).find(differ);
+    enough.unwrap_or(MOST_DECIMALS)
+}
+
+/// Returns an element that shows a number with these decimals and holds the full value.
+fn element(number: &impl Number, values: &dyn Values, decimals: impl Fn(f64) -> usize) -> String {
+    let Some(number) = number.value() else {
+        return "\u{2013}".to_owned();
+    };
+    let shown = language(values).number(argument::fixed(number, decimals(number)));
+    // Adding zero makes a negative zero positive.
+    format!("<data value=\"{:?}\">{shown}</data>", number + 0.0)
+}
+
 /// Filters of templates, such as `{{ force_n|fixed(3)|right(12) }}`.
 pub(crate) mod filters {
     use std::fmt::Display;
@@ -65,31 +101,41 @@ pub(crate) mod filters {
     use askama::{Result, Values, filter_fn};
 
     use super::super::text::escaped;
-    use super::{Number, language, with_decimal_mark};
+    use super::{Limits, Number, decimals_against, element, language};
     use crate::argument;
-    use crate::scenario::Language;
 
     /// Chooses between a phrase in English and in Italian.
     #[filter_fn]
     pub fn it(english: &str, values: &dyn Values, italian: &str) -> Result<Safe<String>> {
-        let phrase = match language(values) {
-            Language::English => english,
-            Language::Italian => italian,
-        };
-        Ok(Safe(phrase.to_owned()))
+        Ok(Safe(language(values).choose(english, italian).to_owned()))
     }
 
     /// Formats a number with its own digits, and the decimal mark of the language.
     #[filter_fn]
     pub fn shown(number: impl Display, values: &dyn Values) -> Result<String> {
-        Ok(with_decimal_mark(number.to_string(), values))
+        Ok(language(values).number(number.to_string()))
     }
 
     /// Formats a number with this many decimals; zero has no sign.
     #[filter_fn]
     pub fn fixed(number: impl Number, values: &dyn Values, decimals: usize) -> Result<String> {
-        let fixed = |number| with_decimal_mark(argument::fixed(number, decimals), values);
+        let fixed = |number| language(values).number(argument::fixed(number, decimals));
         Ok(number.value().map_or_else(|| "-".to_owned(), fixed))
+    }
+
+    /// Formats a number beside its verdict as `fixed`, with more decimals if it would be printed as a limit that it does not equal.
+    #[filter_fn]
+    pub fn fixed_against<L: Limits>(
+        number: impl Number,
+        values: &dyn Values,
+        least: usize,
+        limits: L,
+    ) -> Result<String> {
+        let text = |number| {
+            let decimals = decimals_against(number, least, &limits.limits());
+            language(values).number(argument::fixed(number, decimals))
+        };
+        Ok(number.value().map_or_else(|| "-".to_owned(), text))
     }
 
     /// Formats a number with this many decimals and a power of ten.
@@ -102,15 +148,19 @@ pub(crate) mod filters {
     /// Formats a number for a page, with this many decimals, in an element that holds the full value.
     #[filter_fn]
     pub fn data(number: impl Number, values: &dyn Values, decimals: usize) -> Result<Safe<String>> {
-        let element = |number: f64| {
-            let shown = with_decimal_mark(argument::fixed(number, decimals), values);
-            // Adding zero makes a negative zero positive.
-            format!("<data value=\"{:?}\">{shown}</data>", number + 0.0)
-        };
-        let text = number
-            .value()
-            .map_or_else(|| "\u{2013}".to_owned(), element);
-        Ok(Safe(text))
+        Ok(Safe(element(&number, values, |_| decimals)))
+    }
+
+    /// Formats a number beside its verdict as `data`, with more decimals if it would be printed as a limit that it does not equal.
+    #[filter_fn]
+    pub fn data_against<L: Limits>(
+        number: impl Number,
+        values: &dyn Values,
+        least: usize,
+        limits: L,
+    ) -> Result<Safe<String>> {
+        let decimals = |number| decimals_against(number, least, &limits.limits());
+        Ok(Safe(element(&number, values, decimals)))
     }
 
     /// Escapes text for a page: special characters of HTML and invisible characters.

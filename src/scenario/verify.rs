@@ -82,6 +82,22 @@ impl Language {
     pub const fn is_english(&self) -> bool {
         matches!(self, Self::English)
     }
+
+    /// Chooses the phrase in this language.
+    pub(crate) const fn choose<'a>(self, english: &'a str, italian: &'a str) -> &'a str {
+        match self {
+            Self::English => english,
+            Self::Italian => italian,
+        }
+    }
+
+    /// Gives a printed number the decimal mark of this language.
+    pub(crate) fn number(self, number: String) -> String {
+        match self {
+            Self::English => number,
+            Self::Italian => number.replace('.', ","),
+        }
+    }
 }
 
 /// Period of the elastic vibration before a mechanism moves, of a structure that walls do not hold.

@@ -5,6 +5,7 @@ use super::ending::columns::{
 };
 use super::ending::{Ending, NoHistory, outcome_name};
 use crate::Outcome;
+use crate::output::page::SpotKind;
 use crate::output::{Key, Sign, color};
 
 /// Colour of results with the same kind of outcome.
@@ -44,7 +45,11 @@ impl OutcomeColor {
             "vibrates without opening",
             "#dfe8c8",
         ),
-        Self::new(Outcome::Rest.name(), "comes to rest", "#a9d3f5"),
+        Self::new(
+            Outcome::Rest.name(),
+            "comes to rest",
+            SpotKind::Survives.fill(),
+        ),
         SURVIVED[0],
         SURVIVED[1],
         SURVIVED[2],
@@ -56,13 +61,17 @@ impl OutcomeColor {
         Self::new("overturned-1", "overturns after 1 impact", color::ORANGE),
         Self::new("overturned-2", "overturns after 2 impacts", "#f0e442"),
         Self::new("overturned-more", "overturns after more", color::PURPLE),
-        Self::new(OVERTURNED, "overturns", "#a6361c"),
+        Self::new(OVERTURNED, "overturns", SpotKind::Overturns.fill()),
         Self::new(
             Outcome::Incomplete.name(),
             "ends too early for a verdict",
             "#8c7aa0",
         ),
-        Self::new(UNCERTAIN, "uncertain whether it overturns", color::GREEN),
+        Self::new(
+            UNCERTAIN,
+            "uncertain whether it overturns",
+            SpotKind::Uncertain.fill(),
+        ),
         Self::new(CANNOT_STAND, "cannot stand", "#ffffff"),
         Self::new(NOT_FOUR_LINKS, "not four links", "#c8bfae"),
         Self::new(GROUND_FALLS, "the ground falls freely", "#d9cfe8"),

@@ -302,7 +302,7 @@ pub fn limit(figure: Figure, model: &FourLinks, first: Sway, scene: &Scene) -> S
                         placed.mechanism(drawing, open);
                         continue;
                     }
-                    draw_dimensions(drawing, &placed.place, scene);
+                    draw_dimensions(drawing, &placed.place, scene, figure.language);
                     let view = placed.view(&[], &[]);
                     view.draw_behind(drawing);
                     view.draw_blocks(drawing, |_, _| ("block".to_owned(), "#f4f4f4"));
@@ -370,7 +370,7 @@ pub fn impact(figure: Figure, impact: &LinkImpact<'_>, scene: &Scene) -> Option<
     sheet.part(PartHeight::Structure(arch_px, arch_px), |drawing, part| {
         let placed = of.at(middle, part);
         if is_wide {
-            draw_dimensions(drawing, &placed.place, scene);
+            draw_dimensions(drawing, &placed.place, scene, figure.language);
         }
         placed.impact(drawing, &before, &after);
     });

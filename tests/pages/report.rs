@@ -193,6 +193,85 @@ fn an_arch_on_piers_on_a_phone_and_on_paper() {
     assert!(browser::sheets(&page).is_none_or(|sheets| sheets == 1));
 }
 
+/// On moved springings the rotation below the drawing is that of the results, relative to the structure at rest.
+#[test]
+fn rotations_on_moved_springings_are_those_of_the_results() {
+    let folder = tempfile::tempdir().unwrap();
+    let scenario = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\nvoussoirs = 12\n\
+                    [supports]\nright = { spread_m = 0.2, settlement_m = 0.05 }\n\
+                    [ground.one_sine]\namplitude_g = -0.2\nduration_s = 0.5\n\
+                    [simulation]\nduration_s = 1.0\ndirection = \"as_given\"\n";
+    for model in [
+        "[free_hinges]\n",
+        "[elastic_joints]\nnormal_stiffness_gpa_m = 10.0\n",
+    ] {
+        fs::write(folder.path().join("s.toml"), format!("{scenario}{model}")).unwrap();
+        let arguments = ["run", "s.toml", "--out", ".", "--no-repeat"];
+        program::printed(folder.path(), &arguments);
+        let page = folder.path().join("report.html");
+        let data = data_of(&fs::read_to_string(&page).unwrap());
+        // The springing has turned the blocks at rest.
+        let standing = data["standing_rad"].as_array().unwrap().iter();
+        assert!(
+            standing
+                .filter_map(Value::as_f64)
+                .any(|rad| rad.abs() > 0.01)
+        );
+        let table = Table::read(folder.path().join("rotations.csv"));
+        let last = table.rows.len() - 1;
+        let rows = (0..last).step_by(16).map(|row| {
+            let turned = (1..=12).map(|block| {
+                let column = key("rotation", &block.to_string(), "rad");
+                table.rows[row].number(&column)
+            });
+            json!({ "time_s": table.rows[row].number("time_s"), "rotations_rad": turned.collect::<Vec<_>>() })
+        });
+        let rows = json!(rows.collect::<Vec<_>>()).to_string();
+        let script = "const unit = archrock.data.frames.rotation_unit_rad;
+for (const { time_s, rotations_rad } of data) {
+  archrock.seek(time_s);
+  const words = document.getElementById('now').textContent;
+  const [, shown, block] = words.match(/largest rotation (-?[0-9.]+) rad \\(block ([0-9]+)\\)/);
+  const due = rotations_rad[block - 1];
+  const most = Math.max(...rotations_rad.map(Math.abs));
+  const tolerance = 0.51 * unit + 0.51e-5;
+  verify(Math.abs(shown - due) <= tolerance && Math.abs(due) >= most - 2 * tolerance, `${words}: ${due} of ${most}`);
+}";
+        browser::assert_checked(&page, script, &rows, &[], 10);
+    }
+}
+
+/// Every plot has at least two numbers on its axis, on the screen and in print, for all strengths of the ground motion.
+#[test]
+fn plots_have_a_scale() {
+    let folder = tempfile::tempdir().unwrap();
+    let own = run(folder.path(), "semicircle-pulse.toml");
+    // The library of the plots keeps no list of them.
+    let recorded = "<script>window.plots = []; window.uPlot = new Proxy(uPlot, { construct(made, given) {\
+        const plot = new made(...given); plots.push(plot); return plot; } });</script><script>\"use strict\";";
+    let before = "<script>\"use strict\";";
+    assert_eq!(own.matches(before).count(), 1);
+    let page = folder.path().join("scales.html");
+    fs::write(&page, own.replace(before, recorded)).unwrap();
+    let script = "const encoded = (values) => btoa(String.fromCharCode(...new Uint8Array(new Float32Array(values).buffer)));
+const labels = (plot) => plot.axes[1]._values.filter((text) => text !== null && text !== '');
+const own = archrock.data;
+for (const shape of [[0, 1], [-1, 1], [-0.5, 1]]) {
+  for (let peak = 0.01; peak < 2; peak *= 1.03) {
+    const curve = encoded([0, 0.1, 0.2, 0.3, 0, ...shape.map((part) => part * peak), 0]);
+    plots.length = 0;
+    await archrock.renew({ ...own, curves: { ...own.curves, ground_g: curve } });
+    const shown = () => plots.every((plot) => labels(plot).length >= 2);
+    verify(shown(), `${shape} ${peak}: ${plots.map(labels).join('; ')}`);
+    dispatchEvent(new Event('beforeprint'));
+    await null;
+    verify(shown(), `in print, ${shape} ${peak}: ${plots.map(labels).join('; ')}`);
+    dispatchEvent(new Event('afterprint'));
+  }
+}";
+    browser::assert_checked(&page, script, "null", &[], 1000);
+}
+
 /// The frames of a film are numbered and evenly spaced in time, and the next run removes them.
 #[test]
 fn a_film_is_numbered_pictures() {

@@ -8,6 +8,7 @@ use std::process::{Output, Stdio};
 
 use crate::common::program::{archrock, command, stderr};
 use crate::common::program::{refusal, stdout};
+use crate::common::results::json;
 use serde_json::Value;
 
 const TEXT: &str = "[arch]\nmean_radius_m = 5.0\nthickness_ratio = 0.15\nembrace_deg = 180.0\n\

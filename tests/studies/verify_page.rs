@@ -1096,6 +1096,57 @@ fn the_italian_check_mirrors_the_english_one() {
     }
 }
 
+/// Numbers beside a verdict do not round across their limit: a ratio of 0.99969 is not 1.000 beside "not passed".
+#[test]
+fn numbers_beside_a_verdict_do_not_round_across_the_limit() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("points.csv");
+    // A rigid column starts to move at its slenderness, 0.8 m over 4 m, divided by FC.
+    let capacity_g = 0.8 / 4.0 / 1.35;
+    for (ratio, shown) in [
+        (0.99, "0.990"),
+        (0.999_69, "0.9997"),
+        (0.999_999_2, "0.999999"),
+        (1.000_04, "1.00004"),
+        (1.01, "1.010"),
+    ] {
+        let demand_g = capacity_g / ratio;
+        let points = format!("period_s,acceleration_g\n0,{demand_g}\n4,{demand_g}\n");
+        std::fs::write(&file, points).unwrap();
+        let spectrum = format!("spectrum = '{}'\n", file.display());
+        let text = format!("{COLUMN}[demand.sld]\n{spectrum}[demand.slv]\n{spectrum}");
+        for (scenario, verdict) in both_languages(&text)
+            .iter()
+            .zip([["not passed", "passed"], ["non soddisfatta", "soddisfatta"]])
+        {
+            let html = html_of(scenario);
+            let row = html.split("<tr").find(|row| row.contains(">SLD<")).unwrap();
+            let point = |text: &str| text.replace(',', ".");
+            let numbers = row.split("<data value=\"").skip(1).map(|rest| {
+                let (_, rest) = rest.split_once('>').unwrap();
+                point(rest.split_once('<').unwrap().0)
+            });
+            let numbers: Vec<String> = numbers.collect();
+            assert_eq!(numbers.last().unwrap(), shown, "{row}");
+            let own = verdict[usize::from(ratio >= 1.0)];
+            assert!(row.contains(&format!(">{own}</span>")), "{row}");
+            let printed = numbers.iter().map(|number| number.parse::<f64>().unwrap());
+            let printed: Vec<f64> = printed.collect();
+            // Capacity and demand, as spectral and as ground accelerations.
+            for pair in printed[..4].chunks(2) {
+                assert_eq!(pair[0] < pair[1], ratio < 1.0, "{row}");
+                assert_eq!(pair[0] > pair[1], ratio > 1.0, "{row}");
+            }
+            let said = point(&words(&verify(scenario).unwrap()));
+            let line = said.lines().find(|line| line.starts_with("SLD")).unwrap();
+            let zeta_e = line.split_once("zeta_E ").unwrap().1;
+            let zeta_e: f64 = zeta_e.split(' ').next().unwrap().parse().unwrap();
+            assert_eq!(zeta_e < 1.0, ratio < 1.0, "{line}");
+            assert!((zeta_e - ratio).abs() < 5.1e-6, "{line}");
+        }
+    }
+}
+
 #[test]
 fn the_language_is_set_on_the_command_line() {
     let folder = tempfile::tempdir().unwrap();

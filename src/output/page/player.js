@@ -140,7 +140,6 @@ function createPlayer(motion, addCurves) {
   // Height of the title and the legend of a plot.
   const BESIDE_PLOT_PX = 36;
   window.addEventListener("beforeprint", () => {
-    document.documentElement.classList.add("print");
     const { width: wide, height: tall } = SHEET_PX;
     const holder = find("plots");
     canvas.style.height = "0";
@@ -158,7 +157,6 @@ function createPlayer(motion, addCurves) {
     seek(time);
   }, { signal });
   window.addEventListener("afterprint", () => {
-    document.documentElement.classList.remove("print");
     canvas.style.height = document.body.style.zoom = "";
     for (const plot of plots) plot.setSize({ width: find("plots").clientWidth, height: plot.tall });
     seek(time);

@@ -49,7 +49,7 @@ function createPlots(parent, { start, end }, seek) {
         cursor: { sync: { key: "archrock" }, drag: { x: true, y: false } },
         axes: [
           { ...look, size: 30, values: (_, splits) => splits.map((s) => `${Number(s.toPrecision(6))} s`) },
-          { ...look, size: 64, values: (_, splits) => splits.map(tick) },
+          { ...look, size: 64, space: (_, __, ___, ____, px) => Math.min(30, px / 4), values: (_, splits) => splits.map(tick) },
         ],
         series: [{ label: "time", value: (_, v) => (v == null ? "" : `${v.toFixed(3)} s`) }].concat(
           curves.map(({ name, color, dash, width: thick, beyond }) => ({

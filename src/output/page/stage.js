@@ -7,7 +7,7 @@ const [INTRADOS, EXTRADOS, PARTED] = [1, 2, 3];
 /**
  * Makes a stage: functions that draw a motion, and its times.
  * `motion` has lengths in metres, times in seconds and angles in radians: `frames` (encoded numbers of all frames), `end_s` of the history, the
- * structure (`bodies`, `largest_body`, `unit_m`, `frame_m`, `dimensions`, `supports`, `ties`, `ties_broken_s`, `sections`, `joints`, `across`,
+ * structure (`bodies`, `largest_body`, `standing_rad`, `unit_m`, `frame_m`, `dimensions`, `supports`, `ties`, `ties_broken_s`, `sections`, `joints`, `across`,
  * `points`), and its `layouts` of outlines, fill, loads and hinges.
  */
 function createStage(canvas, motion) {
@@ -348,8 +348,9 @@ function createStage(canvas, motion) {
   function inWords(time, at, poses) {
     // If several bodies have the largest rotation, the printed words name this one.
     let most = motion.largest_body;
-    poses.forEach(({ rotation }, body) => {
-      if (Math.abs(rotation) > Math.abs(poses[most].rotation)) most = body;
+    const turned = poses.map(({ rotation }, body) => rotation - motion.standing_rad[body]);
+    turned.forEach((rotation, body) => {
+      if (Math.abs(rotation) > Math.abs(turned[most])) most = body;
     });
     const name = motion.bodies[most];
     const of = name === "" ? "" : /^\d+$/.test(name) ? ` (block ${name})` : ` (${name})`;
@@ -357,8 +358,8 @@ function createStage(canvas, motion) {
       ? motion.joints.filter((_, joint) => joints[at.frame * motion.joints.length + joint]).length
       : layouts[layoutOf[at.frame]].hinges.length;
     const falls = time > historyEnd ? " and falls" : "";
-    const turned = `largest rotation ${fixed(poses[most].rotation, 5)} rad${of}`;
-    return `${time.toFixed(3)} s: ${STATES[states[at.frame]]}${falls}, ${turned}, ${open} open ${open === 1 ? "hinge" : "hinges"}`;
+    const rotation = `largest rotation ${fixed(turned[most], 5)} rad${of}`;
+    return `${time.toFixed(3)} s: ${STATES[states[at.frame]]}${falls}, ${rotation}, ${open} open ${open === 1 ? "hinge" : "hinges"}`;
   }
 
   /** Returns the exaggeration at which the largest displacement is a fifteenth of the size of the structure. */
@@ -380,6 +381,8 @@ function createStage(canvas, motion) {
   const poses = (t) => posesAt(moment(t));
   const state = (t) => STATES[states[moment(t).frame]];
   const frame = (t) => moment(t).frame;
-  const turns = (body) => Array.from({ length: historyCount }, (_, i) => rotations[i * bodies + body] * frames.rotation_unit_rad);
+  /** Returns the rotation of a body over the history, relative to its position at rest. */
+  const turns = (body) =>
+    Array.from({ length: historyCount }, (_, i) => rotations[i * bodies + body] * frames.rotation_unit_rad - motion.standing_rad[body]);
   return { times, start, end, historyEnd, historyCount, goesFar, draw, visible, poses, state, frame, turns, hingesAt, pressure };
 }

@@ -59,15 +59,37 @@
   });
   cells.forEach((line, row) => line.addEventListener("click", () => ((stays = true), row < data.cases.length && show(row))));
   find("copy").addEventListener("click", copyCommand);
-  // In print the page is one sheet of A4.
+  // In print the page is one sheet of A4. It has the first rows of the first table, as wide as the sheet, and says where all rows are.
   const SHEET_PX = 1030;
+  const PRINTED_ROWS = 12;
+  const notes = [...document.querySelectorAll(".table")].map((holder, index) => {
+    const { name, all } = data.tables[index];
+    const table = holder.querySelector("table");
+    const rows = [...table.tBodies[0].rows];
+    const printed = index === 0 ? Math.min(rows.length, PRINTED_ROWS) : 0;
+    for (const cell of table.tHead.rows[0].cells) cell.innerHTML = cell.innerHTML.replaceAll("_", "_<wbr>");
+    const note = document.createElement("p");
+    note.className = "hint printed";
+    note.textContent = printed > 0 ? `Rows 1 to ${printed} of ${all}, all in ${name}` : `${all} rows, all in ${name}`;
+    return { holder, table, rows, printed, note, isCut: printed < all };
+  });
   window.addEventListener("beforeprint", () => {
-    document.documentElement.classList.add("print");
+    for (const { holder, table, rows, printed, note, isCut } of notes) {
+      rows.forEach((row, index) => (row.hidden = index >= printed));
+      table.hidden = printed === 0;
+      if (isCut) holder.append(note);
+      if (printed > 0) table.style.zoom = Math.min(1, table.parentElement.clientWidth / table.scrollWidth);
+    }
     const tall = document.body.scrollHeight;
     if (tall > SHEET_PX) document.body.style.zoom = (0.98 * SHEET_PX) / tall;
   });
   window.addEventListener("afterprint", () => {
-    document.documentElement.classList.remove("print");
+    for (const { table, rows, note } of notes) {
+      for (const row of rows) row.hidden = false;
+      table.hidden = false;
+      table.style.zoom = "";
+      note.remove();
+    }
     document.body.style.zoom = "";
   });
   show(Number(holder.querySelector(".overturns")?.dataset.row ?? 0));

@@ -5,6 +5,7 @@ use nalgebra::Vector2;
 use super::Structure;
 use crate::mechanics::masonry::{CircularArch, Pier, Piers};
 use crate::mechanics::{MeasuredAt, Shape};
+use crate::scenario::Language;
 use crate::{Arch, Column, Masonry, Row, Sway};
 
 /// A dimension of a structure.
@@ -14,8 +15,10 @@ pub struct Dimension {
     pub ends_m: [Vector2<f64>; 2],
     /// Side of the structure on which the dimension is drawn.
     pub side: DimensionSide,
-    /// Label on the drawing: the value, with the name if the position is ambiguous.
-    pub text: String,
+    /// Value with its unit.
+    length: String,
+    /// Name in the label, in English and Italian; `None` if the position is not ambiguous.
+    label: Option<[&'static str; 2]>,
     /// Name and value in words.
     pub words: String,
 }
@@ -36,21 +39,36 @@ named! {
 type Ends = [Vector2<f64>; 2];
 
 impl Dimension {
-    /// Makes a dimension. `is_named` adds the name to its label.
-    fn new(side: DimensionSide, ends_m: [Vector2<f64>; 2], name: &str, is_named: bool) -> Self {
+    fn new(side: DimensionSide, ends_m: Ends, name: &str) -> Self {
         let along_m = ends_m[1] - ends_m[0];
         let length_m = match side {
             DimensionSide::Below => along_m.x,
             DimensionSide::Left | DimensionSide::Right => along_m.y,
         };
         let length = format!("{} m", metres(length_m));
-        let words = format!("{name} {length}");
-        let text = if is_named { words.clone() } else { length };
         Self {
             ends_m,
             side,
-            text,
-            words,
+            words: format!("{name} {length}"),
+            length,
+            label: None,
+        }
+    }
+
+    /// Makes a dimension whose label on the drawing contains its name.
+    fn named(side: DimensionSide, ends_m: Ends, label: [&'static str; 2]) -> Self {
+        Self {
+            label: Some(label),
+            ..Self::new(side, ends_m, label[0])
+        }
+    }
+
+    /// Returns the label on the drawing.
+    pub(crate) fn label(&self, language: Language) -> String {
+        let length = language.number(self.length.clone());
+        match self.label {
+            Some([english, italian]) => format!("{} {length}", language.choose(english, italian)),
+            None => length,
         }
     }
 }
@@ -123,8 +141,8 @@ pub(in crate::scenario) fn bounds_m(row: &Row) -> [Vector2<f64>; 2] {
 fn width_and_height([low, high]: [Vector2<f64>; 2]) -> [Dimension; 2] {
     let [right, top] = [Vector2::new(high.x, low.y), Vector2::new(low.x, high.y)];
     [
-        Dimension::new(DimensionSide::Below, [low, right], "width", false),
-        Dimension::new(DimensionSide::Left, [low, top], "height", false),
+        Dimension::new(DimensionSide::Below, [low, right], "width"),
+        Dimension::new(DimensionSide::Left, [low, top], "height"),
     ]
 }
 
@@ -132,8 +150,8 @@ fn width_and_height([low, high]: [Vector2<f64>; 2]) -> [Dimension; 2] {
 fn span_and_rise(ends: Ends, crown_m: f64, line: Option<MeasuredAt>) -> [Dimension; 2] {
     let crown = Vector2::new(ends[0].x, crown_m);
     let mut dimensions = [
-        Dimension::new(DimensionSide::Below, ends, "span", true),
-        Dimension::new(DimensionSide::Left, [ends[0], crown], "rise", true),
+        Dimension::named(DimensionSide::Below, ends, ["span", "luce"]),
+        Dimension::named(DimensionSide::Left, [ends[0], crown], ["rise", "freccia"]),
     ];
     let line = line.map_or_else(String::new, |line| format!(" {}", line.in_words()));
     for dimension in &mut dimensions {
@@ -151,7 +169,7 @@ fn of_wall(column: &Column) -> Option<Dimension> {
         Sway::Left => DimensionSide::Left,
     };
     let ends = [0.0, height_m].map(|y_m| Vector2::new(x_m, y_m));
-    let wall = Dimension::new(side, ends, "wall behind", true);
+    let wall = Dimension::named(side, ends, ["wall behind", "muro retrostante"]);
     Some(wall).filter(|_| height_m < column.height_m)
 }
 
@@ -190,7 +208,11 @@ fn of_masonry(masonry: &Masonry) -> Vec<Dimension> {
     if let Some(level_m) = corners.map(|corner| corner.y).reduce(f64::max) {
         let from = end.extrados_m;
         let ends = [from, Vector2::new(from.x, level_m)];
-        dimensions.push(Dimension::new(DimensionSide::Right, ends, "fill", true));
+        dimensions.push(Dimension::named(
+            DimensionSide::Right,
+            ends,
+            ["fill", "riempimento"],
+        ));
     }
     dimensions
 }
@@ -203,7 +225,7 @@ fn of_pier(pier: &Pier, inner: Vector2<f64>, side: DimensionSide) -> [Dimension;
         _ => [foot, foot + Vector2::new(pier.width_m, 0.0)],
     };
     [
-        Dimension::new(side, [foot, inner], "pier height", false),
-        Dimension::new(DimensionSide::Below, base, "pier width", false),
+        Dimension::new(side, [foot, inner], "pier height"),
+        Dimension::new(DimensionSide::Below, base, "pier width"),
     ]
 }

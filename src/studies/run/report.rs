@@ -25,7 +25,7 @@ use crate::output::page::{
 };
 use crate::output::scene::FARTHEST;
 use crate::output::{Envelope, Piece, Scene, filters, render};
-use crate::scenario::{DimensionSide, Unlikely, Varied};
+use crate::scenario::{DimensionSide, Language, Unlikely, Varied};
 use crate::{
     GroundMotion, Hinge, Model, OpenHinge, Pose, Sample, Scenario, State, Summary as History, Sway,
 };
@@ -82,6 +82,8 @@ struct Page {
     scenario: String,
     bodies: Vec<String>,
     largest_body: usize,
+    /// Rotation of each body at rest, as on moved supports: results are relative to it, and poses are not.
+    standing_rad: Vec<f64>,
     unit_m: f64,
     frame_m: [Vector2<f64>; 2],
     dimensions: Vec<Size>,
@@ -244,6 +246,7 @@ impl Report {
         let [low_m, high_m] = self.scene.bounds_m();
         let unit_m = COORDINATE_RATIO * (high_m - low_m).amax();
         let (hinges, layout_of) = layouts(&self.scene, &frames);
+        let layout = |open: &&[OpenHinge]| self.layout(open, points, unit_m);
         let joints: Vec<_> = (0..).map_while(|joint| self.joint(joint)).collect();
         let across = (0..joints.len()).filter_map(|joint| self.scene.across(joint));
         let sections = self.scene.sections.iter();
@@ -254,7 +257,7 @@ impl Report {
         let dimensions = self.scene.dimensions.iter().map(|dimension| Size {
             ends_m: flat(dimension.ends_m),
             side: dimension.side,
-            text: dimension.text.clone(),
+            text: dimension.label(Language::English),
         });
         let ties = self.scene.ties(&[]).into_iter();
         let of_row = history.row().into_iter();
@@ -280,6 +283,9 @@ impl Report {
             scenario: scenario.to_toml(),
             bodies: self.bodies.clone(),
             largest_body: history.largest_body(),
+            standing_rad: frames
+                .first()
+                .map_or_else(Vec::new, |frame| standing_rad(frame)),
             unit_m,
             frame_m: self.scene.frame_m(),
             dimensions: dimensions.collect(),
@@ -295,10 +301,7 @@ impl Report {
             frames: self.frames(ground, &frames, layout_of, joints.len()),
             joints,
             across: across.collect(),
-            layouts: hinges
-                .iter()
-                .map(|open| self.layout(open, points, unit_m))
-                .collect(),
+            layouts: hinges.iter().map(layout).collect(),
             points: points.map(ObservedPoints::on_page),
             energy_label: self.energy_label(history),
             curves: Curves {
@@ -439,6 +442,14 @@ fn flat([a, b]: [Vector2<f64>; 2]) -> [f64; 4] {
     [a.x, a.y, b.x, b.y]
 }
 
+/// Returns the rotation of each body at rest, from a sample.
+fn standing_rad(sample: &Sample) -> Vec<f64> {
+    let bodies = sample.poses.iter().zip(&sample.rotations_rad);
+    bodies
+        .map(|(pose, rotation_rad)| pose.rotation_rad() - rotation_rad)
+        .collect()
+}
+
 /// Returns the time at which the page opens: that of overturning, or of the largest rotation.
 fn opening_time_s(frames: &[&Sample], history: &History) -> f64 {
     if let Some(overturned_s) = history.overturned_s() {
@@ -446,8 +457,8 @@ fn opening_time_s(frames: &[&Sample], history: &History) -> f64 {
     }
     let body = history.largest_body();
     let turned = |frame: &&&Sample| {
-        let pose = frame.poses.get(body);
-        pose.map_or(0.0, |pose| pose.rotation_rad().abs())
+        let rotation_rad = frame.rotations_rad.get(body);
+        rotation_rad.map_or(0.0, |rotation_rad| rotation_rad.abs())
     };
     let farthest = frames.iter().max_by(|a, b| turned(a).total_cmp(&turned(b)));
     farthest.map_or(0.0, |frame| frame.time_s)

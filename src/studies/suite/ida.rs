@@ -2,7 +2,7 @@
 
 use super::fragility::by_intensity;
 use super::{CaseRow, Heading, SuiteFragility};
-use crate::output::page::Spot;
+use crate::output::page::{Spot, SpotKind};
 use crate::output::{CURVES, Chart, Figure, Key, Mark, Scale, Shape, Sign, Stroke, color};
 use crate::studies::ending::Ending;
 use crate::studies::ending::columns::are_over_critical;
@@ -156,7 +156,7 @@ pub fn fractiles(results: &SuiteFragility) -> Vec<Fractiles> {
 }
 /// Grey, because dashed black lines are fractiles.
 const CRITICAL: Stroke = Stroke::new(color::GREY, 1.4, "6 4");
-const UNCERTAIN: Stroke = Stroke::new(color::GREEN, 1.6, "");
+const UNCERTAIN: Stroke = Stroke::new(SpotKind::Uncertain.fill(), 1.6, "");
 
 /// Returns the largest rotation of each case, in radians, infinite if the case overturned; `None` without a complete history.
 pub(super) fn rotations_rad(cases: &[CaseRow]) -> Vec<Option<f64>> {

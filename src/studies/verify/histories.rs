@@ -91,6 +91,13 @@ pub struct HistorySide {
     pub overturned: bool,
 }
 
+impl HistorySide {
+    /// Returns the allowed displacements with which the demand is compared, in metres.
+    pub(super) const fn limits_m(&self) -> [f64; 2] {
+        [self.capacity_m, self.capacity_over_fc_m]
+    }
+}
+
 named! {
     /// The peak that is compared with the capacity.
     pub enum ComparedPeak {
@@ -177,7 +184,7 @@ pub(super) fn histories(
         error => failed(error.to_string()),
     })?;
     if let Some(why) = mechanisms.values().find_map(|one| one.no_curve.clone()) {
-        return Err(failed(why));
+        return Err(failed(why.into()));
     }
     let compute = |series: &Series| record_peaks(input, &*model, series, mechanisms);
     let found = in_parallel(records, compute).into_iter();

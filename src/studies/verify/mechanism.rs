@@ -7,14 +7,14 @@ use serde::{Deserialize, Serialize};
 
 use super::{CheckInput, VerifyError};
 use crate::bisection::{Width, bisect};
-use crate::mechanics::settling::Held;
+use crate::mechanics::settling::{Held, HeldError};
 use crate::mechanics::stability::onset;
 use crate::mechanics::{
-    Anchor, BodyPoint, Capacity, Control, Displaced, Edge, FrictionError, MovingBody, MovingForce,
-    MovingTie, Participation, Parts as _, RowOnset, friction, load_multiplier,
-    per_displacement_of_centre,
+    Anchor, BodyPoint, Capacity, CapacityError, Control, Displaced, Edge, FrictionError,
+    MovingBody, MovingForce, MovingTie, Participation, Parts as _, RowOnset, friction,
+    load_multiplier, per_displacement_of_centre,
 };
-use crate::scenario::{CheckedSides, Structure};
+use crate::scenario::{CheckedSides, Language, Structure};
 use crate::studies::capacity::Bodies;
 use crate::{Hinge, MechanismModel, Row, Sway};
 
@@ -181,7 +181,7 @@ pub struct Mechanism {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub positions: Vec<Position>,
     /// The reason why there is no capacity curve.
-    pub no_curve: Option<String>,
+    pub no_curve: Option<NoCurve>,
     /// Joints that slide before this mechanism forms, so that it does not count; absent unless they do.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sliding: Option<Sliding>,
@@ -202,7 +202,80 @@ struct VirtualMechanism {
     ends: Vec<[Anchor; 2]>,
     forces: Vec<MovingForce>,
     body_of_block: Vec<Option<usize>>,
-    curves: Result<CapacityCurves, String>,
+    curves: Result<CapacityCurves, NoCurve>,
+}
+
+/// The reason why a mechanism has no capacity curve. In JSON it is the sentence in English.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(into = "String", from = "String")]
+pub enum NoCurve {
+    /// Joints slide before the mechanism forms.
+    Slides,
+    /// The mechanism has ties.
+    Ties,
+    /// The linkage to this side reaches its limit position before its strength is zero.
+    Locks(Sway),
+    /// It does not move as one mechanism up to the unstable equilibrium, for this reason in English.
+    Moves(String),
+}
+
+impl NoCurve {
+    /// Returns the reason as a sentence. In Italian all reasons of [`NoCurve::Moves`] have one sentence.
+    pub(super) fn in_words(&self, language: Language) -> String {
+        let [english, italian] = match self {
+            Self::Slides => [
+                "joints slide before it forms, and the displacements of sliding joints are not computed",
+                "i giunti scorrono prima che si formi; gli spostamenti di giunti che scorrono non sono calcolati",
+            ],
+            Self::Ties => [
+                "the forces of ties change as the structure moves; this check does not follow them, quasi-static capacity does",
+                "le forze delle catene variano durante il moto; questa verifica non le segue",
+            ],
+            Self::Locks(sway) => [
+                &*CapacityError::Locks(*sway).to_string(),
+                "il cinematismo raggiunge la posizione limite prima che α si annulli",
+            ],
+            Self::Moves(why) => [
+                &**why,
+                "dopo l’attivazione non si muove come un solo cinematismo fino ad α = 0",
+            ],
+        };
+        language.choose(english, italian).to_owned()
+    }
+}
+
+impl From<NoCurve> for String {
+    fn from(why: NoCurve) -> Self {
+        why.in_words(Language::English)
+    }
+}
+
+impl From<String> for NoCurve {
+    fn from(text: String) -> Self {
+        let [right, left] = [Sway::Right, Sway::Left].map(Self::Locks);
+        let known = [Self::Slides, Self::Ties, right, left];
+        let mut known = known.into_iter();
+        let found = known.find(|why| why.in_words(Language::English) == text);
+        found.unwrap_or(Self::Moves(text))
+    }
+}
+
+impl From<CapacityError> for NoCurve {
+    fn from(error: CapacityError) -> Self {
+        match error {
+            CapacityError::Locks(sway) => Self::Locks(sway),
+            error => Self::Moves(error.to_string()),
+        }
+    }
+}
+
+impl From<HeldError> for NoCurve {
+    fn from(error: HeldError) -> Self {
+        match error {
+            HeldError::Locks(error) => error.into(),
+            error => Self::Moves(error.to_string()),
+        }
+    }
 }
 
 /// The motion of a mechanism up to its unstable equilibrium, as capacity curves.
@@ -224,7 +297,7 @@ impl CapacityCurves {
         bodies: &[MovingBody],
         crown: BodyPoint,
         input: &CheckInput<'_>,
-    ) -> Result<Self, String> {
+    ) -> Result<Self, NoCurve> {
         let gravity_m_s2 = input.gravity_m_s2;
         let masses = (0..).map(Some).zip(bodies).map(|(body, own)| {
             let at_m = own.centre_m;
@@ -232,7 +305,7 @@ impl CapacityCurves {
         });
         let masses: Vec<(f64, BodyPoint)> = masses.collect();
         let curve = |control| Capacity::new(sway, &displaced, &masses, control, gravity_m_s2);
-        let centre = curve(Control::centre_of(&masses)).map_err(|error| error.to_string())?;
+        let centre = curve(Control::centre_of(&masses))?;
         let mut parts: Vec<f64> = input.parts_of_d0().chain(PRINTED_PARTS).collect();
         parts.sort_by(f64::total_cmp);
         parts.dedup();
@@ -297,7 +370,7 @@ impl Mechanism {
     /// Makes the mechanism without sliding. If joints slide first, it has no capacity curve.
     fn new(mut found: VirtualMechanism, sliding: Option<Sliding>, input: &CheckInput<'_>) -> Self {
         if sliding.is_some() {
-            found.curves = Err(SLIDES_FIRST.to_owned());
+            found.curves = Err(NoCurve::Slides);
         }
         let weight_kn = |mass_kg: f64| mass_kg * input.gravity_m_s2 / 1000.0;
         let alpha0 = found.alpha0();
@@ -524,11 +597,9 @@ impl VirtualMechanism {
         });
         let curves = || {
             if !row.bars().is_empty() {
-                return Err("the forces of ties change as the structure moves; this check does not follow them, quasi-static \
-                     capacity does"
-                    .to_owned());
+                return Err(NoCurve::Ties);
             }
-            let held = Held::new(row, sway).map_err(|error| error.to_string())?;
+            let held = Held::new(row, sway)?;
             let crown = Bodies::of_row(&held).body_point(row.crown());
             let displaced = |part| held.displaced(part);
             CapacityCurves::new(sway, displaced, &bodies, crown, input)
@@ -547,10 +618,6 @@ impl VirtualMechanism {
 
 /// Number of voussoirs into which an arch without joints is cut to find its sliding mechanism.
 const CUT: usize = 60;
-
-/// Reason why a mechanism has no capacity curve if joints slide first.
-pub(super) const SLIDES_FIRST: &str =
-    "joints slide before it forms, and the displacements of sliding joints are not computed";
 
 /// Relative difference of two bounds that is due to the linear program.
 const BOUND_TOLERANCE: f64 = 1e-6;
@@ -628,4 +695,26 @@ pub(super) fn mechanisms(input: &CheckInput<'_>) -> Result<BTreeMap<Sway, Mechan
     let mut mechanisms = mechanisms.collect::<Result<BTreeMap<Sway, Mechanism>, VerifyError>>()?;
     equalise(&mut mechanisms);
     Ok(mechanisms)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reasons_are_read_from_json_as_they_were_written() {
+        for why in [
+            NoCurve::Slides,
+            NoCurve::Ties,
+            NoCurve::Locks(Sway::Right),
+            NoCurve::Locks(Sway::Left),
+            NoCurve::Moves("a push to the right opens 3 hinges".to_owned()),
+        ] {
+            let json = serde_json::to_string(&why).unwrap();
+            let english = why.in_words(Language::English);
+            assert_eq!(json, format!("{english:?}"));
+            assert_eq!(serde_json::from_str::<NoCurve>(&json).unwrap(), why);
+            assert_ne!(english, why.in_words(Language::Italian));
+        }
+    }
 }

@@ -33,7 +33,9 @@ use crate::scenario::{
 use crate::studies::report::Warnings;
 pub use geometry::{FillGeometry, Geometry, LoadAt, PlacedBlock, RingGeometry};
 pub use histories::{ComparedPeak, Histories, HistorySide, MeanSpectrum, Peak, RecordPeaks};
-pub use mechanism::{Body, CapacityCurves, HeldTie, Mechanism, PlacedHinge, Position, Sliding};
+pub use mechanism::{
+    Body, CapacityCurves, HeldTie, Mechanism, NoCurve, PlacedHinge, Position, Sliding,
+};
 pub use report::{FILES, Page, SidePictures, page_of, report, words};
 pub use side::{
     ActivationCheck, DisplacementCheck, GoverningSide, Margin, Method, SideCheck, SimplifiedCheck,
@@ -239,8 +241,10 @@ pub fn verify(scenario: &Scenario) -> Result<Summary, VerifyError> {
     }
     let mut ultimate = states.range(LimitState::Slv..);
     if ultimate.all(|(_, one)| one.verdict == Verdict::NotChecked) {
-        let mut whys = mechanisms.values().filter_map(|one| one.no_curve.clone());
-        return Err(VerifyError::NoCurve(whys.next().unwrap_or_default()));
+        let why = mechanisms.values().find_map(|one| one.no_curve.clone());
+        return Err(VerifyError::NoCurve(
+            why.map_or_else(String::new, String::from),
+        ));
     }
     let by_the_code = matches!(input.demand, Demand::Code(_));
     let formulas = "Circolare 7/2019, C8.7.1.2.1, with the spectra of NTC 2018";

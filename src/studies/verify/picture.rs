@@ -40,6 +40,7 @@ pub(super) fn mechanism(
     let tall_px = scale * size.y;
     sheet.part(PartHeight::Structure(tall_px, tall_px), |drawing, part| {
         let place = SheetTransform::over([low, high], left + 0.5 * width_px, part);
+        draw_dimensions(drawing, &place, &scene, figure.language);
         draw_mechanism(drawing, place, &scene, (sway, mechanism));
     });
     sheet.gap(room_px(&scene, DimensionSide::Below).max(26.0));
@@ -54,7 +55,6 @@ fn draw_mechanism(
 ) {
     let px = |point_m: Vector2<f64>| place.px(point_m);
     let [low, high] = scene.frame_m();
-    draw_dimensions(drawing, &place, scene);
     let hinges = mechanism.hinges.iter().map(|placed| OpenHinge {
         hinge: placed.hinge,
         position_m: Vector2::new(placed.x_m, placed.y_m),
@@ -129,11 +129,14 @@ pub(super) fn capacity(
     let highest_g = demands().map(|side| 1.3 * side.demand_acceleration_g);
     let y = highest_g.chain([0.0, 1.6 * curve[0].1]);
     let (x, y) = (Scale::around(x, figure.ticks(8)), Scale::around(y, 5));
-    let mut keys = vec![Key::line("capacity, a/FC", CURVES[0])];
+    let language = figure.language;
+    let capacity = language.choose("capacity, a/FC", "capacità, a/FC");
+    let mut keys = vec![Key::line(capacity, CURVES[0])];
     let (mut below, mut above) = (Vec::new(), Vec::new());
     for (((state, one), side, rule), stroke) in &sides {
         let (name, percent) = (state.name().to_uppercase(), rule.damping_percent);
-        keys.push(Key::line(format!("{name}, {percent} %"), **stroke));
+        let shown = language.number(percent.to_string());
+        keys.push(Key::line(format!("{name}, {shown} %"), **stroke));
         let points = (1..=600).filter_map(|step| {
             let period_s = 0.01 * f64::from(step);
             let acceleration_g = one.demand.acceleration_g(period_s, percent).ok()?;
@@ -162,12 +165,12 @@ pub(super) fn capacity(
     }
     below.push(Mark::curve("capacity", CURVES[0], curve));
     below.extend(above);
-    let x = ("spectral displacement (m)", x);
-    let y = ("spectral acceleration (g)", y);
+    let x_label = language.choose("spectral displacement (m)", "spostamento spettrale (m)");
+    let y_label = language.choose("spectral acceleration (g)", "accelerazione spettrale (g)");
     let chart = Chart {
         keys,
         marks: vec![Mark::clipped(below)],
-        ..Chart::new(400.0, x, y)
+        ..Chart::new(400.0, (x_label, x), (y_label, y))
     };
     Some(chart.draw(figure, ""))
 }

@@ -10,7 +10,6 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use super::histories::{FOR_THE_MEAN, SPECTRUM_MARGIN};
-use super::mechanism::SLIDES_FIRST;
 use super::{
     ComparedPeak, Decision, FRICTION, FloorMode, FloorOrdinates, GoverningSide, HighestPoint,
     Histories, Mechanism, Method, PlacedHinge, SlidingCheck, Spectrum, StateCheck, Summary,
@@ -109,17 +108,11 @@ impl Page {
     /// Makes the page of a check.
     pub fn new(scenario: &Scenario, check: &Summary, date: Option<String>) -> Self {
         let figure: Figure = "78mm".parse().expect("a width of a figure");
+        let figure = figure.in_language(check.language);
         let drawn = |(sway, mechanism): (&Sway, _)| {
             let pictures = SidePictures {
                 mechanism: picture::mechanism(figure, &scenario.structure, *sway, mechanism),
                 curve: picture::capacity(figure, check, *sway, mechanism),
-            };
-            let pictures = match check.language {
-                Language::English => pictures,
-                Language::Italian => SidePictures {
-                    mechanism: in_italian(&pictures.mechanism),
-                    curve: pictures.curve.as_deref().map(in_italian),
-                },
             };
             (*sway, pictures)
         };
@@ -199,8 +192,8 @@ impl StateCheck {
     }
 }
 
-/// Words of numbers and states that stand alone, in English and in Italian.
-const WORDS: [[&str; 2]; 10] = [
+/// Names of sides, points and compared peaks, in English and in Italian.
+const WORDS: [[&str; 2]; 8] = [
     ["right", "destra"],
     ["left", "sinistra"],
     ["crown", "chiave"],
@@ -209,41 +202,7 @@ const WORDS: [[&str; 2]; 10] = [
     ["extrados", "estradosso"],
     ["mean of the peaks", "media dei massimi"],
     ["largest peak", "massimo maggiore"],
-    [
-        "the forces of ties change as the structure moves; this check does not follow them, quasi-static capacity does",
-        "le forze delle catene variano durante il moto; questa verifica non le segue",
-    ],
-    [
-        SLIDES_FIRST,
-        "i giunti scorrono prima che si formi; gli spostamenti di giunti che scorrono non sono calcolati",
-    ],
 ];
-
-/// Words of pictures, in English and in Italian.
-const PICTURE_WORDS: [[&str; 2]; 7] = [
-    ["span", "luce"],
-    ["rise", "freccia"],
-    ["fill", "riempimento"],
-    ["wall behind", "muro retrostante"],
-    ["capacity", "capacità"],
-    ["spectral displacement", "spostamento spettrale"],
-    ["spectral acceleration", "accelerazione spettrale"],
-];
-
-/// Returns a picture with its texts in Italian, numbers with a decimal comma.
-fn in_italian(svg: &str) -> String {
-    let parts = svg.split('<').map(|part| match part.split_once('>') {
-        Some((tag, text)) if tag.starts_with("text") => {
-            let words = PICTURE_WORDS.iter();
-            let text = words.fold(text.replace('.', ","), |text, [english, italian]| {
-                text.replace(english, italian)
-            });
-            format!("{tag}>{text}")
-        }
-        _ => part.to_owned(),
-    });
-    parts.collect::<Vec<_>>().join("<")
-}
 
 /// The printed words.
 #[derive(Template)]
@@ -255,7 +214,7 @@ struct Words<'a> {
 impl Words<'_> {
     /// Returns the side in a column of equal width.
     fn to(&self, sway: &Sway) -> String {
-        let to = self.check.choose("to the", "verso");
+        let to = self.check.language.choose("to the", "verso");
         let width = match self.check.language {
             Language::English => 5,
             Language::Italian => 8,
@@ -270,29 +229,12 @@ impl Summary {
         render_in(&Words { check: self }, self.language)
     }
 
-    /// Chooses the phrase in the language of the check.
-    pub(super) const fn choose<'a>(&self, english: &'a str, italian: &'a str) -> &'a str {
-        match self.language {
-            Language::English => english,
-            Language::Italian => italian,
-        }
-    }
-
     /// Returns a word of [`WORDS`] in the language of the check, and any other text unchanged.
     fn word<'a>(&self, english: &'a str) -> &'a str {
         let known = WORDS.iter().find(|[word, _]| *word == english);
-        known.map_or(english, |[_, italian]| self.choose(english, italian))
-    }
-
-    /// Returns the reason why there is no capacity curve. In Italian, reasons of the mechanics share two sentences.
-    fn no_curve<'a>(&self, why: &'a str) -> &'a str {
-        let known = self.word(why);
-        let italian = match why.starts_with("the linkage") {
-            _ if known != why => known,
-            true => "il cinematismo raggiunge la posizione limite prima che α si annulli",
-            false => "dopo l’attivazione non si muove come un solo cinematismo fino ad α = 0",
-        };
-        self.choose(why, italian)
+        known.map_or(english, |[_, italian]| {
+            self.language.choose(english, italian)
+        })
     }
 
     /// Returns the number of printed sides.

@@ -13,17 +13,37 @@ use super::pins::{Pins, TieLoads, side, two_bodies};
 use super::{Condition, Pin};
 use crate::bisection::{Width, bisect};
 use crate::mechanics::capacity::{CapacityError, TieEventFractions};
-use crate::mechanics::stability::onset;
+use crate::mechanics::stability::{StabilityError, onset};
 use crate::mechanics::{Displaced, Lanes, Pose, Row, RowOnset, Supports, Sway, TieMemory};
 
 /// Rotation of the first body in a step along the mechanism, in radians.
 const STEP_RAD: f64 = 1e-3;
 
-/// Reason, in words, why a row cannot be followed along a mechanism: it is not stable, no push moves it, its mechanism has several degrees of
-/// freedom, or the mechanism never loses its strength.
+/// Reason why a row cannot be followed along a mechanism.
 #[derive(Clone, Debug, PartialEq, Error)]
-#[error("{0}")]
-pub struct HeldError(String);
+#[non_exhaustive]
+pub enum HeldError {
+    /// The push that starts it is not found.
+    #[error(transparent)]
+    Onset(#[from] StabilityError),
+    /// No push moves it to this side.
+    #[error("no push moves it to the {}", .0.name())]
+    NoPush(Sway),
+    /// The mechanism to this side has so many hinges, and several degrees of freedom.
+    #[error(
+        "a push to the {} opens {} hinges, which may go on in several ways: there is no one mechanism to follow", .0.name(), .1
+    )]
+    SeveralWays(Sway, usize),
+    /// The mechanism never loses its strength.
+    #[error(transparent)]
+    Locks(CapacityError),
+    /// The mechanism to this side never loses its strength, because ties hold it.
+    #[error(
+        "the mechanism that sways to the {} reaches its limit position before its strength is zero, because the ties still \
+         hold: it has no ultimate displacement; give the ties a `yield_force_n` or `breaks_at_strain`", .0.name()
+    )]
+    TiesHold(Sway),
+}
 
 /// First mechanism of a row under a push to a side.
 #[derive(Clone, Debug)]
@@ -46,9 +66,7 @@ impl<'a> Held<'a> {
     /// # Errors
     /// If the first motion is no mechanism of one degree of freedom, or the push never becomes zero.
     pub fn new(row: &'a Row, sway: Sway) -> Result<Self, HeldError> {
-        let (onset, side) = (onset(row, sway), sway.name());
-        let onset = onset.map_err(|error| HeldError(error.to_string()))?;
-        let onset = onset.ok_or_else(|| HeldError(format!("no push moves it to the {side}")))?;
+        let onset = onset(row, sway)?.ok_or(HeldError::NoPush(sway))?;
         let mut held = Self {
             row,
             sway,
@@ -75,13 +93,10 @@ impl<'a> Held<'a> {
                 return Ok(held);
             }
         }
-        Err(HeldError(match row.bars().is_empty() {
-            true => CapacityError::Locks(sway).to_string(),
-            false => format!(
-                "the mechanism that sways to the {side} reaches its limit position before its strength is zero, because the ties still \
-                 hold: it has no ultimate displacement; give the ties a `yield_force_n` or `breaks_at_strain`"
-            ),
-        }))
+        Err(match row.bars().is_empty() {
+            true => HeldError::Locks(CapacityError::Locks(sway)),
+            false => HeldError::TiesHold(sway),
+        })
     }
 
     /// Returns the number of moving bodies.
@@ -231,10 +246,7 @@ fn pins(row: &Row, sway: Sway, onset: &RowOnset) -> Result<Pins, HeldError> {
         Supports::Both => 4,
     };
     if hinges.len() != due || onset.openings.len() != due {
-        let (side, hinges) = (sway.name(), onset.openings.len());
-        return Err(HeldError(format!(
-            "a push to the {side} opens {hinges} hinges, which may go on in several ways: there is no one mechanism to follow"
-        )));
+        return Err(HeldError::SeveralWays(sway, onset.openings.len()));
     }
     Ok(Pins::new(row, hinges))
 }

@@ -83,7 +83,8 @@
     show([clamp(chosen[0] + far * step[0], xs.length), clamp(chosen[1] + far * step[1], ys.length)]);
   });
   find("copy").addEventListener("click", copyCommand);
-  window.addEventListener("resize", () => show(chosen));
+  // In print the picture is the wide one, with other positions.
+  for (const change of ["resize", "beforeprint", "afterprint"]) window.addEventListener(change, () => show(chosen));
   show([Math.floor(xs.length / 2), Math.floor(ys.length / 2)]);
 
   // For scripts.
