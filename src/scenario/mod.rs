@@ -572,8 +572,7 @@ impl Scenario {
     /// The key to give, and the command that computes an answer without the key.
     pub fn check_restitution(&self) -> Result<(), String> {
         let column = self.structure.column().filter(|_| {
-            let is_prescribed =
-                matches!(self.motion.impact().model, ImpactModel::Prescribed { .. });
+            let is_prescribed = self.motion.impact().model.is_prescribed();
             self.motion.kind == &FOUR_LINKS && !is_prescribed
         });
         let ratio = column.map_or(Ok(None), Column::wall_rate_ratio);
