@@ -6,4 +6,4 @@ mod common;
 use archrock::scenario::{Format, Layout};
 use libfuzzer_sys::fuzz_target;
 
-fuzz_target!(|contents: &[u8]| common::check(&Layout::new(Format::At2), contents));
+fuzz_target!(|contents: &[u8]| common::check(&Layout::new(Format::AT2), contents));

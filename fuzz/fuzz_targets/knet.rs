@@ -6,4 +6,4 @@ mod common;
 use archrock::scenario::{Format, Layout};
 use libfuzzer_sys::fuzz_target;
 
-fuzz_target!(|contents: &[u8]| common::check(&Layout::new(Format::Knet), contents));
+fuzz_target!(|contents: &[u8]| common::check(&Layout::new(Format::KNET), contents));

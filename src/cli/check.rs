@@ -18,9 +18,7 @@ use super::{
 
 #[derive(clap::Args)]
 pub struct Arguments {
-    /// Scenario files (TOML; `-` for standard input), or record files (AT2, ASC, K-NET, SMC, CSMIP, USC, BHRC, COSMOS, GeoNet, AFAD,
-    /// CWB, CSMNC, UNAM, or tables in CSV and TXT).
-    #[arg(required = true, value_name = "FILE")]
+    #[arg(required = true, value_name = "FILE", help = files_help())]
     files: Vec<PathBuf>,
     #[command(flatten)]
     set: SetOption,
@@ -32,6 +30,12 @@ pub struct Arguments {
     format: Printed,
     #[command(flatten)]
     figure: FigureOption,
+}
+
+/// Returns the help of the files, with the formats of records.
+fn files_help() -> String {
+    let formats = Format::names();
+    format!("Scenario files (TOML; `-` for standard input), or record files (formats: {formats})")
 }
 
 /// Gravity for record files without a scenario, in m/s2.
@@ -181,7 +185,7 @@ fn check_record(
 ) -> Result<Vec<Described>, Failure> {
     // Keys of tables do not apply to files of other formats among the arguments.
     let is_table = |format: Option<Format>| match format {
-        Some(format) => format == Format::Csv,
+        Some(format) => format == Format::CSV,
         None => is_format_given(arguments),
     };
     let mut files = arguments.files.iter();

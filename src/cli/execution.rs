@@ -3,15 +3,16 @@
 use std::io::{self, Write as _};
 
 use archrock::output::{Folder, Origin, PictureFormat};
-use archrock::scenario::{Scenario, shown_lines};
+use archrock::scenario::shown_lines;
 use archrock::studies::{Options, StudyKind, Style};
 use serde_json::Value;
 
+use super::models::warn_of;
 use super::progress::is_quiet;
 use super::results::{CommandResults, Heading};
 use super::scenario_file::{Destination, ScenarioTask};
 use super::study::{StudyJob, WorkOptions};
-use super::{Failure, Format, print, print_all, warn};
+use super::{Failure, Format, print, print_all};
 
 /// The study of a command, and the options with which it is executed.
 pub struct Execution {
@@ -62,10 +63,7 @@ impl Execution {
                 job.check_results(self.kind, &task.scenarios, folder.as_ref())?;
             }
             let scenarios = tasks.iter().flat_map(|task| &task.scenarios);
-            warn(&Scenario::unlikely_of_all(
-                scenarios,
-                &self.options.varied(),
-            ));
+            warn_of(scenarios, &self.options.varied());
             let mut failed = Vec::new();
             for (index, task) in tasks.iter().enumerate() {
                 let folder = job.root.as_ref().map(|root| task.folder(root));

@@ -155,7 +155,7 @@ impl CommandResults {
 pub struct Heading<'t> {
     /// Title of the scenario.
     pub title: Option<&'t str>,
-    /// The records of a history, and a table that a model ignores.
+    /// The records of a history, one line each.
     pub lines: String,
 }
 
@@ -163,16 +163,10 @@ impl<'t> Heading<'t> {
     /// Makes the lines before the results of scenarios that differ only in their models.
     pub fn of(kind: StudyKind, scenarios: &'t [Scenario]) -> Self {
         let records = scenarios.first().filter(|_| kind.is_history);
-        let ignored = scenarios.iter().find_map(Scenario::ignored);
-        let ignored = ignored.map(|ignored| format!("  {ignored}\n"));
         let title = scenarios.first();
         Self {
             title: title.and_then(|one| one.title.as_deref()),
-            lines: records
-                .map(records_in_words)
-                .into_iter()
-                .chain(ignored)
-                .collect(),
+            lines: records.map(records_in_words).unwrap_or_default(),
         }
     }
 }

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::OutputError;
-use crate::scenario::{self, STUDY_TABLES, Scenario, shown};
+use crate::scenario::{self, Scenario, StudyTable, shown};
 
 /// Name of the list.
 pub(super) const MANIFEST: &str = "archrock.json";
@@ -206,7 +206,7 @@ impl Origin {
             let of_model = models.any(|one| one.table == table.as_str());
             let in_both = own.contains_key(*table) && others.contains_key(*table);
             // The title and the tables of studies may differ, and models of motion may have different tables.
-            let of_some = *table == "title" || STUDY_TABLES.contains(&table.as_str());
+            let of_some = *table == "title" || StudyTable::is_name(table);
             !of_some && (!of_model || in_both)
         });
         if let Some(table) = of_both.find(|table| own.get(*table) != others.get(*table)) {

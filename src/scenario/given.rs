@@ -5,8 +5,32 @@ use super::document::Entries;
 use super::model_kind::ModelKind;
 use super::prelude::*;
 
-/// Tables of studies and of the check. All others describe the structure and its motion.
-pub(crate) const STUDY_TABLES: [&str; 5] = ["map", "suite", "uncertain", "demand", "verify"];
+named! {
+    /// A table of a study or of the check. All others describe the structure and its motion.
+    pub(crate) enum StudyTable {
+        Map = "map",
+        Suite = "suite",
+        Demand = "demand",
+        Verify = "verify",
+        Uncertain = "uncertain",
+    }
+}
+
+impl StudyTable {
+    /// Reads this table of a scenario; `None` without it.
+    pub(super) fn read<T>(
+        self,
+        scenario: &mut Table<'_>,
+        read: impl Reader<T>,
+    ) -> ReadResult<Option<T>> {
+        scenario.given_table(self.name(), read)
+    }
+
+    /// Returns true for the name of such a table.
+    pub(crate) fn is_name(name: &str) -> bool {
+        Self::ALL.iter().any(|table| table.name() == name)
+    }
+}
 
 /// The tables of the text after all changes, and the way in which they were read. Any two values compare as equal, because scenarios are equal
 /// regardless of the keys that give their values.
@@ -45,7 +69,7 @@ impl Given {
 
 /// Returns true for tables that describe the structure and its motion.
 fn is_of_structure(name: &str) -> bool {
-    name != "title" && !STUDY_TABLES.contains(&name)
+    name != "title" && !StudyTable::is_name(name)
 }
 
 /// Returns a given value with the resolved one as default. `tables` are the names of the tables around it and its own, the outermost first.

@@ -22,24 +22,18 @@ pub static FOUR_LINKS: ModelKind = ModelKind {
 };
 
 pub(super) const RESTITUTION: Number = within(&(0.0..=1.0));
-const IMPACT_MODELS: [ImpactModel; 4] = [
-    ImpactModel::MaxRestitution,
-    ImpactModel::SameSections,
-    ImpactModel::Mirrored,
-    ImpactModel::Prescribed { restitution: 0.0 },
-];
+
 /// Reads `[impact]`.
 fn read(table: &mut Table<'_>) -> ReadResult<ImpactLaw> {
-    let names = IMPACT_MODELS.map(|model| model.name());
+    let names: Vec<_> = ImpactModel::ALL.iter().map(|model| model.name()).collect();
     let name = table.or("model", &one_of(&names), names[0]);
     let restitution = table.optional("restitution", &RESTITUTION);
     // The upper bound is far above measured values.
     let restitution_factor = table.or("restitution_factor", &within(&(0.0..=100.0)), 1.0);
     let index = names.iter().position(|one| *one == name);
-    let mut model = IMPACT_MODELS[index.unwrap_or(0)];
-    if let ImpactModel::Prescribed { .. } = model {
-        let restitution = table.needed("restitution", &RESTITUTION, restitution);
-        model = ImpactModel::Prescribed { restitution };
+    let mut model = ImpactModel::ALL[index.unwrap_or(0)];
+    if let ImpactModel::Prescribed { restitution: given } = &mut model {
+        *given = table.needed("restitution", &RESTITUTION, restitution);
     } else if restitution.is_some() {
         let wrong = format!("applies to model = \"prescribed\" only; the model here is {name:?}");
         return Err(table.wrong("restitution", wrong));
@@ -77,9 +71,8 @@ impl ModelOptions for ImpactLaw {
         let Some(column) = structure.column() else {
             return Ok(());
         };
-        let is_prescribed = matches!(self.model, ImpactModel::Prescribed { .. });
         let is_given = (column.wall()).is_some_and(|(wall, _)| wall.rate_ratio.is_some());
-        let is_own = self.is_theory() && !is_prescribed;
+        let is_own = self.is_theory() && !self.model.is_prescribed();
         let wrong = "changes the ratio of energies of the impact on the wall, and `restitution` of [column.back], a ratio of rates, gives it as well; \
                      leave one out";
         ensure(!is_given || is_own, || {

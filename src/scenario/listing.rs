@@ -38,9 +38,9 @@ impl RecordListing {
             .flat_map(|(key, patterns)| list(table, (key, patterns), format, seen.clone()))
             .collect();
         let mut formats = formats(&files);
-        let has_tables = formats.contains(&Format::Csv);
+        let has_tables = formats.contains(&Format::CSV);
         formats.extend(others.iter().map(|other| other.layout.format));
-        if !has_tables && formats.contains(&Format::Csv) {
+        if !has_tables && formats.contains(&Format::CSV) {
             // Each of the other tables has its required keys, here or in its entry.
             formats.clear();
         }
@@ -123,7 +123,7 @@ pub(super) fn written(keys: &[(&str, &[Series])]) -> Map<String, Value> {
     });
     let mut layouts = keys.flat_map(|(_, records)| records.iter().map(|series| &series.layout));
     // All CSV tables share the same keys; without CSV tables, AT2 files may share a unit.
-    let tables = layouts.clone().find(|layout| layout.format == Format::Csv);
+    let tables = layouts.clone().find(|layout| layout.format == Format::CSV);
     let layout_source = tables.or_else(|| layouts.clone().next());
     let layout = json!(layout_source);
     let mut keys = layout.as_object().cloned().unwrap_or_default();

@@ -20,7 +20,6 @@ use super::sequence::Sequence;
 use super::simulation::Simulation;
 use super::structure::Structure;
 use super::variant::parts;
-use crate::ImpactModel;
 
 named! {
     /// A quantity that varies over a map, named by its key in `[map]`. The quantity that comes first in this list is on the x axis.
@@ -144,10 +143,7 @@ impl Map {
         let wrong = "goes with a table [free_hinges] or [elastic_joints]: four links are integrated to a tolerance, not in steps";
         let _ = table.refuse(repeat && !kind.has_joints, REPEAT, wrong);
         let is_no_ring = structure.is_some_and(|structure| structure.circular().is_none());
-        let is_found = motion.is_some_and(|motion| {
-            let model = motion.impact().model;
-            !matches!(model, ImpactModel::Prescribed { .. })
-        });
+        let is_found = motion.is_some_and(|motion| !motion.impact().model.is_prescribed());
         // Message about a quantity that the scenario does not have.
         let unsuited = |quantity| match quantity {
             Quantity::MeanRadius | Quantity::ThicknessRatio | Quantity::Embrace if is_no_ring => {

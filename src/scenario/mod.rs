@@ -84,7 +84,7 @@ pub use error::{ScenarioError, ScenarioErrors, TextPosition};
 pub use files::FileContents;
 pub use free_hinges::FREE_HINGES;
 use given::Given;
-pub(crate) use given::STUDY_TABLES;
+pub(crate) use given::StudyTable;
 pub use ground::{Ground, PulseGround};
 pub use impact::FOUR_LINKS;
 use initial::Blow;
@@ -329,12 +329,12 @@ impl Scenario {
             right_foot.map_or(Ok(()), |it| it.check_model(table, structure, kind));
         let initial = table.given_table("initial", |table| initial::read(table, structure, kind));
         let moved = (kind, motion.as_ref().ok().map(|(motion, _)| motion));
-        let map = table.given_table("map", |table| Map::read(table, structure, moved));
-        let suite = table.given_table("suite", |table| Suite::read(table, simulated));
-        let verify = table.given_table("verify", |table| Verify::read(table, gravity_m_s2));
+        let map = StudyTable::Map.read(table, |table| Map::read(table, structure, moved));
+        let suite = StudyTable::Suite.read(table, |table| Suite::read(table, simulated));
+        let verify = StudyTable::Verify.read(table, |table| Verify::read(table, gravity_m_s2));
         let checked = verify.as_ref().ok().cloned().flatten().unwrap_or_default();
         let demand = Demand::read_given(table, &checked);
-        let uncertain = table.given_table("uncertain", Uncertain::read);
+        let uncertain = StudyTable::Uncertain.read(table, Uncertain::read);
         let (verify, demand, ()) = (verify?, demand?, right_foot_fits?);
         if let Some(verify) = &verify {
             verify.check_demand(table, demand.as_ref())?;
@@ -573,8 +573,7 @@ impl Scenario {
     /// The key to give, and the command that computes an answer without the key.
     pub fn check_restitution(&self) -> Result<(), String> {
         let column = self.structure.column().filter(|_| {
-            let is_prescribed =
-                matches!(self.motion.impact().model, ImpactModel::Prescribed { .. });
+            let is_prescribed = self.motion.impact().model.is_prescribed();
             self.motion.kind == &FOUR_LINKS && !is_prescribed
         });
         let ratio = column.map_or(Ok(None), Column::wall_rate_ratio);
@@ -727,12 +726,17 @@ impl Scenario {
             ("ground", ground.take()),
             ("initial", initial),
             ("simulation", json!(self.simulation)),
-            ("map", json!(self.map)),
-            ("suite", json!(self.suite)),
-            ("demand", json!(self.demand)),
-            ("verify", json!(self.verify)),
-            ("uncertain", json!(self.uncertain)),
         ];
+        tables.extend(StudyTable::ALL.iter().map(|table| {
+            let json = match table {
+                StudyTable::Map => json!(self.map),
+                StudyTable::Suite => json!(self.suite),
+                StudyTable::Demand => json!(self.demand),
+                StudyTable::Verify => json!(self.verify),
+                StudyTable::Uncertain => json!(self.uncertain),
+            };
+            (table.name(), json)
+        }));
         // The options of rows of blocks come after the structure, those of mechanisms after the ground.
         let kind = self.motion.kind;
         let place = if kind.has_joints { 1 } else { 3 };

@@ -9,6 +9,7 @@
 //! file = "right.at2"
 //! ```
 
+use super::given::StudyTable;
 use super::model_kind::ModelKind;
 use super::prelude::*;
 use super::record::{KnownRecords, Record};
@@ -69,7 +70,7 @@ impl RightFoot {
             let wrong = "needs two feet, and this stands on one: leave it out";
             return Err(outer.wrong_in(&["ground"], "right", wrong));
         }
-        let changing = ["map", "suite"];
+        let changing = [StudyTable::Map, StudyTable::Suite].map(StudyTable::name);
         let mut changing = changing.into_iter().filter(|study| outer.gives(study));
         if let (Self::Record(_), Some(study)) = (self, changing.next()) {
             let wrong = "changes the motion of the ground, and [ground.right] has a record of its own: give `delay_s` or \

@@ -3,7 +3,7 @@
 use super::document::Document;
 use super::given::Given;
 use super::prelude::*;
-use super::{ReadOptions, STUDY_TABLES, Scenario, Series, change, table};
+use super::{ReadOptions, Scenario, Series, StudyTable, change, table};
 
 impl Scenario {
     /// Returns the scenario with other numbers for some keys, each named `table.key`, without studies and check. Records are not read again.
@@ -26,7 +26,7 @@ impl Scenario {
             statics,
         } = &self.given;
         let mut tables = tables.clone();
-        tables.retain(|name, _| !STUDY_TABLES.contains(&name.as_str()));
+        tables.retain(|name, _| !StudyTable::is_name(name));
         if self.unread_ground.is_some() {
             tables.shift_remove("ground");
         }
@@ -67,7 +67,7 @@ pub(crate) fn replaces(new: &str, other: &str) -> bool {
 /// Rejects a key that names no number of the structure or of its motion.
 fn check_key(key: &str) -> Result<(), String> {
     let parts = parts(key);
-    if STUDY_TABLES.contains(&parts[0]) {
+    if StudyTable::is_name(parts[0]) {
         return Err(format!(
             "names no number of the structure or of its motion, as \"arch.depth_m\" does: [{}] describes a study",
             parts[0]

@@ -34,6 +34,7 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 
 use super::files::Files;
+use super::given::StudyTable;
 use super::listing::{RecordListing, written};
 use super::prelude::*;
 use super::record::{Decimal, Format, LineFault, Series, faulty, read_numbers};
@@ -481,9 +482,9 @@ impl Demand {
             }))
         };
         if outer.describes() {
-            outer.table("demand", points);
+            outer.table(StudyTable::Demand.name(), points);
         }
-        outer.given_table("demand", |table| Self::read(table, points))
+        StudyTable::Demand.read(outer, |table| Self::read(table, points))
     }
 
     fn read(table: &mut Table<'_>, points: impl Reader<ByState<PointDemand>>) -> ReadResult<Self> {

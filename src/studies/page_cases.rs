@@ -9,7 +9,7 @@ use super::ending::{Ending, NoHistory, Verdict};
 use super::outcome_colors::OutcomeColor;
 use crate::dynamics::Direction;
 use crate::output::page::{Spot, SpotKind};
-use crate::scenario::{STUDY_TABLES, toml_text};
+use crate::scenario::{StudyTable, toml_text};
 
 /// Largest number of cases on a page, and of rows in its first table.
 pub(super) const MOST_CASES: usize = 1000;
@@ -75,7 +75,7 @@ impl PageCases {
         if let Value::Object(tables) = &mut scenario {
             tables.retain(|name, _| {
                 let is_of_suites = suites && name == "suite";
-                is_of_suites || !STUDY_TABLES.contains(&name.as_str())
+                is_of_suites || !StudyTable::is_name(name)
             });
         }
         self.has_files |= scenario.pointer("/ground/record").is_some() || suites;

@@ -14,7 +14,6 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::ImpactModel;
 use crate::argument::plain;
 use crate::dynamics::{Direction, Directions, MODEL_LIMIT};
 use crate::scenario::{FOUR_LINKS, FREE_HINGES, ModelKind, Scenario};
@@ -216,7 +215,7 @@ pub(super) fn restitution_in_words(scenario: &Scenario) -> Option<String> {
         .column()
         .filter(|_| scenario.motion.kind == &FOUR_LINKS)?;
     let law = scenario.motion.impact();
-    let is_given = matches!(law.model, ImpactModel::Prescribed { .. });
+    let is_given = law.model.is_prescribed();
     let model = scenario.mechanisms().ok()?;
     let energies = model.restitution_from(model.first_side(), 1).unwrap_or(0.0);
     let factor = law.restitution_factor;

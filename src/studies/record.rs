@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::results::PrintedResult;
 use crate::dynamics::Intensity;
 use crate::output::{OutputError, filters};
-use crate::scenario::{Baseline, Format, RecordedQuantity, Series, Unit, shown};
+use crate::scenario::{Baseline, RecordedQuantity, Series, Unit, shown};
 
 /// Report on a record. Velocity and displacement are integrated from zero.
 #[derive(Serialize, Deserialize, Template)]
@@ -112,22 +112,9 @@ fn without_error(step_s: f64) -> f64 {
 
 /// Returns format and unit of a record, in words.
 fn format(series: &Series) -> String {
-    let format = match series.layout.format {
-        Format::At2 => "AT2 file (PEER)",
-        Format::Asc => "ASC file (ESM)",
-        Format::Knet => "file of K-NET",
-        Format::Smc => "SMC file (USGS)",
-        Format::Csmip => "file of CSMIP",
-        Format::Usc => "file of USC",
-        Format::Bhrc => "file of BHRC",
-        Format::Cosmos => "COSMOS file",
-        Format::Geonet => "file of GeoNet",
-        Format::Afad => "file of AFAD",
-        Format::Cwb => "file of CWB",
-        Format::Csmnc => "file of CSMNC",
-        Format::Unam => "file of UNAM",
-        Format::Csv if series.layout.wrapped => "table with several samples a row",
-        Format::Csv => "table",
+    let format = match series.layout.wrapped {
+        true => "table with several samples a row",
+        false => series.layout.format.label(),
     };
     let quantity = match series.layout.quantity {
         RecordedQuantity::Acceleration => "accelerations",

@@ -57,6 +57,12 @@ impl Warnings {
         self.warnings.get(self.unlikely.len()..).unwrap_or_default()
     }
 
+    /// Returns the warnings with more that limit the answer.
+    pub(super) fn with(mut self, limits: impl IntoIterator<Item = String>) -> Self {
+        self.extend(limits);
+        self
+    }
+
     /// Adds warnings that limit the answer.
     pub(super) fn extend(&mut self, limits: impl IntoIterator<Item = String>) {
         self.warnings.extend(limits);
@@ -117,12 +123,14 @@ impl Statement {
     fn lines(&self, details: &str) -> String {
         let details = Some(details).filter(|details| !details.is_empty());
         let verdict = self.verdict.replace('\n', "\n  ");
-        // The answer repeats some limits as its conditions.
+        // The verdict and the answer contain some limits.
         let quote = self.quote.as_deref().unwrap_or_default();
-        let limits = self.limits.iter().filter(|limit| !quote.contains(*limit));
+        let is_new = |limit: &&String| !quote.contains(*limit) && !verdict.contains(*limit);
+        let limits = self.limits.iter().filter(is_new);
         let after = limits.chain(&self.quote);
-        let lines = [verdict].into_iter().chain(details.map(str::to_owned));
+        let lines = details.into_iter().map(str::to_owned);
         let lines = lines.chain(after.map(|line| format!("  {line}")));
-        lines.collect::<Vec<_>>().join("\n")
+        let lines: String = lines.map(|line| format!("\n{line}")).collect();
+        format!("{verdict}{lines}")
     }
 }

@@ -1265,7 +1265,7 @@ fn spread_from_moved_supports_prints_the_further_movement() {
     let total_m = 0.1 + path["stages"][20]["movement_m"].as_f64().unwrap();
     let digits = format!("{total_m:?}");
     assert!(
-        page.contains(&format!("spread_m = {}", &digits[..10])),
+        page.contains(&format!("supports.right.spread_m={}", &digits[..10])),
         "{total_m}"
     );
     // An arch on piers stands on feet.

@@ -138,6 +138,23 @@ const PARTS = {
     await choose("ground", "half_sine");
     verify(text.value === start_s, `${text.value}\n${start_s}`);
 
+    // Every pulse, with the keys of its own, which the next one may not have.
+    let number = 1;
+    for (const pulse of [...element("ground").options].map((option) => option.value)) {
+      await choose("ground", pulse);
+      verify(text.value.includes(`[ground.${pulse}]`) && element("errors").children.length === 0, `${pulse}: ${text.value} ${element("errors").textContent}`);
+      for (const key of ["gamma", "cycles", "phase_deg"].filter((key) => slider(`ground.${pulse}.${key}`))) {
+        number += 1;
+        await afterwards(() => {
+          slider(`ground.${pulse}.${key}`).value = number;
+          event(slider(`ground.${pulse}.${key}`), "input");
+        }, key);
+        verify(text.value.includes(`${key} = ${number}\n`), text.value);
+      }
+    }
+    await choose("ground", "half_sine");
+    verify(text.value === start_s, `${text.value}\n${start_s}`);
+
     // Ends of sliders are structures that stand.
     for (const kind of ["pointed_arch", "elliptic_arch", "arch"]) {
       await choose("structure", kind);

@@ -5,6 +5,7 @@ mod command_line;
 mod digits;
 mod documents;
 mod init;
+mod lists;
 mod long_work;
 mod names;
 mod one_answer;

@@ -181,7 +181,7 @@ fn suites_correct_all_formats() {
         "[suite]\nrecords = ['a.csv', 'c.smc']\nunit = 'm/s2'\nscales = [1.0]\nbaseline = 'mean'\nhigh_pass_hz = 1.0\n",
     );
     let suite = scenario.unwrap().suite.clone().unwrap();
-    assert_eq!(suite.records[1].layout.format, Format::Smc);
+    assert_eq!(suite.records[1].layout.format, Format::SMC);
     for series in &suite.records {
         assert_eq!(
             (series.layout.baseline, series.layout.high_pass_hz),

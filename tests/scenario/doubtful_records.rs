@@ -34,7 +34,7 @@ fn knet(counts: &[i64], duration_s: &str, peak: &str) -> String {
 #[test]
 fn a_file_of_knet_is_compared_with_its_header() {
     let read = |counts: &[i64], duration_s: &str, peak: &str| {
-        Layout::new(Format::Knet).parse(knet(counts, duration_s, peak).as_bytes())
+        Layout::new(Format::KNET).parse(knet(counts, duration_s, peak).as_bytes())
     };
     let whole = knet_counts();
     for peak in [
@@ -106,7 +106,7 @@ fn a_file_of_esm_is_compared_with_its_header() {
         let text = format!(
             "EVENT_ID: X\nSAMPLING_INTERVAL_S: 0.005\nNDATA: 4\nUNITS: cm/s^2\n{peak}\nDATA_TYPE: ACCELERATION\nUSER5:\n0.5\n-1.631975\n0.75\n0.0\n"
         );
-        Layout::new(Format::Asc)
+        Layout::new(Format::ASC)
             .parse(text.as_bytes())
             .unwrap()
             .difference
@@ -126,7 +126,7 @@ fn a_file_of_esm_is_compared_with_its_header() {
     let velocity = "EVENT_ID: X\nSAMPLING_INTERVAL_S: 0.005\nUNITS: cm/s\nPGV_CM/S: 3.0\nDATA_TYPE: VELOCITY\n0.5\n-1.6\n0.75\n";
     let layout = Layout {
         quantity: archrock::scenario::RecordedQuantity::Velocity,
-        ..Layout::new(Format::Asc)
+        ..Layout::new(Format::ASC)
     };
     let difference = layout
         .parse(velocity.as_bytes())

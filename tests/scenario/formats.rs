@@ -23,23 +23,23 @@ const VELOCITIES: [f64; 10] = [
 
 /// The files, their formats and units, and the value of 1 cm/s2 in the file.
 const FILES: [(&str, Format, Unit, f64); 10] = [
-    ("smc.smc", Format::Smc, Unit::CentimetrePerS2, 1.0),
-    ("csmip.v1", Format::Csmip, Unit::Gravity, 0.001),
-    ("csmip.v2", Format::Csmip, Unit::CentimetrePerS2, 1.0),
-    ("renadic.v1", Format::Csmip, Unit::Gravity, 0.1),
-    ("usc.m0a", Format::Usc, Unit::Gravity, 0.1),
-    ("usc.s0a", Format::Usc, Unit::CentimetrePerS2, 1.0),
-    ("cosmos.v2", Format::Cosmos, Unit::CentimetrePerS2, 1.0),
-    ("geonet.v1a", Format::Geonet, Unit::MillimetrePerS2, 10.0),
-    ("geonet.v2a", Format::Geonet, Unit::MillimetrePerS2, 10.0),
-    ("csmnc.dat", Format::Csmnc, Unit::CentimetrePerS2, 1.0),
+    ("smc.smc", Format::SMC, Unit::CentimetrePerS2, 1.0),
+    ("csmip.v1", Format::CSMIP, Unit::Gravity, 0.001),
+    ("csmip.v2", Format::CSMIP, Unit::CentimetrePerS2, 1.0),
+    ("renadic.v1", Format::CSMIP, Unit::Gravity, 0.1),
+    ("usc.m0a", Format::USC, Unit::Gravity, 0.1),
+    ("usc.s0a", Format::USC, Unit::CentimetrePerS2, 1.0),
+    ("cosmos.v2", Format::COSMOS, Unit::CentimetrePerS2, 1.0),
+    ("geonet.v1a", Format::GEONET, Unit::MillimetrePerS2, 10.0),
+    ("geonet.v2a", Format::GEONET, Unit::MillimetrePerS2, 10.0),
+    ("csmnc.dat", Format::CSMNC, Unit::CentimetrePerS2, 1.0),
 ];
 
 /// Files with several columns, and their channel with the samples.
 const COLUMNS: [(&str, Format, &str, usize); 3] = [
-    ("afad.txt", Format::Afad, "N-S", 1),
-    ("cwb.dat", Format::Cwb, "n", 2),
-    ("unam.asa", Format::Unam, "n00e", 1),
+    ("afad.txt", Format::AFAD, "N-S", 1),
+    ("cwb.dat", Format::CWB, "n", 2),
+    ("unam.asa", Format::UNAM, "n00e", 1),
 ];
 
 fn path(name: &str) -> PathBuf {
@@ -145,7 +145,7 @@ fn numbers_that_touch_are_parted() {
         " 10.500000-11.250000120.000000",
         1,
     );
-    let contents = parse(&Layout::new(Format::Csmip), &wide).unwrap();
+    let contents = parse(&Layout::new(Format::CSMIP), &wide).unwrap();
     let values: Vec<_> = contents.samples[..3]
         .iter()
         .map(|sample| sample.1)
@@ -169,7 +169,7 @@ fn numbers_that_touch_are_parted() {
     );
     for (format, (name, old, new), channel, expected) in [
         (
-            Format::Smc,
+            Format::SMC,
             (
                 "smc.smc",
                 " 5.0000E-1-1.2500E+0 2.0000E+0",
@@ -179,7 +179,7 @@ fn numbers_that_touch_are_parted() {
             [1.5, 11.25, 12.0],
         ),
         (
-            Format::Cosmos,
+            Format::COSMOS,
             (
                 "cosmos.v2",
                 " 0.50000-1.25000 2.00000",
@@ -189,7 +189,7 @@ fn numbers_that_touch_are_parted() {
             [10.5, 11.25, 12.0],
         ),
         (
-            Format::Csmip,
+            Format::CSMIP,
             (
                 "renadic.v1",
                 "  0.000  0.500  0.010 -1.250  0.020  2.000",
@@ -199,7 +199,7 @@ fn numbers_that_touch_are_parted() {
             [10.05, 10.125, 10.2],
         ),
         (
-            Format::Cwb,
+            Format::CWB,
             (
                 "cwb.dat",
                 "    -0.050     0.500     0.150\n     0.010     0.125    -1.250    -0.375\n",
@@ -221,7 +221,7 @@ fn numbers_that_touch_are_parted() {
         }
     }
     let wide = text("geonet.v1a").replacen("     5.0   -12.5", "123456.1123456.2", 1);
-    let contents = parse(&Layout::new(Format::Geonet), &wide).unwrap();
+    let contents = parse(&Layout::new(Format::GEONET), &wide).unwrap();
     assert_eq!(contents.samples[0].1, 123_456.1);
     assert_eq!(contents.samples[1].1, 123_456.2);
 }
@@ -409,14 +409,14 @@ fn damaged_files_have_lines() {
     );
     let text = text("geonet.v1a");
     let lines = text.split_inclusive('\n').take(22).collect::<String>();
-    let fault = parse(&Layout::new(Format::Geonet), &lines).unwrap_err();
+    let fault = parse(&Layout::new(Format::GEONET), &lines).unwrap_err();
     assert!(
         fault
             .message
             .contains("the header has 20 numbers from line 21"),
         "{fault:?}"
     );
-    for format in [Format::Smc, Format::Csmip, Format::Cosmos, Format::Geonet] {
+    for format in [Format::SMC, Format::CSMIP, Format::COSMOS, Format::GEONET] {
         let fault = parse(&Layout::new(format), "").unwrap_err();
         assert_eq!(fault.line, 1);
         assert!(fault.message.contains("is this a"), "{fault:?}");
@@ -601,17 +601,17 @@ fn files_say_which_quantity_they_hold() {
             "the file holds response spectra; must be acceleration",
         ),
     ] {
-        let fault = parse(&Layout::new(Format::Smc), &smc(kind)).unwrap_err();
+        let fault = parse(&Layout::new(Format::SMC), &smc(kind)).unwrap_err();
         assert!(
             fault.message.ends_with(words)
                 || !words.contains("unless") && fault.message.contains(words),
             "{fault:?}"
         );
     }
-    let contents = parse(&velocities(Format::Smc), &smc("3 VELOCITY")).unwrap();
+    let contents = parse(&velocities(Format::SMC), &smc("3 VELOCITY")).unwrap();
     assert_eq!(contents.unit, Unit::CentimetrePerS);
     let cosmos = text("cosmos.v2").replace("10 acceleration pts", "10 displacement pts");
-    let fault = parse(&Layout::new(Format::Cosmos), &cosmos).unwrap_err();
+    let fault = parse(&Layout::new(Format::COSMOS), &cosmos).unwrap_err();
     assert!(
         fault.message.contains("the file holds displacement"),
         "{fault:?}"
@@ -624,7 +624,7 @@ fn smc_files_without_a_rate_hold_pairs() {
     let pairs = text("smc.smc").replacen("0.1000000E+03", "0.1700000E+39", 1);
     let (header, _) = pairs.split_once(" 5.0000E-1").unwrap();
     let rows = " 0.0000E+0-2.0000E+0 1.4000E-3 5.0000E-1 3.1000E-3 2.5000E+0 4.0000E-3-1.0000E+0\n 6.0000E-3 0.0000E+0\n";
-    let contents = parse(&Layout::new(Format::Smc), &format!("{header}{rows}")).unwrap();
+    let contents = parse(&Layout::new(Format::SMC), &format!("{header}{rows}")).unwrap();
     let expected = [
         (0.0, -2.0),
         (0.0014, 0.5),
@@ -714,7 +714,7 @@ fn texts_of_networks_are_compared_with_their_header() {
     let text_of_afad = text("afad.txt");
     let shifted = text_of_afad.replacen("    -0.050000\n", "\n", 1);
     let shifted = shifted.replacen("     0.125000\n", "     0.125000     0.1\n", 1);
-    let message = parse(&choose(Format::Afad, 1), &shifted).unwrap_err();
+    let message = parse(&choose(Format::AFAD, 1), &shifted).unwrap_err();
     assert_eq!(message.line, 11);
     assert!(message.message.contains("has 2 numbers; must have 3"));
     fault(
@@ -748,7 +748,7 @@ fn texts_of_networks_are_compared_with_their_header() {
         "must name three components",
     );
     let cut = text("cwb.dat").replace("#RecordLength(sec): 0.1", "#RecordLength(sec): 2");
-    let message = parse(&choose(Format::Cwb, 1), &cut).unwrap_err().message;
+    let message = parse(&choose(Format::CWB, 1), &cut).unwrap_err().message;
     assert!(
         message.contains("ends after 0.1 s") && message.contains("line 7 announces 2 s"),
         "{message}"
@@ -791,7 +791,7 @@ fn texts_of_networks_are_compared_with_their_header() {
     ] {
         let whole = text("unam.asa");
         assert!(whole.contains(old), "{old}");
-        let fault = parse(&choose(Format::Unam, 1), &whole.replacen(old, new, 1)).expect_err(words);
+        let fault = parse(&choose(Format::UNAM, 1), &whole.replacen(old, new, 1)).expect_err(words);
         assert!(fault.message.contains(words), "{fault:?}");
         assert_eq!(fault.line, line, "{fault:?}");
     }
@@ -799,7 +799,7 @@ fn texts_of_networks_are_compared_with_their_header() {
     let alone = text("unam.asa")
         .replacen("cm/s^2 (Gal)", "cm/s2", 1)
         .replacen(": /-2.5/", ": /-2.6/", 1);
-    let contents = parse(&choose(Format::Unam, 1), &alone).unwrap();
+    let contents = parse(&choose(Format::UNAM, 1), &alone).unwrap();
     assert_values(&contents, &SAMPLES, 1.0);
     assert!(
         contents
@@ -834,15 +834,15 @@ fn a_text_holds_one_record() {
     let rows = "  0.000000E0".repeat(8) + "\n";
     let long = ew.replace("POINTS:  10", "POINTS:  810") + &rows.repeat(100);
     for (format, first, line) in [
-        (Format::Csmnc, ew.clone(), 15),
-        (Format::Csmnc, long, 115),
-        (Format::Afad, text("afad.txt"), 21),
-        (Format::Cwb, text("cwb.dat"), 25),
-        (Format::Unam, text("unam.asa"), 46),
+        (Format::CSMNC, ew.clone(), 15),
+        (Format::CSMNC, long, 115),
+        (Format::AFAD, text("afad.txt"), 21),
+        (Format::CWB, text("cwb.dat"), 25),
+        (Format::UNAM, text("unam.asa"), 46),
     ] {
-        let layout = match format {
-            Format::Csmnc => Layout::new(format),
-            _ => choose(format, 1),
+        let layout = match format == Format::CSMNC {
+            true => Layout::new(format),
+            false => choose(format, 1),
         };
         parse(&layout, &first).unwrap();
         let second = first.replace("COMP. EW", "COMP. NS");
@@ -869,7 +869,7 @@ fn the_length_of_a_record_is_that_of_the_header() {
     };
     let read = |rows: &[String]| {
         let text = format!("{header}{}", rows.concat());
-        let contents = parse(&choose(Format::Cwb, 2), &text);
+        let contents = parse(&choose(Format::CWB, 2), &text);
         contents.map(|contents| contents.samples.len())
     };
     let rows = record(1000, 0.01);
@@ -916,7 +916,7 @@ fn headers_state_the_unit() {
         ("g", Unit::Gravity, 10.0),
     ] {
         let text = text("geonet.v1a").replacen("1.00 mm/s/s", unit, 1);
-        let contents = parse(&Layout::new(Format::Geonet), &text).expect(unit);
+        let contents = parse(&Layout::new(Format::GEONET), &text).expect(unit);
         assert_eq!(contents.unit, found, "{unit}");
         // The header has the peak in mm/s2 alone.
         assert_eq!(
@@ -942,11 +942,11 @@ fn headers_state_the_unit() {
         ("ACEL. MAX.", "ACEL."),
     ] {
         assert!(unam.contains(old), "{old}");
-        let contents = parse(&choose(Format::Unam, 1), &unam.replacen(old, new, 1)).unwrap();
+        let contents = parse(&choose(Format::UNAM, 1), &unam.replacen(old, new, 1)).unwrap();
         assert_eq!(contents.difference, None, "{old}");
     }
     let afad = text("afad.txt").replace("VALUES (gal)", "VALUES (g)");
-    let contents = parse(&choose(Format::Afad, 1), &afad).unwrap();
+    let contents = parse(&choose(Format::AFAD, 1), &afad).unwrap();
     assert_eq!(contents.unit, Unit::Gravity);
     assert_eq!(contents.difference, None);
 }
@@ -957,21 +957,36 @@ fn blank_lines_part_components() {
     let second = first.replace("N28W", "Up");
     for blank in ["", "\n", "\n  \n\u{1a}\n"] {
         let text = format!("{blank}{first}{blank}{second}{blank}");
-        let fault = parse(&Layout::new(Format::Geonet), &text).unwrap_err();
+        let fault = parse(&Layout::new(Format::GEONET), &text).unwrap_err();
         assert!(
             fault.message.contains("the file has 2 channels"),
             "{fault:?}"
         );
-        let contents = parse(&choose(Format::Geonet, 2), &text).unwrap();
+        let contents = parse(&choose(Format::GEONET, 2), &text).unwrap();
         assert_values(&contents, &SAMPLES, 10.0);
     }
     let more = first + "\n     1.0     2.0\n";
-    let fault = parse(&Layout::new(Format::Geonet), &more).unwrap_err();
+    let fault = parse(&Layout::new(Format::GEONET), &more).unwrap_err();
     assert_eq!(fault.line, 29);
     assert!(
         fault.message.contains("no component begins here"),
         "{fault:?}"
     );
+}
+
+/// The formats whose extension shows them have tests of their own.
+#[test]
+fn every_format_has_its_smallest_file() {
+    let files = fs::read_dir(path("")).unwrap();
+    let mut shown: Vec<_> = files
+        .filter_map(|file| Format::of_contents(&fs::read(file.unwrap().path()).unwrap()))
+        .collect();
+    shown.extend([Format::AT2, Format::ASC, Format::KNET, Format::CSV]);
+    let without_file: Vec<_> = Format::ALL
+        .iter()
+        .filter(|one| !shown.contains(one))
+        .collect();
+    assert!(without_file.is_empty(), "{without_file:?}");
 }
 
 #[test]
@@ -991,7 +1006,7 @@ fn scenarios_and_tables_are_no_records_of_networks() {
         assert!(said.contains("height_m = 4.0"), "{said}");
     }
     fs::write(path("x.csv"), "# exported (format v2)\n0,1\n1,2\n").unwrap();
-    assert_eq!(Format::of_file(&path("x.csv")), Some(Format::Csv));
+    assert_eq!(Format::of_file(&path("x.csv")), Some(Format::CSV));
 }
 
 #[test]
@@ -1020,7 +1035,7 @@ fn channels_match_by_whole_words() {
     ] {
         let layout = Layout {
             channel: Some(named(channel)),
-            ..Layout::new(Format::Csmip)
+            ..Layout::new(Format::CSMIP)
         };
         match (parse(&layout, &text), found) {
             (Ok(contents), Ok(words)) => {
@@ -1032,7 +1047,7 @@ fn channels_match_by_whole_words() {
     }
     let pairs = text("renadic.v1").split("/&").next().unwrap().to_owned();
     let pairs = pairs.clone() + &pairs.replace("EW ", "Up ");
-    let contents = parse(&choose(Format::Csmip, 2), &pairs).unwrap();
+    let contents = parse(&choose(Format::CSMIP, 2), &pairs).unwrap();
     assert!(contents.columns.contains("channel 2 of 2 `Up"));
 }
 
@@ -1043,7 +1058,7 @@ fn many_blocks_are_read_in_time() {
         "2 points of accel data equally spaced at .01 sec, in cm/sec2. (8f10.6)\n 1.0 2.0\n";
     let text = format!("Corrected accelerogram\n{}", block.repeat(10_000));
     let begun = std::time::Instant::now();
-    let contents = parse(&choose(Format::Csmip, 10_000), &text).unwrap();
+    let contents = parse(&choose(Format::CSMIP, 10_000), &text).unwrap();
     assert_eq!(contents.samples, [(0.0, 1.0), (0.01, 2.0)]);
     assert!(begun.elapsed().as_secs() < 20, "{:?}", begun.elapsed());
 }
@@ -1072,7 +1087,7 @@ fn suites_choose_a_channel() {
         let scenario = suite(keys).expect(keys);
         let records = &scenario.suite.as_ref().unwrap().records;
         for series in records {
-            let is_csmip = series.layout.format == Format::Csmip;
+            let is_csmip = series.layout.format == Format::CSMIP;
             assert_eq!(series.layout.channel.is_some(), is_csmip, "{keys}");
             assert_eq!(series.columns == " of channel 2 of 2 `Up`", is_csmip);
         }
@@ -1096,7 +1111,7 @@ fn formats_are_recognised_by_the_start_of_a_file() {
     fs::write(&large, text("smc.smc")).unwrap();
     let file = fs::OpenOptions::new().write(true).open(&large).unwrap();
     file.set_len((64 << 20) + 1).unwrap();
-    assert_eq!(Format::of_file(&large), Some(Format::Smc));
+    assert_eq!(Format::of_file(&large), Some(Format::SMC));
     let said = refusal(&archrock(folder.path(), &["check", "large.rec"]));
     assert!(said.contains("is larger than 64 MiB"), "{said}");
 }
@@ -1131,7 +1146,7 @@ fn suites_list_all_differences() {
 #[test]
 fn files_of_bhrc_hold_three_channels() {
     let text = text("bhrc.v1");
-    assert_eq!(Format::of_contents(text.as_bytes()), Some(Format::Bhrc));
+    assert_eq!(Format::of_contents(text.as_bytes()), Some(Format::BHRC));
     for (number, name, factor) in [(1, "L1", 0.1), (2, "V2", -0.05), (3, "T3", 0.2)] {
         for channel in [
             TableColumn::Number(number),
@@ -1140,7 +1155,7 @@ fn files_of_bhrc_hold_three_channels() {
             for text in [text.clone(), text.replace('\n', "\r\n")] {
                 let layout = Layout {
                     channel: Some(channel.clone()),
-                    ..Layout::new(Format::Bhrc)
+                    ..Layout::new(Format::BHRC)
                 };
                 let contents = parse(&layout, &text).unwrap();
                 assert_eq!(contents.unit, Unit::Gravity);
@@ -1183,7 +1198,7 @@ fn files_of_bhrc_hold_three_channels() {
     ] {
         assert!(text.contains(old), "{old}");
         let damaged = text.replacen(old, new, 1);
-        let fault = parse(&choose(Format::Bhrc, 1), &damaged).expect_err(words);
+        let fault = parse(&choose(Format::BHRC, 1), &damaged).expect_err(words);
         assert!(fault.message.contains(words), "{fault:?}");
         assert_eq!(fault.line, line, "{fault:?}");
     }
@@ -1198,7 +1213,7 @@ fn volume_2_of_usc_has_its_unit_in_either_line() {
         "OF ACC DATA EQUALLY SPACED AT   .010 SEC.  IN UNITS CM/SEC/SEC",
     );
     assert_ne!(without, named);
-    let layout = Layout::new(Format::Usc);
+    let layout = Layout::new(Format::USC);
     assert_eq!(parse(&layout, &without), parse(&layout, &named));
     let unknown = without.replace("CMS/SEC/SEC", "counts");
     let fault = parse(&layout, &unknown).unwrap_err();
@@ -1211,13 +1226,13 @@ fn a_repeated_time_drops_its_second_sample() {
     let pairs = text("smc.smc").replacen("0.1000000E+03", "0.1700000E+39", 1);
     let (header, _) = pairs.split_once(" 5.0000E-1").unwrap();
     let rows = " 0.0000E+0-2.0000E+0 1.0000E-2 5.0000E-1 2.0000E-2 1.5000E+0 2.0000E-2-2.5000E+0\n 3.0000E-2 0.0000E+0\n";
-    let contents = parse(&Layout::new(Format::Smc), &format!("{header}{rows}")).unwrap();
+    let contents = parse(&Layout::new(Format::SMC), &format!("{header}{rows}")).unwrap();
     let expected = [(0.0, -2.0), (0.01, 0.5), (0.02, 1.5), (0.03, 0.0)];
     assert_eq!(contents.samples, expected);
     let warning = "repeats the time 0.02 s on line 30: its second sample, -2.5, is left out";
     assert_eq!(contents.difference.as_deref(), Some(warning));
     let twice = text("cwb.dat").replacen("     0.020", "     0.010", 1);
-    let contents = parse(&choose(Format::Cwb, 2), &twice).unwrap();
+    let contents = parse(&choose(Format::CWB, 2), &twice).unwrap();
     let samples = SAMPLES.iter().zip(0..).filter(|(_, index)| *index != 2);
     assert_eq!(contents.samples.len(), 9);
     for (sample, (expected, _)) in contents.samples.iter().zip(samples) {
@@ -1239,11 +1254,11 @@ fn samples_beyond_the_announced_number_have_a_remedy() {
     let rows = " 0.0000E+0-2.0000E+0 1.0000E-2 5.0000E-1 2.0000E-2 1.5000E+0 3.0000E-2-2.5000E+0\n 4.0000E-2 0.0000E+0\n";
     let left = " 1.0000E-2 3.0000E-1 2.0000E-2 1.0000E-1\n";
     let remedy = "the number of samples is 7: line 14 announces 5 (samples); delete the last 2, if they are not of this record, or correct line 14";
-    let fault = parse(&Layout::new(Format::Smc), &format!("{header}{rows}{left}")).unwrap_err();
+    let fault = parse(&Layout::new(Format::SMC), &format!("{header}{rows}{left}")).unwrap_err();
     assert_eq!((fault.line, &*fault.message), (32, remedy));
     // Fewer samples than announced have no such remedy.
     let fault = parse(
-        &Layout::new(Format::Smc),
+        &Layout::new(Format::SMC),
         &format!("{header}{rows}").replace(" 4.0000E-2 0.0000E+0\n", ""),
     )
     .unwrap_err();
@@ -1258,7 +1273,7 @@ fn a_unit_may_end_with_a_stop() {
     let text = text("cosmos.v2");
     assert!(text.contains("units=cm/sec2(04)"));
     let stop = text.replace("units=cm/sec2(04)", "units=g.     (02)");
-    let contents = parse(&Layout::new(Format::Cosmos), &stop).unwrap();
+    let contents = parse(&Layout::new(Format::COSMOS), &stop).unwrap();
     assert_eq!(contents.unit, Unit::Gravity);
     assert_values(&contents, &SAMPLES, 1.0);
 }

@@ -187,7 +187,7 @@ fn entries_have_keys_of_their_own() {
     assert_eq!((cwb.layout.unit, cwb.scaling), (None, Scaling::PeakG(0.25)));
     assert_eq!(
         (smc.layout.format, smc.layout.channel.as_ref()),
-        (Format::Smc, None)
+        (Format::SMC, None)
     );
 }
 

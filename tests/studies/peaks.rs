@@ -192,8 +192,7 @@ fn a_suite_prints_a_line_per_record_and_draws_the_peaks() {
     let folder = folder();
     let path = folder.path();
     let output = archrock(path, &["suite", "s.toml"]);
-    stdout(&output);
-    let said = stderr(&output);
+    let said = stdout(&output);
     let rows = Table::read(path.join("results/s/suite.csv")).rows;
     let capacities = Table::read(path.join("results/s/capacities.csv")).rows;
     let picture = fs::read_to_string(path.join("results/s/ida.svg")).unwrap();

@@ -57,7 +57,7 @@ fn folder() -> tempfile::TempDir {
 }
 
 fn samples(path: &Path) -> Vec<(f64, f64)> {
-    let layout = Layout::new(Format::At2);
+    let layout = Layout::new(Format::AT2);
     layout.parse(&fs::read(path).unwrap()).unwrap().samples
 }
 

@@ -323,7 +323,7 @@ fn values_without_a_verdict_or_with_falling_ground_are_counted() {
     ];
     let said = printed(at, &along);
     assert!(
-        said.starts_with("2 values of arch.mean_radius_m from 4 to 5: no verdict at 2 values"),
+        said.starts_with("  2 values of arch.mean_radius_m from 4 to 5: no verdict at 2 values"),
         "{said}"
     );
     let falling = "[column]\nheight_m = 4.0\nwidth_m = 2.0\n[ground.one_sine]\namplitude_g = 0.1\n\

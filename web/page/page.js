@@ -278,9 +278,9 @@ find("structure").addEventListener("change", () => {
 });
 find("ground").addEventListener("change", () => {
   const text = find("text").value;
-  const [from, to] = [last.ground, find("ground").value].map((name) => `ground.${name}`);
-  // Pulses have the same keys.
-  if (last.ground !== "record" && hasTable(text, from)) return edit(withName(text, from, find("ground").value));
+  const kinds = [last.ground, find("ground").value];
+  const [from, to] = kinds.map((name) => `ground.${name}`);
+  if (last.ground !== "record" && hasTable(text, from)) return edit(withPulse(text, ...kinds));
   edit(exchange(text, [from], [from, to], `[${to}]\namplitude_g = -0.3\nduration_s = 0.3\n`, ["start_s"]));
 });
 find("model").addEventListener("change", () => {

@@ -19,16 +19,26 @@ const STRUCTURES = [
   ["elliptic_arch", "Elliptic arch", "[elliptic_arch]\nspan_m = 8.0\nrise_m = 3.0\nthickness_m = 0.9\nvoussoirs = 36\n"],
   ["column", "Column", "[column]\nheight_m = 4.0\nwidth_m = 0.8\n"],
 ];
+/** Pulses have the same keys, and wave trains these as well. A test compares the names with those of the program. */
 const PULSES = [
   ["rectangular", "Rectangle"],
+  ["step_pair", "Two steps"],
   ["half_sine", "Half sine"],
   ["one_sine", "One sine"],
   ["one_cosine", "One cosine"],
-  ["step_pair", "Two steps"],
   ["triangular", "Triangle"],
   ["ricker", "Ricker"],
   ["antisymmetric_ricker", "Antisymmetric Ricker"],
+  ["mavroeidis_papageorgiou", "Mavroeidis and Papageorgiou", ["gamma", "phase_deg"]],
+  ["gabor", "Gabor", ["gamma", "phase_deg"]],
+  ["windowed_sine", "Windowed sine", ["cycles", "phase_deg"]],
 ];
+/** The sliders of the keys of wave trains: label, range. */
+const WAVE_TRAIN = {
+  gamma: ["Length in periods (gamma)", 1.1, 10, 0.1],
+  cycles: ["Length in periods", 1, 10, 0.5],
+  phase_deg: ["Phase (°)", -180, 180, 5],
+};
 /** Names of record files that are tables of numbers. */
 const TABLE_FILE = /\.(csv|tsv|txt|dat)$/i;
 /** Keys of such a record; the comments are for the reader to complete. */
@@ -68,9 +78,10 @@ const SLIDERS = {
     ["column.width_m", "Width (m)", 0.1, 4, 0.01],
   ],
   ground: [
-    ...PULSES.flatMap(([pulse]) => [
+    ...PULSES.flatMap(([pulse, , keys = []]) => [
       [`ground.${pulse}.amplitude_g`, "Amplitude (g): minus pushes right", -2, 2, 0.001],
       [`ground.${pulse}.duration_s`, "Duration (s)", 0.05, 3, 0.005],
+      ...keys.map((key) => [`ground.${pulse}.${key}`, ...WAVE_TRAIN[key]]),
     ]),
     ["ground.record.scale", "Factor on the record", 0.05, 20, 0.01],
   ],
@@ -96,6 +107,14 @@ function parsed(text) {
 function withName(text, table, name) {
   const rename = ({ line, path }) => (isWithin(path, table) ? line.replace(new RegExp(`\\b${table.split(".").at(-1)}\\b`), name) : line);
   return parsed(text).map(rename).join("\n");
+}
+
+/** Returns the text in which a pulse is of another kind. Keys that this does not have are removed. */
+function withPulse(text, from, to) {
+  const keysOf = (kind) => PULSES.find(([name]) => name === kind)?.[2] ?? [];
+  const removed = keysOf(from).filter((key) => !keysOf(to).includes(key));
+  const named = withName(text, `ground.${from}`, to);
+  return removed.reduce((now, key) => withValue(now, `ground.${to}.${key}`, null), named);
 }
 
 const isWithin = (path, table) => path === table || path?.startsWith(`${table}.`);

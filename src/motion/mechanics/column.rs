@@ -522,9 +522,9 @@ impl RockingColumn {
             Link::new(tilting, critical_rad, FRAC_PI_2, rate_ratio, restitution)
         };
         let wall = column.wall().map(|(wall, _)| wall.side);
-        let of_wall = match law.model {
-            ImpactModel::Prescribed { .. } => None,
-            _ => column.wall_rate_ratio()?,
+        let of_wall = match law.model.is_prescribed() {
+            true => None,
+            false => column.wall_rate_ratio()?,
         };
         // The impact that starts a sway to this side.
         let next = |sway: Sway| {
@@ -535,7 +535,7 @@ impl RockingColumn {
                 ImpactModel::Prescribed { restitution } => {
                     ((restitution / inertia_ratio).sqrt(), restitution)
                 }
-                _ => {
+                ImpactModel::MaxRestitution | ImpactModel::SameSections | ImpactModel::Mirrored => {
                     let rate_ratio = of_wall.unwrap_or_else(|| after.base_rate_ratio());
                     (rate_ratio, rate_ratio * rate_ratio * inertia_ratio)
                 }

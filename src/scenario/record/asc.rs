@@ -4,6 +4,8 @@
 
 use std::collections::HashMap;
 
+use super::history::has;
+use super::layout::{Format, Layout, Parser};
 use super::samples::{
     Contents, IF_TABLE, LineFault, Parsed, Values, checked_step, different_peak, number, peak_of,
     words,
@@ -11,12 +13,27 @@ use super::samples::{
 use super::unit::{RecordedQuantity, Unit};
 use crate::scenario::prelude::*;
 
+impl Format {
+    /// Engineering Strong Motion database (ASC).
+    pub const ASC: Self = Self {
+        name: "asc",
+        label: "ASC file (ESM)",
+        extensions: &["asc"],
+        begins: |lines| lines[0].contains(':') && has(lines, "SAMPLING_INTERVAL_S:"),
+        parser: Parser::Record(
+            parse,
+            Some("does not apply to an ASC file, whose header has UNITS"),
+        ),
+    };
+}
+
 /// Largest number of lines of the header.
 const MAX_HEADER_LINES: usize = 200;
 
 /// Reads the samples; the first is at time zero.
-pub(super) fn parse(text: &str, quantity: RecordedQuantity) -> Parsed<Contents> {
+fn parse(text: &str, layout: &Layout) -> Parsed<Contents> {
     const STEP: &str = "SAMPLING_INTERVAL_S";
+    let quantity = layout.quantity;
     let (mut header, mut last) = (HashMap::new(), 0);
     for (line, number) in text.lines().zip(1..).take(MAX_HEADER_LINES) {
         if let Some((key, value)) = line.split_once(':') {
@@ -77,7 +94,7 @@ mod tests {
     use crate::scenario::record::{Contents, Format, Layout, RecordedQuantity, Unit};
 
     fn asc() -> Layout {
-        Layout::new(Format::Asc)
+        Layout::new(Format::ASC)
     }
 
     const FILE: &str = "EVENT_NAME: A: B\nEVENT_ID: XX-2009-0009\nSAMPLING_INTERVAL_S: 0.005000\nNDATA: 3\n\

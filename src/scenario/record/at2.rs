@@ -4,6 +4,7 @@
 //! gravity unless a line of the header names a unit, or velocities. Fortran wrote several numbers per line with a fixed width, so sometimes only
 //! a minus sign separates two numbers.
 
+use super::layout::{Format, Layout, Parser};
 use super::samples::{
     Contents, IF_TABLE, LineFault, MAX_SAMPLES, Parsed, Values, checked_step, header_words, number,
     words,
@@ -11,17 +12,25 @@ use super::samples::{
 use super::unit::{RecordedQuantity, Unit};
 use crate::scenario::prelude::*;
 
+impl Format {
+    /// PEER strong motion database (AT2, VT2).
+    pub const AT2: Self = Self {
+        name: "at2",
+        label: "AT2 file (PEER)",
+        extensions: &["at2", "vt2"],
+        begins: |lines| lines.iter().take(8).any(|line| ends_header(line)),
+        parser: Parser::Record(parse, None),
+    };
+}
+
 /// Largest number of lines in which the end of the header is searched for.
 const MAX_HEADER_LINES: usize = 64;
 /// Largest number of characters of a line that are searched.
 const MAX_HEADER_LINE_CHARS: usize = 1000;
 
-/// Reads the samples; the first is at time zero. `unit` overrides the unit in the header.
-pub(super) fn parse(
-    text: &str,
-    unit: Option<Unit>,
-    quantity: RecordedQuantity,
-) -> Parsed<Contents> {
+/// Reads the samples; the first is at time zero. The unit of the layout overrides that in the header.
+fn parse(text: &str, layout: &Layout) -> Parsed<Contents> {
+    let (unit, quantity) = (layout.unit, layout.quantity);
     let (line, [count, step_s], named) = header(text, unit, quantity)?;
     let gravity = Some(Unit::Gravity).filter(|_| quantity == RecordedQuantity::Acceleration);
     let missing = "the header names no unit up to here; give `unit`: what the velocities are in";
@@ -91,7 +100,7 @@ fn header(
 }
 
 /// Returns true for a line of the header with both labels, which is no comment.
-pub(super) fn ends_header(line: &str) -> bool {
+fn ends_header(line: &str) -> bool {
     let words: Vec<_> = header_words(line).collect();
     let has = |label| position(&words, label).is_some();
     has(COUNT) && has(STEP) && !line.trim_start().starts_with(['#', '%'])
@@ -195,7 +204,7 @@ mod tests {
                      ACCELERATION TIME HISTORY IN UNITS OF G. FILTER POINTS: HP=0.1 Hz\n{header}\n 0.1 -.2E-01\n 3.D-1\n"
                 );
                 let samples =
-                    parse(&text.replace('\n', end), &Layout::new(Format::At2)).expect(header);
+                    parse(&text.replace('\n', end), &Layout::new(Format::AT2)).expect(header);
                 assert_eq!(
                     samples,
                     [(0.0, 0.1), (0.005, -0.02), (0.01, 0.3)],
@@ -210,7 +219,7 @@ mod tests {
         let values = |line: &str| {
             let count = 4;
             let text = format!("NPTS= {count}, DT= .01\n{line}\n");
-            parse(&text, &Layout::new(Format::At2))
+            parse(&text, &Layout::new(Format::AT2))
                 .map(|samples| samples.into_iter().map(|s| s.1).collect::<Vec<_>>())
         };
         assert_eq!(
@@ -235,7 +244,7 @@ mod tests {
     #[test]
     fn faults_of_at2_files_have_lines() {
         let fault =
-            |text: &str, line, words| assert_fault(text, &Layout::new(Format::At2), line, words);
+            |text: &str, line, words| assert_fault(text, &Layout::new(Format::AT2), line, words);
         let head = "A\nB\nUNITS OF G\nNPTS= 3, DT= .01 SEC\n";
         fault(
             &format!("{head}1 2\n3 4\n"),
@@ -291,7 +300,7 @@ mod tests {
             let text = format!("A\n{header}\nNPTS= 2, DT= .01\n1 2\n");
             let layout = Layout {
                 unit: key,
-                ..Layout::new(Format::At2)
+                ..Layout::new(Format::AT2)
             };
             layout.parse(text.as_bytes()).unwrap().unit
         };
@@ -318,7 +327,7 @@ mod tests {
         let velocities = |unit| Layout {
             quantity: RecordedQuantity::Velocity,
             unit,
-            ..Layout::new(Format::At2)
+            ..Layout::new(Format::AT2)
         };
         let text = "A\nVELOCITY TIME SERIES IN UNITS OF CM/S\nNPTS= 2, DT= .01\n1 2\n";
         let contents = velocities(None).parse(text.as_bytes()).unwrap();

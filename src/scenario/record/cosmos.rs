@@ -4,25 +4,37 @@
 //! a line such as `7000 acceleration pts, approx 70 secs, units=cm/sec2(04),Format=(8F10.5)`. The numbers 62 and 64 are the step in ms and the peak. Source: COSMOS
 //! Strong Motion Data Format (COSMOS 2001, strongmotioncenter.org/vdc/cosmos_format_1_20.pdf), with the indices of the USGS's PRISM.
 
-use super::histories::{
+use super::history::{
     History, count_and_step, header_fields, is_text, lines_of_numbers, squeezed, width_in,
     word_after,
 };
+use super::layout::{Format, Parser};
 use super::samples::{LineFault, Parsed, number};
 use crate::scenario::prelude::*;
+
+impl Format {
+    /// COSMOS strong-motion format (V1, V2).
+    pub const COSMOS: Self = Self {
+        name: "cosmos",
+        label: "COSMOS file",
+        extensions: &[],
+        begins: |lines| begins(lines[0]),
+        parser: Parser::Channels(histories),
+    };
+}
 
 const REALS: &str = "real-header values follow on ";
 /// The number that marks unknown values.
 const UNKNOWN: f64 = -999.0;
 
 /// Returns true for the first line of a COSMOS file, as `Corrected acceleration (Format v01.20 with 13 text lines)`.
-pub(super) fn begins(first: &str) -> bool {
+fn begins(first: &str) -> bool {
     let first = first.to_ascii_lowercase();
     first.contains("(format v0") && first.contains("text lines")
 }
 
 /// Finds all histories of a file.
-pub(super) fn histories(lines: &[&str]) -> Parsed<Vec<History>> {
+fn histories(lines: &[&str]) -> Parsed<Vec<History>> {
     let (mut histories, mut name, mut reals) = (Vec::new(), String::new(), (1, Vec::new()));
     for (index, line) in lines.iter().enumerate().filter(|(_, line)| is_text(line)) {
         let lower = line.to_ascii_lowercase();

@@ -10,11 +10,45 @@
 
 use std::ops::Range;
 
-use super::histories::{
+use super::history::{
     History, count_and_step, is_text, lines_of_numbers, rest, squeezed, width_in, word_after,
 };
+use super::layout::{Format, Parser};
 use super::samples::{LineFault, Parsed, checked_step, number, step_of_rate};
 use super::unit::Unit;
+
+impl Format {
+    /// California Strong Motion Instrumentation Program (V1, V2), RENADIC.
+    pub const CSMIP: Self = Self {
+        name: "csmip",
+        label: "file of CSMIP",
+        extensions: &[],
+        begins: |lines| begins(lines[0]),
+        parser: Parser::Channels(histories),
+    };
+}
+
+impl Format {
+    /// University of Southern California, California Institute of Technology (Volumes I and II).
+    pub const USC: Self = Self {
+        name: "usc",
+        label: "file of USC",
+        extensions: &[],
+        begins: is_usc,
+        parser: Parser::Channels(histories),
+    };
+}
+
+impl Format {
+    /// Building and Housing Research Center, Iran (V1).
+    pub const BHRC: Self = Self {
+        name: "bhrc",
+        label: "file of BHRC",
+        extensions: &[],
+        begins: |lines| is_bhrc(lines[0]),
+        parser: Parser::Channels(histories),
+    };
+}
 
 /// Lines of text, integers and numbers before the pairs of volume 1.
 const HEADER_LINES: usize = 27;
@@ -22,13 +56,13 @@ const HEADER_LINES: usize = 27;
 const SEARCHED_LINES: usize = 64;
 
 /// Returns true for the first line of a CSMIP file, and of its channels.
-pub(super) fn begins(first: &str) -> bool {
+fn begins(first: &str) -> bool {
     let first = first.trim_start().to_ascii_lowercase();
     first.starts_with("corrected accelerogram") || first.starts_with("uncorrected accelerogram")
 }
 
 /// Returns true for the first lines of a file of USC, of which one is like `FILE 0 OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I`.
-pub(super) fn is_usc(lines: &[&str]) -> bool {
+fn is_usc(lines: &[&str]) -> bool {
     let mut first = lines.iter().take(2).map(|line| squeezed(line));
     first.any(|line| {
         line.starts_with("FILE ") && line.contains("OF UNCORRECTED ACCELEROGRAM DATA OF VOL")
@@ -36,12 +70,12 @@ pub(super) fn is_usc(lines: &[&str]) -> bool {
 }
 
 /// Returns true for the first line of a file of BHRC, and of its channels, as `* VOL1DS FILE:  5520/01`.
-pub(super) fn is_bhrc(first: &str) -> bool {
+fn is_bhrc(first: &str) -> bool {
     first.starts_with("* VOL") && first.contains(" FILE")
 }
 
 /// Finds all histories of a file.
-pub(super) fn histories(lines: &[&str]) -> Parsed<Vec<History>> {
+fn histories(lines: &[&str]) -> Parsed<Vec<History>> {
     let (mut histories, mut start, mut in_channel) = (Vec::new(), 0, 0);
     for (index, line) in lines.iter().enumerate().filter(|(_, line)| is_text(line)) {
         let lower = line.to_ascii_lowercase();

@@ -5,16 +5,27 @@ use std::io::Read as _;
 
 use ::csv::{ReaderBuilder, StringRecord, Terminator};
 
-use super::layout::{Decimal, Layout, TableColumn, Times};
+use super::layout::{Decimal, Format, Layout, Parser, TableColumn, Times};
 use super::samples::*;
 use super::unit::Unit;
 use crate::scenario::prelude::*;
+
+impl Format {
+    /// A table with a column of samples and one of times, or with samples at a constant step.
+    pub const CSV: Self = Self {
+        name: "csv",
+        label: "table",
+        extensions: &["csv", "tsv", "txt", "dat"],
+        begins: |_| false,
+        parser: Parser::Record(parse, None),
+    };
+}
 
 /// Reads the samples, in the unit of the file.
 ///
 /// Blank lines and lines that begin with `#` or `%` are skipped, except `%g`. The first of the other lines may contain the names of the columns; names are required
 /// if a column is chosen by name. All rows have the same number of cells; only the last of rows with several samples may have fewer.
-pub(super) fn parse(text: &str, layout: &Layout) -> Parsed<Contents> {
+fn parse(text: &str, layout: &Layout) -> Parsed<Contents> {
     let table = table_of(text, layout)?;
     let (Some(times), Some(unit)) = (&layout.times, layout.unit) else {
         return Err(LineFault::on(1)("a table needs its times and its unit"));

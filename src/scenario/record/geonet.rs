@@ -4,10 +4,22 @@
 //! with ten numbers a line, in mm/s2, mm/s and mm. The integers have the number of samples of each block, the numbers step and peaks. Source: GNS Accelerogram Data File
 //! Format (GeoNet), as files of the USGS's tests of `gmprocess` follow it.
 
-use super::histories::{History, header_fields, lines_of_numbers, rest, squeezed};
+use super::history::{History, header_fields, lines_of_numbers, rest, squeezed};
+use super::layout::{Format, Parser};
 use super::samples::{LineFault, Parsed, checked_step, number, words};
 use super::unit::Unit;
 use crate::scenario::prelude::*;
+
+impl Format {
+    /// GeoNet, New Zealand (V1A, V2A).
+    pub const GEONET: Self = Self {
+        name: "geonet",
+        label: "file of GeoNet",
+        extensions: &[],
+        begins,
+        parser: Parser::Channels(histories),
+    };
+}
 
 const INTEGERS: usize = 16;
 const REALS: usize = 20;
@@ -15,13 +27,13 @@ const DATA: usize = 26;
 const COLUMNS: usize = 10;
 
 /// Returns true for the first lines of a component of a GeoNet file.
-pub(super) fn begins(lines: &[&str]) -> bool {
+fn begins(lines: &[&str]) -> bool {
     let has = |index: usize, word: &str| lines.get(index).is_some_and(|line| line.contains(word));
     has(0, "orrected accelerogram") && has(1, "Site ") && has(9, "Number of points")
 }
 
 /// Finds all histories of a file.
-pub(super) fn histories(lines: &[&str]) -> Parsed<Vec<History>> {
+fn histories(lines: &[&str]) -> Parsed<Vec<History>> {
     let filled = |from| (from..lines.len()).find(|index| words(lines[*index]).next().is_some());
     let (mut histories, mut next) = (Vec::new(), Some(filled(0).unwrap_or(0)));
     while let Some(start) = next {

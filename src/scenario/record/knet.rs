@@ -4,12 +4,28 @@
 //! Multiplied by the `Scale Factor`, such as `3920(gal)/6182761`, they are accelerations in gal, including the offset of the instrument. For
 //! `Max. Acc. (gal)` their mean is subtracted. Source: the descriptions of both formats (NIED, kyoshin.bosai.go.jp).
 
+use super::history::has;
+use super::layout::{Format, Layout, Parser};
 use super::samples::{
     Contents, IF_TABLE, LineFault, Parsed, Values, different_peak, number, peak_of, step_of_rate,
     surplus, words,
 };
 use super::unit::Unit;
 use crate::scenario::prelude::*;
+
+impl Format {
+    /// K-NET and KiK-net.
+    pub const KNET: Self = Self {
+        name: "knet",
+        label: "file of K-NET",
+        extensions: &["ns", "ew", "ud", "ns1", "ew1", "ud1", "ns2", "ew2", "ud2"],
+        begins: |lines| lines[0].starts_with("Origin Time") && has(lines, FREQUENCY),
+        parser: Parser::Record(
+            parse,
+            Some("does not apply to a file of K-NET, whose header has a Scale Factor"),
+        ),
+    };
+}
 
 /// Largest number of lines of the header.
 const MAX_HEADER_LINES: usize = 64;
@@ -22,7 +38,7 @@ const PEAKS: [&str; 2] = ["Max. Acc. (gal)", "Max Acc. (gal)"];
 const LAST: &str = "Memo.";
 
 /// Reads the samples; the first is at time zero.
-pub(super) fn parse(text: &str) -> Parsed<Contents> {
+fn parse(text: &str, _: &Layout) -> Parsed<Contents> {
     let mut header: Vec<&str> = text.lines().take(MAX_HEADER_LINES).collect();
     let end = header.iter().position(|line| line.starts_with(LAST));
     header.truncate(end.map_or(header.len(), |end| end + 1));
@@ -108,7 +124,7 @@ mod tests {
                         -12  0 8003     8003\n";
 
     fn knet() -> Layout {
-        Layout::new(Format::Knet)
+        Layout::new(Format::KNET)
     }
 
     #[test]

@@ -1,47 +1,63 @@
 //! Layout of a record file: its format, and, for tables, the columns of times and accelerations.
 
-use std::ffi::OsStr;
 use std::fmt;
-use std::path::Path;
 
 use super::correction::{self, Baseline};
-use super::samples::{MAX_TIME_S, MIN_STEP_S};
+use super::history::Finder;
+use super::samples::{Contents, MAX_TIME_S, MIN_STEP_S, Parsed};
 use super::unit::{RecordedQuantity, Unit, any_unit};
 use crate::scenario::prelude::*;
 
-named! {
-    /// Format of a record file.
-    #[derive(Default)]
-    pub enum Format {
-        /// PEER strong motion database (AT2, VT2).
-        At2 = "at2",
-        /// Engineering Strong Motion database (ASC).
-        Asc = "asc",
-        /// K-NET and KiK-net.
-        Knet = "knet",
-        /// U.S. Geological Survey (SMC).
-        Smc = "smc",
-        /// California Strong Motion Instrumentation Program (V1, V2), RENADIC.
-        Csmip = "csmip",
-        /// University of Southern California, California Institute of Technology (Volumes I and II).
-        Usc = "usc",
-        /// Building and Housing Research Center, Iran (V1).
-        Bhrc = "bhrc",
-        /// COSMOS strong-motion format (V1, V2).
-        Cosmos = "cosmos",
-        /// GeoNet, New Zealand (V1A, V2A).
-        Geonet = "geonet",
-        /// AFAD, Turkey.
-        Afad = "afad",
-        /// Central Weather Bureau, Taiwan.
-        Cwb = "cwb",
-        /// China Strong Motion Networks Center.
-        Csmnc = "csmnc",
-        /// Institute of Engineering of UNAM, Mexico (ASA).
-        Unam = "unam",
-        /// A table with a column of samples and one of times, or with samples at a constant step.
-        #[default]
-        Csv = "csv",
+/// A format of record files. Each is a constant in the file of its reader.
+#[derive(Clone, Copy)]
+pub struct Format {
+    /// Name in scenarios.
+    pub(super) name: &'static str,
+    /// Name of a file of this format in reports.
+    pub(super) label: &'static str,
+    /// Extensions of file names, in lower case, that determine the format of a file whose contents do not.
+    pub(super) extensions: &'static [&'static str],
+    /// Returns true if the first lines of a file, at least one, are of this format.
+    pub(super) begins: fn(&[&str]) -> bool,
+    /// Reader of the files.
+    pub(super) parser: Parser,
+}
+
+/// Reader of the files of a format.
+#[derive(Clone, Copy)]
+pub(super) enum Parser {
+    /// Reads the only record of a file; with the reason for which the key `unit` is refused, `None` if it applies.
+    Record(fn(&str, &Layout) -> Parsed<Contents>, Option<&'static str>),
+    /// Finds the only history of a file, which its header describes.
+    History(Finder),
+    /// Finds the histories of all channels of a file, which its header describes.
+    Channels(Finder),
+}
+
+/// Formats are equal if their names are.
+impl PartialEq for Format {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+impl Eq for Format {}
+
+impl fmt::Debug for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name)
+    }
+}
+
+impl Default for Format {
+    fn default() -> Self {
+        Self::CSV
+    }
+}
+
+impl Serialize for Format {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name)
     }
 }
 
@@ -146,14 +162,14 @@ impl Layout {
         Self {
             times: Some(times),
             unit: Some(unit),
-            ..Self::new(Format::Csv)
+            ..Self::new(Format::CSV)
         }
     }
 
     /// Reads the keys that describe files of these formats. The layout is that of tables if one of them is a table, or else that of the first. The
     /// fault of an unknown format is recorded elsewhere.
     pub(in crate::scenario) fn read(table: &mut Table<'_>, formats: &[Format]) -> Self {
-        let mut tables = formats.iter().filter(|format| **format == Format::Csv);
+        let mut tables = formats.iter().filter(|format| **format == Format::CSV);
         let format = tables.next().or(formats.first()).copied();
         let step_s = within(&(MIN_STEP_S..=MAX_TIME_S));
         let dt_s = table.optional("dt_s", &step_s);
@@ -179,7 +195,7 @@ impl Layout {
         let (Some(format), quantity) = (format, layout.quantity) else {
             return layout;
         };
-        let is_table = format == Format::Csv;
+        let is_table = format == Format::CSV;
         if let Some(key) = TABLE_KEYS.into_iter().find(|key| table.gives(key)) {
             let _ = table.refuse(!is_table, key, "applies to `format = \"csv\"` only");
         }
@@ -193,20 +209,23 @@ impl Layout {
         let _ = table.refuse(is_wrong, "end_marker", wrong);
         let is_velocity = quantity == RecordedQuantity::Velocity;
         let wrong = "does not apply to a file of K-NET, which holds accelerations";
-        let _ = table.refuse(is_velocity && format == Format::Knet, "quantity", wrong);
+        let _ = table.refuse(is_velocity && format == Format::KNET, "quantity", wrong);
         if is_velocity {
             correction::refuse(table, (layout.baseline, layout.high_pass_hz));
         }
-        let header = match format {
-            Format::Asc => "does not apply to an ASC file, whose header has UNITS",
-            Format::Knet => "does not apply to a file of K-NET, whose header has a Scale Factor",
-            _ => "does not apply to this format, whose files have their unit",
+        let refusal = match format.parser {
+            Parser::Record(_, refusal) => refusal,
+            _ => Some("does not apply to this format, whose files have their unit"),
         };
-        let has_header = !matches!(format, Format::At2 | Format::Csv) && table.gives("unit");
-        let _ = table.refuse(has_header, "unit", header);
-        let has_channels = formats.iter().any(|format| format.has_channels());
-        let wrong = "applies to formats with several channels only: \"csmip\", \"usc\", \"bhrc\", \"cosmos\", \"geonet\", \"afad\", \"cwb\" and \"unam\"";
-        let _ = table.refuse(!has_channels && layout.channel.is_some(), "channel", wrong);
+        if let Some(refusal) = refusal {
+            let _ = table.refuse(table.gives("unit"), "unit", refusal);
+        }
+        if layout.channel.is_some() && !formats.iter().any(Format::has_channels) {
+            let all = Format::ALL.iter().filter(|format| format.has_channels());
+            let names: Vec<_> = all.map(|format| format!("{:?}", format.name())).collect();
+            let wrong = "applies to formats with several channels only";
+            table.wrong("channel", format!("{wrong}: {}", names.join(", ")));
+        }
         if is_table {
             let wrong = "cannot be combined with `time_column`; give one of them";
             let _ = table.refuse(dt_s.is_some() && time_column.is_some(), "dt_s", wrong);
@@ -227,7 +246,7 @@ impl Layout {
     /// Takes the keys of the outer table that apply to files of these formats as defaults. Keys of tables, and `unit`, apply if one of the files is
     /// a table, corrections if the samples are accelerations. Keys that the given ones exclude are no defaults.
     pub(in crate::scenario) fn inherit(table: &mut Table<'_>, formats: &[Format]) {
-        let has_tables = formats.contains(&Format::Csv);
+        let has_tables = formats.contains(&Format::CSV);
         let has_channels = formats.iter().any(|format| format.has_channels());
         let is_velocity = table.as_given("quantity") == Some(json!(RecordedQuantity::Velocity));
         let groups = [
@@ -296,62 +315,6 @@ const EXCLUSIVE: [[&str; 2]; 4] = [
     ["acceleration_column", "wrapped"],
     ["baseline", "remove_mean"],
 ];
-
-impl Format {
-    /// Returns the format of a file name from its extension. The error is a phrase that follows the name.
-    pub(in crate::scenario) fn of_ending(file: &str) -> Result<Self, String> {
-        let ending = Path::new(file).extension().and_then(OsStr::to_str);
-        match ending.unwrap_or_default().to_ascii_lowercase().as_str() {
-            "at2" | "vt2" => Ok(Self::At2),
-            "asc" => Ok(Self::Asc),
-            "ns" | "ew" | "ud" | "ns1" | "ew1" | "ud1" | "ns2" | "ew2" | "ud2" => Ok(Self::Knet),
-            "csv" | "tsv" | "txt" | "dat" => Ok(Self::Csv),
-            _ => Err(format!(
-                "has an unknown extension: give `format` as well, {}",
-                one_of(Self::ALL).allowed()
-            )),
-        }
-    }
-
-    /// Returns true if a file of this format may have several channels.
-    pub(in crate::scenario) const fn has_channels(&self) -> bool {
-        matches!(
-            self,
-            Self::Csmip
-                | Self::Usc
-                | Self::Bhrc
-                | Self::Cosmos
-                | Self::Geonet
-                | Self::Afad
-                | Self::Cwb
-                | Self::Unam
-        )
-    }
-
-    pub(in crate::scenario) fn read(table: &mut Table<'_>) -> Option<Self> {
-        table.optional("format", &one_of(Self::ALL))
-    }
-
-    /// Reads the format; that of the outer table is the default.
-    pub(in crate::scenario) fn inherit(table: &mut Table<'_>) -> Option<Self> {
-        table.inherit(["format"].into_iter());
-        Self::read(table)
-    }
-
-    /// Reads the format, or determines it from the file if there is one.
-    pub(super) fn read_or_ending(table: &mut Table<'_>, file: &str) -> Option<Self> {
-        let (format, is_key) = (Self::read(table), table.gives("file"));
-        if format.is_some() || table.gives("format") || file.is_empty() && !is_key {
-            return format;
-        }
-        let found = Self::find(table.files(), file, Layout::has_table_keys(table));
-        let report = |wrong| match is_key {
-            true => table.wrong("file", wrong),
-            false => table.fault_of_table(wrong),
-        };
-        found.map_err(report).ok()
-    }
-}
 
 impl Decimal {
     pub(in crate::scenario) fn is_point(&self) -> bool {

@@ -23,19 +23,25 @@
 //! [`Layout`] describes the files. Straight lines join the samples, so the acceleration of a record of velocities is constant between samples.
 //! Before the first sample and after the last one the acceleration is zero. Units of gravity are those of the simulation, `gravity_m_s2`.
 
+mod afad;
 mod asc;
 mod at2;
 mod correction;
 mod cosmos;
 mod csmip;
+mod csmnc;
 mod csv;
+mod cwb;
+mod format;
 mod geonet;
 mod histories;
+mod history;
 mod knet;
 mod layout;
 mod networks;
 mod samples;
 mod smc;
+mod unam;
 mod unit;
 
 use std::borrow::Cow;
@@ -44,16 +50,16 @@ use std::path::Path;
 use std::sync::Arc;
 
 pub use correction::Baseline;
+use layout::Parser;
 pub use layout::{Decimal, Format, Layout, TableColumn, Times};
 pub use samples::{Contents, LineFault};
 use samples::{MAX_TIME_S, Parsed, is_step};
 pub use unit::{RecordedQuantity, Unit};
 
 use super::assignment::Assignment;
-use super::document::is_scenario;
 use super::error::ScenarioErrors;
 use super::files::Files;
-use super::plain_text::{binary_kind, not_plain};
+use super::plain_text::not_plain;
 use super::prelude::*;
 use super::table;
 use crate::GroundMotion;
@@ -534,12 +540,9 @@ impl Layout {
     /// The first fault in the bytes.
     pub fn parse(&self, bytes: &[u8]) -> Result<Contents, LineFault> {
         let text = legible(bytes)?;
-        let contents = match (self.format, self.format.histories()) {
-            (_, Some(histories)) => histories::read(&text, self, histories),
-            (Format::At2, None) => at2::parse(&text, self.unit, self.quantity),
-            (Format::Asc, None) => asc::parse(&text, self.quantity),
-            (Format::Knet, None) => knet::parse(&text),
-            (_, None) => csv::parse(&text, self),
+        let contents = match self.format.parser {
+            Parser::Record(parse, _) => parse(&text, self),
+            Parser::History(find) | Parser::Channels(find) => histories::read(&text, self, find),
         }?;
         self.corrected(contents)
     }
@@ -552,7 +555,7 @@ impl Layout {
             quantity: self.quantity,
             baseline: self.baseline,
             high_pass_hz: self.high_pass_hz,
-            ..Self::new(Format::Csv)
+            ..Self::new(Format::CSV)
         }
     }
 
@@ -576,10 +579,12 @@ impl Layout {
 impl Layout {
     /// Returns the layout of each channel of a file: this layout alone if it chooses a channel, or if there is only one.
     fn by_channel(&self, bytes: &[u8]) -> Parsed<Vec<Self>> {
-        let histories = self.format.histories().filter(|_| self.channel.is_none());
-        let count = histories.map_or(Ok(1), |histories| {
-            histories::count(&legible(bytes)?, self, histories)
-        })?;
+        let count = match self.format.parser {
+            Parser::Channels(find) if self.channel.is_none() => {
+                histories::count(&legible(bytes)?, self, find)?
+            }
+            _ => 1,
+        };
         if count < 2 {
             return Ok(vec![self.clone()]);
         }
@@ -589,109 +594,6 @@ impl Layout {
         };
         Ok((1..=count).map(channel).collect())
     }
-}
-
-impl Format {
-    /// Returns the function that finds the histories of a file of this format; `None` for formats whose files have one record.
-    fn histories(self) -> Option<histories::Finder> {
-        Some(match self {
-            Self::At2 | Self::Asc | Self::Knet | Self::Csv => return None,
-            Self::Smc => smc::histories,
-            Self::Csmip | Self::Usc | Self::Bhrc => csmip::histories,
-            Self::Cosmos => cosmos::histories,
-            Self::Geonet => geonet::histories,
-            Self::Afad => networks::afad,
-            Self::Cwb => networks::cwb,
-            Self::Csmnc => networks::csmnc,
-            Self::Unam => networks::unam,
-        })
-    }
-
-    /// Returns the format of a file from its contents, or else from its extension. The error is a phrase that follows the name.
-    ///
-    /// With the keys of tables, files with an extension of tables are tables. The contents of a scenario are ignored, because it may quote a header.
-    pub(super) fn find(files: &Files, file: &str, has_table_keys: bool) -> Result<Self, String> {
-        let by_ending = Self::of_ending(file);
-        let is_table = has_table_keys && by_ending == Ok(Self::Csv);
-        if is_table || has_scenario_ending(Path::new(file)) {
-            return by_ending;
-        }
-        let contents = files.start(&files.path(file), SEARCHED);
-        let contents = contents.unwrap_or_default();
-        let kind = binary_kind(&contents).filter(|_| by_ending.is_err());
-        match (Self::of_contents(&contents), kind) {
-            (Some(format), _) => Ok(format),
-            (None, Some(kind)) => Err(format!("is {kind}")),
-            (None, None) => by_ending,
-        }
-    }
-
-    /// Returns the error of a file on disk that is neither a scenario nor a record of a known format; `None` for other files.
-    pub fn unknown(file: &Path) -> Option<ScenarioErrors> {
-        if Self::of_file(file).is_some() || has_scenario_ending(file) {
-            return None;
-        }
-        let bytes = Files::default().start(file, SEARCHED).ok()?;
-        let start = String::from_utf8_lossy(&bytes);
-        let wrong = match not_plain(&bytes) {
-            Some(wrong) => wrong,
-            None if is_scenario(&start) => return None,
-            None => {
-                let known: Vec<_> = Self::ALL.iter().map(|format| format.name()).collect();
-                let known = known.join(", ");
-                format!("unknown record format; known: {known}; a table needs `format = \"csv\"`")
-            }
-        };
-        Some(ScenarioErrors::unreadable(
-            &file.display().to_string(),
-            wrong,
-        ))
-    }
-
-    /// Returns the format of a file on disk from its contents, or else from its extension; `None` if they are not those of a record.
-    pub fn of_file(file: &Path) -> Option<Self> {
-        Self::find(&Files::default(), file.to_str()?, false).ok()
-    }
-
-    /// Returns the format that the first bytes of a file show; `None` for tables and other files.
-    pub fn of_contents(bytes: &[u8]) -> Option<Self> {
-        let text = String::from_utf8_lossy(bytes);
-        let lines: Vec<&str> = text.trim_start_matches('\u{feff}').lines().collect();
-        let (first, has) = (*lines.first()?, |word: &str| text.contains(word));
-        let is_afad = first.starts_with("STRONG GROUND MOTION RECORDS OF");
-        let is_cwb = has("#AmplitudeUnit:") && has("#DataSequence: Time");
-        let is_csmnc = has("NO. OF POINTS:") && has("SPACED INTERVALS OF:");
-        let is_unam = has("ARCHIVO ESTANDAR DE ACELERACION");
-        let is_knet = first.starts_with("Origin Time") && has("Sampling Freq(Hz)");
-        let is_asc = first.contains(':') && has("SAMPLING_INTERVAL_S:");
-        let is_at2 = lines.iter().take(8).any(|line| at2::ends_header(line));
-        let shown = [
-            (Self::Smc, smc::begins(first)),
-            (Self::Cosmos, cosmos::begins(first)),
-            (Self::Geonet, geonet::begins(&lines)),
-            (Self::Usc, csmip::is_usc(&lines)),
-            (Self::Bhrc, csmip::is_bhrc(first)),
-            (Self::Csmip, csmip::begins(first)),
-            (Self::Afad, is_afad),
-            (Self::Cwb, is_cwb),
-            (Self::Csmnc, is_csmnc),
-            (Self::Unam, is_unam),
-            (Self::Knet, is_knet),
-            (Self::Asc, is_asc),
-            (Self::At2, is_at2),
-        ];
-        let mut formats = shown.into_iter().filter(|(_, is_shown)| *is_shown);
-        formats.next().map(|(format, _)| format)
-    }
-}
-
-/// Number of bytes of a header that are searched.
-const SEARCHED: usize = 4096;
-
-/// Returns true for the usual ending of scenarios.
-fn has_scenario_ending(file: &Path) -> bool {
-    let ending = file.extension().unwrap_or_default();
-    ending.eq_ignore_ascii_case("toml")
 }
 
 /// Returns the text of a file. Headers may have any encoding with the digits of ASCII.
@@ -786,30 +688,14 @@ mod tests {
                     skip_rows: 0,
                     ..blanks.clone()
                 };
-                let layouts = [
-                    Layout::new(Format::At2),
-                    Layout::new(Format::Asc),
-                    Layout::new(Format::Knet),
-                    Layout::new(Format::Smc),
-                    Layout::new(Format::Csmip),
-                    Layout::new(Format::Usc),
-                    Layout::new(Format::Bhrc),
-                    Layout::new(Format::Cosmos),
-                    Layout::new(Format::Geonet),
-                    Layout::new(Format::Afad),
-                    Layout::new(Format::Cwb),
-                    Layout::new(Format::Csmnc),
-                    Layout::new(Format::Unam),
-                    csv_layout(),
-                    blanks,
-                    wrapped,
-                ];
+                let formats = Format::ALL.iter().map(|format| Layout::new(*format));
+                let layouts = formats.chain([csv_layout(), blanks, wrapped]);
                 let corrected = layouts.clone().map(|layout| Layout {
                     baseline: Some(Baseline::Linear),
                     high_pass_hz: Some(1.0),
                     ..layout
                 });
-                for layout in layouts.into_iter().chain(corrected) {
+                for layout in layouts.chain(corrected) {
                     match parse(text, &layout) {
                         Ok(samples) => {
                             prop_assert!(samples.len() >= 2);

@@ -4,9 +4,21 @@
 //! fields of ten characters. If the header has no sampling rate, every sample follows its time. Source: the format description of the USGS
 //! (escweb.wr.usgs.gov/nsmp-data/smcfmt.html), as its `gmprocess` and the files of its tests follow it.
 
-use super::histories::{History, count_and_step, header_fields, largest, squeezed};
+use super::history::{History, count_and_step, header_fields, largest, squeezed};
+use super::layout::{Format, Parser};
 use super::samples::{LineFault, Parsed, number, step_of_rate};
 use crate::scenario::prelude::*;
+
+impl Format {
+    /// U.S. Geological Survey (SMC).
+    pub const SMC: Self = Self {
+        name: "smc",
+        label: "SMC file (USGS)",
+        extensions: &[],
+        begins: |lines| begins(lines[0]),
+        parser: Parser::History(histories),
+    };
+}
 
 const INTEGERS: usize = 11;
 const REALS: usize = 17;
@@ -17,7 +29,7 @@ const COUNT_LINE: usize = 14;
 const RATE_LINE: usize = 18;
 
 /// Returns true for the first line of an SMC file, as `2 CORRECTED ACCELEROGRAM`.
-pub(super) fn begins(first: &str) -> bool {
+fn begins(first: &str) -> bool {
     const KINDS: [&str; 4] = ["ACCELEROGRAM", "VELOCITY", "DISPLACEMENT", "SPECTRA"];
     let first = first.trim();
     let has_code =
@@ -26,7 +38,7 @@ pub(super) fn begins(first: &str) -> bool {
 }
 
 /// Finds the only history of a file.
-pub(super) fn histories(lines: &[&str]) -> Parsed<Vec<History>> {
+fn histories(lines: &[&str]) -> Parsed<Vec<History>> {
     let first = lines.first().copied().unwrap_or_default();
     let wrong = "the first line is not like `2 CORRECTED ACCELEROGRAM`: is this an SMC file?";
     ensure(begins(first), || LineFault::on(1)(wrong))?;

@@ -74,7 +74,7 @@ impl Series {
             unlikely.push(self.doubt(ratio, "", &phrase));
         }
         let mean_g = self.mean_g(gravity_m_s2);
-        let has_no_mean = shaking.is_long || self.layout.format == Format::Knet;
+        let has_no_mean = shaking.is_long || self.layout.format == Format::KNET;
         if has_no_mean && mean_g.abs() > OFFSET * peak_g {
             let mean = plain(mean_g);
             let phrase = format!(

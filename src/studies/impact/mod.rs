@@ -64,11 +64,10 @@ impl<'a> LinkImpact<'a> {
 
     /// Computes this impact by the models that obey the momentum theorems, and by the model of the scenario.
     fn by_models(&self, before: &FourLink, own: ImpactModel) -> Vec<ModelComparison> {
-        use ImpactModel::{MaxRestitution, Mirrored, SameSections};
-        let known = [MaxRestitution, SameSections, Mirrored];
-        let own = Some(own).filter(|own| !known.contains(own));
+        let all = ImpactModel::ALL.iter().copied();
+        let theories = all.filter(|model| !model.is_prescribed());
         let (profile, sites) = (self.profile(), self.chain().sites);
-        let models = known.into_iter().chain(own);
+        let models = theories.chain(Some(own).filter(|own| own.is_prescribed()));
         models
             .map(|model| ModelComparison::of(self, model, impact_by(before, profile, sites, model)))
             .collect()

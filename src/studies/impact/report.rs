@@ -424,7 +424,7 @@ impl Summary {
         chain: impl Fn(Sway) -> Vec<ChainImpact>,
     ) -> Self {
         let impact = scenario.motion.impact();
-        let is_prescribed = matches!(impact.model, ImpactModel::Prescribed { .. });
+        let is_prescribed = impact.model.is_prescribed();
         let model_name = match scenario.structure.wall_behind() {
             Some(_) if !is_prescribed => "back_wall",
             _ => impact.model.name(),

@@ -13,7 +13,7 @@ use super::{CellRow, OverturningMap, label};
 use crate::output::caption::caption;
 use crate::output::page::{BASE, PROGRAM, STYLE, script_safe};
 use crate::output::{Figure, filters, render};
-use crate::scenario::{Quantity, STUDY_TABLES, toml_text};
+use crate::scenario::{Quantity, StudyTable, toml_text};
 use crate::studies::Statement;
 use crate::studies::ending::columns::NUMBERS;
 use crate::studies::page::assumptions;
@@ -178,7 +178,7 @@ fn command(map: &OverturningMap<'_>) -> String {
     // A command of one cell has no samples and no other studies.
     let mut table = map.base.to_json();
     if let Value::Object(tables) = &mut table {
-        tables.retain(|name, _| !STUDY_TABLES.contains(&name.as_str()));
+        tables.retain(|name, _| !StudyTable::is_name(name));
     }
     let set = map.axes.iter().zip(&map.paths);
     let set = set.zip(["cell.x", "cell.y"]).map(|((axis, path), place)| {

@@ -8,11 +8,10 @@ use crate::argument::plain;
 use crate::dynamics::{Direction, Directions};
 use crate::output::caption::caption;
 use crate::output::{Figure, Origin, Scale};
-use crate::scenario::{
-    Measure, ModelKind, Scenario, Spacing, Spectral, Suite, UnitGround, Unlikely, Varied,
-};
+use crate::scenario::{Measure, ModelKind, Scenario, Spacing, Spectral, Suite, UnitGround, Varied};
 use crate::studies::page::{CaseScenario, PageCases};
 use crate::studies::quotable::{SlipWords, restitution_in_words};
+use crate::studies::report::Warnings;
 
 /// The parts of a scenario that the report of its suite needs. Part files keep them, so that `merge` needs no record files.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -30,9 +29,8 @@ pub struct Heading {
     has_both: bool,
     pub(super) directions: Directions,
     pub(super) spectral: Spectral,
-    /// Unlikely numbers of the scenario.
-    #[serde(default)]
-    pub(super) unlikely: Vec<Unlikely>,
+    /// Warnings about unlikely numbers of the scenario.
+    pub(super) warnings: Warnings,
     /// The scenario in one line.
     #[serde(default)]
     pub(super) what: String,
@@ -60,7 +58,7 @@ impl Heading {
             has_both,
             directions: scenario.simulation.direction,
             spectral: suite.spectral,
-            unlikely: scenario.unlikely_in(&Varied::default()),
+            warnings: Warnings::new(scenario.unlikely_in(&Varied::default()), []),
             // The records of the suite replace the ground motion of the scenario.
             what: caption(&scenario.with_ground(None), &[]),
             slip: SlipWords::of(scenario),

@@ -225,7 +225,7 @@ impl Heading {
             program: env!("CARGO_PKG_NAME").to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             scenario: self.scenario.clone(),
-            warnings: Warnings::new(self.unlikely.clone(), limits),
+            warnings: self.warnings.clone().with(limits),
             to_quote: quotable::in_words(std::slice::from_ref(&answer)),
             friction_demand,
             outcomes: OutcomeCounts::of(results.cases.iter().map(|case| &case.result)),

@@ -59,15 +59,22 @@ named! {
 impl Pulse {
     /// Returns whether the pulse pushes to one side only.
     pub const fn is_one_sided(self) -> bool {
-        matches!(self, Self::Rectangular | Self::HalfSine | Self::Triangular)
+        match self {
+            Self::Rectangular | Self::HalfSine | Self::Triangular => true,
+            Self::StepPair | Self::OneSine | Self::OneCosine => false,
+            Self::Ricker | Self::AntisymmetricRicker => false,
+            Self::MavroeidisPapageorgiou | Self::Gabor | Self::WindowedSine => false,
+        }
     }
 
     /// Returns whether the shape depends on a [`WaveTrain`].
     pub const fn is_wave_train(self) -> bool {
-        matches!(
-            self,
-            Self::MavroeidisPapageorgiou | Self::Gabor | Self::WindowedSine
-        )
+        match self {
+            Self::MavroeidisPapageorgiou | Self::Gabor | Self::WindowedSine => true,
+            Self::Rectangular | Self::StepPair | Self::HalfSine | Self::OneSine => false,
+            Self::OneCosine | Self::Triangular => false,
+            Self::Ricker | Self::AntisymmetricRicker => false,
+        }
     }
 
     /// Returns a pulse with duration `duration_s` (1e-12 to 1e9) that starts at time zero. A wave train has [`WaveTrain::default`].
@@ -153,6 +160,13 @@ impl PulseShape {
         Ok(GroundMotion::from_pieces(self.start_s, pieces))
     }
 
+    /// Returns the wave train of this shape, cut when it is first needed.
+    fn cut_train(&self, shape: TrainShape) -> &CutTrain {
+        let period_s = self.duration_s;
+        let cut = || CutTrain::new(shape(period_s, self.train), period_s);
+        self.cut.get_or_init(cut)
+    }
+
     /// Returns the pieces: ends in the time since the start, and formulas.
     fn pieces(&self, amplitude_m_s2: Vector2<f64>) -> Vec<(f64, Formula)> {
         let (a, t) = (amplitude_m_s2, self.duration_s);
@@ -195,52 +209,57 @@ impl PulseShape {
                 let wavelet = Formula::Shaped(a / peak, Shape::AntisymmetricRicker(t));
                 cut(&[&ends[..], &[5.0]].concat(), wavelet)
             }
-            Pulse::MavroeidisPapageorgiou | Pulse::Gabor | Pulse::WindowedSine => {
-                let cut = || CutTrain::new(self.pulse, t, self.train);
-                self.cut.get_or_init(cut).pieces(a)
-            }
+            Pulse::MavroeidisPapageorgiou => self.cut_train(mavroeidis_papageorgiou).pieces(a),
+            Pulse::Gabor => self.cut_train(gabor).pieces(a),
+            Pulse::WindowedSine => self.cut_train(windowed_sine).pieces(a),
         }
     }
 }
 
+/// Makes the shape of a wave train with a period in s, and its length in s.
+type TrainShape = fn(f64, WaveTrain) -> (Shape, f64);
+
+fn mavroeidis_papageorgiou(period_s: f64, train: WaveTrain) -> (Shape, f64) {
+    let (less, more) = (1.0 - 1.0 / train.cycles, 1.0 + 1.0 / train.cycles);
+    // The product of cosines is a sum of three; about its middle the derivative is this.
+    let terms = [(-1.0, 1.0), (-0.5 * less, less), (-0.5 * more, more)];
+    let length_s = train.cycles * period_s;
+    (beat(terms, period_s, train, 0.5 * length_s), length_s)
+}
+
+fn gabor(period_s: f64, train: WaveTrain) -> (Shape, f64) {
+    let centre_s = 3.0 * train.cycles * period_s / PI;
+    let gabor = Gabor {
+        centre_s,
+        frequency_rad_s: 2.0 * PI / period_s,
+        train,
+    };
+    (Shape::Gabor(gabor), 2.0 * centre_s)
+}
+
+fn windowed_sine(period_s: f64, train: WaveTrain) -> (Shape, f64) {
+    let (less, more) = (1.0 - 1.0 / train.cycles, 1.0 + 1.0 / train.cycles);
+    // sin^2(w s / (2 n)) is (1 - cos(w s / n)) / 2.
+    let terms = [(0.5, 1.0), (-0.25, less), (-0.25, more)];
+    (beat(terms, period_s, train, 0.0), train.cycles * period_s)
+}
+
+/// Returns a sum of sines of these amplitudes and numbers of periods, with the phase of the train at a time.
+fn beat(terms: [(f64, f64); 3], period_s: f64, train: WaveTrain, middle_s: f64) -> Shape {
+    Shape::Beat(terms.map(|(amplitude, periods)| {
+        let frequency_rad_s = periods * 2.0 * PI / period_s;
+        let phase_rad = train.phase_rad - frequency_rad_s * middle_s;
+        Sine {
+            amplitude,
+            frequency_rad_s,
+            phase_rad,
+        }
+    }))
+}
+
 impl CutTrain {
-    fn new(pulse: Pulse, duration_s: f64, train: WaveTrain) -> Self {
-        let (t, cycles) = (duration_s, train.cycles);
-        // A sum of sines of these amplitudes and periods, with the phase of the train at this time.
-        let beat = |terms: [(f64, f64); 3], middle_s: f64| {
-            Shape::Beat(terms.map(|(amplitude, periods)| {
-                let frequency_rad_s = periods * 2.0 * PI / t;
-                let phase_rad = train.phase_rad - frequency_rad_s * middle_s;
-                Sine {
-                    amplitude,
-                    frequency_rad_s,
-                    phase_rad,
-                }
-            }))
-        };
-        let (less, more) = (1.0 - 1.0 / cycles, 1.0 + 1.0 / cycles);
-        let (shape, length_s) = match pulse {
-            Pulse::MavroeidisPapageorgiou => {
-                // The product of cosines is a sum of three; about its middle the derivative is this.
-                let terms = [(-1.0, 1.0), (-0.5 * less, less), (-0.5 * more, more)];
-                (beat(terms, 0.5 * (cycles * t)), cycles * t)
-            }
-            Pulse::Gabor => {
-                let centre_s = 3.0 * cycles * t / PI;
-                let gabor = Gabor {
-                    centre_s,
-                    frequency_rad_s: 2.0 * PI / t,
-                    train,
-                };
-                (Shape::Gabor(gabor), 2.0 * centre_s)
-            }
-            _ => {
-                // The windowed sine: sin^2(w s / (2 n)) is (1 - cos(w s / n)) / 2.
-                let terms = [(0.5, 1.0), (-0.25, less), (-0.25, more)];
-                (beat(terms, 0.0), cycles * t)
-            }
-        };
-        let mut ends_s = shape.extrema_s(length_s, t);
+    fn new((shape, length_s): (Shape, f64), period_s: f64) -> Self {
+        let mut ends_s = shape.extrema_s(length_s, period_s);
         ends_s.push(length_s);
         // The value at the start of the train does not exceed its strongest extremum or its end.
         let values = ends_s.iter().map(|end| shape.at(*end).0.abs());

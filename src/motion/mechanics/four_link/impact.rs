@@ -10,38 +10,40 @@ use crate::argument::{ArgumentError, within};
 use crate::mechanics::geometry::field::Side;
 use crate::mechanics::{Field, Profile, Twist};
 
-/// Rule that selects the mechanism after an impact.
-///
-/// All rules assume that the four hinges close simultaneously, that the arch continues with four hinges, and that no joint slides and nothing
-/// rebounds.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ImpactModel {
-    /// The mechanism that keeps the most kinetic energy.
+listed! {
+    /// Rule that selects the mechanism after an impact.
     ///
-    /// Assumes that hinges form wherever the least energy is lost, and that impulses pass through the hinges
-    /// of the new mechanism only, Eqs. (7)-(10). The model of the paper. The projection onto all admissible
-    /// fields ([`project`](super::project)) shows how far four hinges are from the smallest possible loss.
-    MaxRestitution,
-    /// Hinges at the opposite edges of the sections that close.
-    ///
-    /// Assumes that the impacts at the closing sections are the only ones, as at the base of Housner's column;
-    /// Fig. 3 of the paper, which attributes it to its references [2, 3]. The rate follows from the same
-    /// momentum theorems.
-    SameSections,
-    /// Hinges at the mirror image of those that close.
-    ///
-    /// Assumes that the arch sways back as it swayed out. The paper names it as the usual choice of the
-    /// literature, and objects that it loses more energy than necessary. The rate follows from the same
-    /// momentum theorems, with impulses at the new hinges; its impulse line leaves the ring.
-    Mirrored,
-    /// Mirrored hinges, and a given restitution coefficient in place of the momentum theorems.
-    ///
-    /// Assumes that the loss is known from elsewhere, such as an experiment or another computation. There are no
-    /// impulses to report: those at the hinges would have to obey the momentum theorems.
-    Prescribed {
-        /// Energy after the impact over energy before it, from 0 to 1.
-        restitution: f64,
-    },
+    /// All rules assume that the four hinges close simultaneously, that the arch continues with four hinges, and that no joint slides and nothing
+    /// rebounds.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub enum ImpactModel {
+        /// The mechanism that keeps the most kinetic energy.
+        ///
+        /// Assumes that hinges form wherever the least energy is lost, and that impulses pass through the hinges
+        /// of the new mechanism only, Eqs. (7)-(10). The model of the paper. The projection onto all admissible
+        /// fields ([`project`](super::project)) shows how far four hinges are from the smallest possible loss.
+        MaxRestitution = "max_restitution",
+        /// Hinges at the opposite edges of the sections that close.
+        ///
+        /// Assumes that the impacts at the closing sections are the only ones, as at the base of Housner's column;
+        /// Fig. 3 of the paper, which attributes it to its references [2, 3]. The rate follows from the same
+        /// momentum theorems.
+        SameSections = "same_sections",
+        /// Hinges at the mirror image of those that close.
+        ///
+        /// Assumes that the arch sways back as it swayed out. The paper names it as the usual choice of the
+        /// literature, and objects that it loses more energy than necessary. The rate follows from the same
+        /// momentum theorems, with impulses at the new hinges; its impulse line leaves the ring.
+        Mirrored = "mirrored",
+        /// Mirrored hinges, and a given restitution coefficient in place of the momentum theorems.
+        ///
+        /// Assumes that the loss is known from elsewhere, such as an experiment or another computation. There are no
+        /// impulses to report: those at the hinges would have to obey the momentum theorems.
+        Prescribed {
+            /// Energy after the impact over energy before it, from 0 to 1.
+            restitution: f64 = 0.0
+        } = "prescribed",
+    }
 }
 
 impl ImpactModel {
@@ -53,14 +55,9 @@ impl ImpactModel {
         Ok(())
     }
 
-    /// Returns the name in scenarios and results.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::MaxRestitution => "max_restitution",
-            Self::SameSections => "same_sections",
-            Self::Mirrored => "mirrored",
-            Self::Prescribed { .. } => "prescribed",
-        }
+    /// Returns whether the restitution coefficient is prescribed, so that the momentum theorems do not hold.
+    pub const fn is_prescribed(self) -> bool {
+        matches!(self, Self::Prescribed { .. })
     }
 }
 
@@ -164,12 +161,11 @@ pub(crate) fn impact_onto(
         ImpactModel::Prescribed { restitution } => (restitution.sqrt(), restitution),
         _ => projection(&next, &closing, profile),
     };
-    let is_theory = !matches!(model, ImpactModel::Prescribed { .. });
     (rate_ratio > 0.0).then(|| Impact {
         mechanism: next,
         rate_ratio,
         restitution,
-        impulse_line: is_theory.then(|| {
+        impulse_line: (!model.is_prescribed()).then(|| {
             let opening = next.field().scaled(rate_ratio);
             ImpulseLine::new(profile, &next, &closing, &opening)
         }),
