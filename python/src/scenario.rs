@@ -140,8 +140,8 @@ impl Scenario {
         py: Python<'_>,
         read: impl FnOnce(&dyn MechanismModel) -> T + Send,
     ) -> PyResult<T> {
-        let has_joints = self.inner.motion.kind.has_joints;
-        let own = (!has_joints).then(|| self.model(py)).transpose()?;
+        let has_mechanism = self.inner.motion.kind.has_mechanism;
+        let own = has_mechanism.then(|| self.model(py)).transpose()?;
         py.detach(|| match own.and_then(|model| model.as_mechanisms()) {
             Some(model) => Ok(read(model)),
             None => Ok(read(

@@ -121,7 +121,7 @@ fn read(input: &Input<'_>) -> Result<Scenario, Failure> {
 /// Returns the reason for which `run` refuses the structure of a scenario.
 fn why_not_run(scenario: &Scenario) -> Option<String> {
     // The reader has tried elastic joints, whose equilibrium takes long to find.
-    if !scenario.motion.kind.is_rigid {
+    if scenario.motion.kind.has_stiffness {
         return None;
     }
     match scenario.check_restitution() {

@@ -14,7 +14,7 @@ fn parser() -> impl clap::builder::TypedValueParser<Value = Vec<&'static ModelKi
     let names = MODELS.iter().map(|model| model.option);
     PossibleValuesParser::new(names.chain([BOTH])).map(|name| {
         let chosen = |model: &&ModelKind| match name.as_str() {
-            BOTH => model.is_rigid,
+            BOTH => !model.has_stiffness,
             name => model.option == name,
         };
         MODELS.into_iter().filter(chosen).collect()

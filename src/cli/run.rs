@@ -158,7 +158,7 @@ impl Arguments {
         if models.len() > 1 && self.to_stdout() {
             return Err(input.input_error("--rotations - takes one model; choose with --hinges"));
         }
-        if self.no_repeat && !models.iter().any(|one| one.motion.kind.has_joints) {
+        if self.no_repeat && !models.iter().any(|one| one.motion.kind.is_repeated) {
             let message = "--no-repeat goes with free hinges and elastic joints: four links and columns are not repeated";
             return Err(input.input_error(message));
         }

@@ -68,7 +68,7 @@ impl MapOption {
     fn style(self, scenario: &Scenario, figure: Figure) -> Result<Style, String> {
         let by_peak = self.color == Color::Peak;
         let model = scenario.motion.kind;
-        if by_peak && model.has_joints {
+        if by_peak && !model.has_mechanism {
             return Err(format!(
                 "--color peak goes with four links and columns: {} have no critical rotation",
                 model.label

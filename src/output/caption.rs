@@ -170,7 +170,7 @@ fn files(record: &Record) -> String {
 }
 
 fn model(scenario: &Scenario, varies: Varies<'_>) -> String {
-    if scenario.motion.kind.has_joints {
+    if !scenario.motion.kind.has_mechanism {
         return scenario.motion.kind.label.to_owned();
     }
     let name = match scenario.structure.has_horizontal_thrust() {

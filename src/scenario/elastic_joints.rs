@@ -46,7 +46,10 @@ pub static ELASTIC_JOINTS: ModelKind = ModelKind {
     label: "elastic joints",
     assumptions: "elastic joints: rigid blocks on joints with a stiffness, which is rarely known well, and without tension. After the first reversals the motion depends on the vibration of the joints, so histories are repeated with other steps",
     has_joints: true,
-    is_rigid: false,
+    has_mechanism: false,
+    is_repeated: true,
+    has_stiffness: true,
+    has_lanes: true,
     ignored: Some("[impact] is ignored: elastic joints have no impacts"),
     lacking: Some(
         "lacks [elastic_joints] with a stiffness: give `normal_stiffness_gpa_m` there, as in --set elastic_joints.normal_stiffness_gpa_m=10; \

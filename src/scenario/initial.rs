@@ -52,7 +52,7 @@ pub(super) fn read(
     table.refuse_all(blow.is_none() && !initial.moves(), lacks)?;
     let wrong = "releases rigid blocks about a hinge, and elastic joints have none: they start under the weight; give `rate_rad_s` alone, or leave [initial] out";
     let is_rotated = initial.rotation_rad > 0.0;
-    table.refuse(!kind.is_rigid && is_rotated, "rotation_rad", wrong)?;
+    table.refuse(kind.has_stiffness && is_rotated, "rotation_rad", wrong)?;
     if let Some(structure) = structure {
         check_first_mechanism(table, structure, &initial)?;
         if let Some(blow) = blow {

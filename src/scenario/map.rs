@@ -141,7 +141,7 @@ impl Map {
     ) -> ReadResult<Self> {
         let repeat = table.or(REPEAT, &switch(), false);
         let wrong = "goes with a table [free_hinges] or [elastic_joints]: four links are integrated to a tolerance, not in steps";
-        let _ = table.refuse(repeat && !kind.has_joints, REPEAT, wrong);
+        let _ = table.refuse(repeat && !kind.is_repeated, REPEAT, wrong);
         let is_no_ring = structure.is_some_and(|structure| structure.circular().is_none());
         let is_found = motion.is_some_and(|motion| !motion.impact().model.is_prescribed());
         // Message about a quantity that the scenario does not have.
@@ -149,7 +149,7 @@ impl Map {
             Quantity::MeanRadius | Quantity::ThicknessRatio | Quantity::Embrace if is_no_ring => {
                 Some("applies to a circular [arch] without piers and loads")
             }
-            Quantity::Restitution if kind.has_joints => Some(
+            Quantity::Restitution if !kind.has_mechanism => Some(
                 "goes with four links: with free hinges impacts follow from the blocks, and elastic joints have none",
             ),
             Quantity::Restitution if is_found => Some("needs model = \"prescribed\" in [impact]"),

@@ -318,7 +318,7 @@ impl Scenario {
         let simulation = table.table_or_defaults("simulation", Simulation::read);
         let simulated = simulation.as_ref().ok();
         let gravity_m_s2 = simulated.map(|it| it.gravity_m_s2);
-        let lands = kind.has_joints && kind.is_rigid && !options.statics;
+        let lands = kind.has_joints && !kind.has_stiffness && !options.statics;
         let built = Structure::read(table, (kind.has_joints, lands, unproved), gravity_m_s2);
         let structure = built.as_ref().ok().map(|(structure, _)| structure);
         let known = (known, gravity_m_s2, options.statics);
@@ -538,7 +538,7 @@ impl Scenario {
 
     /// Returns the name of the model of motion in results; four links of a column are a `column`.
     pub fn model_name(&self) -> &'static str {
-        match self.motion.kind.has_joints || self.structure.has_horizontal_thrust() {
+        match !self.motion.kind.has_mechanism || self.structure.has_horizontal_thrust() {
             true => self.motion.kind.name,
             false => "column",
         }

@@ -25,10 +25,16 @@ pub struct ModelKind {
     pub label: &'static str,
     /// Its assumptions and its accuracy, in words.
     pub assumptions: &'static str,
-    /// True: the structure is a row of blocks with joints. False: it is one mechanism at a time.
+    /// True if the structure is a row of blocks with joints.
     pub has_joints: bool,
-    /// True: blocks and joints are rigid. False: joints have a stiffness, and several motions are computed faster together.
-    pub is_rigid: bool,
+    /// True if the structure is one mechanism at a time, which has a restitution, and a critical rotation: that of its unstable equilibrium.
+    pub has_mechanism: bool,
+    /// True if histories are computed in steps, and repeated with other steps.
+    pub is_repeated: bool,
+    /// True if joints have a stiffness, which is varied; otherwise they are rigid.
+    pub has_stiffness: bool,
+    /// True if several motions are computed faster together.
+    pub has_lanes: bool,
     /// Message about a table that the model ignores; `None` if it ignores no table.
     pub ignored: Option<&'static str>,
     /// Fault of a scenario without the table; `None` if all options have defaults.

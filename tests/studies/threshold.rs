@@ -203,7 +203,7 @@ impl Model for Rule {
     }
 
     /// As with elastic joints, the onset of motion is unknown.
-    fn is_elastic(&self) -> bool {
+    fn moves_below_incipient(&self) -> bool {
         true
     }
 
@@ -252,7 +252,7 @@ impl Model for Doubtful {
         None
     }
 
-    fn is_elastic(&self) -> bool {
+    fn moves_below_incipient(&self) -> bool {
         true
     }
 

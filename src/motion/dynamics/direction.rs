@@ -100,8 +100,20 @@ impl<M: Model> Model for MirroredModel<M> {
         self.0.slips()
     }
 
-    fn is_elastic(&self) -> bool {
-        self.0.is_elastic()
+    fn has_impacts(&self) -> bool {
+        self.0.has_impacts()
+    }
+
+    fn has_pressures(&self) -> bool {
+        self.0.has_pressures()
+    }
+
+    fn moves_below_incipient(&self) -> bool {
+        self.0.moves_below_incipient()
+    }
+
+    fn lanes(&self) -> usize {
+        self.0.lanes()
     }
 
     fn simulate_until(&self, until: EndCondition, case: &Case) -> Result<Summary, SimulationError> {

@@ -76,10 +76,24 @@ pub trait Model: Debug + Send + Sync {
         false
     }
 
-    /// Returns whether joints are elastic. Such a model samples the forces and stresses of its joints, has no impacts, and computes several
-    /// motions in parallel, faster than one by one.
-    fn is_elastic(&self) -> bool {
+    /// Returns whether the structure has impacts; elastic contact lasts.
+    fn has_impacts(&self) -> bool {
+        true
+    }
+
+    /// Returns whether samples have the forces and stresses of joints.
+    fn has_pressures(&self) -> bool {
         false
+    }
+
+    /// Returns whether the structure moves under weaker pushes than that of incipient motion.
+    fn moves_below_incipient(&self) -> bool {
+        false
+    }
+
+    /// Returns the number of motions that are computed side by side, faster than one by one.
+    fn lanes(&self) -> usize {
+        1
     }
 
     /// Computes the motion without a recorder, as [`Model::simulate`], with the early end `until`.
@@ -147,7 +161,7 @@ pub trait Model: Debug + Send + Sync {
         let of_row = self.row().map_or(0, |row| {
             let by_joint = size_of::<[f64; 2]>()
                 + usize::from(self.slips()) * size_of::<f64>()
-                + usize::from(self.is_elastic()) * size_of::<JointPressure>();
+                + usize::from(self.has_pressures()) * size_of::<JointPressure>();
             row.joints.len() * by_joint + row.ties.len() * size_of::<TieSample>()
         });
         let each = alone + bodies * by_body + hinges + of_row;

@@ -185,12 +185,12 @@ impl Scenario {
     fn takes_long(&self) -> Option<Unlikely> {
         let request = self.request();
         let begin = format!("the simulation lasts {} s", plain(request.end_s));
-        let warning = if self.motion.kind.has_joints {
+        let warning = if self.motion.kind.is_repeated {
             let MotionModel { options, site, .. } = &self.motion;
             let longest_s = options.longest_step_s(&self.structure, site, &request)?;
             let steps = request.end_s / longest_s;
             (steps > STEPS).then(|| {
-                let step_s = STEP_S_A_BLOCK[usize::from(self.motion.kind.is_rigid)];
+                let step_s = STEP_S_A_BLOCK[usize::from(!self.motion.kind.has_stiffness)];
                 let blocks = self.structure.row().map_or(1, |row| row.blocks.len());
                 let minutes = steps * step_s * blocks as f64 / 60.0;
                 let lasts = match minutes < 120.0 {

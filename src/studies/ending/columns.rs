@@ -95,8 +95,8 @@ pub(crate) const NUMBERS: [(&str, NumberOf); 6] = [
 type Ended<R> = fn(&R) -> Result<&Ending, &'static str>;
 
 /// Returns the columns of the ending of a row. Sway, and impacts before overturning, are empty unless overturning is certain. The numbers of an
-/// uncertain case are those of the history itself, not of its repetitions.
-pub(crate) fn columns<'a, R: 'a>(free_hinges: bool, ended: Ended<R>) -> Vec<Column<'a, R>> {
+/// uncertain case are those of the history itself, not of its repetitions, whose count stands beside them if histories are repeated.
+pub(crate) fn columns<'a, R: 'a>(is_repeated: bool, ended: Ended<R>) -> Vec<Column<'a, R>> {
     let number = |which: usize| {
         let (name, of) = NUMBERS[which];
         column(name, move |row| of(ended(row).ok()?))
@@ -115,7 +115,7 @@ pub(crate) fn columns<'a, R: 'a>(free_hinges: bool, ended: Ended<R>) -> Vec<Colu
         }),
     ];
     columns.extend([0, 1, 3, 4, 5].map(number));
-    if free_hinges {
+    if is_repeated {
         columns.push(number(2));
         columns.push(list(["overturns_in", "of"], move |row| {
             let count = ended(row).ok().and_then(|ending| ending.count.as_ref());

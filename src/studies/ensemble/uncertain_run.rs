@@ -137,20 +137,21 @@ impl Question for Histories {
                 .into(),
             followed_body: self.body,
         };
-        let has_joints = samples.scenario.motion.kind.has_joints;
-        let mut columns = columns::columns(has_joints, |(_, row): &Line<'_, HistoryAnswer>| {
-            let answer = row.answer.as_ref();
-            answer.map(|answer| &answer.ending).map_err(NoAnswer::name)
-        });
+        let kind = samples.scenario.motion.kind;
+        let mut columns =
+            columns::columns(kind.is_repeated, |(_, row): &Line<'_, HistoryAnswer>| {
+                let answer = row.answer.as_ref();
+                answer.map(|answer| &answer.ending).map_err(NoAnswer::name)
+            });
         let potential = |one: &HistoryAnswer| one.potential_over_barrier;
         let rotation = |one: &HistoryAnswer| one.ending.peak_rotation_rad;
         columns.push(columns::direction(|(_, row): &Line<'_, HistoryAnswer>| {
             let answer = row.answer.as_ref();
             answer.map(|answer| &answer.ending).map_err(NoAnswer::name)
         }));
-        columns.push(match has_joints {
-            true => of_answer("peak_potential_over_barrier", potential),
-            false => of_answer("peak_rotation_rad", rotation),
+        columns.push(match kind.has_mechanism {
+            false => of_answer("peak_potential_over_barrier", potential),
+            true => of_answer("peak_rotation_rad", rotation),
         });
         let bands = self.bands(samples);
         let results = Results::of("uncertain.json", &report)?

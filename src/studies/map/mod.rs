@@ -443,8 +443,8 @@ impl Study for OverturningMap<'_> {
 
     /// Returns the family of cells with the same structure; `None` unless their model computes several motions faster together.
     fn family(&self, index: usize) -> Option<usize> {
-        let together = !self.scenario.motion.kind.is_rigid;
-        together.then(|| self.models.place(self.place(index)))?
+        let has_lanes = self.scenario.motion.kind.has_lanes;
+        has_lanes.then(|| self.models.place(self.place(index)))?
     }
 
     fn rows(&self, indices: &[usize]) -> Vec<CellRow> {
@@ -478,7 +478,7 @@ impl Study for OverturningMap<'_> {
 /// Returns the use of a map of four links of an arch, in words, with the measured shares of wrong cells; `None` for other models and for columns.
 fn for_looking(scenario: &Scenario) -> Option<&'static str> {
     let is_looked_at =
-        !scenario.motion.kind.has_joints && scenario.structure.has_horizontal_thrust();
+        scenario.motion.kind.has_mechanism && scenario.structure.has_horizontal_thrust();
     is_looked_at.then_some(
         "a map of four links is for looking: in the map of docs/recipes.md, 22 % of the surviving cells inside the model and 41 % of those outside \
          overturn with free hinges; compute a map with free hinges to quote it",

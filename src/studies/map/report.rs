@@ -101,8 +101,8 @@ impl OverturningMap<'_> {
             column(x, |row: &CellRow| row.x),
             column(y, |row: &CellRow| row.y),
         ];
-        let has_joints = self.scenario.motion.kind.has_joints;
-        all.extend(columns::columns(has_joints, CellRow::ended));
+        let is_repeated = self.scenario.motion.kind.is_repeated;
+        all.extend(columns::columns(is_repeated, CellRow::ended));
         all.push(columns::direction(CellRow::ended));
         if self.repeat {
             all.push(column("outcomes", |row: &CellRow| {
@@ -141,7 +141,7 @@ impl Style {
         if (map.x.quantity, map.y.quantity) != (Quantity::Duration, Quantity::Amplitude) {
             return Err("needs the axes `duration_s` and `amplitude_g`");
         }
-        if scenario.motion.kind.has_joints {
+        if !scenario.motion.kind.has_mechanism {
             return Err("is for four links and columns: free hinges have no p");
         }
         let (model, gravity_m_s2) = (

@@ -290,7 +290,7 @@ impl<'a> Run<'a> {
         figure: Figure,
         all_models: &'a [&'static ModelKind],
     ) -> Result<Self, String> {
-        if options.dimensionless && scenario.motion.kind.has_joints {
+        if options.dimensionless && !scenario.motion.kind.has_mechanism {
             let why_not = "--dimensionless goes with four links and columns: free hinges have no unstable equilibrium to measure by";
             return Err(why_not.to_owned());
         }
@@ -329,7 +329,7 @@ impl<'a> Run<'a> {
             POSES => self.options.poses,
             JOINTS => self.model.row().is_some(),
             // Elastic joints have no impacts.
-            IMPACTS => !self.model.is_elastic(),
+            IMPACTS => self.model.has_impacts(),
             OVERLAY => false,
             _ => true,
         };

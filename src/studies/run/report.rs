@@ -188,7 +188,7 @@ impl Report {
     /// Makes an empty page for the structure of a scenario and its model of motion.
     pub fn new(scenario: &Scenario, model: &dyn Model) -> Self {
         let (scene, bodies) = (super::scene(scenario, model), model.bodies());
-        let pressed = model.row().filter(|_| model.is_elastic());
+        let pressed = model.row().filter(|_| model.has_pressures());
         let pressing = pressed.map_or(0, |row| row.joints.len());
         // Rotation and displacement of each body, each section, each closed joint, time, ground and the rest, in base 64.
         let bytes = 4 * (6 * bodies.len() + 3 * (scene.sections.len() + pressing) + 24) / 3;

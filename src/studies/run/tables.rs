@@ -109,7 +109,7 @@ pub(super) fn joints(model: &dyn Model) -> Vec<Column<'static, Sample>> {
     let joints_if = |reported: bool| 0..if reported { joints } else { 0 };
     let gaps = (0..joints)
         .flat_map(|joint| ["intrados", "extrados"].map(|edge| format!("gap_{joint}_{edge}_m")));
-    let pressures = joints_if(model.is_elastic()).flat_map(|joint| {
+    let pressures = joints_if(model.has_pressures()).flat_map(|joint| {
         let of_joint = [
             ("normal", "n"),
             ("shear", "n"),

@@ -373,9 +373,10 @@ impl Heading {
             column("scale", |case: &CaseRow| case.scale),
             column("peak_g", |case: &CaseRow| case.peak_g),
         ];
-        all.extend(columns::columns(self.model.has_joints, |case: &CaseRow| {
-            case.result.as_ref().map_err(|_| FAILED)
-        }));
+        all.extend(columns::columns(
+            self.model.is_repeated,
+            |case: &CaseRow| case.result.as_ref().map_err(|_| FAILED),
+        ));
         all
     }
 

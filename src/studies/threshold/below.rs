@@ -29,7 +29,7 @@ impl Fineness {
     /// Returns the steps below the edge of a threshold of a model. Blocks with free hinges have half the steps: after tens of impacts, a history
     /// hardly shows how close its neighbours come to overturning.
     pub fn of_threshold(model: &dyn Model) -> Self {
-        let has_free_hinges = model.as_mechanisms().is_none() && !model.is_elastic();
+        let has_free_hinges = model.as_mechanisms().is_none() && model.has_impacts();
         let part = if has_free_hinges { 0.5 } else { 1.0 };
         Self {
             step: part * Self::THRESHOLD.step,

@@ -157,7 +157,7 @@ pub fn onset_factor(
     (ground, request): (&GroundMotion, &Request),
 ) -> Option<f64> {
     let moves_otherwise = ground.has_vertical() || ground.right_foot().is_some();
-    if model.is_elastic() || moves_otherwise || request.initial.is_some() {
+    if model.moves_below_incipient() || moves_otherwise || request.initial.is_some() {
         return None;
     }
     let starts_g = [Sway::Right, Sway::Left].map(|sway| model.incipient_acceleration_g(sway));

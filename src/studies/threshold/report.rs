@@ -424,7 +424,7 @@ impl Threshold {
     fn answer(&self, scenario: &Scenario, peak_g: f64) -> ModelAnswer {
         let is_known = |one: &VariedThreshold| one.factor.is_ok() && one.incomplete == 0;
         let over = match &self.varied[..] {
-            _ if scenario.motion.kind.is_rigid => "",
+            _ if !scenario.motion.kind.has_stiffness => "",
             [] => ", other stiffness and contact unknown",
             varied if varied.iter().all(is_known) => " over stiffness and contact",
             _ => " over stiffness and contact, as far as they have verdicts",

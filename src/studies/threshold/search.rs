@@ -138,7 +138,7 @@ impl Shaking<'_> {
         runner: &Runner,
         watch: impl FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<Vec<R>, RunnerError> {
-        let family = |_| self.model.is_elastic().then_some(0);
+        let family = |_| (self.model.lanes() > 1).then_some(0);
         let results_of = |indices: &[usize]| {
             let some = indices.iter().map(|index| factors[*index]);
             compute(&some.collect::<Vec<_>>())
@@ -261,8 +261,8 @@ impl Shaking<'_> {
         } else {
             EDGE_WIDTH
         });
-        let is_elastic = self.model.is_elastic();
-        let steps = if is_elastic { STEPS_AHEAD } else { 1 };
+        let has_lanes = self.model.lanes() > 1;
+        let steps = if has_lanes { STEPS_AHEAD } else { 1 };
         let (mut low, mut high) = (below.factor, above.factor);
         let mut ahead: Vec<FactorSample> = Vec::new();
         let mut found = Vec::new();

@@ -495,8 +495,20 @@ impl Model for ElasticJoints {
         }
     }
 
-    fn is_elastic(&self) -> bool {
+    fn has_impacts(&self) -> bool {
+        false
+    }
+
+    fn has_pressures(&self) -> bool {
         true
+    }
+
+    fn moves_below_incipient(&self) -> bool {
+        true
+    }
+
+    fn lanes(&self) -> usize {
+        SIDE_BY_SIDE
     }
 
     fn simulate_until(&self, until: EndCondition, case: &Case) -> Result<Summary, SimulationError> {

@@ -111,7 +111,7 @@ pub(super) fn report(
     let without = rows.iter().filter_map(|row| row.as_ref().err());
     let reasons = ReasonCounts::of(without.clone());
     let (kind, structure) = (study.scenario.motion.kind, &study.scenario.structure);
-    let four = !kind.has_joints && structure.has_horizontal_thrust();
+    let four = kind.has_mechanism && structure.has_horizontal_thrust();
     let answered: usize = counts.iter().map(|cell| cell.samples).sum();
     let outside = reasons.outside;
     let model = ModelCheck::counted(four.then_some([outside, answered + outside]));

@@ -136,7 +136,7 @@ impl<'a> Along<'a> {
     /// Returns the change that the scenario needs, in words.
     pub fn of(scenario: &'a Scenario, options: AlongOptions) -> Result<Self, String> {
         check(scenario)?;
-        if options.no_impact && scenario.motion.kind.has_joints {
+        if options.no_impact && !scenario.motion.kind.has_mechanism {
             return Err("--no-impact is for four links and columns, whose hinges close all at once: leave it out, or give --hinges four".into());
         }
         let study = Self {

@@ -174,9 +174,9 @@ impl Along<'_> {
             .flatten()
             .min_by(|a, b| a.0.total_cmp(&b.0));
         let answer = least.map(|(safe_g, value, edge)| {
-            let stiffness = match scenario.motion.kind.is_rigid {
-                true => "",
-                false => ", other stiffness and contact unknown",
+            let stiffness = match scenario.motion.kind.has_stiffness {
+                false => "",
+                true => ", other stiffness and contact unknown",
             };
             let directions = match scenario.ground_motion().has_horizontal() {
                 true => directions_in_words(scenario.simulation.direction, edge.direction),
