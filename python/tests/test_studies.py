@@ -213,6 +213,14 @@ def test_records_of_a_suite_may_have_their_own_unit_and_scale() -> None:
     assert np.allclose(found["peak_g"], expected["peak_g"], rtol=1e-12)
 
 
+def test_a_record_named_like_a_number_keeps_its_name() -> None:
+    record = Record.read(RECORDS / "wave-1.at2")
+    named = Record(record.time, record.acceleration, name="00123456789")
+    columns = suite(Column(4.0, 0.8), [named], scales=[0.5, 1.0], duration_s=30.0).columns()
+    assert set(columns["record"]) == {"00123456789"}
+    assert set(columns["sign"]) <= {1.0, -1.0}
+
+
 def test_a_threshold_is_that_of_the_program(program: Program, tmp_path: Path) -> None:
     column, pulse = Column(1.0, 0.2), Pulse.one_cosine(0.3, 0.5)
     found = threshold(column, pulse, from_factor=0.5, to_factor=6.0, stride=0.1)

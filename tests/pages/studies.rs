@@ -316,6 +316,24 @@ fn printed_without(folder: &Path, options: &[&str], page: &str) {
     assert!(after.insert(page.to_owned()) && after == before);
 }
 
+/// Numbers of a table are rounded, and text is not, although it may look like a number.
+#[test]
+fn a_record_named_like_a_number_keeps_its_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let (at, name) = (folder.path(), "00123456789");
+    let record = scenarios().join("records/wave-1.at2");
+    fs::copy(record, at.join(name)).unwrap();
+    let suite = format!("[suite]\nrecords = '{name}'\nformat = 'at2'\npeaks_g = [0.3, 1.0]\n");
+    write(at, &[COLUMN, &suite]);
+    let found = page(at, &["suite", "s.toml"], "suite.html", "suite.csv");
+    let table = &found.data["tables"][0];
+    assert_eq!(table["header"][0], "record");
+    for row in table["rows"].as_array().unwrap() {
+        assert_eq!(row[0], name);
+    }
+    assert!(found.html.contains(&format!("<td>{name}</td>")));
+}
+
 #[test]
 fn a_case_of_a_suite_is_run_by_its_command() {
     let folder = tempfile::tempdir().unwrap();

@@ -43,6 +43,8 @@ fn the_summary_goes_to_standard_output_unless_data_do() {
     let limits = reported["warnings"].as_array().unwrap();
     let limits = limits.iter().map(|limit| limit.as_str().unwrap());
     let verdict = all.lines().find(|line| line.contains("survives")).unwrap();
+    // The verdict has some of the limits.
+    let limits = limits.filter(|limit| !verdict.contains(*limit) && !quote.contains(*limit));
     let expected = [verdict.trim()].into_iter().chain(limits).chain([quote]);
     let expected: Vec<&str> = expected.collect();
     let lines: Vec<&str> = brief.lines().map(str::trim).collect();

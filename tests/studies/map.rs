@@ -45,6 +45,40 @@ fn a_cell_is_the_history_of_its_scenario() {
     }
 }
 
+/// Several models have a folder each, with the results of each alone.
+#[test]
+fn a_map_of_several_models_has_a_folder_for_each() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let text = "[column]\nheight_m = 4.0\nwidth_m = 0.8\n[ground.half_sine]\namplitude_g = 1.0\nduration_s = 1.0\n\
+                [map]\nduration_s = [0.3]\namplitude_g = [0.1, 1.0]\n";
+    fs::write(at.join("s.toml"), text).unwrap();
+    done(
+        at,
+        &["map", "s.toml", "--hinges", "four,free", "--out", "both"],
+    );
+    for model in ["four", "free"] {
+        done(at, &["map", "s.toml", "--hinges", model, "--out", model]);
+        assert_eq!(
+            files(&at.join("both").join(model)),
+            files(&at.join(model)),
+            "{model}"
+        );
+    }
+    let printed = done(
+        at,
+        &["map", "s.toml", "--hinges", "four,free", "--format", "json"],
+    );
+    let json: serde_json::Value = serde_json::from_str(&printed).unwrap();
+    for model in ["four", "free"] {
+        assert_eq!(json[model]["cases"], 2, "{model}");
+    }
+    let quiet = [
+        "map", "s.toml", "--shard", "1/2", "--out", "part", "--quiet",
+    ];
+    assert_eq!(done(at, &quiet), "");
+}
+
 #[test]
 fn the_frequency_is_the_inverse_of_the_duration() {
     let text = |map: &str| {
