@@ -2,7 +2,7 @@
 
 use std::io::{self, Write as _};
 
-use archrock::output::{Folder, Origin, PictureFormat};
+use archrock::output::{Folder, PictureFormat};
 use archrock::scenario::shown_lines;
 use archrock::studies::{Options, StudyKind, Style};
 use serde_json::Value;
@@ -10,7 +10,7 @@ use serde_json::Value;
 use super::models::warn_of;
 use super::progress::is_quiet;
 use super::results::{CommandResults, Heading};
-use super::scenario_file::{Destination, ScenarioTask};
+use super::scenario_file::{Destination, FileTasks, ScenarioTask};
 use super::study::{StudyJob, WorkOptions};
 use super::{Failure, Format, print, print_all};
 
@@ -25,15 +25,6 @@ pub struct Execution {
     pub format: Format,
     /// True if standard output carries a table and nothing else.
     pub has_words_apart: bool,
-}
-
-/// The tasks of a scenario file, and the folder around their results, if files are written.
-pub struct FileTasks {
-    /// Name of the scenario file, for errors.
-    pub name: String,
-    pub tasks: Vec<ScenarioTask>,
-    pub origin: Origin,
-    pub destination: Option<Destination>,
 }
 
 /// Tasks with one locked folder around their results, if files are written.

@@ -22,6 +22,7 @@ mod run;
 mod scenario_file;
 mod studies;
 mod study;
+mod study_options;
 mod threshold;
 
 use std::fmt::Display;
@@ -80,7 +81,7 @@ enum Command {
     Map(studies::MapArguments),
     /// Run every record of a suite at every level and fit a fragility curve: see [suite] in the scenario.
     #[command(after_help = examples::of_studies(&[SUITE], examples::SUITE))]
-    Suite(study::StudyArguments),
+    Suite(study_options::StudyArguments),
     /// Find the factors on the ground motion that overturn the structure, and the safe gaps between them; or the least factor for
     /// each value of a key.
     #[command(after_help = examples::of_studies(&[THRESHOLD, THRESHOLD_ALONG], examples::THRESHOLD))]

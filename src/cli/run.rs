@@ -8,11 +8,13 @@ use archrock::studies::run::{RunOptions, check};
 use archrock::studies::{Options, RUN, Style};
 use nalgebra::Vector2;
 
-use super::execution::{Execution, FileTasks};
+use super::execution::Execution;
 use super::figure::{FigureOption, PanelsOption};
 use super::models::ModelsOption;
 use super::parsers::{number, point_m};
-use super::scenario_file::{Destination, DirectionOption, SetOption, SuiteOption, check_distinct};
+use super::scenario_file::{
+    Destination, DirectionOption, FileTasks, SetOption, SuiteOption, check_distinct,
+};
 use super::study::WorkOptions;
 use super::{Failure, Format, check_no_errors, collect_input_error};
 

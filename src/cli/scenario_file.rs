@@ -9,7 +9,6 @@ use archrock::output::{Folder, Origin, PictureFormat};
 use archrock::scenario::{Assignment, ModelKind, ReadOptions, Scenario, Source};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
-use super::execution::FileTasks;
 use super::progress::with_notice;
 use super::{Failure, check_no_errors};
 
@@ -124,6 +123,15 @@ impl ScenarioTask {
         let path = [Some(&root.path), self.subfolder.as_ref()];
         (self.name.clone(), path.into_iter().flatten().collect())
     }
+}
+
+/// The tasks of a scenario file, and the folder around their results, if files are written.
+pub struct FileTasks {
+    /// Name of the scenario file, for errors.
+    pub name: String,
+    pub tasks: Vec<ScenarioTask>,
+    pub origin: Origin,
+    pub destination: Option<Destination>,
 }
 
 impl SuiteOption {

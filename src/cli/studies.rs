@@ -14,7 +14,8 @@ use super::figure::FigureOption;
 use super::progress::is_quiet;
 use super::results::{CommandResults, Heading, describe};
 use super::scenario_file::Destination;
-use super::study::{StudyArguments, publish};
+use super::study::publish;
+use super::study_options::StudyArguments;
 use super::{Failure, Format, print};
 
 #[derive(clap::Args)]

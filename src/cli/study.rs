@@ -3,7 +3,6 @@
 use std::io::{self, BufWriter};
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
-use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 use std::{process, slice};
@@ -17,38 +16,10 @@ use archrock::studies::{
     peak_results, rows_in,
 };
 
-use super::execution::{Execution, FileTasks};
-use super::figure::FigureOption;
+use super::Failure;
 use super::interrupts::{INTERRUPTED, INTERRUPTED_CODE, listen_to_interrupts, uninterrupted};
-use super::models::ModelsOption;
 use super::progress::{Display, print_always, print_status, progress_text, remaining_time};
 use super::results::{CommandResults, ModelResults, SampleResults, describe};
-use super::scenario_file::{DirectionOption, Input, ScenarioFile};
-use super::{Failure, Format};
-
-/// Options of every study of many histories.
-#[derive(clap::Args)]
-pub struct StudyArguments {
-    #[command(flatten)]
-    pub scenario: ScenarioFile,
-    /// Folder for the results [default: results/<name of the scenario file>].
-    #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
-    #[command(flatten)]
-    pub models: ModelsOption,
-    #[command(flatten)]
-    direction: DirectionOption,
-    #[command(flatten)]
-    pub figure: FigureOption,
-    #[command(flatten)]
-    pub work: WorkOptions,
-    /// Write no page (HTML) for the browser.
-    #[arg(long)]
-    no_report: bool,
-    /// Format of the printed summary; JSON goes to standard output.
-    #[arg(long, value_enum, default_value_t)]
-    pub format: Format,
-}
 
 /// Options of long computations.
 #[derive(clap::Args, Clone, Copy, Default)]
@@ -100,33 +71,6 @@ impl WorkOptions {
     /// True if only a part is requested.
     pub const fn is_part(self) -> bool {
         self.shard.is_some()
-    }
-}
-
-impl StudyArguments {
-    /// Reads the text of the scenario.
-    pub fn open(&self) -> Result<Input<'_>, Failure> {
-        Ok(self.scenario.open()?.in_direction(self.direction))
-    }
-
-    /// Returns the task of a scenario file, with the folder for its results.
-    pub fn file(&self, input: &Input<'_>, scenarios: Vec<Scenario>) -> FileTasks {
-        let destination = input.results(self.out.as_deref());
-        input.task(scenarios, Some(destination))
-    }
-
-    /// Returns the options with which the command executes a study.
-    pub fn execution(&self, kind: StudyKind, style: Style, mut options: Options) -> Execution {
-        options.run.no_report = self.no_report;
-        Execution {
-            kind,
-            style,
-            options,
-            work: self.work,
-            pictures: self.figure.figure_format,
-            format: self.format,
-            has_words_apart: false,
-        }
     }
 }
 
@@ -256,17 +200,10 @@ impl StudyJob {
                 print_always(&interrupted(kind, task, progress, samples_are_kept));
                 process::exit(INTERRUPTED_CODE);
             }
-            let new = done.saturating_sub(*before);
             let part = done as f64 / all.max(1) as f64;
             display.show(part, |elapsed| match kind.is_history {
                 true => simulated(progress, elapsed),
-                false => {
-                    let left = progress_text(new, all.saturating_sub(done), elapsed);
-                    match progress.search {
-                        Some(step) => searched(done, step, &left),
-                        None => format!("{done} of {all} cases, {left}"),
-                    }
-                }
+                false => in_words(progress, *before, elapsed),
             });
             ControlFlow::Continue(())
         };
@@ -481,6 +418,16 @@ fn interrupted(
             format!("interrupted; {} was removed meanwhile", file.display())
         }
         _ => format!("interrupted: {done} of {all} cases are done; continue with --resume"),
+    }
+}
+
+/// The progress of a study of many cases, of which some were done before the display.
+fn in_words(Progress { done, all, search }: Progress, before: usize, elapsed: Duration) -> String {
+    let new = done.saturating_sub(before);
+    let left = progress_text(new, all.saturating_sub(done), elapsed);
+    match search {
+        Some(step) => searched(done, step, &left),
+        None => format!("{done} of {all} cases, {left}"),
     }
 }
 

@@ -5,9 +5,8 @@ use archrock::studies::threshold::{AlongOptions, Factors, KeyRange, check};
 use archrock::studies::{Options, Style, THRESHOLD, THRESHOLD_ALONG};
 
 use super::Failure;
-use super::execution::FileTasks;
-use super::scenario_file::{Input, SuiteOption, check_distinct};
-use super::study::StudyArguments;
+use super::scenario_file::{FileTasks, Input, SuiteOption, check_distinct};
+use super::study_options::StudyArguments;
 
 #[derive(clap::Args)]
 pub struct Arguments {

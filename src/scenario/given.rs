@@ -4,33 +4,7 @@ use super::change::{is_count, is_replaced};
 use super::document::Entries;
 use super::model_kind::ModelKind;
 use super::prelude::*;
-
-named! {
-    /// A table of a study or of the check. All others describe the structure and its motion.
-    pub(crate) enum StudyTable {
-        Map = "map",
-        Suite = "suite",
-        Demand = "demand",
-        Verify = "verify",
-        Uncertain = "uncertain",
-    }
-}
-
-impl StudyTable {
-    /// Reads this table of a scenario; `None` without it.
-    pub(super) fn read<T>(
-        self,
-        scenario: &mut Table<'_>,
-        read: impl Reader<T>,
-    ) -> ReadResult<Option<T>> {
-        scenario.given_table(self.name(), read)
-    }
-
-    /// Returns true for the name of such a table.
-    pub(crate) fn is_name(name: &str) -> bool {
-        Self::ALL.iter().any(|table| table.name() == name)
-    }
-}
+use super::study_table::StudyTable;
 
 /// The tables of the text after all changes, and the way in which they were read. Any two values compare as equal, because scenarios are equal
 /// regardless of the keys that give their values.

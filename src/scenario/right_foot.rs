@@ -9,11 +9,11 @@
 //! file = "right.at2"
 //! ```
 
-use super::given::StudyTable;
 use super::model_kind::ModelKind;
 use super::prelude::*;
 use super::record::{KnownRecords, Record};
 use super::structure::Structure;
+use super::study_table::StudyTable;
 use crate::GroundMotion;
 use crate::dynamics::FEET_NEED_JOINTS;
 

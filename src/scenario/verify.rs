@@ -34,10 +34,10 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 
 use super::files::Files;
-use super::given::StudyTable;
 use super::listing::{RecordListing, written};
 use super::prelude::*;
 use super::record::{Decimal, Format, LineFault, Series, faulty, read_numbers};
+use super::study_table::StudyTable;
 use crate::dynamics::demand::{Hazard, Mode, PointSpectrum, Soil, Topography};
 use crate::dynamics::{GroundSpectrum, Site};
 

@@ -27,6 +27,7 @@ pub mod map;
 mod outcome_colors;
 mod page;
 mod page_cases;
+mod page_table;
 mod part;
 mod peaks;
 mod pictures;

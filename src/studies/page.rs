@@ -8,9 +8,10 @@ use serde::{Deserialize, Serialize};
 
 use super::Results;
 pub(super) use super::page_cases::{CaseScenario, PageCases, kind_of};
+use super::page_table::PageTable;
 use crate::output::caption::{caption, caption_without_model};
 use crate::output::page::{BASE, OUTSIDE_MODEL, PROGRAM, STUDY, STYLE, SpotKind, script_safe};
-use crate::output::{Cell, Figure, Table, filters, render};
+use crate::output::{Figure, filters, render};
 use crate::scenario::{ModelKind, Scenario};
 
 /// Largest number of rows of the other tables.
@@ -66,36 +67,6 @@ impl Marked {
         match self {
             Self::Cases => "Cases",
             Self::Hinges => "Hinges",
-        }
-    }
-}
-
-/// A table with rounded numbers.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct PageTable {
-    /// Name of its file.
-    pub(super) name: String,
-    header: Vec<String>,
-    rows: Vec<Vec<String>>,
-    /// Number of rows in the file.
-    all: usize,
-    /// Names of the columns with text.
-    #[serde(skip)]
-    pub(super) text_columns: Vec<String>,
-}
-
-impl PageTable {
-    /// Takes the first rows of a table, with rounded numbers.
-    pub(super) fn of(name: &str, table: &Table) -> Self {
-        let rows = table.first.iter();
-        Self {
-            name: name.to_owned(),
-            header: table.header.clone(),
-            rows: rows
-                .map(|row| row.iter().map(Cell::rounded).collect())
-                .collect(),
-            all: table.rows,
-            text_columns: table.text_columns(),
         }
     }
 }

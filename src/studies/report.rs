@@ -35,6 +35,7 @@ pub struct Warnings {
     /// Warnings about unlikely numbers, limits of the model, and histories without a verdict.
     warnings: Vec<String>,
     /// The numbers of the warnings about unlikely input, which come first in `warnings`, in their order.
+    #[serde(default)]
     unlikely: Vec<Unlikely>,
 }
 

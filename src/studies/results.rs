@@ -8,8 +8,8 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 use thiserror::Error;
 
-use super::page::PageTable;
 use super::page_cases::PageCases;
+use super::page_table::PageTable;
 use super::part::PartError;
 use super::report::{Report, Statement};
 use super::{ModelAnswer, RunnerError, Study};

@@ -8,7 +8,7 @@ use archrock::scenario::Scenario;
 use archrock::{Outcome, Sample, Summary};
 use serde_json::Value;
 
-use crate::common::program::{archrock, done, printed, refused, stderr, stdout};
+use crate::common::program::{archrock, done, printed, refused, stdout};
 use crate::common::prose::{golden, shows};
 use crate::common::results::{Table, json, summary};
 

@@ -7,7 +7,7 @@ use crate::common::{COLUMN, parsed};
 use std::fs;
 use std::path::PathBuf;
 
-use crate::common::program::{archrock, stderr};
+use crate::common::program::{archrock, done, stderr};
 use archrock::dynamics::repeatability::Repeatability;
 use archrock::dynamics::{Details, FreeHinges, HalfCycle, Summary};
 use archrock::studies::run;
@@ -792,7 +792,10 @@ fn hinges_override_the_scenario() {
         &format!("{SEVEN}{impact}"),
         &["--hinges", "free", "--no-repeat"],
     );
-    let said = &free_of_four.said;
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("s.toml"), format!("{SEVEN}{impact}")).unwrap();
+    let free_hinges = ["run", "s.toml", "--hinges", "free", "--no-repeat"];
+    let said = done(folder.path(), &free_hinges);
     assert!(said.contains("[impact]"), "{said}");
     let chosen = Results::of(&free(SEVEN), &["--no-repeat"]);
     let read = |results: &Results| fs::read(results.path("rotations.csv")).unwrap();

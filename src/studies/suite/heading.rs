@@ -30,6 +30,7 @@ pub struct Heading {
     pub(super) directions: Directions,
     pub(super) spectral: Spectral,
     /// Warnings about unlikely numbers of the scenario.
+    #[serde(flatten)]
     pub(super) warnings: Warnings,
     /// The scenario in one line.
     #[serde(default)]

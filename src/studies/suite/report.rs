@@ -260,30 +260,10 @@ impl Heading {
                 Err(reason) => format!("no curve: {reason}{taken}"),
             });
         let caption = captions.collect::<Vec<_>>().join("; ");
-        let mut fractiles = vec![column(self.measure.name(), |at: &Fractiles| at.intensity)];
-        fractiles.extend(fields!(|at: &Fractiles| at => cases, overturned));
-        let names = ["peak_16", "peak_50", "peak_84"];
-        fractiles.push(list(names, |at: &Fractiles| at.peaks));
-        let peaks = [list(["peak", "share"], |at: &(f64, f64)| [at.0, at.1])];
-        let found = Results::of(FRAGILITY, &report)?
-            .with_table(
-                "suite.csv",
-                Table::new(self.case_columns(), &results.cases)?,
-            )
-            .with_table(
-                "fragility.csv",
-                Table::new(self.level_columns(), &results.levels)?,
-            )
-            .with_table(
-                "intensity.csv",
-                Table::new(efficiency_columns(), &report.intensity_measures)?,
-            )
-            .with_table(
-                "capacities.csv",
-                Table::new(capacity_columns(), &capacities)?,
-            )
-            .with_table("peaks.csv", Table::new(peaks, &ida::peaks(&results))?)
-            .with_table("ida.csv", Table::new(fractiles, &ida::fractiles(&results))?)
+        let measures = &report.intensity_measures;
+        let found = Results::of(FRAGILITY, &report)?;
+        let found = self
+            .with_tables(found, &results, (&capacities, measures))?
             .with_file("suite.svg", picture::draw(figure, self, &results, &caption))
             .with_file("ida.svg", ida::draw(figure, self, &results, &[]))
             .with_file("peaks.svg", ida::draw_peaks(figure, self, &results));
@@ -292,6 +272,32 @@ impl Heading {
             answer: Some(answer),
             ..self.with_page(found, &results, &caption).in_order(&FILES)
         })
+    }
+
+    /// Adds the tables, that of the cases first.
+    fn with_tables(
+        &self,
+        found: Results,
+        results: &SuiteFragility,
+        (capacities, measures): (&[Capacity<'_>], &[Efficiency]),
+    ) -> Result<Results, OutputError> {
+        let mut fractiles = vec![column(self.measure.name(), |at: &Fractiles| at.intensity)];
+        fractiles.extend(fields!(|at: &Fractiles| at => cases, overturned));
+        let names = ["peak_16", "peak_50", "peak_84"];
+        fractiles.push(list(names, |at: &Fractiles| at.peaks));
+        let peaks = [list(["peak", "share"], |at: &(f64, f64)| [at.0, at.1])];
+        let cases = Table::new(self.case_columns(), &results.cases)?;
+        let levels = Table::new(self.level_columns(), &results.levels)?;
+        Ok(found
+            .with_table("suite.csv", cases)
+            .with_table("fragility.csv", levels)
+            .with_table("intensity.csv", Table::new(efficiency_columns(), measures)?)
+            .with_table(
+                "capacities.csv",
+                Table::new(capacity_columns(), capacities)?,
+            )
+            .with_table("peaks.csv", Table::new(peaks, &ida::peaks(results))?)
+            .with_table("ida.csv", Table::new(fractiles, &ida::fractiles(results))?))
     }
 
     /// Adds the page. `caption` has the fragility curves in words.

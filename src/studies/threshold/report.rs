@@ -235,20 +235,7 @@ pub fn report(
         .with_file("threshold.svg", picture);
     let mut cases = PageCases::default();
     for (threshold, scenario) in thresholds.iter().zip(scenarios) {
-        let text = cases.add_text(&scenario.to_json(), false);
-        for one in threshold.directions() {
-            for sample in &one.samples {
-                let (name, factor) = (one.name_in_words(), sample.factor);
-                let case = format!("{name}, factor {}", at(&factor, &peak_g));
-                cases.push_history(&case, &sample.result, || {
-                    let case = CaseScenario::of(text, scenario.ground_values_times(factor));
-                    Some(match threshold.mirrored {
-                        Some(_) => case.in_direction(one.direction),
-                        None => case,
-                    })
-                });
-            }
-        }
+        threshold.add_to(&mut cases, scenario, peak_g);
     }
     let draw = |figure| picture::drawn(figure, title, peak_g, thresholds, &cases.spots);
     let searched = thresholds.iter().map(|one| one.factors.in_words());
@@ -354,6 +341,24 @@ impl Report for Summary {
 }
 
 impl Threshold {
+    /// Adds its histories to the cases of a page.
+    fn add_to(&self, cases: &mut PageCases, scenario: &Scenario, peak_g: f64) {
+        let text = cases.add_text(&scenario.to_json(), false);
+        for one in self.directions() {
+            for sample in &one.samples {
+                let (name, factor) = (one.name_in_words(), sample.factor);
+                let case = format!("{name}, factor {}", at(&factor, &peak_g));
+                cases.push_history(&case, &sample.result, || {
+                    let case = CaseScenario::of(text, scenario.ground_values_times(factor));
+                    Some(match self.mirrored {
+                        Some(_) => case.in_direction(one.direction),
+                        None => case,
+                    })
+                });
+            }
+        }
+    }
+
     /// Returns the name of the model, with "mirrored" under the mirrored ground motion.
     pub(super) fn name(&self) -> String {
         match self.direction {

@@ -1,0 +1,35 @@
+//! The tables of a page, with rounded numbers.
+
+use serde::{Deserialize, Serialize};
+
+use crate::output::{Cell, Table};
+
+/// A table with rounded numbers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct PageTable {
+    /// Name of its file.
+    pub(super) name: String,
+    pub(super) header: Vec<String>,
+    pub(super) rows: Vec<Vec<String>>,
+    /// Number of rows in the file.
+    pub(super) all: usize,
+    /// Names of the columns with text.
+    #[serde(skip)]
+    pub(super) text_columns: Vec<String>,
+}
+
+impl PageTable {
+    /// Takes the first rows of a table, with rounded numbers.
+    pub(super) fn of(name: &str, table: &Table) -> Self {
+        let rows = table.first.iter();
+        Self {
+            name: name.to_owned(),
+            header: table.header.clone(),
+            rows: rows
+                .map(|row| row.iter().map(Cell::rounded).collect())
+                .collect(),
+            all: table.rows,
+            text_columns: table.text_columns(),
+        }
+    }
+}
