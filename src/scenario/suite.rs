@@ -215,7 +215,7 @@ impl Suite {
     }
 
     /// Returns a record scaled to a level.
-    pub(crate) fn shake(&self, record: usize, level: f64) -> Record {
+    pub(crate) fn record_at(&self, record: usize, level: f64) -> Record {
         scaled_record(&self.records[record], self.measure.scaling(level))
     }
 }

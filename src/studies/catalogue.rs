@@ -86,7 +86,7 @@ impl From<Results> for Computation {
 
 impl<'w> RowSource<'w> {
     /// Returns the threads and the progress of a study without parts.
-    fn at_once(self) -> Result<(Runner, Watch<'w>), StudyError> {
+    fn runner_and_watch(self) -> Result<(Runner, Watch<'w>), StudyError> {
         match self {
             Self::Compute(runner, _, watch) => Ok((runner, watch)),
             _ => Err(StudyError::scenario("this study has no parts")),
@@ -136,11 +136,11 @@ pub const RUN: StudyKind = StudyKind {
     is_history: true,
     takes_models: true,
     samples: Some(&UNCERTAIN),
-    ..StudyKind::whole(
+    ..StudyKind::without_cases(
         "run",
         &run::FILES,
         |scenarios, options, style, rows, sinks| {
-            let (_, watch) = rows.at_once()?;
+            let (_, watch) = rows.runner_and_watch()?;
             let results = run::results(scenarios, &options.run, style.figure, sinks, watch)?;
             Ok(results.into())
         },
@@ -152,7 +152,7 @@ pub const MAP: StudyKind = StudyKind {
     ..StudyKind::of::<OverturningMap<'_>>(|scenarios, _, style, rows, _| {
         let map = OverturningMap::of(&scenarios[0]);
         let RowSource::Given(rows) = rows else {
-            return computed(map, style, rows);
+            return compute_reported(map, style, rows);
         };
         let rows = rows.iter().map(|row| serde_json::from_str(row));
         let rows: Result<_, _> = rows.collect();
@@ -167,18 +167,18 @@ pub const SUITE: StudyKind = StudyKind {
     has_rotations: true,
     samples: Some(&UNCERTAIN_SUITE),
     ..StudyKind::of::<RecordSuite<'_>>(|scenarios, _, style, rows, _| {
-        computed(RecordSuite::of(&scenarios[0]), style, rows)
+        compute_reported(RecordSuite::of(&scenarios[0]), style, rows)
     })
 };
 /// The factors by which the ground motion overturns the structure, for one or several models of motion.
 pub const THRESHOLD: StudyKind = StudyKind {
     takes_models: true,
     samples: Some(&UNCERTAIN_THRESHOLD),
-    ..StudyKind::whole(
+    ..StudyKind::without_cases(
         "threshold",
         &threshold::FILES,
         |scenarios, options, style, rows, _| {
-            let (runner, watch) = rows.at_once()?;
+            let (runner, watch) = rows.runner_and_watch()?;
             let factors = &options.factors;
             Ok(threshold::results(scenarios, factors, style.figure, &runner, watch)?.into())
         },
@@ -191,13 +191,13 @@ pub const THRESHOLD_ALONG: StudyKind =
         let along =
             along.ok_or("a threshold along a range needs its key and its values".to_owned());
         let study = along.and_then(|along| Along::of(&scenarios[0], along));
-        computed(study, style, rows)
+        compute_reported(study, style, rows)
     });
 /// The push that starts the structure, and its mechanism.
 pub const LIMIT: StudyKind = StudyKind {
     needs_motion: false,
     has_title: false,
-    ..StudyKind::whole("limit", &limit::FILES, |scenarios, _, style, _, _| {
+    ..StudyKind::without_cases("limit", &limit::FILES, |scenarios, _, style, _, _| {
         Ok(limit::results(&scenarios[0], style.figure)?.into())
     })
 };
@@ -205,7 +205,7 @@ pub const LIMIT: StudyKind = StudyKind {
 pub const CAPACITY: StudyKind = StudyKind {
     needs_motion: false,
     has_title: false,
-    ..StudyKind::whole(
+    ..StudyKind::without_cases(
         "capacity",
         &capacity::FILES,
         |scenarios, options, style, _, _| {
@@ -220,7 +220,7 @@ pub const CAPACITY: StudyKind = StudyKind {
 pub const SPREAD: StudyKind = StudyKind {
     needs_motion: false,
     has_title: false,
-    ..StudyKind::whole(
+    ..StudyKind::without_cases(
         "spread",
         &spread::FILES,
         |scenarios, options, style, _, _| {
@@ -233,7 +233,7 @@ pub const SPREAD: StudyKind = StudyKind {
 /// The check of the first mechanism by the Circolare 7/2019.
 pub const VERIFY: StudyKind = StudyKind {
     has_title: false,
-    ..StudyKind::whole("verify", &verify::FILES, |scenarios, _, _, _, _| {
+    ..StudyKind::without_cases("verify", &verify::FILES, |scenarios, _, _, _, _| {
         let scenario = &scenarios[0];
         scenario.check_as_built().map_err(StudyError::Scenario)?;
         if scenario.right_foot.is_some() {
@@ -257,7 +257,7 @@ pub const UNCERTAIN_SUITE: StudyKind = StudyKind::of_samples::<Capacities>();
 /// The probability that pulses overturn samples of the uncertain numbers, over two quantities.
 pub const UNCERTAIN_MAP: StudyKind =
     StudyKind::of::<CellsOfSamples<'_>>(|scenarios, _, style, rows, _| {
-        computed(CellsOfSamples::of(&scenarios[0]), style, rows)
+        compute_reported(CellsOfSamples::of(&scenarios[0]), style, rows)
     });
 
 impl StudyKind {
@@ -290,7 +290,11 @@ impl StudyKind {
         kinds.find(|kind| has_all(kind) && kind.files.last() == names.last())
     }
 
-    const fn whole(name: &'static str, files: &'static [&'static str], compute: Compute) -> Self {
+    const fn without_cases(
+        name: &'static str,
+        files: &'static [&'static str],
+        compute: Compute,
+    ) -> Self {
         Self {
             name,
             files,
@@ -308,14 +312,14 @@ impl StudyKind {
     const fn of<S: ReportedStudy>(compute: Compute) -> Self {
         Self {
             has_parts: true,
-            ..Self::whole(S::NAME, S::FILES, compute)
+            ..Self::without_cases(S::NAME, S::FILES, compute)
         }
     }
 
     const fn of_samples<Q: Question>() -> Self {
         Self::of::<Ensemble<'_, Q>>(|scenarios, options, style, rows, _| {
             let study = Ensemble::<Q>::of(&scenarios[0], options.factors);
-            computed(study, style, rows)
+            compute_reported(study, style, rows)
         })
     }
 
@@ -337,7 +341,7 @@ impl StudyKind {
 }
 
 /// Finds the rows of a study, and turns them into results if they are those of all cases.
-fn computed<S: ReportedStudy>(
+fn compute_reported<S: ReportedStudy>(
     study: Result<S, String>,
     style: Style,
     rows: RowSource<'_>,

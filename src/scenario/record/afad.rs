@@ -2,7 +2,7 @@
 //!
 //! A header in words, then rows of three components. Source: files of AFAD, and the reader in the USGS's `gmprocess` (group nsmn).
 
-use super::history::{History, count_and_step, is_text, squeezed, word_after};
+use super::history::{History, count_and_step, is_text, single_blanks, word_after};
 use super::layout::{Format, Parser};
 use super::networks::{find, header_and_data};
 use super::samples::{LineFault, Parsed, number};
@@ -33,7 +33,7 @@ fn histories(lines: &[&str]) -> Parsed<Vec<History>> {
         LineFault::on(end + 1)("the line before the numbers must name three components")
     })?;
     let histories = names.iter().enumerate().map(|(index, name)| History {
-        name: squeezed(name),
+        name: single_blanks(name),
         unit: unit.clone(),
         columns: (3, index),
         is_table: true,

@@ -5,7 +5,7 @@
 //! Strong Motion Data Format (COSMOS 2001, strongmotioncenter.org/vdc/cosmos_format_1_20.pdf), with the indices of the USGS's PRISM.
 
 use super::history::{
-    History, count_and_step, header_fields, is_text, lines_of_numbers, squeezed, width_in,
+    History, count_and_step, header_fields, is_text, lines_of_numbers, single_blanks, width_in,
     word_after,
 };
 use super::layout::{Format, Parser};
@@ -40,7 +40,7 @@ fn histories(lines: &[&str]) -> Parsed<Vec<History>> {
         let lower = line.to_ascii_lowercase();
         if let Some(channel) = lower.strip_prefix("sta cha") {
             let channel = &line[line.len() - channel.len()..];
-            name = squeezed(channel.trim_start_matches(['n', 'N', ':', ' ']));
+            name = single_blanks(channel.trim_start_matches(['n', 'N', ':', ' ']));
         } else if let Some(count) = word_after(line, REALS) {
             let count = number(count).map_err(LineFault::on(index + 1))?;
             let at = index + 1..index + 1 + count.clamp(0.0, 100.0) as usize;

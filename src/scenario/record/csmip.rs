@@ -11,7 +11,7 @@
 use std::ops::Range;
 
 use super::history::{
-    History, count_and_step, is_text, lines_of_numbers, rest, squeezed, width_in, word_after,
+    History, count_and_step, is_text, lines_of_numbers, rest, single_blanks, width_in, word_after,
 };
 use super::layout::{Format, Parser};
 use super::samples::{LineFault, Parsed, checked_step, number, step_of_rate};
@@ -63,7 +63,7 @@ fn begins(first: &str) -> bool {
 
 /// Returns true for the first lines of a file of USC, of which one is like `FILE 0 OF UNCORRECTED ACCELEROGRAM DATA OF VOLUME I`.
 fn is_usc(lines: &[&str]) -> bool {
-    let mut first = lines.iter().take(2).map(|line| squeezed(line));
+    let mut first = lines.iter().take(2).map(|line| single_blanks(line));
     first.any(|line| {
         line.starts_with("FILE ") && line.contains("OF UNCORRECTED ACCELEROGRAM DATA OF VOL")
     })
@@ -125,7 +125,7 @@ fn equally_spaced(lines: &[&str], start: usize, index: usize, quantity: &str) ->
         .find_map(|phrase| word_after(line, phrase));
     let peak = format!("peak {quantity} = ");
     let peaks = header.iter().filter_map(|line| {
-        let line = squeezed(line);
+        let line = single_blanks(line);
         let stated = rest(&line, &peak).or_else(|| rest(&line, " max = "))?;
         let (word, rest) = stated.split_once(' ')?;
         Some((word.to_owned(), rest.split(' ').next()?.to_owned()))
@@ -151,7 +151,7 @@ fn volume_1(lines: &[&str], channel: Range<usize>) -> Parsed<Option<History>> {
     let header = &lines[start..channel.end.min(start + HEADER_LINES)];
     let find = |phrase: &str| {
         header.iter().zip(start..).find_map(|(line, index)| {
-            Some((index, word_after(&squeezed(line), phrase)?.to_owned()))
+            Some((index, word_after(&single_blanks(line), phrase)?.to_owned()))
         })
     };
     let unit = find("are sec and ").or_else(|| find("are seconds and "));
@@ -189,7 +189,7 @@ fn name(header: &[&str]) -> String {
     let channel = header.iter().find_map(|line| {
         let (label, name) = line.split_once(':')?;
         let is_name = label.trim_start().to_ascii_lowercase().starts_with("chan ");
-        is_name.then(|| squeezed(name))
+        is_name.then(|| single_blanks(name))
     });
     let component = || {
         header

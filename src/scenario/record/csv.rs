@@ -56,7 +56,7 @@ fn parse_table(
     let mut rows = Rows::new(text, layout.decimal).peekable();
     let names = rows.next_if(|row| by_name || row.has_no_number(layout.decimal));
     let line = names.as_ref().map_or(0, |row| row.line);
-    let first = rows.peek().ok_or_else(|| nothing(text, line))?;
+    let first = rows.peek().ok_or_else(|| no_samples(text, line))?;
     let columns = Columns::find(layout, times.column(), names.as_ref(), first)?;
     let unit_s = columns.time_unit_s();
     let states_unit = unit
@@ -134,7 +134,7 @@ fn decimal_commas(text: &str, decimal: Decimal) -> Option<Row<'_>> {
 }
 
 /// Returns the error that a table has no rows.
-fn nothing(text: &str, last_line: usize) -> LineFault {
+fn no_samples(text: &str, last_line: usize) -> LineFault {
     let blank = text.lines().take_while(|line| line.is_empty()).count();
     let line = if last_line > 0 { last_line } else { blank };
     LineFault::on(line.max(1))("there are no samples")

@@ -2,7 +2,7 @@
 //!
 //! A header of lines that begin with `#`, then rows of a time and the components. Source: files of CWB, and the reader in the USGS's `gmprocess` (group cwb).
 
-use super::history::{History, count_and_step, fields, has, largest, rest, squeezed};
+use super::history::{History, count_and_step, fields, has, largest, rest, single_blanks};
 use super::layout::{Format, Parser};
 use super::networks::{find, header_and_data};
 use super::samples::{LineFault, Parsed, number, step_of_rate, surplus, words};
@@ -61,7 +61,7 @@ fn histories(lines: &[&str]) -> Parsed<Vec<History>> {
     let names = rest(header[order_line - 1], "time").unwrap_or_default();
     let names = names.split(';').map(str::trim);
     let names: Vec<_> = names
-        .map(|name| squeezed(name.trim_end_matches("(+)")))
+        .map(|name| single_blanks(name.trim_end_matches("(+)")))
         .collect();
     let histories = names.iter().enumerate().map(|(index, name)| {
         let phrase = format!("#amplitudemax. {}:", name.to_lowercase());

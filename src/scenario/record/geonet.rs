@@ -4,7 +4,7 @@
 //! with ten numbers a line, in mm/s2, mm/s and mm. The integers have the number of samples of each block, the numbers step and peaks. Source: GNS Accelerogram Data File
 //! Format (GeoNet), as files of the USGS's tests of `gmprocess` follow it.
 
-use super::history::{History, header_fields, lines_of_numbers, rest, squeezed};
+use super::history::{History, header_fields, lines_of_numbers, rest, single_blanks};
 use super::layout::{Format, Parser};
 use super::samples::{LineFault, Parsed, checked_step, number, words};
 use super::unit::Unit;
@@ -91,7 +91,7 @@ fn component(lines: &[&str], start: usize, histories: &mut Vec<History>) -> Pars
         let data = below.start..below.start + needed as usize;
         from = data.end;
         histories.push(History {
-            name: squeezed(named.unwrap_or_default()),
+            name: single_blanks(named.unwrap_or_default()),
             quantity: quantity.to_owned(),
             unit: unit.to_owned(),
             factor,

@@ -2,7 +2,7 @@
 //!
 //! A reader of such a format only finds the histories; this module chooses one of them, reads its numbers, and compares them with the header.
 
-use super::history::{Finder, History, squeezed};
+use super::history::{Finder, History, single_blanks};
 use super::layout::{Layout, TableColumn};
 use super::samples::{Contents, LineFault, Parsed, different_peak, peak_of};
 use super::unit::{RecordedQuantity, Unit};
@@ -32,7 +32,9 @@ pub(super) fn read(text: &str, layout: &Layout, histories: Finder) -> Parsed<Con
     let index = choose(&fitting, layout.channel.as_ref()).map_err(|wrong| {
         let other = histories.first().filter(|_| fitting.is_empty());
         let line = other.or(fitting.first().copied()).map_or(1, |one| one.line);
-        LineFault::on(line)(other.map_or(wrong, |_| holds(&histories, layout.quantity)))
+        LineFault::on(line)(
+            other.map_or(wrong, |_| quantity_not_found(&histories, layout.quantity)),
+        )
     })?;
     let history = fitting[index];
     let fault = LineFault::on::<String>(history.line);
@@ -82,7 +84,7 @@ fn choose(histories: &[&History], channel: Option<&TableColumn>) -> Result<usize
             indices.filter(|index| index + 1 == *number).collect()
         }
         Some(TableColumn::Name(name)) => {
-            let name = squeezed(name).to_lowercase();
+            let name = single_blanks(name).to_lowercase();
             let equal = named(&|own| own == name);
             match equal.is_empty() {
                 true => named(&|own| has_words(own, &name)),
@@ -138,7 +140,7 @@ fn has_words(name: &str, part: &str) -> bool {
 }
 
 /// Returns the message that a file has no history of the wanted quantity.
-fn holds(histories: &[History], wanted: RecordedQuantity) -> String {
+fn quantity_not_found(histories: &[History], wanted: RecordedQuantity) -> String {
     let mut held: Vec<_> = histories.iter().map(|one| excerpt(&one.quantity)).collect();
     held.dedup();
     held.truncate(3);

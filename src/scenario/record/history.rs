@@ -166,7 +166,7 @@ pub(super) fn width_in(line: &str) -> usize {
 }
 
 /// Returns a name with single blanks between its words.
-pub(super) fn squeezed(name: &str) -> String {
+pub(super) fn single_blanks(name: &str) -> String {
     name.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 

@@ -539,7 +539,7 @@ impl Layout {
     ///
     /// The first fault in the bytes.
     pub fn parse(&self, bytes: &[u8]) -> Result<Contents, LineFault> {
-        let text = legible(bytes)?;
+        let text = decode_text(bytes)?;
         let contents = match self.format.parser {
             Parser::Record(parse, _) => parse(&text, self),
             Parser::History(find) | Parser::Channels(find) => histories::read(&text, self, find),
@@ -581,7 +581,7 @@ impl Layout {
     fn by_channel(&self, bytes: &[u8]) -> Parsed<Vec<Self>> {
         let count = match self.format.parser {
             Parser::Channels(find) if self.channel.is_none() => {
-                histories::count(&legible(bytes)?, self, find)?
+                histories::count(&decode_text(bytes)?, self, find)?
             }
             _ => 1,
         };
@@ -597,7 +597,7 @@ impl Layout {
 }
 
 /// Returns the text of a file. Headers may have any encoding with the digits of ASCII.
-fn legible(bytes: &[u8]) -> Result<String, LineFault> {
+fn decode_text(bytes: &[u8]) -> Result<String, LineFault> {
     not_plain(bytes).map_or(Ok(()), |wrong| Err(LineFault::on(1)(wrong)))?;
     let text = String::from_utf8_lossy(bytes);
     Ok(text.trim_start_matches('\u{feff}').to_owned())
@@ -622,7 +622,7 @@ pub(super) fn read_numbers<const N: usize>(
     decimal: Decimal,
 ) -> Result<Vec<(usize, [f64; N])>, String> {
     let bytes = files.read(path)?;
-    let numbers = legible(&bytes).and_then(|text| csv::numbers(&text, decimal));
+    let numbers = decode_text(&bytes).and_then(|text| csv::numbers(&text, decimal));
     numbers.map_err(|fault| faulty(path, &fault))
 }
 

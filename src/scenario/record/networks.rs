@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::history::{is_text, squeezed, word_after};
+use super::history::{is_text, single_blanks, word_after};
 use super::samples::{LineFault, Parsed, words};
 use crate::scenario::prelude::*;
 
@@ -13,7 +13,7 @@ const MAX_HEADER_LINES: usize = 64;
 pub(super) fn find(header: &[&str], phrase: &str) -> Parsed<(usize, String)> {
     let mut lines = header.iter().zip(1..).take(MAX_HEADER_LINES);
     let found = lines.find_map(|(line, number)| {
-        let line = squeezed(line);
+        let line = single_blanks(line);
         Some((number, word_after(&line, phrase)?.to_owned()))
     });
     found.ok_or_else(|| {

@@ -4,7 +4,7 @@
 //! fields of ten characters. If the header has no sampling rate, every sample follows its time. Source: the format description of the USGS
 //! (escweb.wr.usgs.gov/nsmp-data/smcfmt.html), as its `gmprocess` and the files of its tests follow it.
 
-use super::history::{History, count_and_step, header_fields, largest, squeezed};
+use super::history::{History, count_and_step, header_fields, largest, single_blanks};
 use super::layout::{Format, Parser};
 use super::samples::{LineFault, Parsed, number, step_of_rate};
 use crate::scenario::prelude::*;
@@ -76,7 +76,7 @@ fn histories(lines: &[&str]) -> Parsed<Vec<History>> {
         .split_once("component=")
         .map_or("", |(_, name)| name);
     Ok(vec![History {
-        name: squeezed(name),
+        name: single_blanks(name),
         quantity: quantity.to_lowercase(),
         unit: unit.to_owned(),
         columns,

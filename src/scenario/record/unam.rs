@@ -3,7 +3,7 @@
 //! It follows the readers in the USGS's `gmprocess` (group unam), in OpenQuake's `smtk` (ASA), and of the Institute of Engineering, which agree; no
 //! original description was at hand.
 
-use super::history::{History, count_and_step, has, is_text, rest, squeezed};
+use super::history::{History, count_and_step, has, is_text, rest, single_blanks};
 use super::layout::{Format, Parser};
 use super::networks::refuse_words;
 use super::samples::{LineFault, Parsed, number};
@@ -74,7 +74,7 @@ fn histories(lines: &[&str]) -> Parsed<Vec<History>> {
     let histories = channels.map(|(index, ((count, step), name))| {
         let (count, step_s) = count_and_step((line, count), (step_line, number(step)))?;
         Ok(History {
-            name: squeezed(name),
+            name: single_blanks(name),
             unit: unit.to_owned(),
             columns: (counts.len(), index),
             is_table: true,

@@ -233,7 +233,7 @@ impl Ending {
 }
 
 /// Answers the valid cases and returns all in order. Invalid cases keep their errors.
-pub(super) fn answered<C, A, E>(
+pub(super) fn answer_valid_cases<C, A, E>(
     cases: impl IntoIterator<Item = Result<C, E>>,
     answer: impl FnOnce(&[C]) -> Vec<Result<A, E>>,
 ) -> Vec<Result<A, E>> {

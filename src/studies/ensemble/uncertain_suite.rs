@@ -19,7 +19,7 @@ use crate::studies::quotable::{
 };
 use crate::studies::report::{Report, Warnings};
 use crate::studies::statistics::{ascending_weighted, shares_up_to, weighted_fractile};
-use crate::studies::suite::strength::few;
+use crate::studies::suite::strength::warning_of_few_records;
 use crate::studies::suite::{OF_LEVELS, case, directions, records_in_words};
 use crate::studies::threshold::first_edge::{FirstEdge, TREATMENTS, Treatment, TriedHistory};
 use crate::studies::threshold::{Factors, rounded, rounded_range};
@@ -39,7 +39,7 @@ pub struct Capacities {
 
 /// The first edge of a sample under each record; in both directions, the mirrored record follows its record. A sample without a second direction has
 /// the same edge twice.
-type Edges = Vec<FirstEdge>;
+type EdgePerRecord = Vec<FirstEdge>;
 
 impl Capacities {
     /// Number of edges of each record.
@@ -62,7 +62,7 @@ impl Capacities {
     /// `demand` the largest friction demand.
     fn quoted(
         &self,
-        samples: &Samples<'_, Edges>,
+        samples: &Samples<'_, EdgePerRecord>,
         both: &Estimated,
         excess_ratio: Option<f64>,
         demand: Option<f64>,
@@ -86,7 +86,7 @@ impl Capacities {
     }
 
     /// Makes the table of all edges.
-    fn table(&self, samples: &Samples<'_, Edges>) -> Result<Table, OutputError> {
+    fn table(&self, samples: &Samples<'_, EdgePerRecord>) -> Result<Table, OutputError> {
         type Row<'a> = (usize, &'a str, i64, &'a FirstEdge);
         let mut rows: Vec<Row<'_>> = Vec::new();
         for (number, row) in samples.lines() {
@@ -104,7 +104,7 @@ impl Capacities {
 
     /// Draws the share that overturns against the intensity: for the scenario itself under all records, for each sample, and for all samples
     /// together.
-    fn draw(&self, figure: Figure, samples: &Samples<'_, Edges>) -> String {
+    fn draw(&self, figure: Figure, samples: &Samples<'_, EdgePerRecord>) -> String {
         const MOST_FAINT: usize = 20;
         const FAINT: Stroke = Stroke::new("#b9d3e8", 0.9, "");
         const ALL: Stroke = Stroke::new(color::BLUE, 1.6, "");
@@ -140,7 +140,7 @@ impl Capacities {
 }
 
 impl Question for Capacities {
-    type Answer = Edges;
+    type Answer = EdgePerRecord;
     const NAME: &'static str = "uncertain_suite";
 
     const FILES: &'static [&'static str] = &[
@@ -166,14 +166,14 @@ impl Question for Capacities {
 
     fn results(
         &self,
-        samples: &Samples<'_, Edges>,
+        samples: &Samples<'_, EdgePerRecord>,
         figure: Figure,
     ) -> Result<Results, OutputError> {
-        let counted = Counted::new(self, samples);
+        let counted = EdgesThatCount::new(self, samples);
         // Influence on the median over the records of a sample; the largest level if fewer than half of the records overturn the sample.
         let most = self.levels.last().copied().unwrap_or(1.0);
         let inside = |edge: &&FirstEdge| !edge.is_outside_model();
-        let median = |edges: &Edges| {
+        let median = |edges: &EdgePerRecord| {
             let median = first_strength(edges.iter().filter(inside), 0.5);
             median.map_or(most, |(strength, _)| strength.min(most))
         };
@@ -210,7 +210,8 @@ impl Question for Capacities {
             edges: edges.clone().count(),
             at_lowest_level: edges.filter(|edge| edge.at_most).count(),
         };
-        let overturned = |edges: &Edges| edges.iter().filter(|edge| edge.factor.is_some()).count();
+        let overturned =
+            |edges: &EdgePerRecord| edges.iter().filter(|edge| edge.factor.is_some()).count();
         let columns = [of_answer("overturned", overturned), why_not()];
         let results = Results::of("uncertain.json", &report)?
             .with_table("samples.csv", report::table(samples, columns)?)
@@ -218,7 +219,7 @@ impl Question for Capacities {
             .with_table("fragility.csv", counted.at_levels()?)
             .with_file("fragility.svg", self.draw(figure, samples))
             .with_file("matters.svg", report.all.draw_influences(samples, figure));
-        let answer = |edges: &Edges| {
+        let answer = |edges: &EdgePerRecord| {
             let median = first_strength(edges.iter().filter(inside), 0.5);
             let median = median.map(|(strength, _)| strength);
             let outside = edges.iter().any(FirstEdge::is_outside_model);
@@ -241,10 +242,10 @@ impl Question for Capacities {
             .in_order(Self::FILES))
     }
 
-    fn answer(&self, scenario: &Scenario) -> Result<Edges, NoAnswer> {
+    fn answer(&self, scenario: &Scenario) -> Result<EdgePerRecord, NoAnswer> {
         let model = scenario.model().map_err(NoAnswer::without_model)?;
         let edge = |record: usize, direction: Direction| {
-            FirstEdge::among(&self.levels, WIDTH, |level: f64| {
+            FirstEdge::find_among(&self.levels, WIDTH, |level: f64| {
                 let (ground, request) = case(scenario, &self.suite, record, level, direction);
                 let ending = Ending::of(&*model, &ground, &request)?;
                 Ok(TriedHistory::from(Ending {
@@ -253,7 +254,7 @@ impl Question for Capacities {
                 }))
             })
         };
-        let mut edges = Edges::new();
+        let mut edges = EdgePerRecord::new();
         for record in 0..self.suite.records.len() {
             for direction in directions(scenario, &self.suite, &*model) {
                 edges.push(edge(record, *direction)?);
@@ -383,7 +384,7 @@ fn distribution(intensities: impl IntoIterator<Item = [f64; 2]>) -> [Option<f64>
 }
 
 /// The edges that count. Mirrored records do not count if no sample has a second direction.
-struct Counted<'a> {
+struct EdgesThatCount<'a> {
     question: &'a Capacities,
     /// The edges of each record, for the scenario itself; `samples` has them for each sample.
     own: Vec<&'a [FirstEdge]>,
@@ -392,8 +393,8 @@ struct Counted<'a> {
     unknown: usize,
 }
 
-impl<'a> Counted<'a> {
-    fn new(question: &'a Capacities, samples: &Samples<'a, Edges>) -> Self {
+impl<'a> EdgesThatCount<'a> {
+    fn new(question: &'a Capacities, samples: &Samples<'a, EdgePerRecord>) -> Self {
         let own = samples.own.as_ref().ok();
         let mut all = own.into_iter().chain(samples.answers());
         let is_symmetric = all.all(|edges| {
@@ -401,7 +402,7 @@ impl<'a> Counted<'a> {
             records.all(|signs| signs.iter().all(|edge| *edge == signs[0]))
         });
         let signs = if is_symmetric { 1 } else { question.signs() };
-        let counted = |edges: &'a Edges| -> Vec<&'a [FirstEdge]> {
+        let counted = |edges: &'a EdgePerRecord| -> Vec<&'a [FirstEdge]> {
             let records = edges.chunks(question.signs());
             records.map(|edges| &edges[..signs]).collect()
         };

@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 pub use self::page::page_of;
 pub use self::picture::draw;
 pub use self::report::Summary as MapSummary;
-use super::ending::{Ending, NoHistory, Verdict, answered};
+use super::ending::{Ending, NoHistory, Verdict, answer_valid_cases};
 use super::runner::Study;
 use crate::dynamics::repeatability::{CheckedHistory, required_friction};
 use crate::dynamics::{Direction, Directions, OutcomeCount, Repetition};
@@ -74,14 +74,14 @@ pub struct OverturningMap<'a> {
     /// Four links of the arch of `base`; `None` inside if it has none.
     links: OnceLock<Option<FourLinks>>,
     /// Models that several cells share.
-    models: Shared<Result<Arc<dyn Model>, ModelError>>,
-    pulses: Shared<PulseShape>,
+    models: PerAxes<Result<Arc<dyn Model>, ModelError>>,
+    pulses: PerAxes<PulseShape>,
     /// The quantities and the keys of the axes. An axis that is named by a key of the ground has the quantity of that key.
     quantities: [Quantity; 2],
     paths: [String; 2],
     /// The scenario, or a sample of it. `variants` are the scenarios with other values of keys outside `[map]`.
     base: Arc<Scenario>,
-    variants: Option<Shared<Result<Arc<Scenario>, String>>>,
+    variants: Option<PerAxes<Result<Arc<Scenario>, String>>>,
 }
 
 /// Returns the label of an axis in pictures.
@@ -126,12 +126,12 @@ impl Changes {
 
 /// Values that depend on one axis or on none. Each value is computed at its first use.
 #[derive(Debug)]
-struct Shared<T> {
+struct PerAxes<T> {
     axis: Option<usize>,
     values: Vec<OnceLock<T>>,
 }
 
-impl<T: Clone> Shared<T> {
+impl<T: Clone> PerAxes<T> {
     fn new(counts: [usize; 2], depends: [bool; 2]) -> Self {
         let (axis, count) = match depends {
             [false, false] => (None, 1),
@@ -204,13 +204,13 @@ impl<'a> OverturningMap<'a> {
             scenario,
             axes,
             repeat: map.repeat,
-            models: Shared::new(counts, depends(&[Changes::Model])),
-            pulses: Shared::new(counts, depends(&[Changes::Ground, Changes::Duration])),
+            models: PerAxes::new(counts, depends(&[Changes::Model])),
+            pulses: PerAxes::new(counts, depends(&[Changes::Ground, Changes::Duration])),
             quantities,
             paths,
             links: OnceLock::new(),
             base: Arc::new(base),
-            variants: has_variants.then(|| Shared::new(counts, variants)),
+            variants: has_variants.then(|| PerAxes::new(counts, variants)),
             values,
         })
     }
@@ -366,7 +366,7 @@ fn all_outcomes_in(
     model: &dyn Model,
     cases: &[Case],
 ) -> Vec<Result<Ended, NoHistory>> {
-    let mut all = all_outcomes(model, cases);
+    let mut all = endings_with_repetitions(model, cases);
     for (ending, _) in all.iter_mut().flatten() {
         ending.direction = directions.first();
     }
@@ -381,7 +381,7 @@ fn all_outcomes_in(
         let (ground, request) = &cases[*index];
         (ground.mirrored(), *request)
     });
-    let mirrored = all_outcomes(model, &mirrored.collect::<Vec<_>>());
+    let mirrored = endings_with_repetitions(model, &mirrored.collect::<Vec<_>>());
     for (index, mirrored) in open.into_iter().zip(mirrored) {
         let (mirrored, of_mirrored) = match mirrored {
             Ok((ending, outcomes)) => (Ok(ending), outcomes),
@@ -401,7 +401,7 @@ fn all_outcomes_in(
 }
 
 /// Computes the endings of histories, and the number of outcomes of each with its repetitions. All histories run to their end.
-fn all_outcomes(model: &dyn Model, cases: &[Case]) -> Vec<Result<Ended, NoHistory>> {
+fn endings_with_repetitions(model: &dyn Model, cases: &[Case]) -> Vec<Result<Ended, NoHistory>> {
     let repetitions = model.repetitions().into_iter();
     let repeated = repetitions.map(|Repetition { name, model }| (name, model.simulate_all(cases)));
     let repeated: Vec<(_, Vec<_>)> = repeated.collect();
@@ -454,7 +454,7 @@ impl Study for OverturningMap<'_> {
             shared.get_or_init(|| model);
             Ok(case)
         });
-        let ended = answered(cases, |cases| {
+        let ended = answer_valid_cases(cases, |cases| {
             let model = shared.get();
             model.map_or(Vec::new(), |model| self.endings(&**model, cases))
         });

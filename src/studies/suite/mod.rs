@@ -277,7 +277,7 @@ pub(super) fn case(
     level: f64,
     direction: Direction,
 ) -> Case {
-    let shake = suite.shake(record, level);
+    let shake = suite.record_at(record, level);
     let shake = shake.ground_motion(scenario.gravity_m_s2());
     let ground = scenario.under_both_feet_in(direction, shake);
     let request = scenario.request_on(&ground, &scenario.structure);

@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use super::fragility::{Fragility, NoFit};
 use super::ida::Fractiles;
-use super::strength::{Capacity, Efficiency, MEASURES, efficiencies, few};
+use super::strength::{Capacity, Efficiency, MEASURES, efficiencies, warning_of_few_records};
 use super::{
     CaseRow, Counts, FragilityRow, Heading, SuiteFragility, ida, picture, records_in_words,
 };

@@ -5,7 +5,7 @@
 
 use crate::argument::ArgumentError;
 use crate::dynamics::repeatability::energy_over_barrier;
-use crate::studies::ending::answered;
+use crate::studies::ending::answer_valid_cases;
 use crate::{EndCondition, GroundMotion, Model, Request, SimulationError, Summary, Verdict};
 
 /// Steps of the search.
@@ -139,7 +139,7 @@ impl FineHistory {
         let cases = factors
             .iter()
             .map(|factor| Ok((ground(*factor)?, *request)));
-        let histories = answered(cases, |cases| {
+        let histories = answer_valid_cases(cases, |cases| {
             model.simulate_all_until(EndCondition::Safe, cases)
         });
         let of = |(factor, history): (&f64, Result<Summary, SimulationError>)| {

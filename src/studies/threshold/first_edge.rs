@@ -147,7 +147,7 @@ impl FirstEdge {
 
     /// Finds the first edge. `strengths` are tried in ascending order, and bisection encloses the edge between two of them to this relative
     /// width. `history` computes the history at a strength.
-    pub(in crate::studies) fn among(
+    pub(in crate::studies) fn find_among(
         strengths: &[f64],
         width: f64,
         history: impl Fn(f64) -> Result<TriedHistory, NoHistory>,
@@ -375,7 +375,7 @@ mod tests {
         strengths: &[f64],
         share: impl Fn(f64) -> Result<Option<f64>, NoHistory>,
     ) -> Result<FirstEdge, NoAnswer> {
-        FirstEdge::among(strengths, EDGE_WIDTH, |strength| {
+        FirstEdge::find_among(strengths, EDGE_WIDTH, |strength| {
             Ok(TriedHistory {
                 overturning_share: share(strength)?,
                 ..TriedHistory::default()

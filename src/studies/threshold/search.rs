@@ -8,7 +8,7 @@ use super::factors::{EDGE_WIDTH, SearchedFactors, UNCERTAIN_EDGE_WIDTH};
 use super::{FactorSample, Survival, Threshold};
 use crate::bisection::{Width, next_middles, try_bisect};
 use crate::dynamics::Direction;
-use crate::studies::ending::{Ending, NoHistory, Verdict, answered};
+use crate::studies::ending::{Ending, NoHistory, Verdict, answer_valid_cases};
 use crate::studies::{Progress, Runner, RunnerError, SearchStep, StudyError};
 use crate::{GroundMotion, Model, Request, SimulationError};
 
@@ -243,7 +243,7 @@ impl Shaking<'_> {
             let ground = self.ground.scaled(*factor);
             Ok((ground.map_err(SimulationError::from)?, *self.request))
         });
-        let endings = answered(cases, |cases| Ending::of_all(self.model, cases));
+        let endings = answer_valid_cases(cases, |cases| Ending::of_all(self.model, cases));
         let samples = factors.iter().copied().zip(endings);
         samples
             .map(|(factor, result)| self.sample(factor, result))

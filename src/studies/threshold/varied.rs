@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use super::first_edge::lowest;
 use super::{EDGE_WIDTH, Factors, SearchedFactors, threshold};
 use crate::dynamics::{Directions, Variation};
-use crate::studies::ending::answered;
+use crate::studies::ending::answer_valid_cases;
 use crate::studies::runner::{Progress, Runner, RunnerError};
 use crate::studies::{StudyError, Watch};
 use crate::{Case, EndCondition, GroundMotion, Model, Request, SimulationError, Summary, Verdict};
@@ -155,7 +155,7 @@ fn lowest_factor_of(
         |factor: f64| -> Result<Case, SimulationError> { Ok((ground.scaled(factor)?, *request)) };
     let histories = |factors: &[f64]| -> Vec<(f64, Result<Summary, SimulationError>)> {
         let cases = factors.iter().map(|factor| case(*factor));
-        let histories = answered(cases, |cases| {
+        let histories = answer_valid_cases(cases, |cases| {
             model.simulate_all_until(EndCondition::Safe, cases)
         });
         factors.iter().copied().zip(histories).collect()

@@ -101,7 +101,7 @@ impl ElasticJoints {
         row: Row,
         properties: ElasticProperties,
     ) -> Result<Self, RowModelError> {
-        Self::beside(None, gravity_m_s2, row, properties)
+        Self::with_wall(None, gravity_m_s2, row, properties)
     }
 
     /// Returns the model of a column under this gravity, in m/s2, with the wall behind it. Contacts with the wall push, without friction; their stiffness
@@ -116,10 +116,10 @@ impl ElasticJoints {
     ) -> Result<Self, RowModelError> {
         let row = column.row()?;
         let wall = column.wall_behind_drums()?;
-        Self::beside(wall, gravity_m_s2, row, properties)
+        Self::with_wall(wall, gravity_m_s2, row, properties)
     }
 
-    fn beside(
+    fn with_wall(
         wall: Option<(Sway, f64)>,
         gravity_m_s2: f64,
         row: Row,
