@@ -28,6 +28,15 @@ def masked(text: str) -> str:
     return _TOKEN.sub(mask, text)
 
 
+def tokens(text: str) -> int:
+    """The number of tokens of masked source: a measure of size that does not depend on the formatter.
+
+    >>> tokens(masked('a::b(c, "d e") // f'))
+    8
+    """
+    return len(re.findall(r'"["\s]*"|\w+|::|->|=>|\S', text))
+
+
 def end_of_group(text: str, start: int) -> int:
     """The position after the bracket that closes the one at `start`.
 

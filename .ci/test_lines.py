@@ -30,6 +30,8 @@ PACKAGE = {
 COUNTED = {
     "build.rs": 1, "macros/src/lib.rs": 1, "words/answer.txt": 1, "page.html": 1,
     "src/lib.rs": 3, "src/below.rs": 81, "src/page.js": 1, "src/page.css": 1,
+    # 6 of each of the two small functions, 37 of lib.rs, 322 of below.rs.
+    "src, tokens of Rust": 371,
 }  # fmt: skip
 
 
