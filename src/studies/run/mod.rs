@@ -224,7 +224,7 @@ pub fn results(
     results.statement = statement(&all, quote, words(false));
     results.words = words(true);
     if comparison.is_some() && !results.files.is_empty() && !options.no_report {
-        results = comparison::with_page(results, &runs, &all);
+        results = comparison::with_page(results, &runs, &all).in_order(&FILES);
     }
     Ok(results)
 }
