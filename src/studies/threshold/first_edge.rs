@@ -155,7 +155,7 @@ impl FirstEdge {
         Self::search(strengths, width, history, |_| Ok(FineSearch::default()))
     }
 
-    /// Finds the first edge as [`FirstEdge::among`]. `below` searches below the safe strength.
+    /// Finds the first edge as [`FirstEdge::find_among`]. `below` searches below the safe strength.
     pub(in crate::studies) fn search(
         strengths: &[f64],
         width: f64,
