@@ -215,7 +215,7 @@ def test_records_of_a_suite_may_have_their_own_unit_and_scale() -> None:
 
 def test_a_record_named_like_a_number_keeps_its_name() -> None:
     record = Record.read(RECORDS / "wave-1.at2")
-    named = Record(record.time, record.acceleration, name="00123456789")
+    named = Record(record.time, record.acceleration, unit="g", name="00123456789")
     columns = suite(Column(4.0, 0.8), [named], scales=[0.5, 1.0], duration_s=30.0).columns()
     assert set(columns["record"]) == {"00123456789"}
     assert set(columns["sign"]) <= {1.0, -1.0}

@@ -1064,5 +1064,5 @@ def merge(
     if not isinstance(scenario, (Scenario, type(None))):
         raise TypeError(f"`scenario` must be a Scenario, not {type(scenario).__name__}")
     native = None if scenario is None else scenario._native
-    study, *results = _native.merge(list(parts), native)
-    return _warned(_KINDS[study](*results))
+    study, files, origin, texts = _native.merge(list(parts), native)
+    return _warned(_KINDS[study](files, origin, texts))
