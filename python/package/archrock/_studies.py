@@ -593,7 +593,10 @@ class Check(Files):
 
 
 _StudyResults = Union[OverturningMap, ProbabilityMap, ThresholdAlong, Suite, Ensemble]
-_KINDS: dict[str, Callable[[Iterable[tuple[str, bytes]], str], _StudyResults]] = {
+_TextColumns = Iterable[tuple[str, Sequence[str]]]
+_KINDS: dict[
+    str, Callable[[Iterable[tuple[str, bytes]], str, _TextColumns], _StudyResults]
+] = {
     "map": OverturningMap,
     "threshold_along": ThresholdAlong,
     "suite": Suite,
