@@ -107,7 +107,7 @@ fn run(
     };
     let destination = input.results(arguments.out.as_deref());
     let file = input.task(vec![scenario], Some(destination));
-    execution(kind, arguments, figure, options)?.of(vec![file])
+    execution(kind, arguments, figure, options)?.execute(vec![file])
 }
 
 /// Returns the execution of a study without samples.

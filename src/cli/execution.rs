@@ -37,7 +37,7 @@ struct LockedTasks {
 impl Execution {
     /// Computes the study for the tasks of all files. A failed task does not keep others from being computed, but results in the same folder are then not
     /// published.
-    pub fn of(&self, files: Vec<FileTasks>) -> Result<(), Failure> {
+    pub fn execute(&self, files: Vec<FileTasks>) -> Result<(), Failure> {
         let count: usize = files.iter().map(|file| file.tasks.len()).sum();
         let (mut summaries, mut failures, mut printed) = (Vec::new(), Vec::new(), Ok(()));
         for LockedTasks { name, root, tasks } in self.locked(files)? {

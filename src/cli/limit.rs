@@ -46,7 +46,7 @@ pub fn limit(arguments: &LimitArguments) -> Result<(), Failure> {
     let out = common.out.as_deref();
     let file = input.task(vec![scenario], out.map(Destination::of));
     let execution = execution(LIMIT, common, arguments.figure, Options::default())?;
-    execution.of(vec![file])
+    execution.execute(vec![file])
 }
 
 /// Makes the four-link model of a scenario. `what` is the subject and verb of the error for a column.

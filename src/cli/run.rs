@@ -111,7 +111,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         format: arguments.format,
         has_words_apart: arguments.to_stdout(),
     };
-    execution.of(files)
+    execution.execute(files)
 }
 
 impl Arguments {

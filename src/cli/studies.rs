@@ -121,7 +121,7 @@ pub fn map(arguments: &MapArguments) -> Result<(), Failure> {
     }
     let file = study.file(&input, scenarios);
     let execution = study.execution(MAP, style, Options::default());
-    execution.of(vec![file])
+    execution.execute(vec![file])
 }
 
 pub fn suite(study: &StudyArguments) -> Result<(), Failure> {
@@ -133,7 +133,7 @@ pub fn suite(study: &StudyArguments) -> Result<(), Failure> {
     let style = Style::of(study.figure.get()?);
     let file = study.file(&input, scenarios);
     let execution = study.execution(SUITE, style, Options::default());
-    execution.of(vec![file])
+    execution.execute(vec![file])
 }
 
 pub fn merge(arguments: &MergeArguments) -> Result<(), Failure> {

@@ -68,7 +68,9 @@ pub fn threshold(arguments: &Arguments) -> Result<(), Failure> {
         origin,
         destination: Some(root),
     };
-    study.execution(THRESHOLD, style, options).of(vec![file])
+    study
+        .execution(THRESHOLD, style, options)
+        .execute(vec![file])
 }
 
 /// Computes the threshold for each value of a key.
@@ -85,5 +87,5 @@ fn thresholds_along(
     }
     let file = study.file(input, vec![scenario]);
     let execution = study.execution(THRESHOLD_ALONG, style, options);
-    execution.of(vec![file])
+    execution.execute(vec![file])
 }

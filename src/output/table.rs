@@ -141,15 +141,15 @@ impl<C: Into<Self>> From<Option<C>> for Cell<'_> {
     }
 }
 
-/// A table in memory: the contents of its file, and the cells of its first rows.
+/// A table in memory: the contents of its file, and its first rows with rounded numbers.
 #[derive(Debug, Default)]
 pub(crate) struct Table {
     /// The table as CSV.
     pub(crate) csv: Vec<u8>,
     /// Names of the columns.
     pub(crate) header: Vec<String>,
-    /// The cells of the first rows, at most [`Table::FIRST`].
-    pub(crate) first: Vec<Vec<Cell<'static>>>,
+    /// The first rows, at most [`Table::FIRST`], with numbers of six digits.
+    pub(crate) first: Vec<Vec<String>>,
     /// Number of all rows.
     pub(crate) rows: usize,
     /// Whether each column has text in any row.
@@ -157,7 +157,7 @@ pub(crate) struct Table {
 }
 
 impl Table {
-    /// Largest number of rows whose cells are kept.
+    /// Largest number of first rows.
     pub(crate) const FIRST: usize = 1000;
 
     /// Makes a table of all rows.
@@ -193,7 +193,7 @@ impl Table {
         }
         if self.first.len() < Self::FIRST {
             self.first
-                .push(cells.iter().flat_map(Cell::alone).collect());
+                .push(cells.iter().flat_map(Cell::rounded).collect());
         }
     }
 
@@ -214,24 +214,13 @@ impl Cell<'_> {
         }
     }
 
-    /// Returns each cell alone: several numbers as one cell each.
-    fn alone(&self) -> Vec<Cell<'static>> {
+    /// Returns the text of each column, with numbers rounded to six digits.
+    fn rounded(&self) -> Vec<String> {
         match self {
-            Self::Nothing => vec![Cell::Nothing],
-            Self::Text(text) => vec![Cell::Text(text.clone())],
-            Self::Integer(number) => vec![Cell::Integer(*number)],
-            Self::Number(number) => vec![Cell::Number(*number)],
-            Self::Numbers(numbers) => numbers.iter().map(|number| Cell::Number(*number)).collect(),
-        }
-    }
-
-    /// Returns the cell as text, with numbers rounded to six digits.
-    pub(crate) fn rounded(&self) -> String {
-        match self {
-            Self::Nothing => String::new(),
-            Self::Text(text) => text.to_string(),
-            Self::Integer(number) => number.to_string(),
-            Self::Number(number) => plain(*number),
+            Self::Nothing => vec![String::new()],
+            Self::Text(text) => vec![text.to_string()],
+            Self::Integer(number) => vec![number.to_string()],
+            Self::Number(number) => vec![plain(*number)],
             Self::Numbers(numbers) => numbers.iter().map(|number| plain(*number)).collect(),
         }
     }

@@ -7,7 +7,7 @@ use askama::Template;
 use serde::{Deserialize, Serialize};
 
 use super::Results;
-pub(super) use super::page_cases::{CaseScenario, PageCases, kind_of};
+pub(super) use super::page_cases::{CaseScenario, PageCases, kind_of, text_without_studies};
 use super::page_table::PageTable;
 use crate::output::caption::{caption, caption_without_model};
 use crate::output::page::{BASE, OUTSIDE_MODEL, PROGRAM, STUDY, STYLE, SpotKind, script_safe};
@@ -127,7 +127,7 @@ impl Results {
         (picture, more): (DrawPicture<'_>, &[DrawPicture<'_>]),
     ) -> Self {
         let (said, spots) = (&self.statement, &cases.spots);
-        page.warnings = said.warnings.clone();
+        page.warnings = said.warnings();
         page.is_aligned = said.is_table;
         let verdict = said.verdict.replace('\n', "; ");
         let details = said.details_outdented();

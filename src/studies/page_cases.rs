@@ -71,15 +71,8 @@ pub(super) struct PageCases {
 impl PageCases {
     /// Adds the text of a scenario, given as JSON, and returns its index. Tables of studies are left out, unless the cases are `suites`.
     pub(super) fn add_text(&mut self, scenario: &Value, suites: bool) -> usize {
-        let mut scenario = scenario.clone();
-        if let Value::Object(tables) = &mut scenario {
-            tables.retain(|name, _| {
-                let is_of_suites = suites && name == "suite";
-                is_of_suites || !StudyTable::is_name(name)
-            });
-        }
         self.has_files |= scenario.pointer("/ground/record").is_some() || suites;
-        self.texts.push(toml_text(&scenario));
+        self.texts.push(text_without_studies(scenario, suites));
         self.texts.len() - 1
     }
 
@@ -157,6 +150,17 @@ impl PageCases {
             scenario,
         );
     }
+}
+
+/// Returns the text of a scenario, given as JSON, without the tables of studies; `suites` keeps that of suites.
+pub(super) fn text_without_studies(scenario: &Value, suites: bool) -> String {
+    let mut scenario = scenario.clone();
+    if let Value::Object(tables) = &mut scenario {
+        let is_kept =
+            |name: &str| !StudyTable::is_name(name) || suites && name == StudyTable::Suite.name();
+        tables.retain(|name, _| is_kept(name));
+    }
+    toml_text(&scenario)
 }
 
 /// Returns the mark of a verdict; `None` without a history.

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::output::{Cell, Table};
+use crate::output::Table;
 
 /// A table with rounded numbers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -21,13 +21,10 @@ pub(super) struct PageTable {
 impl PageTable {
     /// Takes the first rows of a table, with rounded numbers.
     pub(super) fn of(name: &str, table: &Table) -> Self {
-        let rows = table.first.iter();
         Self {
             name: name.to_owned(),
             header: table.header.clone(),
-            rows: rows
-                .map(|row| row.iter().map(Cell::rounded).collect())
-                .collect(),
+            rows: table.first.clone(),
             all: table.rows,
             text_columns: table.text_columns(),
         }

@@ -52,10 +52,12 @@ impl Warnings {
         &self.warnings
     }
 
-    /// Returns the warnings that limit the answer: all but those about unlikely numbers.
-    pub fn limits(&self) -> &[String] {
+    /// Returns the warnings about unlikely numbers, and those that limit the answer.
+    pub(super) fn parts(&self) -> [&[String]; 2] {
         // A warning stands for each unlikely number.
-        self.warnings.get(self.unlikely.len()..).unwrap_or_default()
+        let first = self.unlikely.len().min(self.warnings.len());
+        let (unlikely, limits) = self.warnings.split_at(first);
+        [unlikely, limits]
     }
 
     /// Returns the warnings with more that limit the answer.
@@ -77,9 +79,9 @@ pub struct Statement {
     pub verdict: String,
     /// Details, in indented lines; empty without details.
     pub details: String,
-    /// All warnings.
-    pub warnings: Vec<String>,
-    /// The warnings that limit the answer, as opposed to those about unlikely numbers.
+    /// The warnings about unlikely numbers.
+    pub unlikely: Vec<String>,
+    /// The warnings that limit the answer.
     pub limits: Vec<String>,
     /// The answer that may be quoted, or the reason why there is none.
     pub quote: Option<String>,
@@ -90,12 +92,12 @@ pub struct Statement {
 impl Statement {
     /// Makes the statements of a report.
     pub fn of<R: Report>(report: &R) -> Self {
-        let warnings = report.warnings();
+        let [unlikely, limits] = report.warnings().parts();
         Self {
             verdict: report.verdict(),
             details: render(report).trim_end().to_owned(),
-            warnings: warnings.all().to_vec(),
-            limits: warnings.limits().to_vec(),
+            unlikely: unlikely.to_vec(),
+            limits: limits.to_vec(),
             quote: report.quote().map(str::to_owned),
             is_table: R::IS_TABLE,
         }
@@ -112,6 +114,11 @@ impl Statement {
     /// Returns verdict, limits and answer in words, without details.
     pub fn in_brief(&self) -> String {
         self.lines("")
+    }
+
+    /// Returns all warnings.
+    pub(super) fn warnings(&self) -> Vec<String> {
+        [&*self.unlikely, &*self.limits].concat()
     }
 
     /// Returns the details without their indent.

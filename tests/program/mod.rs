@@ -10,6 +10,7 @@ mod long_work;
 mod names;
 mod one_answer;
 mod paper;
+mod printed;
 mod proposals;
 mod public_api;
 mod readme;

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::slice;
 
-use archrock::scenario::{Assignment, ReadOptions, Scenario, Source};
+use archrock::scenario::{Assignment, MODELS, ReadOptions, Scenario, Source};
 use serde_json::Value;
 
 use crate::common::documents::repository;
@@ -293,4 +293,40 @@ fn check_text(text: &Text) -> [usize; 2] {
         counts[usize::from(!agree)] += 1;
     }
     counts
+}
+
+/// A kind of model states what its models have, without making one.
+#[test]
+fn a_kind_of_model_agrees_with_its_models() {
+    let text = "[arch]\nspan_m = 6.0\nrise_m = 2.0\nthickness_m = 0.6\nmeasured_at = \"mean\"\nvoussoirs = 7\n[ground.half_sine]\namplitude_g = 0.3\nduration_s = 0.2\n\
+                [elastic_joints]\nnormal_stiffness_gpa_m = 10\n";
+    for kind in MODELS {
+        let options = ReadOptions {
+            model: Some(kind),
+            ..ReadOptions::default()
+        };
+        let scenario = Scenario::of(&Source::of_text(text, "s.toml"), &options).unwrap();
+        let model = scenario.model().unwrap();
+        assert_eq!(kind.has_joints, model.row().is_some(), "{}", kind.name);
+        assert_eq!(
+            kind.has_mechanism,
+            model.as_mechanisms().is_some(),
+            "{}",
+            kind.name
+        );
+        assert_eq!(
+            kind.is_repeated,
+            !model.repetitions().is_empty(),
+            "{}",
+            kind.name
+        );
+        assert_eq!(kind.has_lanes, model.lanes() > 1, "{}", kind.name);
+        assert_eq!(
+            kind.has_stiffness,
+            !scenario.variations().unwrap().is_empty(),
+            "{}",
+            kind.name
+        );
+        assert_eq!(kind.has_stiffness, model.has_pressures(), "{}", kind.name);
+    }
 }

@@ -6,17 +6,16 @@ use askama::Template;
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
 
 use super::picture::{ColoredCells, Drawn};
 use super::{CellRow, OverturningMap, label};
 use crate::output::caption::caption;
 use crate::output::page::{BASE, PROGRAM, STYLE, script_safe};
 use crate::output::{Figure, filters, render};
-use crate::scenario::{Quantity, StudyTable, toml_text};
+use crate::scenario::Quantity;
 use crate::studies::Statement;
 use crate::studies::ending::columns::NUMBERS;
-use crate::studies::page::assumptions;
+use crate::studies::page::{assumptions, text_without_studies};
 
 const SCRIPT: &str = include_str!("page/page.js");
 
@@ -137,7 +136,7 @@ impl ColoredCells {
             }),
             what: caption(map.scenario, &map.axes),
             verdict: said.verdict.clone(),
-            warnings: said.warnings.clone(),
+            warnings: said.warnings(),
             words: said.details_outdented(),
             assumptions: assumptions(&[], &[map.scenario.motion.kind]),
             kinds: BASE64_STANDARD.encode(kinds),
@@ -176,10 +175,6 @@ pub(super) fn columns(rows: &[CellRow]) -> impl Iterator<Item = CellNumbers> {
 /// the location of the page nor on the keys of the scenario file.
 fn command(map: &OverturningMap<'_>) -> String {
     // A command of one cell has no samples and no other studies.
-    let mut table = map.base.to_json();
-    if let Value::Object(tables) = &mut table {
-        tables.retain(|name, _| !StudyTable::is_name(name));
-    }
     let set = map.axes.iter().zip(&map.paths);
     let set = set.zip(["cell.x", "cell.y"]).map(|((axis, path), place)| {
         let of_value = match axis.quantity {
@@ -189,6 +184,6 @@ fn command(map: &OverturningMap<'_>) -> String {
         format!(" --set {path}={{{of_value}{place}}}")
     });
     let set: String = set.collect();
-    let text = toml_text(&table);
+    let text = text_without_studies(&map.base.to_json(), false);
     format!("archrock run -{set} --out cell <<'END'\n{text}END\n")
 }

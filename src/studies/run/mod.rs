@@ -52,7 +52,7 @@ use self::words::{Files, Printed, Words};
 pub use self::words::{records_in_words, words_of};
 use super::comparison::Comparison;
 use super::quotable::{self, ModelAnswer};
-use super::report::{Statement, Warnings};
+use super::report::Statement;
 use super::{Progress, Results, StudyError, Watch};
 use crate::dynamics::repeatability::Repetitions;
 use crate::dynamics::{Directions, FallEnd, Repeatability, Variations};
@@ -239,17 +239,20 @@ fn statement(all: &[ModelResults], quote: Option<&str>, details: String) -> Stat
             _ => format!("{}: {}", summary.label(), verdict.trim()),
         }
     });
-    let together = |of: fn(&Warnings) -> &[String]| -> Vec<String> {
-        summaries()
-            .flat_map(|summary| of(&summary.warnings))
-            .cloned()
-            .collect()
-    };
+    // Models share most warnings.
+    let [mut unlikely, mut limits] = [Vec::new(), Vec::new()];
+    for summary in summaries() {
+        let own = summary.warnings.parts();
+        for (all, own) in [&mut unlikely, &mut limits].into_iter().zip(own) {
+            let new: Vec<_> = own.iter().filter(|one| !all.contains(*one)).collect();
+            all.extend(new.into_iter().cloned());
+        }
+    }
     Statement {
         verdict: verdicts.collect::<Vec<_>>().join("\n"),
         details,
-        warnings: together(Warnings::all),
-        limits: together(Warnings::limits),
+        unlikely,
+        limits,
         quote: quote.map(str::to_owned),
         is_table: true,
     }

@@ -36,7 +36,7 @@ pub fn report(
     if let Value::Object(tables) = &mut unmoved {
         tables.shift_remove("supports");
     }
-    cases.add_text(&unmoved, false);
+    let text = cases.add_text(&unmoved, false);
     let settled = scenario.motion.supports().unwrap_or_default();
     let further = if spread.is_further() { " further" } else { "" };
     for (path, stage) in rows(spread) {
@@ -52,7 +52,7 @@ pub fn report(
         );
         let movements = settled + path.direction.movements(stage.movement_m);
         cases.push((SpotKind::Point, false), words, || {
-            Some(CaseScenario::of(0, values_of(movements)))
+            Some(CaseScenario::of(text, values_of(movements)))
         });
     }
     let own = "the supports move slowly, and joints do not slip; the arch rests on three hinges, or on more with ties, and snaps to others";

@@ -95,9 +95,9 @@ impl ReportedStudy for Along<'_> {
         let title = self.scenario.title.as_deref();
         let title = title.unwrap_or("Threshold of overturning");
         let mut cases = PageCases::default();
-        cases.add_text(&self.scenario.to_json(), false);
+        let text = cases.add_text(&self.scenario.to_json(), false);
         for row in &rows {
-            self.add_case(&mut cases, row);
+            self.add_case(&mut cases, row, text);
         }
         let draw = |figure, spots: &[_]| picture::draw(figure, (title, key), &report.values, spots);
         let results = Results::of(SUMMARY, &report)?
@@ -129,8 +129,8 @@ fn limits(
 }
 
 impl Along<'_> {
-    /// Adds the threshold of a value to a page.
-    fn add_case(&self, cases: &mut PageCases, row: &AlongRow) {
+    /// Adds the threshold of a value to a page, whose text with this index is the scenario.
+    fn add_case(&self, cases: &mut PageCases, row: &AlongRow, text: usize) {
         let (mark, words) = match &row.edge {
             Ok(edge) => {
                 let [safe, first] = rounded_edge([edge.survives_up_to, edge.factor]);
@@ -157,7 +157,10 @@ impl Along<'_> {
         let words = format!("{} {}: {words}", self.options.along.key, plain(row.value));
         cases.push(mark, words, || {
             self.variant(row.value).ok()?;
-            Some(CaseScenario::of(0, [(&self.options.along.key, row.value)]))
+            Some(CaseScenario::of(
+                text,
+                [(&self.options.along.key, row.value)],
+            ))
         });
     }
 
