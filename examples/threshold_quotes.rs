@@ -22,6 +22,7 @@ use std::time::{Duration, Instant};
 
 mod random;
 
+use archrock::studies::Counted;
 use archrock::{
     Directions, EndCondition, Factors, GroundMotion, Model, Progress, Pulse, Request, Runner,
     Scenario, Sway, Threshold, Verdict, threshold,
@@ -69,8 +70,8 @@ struct Estimates {
 }
 
 impl Estimates {
-    fn note(&mut self, Progress { done, all, search }: Progress) {
-        let is_open = search.is_some_and(|step| step.is_open);
+    fn note(&mut self, Progress { done, all, counted }: Progress) {
+        let is_open = matches!(counted, Counted::Search(step) if step.is_open);
         if done < self.done || is_open != self.is_open {
             self.end_step();
         }

@@ -10,7 +10,7 @@ use archrock::studies;
 use archrock::studies::run::Sinks;
 use archrock::studies::threshold::{AlongOptions, Factors};
 use archrock::studies::{
-    Computation, Options, Results, RowSource, Runner, Shard, StudyError, StudyKind, Style, Task,
+    Computation, Options, Results, Runner, Shard, StudyError, StudyKind, Style, Task, Work,
 };
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -79,9 +79,13 @@ fn compute(
             shard: *shard,
             resume: true,
         });
-        let rows = RowSource::Compute(runner, task, watch);
+        let work = Work {
+            runner,
+            task,
+            watch,
+        };
         let (scenarios, sinks) = (slice::from_ref(&*scenario), Sinks::default());
-        kind.compute(scenarios, &options, STYLE, rows, sinks)
+        kind.compute(scenarios, &options, STYLE, work, sinks)
             .map_err(failed)
     })
 }
@@ -140,7 +144,7 @@ pub fn compute_part(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<PathBuf> {
     let (kind, runner) = (kind_of(kind)?, runner(threads));
-    if !kind.has_parts {
+    if !kind.has_parts() {
         return Err(refused(format!("{:?} has no parts", kind.name)));
     }
     let shard = shard.parse::<Shard>().map_err(refused)?;

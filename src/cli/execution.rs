@@ -9,9 +9,9 @@ use serde_json::Value;
 
 use super::models::warn_of;
 use super::progress::is_quiet;
-use super::results::{CommandResults, Heading};
+use super::results::CommandResults;
 use super::scenario_file::{Destination, FileTasks, ScenarioTask};
-use super::study::{StudyJob, WorkOptions};
+use super::study::{StudyJob, WorkOptions, has_uncertain};
 use super::{Failure, Format, print, print_all};
 
 /// The study of a command, and the options with which it is executed.
@@ -38,7 +38,13 @@ impl Execution {
     /// Computes the study for the tasks of all files. A failed task does not keep others from being computed, but results in the same folder are then not
     /// published.
     pub fn execute(&self, files: Vec<FileTasks>) -> Result<(), Failure> {
-        let count: usize = files.iter().map(|file| file.tasks.len()).sum();
+        let tasks = files.iter().flat_map(|file| &file.tasks);
+        let mut scenarios = tasks.clone().flat_map(|task| &task.scenarios);
+        let count = tasks.count();
+        if self.work.resume && !self.kind.has_parts() && !scenarios.any(has_uncertain) {
+            let message = "--resume continues the samples of [uncertain], which the scenario lacks: leave it out";
+            return Err(message.into());
+        }
         let (mut summaries, mut failures, mut printed) = (Vec::new(), Vec::new(), Ok(()));
         for LockedTasks { name, root, tasks } in self.locked(files)? {
             let mut job = StudyJob {
@@ -91,8 +97,8 @@ impl Execution {
 
     /// Prints the results of a task in words.
     fn print(&self, found: &CommandResults, task: &ScenarioTask) -> Result<(), Failure> {
-        let heading = Heading::of(self.kind, &task.scenarios);
-        let words = || found.words(self.kind, &heading, is_quiet());
+        let title = task.scenarios[0].title.as_deref();
+        let words = || found.words(self.kind, title, is_quiet());
         match self.format {
             Format::Json => Ok(()),
             Format::Text if !self.has_words_apart => print(&words()),

@@ -4,7 +4,6 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::process;
 use std::sync::atomic::Ordering;
-use std::time::Duration;
 
 use archrock::output::{Background, FilmFormat, Origin, PrintError, check_named_file};
 use archrock::scenario::{Scenario, Varied};
@@ -15,9 +14,9 @@ use super::Failure;
 use super::interrupts::{INTERRUPTED, INTERRUPTED_CODE, listen_to_interrupts};
 use super::models::{ModelsOption, warn_of};
 use super::named_files::write_named;
-use super::progress::{Display, print_always, print_status, progress_text};
+use super::progress::{Display, print_always, print_status};
 use super::scenario_file::ScenarioFile;
-use super::study::{PATIENCE, publish, simulated};
+use super::study::publish;
 
 #[derive(clap::Args)]
 pub struct Arguments {
@@ -115,20 +114,16 @@ fn make(
 ) -> Result<(usize, Vec<u8>), StudyError> {
     let model = scenario.model();
     let model = model.map_err(|error| StudyError::Scenario(error.to_string()))?;
-    let film = Film::simulate(scenario, &*model, options, &mut watch(simulated))?;
-    let drawn = |Progress { done, all, .. }, elapsed| {
-        let progress = progress_text(done, all - done, elapsed);
-        format!("{done} of {all} pictures, {progress}")
-    };
-    Ok((film.pictures(), film.encode(format, &mut watch(drawn))?))
+    let film = Film::simulate(scenario, &*model, options, &mut watch())?;
+    Ok((film.pictures(), film.encode(format, &mut watch())?))
 }
 
-/// Shows progress in these words; ends the work after Ctrl-C.
-fn watch(words: impl Fn(Progress, Duration) -> String) -> impl FnMut(Progress) -> ControlFlow<()> {
-    let mut display = Display::new(PATIENCE);
+/// Shows progress; ends the work after Ctrl-C.
+fn watch() -> impl FnMut(Progress) -> ControlFlow<()> {
+    let mut display = None;
     move |progress| {
-        let part = progress.done as f64 / progress.all.max(1) as f64;
-        display.show(part, |elapsed| words(progress, elapsed));
+        let display = display.get_or_insert_with(|| Display::new(progress));
+        display.show(progress);
         match INTERRUPTED.load(Ordering::Relaxed) {
             true => ControlFlow::Break(()),
             false => ControlFlow::Continue(()),

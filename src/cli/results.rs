@@ -1,8 +1,7 @@
 //! The results of a command, and their text and JSON on standard output.
 
 use archrock::output::{Folder, PictureFormat};
-use archrock::scenario::{ModelKind, Scenario};
-use archrock::studies::run::records_in_words;
+use archrock::scenario::ModelKind;
 use archrock::studies::{Comparison, ModelAnswer, Results, StudyKind, quoted_in_words};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
@@ -69,7 +68,7 @@ impl ModelResults {
 
     /// Returns the JSON of all results. A run has that of its samples already.
     fn summary(&self, kind: StudyKind) -> Result<Value, Failure> {
-        let samples = self.samples.iter().filter(|_| !kind.is_history);
+        let samples = self.samples.iter().filter(|_| !kind.reports_samples);
         let samples = samples.map(|one| {
             let summary = one.results.summary.clone();
             match self.samples.len() {
@@ -114,10 +113,11 @@ impl CommandResults {
     }
 
     /// Returns the results in words; only the statements that `--quiet` leaves if they are `brief`.
-    pub fn words(&self, kind: StudyKind, heading: &Heading<'_>, brief: bool) -> String {
-        let title = heading.title.filter(|_| kind.has_title);
+    pub fn words(&self, kind: StudyKind, title: Option<&str>, brief: bool) -> String {
+        let title = title.filter(|_| kind.has_title);
         let mut text = title.map_or(String::new(), |title| format!("{title}\n"));
-        text.extend((!brief).then_some(heading.lines.as_str()));
+        let input = self.of_models.first().filter(|_| !brief);
+        text.extend(input.map(|one| one.own.statement.input.as_str()));
         for one in &self.of_models {
             let label = (self.of_models.len() > 1).then_some(one.model.label);
             text.extend(label.map(|label| format!("{label}\n")));
@@ -148,26 +148,6 @@ impl CommandResults {
         let peaks = self.compared.as_ref().map(|peaks| peaks.summary.clone());
         let all = Comparison::new(models, self.quote(), peaks);
         serde_json::to_value(all).map_err(|error| Failure::Work(error.to_string()))
-    }
-}
-
-/// The lines before the results of a task.
-pub struct Heading<'t> {
-    /// Title of the scenario.
-    pub title: Option<&'t str>,
-    /// The records of a history, one line each.
-    pub lines: String,
-}
-
-impl<'t> Heading<'t> {
-    /// Makes the lines before the results of scenarios that differ only in their models.
-    pub fn of(kind: StudyKind, scenarios: &'t [Scenario]) -> Self {
-        let records = scenarios.first().filter(|_| kind.is_history);
-        let title = scenarios.first();
-        Self {
-            title: title.and_then(|one| one.title.as_deref()),
-            lines: records.map(records_in_words).unwrap_or_default(),
-        }
     }
 }
 

@@ -12,7 +12,7 @@ use clap::ValueEnum;
 
 use super::figure::FigureOption;
 use super::progress::is_quiet;
-use super::results::{CommandResults, Heading, describe};
+use super::results::{CommandResults, describe};
 use super::scenario_file::Destination;
 use super::study::publish;
 use super::study_options::StudyArguments;
@@ -159,12 +159,8 @@ pub fn merge(arguments: &MergeArguments) -> Result<(), Failure> {
     publish(&folder)?;
     let place = describe(&folder, &results);
     let found = CommandResults::alone(merged.model, results, place);
-    let heading = Heading {
-        title: merged.title.as_deref(),
-        lines: String::new(),
-    };
     match arguments.format {
         Format::Json => print(&pretty(&found.summary(kind)?)),
-        Format::Text => print(&found.words(kind, &heading, is_quiet())),
+        Format::Text => print(&found.words(kind, merged.title.as_deref(), is_quiet())),
     }
 }

@@ -4,21 +4,20 @@ use std::io::{self, BufWriter};
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 use std::sync::atomic::Ordering;
-use std::time::Duration;
 use std::{process, slice};
 
 use archrock::output::Folder;
 use archrock::scenario::Scenario;
 use archrock::studies::run::Sinks;
 use archrock::studies::{
-    Computation, Options, PEAKS_FILES, PartError, PartErrorKind, PartFile, Progress, Results,
-    RowSource, Runner, RunnerError, SearchStep, Shard, StudyError, StudyKind, Style, Task,
-    peak_results, rows_in,
+    Computation, Counted, Options, PEAKS_FILES, PartError, PartErrorKind, PartFile, Progress,
+    Results, Runner, RunnerError, Shard, StudyError, StudyKind, Style, Task, Work, peak_results,
+    rows_in,
 };
 
 use super::Failure;
 use super::interrupts::{INTERRUPTED, INTERRUPTED_CODE, listen_to_interrupts, uninterrupted};
-use super::progress::{Display, print_always, print_status, progress_text, remaining_time};
+use super::progress::{Display, print_always, print_status};
 use super::results::{CommandResults, ModelResults, SampleResults, describe};
 
 /// Options of long computations.
@@ -29,7 +28,7 @@ pub struct WorkOptions {
     threads: Option<u16>,
     /// Continue an interrupted run, if there is one.
     #[arg(long)]
-    resume: bool,
+    pub resume: bool,
     /// Compute only part I of N, into a file for `archrock merge PART...`.
     #[arg(long, value_name = "I/N")]
     shard: Option<Shard>,
@@ -116,7 +115,7 @@ impl StudyJob {
 
     /// Returns an error if the results of a study cannot be written to the folder. Of a run, only the last name is known in advance.
     fn check_names(&self, kind: StudyKind, folder: Option<&Folder>) -> Result<(), Failure> {
-        let first = if kind.is_history {
+        let first = if kind.streams_tables {
             kind.files.len() - 1
         } else {
             0
@@ -141,7 +140,7 @@ impl StudyJob {
         let mut are_compared = several && divided && kind.has_rotations;
         for scenario in scenarios {
             let model = scenario.motion.kind;
-            let own = folder.of_model(model, divided || (several && kind.is_history));
+            let own = folder.of_model(model, divided || (several && kind.streams_tables));
             self.check_names(kind, Some(&own))?;
             if let Some(samples) = kind.samples.filter(|_| has_uncertain(scenario)) {
                 let samples_folder = folder.of_model(model, several).within(samples.name);
@@ -171,28 +170,25 @@ impl StudyJob {
             shard,
             resume: work.resume,
         });
-        self.check_names(kind, folder.filter(|_| !kind.is_history))?;
+        self.check_names(kind, folder.filter(|_| !kind.streams_tables))?;
         let threads = work.threads.and_then(|n| NonZeroUsize::new(n.into()));
         let runner = Runner { threads };
         let (mut shown, mut last) = (None, (0, false));
         let samples_are_kept = !self.finished_parts.is_empty();
         let mut watch = |progress: Progress| {
-            let Progress { done, all, .. } = progress;
+            let Progress { done, counted, .. } = progress;
             // The history of the next model, or the next step of a search begins.
-            let is_open = progress.search.is_some_and(|step| step.is_open);
+            let is_open = matches!(counted, Counted::Search(step) if step.is_open);
             let (before, was_open) = std::mem::replace(&mut last, (done, is_open));
             if done < before || is_open != was_open {
                 shown = None;
             }
-            let (display, before) = shown.get_or_insert_with(|| {
+            let display = shown.get_or_insert_with(|| {
                 // Ctrl-C ends a history at once, unless samples before it listen already.
-                let display = if kind.is_history {
-                    Display::new(PATIENCE)
-                } else {
+                if counted != Counted::Milliseconds {
                     listen_to_interrupts();
-                    Display::new(Duration::ZERO)
-                };
-                (display, done)
+                }
+                Display::new(progress)
             });
             // No row is being written, and a study with a file has all finished rows in it, so it is safe to exit.
             if INTERRUPTED.load(Ordering::Relaxed) {
@@ -200,11 +196,7 @@ impl StudyJob {
                 print_always(&interrupted(kind, task, progress, samples_are_kept));
                 process::exit(INTERRUPTED_CODE);
             }
-            let part = done as f64 / all.max(1) as f64;
-            display.show(part, |elapsed| match kind.is_history {
-                true => simulated(progress, elapsed),
-                false => in_words(progress, *before, elapsed),
-            });
+            display.show(progress);
             ControlFlow::Continue(())
         };
         let sinks = Sinks {
@@ -213,8 +205,12 @@ impl StudyJob {
             samples,
             ..Sinks::default()
         };
-        let rows = RowSource::Compute(runner, task, &mut watch);
-        let done = kind.compute(scenarios, &self.options, self.style, rows, sinks);
+        let work = Work {
+            runner,
+            task,
+            watch: &mut watch,
+        };
+        let done = kind.compute(scenarios, &self.options, self.style, work, sinks);
         drop(shown);
         let done = done.map_err(|error| match error {
             StudyError::Scenario(message) => Failure::Input(format!("{}: {message}", self.file)),
@@ -269,7 +265,7 @@ impl StudyJob {
 
     /// Returns true if each model is computed alone, with results in a folder of its own.
     fn is_divided(&self, kind: StudyKind, scenarios: &[Scenario]) -> bool {
-        scenarios.len() > 1 && !kind.takes_models
+        scenarios.len() > 1 && !kind.takes_models()
     }
 
     /// Computes a study of scenarios that differ in their models of motion, after the samples of those that have `[uncertain]`, whose results
@@ -286,13 +282,9 @@ impl StudyJob {
         if self.work.is_part() && folder.is_none() {
             return Err("--shard writes a file: name a folder for it with --out".into());
         }
-        if self.work.is_part() && !has_samples && !kind.has_parts {
+        if self.work.is_part() && !has_samples && !kind.has_parts() {
             let message =
                 "--shard computes a part of the samples of [uncertain], which the scenario lacks";
-            return Err(message.into());
-        }
-        if self.work.resume && !has_samples && !kind.has_parts && !kind.is_history {
-            let message = "--resume continues the samples of [uncertain], which the scenario lacks: leave it out";
             return Err(message.into());
         }
         if let Some((folder, samples)) = folder.zip(kind.samples).filter(|_| !has_samples) {
@@ -333,7 +325,7 @@ impl StudyJob {
             .map(|(scenario, one)| (scenario, &one.results))
             .collect();
         // The words of a run name its files.
-        let folder_of_own = folder.filter(|_| !kind.is_history);
+        let folder_of_own = folder.filter(|_| !kind.streams_tables);
         Ok(Some(ModelResults {
             model: scenarios[0].motion.kind,
             compared: self.compare(kind, &models, folder)?,
@@ -384,7 +376,7 @@ fn comparison_folder(folder: &Folder, kind: StudyKind) -> Folder {
     }
 }
 
-fn has_uncertain(scenario: &Scenario) -> bool {
+pub fn has_uncertain(scenario: &Scenario) -> bool {
     scenario.uncertain.is_some()
 }
 
@@ -398,9 +390,6 @@ fn warn_of_rows(folder: &Folder, samples: StudyKind) {
     }
 }
 
-/// A shorter history shows no progress.
-pub const PATIENCE: Duration = Duration::from_secs(1);
-
 /// The message when Ctrl-C ends a computation.
 fn interrupted(
     kind: StudyKind,
@@ -410,47 +399,15 @@ fn interrupted(
 ) -> String {
     let file = task.map(|task| task.folder.join(task.shard.file_name(kind.name)));
     match file {
-        _ if !kind.has_parts && samples_are_kept => {
+        _ if !kind.has_parts() && samples_are_kept => {
             "interrupted: the samples are kept; continue with --resume".to_owned()
         }
-        _ if !kind.has_parts => "interrupted".to_owned(),
+        _ if !kind.has_parts() => "interrupted".to_owned(),
         Some(file) if !file.exists() => {
             format!("interrupted; {} was removed meanwhile", file.display())
         }
         _ => format!("interrupted: {done} of {all} cases are done; continue with --resume"),
     }
-}
-
-/// The progress of a study of many cases, of which some were done before the display.
-fn in_words(Progress { done, all, search }: Progress, before: usize, elapsed: Duration) -> String {
-    let new = done.saturating_sub(before);
-    let left = progress_text(new, all.saturating_sub(done), elapsed);
-    match search {
-        Some(step) => searched(done, step, &left),
-        None => format!("{done} of {all} cases, {left}"),
-    }
-}
-
-/// The progress of a step of a search. The duration of an open step is unknown.
-fn searched(done: usize, step: SearchStep, left: &str) -> String {
-    let safe = match step.safe_up_to {
-        Some(factor) => format!("survives up to {factor:.4} so far"),
-        None => "survives no factor so far".to_owned(),
-    };
-    match step.is_open {
-        true => format!("{safe}; {done} factors tried"),
-        false => format!("{safe}; {left} in this step"),
-    }
-}
-
-/// The progress of a history, in milliseconds.
-pub fn simulated(Progress { done, all, .. }: Progress, elapsed: Duration) -> String {
-    if done == all {
-        return "repeating the history with other steps".to_owned();
-    }
-    let [time_s, end_s] = [done, all].map(|time| time as f64 / 1e3);
-    let left = remaining_time(time_s / end_s, elapsed);
-    format!("{time_s:.2} of {end_s} s simulated, {left}")
 }
 
 fn stdout() -> Box<dyn io::Write> {

@@ -10,7 +10,6 @@ use super::ensemble::uncertain_map::CellsOfSamples;
 use super::ensemble::uncertain_run::Histories;
 use super::ensemble::uncertain_suite::Capacities;
 use super::ensemble::uncertain_threshold::FirstEdges;
-use super::ensemble::{Ensemble, Question};
 use super::limit;
 use super::map::OverturningMap;
 use super::part::{self, PartFile};
@@ -19,8 +18,8 @@ use super::spread::{self, Direction};
 use super::suite::{Heading, RecordSuite};
 use super::threshold::along::{Along, AlongOptions};
 use super::threshold::{self, Factors};
-use super::{ReportedStudy, Results, Runner, StudyError, Style, Task, Watch, verify};
-use crate::output::Origin;
+use super::{Results, Runner, Study, StudyError, Style, Task, Watch, verify};
+use crate::output::{Figure, Origin};
 use crate::scenario::{ModelKind, Scenario, Varied};
 
 /// Options of studies that are not part of the scenario.
@@ -49,14 +48,14 @@ impl Options {
     }
 }
 
-/// The source of the rows of a study.
-pub enum RowSource<'w> {
-    /// They are computed: for a task in its folder, where the work can be resumed, otherwise in memory.
-    Compute(Runner, Option<Task<'w>>, Watch<'w>),
-    /// They are read from all parts.
-    Merge(&'w [PathBuf]),
-    /// They are those of a map, given as JSON in the order of the cells.
-    Given(&'w [String]),
+/// The means with which a study is computed.
+pub struct Work<'w> {
+    /// The threads.
+    pub runner: Runner,
+    /// The task in a folder, where the work of many cases can be divided and resumed; `None`: it is done in memory.
+    pub task: Option<Task<'w>>,
+    /// Receives the progress, and can cancel the work.
+    pub watch: Watch<'w>,
 }
 
 /// Chooses the style of merged results, from the scenario of the parts if that is read, or refuses options that do not fit the study.
@@ -78,25 +77,75 @@ pub enum Computation {
     },
 }
 
-impl From<Results> for Computation {
-    fn from(results: Results) -> Self {
-        Self::Complete(Box::new(results), None)
-    }
+type ComputeModels =
+    fn(&[Scenario], &Options, Figure, Work<'_>, Sinks<'_>) -> Result<Results, StudyError>;
+
+/// Makes a study of many cases, or explains the change that the scenario needs.
+type MakeStudy = for<'s> fn(&'s Scenario, &Options) -> Result<Box<dyn AnyStudy + 's>, String>;
+
+/// The way from scenarios to results. The scenarios of a study differ only in their models of motion.
+#[derive(Clone, Copy, Debug)]
+enum Way {
+    /// All models together, in a history or search for each.
+    Models(ComputeModels),
+    /// One model, without histories of its own cases.
+    Whole(fn(&Scenario, &Options, Figure) -> Result<Results, StudyError>),
+    /// One model and many cases, whose rows can be computed in parts.
+    Cases(MakeStudy),
 }
 
-impl<'w> RowSource<'w> {
-    /// Returns the threads and the progress of a study without parts.
-    fn runner_and_watch(self) -> Result<(Runner, Watch<'w>), StudyError> {
-        match self {
-            Self::Compute(runner, _, watch) => Ok((runner, watch)),
-            _ => Err(StudyError::scenario("this study has no parts")),
+/// A study of many cases, whatever its rows are.
+trait AnyStudy {
+    fn compute(&self, style: Style, work: Work<'_>) -> Result<Computation, StudyError>;
+
+    /// Makes the results of the rows in all parts.
+    fn merge(&self, style: Style, parts: &[PathBuf]) -> Result<Results, StudyError>;
+
+    /// Makes the results of rows given as JSON, in the order of the cases.
+    fn results_of(&self, style: Style, rows: &[String]) -> Result<Results, StudyError>;
+}
+
+impl<S: Study> AnyStudy for S {
+    fn compute(&self, style: Style, work: Work<'_>) -> Result<Computation, StudyError> {
+        let Work {
+            runner,
+            task,
+            watch,
+        } = work;
+        let (rows, part) = match task {
+            None => (runner.rows(self, watch)?, None),
+            // This arm leaves the code of parts out of the module for a browser.
+            _ if cfg!(target_family = "wasm") => return Err(no_parts()),
+            Some(task) => match runner.rows_in(self, task, watch)? {
+                (Some(rows), part) => (rows, Some(part)),
+                (None, part) => {
+                    let all = self.count();
+                    let cases = task.shard.cases(all).count();
+                    return Ok(Computation::Partial { part, cases, all });
+                }
+            },
+        };
+        let results = Box::new(self.results(rows, style)?);
+        Ok(Computation::Complete(results, part))
+    }
+
+    fn merge(&self, style: Style, parts: &[PathBuf]) -> Result<Results, StudyError> {
+        match cfg!(target_family = "wasm") {
+            true => Err(no_parts()),
+            false => Ok(self.results(part::merge(parts)?.1, style)?),
         }
     }
+
+    fn results_of(&self, style: Style, rows: &[String]) -> Result<Results, StudyError> {
+        let rows = rows.iter().map(|row| serde_json::from_str(row));
+        let rows = rows.collect::<Result<_, _>>().map_err(StudyError::failed)?;
+        Ok(self.results(rows, style)?)
+    }
 }
 
-/// Computes a study of scenarios that differ only in their models of motion; most studies take one.
-type Compute =
-    fn(&[Scenario], &Options, Style, RowSource<'_>, Sinks<'_>) -> Result<Computation, StudyError>;
+fn no_parts() -> StudyError {
+    StudyError::scenario("a browser keeps no parts of a study")
+}
 
 /// A study that a scenario describes.
 #[derive(Clone, Copy, Debug)]
@@ -105,22 +154,19 @@ pub struct StudyKind {
     pub name: &'static str,
     /// The names of all files that its results may have, the seal last.
     pub files: &'static [&'static str],
-    /// True if it computes one history for each model of motion, and writes the tables meanwhile. Its progress is in milliseconds of simulated
-    /// time, and options decide which of the files it writes.
-    pub is_history: bool,
+    /// True if it writes its tables meanwhile, those of each model of motion into a folder of its own; options decide which of the files it writes.
+    pub streams_tables: bool,
+    /// True if its report includes that on the samples of `[uncertain]`.
+    pub reports_samples: bool,
     /// True if the scenario needs a ground motion.
     pub needs_motion: bool,
     /// True if its words stand below the title of the scenario, indented; otherwise they are a table without a title.
     pub has_title: bool,
-    /// True if its rows are kept in a file, so the work can be divided and resumed.
-    pub has_parts: bool,
-    /// True if it computes scenarios that differ in their models of motion together; otherwise each alone.
-    pub takes_models: bool,
     /// True if it has the largest rotation of each case, by which models of motion are compared.
     pub has_rotations: bool,
     /// The study of the samples of `[uncertain]`; `None` without one.
     pub samples: Option<&'static Self>,
-    compute: Compute,
+    way: Way,
 }
 
 impl PartialEq for StudyKind {
@@ -133,132 +179,99 @@ impl Eq for StudyKind {}
 
 /// The history of a scenario, with one or several models of motion.
 pub const RUN: StudyKind = StudyKind {
-    is_history: true,
-    takes_models: true,
+    streams_tables: true,
+    reports_samples: true,
     samples: Some(&UNCERTAIN),
-    ..StudyKind::without_cases(
+    ..StudyKind::of(
         "run",
         &run::FILES,
-        |scenarios, options, style, rows, sinks| {
-            let (_, watch) = rows.runner_and_watch()?;
-            let results = run::results(scenarios, &options.run, style.figure, sinks, watch)?;
-            Ok(results.into())
-        },
+        Way::Models(|scenarios, options, figure, work, sinks| {
+            run::results(scenarios, &options.run, figure, sinks, work.watch)
+        }),
     )
 };
 /// The map of the pulses that overturn the structure, over two quantities.
 pub const MAP: StudyKind = StudyKind {
     samples: Some(&UNCERTAIN_MAP),
-    ..StudyKind::of::<OverturningMap<'_>>(|scenarios, _, style, rows, _| {
-        let map = OverturningMap::of(&scenarios[0]);
-        let RowSource::Given(rows) = rows else {
-            return compute_reported(map, style, rows);
-        };
-        let rows = rows.iter().map(|row| serde_json::from_str(row));
-        let rows: Result<_, _> = rows.collect();
-        let map = map.map_err(StudyError::Scenario)?;
-        Ok(map
-            .results(rows.map_err(StudyError::failed)?, style)?
-            .into())
+    ..StudyKind::of_cases::<OverturningMap<'_>>(|scenario, _| {
+        Ok(Box::new(OverturningMap::of(scenario)?))
     })
 };
 /// The records that overturn the structure.
 pub const SUITE: StudyKind = StudyKind {
     has_rotations: true,
     samples: Some(&UNCERTAIN_SUITE),
-    ..StudyKind::of::<RecordSuite<'_>>(|scenarios, _, style, rows, _| {
-        compute_reported(RecordSuite::of(&scenarios[0]), style, rows)
-    })
+    ..StudyKind::of_cases::<RecordSuite<'_>>(|scenario, _| Ok(Box::new(RecordSuite::of(scenario)?)))
 };
 /// The factors by which the ground motion overturns the structure, for one or several models of motion.
 pub const THRESHOLD: StudyKind = StudyKind {
-    takes_models: true,
     samples: Some(&UNCERTAIN_THRESHOLD),
-    ..StudyKind::without_cases(
+    ..StudyKind::of(
         "threshold",
         &threshold::FILES,
-        |scenarios, options, style, rows, _| {
-            let (runner, watch) = rows.runner_and_watch()?;
+        Way::Models(|scenarios, options, figure, work, _| {
             let factors = &options.factors;
-            Ok(threshold::results(scenarios, factors, style.figure, &runner, watch)?.into())
-        },
+            threshold::results(scenarios, factors, figure, &work.runner, work.watch)
+        }),
     )
 };
 /// The threshold for each value of a key along a range.
-pub const THRESHOLD_ALONG: StudyKind =
-    StudyKind::of::<Along<'_>>(|scenarios, options, style, rows, _| {
-        let along = options.along.clone();
-        let along =
-            along.ok_or("a threshold along a range needs its key and its values".to_owned());
-        let study = along.and_then(|along| Along::of(&scenarios[0], along));
-        compute_reported(study, style, rows)
-    });
+pub const THRESHOLD_ALONG: StudyKind = StudyKind::of_cases::<Along<'_>>(|scenario, options| {
+    let along = options.along.clone();
+    let along = along.ok_or("a threshold along a range needs its key and its values")?;
+    Ok(Box::new(Along::of(scenario, along)?))
+});
 /// The push that starts the structure, and its mechanism.
 pub const LIMIT: StudyKind = StudyKind {
     needs_motion: false,
-    has_title: false,
-    ..StudyKind::without_cases("limit", &limit::FILES, |scenarios, _, style, _, _| {
-        Ok(limit::results(&scenarios[0], style.figure)?.into())
+    ..StudyKind::whole("limit", &limit::FILES, |scenario, _, figure| {
+        limit::results(scenario, figure)
     })
 };
 /// The capacity curves of the first mechanism.
 pub const CAPACITY: StudyKind = StudyKind {
     needs_motion: false,
-    has_title: false,
-    ..StudyKind::without_cases(
-        "capacity",
-        &capacity::FILES,
-        |scenarios, options, style, _, _| {
-            let scenario = &scenarios[0];
-            scenario.check_as_built().map_err(StudyError::Scenario)?;
-            let sides = capacity(scenario, options.point_m).map_err(StudyError::scenario)?;
-            Ok(capacity::report(scenario, &sides, style.figure)?.into())
-        },
-    )
+    ..StudyKind::whole("capacity", &capacity::FILES, |scenario, options, figure| {
+        scenario.check_as_built().map_err(StudyError::Scenario)?;
+        let sides = capacity(scenario, options.point_m).map_err(StudyError::scenario)?;
+        Ok(capacity::report(scenario, &sides, figure)?)
+    })
 };
 /// The movement of a springing at which the arch falls.
 pub const SPREAD: StudyKind = StudyKind {
     needs_motion: false,
-    has_title: false,
-    ..StudyKind::without_cases(
-        "spread",
-        &spread::FILES,
-        |scenarios, options, style, _, _| {
-            let (scenario, directions) = (&scenarios[0], &options.directions);
-            let found = spread::spread(scenario, directions)?;
-            Ok(spread::report(scenario, &found, style.figure)?.into())
-        },
-    )
-};
-/// The check of the first mechanism by the Circolare 7/2019.
-pub const VERIFY: StudyKind = StudyKind {
-    has_title: false,
-    ..StudyKind::without_cases("verify", &verify::FILES, |scenarios, _, _, _, _| {
-        let scenario = &scenarios[0];
-        scenario.check_as_built().map_err(StudyError::Scenario)?;
-        if scenario.right_foot.is_some() {
-            let message =
-                "`verify` applies one ground motion to both feet: leave [ground.right] out";
-            return Err(StudyError::scenario(message));
-        }
-        let check = verify::verify(scenario).map_err(StudyError::scenario)?;
-        Ok(verify::report(scenario, &check)?.into())
+    ..StudyKind::whole("spread", &spread::FILES, |scenario, options, figure| {
+        let found = spread::spread(scenario, &options.directions)?;
+        spread::report(scenario, &found, figure)
     })
 };
+/// The check of the first mechanism by the Circolare 7/2019.
+pub const VERIFY: StudyKind = StudyKind::whole("verify", &verify::FILES, |scenario, _, _| {
+    scenario.check_as_built().map_err(StudyError::Scenario)?;
+    if scenario.right_foot.is_some() {
+        let message = "`verify` applies one ground motion to both feet: leave [ground.right] out";
+        return Err(StudyError::scenario(message));
+    }
+    let check = verify::verify(scenario).map_err(StudyError::scenario)?;
+    Ok(verify::report(scenario, &check)?)
+});
 /// Endings and courses of histories for samples of the uncertain numbers.
 pub const UNCERTAIN: StudyKind = StudyKind {
     has_rotations: true,
-    ..StudyKind::of_samples::<Histories>()
+    ..StudyKind::of_cases::<Histories<'_>>(|scenario, _| Ok(Box::new(Histories::of(scenario)?)))
 };
 /// The factor from which samples of the uncertain numbers overturn.
-pub const UNCERTAIN_THRESHOLD: StudyKind = StudyKind::of_samples::<FirstEdges>();
-/// The records that overturn samples of the uncertain numbers.
-pub const UNCERTAIN_SUITE: StudyKind = StudyKind::of_samples::<Capacities>();
-/// The probability that pulses overturn samples of the uncertain numbers, over two quantities.
-pub const UNCERTAIN_MAP: StudyKind =
-    StudyKind::of::<CellsOfSamples<'_>>(|scenarios, _, style, rows, _| {
-        compute_reported(CellsOfSamples::of(&scenarios[0]), style, rows)
+pub const UNCERTAIN_THRESHOLD: StudyKind =
+    StudyKind::of_cases::<FirstEdges<'_>>(|scenario, options| {
+        Ok(Box::new(FirstEdges::of(scenario, options.factors)?))
     });
+/// The records that overturn samples of the uncertain numbers.
+pub const UNCERTAIN_SUITE: StudyKind =
+    StudyKind::of_cases::<Capacities<'_>>(|scenario, _| Ok(Box::new(Capacities::of(scenario)?)));
+/// The probability that pulses overturn samples of the uncertain numbers, over two quantities.
+pub const UNCERTAIN_MAP: StudyKind = StudyKind::of_cases::<CellsOfSamples<'_>>(|scenario, _| {
+    Ok(Box::new(CellsOfSamples::of(scenario)?))
+});
 
 impl StudyKind {
     /// All studies.
@@ -290,41 +303,47 @@ impl StudyKind {
         kinds.find(|kind| has_all(kind) && kind.files.last() == names.last())
     }
 
-    const fn without_cases(
-        name: &'static str,
-        files: &'static [&'static str],
-        compute: Compute,
-    ) -> Self {
+    const fn of(name: &'static str, files: &'static [&'static str], way: Way) -> Self {
         Self {
             name,
             files,
-            is_history: false,
+            streams_tables: false,
+            reports_samples: false,
             needs_motion: true,
             has_title: true,
-            has_parts: false,
-            takes_models: false,
             has_rotations: false,
             samples: None,
-            compute,
+            way,
         }
     }
 
-    const fn of<S: ReportedStudy>(compute: Compute) -> Self {
+    const fn of_cases<S: Study>(study: MakeStudy) -> Self {
+        Self::of(S::NAME, S::FILES, Way::Cases(study))
+    }
+
+    const fn whole(
+        name: &'static str,
+        files: &'static [&'static str],
+        results: fn(&Scenario, &Options, Figure) -> Result<Results, StudyError>,
+    ) -> Self {
         Self {
-            has_parts: true,
-            ..Self::without_cases(S::NAME, S::FILES, compute)
+            has_title: false,
+            ..Self::of(name, files, Way::Whole(results))
         }
     }
 
-    const fn of_samples<Q: Question>() -> Self {
-        Self::of::<Ensemble<'_, Q>>(|scenarios, options, style, rows, _| {
-            let study = Ensemble::<Q>::of(&scenarios[0], options.factors);
-            compute_reported(study, style, rows)
-        })
+    /// True if its rows are kept in a file, so the work can be divided and resumed.
+    pub const fn has_parts(self) -> bool {
+        matches!(self.way, Way::Cases(_))
     }
 
-    /// Computes the study of scenarios that differ only in their models of motion. A run and a threshold take several; the others use the first.
-    /// A run writes its tables into the sinks.
+    /// True if it computes scenarios that differ in their models of motion together; otherwise each alone.
+    pub const fn takes_models(self) -> bool {
+        matches!(self.way, Way::Models(_))
+    }
+
+    /// Computes the study of scenarios that differ only in their models of motion; of several, most studies compute the first. A run writes its
+    /// tables into the sinks.
     ///
     /// # Errors
     /// When the scenario does not describe the study, or its rows could not be completed.
@@ -333,43 +352,46 @@ impl StudyKind {
         scenarios: &[Scenario],
         options: &Options,
         style: Style,
-        rows: RowSource<'_>,
+        work: Work<'_>,
         sinks: Sinks<'_>,
     ) -> Result<Computation, StudyError> {
-        (self.compute)(scenarios, options, style, rows, sinks)
+        let (scenario, figure) = (&scenarios[0], style.figure);
+        let results = match self.way {
+            Way::Models(results) => results(scenarios, options, figure, work, sinks),
+            Way::Whole(results) => results(scenario, options, figure),
+            Way::Cases(_) => return self.study(scenario, options)?.compute(style, work),
+        };
+        Ok(Computation::Complete(Box::new(results?), None))
     }
-}
 
-/// Finds the rows of a study, and turns them into results if they are those of all cases.
-fn compute_reported<S: ReportedStudy>(
-    study: Result<S, String>,
-    style: Style,
-    rows: RowSource<'_>,
-) -> Result<Computation, StudyError> {
-    let study = study.map_err(StudyError::Scenario)?;
-    let (rows, part) = match rows {
-        RowSource::Given(_) => {
-            return Err(StudyError::scenario("only the rows of a map can be given"));
+    /// Makes the results of rows given as JSON, in the order of the cases.
+    ///
+    /// # Errors
+    /// When the scenario does not describe the study, the study has no cases, or the rows are not its own.
+    pub fn results_of(
+        self,
+        scenario: &Scenario,
+        options: &Options,
+        style: Style,
+        rows: &[String],
+    ) -> Result<Results, StudyError> {
+        self.study(scenario, options)?.results_of(style, rows)
+    }
+
+    /// Makes the study of many cases.
+    fn study<'s>(
+        self,
+        scenario: &'s Scenario,
+        options: &Options,
+    ) -> Result<Box<dyn AnyStudy + 's>, StudyError> {
+        match self.way {
+            Way::Cases(study) => study(scenario, options).map_err(StudyError::Scenario),
+            _ => Err(StudyError::scenario(format!(
+                "`{}` has no cases",
+                self.name
+            ))),
         }
-        RowSource::Compute(runner, None, watch) => (runner.rows(&study, watch)?, None),
-        // This arm leaves the code of parts out of the module for a browser.
-        _ if cfg!(target_family = "wasm") => {
-            return Err(StudyError::scenario("a browser keeps no parts of a study"));
-        }
-        RowSource::Merge(parts) => (part::merge(parts)?.1, None),
-        RowSource::Compute(runner, Some(task), watch) => {
-            match runner.rows_in(&study, task, watch)? {
-                (Some(rows), part) => (rows, Some(part)),
-                (None, part) => {
-                    let all = study.count();
-                    let cases = task.shard.cases(all).count();
-                    return Ok(Computation::Partial { part, cases, all });
-                }
-            }
-        }
-    };
-    let results = Box::new(study.results(rows, style)?);
-    Ok(Computation::Complete(results, part))
+    }
 }
 
 /// The results of parts that were joined.
@@ -400,7 +422,7 @@ pub fn merge(
     let header = parts.first().map(|part| part::read_header(part));
     let header = header.transpose()?;
     let study = header.as_ref().map_or("", |header| &header.study);
-    let kind = StudyKind::of_name(study).filter(|kind| kind.has_parts);
+    let kind = StudyKind::of_name(study).filter(|kind| kind.has_parts());
     let (Some(kind), Some(header)) = (kind, &header) else {
         return Err(StudyError::Scenario(format!(
             "unknown study {study:?}: merge with the version of archrock that wrote the parts"
@@ -433,21 +455,13 @@ pub fn merge(
     let options: Option<Options> =
         serde_json::from_value(header.options.clone()).map_err(damaged)?;
     let style = style(kind, Some(&scenario)).map_err(StudyError::Scenario)?;
-    let (scenarios, options) = (std::slice::from_ref(&scenario), options.unwrap_or_default());
-    match kind.compute(
-        scenarios,
-        &options,
-        style,
-        RowSource::Merge(parts),
-        Sinks::default(),
-    )? {
-        Computation::Complete(results, _) => Ok(Merged {
-            kind,
-            results: *results,
-            title: scenario.title.clone(),
-            model: scenario.motion.kind,
-            origin: Origin::of(&scenario).with_records(header.inputs.clone()),
-        }),
-        Computation::Partial { .. } => unreachable!("all parts are joined"),
-    }
+    let study = kind.study(&scenario, &options.unwrap_or_default())?;
+    let results = study.merge(style, parts)?;
+    Ok(Merged {
+        kind,
+        results,
+        title: scenario.title.clone(),
+        model: scenario.motion.kind,
+        origin: Origin::of(&scenario).with_records(header.inputs.clone()),
+    })
 }

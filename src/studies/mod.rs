@@ -20,6 +20,7 @@ mod catalogue;
 mod comparison;
 pub(crate) mod ending;
 pub mod ensemble;
+mod error;
 mod impact;
 mod intervals;
 mod limit;
@@ -40,19 +41,21 @@ pub mod run;
 mod runner;
 mod spread;
 mod statistics;
+mod study;
 pub mod suite;
 pub mod threshold;
 pub mod verify;
 
 pub use capacity::{CapacityCurveError, Summary as CapacitySummary, capacity};
 pub use catalogue::{
-    CAPACITY, Computation, LIMIT, MAP, Merged, Options, RUN, RowSource, SPREAD, SUITE, StudyKind,
-    THRESHOLD, THRESHOLD_ALONG, UNCERTAIN, UNCERTAIN_MAP, UNCERTAIN_SUITE, UNCERTAIN_THRESHOLD,
-    VERIFY, merge,
+    CAPACITY, Computation, LIMIT, MAP, Merged, Options, RUN, SPREAD, SUITE, StudyKind, THRESHOLD,
+    THRESHOLD_ALONG, UNCERTAIN, UNCERTAIN_MAP, UNCERTAIN_SUITE, UNCERTAIN_THRESHOLD, VERIFY, Work,
+    merge,
 };
 pub use comparison::Comparison;
 use ending::NoAnswer;
 pub use ending::{Ending, NoHistory, Steps, Verdict, outcome_name};
+pub use error::StudyError;
 pub use impact::{
     ImpactOptions, LinkImpact, Summary as ImpactSummary, chain as impact_chain, chain_result,
     four_links_result,
@@ -68,10 +71,10 @@ pub use quotable::{ModelAnswer, in_words as quoted_in_words};
 pub use record::record;
 use remarks::{CaseSummary, ModelCheck, OutcomeCounts, Remark, Remarks, no_verdict, one_direction};
 pub use report::{Report, Statement, Warnings};
-use results::ReportedStudy;
-pub use results::{Results, StudyError, Style, words_of_json};
+pub use results::{Results, Style, words_of_json};
 use runner::Watch;
-pub use runner::{Progress, Runner, RunnerError, SearchStep, Study, Task};
+pub use runner::{Counted, Progress, Runner, RunnerError, SearchStep, Task};
 pub use spread::{Direction, Summary as SpreadSummary, spread};
 pub use statistics::Share;
+pub use study::Study;
 use threshold::{rounded, rounded_down};

@@ -75,6 +75,8 @@ impl Warnings {
 /// The statements of a report, in words.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Statement {
+    /// The input in lines before the verdict, such as the records of a history; empty without lines.
+    pub input: String,
     /// The verdict: a line for each model and record.
     pub verdict: String,
     /// Details, in indented lines; empty without details.
@@ -94,6 +96,7 @@ impl Statement {
     pub fn of<R: Report>(report: &R) -> Self {
         let [unlikely, limits] = report.warnings().parts();
         Self {
+            input: String::new(),
             verdict: report.verdict(),
             details: render(report).trim_end().to_owned(),
             unlikely: unlikely.to_vec(),

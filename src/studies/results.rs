@@ -1,81 +1,15 @@
 //! Files and words of a study from its rows, identical for the program, for merged parts and for Python.
 
-use std::fmt;
-
 use askama::Template;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
-use thiserror::Error;
 
 use super::page_cases::PageCases;
 use super::page_table::PageTable;
-use super::part::PartError;
+use super::quotable::ModelAnswer;
 use super::report::{Report, Statement};
-use super::{ModelAnswer, RunnerError, Study};
-use crate::SimulationError;
-use crate::output::{Figure, Folder, OutputError, PrintError, Table, pretty, render, summary_of};
-use crate::scenario::ScenarioErrors;
-
-/// Errors of studies.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum StudyError {
-    /// The scenario or an option does not fit the study.
-    #[error("{0}")]
-    Scenario(String),
-    /// The computation failed.
-    #[error("{0}")]
-    Failed(String),
-    /// The rows are incomplete.
-    #[error(transparent)]
-    Runner(#[from] RunnerError),
-    /// The parts cannot be joined.
-    #[error(transparent)]
-    Part(#[from] PartError),
-    /// The scenario in the parts cannot be read.
-    #[error(transparent)]
-    Read(#[from] ScenarioErrors),
-    /// A result is not a number.
-    #[error(transparent)]
-    Output(#[from] OutputError),
-    /// A film cannot be made.
-    #[error(transparent)]
-    Film(#[from] PrintError),
-}
-
-impl StudyError {
-    /// Returns the error for a scenario that does not fit the study.
-    pub(super) fn scenario(reason: impl fmt::Display) -> Self {
-        Self::Scenario(reason.to_string())
-    }
-
-    /// Returns the error for a failed computation.
-    pub(super) fn failed(reason: impl fmt::Display) -> Self {
-        Self::Failed(reason.to_string())
-    }
-}
-
-impl From<SimulationError> for StudyError {
-    fn from(error: SimulationError) -> Self {
-        match error {
-            SimulationError::Row(_) | SimulationError::Computation(_) => Self::failed(error),
-            _ => Self::scenario(error),
-        }
-    }
-}
-
-/// A study that makes results of its rows.
-pub trait ReportedStudy: Study {
-    /// The names of all files that its results may have, the seal last.
-    const FILES: &'static [&'static str];
-
-    /// Makes the report and the other files of all rows.
-    ///
-    /// # Errors
-    /// When a value is not finite.
-    fn results(&self, rows: Vec<Self::Row>, style: Style) -> Result<Results, OutputError>;
-}
+use crate::output::{Figure, Folder, OutputError, Table, pretty, render, summary_of};
 
 /// The results of a study.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -14,83 +14,34 @@ use rayon::iter::{
     IndexedParallelIterator as _, IntoParallelRefIterator as _, ParallelIterator as _,
 };
 use rayon::{ThreadPool, ThreadPoolBuilder};
-use serde::Serialize;
-use serde::de::DeserializeOwned;
-use serde_json::Value;
 use thiserror::Error;
 
-use super::part::{Header, PartError, PartErrorKind, PartFile, ROW_FORMAT, Rows, Shard};
+use super::part::{Header, PartError, PartErrorKind, PartFile, Rows, Shard};
+use super::study::Study;
 use crate::clock;
-use crate::scenario::Scenario;
-
-/// A study: many cases, each a function of its index alone. So the cases can be computed in any order, by any number of threads, on several
-/// machines.
-pub trait Study: Sync {
-    /// The result of a case. A failed case also has a row; the row holds the reason.
-    type Row: Serialize + DeserializeOwned + Send;
-
-    /// Name of the study, in part files and in their names.
-    const NAME: &'static str;
-
-    /// Returns the scenario of the cases; `None` for a study without a scenario.
-    fn base(&self) -> Option<&Scenario> {
-        None
-    }
-
-    /// Returns the scenario as TOML with every default filled in. Apart from options and inputs, the rows depend only on the scenario.
-    fn scenario(&self) -> String {
-        self.base().map_or(String::new(), Scenario::to_toml)
-    }
-
-    /// Returns the options of the study, null without options. The rows depend on them.
-    fn options(&self) -> Value {
-        Value::Null
-    }
-
-    /// Returns the other input on which the rows depend: name and checksum of each file that the scenario names, separated by a space.
-    fn inputs(&self) -> Vec<String> {
-        self.base().map_or(Vec::new(), Scenario::record_checksums)
-    }
-
-    /// Returns the number of cases.
-    fn count(&self) -> usize;
-
-    /// Returns the family of a case; `None` if the case is computed alone. Cases of one family are computed faster together.
-    fn family(&self, _index: usize) -> Option<usize> {
-        None
-    }
-
-    /// Computes the rows of some cases of one family, in their order; their indices are below [`Study::count`]. No row depends on the other
-    /// cases.
-    fn rows(&self, indices: &[usize]) -> Vec<Self::Row>;
-}
-
-impl Header {
-    /// Returns the header for a shard of a study, with the version of this program.
-    pub fn new<S: Study>(study: &S, shard: Shard) -> Self {
-        Self {
-            program: env!("CARGO_PKG_NAME").to_owned(),
-            row_format: ROW_FORMAT,
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-            study: S::NAME.to_owned(),
-            cases: study.count(),
-            shard,
-            scenario: study.scenario(),
-            options: study.options(),
-            inputs: study.inputs(),
-        }
-    }
-}
 
 /// The progress of the work.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
-    /// Number of cases done, including those of an earlier run.
+    /// Number done, including those of an earlier run.
     pub done: usize,
-    /// Number of all cases.
+    /// Number to do in all.
     pub all: usize,
-    /// Step of a search, of which the cases are; `None` for other work.
-    pub search: Option<SearchStep>,
+    /// Quantity that is counted.
+    pub counted: Counted,
+}
+
+/// Quantity that a progress counts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Counted {
+    /// Cases of a study.
+    Cases,
+    /// Cases of a step of a search.
+    Search(SearchStep),
+    /// Milliseconds of simulated time; all are done while a history is repeated.
+    Milliseconds,
+    /// Pictures of a film.
+    Pictures,
 }
 
 /// A step of a search for a threshold.
@@ -103,12 +54,12 @@ pub struct SearchStep {
 }
 
 impl Progress {
-    /// Makes the progress of work that is no search.
-    pub const fn new(done: usize, all: usize) -> Self {
+    /// Makes the progress of a study of cases.
+    pub const fn of_cases(done: usize, all: usize) -> Self {
         Self {
             done,
             all,
-            search: None,
+            counted: Counted::Cases,
         }
     }
 }
@@ -150,13 +101,15 @@ pub type RowsInFile<R> = (Option<Vec<R>>, PartFile);
 /// ```
 /// use std::ops::ControlFlow;
 ///
-/// use archrock::studies::{Runner, Study};
+/// use archrock::output::OutputError;
+/// use archrock::studies::{Results, Runner, Study, Style};
 ///
 /// struct Squares;
 ///
 /// impl Study for Squares {
 ///     type Row = usize;
 ///     const NAME: &'static str = "squares";
+///     const FILES: &'static [&'static str] = &[];
 ///
 ///     fn count(&self) -> usize {
 ///         1000
@@ -164,6 +117,10 @@ pub type RowsInFile<R> = (Option<Vec<R>>, PartFile);
 ///
 ///     fn rows(&self, indices: &[usize]) -> Vec<usize> {
 ///         indices.iter().map(|index| index * index).collect()
+///     }
+///
+///     fn results(&self, _: Vec<usize>, _: Style) -> Result<Results, OutputError> {
+///         Ok(Results::default())
 ///     }
 /// }
 ///
@@ -294,7 +251,7 @@ impl Runner {
             keep(&new)?;
             rows.extend(new);
             let done = rows.len();
-            is_cancelled = is_cancelled || watch(Progress::new(done, all)).is_break();
+            is_cancelled = is_cancelled || watch(Progress::of_cases(done, all)).is_break();
             Ok(is_cancelled)
         };
         // Even with one thread for the cases, this thread reports the progress and can cancel while they are computed.
@@ -307,7 +264,7 @@ impl Runner {
         }
         let done = rows.len();
         match done < all {
-            true => Err(RunnerError::Cancelled(Progress::new(done, all))),
+            true => Err(RunnerError::Cancelled(Progress::of_cases(done, all))),
             false => Ok(()),
         }
     }

@@ -14,7 +14,7 @@ use archrock::Runner;
 use archrock::output::Figure;
 use archrock::scenario::{Scenario, Source};
 use archrock::studies::run::{FILES, Sinks};
-use archrock::studies::{Computation, Options, RowSource, StudyKind, Style};
+use archrock::studies::{Computation, Options, StudyKind, Style, Work};
 use serde_json::{Value, json};
 
 use crate::common::browser::browser;
@@ -75,14 +75,18 @@ fn computed(study: &str, text: &str, files: &[(&str, String)], no_repeat: bool) 
         ..Sinks::default()
     };
     let watch = &mut |_| ControlFlow::Continue(());
-    let rows = RowSource::Compute(Runner::default(), None, watch);
+    let work = Work {
+        runner: Runner::default(),
+        task: None,
+        watch,
+    };
     let kind = StudyKind::of_name(study).unwrap();
     let done = kind
         .compute(
             &[scenario],
             &options,
             Style::of(Figure::SCREEN),
-            rows,
+            work,
             sinks,
         )
         .unwrap();

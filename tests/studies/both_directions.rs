@@ -5,7 +5,7 @@ use std::slice;
 use crate::common::{COLUMN, ON_A_PIER, UNEVEN_ARCH, pairs, parsed};
 use archrock::dynamics::{Direction, Directions};
 use archrock::scenario::Scenario;
-use archrock::studies::ensemble::{Ensemble, Histories};
+use archrock::studies::ensemble::Histories;
 use archrock::studies::map::CellRow;
 use archrock::studies::threshold::{
     Along, AlongOptions, EDGE_WIDTH, FactorRange, Threshold, threshold,
@@ -208,7 +208,7 @@ fn samples_of_a_run_are_those_of_the_worse_direction() {
     let uncertain = "[free_hinges]\n[uncertain]\nsamples = 6\n\"ground.one_sine.amplitude_g\" = { from = 0.25, to = 0.6 }\n";
     let found = |direction: &str| {
         let scenario = scenario(&format!("{own}{uncertain}"), direction);
-        let ensemble = Ensemble::<Histories>::of(&scenario, Factors::default()).unwrap();
+        let ensemble = Histories::of(&scenario).unwrap();
         let rows = ensemble.rows(&(0..ensemble.count()).collect::<Vec<_>>());
         let answers = rows.into_iter().map(|row| row.answer.unwrap());
         answers.collect::<Vec<_>>()

@@ -9,7 +9,7 @@ use crate::common::{ARCH, COLUMN, pairs, parsed};
 use crate::scenario::keys::tables_with_numbers;
 use archrock::scenario::{Assignment, ReadOptions, Scenario, Source};
 use archrock::studies::Study as _;
-use archrock::studies::ensemble::{Ensemble, Histories};
+use archrock::studies::ensemble::Histories;
 use archrock::studies::threshold::{Along, AlongOptions, AlongRow, Factors};
 use archrock::{Outcome, OverturningMap, Pulse};
 
@@ -35,7 +35,7 @@ fn peak_rad(scenario: &Scenario) -> f64 {
 
 /// The largest rotations of the scenario itself and of its samples, in radians; `None` for histories without a verdict.
 fn sampled_peaks_rad(scenario: &Scenario) -> Vec<Option<f64>> {
-    let study = Ensemble::<Histories>::of(scenario, Factors::default()).unwrap();
+    let study = Histories::of(scenario).unwrap();
     let rows = study.rows(&(0..study.count()).collect::<Vec<_>>());
     let peaks = rows
         .into_iter()

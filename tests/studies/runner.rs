@@ -10,10 +10,11 @@ use std::time::Duration;
 
 use crate::common::parsed;
 use crate::common::program::{archrock, stdout};
+use archrock::output::OutputError;
 use archrock::studies::map::{CellRow, OverturningMap};
 use archrock::studies::{
-    Header, NoHistory, PartErrorKind, PartFile, Progress, Runner, RunnerError, Shard, Study, Task,
-    merge_parts, read_header,
+    Header, NoHistory, PartErrorKind, PartFile, Progress, Results, Runner, RunnerError, Shard,
+    Study, Style, Task, merge_parts, read_header,
 };
 
 /// Cases of a few milliseconds whose rows are hard to write exactly; some of them fail.
@@ -28,6 +29,7 @@ impl Study for Slow {
     type Row = Result<f64, String>;
 
     const NAME: &'static str = "slow";
+    const FILES: &'static [&'static str] = &[];
 
     fn scenario(&self) -> String {
         "a = 1\n".to_owned()
@@ -44,6 +46,10 @@ impl Study for Slow {
             expected(*index)
         };
         indices.iter().map(row).collect()
+    }
+
+    fn results(&self, _: Vec<Self::Row>, _: Style) -> Result<Results, OutputError> {
+        Ok(Results::default())
     }
 }
 
@@ -98,7 +104,7 @@ fn rows_come_in_order_on_any_number_of_threads() {
             ControlFlow::Continue(())
         });
         assert_eq!(rows.unwrap(), all());
-        assert_eq!(reported[0], Progress::new(0, COUNT));
+        assert_eq!(reported[0], Progress::of_cases(0, COUNT));
         assert_eq!(reported[reported.len() - 1].done, COUNT);
         assert!(reported.is_sorted_by_key(|progress| progress.done));
     }

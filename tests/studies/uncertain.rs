@@ -10,9 +10,8 @@ use std::path::Path;
 use archrock::Scenario;
 
 use archrock::studies::ensemble::{
-    Ensemble, Histories, HistoryAnswer, NoAnswer, SampleRow, sensitivities, total_indices,
+    Histories, HistoryAnswer, NoAnswer, SampleRow, sensitivities, total_indices,
 };
-use archrock::studies::threshold::Factors;
 use archrock::studies::{Runner, Share};
 
 use crate::common::program::{
@@ -26,7 +25,7 @@ use crate::scenario::keys::keys_of;
 const PULSE: &str = "[ground.rectangular]\namplitude_g = 0.3\nduration_s = 0.21\n";
 
 pub fn histories(scenario: &Scenario, threads: usize) -> Vec<SampleRow<HistoryAnswer>> {
-    let study = Ensemble::<Histories>::of(scenario, Factors::default()).unwrap();
+    let study = Histories::of(scenario).unwrap();
     let runner = Runner {
         threads: NonZeroUsize::new(threads),
     };
@@ -1028,7 +1027,7 @@ fn keys_that_cannot_be_uncertain_are_refused() {
         assert!(said.contains("s.toml:"), "{said}");
     }
     let nothing = parsed(&format!("{ARCH}{PULSE}"));
-    let Err(reason) = Ensemble::<Histories>::of(&nothing, Factors::default()) else {
+    let Err(reason) = Histories::of(&nothing) else {
         panic!("samples without [uncertain]");
     };
     assert!(reason.contains("no [uncertain]"), "{reason}");

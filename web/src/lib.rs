@@ -14,7 +14,7 @@ use archrock::output::Figure;
 use archrock::scenario::{ReadOptions, Scenario, ScenarioErrors, Source};
 use archrock::studies::run::Sinks;
 use archrock::studies::{
-    Computation, Options, Progress, RowSource, Study as _, StudyError, StudyKind, Style,
+    Computation, Options, Progress, Study as _, StudyError, StudyKind, Style, Work,
 };
 use archrock::{OverturningMap, Runner};
 use serde::{Deserialize, Serialize};
@@ -191,19 +191,26 @@ fn study(
     names: &[String],
     rows: Option<&[String]>,
 ) -> Result<Answer, StudyError> {
-    let mut watch = watch;
-    let rows = match rows {
-        Some(rows) => RowSource::Given(rows),
-        None => RowSource::Compute(Runner::default(), None, &mut watch),
-    };
     let sinks = Sinks {
         in_memory: names,
         ..Sinks::default()
     };
     let style = Style::of(Figure::SCREEN);
-    let computed = kind.compute(slice::from_ref(scenario), options, style, rows, sinks)?;
-    let Computation::Complete(results, _) = computed else {
-        return Ok(Answer::of_error("the study is incomplete".to_owned()));
+    let results = match rows {
+        Some(rows) => kind.results_of(scenario, options, style, rows)?,
+        None => {
+            let work = Work {
+                runner: Runner::default(),
+                task: None,
+                watch: &mut watch,
+            };
+            match kind.compute(slice::from_ref(scenario), options, style, work, sinks)? {
+                Computation::Complete(results, _) => *results,
+                Computation::Partial { .. } => {
+                    return Ok(Answer::of_error("the study is incomplete".to_owned()));
+                }
+            }
+        }
     };
     let files = results.files.into_iter();
     let named = files.filter(|(name, _)| names.iter().any(|one| one == name));

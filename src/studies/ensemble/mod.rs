@@ -1,9 +1,8 @@
-//! Ensembles: a question that is answered for every sample of a scenario with uncertain numbers.
+//! Studies of the samples of a scenario with uncertain numbers.
 //!
-//! An ensemble is a study. Its first case is the scenario itself; each other case is a sample of [`Uncertain`]. A [`Question`] is answered for
-//! each case: the history of the sample (`uncertain_run`), the first factor that overturns it (`uncertain_threshold`), or the intensity of each
-//! record that overturns it (`uncertain_suite`). Shards, resuming, threads, shares and influences are common to all questions. The cells of a map
-//! (`uncertain_map`) are a separate study, whose cases are cells of samples.
+//! The first case of such a study is the scenario itself; each other case is a sample of [`Uncertain`]. The answer of a case is its history
+//! (`uncertain_run`), the first factor that overturns it (`uncertain_threshold`), or the intensity of each record that overturns it
+//! (`uncertain_suite`). Cases, shares and influences are common to these studies. The cases of a map of samples (`uncertain_map`) are cells.
 
 mod influence;
 mod page;
@@ -15,10 +14,6 @@ pub(super) mod uncertain_run;
 pub(super) mod uncertain_suite;
 pub(super) mod uncertain_threshold;
 
-use serde::Serialize;
-use serde::de::DeserializeOwned;
-use serde_json::Value;
-
 pub use self::samples::{SampleRow, Samples};
 pub use self::sensitivity::{sensitivities, total_indices};
 pub use self::uncertain_map::{CellsOfSamples, Summary as UncertainMapSummary};
@@ -26,133 +21,61 @@ pub use self::uncertain_run::{Histories, HistoryAnswer, Summary as UncertainRunS
 pub use self::uncertain_suite::Summary as UncertainSuiteSummary;
 pub use self::uncertain_threshold::Summary as UncertainThresholdSummary;
 pub use super::ending::NoAnswer;
-use super::threshold::Factors;
-use super::{ReportedStudy, Results, Study, Style};
-use crate::output::{Figure, OutputError};
 use crate::scenario::{Scenario, Uncertain};
 
-/// A question that is answered for every sample.
-pub trait Question: Sized + Sync {
-    /// The answer for a sample.
-    type Answer: Serialize + DeserializeOwned + Send;
-
-    /// Name of the study, in part files and in their names.
-    const NAME: &'static str;
-
-    /// Names of the files, the report last.
-    const FILES: &'static [&'static str];
-
-    /// Makes the question for a scenario. `factors` are those on the ground motion that a threshold tries.
-    ///
-    /// # Errors
-    /// Returns the change that the scenario needs, in words.
-    fn of(scenario: &Scenario, factors: Factors) -> Result<Self, String>;
-
-    /// Makes the report and the other files of all answers.
-    ///
-    /// # Errors
-    /// When a value is not finite.
-    fn results(
-        &self,
-        samples: &Samples<'_, Self::Answer>,
-        figure: Figure,
-    ) -> Result<Results, OutputError>;
-
-    /// Computes the answer of a scenario that has the values of a sample.
-    ///
-    /// # Errors
-    /// The reason why there is no answer.
-    fn answer(&self, scenario: &Scenario) -> Result<Self::Answer, NoAnswer>;
-
-    /// Computes the answer of the scenario itself, which may be more accurate than those of the samples.
-    ///
-    /// # Errors
-    /// As [`Question::answer`].
-    fn own_answer(&self, scenario: &Scenario) -> Result<Self::Answer, NoAnswer> {
-        self.answer(scenario)
-    }
-
-    /// Returns the options on which the answers depend, as [`Study::options`].
-    fn options(&self) -> Value {
-        Value::Null
-    }
-}
-
-/// A study that answers a question for every sample of a scenario. The first case is the scenario itself.
-#[derive(Debug)]
-pub struct Ensemble<'a, Q> {
+/// The cases of a study of samples: the scenario itself, and then its samples.
+#[derive(Clone, Copy, Debug)]
+struct SampleCases<'a> {
     scenario: &'a Scenario,
     uncertain: &'a Uncertain,
-    question: Q,
 }
 
-impl<'a, Q: Question> Ensemble<'a, Q> {
-    /// Makes the ensemble of a scenario with a table `[uncertain]`.
-    ///
-    /// # Errors
-    /// When the question does not fit the scenario, or the scenario has no table `[uncertain]`.
-    pub fn of(scenario: &'a Scenario, factors: Factors) -> Result<Self, String> {
+impl<'a> SampleCases<'a> {
+    /// Takes the samples of a scenario, or returns the error that it has no table `[uncertain]`.
+    fn of(scenario: &'a Scenario) -> Result<Self, String> {
+        let uncertain = scenario.uncertain.as_ref().ok_or(
+            "the scenario has no [uncertain]: give it a table such as\n\n\
+             [uncertain]\n\
+             samples = 100\n\
+             \"arch.thickness_ratio\" = { deviation = 0.003 }",
+        )?;
         Ok(Self {
-            question: Q::of(scenario, factors)?,
-            uncertain: uncertain(scenario)?,
             scenario,
+            uncertain,
         })
     }
 
-    /// Computes the answer of the scenario itself, or of a sample, counted from 1.
-    fn row(&self, index: usize) -> SampleRow<Q::Answer> {
-        let Some(sample) = index.checked_sub(1) else {
-            return SampleRow {
-                values: Vec::new(),
-                answer: self.question.own_answer(self.scenario),
-            };
-        };
-        let values = self.uncertain.values(sample);
-        let scenario = self.uncertain.scenario(self.scenario, &values);
-        let answer = scenario
-            .map_err(NoAnswer::Invalid)
-            .and_then(|scenario| self.question.answer(&scenario));
-        SampleRow { values, answer }
-    }
-}
-
-/// Returns the uncertain numbers of a scenario, or the error that the scenario has none.
-fn uncertain(scenario: &Scenario) -> Result<&Uncertain, String> {
-    Ok(scenario.uncertain.as_ref().ok_or(
-        "the scenario has no [uncertain]: give it a table such as\n\n\
-         [uncertain]\n\
-         samples = 100\n\
-         \"arch.thickness_ratio\" = { deviation = 0.003 }",
-    )?)
-}
-
-impl<Q: Question> Study for Ensemble<'_, Q> {
-    type Row = SampleRow<Q::Answer>;
-
-    const NAME: &'static str = Q::NAME;
-
-    fn base(&self) -> Option<&Scenario> {
-        Some(self.scenario)
-    }
-
-    fn options(&self) -> Value {
-        self.question.options()
-    }
-
-    fn count(&self) -> usize {
+    fn count(self) -> usize {
         1 + self.uncertain.cases()
     }
 
-    fn rows(&self, indices: &[usize]) -> Vec<Self::Row> {
-        indices.iter().map(|index| self.row(*index)).collect()
+    /// Returns the values of a case; none for the scenario itself.
+    fn values(self, case: usize) -> Vec<f64> {
+        let sample = case.checked_sub(1);
+        sample.map_or(Vec::new(), |sample| self.uncertain.values(sample))
     }
-}
 
-impl<Q: Question> ReportedStudy for Ensemble<'_, Q> {
-    const FILES: &'static [&'static str] = Q::FILES;
+    /// Makes the scenario of a case, or returns the reason why its values give none.
+    fn scenario_of(self, case: usize) -> Result<Scenario, String> {
+        match case {
+            0 => Ok(self.scenario.clone()),
+            _ => self.uncertain.scenario(self.scenario, &self.values(case)),
+        }
+    }
 
-    fn results(&self, rows: Vec<Self::Row>, style: Style) -> Result<Results, OutputError> {
-        let samples = Samples::new(self.scenario, self.uncertain, &rows);
-        self.question.results(&samples, style.figure)
+    /// Computes the answers of cases. The second argument of `answer` is true for the scenario itself, whose answer may be more accurate.
+    fn rows<A>(
+        self,
+        cases: &[usize],
+        answer: impl Fn(&Scenario, bool) -> Result<A, NoAnswer>,
+    ) -> Vec<SampleRow<A>> {
+        let row = |case: &usize| {
+            let scenario = self.scenario_of(*case).map_err(NoAnswer::Invalid);
+            SampleRow {
+                values: self.values(*case),
+                answer: scenario.and_then(|scenario| answer(&scenario, *case == 0)),
+            }
+        };
+        cases.iter().map(row).collect()
     }
 }

@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::NoAnswer;
 use super::influence::NumberInfluence;
 use super::sensitivity::{Total, sensitivities, total_indices};
+use super::{NoAnswer, SampleCases};
 use crate::scenario::{Scenario, Uncertain};
 use crate::studies::statistics::{Share, ranks};
 use crate::studies::{ModelCheck, no_verdict};
@@ -18,7 +18,7 @@ pub struct SampleRow<A> {
     pub answer: Result<A, NoAnswer>,
 }
 
-/// The answers of an ensemble, with the answer of the scenario itself separate.
+/// The answers of a study of samples, with the answer of the scenario itself separate.
 pub struct Samples<'a, A> {
     /// The scenario.
     pub(crate) scenario: &'a Scenario,
@@ -34,11 +34,12 @@ pub struct Samples<'a, A> {
 }
 
 impl<'a, A> Samples<'a, A> {
-    pub(crate) fn new(
-        scenario: &'a Scenario,
-        uncertain: &'a Uncertain,
-        rows: &'a [SampleRow<A>],
-    ) -> Self {
+    /// Separates the answers of all cases.
+    pub(super) fn new(cases: SampleCases<'a>, rows: &'a [SampleRow<A>]) -> Self {
+        let SampleCases {
+            scenario,
+            uncertain,
+        } = cases;
         let (all, moved) = rows.split_at((1 + uncertain.samples).min(rows.len()));
         let (own, rows) = all.split_first().expect("the scenario itself is a case");
         Self {

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::influence::{InfluencedAnswer, NumberInfluence, percent};
 use super::page::{PageAnswer, SAMPLES, SamplePage};
 use super::report::{self, Band, Line, SampleSummary, of_answer};
-use super::{NoAnswer, Question, Samples};
+use super::{NoAnswer, SampleCases, SampleRow, Samples};
 use crate::dynamics::repeatability::{CheckedHistory, checked, repeated};
 use crate::dynamics::{Direction, EndCondition, WithoutDemand};
 use crate::output::panels::{MAIN, scale_around};
@@ -19,13 +19,13 @@ use crate::output::{
     each, filters, list,
 };
 use crate::scenario::{MotionModel, Scenario, Structure, Varied};
-use crate::studies::Results;
 use crate::studies::ending::columns::{self, OUTCOMES, OVERTURNED};
 use crate::studies::page::kind_of;
 use crate::studies::quotable::SurvivorFriction;
 use crate::studies::report::{Report, Warnings};
 use crate::studies::statistics::{Share, band, fractile, quantile};
-use crate::{Ending, Factors, Model, NoHistory, Sample, Verdict};
+use crate::studies::{Results, Study, Style};
+use crate::{Ending, Model, NoHistory, Sample, Verdict};
 
 /// Smallest number of certainly overturned samples, and of certainly surviving ones, for influences on overturning.
 const LEAST_OF_EACH: usize = 10;
@@ -33,9 +33,10 @@ const LEAST_OF_EACH: usize = 10;
 /// Largest number of times at which samples are compared.
 const MOST_TIMES: usize = 300;
 
-/// The question for the history of each sample, with the times at which samples are compared.
+/// The study of the history of each sample, with the times at which samples are compared.
 #[derive(Debug)]
-pub struct Histories {
+pub struct Histories<'a> {
+    cases: SampleCases<'a>,
     /// Index of the body whose rotation is recorded, from 0: the body with the largest rotation in the history of the scenario itself.
     pub body: usize,
     /// Interval between recorded rotations, in seconds.
@@ -61,21 +62,12 @@ pub struct HistoryAnswer {
     pub course_overturns: bool,
 }
 
-impl Question for Histories {
-    type Answer = HistoryAnswer;
-    const NAME: &'static str = "uncertain";
-
-    const FILES: &'static [&'static str] = &[
-        SAMPLES,
-        "bands.svg",
-        "matters.svg",
-        "bands.csv",
-        "samples.csv",
-        "uncertain.json",
-    ];
-
-    /// Computes the history of the scenario itself.
-    fn of(scenario: &Scenario, _: Factors) -> Result<Self, String> {
+impl<'a> Histories<'a> {
+    /// Makes the study of a scenario with a table `[uncertain]`. Computes the history of the scenario itself.
+    ///
+    /// # Errors
+    /// Returns the change that the scenario needs, in words.
+    pub fn of(scenario: &'a Scenario) -> Result<Self, String> {
         scenario.check_for_run()?;
         let model = scenario.model().map_err(|error| error.to_string())?;
         let request = scenario.request();
@@ -92,6 +84,7 @@ impl Question for Histories {
         let many_cases = scenario.model_for_many_cases();
         let many_cases = many_cases.map_err(|error| error.to_string())?;
         Ok(Self {
+            cases: SampleCases::of(scenario)?,
             body: most.map_or(0, |(body, _)| body),
             step_s: stride * request.output_step_s,
             times,
@@ -99,11 +92,55 @@ impl Question for Histories {
         })
     }
 
+    /// Computes the answer of a sample, or of the scenario itself with the steps of `run`.
+    fn answer(&self, scenario: &Scenario, is_own: bool) -> Result<HistoryAnswer, NoAnswer> {
+        if is_own {
+            let model = scenario.model().map_err(NoAnswer::without_model)?;
+            return self.history(scenario, &*model);
+        }
+        let (structure, motion, model) = &self.own;
+        if scenario.structure == *structure && scenario.motion == *motion {
+            return self.history(scenario, &**model);
+        }
+        let model = scenario.model_for_many_cases();
+        let model = model.map_err(NoAnswer::without_model)?;
+        self.history(scenario, &*model)
+    }
+}
+
+impl Study for Histories<'_> {
+    type Row = SampleRow<HistoryAnswer>;
+
+    const NAME: &'static str = "uncertain";
+
+    const FILES: &'static [&'static str] = &[
+        SAMPLES,
+        "bands.svg",
+        "matters.svg",
+        "bands.csv",
+        "samples.csv",
+        "uncertain.json",
+    ];
+
+    fn base(&self) -> Option<&Scenario> {
+        Some(self.cases.scenario)
+    }
+
+    fn count(&self) -> usize {
+        self.cases.count()
+    }
+
+    fn rows(&self, cases: &[usize]) -> Vec<Self::Row> {
+        self.cases
+            .rows(cases, |scenario, is_own| self.answer(scenario, is_own))
+    }
+
     fn results(
         &self,
-        samples: &Samples<'_, HistoryAnswer>,
-        figure: Figure,
+        rows: Vec<Self::Row>,
+        Style { figure, .. }: Style,
     ) -> Result<Results, OutputError> {
+        let samples = &Samples::new(self.cases, &rows);
         let influences = influences(samples);
         let of_samples = samples.rows.iter();
         let of_samples = of_samples.map(|row| row.answer.as_ref().ok().map(peak_rad));
@@ -174,22 +211,6 @@ impl Question for Histories {
                 .in_order(Self::FILES)
         })
     }
-
-    fn answer(&self, scenario: &Scenario) -> Result<HistoryAnswer, NoAnswer> {
-        let (structure, motion, model) = &self.own;
-        if scenario.structure == *structure && scenario.motion == *motion {
-            return self.history(scenario, &**model);
-        }
-        let model = scenario.model_for_many_cases();
-        let model = model.map_err(NoAnswer::without_model)?;
-        self.history(scenario, &*model)
-    }
-
-    /// Computes the answer of the scenario itself with the steps of `run`.
-    fn own_answer(&self, scenario: &Scenario) -> Result<HistoryAnswer, NoAnswer> {
-        let model = scenario.model().map_err(NoAnswer::without_model)?;
-        self.history(scenario, &*model)
-    }
 }
 
 /// Returns the largest rotation of a sample, in radians. Overturned samples have none, but rank above all others.
@@ -214,7 +235,7 @@ fn influences(samples: &Samples<'_, HistoryAnswer>) -> [OnAnswer; 2] {
     ]
 }
 
-impl Histories {
+impl Histories<'_> {
     /// Computes the history of a scenario, and under the mirrored ground motion if that may be worse.
     fn history(&self, scenario: &Scenario, model: &dyn Model) -> Result<HistoryAnswer, NoAnswer> {
         let (ground, mut request) = (scenario.ground_motion(), scenario.request());

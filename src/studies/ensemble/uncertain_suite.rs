@@ -8,7 +8,7 @@ use super::influence::InfluencedAnswer;
 use super::page::{SAMPLES, SamplePage};
 use super::report::{self, SampleSummary, of_answer, why_not};
 use super::uncertain_threshold::{StrengthBand, first_strength};
-use super::{NoAnswer, Question, Samples};
+use super::{NoAnswer, SampleCases, SampleRow, Samples};
 use crate::dynamics::{Direction, Directions};
 use crate::output::page::SpotKind;
 use crate::output::{Chart, Figure, Key, Mark, OutputError, Scale, Stroke, Table, color, column};
@@ -22,16 +22,17 @@ use crate::studies::statistics::{ascending_weighted, shares_up_to, weighted_frac
 use crate::studies::suite::strength::warning_of_few_records;
 use crate::studies::suite::{OF_LEVELS, case, directions, records_in_words};
 use crate::studies::threshold::first_edge::{FirstEdge, TREATMENTS, Treatment, TriedHistory};
-use crate::studies::threshold::{Factors, rounded, rounded_range};
-use crate::studies::{Ending, ModelCheck, Results};
+use crate::studies::threshold::{rounded, rounded_range};
+use crate::studies::{Ending, ModelCheck, Results, Study, Style};
 
 const TITLE: &str = "Fragility with uncertain data";
 /// Relative width to which bisection encloses an intensity: much less than the scatter between records.
 const WIDTH: f64 = 2e-3;
 
-/// The question for the capacities of each sample under the records of a suite.
+/// The study of the capacities of each sample under the records of a suite.
 #[derive(Clone, Debug)]
-pub struct Capacities {
+pub struct Capacities<'a> {
+    cases: SampleCases<'a>,
     suite: Suite,
     directions: Directions,
     levels: Vec<f64>,
@@ -41,7 +42,47 @@ pub struct Capacities {
 /// the same edge twice.
 type EdgePerRecord = Vec<FirstEdge>;
 
-impl Capacities {
+impl<'a> Capacities<'a> {
+    /// Makes the study of a scenario with the tables `[suite]` and `[uncertain]`.
+    ///
+    /// # Errors
+    /// Returns the change that the scenario needs, in words.
+    pub fn of(scenario: &'a Scenario) -> Result<Self, String> {
+        scenario.check_from_rest("suite")?;
+        let suite = scenario.suite.as_ref();
+        let suite = suite.ok_or("the scenario has no [suite], whose records shake the samples")?;
+        Ok(Self {
+            cases: SampleCases::of(scenario)?,
+            levels: suite.levels.values(),
+            suite: suite.clone(),
+            directions: scenario.simulation.direction,
+        })
+    }
+
+    fn answer(&self, scenario: &Scenario) -> Result<EdgePerRecord, NoAnswer> {
+        let model = scenario.model().map_err(NoAnswer::without_model)?;
+        let edge = |record: usize, direction: Direction| {
+            FirstEdge::find_among(&self.levels, WIDTH, |level: f64| {
+                let (ground, request) = case(scenario, &self.suite, record, level, direction);
+                let ending = Ending::of(&*model, &ground, &request)?;
+                Ok(TriedHistory::from(Ending {
+                    direction,
+                    ..ending
+                }))
+            })
+        };
+        let mut edges = EdgePerRecord::new();
+        for record in 0..self.suite.records.len() {
+            for direction in directions(scenario, &self.suite, &*model) {
+                edges.push(edge(record, *direction)?);
+            }
+            while !edges.len().is_multiple_of(self.signs()) {
+                edges.extend(edges.last().cloned());
+            }
+        }
+        Ok(edges)
+    }
+
     /// Number of edges of each record.
     fn signs(&self) -> usize {
         1 + usize::from(self.directions == Directions::Both)
@@ -139,8 +180,9 @@ impl Capacities {
     }
 }
 
-impl Question for Capacities {
-    type Answer = EdgePerRecord;
+impl Study for Capacities<'_> {
+    type Row = SampleRow<EdgePerRecord>;
+
     const NAME: &'static str = "uncertain_suite";
 
     const FILES: &'static [&'static str] = &[
@@ -153,22 +195,24 @@ impl Question for Capacities {
         "uncertain.json",
     ];
 
-    fn of(scenario: &Scenario, _: Factors) -> Result<Self, String> {
-        scenario.check_from_rest("suite")?;
-        let suite = scenario.suite.as_ref();
-        let suite = suite.ok_or("the scenario has no [suite], whose records shake the samples")?;
-        Ok(Self {
-            levels: suite.levels.values(),
-            suite: suite.clone(),
-            directions: scenario.simulation.direction,
-        })
+    fn base(&self) -> Option<&Scenario> {
+        Some(self.cases.scenario)
+    }
+
+    fn count(&self) -> usize {
+        self.cases.count()
+    }
+
+    fn rows(&self, cases: &[usize]) -> Vec<Self::Row> {
+        self.cases.rows(cases, |scenario, _| self.answer(scenario))
     }
 
     fn results(
         &self,
-        samples: &Samples<'_, EdgePerRecord>,
-        figure: Figure,
+        rows: Vec<Self::Row>,
+        Style { figure, .. }: Style,
     ) -> Result<Results, OutputError> {
+        let samples = &Samples::new(self.cases, &rows);
         let counted = EdgesThatCount::new(self, samples);
         // Influence on the median over the records of a sample; the largest level if fewer than half of the records overturn the sample.
         let most = self.levels.last().copied().unwrap_or(1.0);
@@ -240,30 +284,6 @@ impl Question for Capacities {
         Ok(page
             .add_to(results, samples, &report.all)
             .in_order(Self::FILES))
-    }
-
-    fn answer(&self, scenario: &Scenario) -> Result<EdgePerRecord, NoAnswer> {
-        let model = scenario.model().map_err(NoAnswer::without_model)?;
-        let edge = |record: usize, direction: Direction| {
-            FirstEdge::find_among(&self.levels, WIDTH, |level: f64| {
-                let (ground, request) = case(scenario, &self.suite, record, level, direction);
-                let ending = Ending::of(&*model, &ground, &request)?;
-                Ok(TriedHistory::from(Ending {
-                    direction,
-                    ..ending
-                }))
-            })
-        };
-        let mut edges = EdgePerRecord::new();
-        for record in 0..self.suite.records.len() {
-            for direction in directions(scenario, &self.suite, &*model) {
-                edges.push(edge(record, *direction)?);
-            }
-            while !edges.len().is_multiple_of(self.signs()) {
-                edges.extend(edges.last().cloned());
-            }
-        }
-        Ok(edges)
     }
 }
 
@@ -385,7 +405,7 @@ fn distribution(intensities: impl IntoIterator<Item = [f64; 2]>) -> [Option<f64>
 
 /// The edges that count. Mirrored records do not count if no sample has a second direction.
 struct EdgesThatCount<'a> {
-    question: &'a Capacities,
+    question: &'a Capacities<'a>,
     /// The edges of each record, for the scenario itself; `samples` has them for each sample.
     own: Vec<&'a [FirstEdge]>,
     samples: Vec<Vec<&'a [FirstEdge]>>,
@@ -394,7 +414,7 @@ struct EdgesThatCount<'a> {
 }
 
 impl<'a> EdgesThatCount<'a> {
-    fn new(question: &'a Capacities, samples: &Samples<'a, EdgePerRecord>) -> Self {
+    fn new(question: &'a Capacities<'a>, samples: &Samples<'a, EdgePerRecord>) -> Self {
         let own = samples.own.as_ref().ok();
         let mut all = own.into_iter().chain(samples.answers());
         let is_symmetric = all.all(|edges| {

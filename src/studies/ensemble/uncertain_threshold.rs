@@ -8,13 +8,12 @@ use serde_json::{Value, json};
 use super::influence::InfluencedAnswer;
 use super::page::{SAMPLES, SamplePage};
 use super::report::{self, Band, Line, SampleSummary, why_not};
-use super::{NoAnswer, Question, Samples};
+use super::{NoAnswer, SampleCases, SampleRow, Samples};
 use crate::dynamics::Direction;
 use crate::output::{
     Chart, Figure, Key, Mark, OutputError, Scale, Sign, Stroke, Table, color, column, each, list,
 };
 use crate::scenario::Scenario;
-use crate::studies::Results;
 use crate::studies::intervals::{LEAST_FOR_LIMIT, rank_of_lower_limit};
 use crate::studies::quotable::{
     self, ModelAnswer, SlipWords, SurvivorFriction, directions_in_words,
@@ -26,10 +25,12 @@ use crate::studies::statistics::{
 use crate::studies::threshold::below::Fineness;
 use crate::studies::threshold::first_edge::{FirstEdge, TREATMENTS};
 use crate::studies::threshold::{Factors, check, peak_g, rounded, rounded_down};
+use crate::studies::{Results, Study, Style};
 
-/// The question for the first edge of each sample.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FirstEdges {
+/// The study of the first edge of each sample.
+#[derive(Clone, Copy, Debug)]
+pub struct FirstEdges<'a> {
+    cases: SampleCases<'a>,
     /// The factors that are tried.
     pub factors: Factors,
 }
@@ -95,8 +96,31 @@ fn strength_in_words(strength: f64, at_most: bool, [at, unit]: [&str; 2]) -> Str
     format!("{or_below} {at}{}{unit}", rounded(strength))
 }
 
-impl Question for FirstEdges {
-    type Answer = FirstEdge;
+impl<'a> FirstEdges<'a> {
+    /// Makes the study of a scenario with a table `[uncertain]`.
+    ///
+    /// # Errors
+    /// Returns the change that the scenario needs, in words.
+    pub fn of(scenario: &'a Scenario, factors: Factors) -> Result<Self, String> {
+        check(scenario)?;
+        Ok(Self {
+            cases: SampleCases::of(scenario)?,
+            factors,
+        })
+    }
+
+    fn answer(&self, scenario: &Scenario) -> Result<FirstEdge, NoAnswer> {
+        let edge = FirstEdge::of(scenario, &self.factors, |_| Fineness::SAMPLES)?;
+        match edge.is_outside_model() {
+            true => Err(NoAnswer::OutsideModel),
+            false => Ok(edge),
+        }
+    }
+}
+
+impl Study for FirstEdges<'_> {
+    type Row = SampleRow<FirstEdge>;
+
     const NAME: &'static str = "uncertain_threshold";
 
     const FILES: &'static [&'static str] = &[
@@ -108,16 +132,28 @@ impl Question for FirstEdges {
         "uncertain.json",
     ];
 
-    fn of(scenario: &Scenario, factors: Factors) -> Result<Self, String> {
-        check(scenario)?;
-        Ok(Self { factors })
+    fn base(&self) -> Option<&Scenario> {
+        Some(self.cases.scenario)
+    }
+
+    fn options(&self) -> Value {
+        json!({ "factors": self.factors })
+    }
+
+    fn count(&self) -> usize {
+        self.cases.count()
+    }
+
+    fn rows(&self, cases: &[usize]) -> Vec<Self::Row> {
+        self.cases.rows(cases, |scenario, _| self.answer(scenario))
     }
 
     fn results(
         &self,
-        samples: &Samples<'_, FirstEdge>,
-        figure: Figure,
+        rows: Vec<Self::Row>,
+        Style { figure, .. }: Style,
     ) -> Result<Results, OutputError> {
+        let samples = &Samples::new(self.cases, &rows);
         let edges = samples.answers();
         // A sample that never overturns counts with the largest factor.
         let strength = |edge: &FirstEdge| edge.factor.unwrap_or(edge.tried_to);
@@ -191,18 +227,6 @@ impl Question for FirstEdges {
         Ok(page
             .add_to(results, samples, &report.all)
             .in_order(Self::FILES))
-    }
-
-    fn answer(&self, scenario: &Scenario) -> Result<FirstEdge, NoAnswer> {
-        let edge = FirstEdge::of(scenario, &self.factors, |_| Fineness::SAMPLES)?;
-        match edge.is_outside_model() {
-            true => Err(NoAnswer::OutsideModel),
-            false => Ok(edge),
-        }
-    }
-
-    fn options(&self) -> Value {
-        json!({ "factors": self.factors })
     }
 }
 

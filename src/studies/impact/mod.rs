@@ -4,7 +4,8 @@ mod report;
 
 use self::report::{Certificate, ModelComparison, chain_of_four_links};
 pub use self::report::{Summary, chain};
-use super::results::{PrintedResult, StudyError};
+use super::StudyError;
+use super::results::PrintedResult;
 use crate::mechanics::Profile;
 use crate::mechanics::four_link::{
     ArchLink, Chain, DEFAULT_JOINTS, FourLink, ImpulseLine, Projection, ProjectionError,

@@ -9,8 +9,9 @@ pub use self::report::{
     FourLinkSide, FourLinks, Friction, FrictionLimit, FrictionSide, Summary, TieLimits, Ties,
     YieldingTies,
 };
+use super::StudyError;
 use super::report::Warnings;
-use super::results::{PrintedResult, StudyError};
+use super::results::PrintedResult;
 use crate::mechanics::friction::{self, FrictionOnset};
 use crate::mechanics::stability::{is_straight, limit_with_yielding_ties, onset, onset_at};
 use crate::mechanics::{Follower, FrictionError, Movements, RowOnset, Sides, StabilityError};

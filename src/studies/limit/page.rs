@@ -7,7 +7,7 @@ use crate::output::page::{Spot, SpotKind};
 use crate::output::{Figure, Scene};
 use crate::studies::draw_limit;
 use crate::studies::page::{CaseScenario, DrawPicture, Marked, Page, PageCases};
-use crate::studies::results::{Results, StudyError};
+use crate::studies::{Results, StudyError};
 use crate::{Scenario, Sway};
 
 /// Names of the files, the seal last.

@@ -15,9 +15,10 @@ pub use self::page::page_of;
 pub use self::picture::draw;
 pub use self::report::Summary as MapSummary;
 use super::ending::{Ending, NoHistory, Verdict, answer_valid_cases};
-use super::runner::Study;
+use super::{Results, Study, Style};
 use crate::dynamics::repeatability::{CheckedHistory, required_friction};
 use crate::dynamics::{Direction, Directions, OutcomeCount, Repetition};
+use crate::output::OutputError;
 use crate::scenario::{Axis, Ground, ModelError, Quantity, Scaling, Scenario};
 use crate::{Case, FourLinks, GroundMotion, Model, PulseShape, SimulationError, Summary};
 
@@ -433,6 +434,8 @@ impl Study for OverturningMap<'_> {
 
     const NAME: &'static str = "map";
 
+    const FILES: &'static [&'static str] = &report::FILES;
+
     fn base(&self) -> Option<&Scenario> {
         Some(self.scenario)
     }
@@ -472,6 +475,10 @@ impl Study for OverturningMap<'_> {
             }
         };
         indices.iter().zip(ended).map(row).collect()
+    }
+
+    fn results(&self, rows: Vec<CellRow>, style: Style) -> Result<Results, OutputError> {
+        self.report(&rows, style)
     }
 }
 

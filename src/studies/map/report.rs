@@ -13,7 +13,7 @@ use crate::studies::ending::columns::{self, FAILED};
 use crate::studies::quotable::SurvivorFriction;
 use crate::studies::report::{Report, Warnings};
 use crate::studies::run::Scales;
-use crate::studies::{CaseSummary, OutcomeCounts, Remark, Remarks, ReportedStudy, Results, Style};
+use crate::studies::{CaseSummary, OutcomeCounts, Remark, Remarks, Results, Style};
 
 const SUMMARY: &str = "map.json";
 
@@ -36,13 +36,15 @@ pub struct Summary {
     other_outcomes_in_repetitions: Option<usize>,
 }
 
-impl ReportedStudy for OverturningMap<'_> {
-    const FILES: &'static [&'static str] = &["map.svg", "map.html", SUMMARY, "map.csv"];
+/// Names of the files, the seal last.
+pub(super) const FILES: [&str; 4] = ["map.svg", "map.html", SUMMARY, "map.csv"];
 
-    fn results(&self, cells: Vec<CellRow>, style: Style) -> Result<Results, OutputError> {
+impl OverturningMap<'_> {
+    /// Makes the report and the other files of all cells.
+    pub(super) fn report(&self, cells: &[CellRow], style: Style) -> Result<Results, OutputError> {
         let scenario = self.scenario;
         let title = scenario.title.as_deref().unwrap_or("Overturning map");
-        let remarks = remarks(self, &cells);
+        let remarks = remarks(self, cells);
         let for_looking = super::for_looking(scenario).map(str::to_owned);
         let warnings = remarks.warnings("cells").chain(for_looking.clone());
         let survivors = cells.iter().filter_map(|cell| cell.result.as_ref().ok());
@@ -64,10 +66,10 @@ impl ReportedStudy for OverturningMap<'_> {
                 warnings,
             ),
         };
-        let colored = ColoredCells::of_outcomes(&cells, style);
-        let picture = |style| picture::drawn(title, self, &cells, &colored, style);
+        let colored = ColoredCells::of_outcomes(cells, style);
+        let picture = |style| picture::drawn(title, self, cells, &colored, style);
         let results = Results::of(SUMMARY, &report)?;
-        let (doubts, columns) = (page::doubts(&cells), page::columns(&cells));
+        let (doubts, columns) = (page::doubts(cells), page::columns(cells));
         let page = colored.page(
             title,
             self,
@@ -76,10 +78,10 @@ impl ReportedStudy for OverturningMap<'_> {
             (doubts, columns),
         );
         let results = results
-            .with_table("map.csv", Table::new(self.columns(), &cells)?)
+            .with_table("map.csv", Table::new(self.columns(), cells)?)
             .with_file("map.svg", picture(style).picture)
             .with_file("map.html", page);
-        Ok(results.in_order(Self::FILES))
+        Ok(results.in_order(&FILES))
     }
 }
 

@@ -2,11 +2,12 @@
 
 use std::ops::ControlFlow;
 
+use super::recorder::simulated;
 use super::snapshots::{MAX_FILM_PICTURES, Snapshots};
 use super::{MILLISECONDS, scene};
 use crate::output::{Background, Figure, FilmFormat, Reel};
 use crate::scenario::Scenario;
-use crate::studies::{Progress, RunnerError, StudyError, Watch};
+use crate::studies::{Counted, Progress, RunnerError, StudyError, Watch};
 use crate::{Model, Recorder, Sample};
 
 /// Options of a film.
@@ -115,7 +116,14 @@ impl Film {
             background,
             draw: &draw,
         };
-        Ok(reel.encode(format, &mut |done| watch(Progress::new(done, all)))?)
+        let mut watch = |done| {
+            watch(Progress {
+                done,
+                all,
+                counted: Counted::Pictures,
+            })
+        };
+        Ok(reel.encode(format, &mut watch)?)
     }
 }
 
@@ -133,7 +141,7 @@ impl Recorder for Camera<'_> {
         self.snapshots.push(sample);
         let done = (sample.time_s * MILLISECONDS) as usize;
         let all = self.duration_ms;
-        let progress = Progress::new(done, all);
+        let progress = simulated(done, all);
         if (self.watch)(progress).is_break() {
             self.status = Err(RunnerError::Cancelled(progress).into());
         } else if self.snapshots.count() == MAX_FILM_PICTURES {

@@ -41,19 +41,20 @@ use self::overlay::Curves;
 use self::picture::Timeline;
 pub use self::points::MAX_POINTS;
 use self::points::ObservedPoints;
-use self::recorder::{MILLISECONDS, Output, RunRecorder, TableFiles, Tables};
+use self::recorder::{MILLISECONDS, Output, RunRecorder, TableFiles, Tables, simulated};
 pub use self::report::{Report, ReportPage, page_of};
 pub use self::scales::Scales;
 use self::snapshots::Snapshots;
 pub use self::summary::{
     ComputedRun, MirroredSummary, OutcomeSummary, Summary, VariedRun, summary,
 };
+use self::words::records_in_words;
+pub use self::words::words_of;
 use self::words::{Files, Printed, Words};
-pub use self::words::{records_in_words, words_of};
 use super::comparison::Comparison;
 use super::quotable::{self, ModelAnswer};
 use super::report::Statement;
-use super::{Progress, Results, StudyError, Watch};
+use super::{Results, StudyError, Watch};
 use crate::dynamics::repeatability::Repetitions;
 use crate::dynamics::{Directions, FallEnd, Repeatability, Variations};
 use crate::output::page::Spot;
@@ -221,7 +222,10 @@ pub fn results(
         })
     };
     // The page may be opened elsewhere, so its words name no folder.
-    results.statement = statement(&all, quote, words(false));
+    results.statement = Statement {
+        input: records_in_words(&scenarios[0]),
+        ..statement(&all, quote, words(false))
+    };
     results.words = words(true);
     if comparison.is_some() && !results.files.is_empty() && !options.no_report {
         results = comparison::with_page(results, &runs, &all).in_order(&FILES);
@@ -249,6 +253,7 @@ fn statement(all: &[ModelResults], quote: Option<&str>, details: String) -> Stat
         }
     }
     Statement {
+        input: String::new(),
         verdict: verdicts.collect::<Vec<_>>().join("\n"),
         details,
         unlikely,
@@ -376,7 +381,7 @@ impl<'a> Run<'a> {
         let repeated = repetitions.map(|repetitions| {
             // Repetitions that were started are finished.
             let all = duration_ms;
-            let _ = watch(Progress::new(all, all));
+            let _ = watch(simulated(all, all));
             repetitions.compare(&history)
         });
         let mirrored = mirrored.map(MirroredRun::finish);

@@ -9,7 +9,7 @@ use super::{Drawings, EVENTS, IMPACTS, JOINTS, POSES, ROTATIONS, Run, Sinks, tab
 use crate::clock;
 use crate::dynamics::FallEnd;
 use crate::output::{NewFile, OutputError, TableWriter};
-use crate::studies::{Progress, RunnerError, StudyError, Watch};
+use crate::studies::{Counted, Progress, RunnerError, StudyError, Watch};
 use crate::{Event, OpenHinge, Pose, Recorder, Sample};
 
 /// The tables of a run while they are written, by their names.
@@ -150,12 +150,21 @@ impl RunRecorder<'_, '_> {
     }
 }
 
+/// Makes the progress of a history from milliseconds of simulated time.
+pub(super) const fn simulated(done: usize, all: usize) -> Progress {
+    Progress {
+        done,
+        all,
+        counted: Counted::Milliseconds,
+    }
+}
+
 impl Recorder for RunRecorder<'_, '_> {
     fn sample(&mut self, sample: &Sample) -> ControlFlow<()> {
         // All is done only while the history is repeated.
         let (done, all) = ((sample.time_s * MILLISECONDS) as usize, self.duration_ms);
         let done = done.min(all.saturating_sub(1));
-        let progress = Progress::new(done, all);
+        let progress = simulated(done, all);
         let _ = self.drawings.sample(sample);
         self.status = match (self.watch)(progress) {
             ControlFlow::Continue(()) => self.tables.sample(sample).map_err(StudyError::from),

@@ -27,7 +27,7 @@ use crate::studies::quotable::STONE_FRICTION;
 use crate::{Outcome, Verdict};
 
 /// Returns the records of a scenario, one line each.
-pub fn records_in_words(scenario: &Scenario) -> String {
+pub(super) fn records_in_words(scenario: &Scenario) -> String {
     let in_words = |series: &Series| {
         let (file, sampling) = (series.name(), series.sampling());
         let peak_g = series.peak_g(scenario.gravity_m_s2());

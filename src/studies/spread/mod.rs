@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 pub use self::report::{FILES, report};
+use super::StudyError;
 use super::report::{Report, Warnings};
-use super::results::StudyError;
 use super::runner::in_parallel;
 use crate::argument::fixed;
 use crate::mechanics::settling::{HingeState, Movement, Pin, Snap};

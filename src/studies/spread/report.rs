@@ -10,7 +10,7 @@ use crate::output::page::SpotKind;
 use crate::output::{Cell, Figure, OutputError, Scene, Table, column, list, several};
 use crate::scenario::Scenario;
 use crate::studies::page::{CaseScenario, Page, PageCases};
-use crate::studies::results::{Results, StudyError};
+use crate::studies::{Results, StudyError};
 
 /// Names of the files, the seal last.
 pub const FILES: [&str; 4] = ["spread.html", "spread.svg", "spread.csv", "spread.json"];

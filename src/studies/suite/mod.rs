@@ -24,7 +24,7 @@ use super::threshold::below::{FineHistory, Fineness, below_edge};
 use super::threshold::first_edge::{FirstEdge, TriedHistory};
 use super::threshold::onset_factor;
 use super::threshold::survival::{Survival, VerdictRange};
-use super::{NoAnswer, ReportedStudy, Results, Study, Style};
+use super::{NoAnswer, Results, Study, Style};
 use crate::bisection::{Width, bisect};
 use crate::dynamics::{Direction, Directions};
 use crate::output::OutputError;
@@ -171,6 +171,8 @@ impl Study for RecordSuite<'_> {
 
     const NAME: &'static str = "suite";
 
+    const FILES: &'static [&'static str] = &report::FILES;
+
     fn base(&self) -> Option<&Scenario> {
         Some(self.scenario)
     }
@@ -242,10 +244,6 @@ impl Study for RecordSuite<'_> {
         let rows = indices.iter().zip(results).zip(edges);
         rows.map(row).collect()
     }
-}
-
-impl ReportedStudy for RecordSuite<'_> {
-    const FILES: &'static [&'static str] = &report::FILES;
 
     fn results(&self, rows: Vec<CaseRow>, style: Style) -> Result<Results, OutputError> {
         self.heading().report(rows, style.figure)

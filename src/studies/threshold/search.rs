@@ -9,7 +9,7 @@ use super::{FactorSample, Survival, Threshold};
 use crate::bisection::{Width, next_middles, try_bisect};
 use crate::dynamics::Direction;
 use crate::studies::ending::{Ending, NoHistory, Verdict, answer_valid_cases};
-use crate::studies::{Progress, Runner, RunnerError, SearchStep, StudyError};
+use crate::studies::{Counted, Progress, Runner, RunnerError, SearchStep, StudyError};
 use crate::{GroundMotion, Model, Request, SimulationError};
 
 /// Number of bisection steps computed ahead for models that compute histories faster together: three steps are seven histories.
@@ -55,7 +55,7 @@ fn in_step(
 ) -> impl FnMut(Progress) -> ControlFlow<()> {
     move |progress| {
         watch(Progress {
-            search: Some(step),
+            counted: Counted::Search(step),
             ..progress
         })
     }

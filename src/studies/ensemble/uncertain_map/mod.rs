@@ -9,14 +9,14 @@ use serde::{Deserialize, Serialize};
 
 pub use self::report::Summary;
 use super::samples::ReasonCounts;
-use super::{NoAnswer, SampleRow, Samples, uncertain};
+use super::{NoAnswer, SampleCases, SampleRow, Samples};
 use crate::dynamics::Direction;
 use crate::output::OutputError;
-use crate::scenario::{Scenario, Uncertain, replaces};
+use crate::scenario::{Scenario, replaces};
 use crate::studies::ending::columns::OUTCOMES;
 use crate::studies::map::OverturningMap;
 use crate::studies::statistics::Share;
-use crate::studies::{Ending, NoHistory, ReportedStudy, Results, Study, Style, Verdict};
+use crate::studies::{Ending, NoHistory, Results, Study, Style, Verdict};
 
 /// The outcome of a cell of a sample, as an index of [`OUTCOMES`], plus
 /// [`MIRRORED`] for a history under the mirrored ground motion, its probability of overturning, in parts of [`PARTS`], and of a survivor the friction
@@ -66,8 +66,7 @@ type Cached<'a> = (usize, Arc<OnceLock<OfSample<'a>>>);
 /// The cells of a map for the scenario itself, followed by those for each sample.
 #[derive(Debug)]
 pub struct CellsOfSamples<'a> {
-    scenario: &'a Scenario,
-    uncertain: &'a Uncertain,
+    samples: SampleCases<'a>,
     map: OverturningMap<'a>,
     /// The maps of the samples that were last used.
     cache: Mutex<VecDeque<Cached<'a>>>,
@@ -80,7 +79,8 @@ impl<'a> CellsOfSamples<'a> {
     /// Returns the change that the scenario needs, in words.
     pub fn of(scenario: &'a Scenario) -> Result<Self, String> {
         let map = OverturningMap::of(scenario)?;
-        let uncertain = uncertain(scenario)?;
+        let samples = SampleCases::of(scenario)?;
+        let uncertain = samples.uncertain;
         for axis in map.axes {
             let mut keys = uncertain.keys.iter();
             let path = axis.path(scenario.ground.as_ref());
@@ -91,7 +91,7 @@ impl<'a> CellsOfSamples<'a> {
                 ));
             }
         }
-        let histories = map.count().saturating_mul(1 + uncertain.cases());
+        let histories = map.count().saturating_mul(samples.count());
         if histories > MAX_HISTORIES {
             return Err(format!(
                 "{} cells of [map] and {} samples of [uncertain] are {histories} histories; at most {MAX_HISTORIES} are allowed",
@@ -100,8 +100,7 @@ impl<'a> CellsOfSamples<'a> {
             ));
         }
         Ok(Self {
-            scenario,
-            uncertain,
+            samples,
             map,
             cache: Mutex::default(),
         })
@@ -121,14 +120,8 @@ impl<'a> CellsOfSamples<'a> {
             found
         };
         found.get_or_init(|| {
-            let scenario = match sample.checked_sub(1) {
-                None => Ok(self.scenario.clone()),
-                Some(sample) => {
-                    let values = self.uncertain.values(sample);
-                    self.uncertain.scenario(self.scenario, &values)
-                }
-            };
-            let map = OverturningMap::of_sample(self.scenario, scenario?);
+            let scenario = self.samples.scenario_of(sample)?;
+            let map = OverturningMap::of_sample(self.samples.scenario, scenario);
             Ok(map.expect("the scenario has a map"))
         });
         found
@@ -146,12 +139,14 @@ impl Study for CellsOfSamples<'_> {
 
     const NAME: &'static str = "uncertain_map";
 
+    const FILES: &'static [&'static str] = &report::FILES;
+
     fn base(&self) -> Option<&Scenario> {
-        Some(self.scenario)
+        Some(self.samples.scenario)
     }
 
     fn count(&self) -> usize {
-        self.map.count() * (1 + self.uncertain.cases())
+        self.map.count() * self.samples.count()
     }
 
     /// Returns the family of cells of one sample with one structure.
@@ -174,6 +169,12 @@ impl Study for CellsOfSamples<'_> {
             }
             Err(reason) => vec![Err(NoAnswer::Invalid(reason.clone())); cells.len()],
         }
+    }
+
+    fn results(&self, rows: Vec<CellRow>, style: Style) -> Result<Results, OutputError> {
+        let parts = self.parts(&rows);
+        let samples = Samples::new(self.samples, &parts);
+        report::report(self, &samples, &rows, style)
     }
 }
 
@@ -306,24 +307,13 @@ impl CellsOfSamples<'_> {
     fn parts(&self, rows: &[CellRow]) -> Vec<SampleRow<Share>> {
         let samples = rows.chunks(self.map.count()).enumerate();
         let part = |(sample, cells): (usize, &[CellRow])| {
-            let sample = sample.checked_sub(1);
             let why_not = cells.iter().find_map(|cell| cell.clone().err());
             let overturned = CellCounts::of([0.0; 2], cells.iter()).overturned;
             SampleRow {
-                values: sample.map_or(Vec::new(), |sample| self.uncertain.values(sample)),
+                values: self.samples.values(sample),
                 answer: overturned.ok_or_else(|| why_not.expect("a map has cells")),
             }
         };
         samples.map(part).collect()
-    }
-}
-
-impl ReportedStudy for CellsOfSamples<'_> {
-    const FILES: &'static [&'static str] = &report::FILES;
-
-    fn results(&self, rows: Vec<CellRow>, style: Style) -> Result<Results, OutputError> {
-        let parts = self.parts(&rows);
-        let samples = Samples::new(self.scenario, self.uncertain, &parts);
-        report::report(self, &samples, &rows, style)
     }
 }

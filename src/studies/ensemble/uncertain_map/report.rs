@@ -5,9 +5,12 @@ use std::collections::BTreeMap;
 use askama::Template;
 use serde::{Deserialize, Serialize};
 
-use super::{CellCounts, CellRow, CellsOfSamples, Crossing, LEVELS, Samples, outcome_of};
+use super::{
+    CellCounts, CellRow, CellsOfSamples, Crossing, LEVELS, SampleCases, Samples, outcome_of,
+};
 use crate::output::{Key, Mark, OutputError, Stroke, Table, color, column, each, list};
 use crate::scenario::Varied;
+use crate::studies::Study as _;
 use crate::studies::ending::columns::{OUTCOMES, yes};
 use crate::studies::ensemble::influence::{InfluencedAnswer, percent};
 use crate::studies::ensemble::report::{Band, SampleSummary};
@@ -17,7 +20,6 @@ use crate::studies::map::picture::{ColoredCells, Drawn, MapChart};
 use crate::studies::outcome_colors::OutcomeColor;
 use crate::studies::quotable::SurvivorFriction;
 use crate::studies::report::{Report, Warnings};
-use crate::studies::runner::Study as _;
 use crate::studies::statistics::{Share, band, quantile};
 use crate::studies::{ModelCheck, Results, Style, rounded};
 
@@ -105,12 +107,16 @@ pub(super) fn report(
 ) -> Result<Results, OutputError> {
     let cells = study.map.count();
     let (own, rows) = rows.split_at(cells);
-    let rows = &rows[..cells * study.uncertain.samples];
+    let SampleCases {
+        scenario,
+        uncertain,
+    } = study.samples;
+    let rows = &rows[..cells * uncertain.samples];
     let counts = study.counts(rows);
     let crossings = study.crossings(&counts);
     let without = rows.iter().filter_map(|row| row.as_ref().err());
     let reasons = ReasonCounts::of(without.clone());
-    let (kind, structure) = (study.scenario.motion.kind, &study.scenario.structure);
+    let (kind, structure) = (scenario.motion.kind, &scenario.structure);
     let four = kind.has_mechanism && structure.has_horizontal_thrust();
     let answered: usize = counts.iter().map(|cell| cell.samples).sum();
     let outside = reasons.outside;
@@ -121,7 +127,7 @@ pub(super) fn report(
         .flatten()
         .map(|(.., demand)| demand.map(f64::from));
     let survivors = ("map FILE", "surviving cells of samples");
-    let friction = SurvivorFriction::of(demands, study.scenario, survivors);
+    let friction = SurvivorFriction::of(demands, scenario, survivors);
     let influence = samples.influence(false, |share: &Share| share.share);
     let influences = [(InfluencedAnswer::PartThatOverturns, influence)];
     let at_least = |level: f64| {

@@ -17,8 +17,9 @@ use super::check;
 use super::factors::Factors;
 use super::first_edge::FirstEdge;
 use crate::dynamics::Direction;
+use crate::output::OutputError;
 use crate::scenario::{Scenario, Sequence, Spacing, Varied};
-use crate::studies::{NoAnswer, Study};
+use crate::studies::{NoAnswer, Results, Study, Style};
 
 /// Equally spaced values of a key of the scenario, ends included.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -247,6 +248,8 @@ impl Study for Along<'_> {
 
     const NAME: &'static str = "threshold_along";
 
+    const FILES: &'static [&'static str] = &report::FILES;
+
     fn base(&self) -> Option<&Scenario> {
         Some(self.scenario)
     }
@@ -264,5 +267,9 @@ impl Study for Along<'_> {
             .iter()
             .map(|index| self.row(self.values[*index]))
             .collect()
+    }
+
+    fn results(&self, rows: Vec<AlongRow>, style: Style) -> Result<Results, OutputError> {
+        self.report(&rows, style)
     }
 }

@@ -16,7 +16,7 @@ use crate::studies::report::{Report, Warnings};
 use crate::studies::threshold::report::lower_in_words;
 use crate::studies::threshold::{Factors, rounded, rounded_down, rounded_edge};
 use crate::studies::{
-    CaseSummary, ModelCheck, NoAnswer, Remark, Remarks, ReportedStudy, Results, Style, no_verdict,
+    CaseSummary, ModelCheck, NoAnswer, Remark, Remarks, Results, Style, no_verdict,
 };
 
 /// Report on the threshold for each value of a key.
@@ -41,17 +41,19 @@ pub struct Summary {
 
 const SUMMARY: &str = "threshold_along.json";
 
-impl ReportedStudy for Along<'_> {
-    const FILES: &'static [&'static str] = &[
-        "threshold_along.html",
-        "threshold_along.svg",
-        SUMMARY,
-        "threshold_along.csv",
-    ];
+/// Names of the files, the seal last.
+pub(super) const FILES: [&str; 4] = [
+    "threshold_along.html",
+    "threshold_along.svg",
+    SUMMARY,
+    "threshold_along.csv",
+];
 
-    fn results(&self, rows: Vec<AlongRow>, style: Style) -> Result<Results, OutputError> {
+impl Along<'_> {
+    /// Makes the report and the other files of all rows.
+    pub(super) fn report(&self, rows: &[AlongRow], style: Style) -> Result<Results, OutputError> {
         let incomplete = |row: &&AlongRow| row.edge == Err(NoAnswer::Incomplete);
-        let remarks = self.remarks(&rows);
+        let remarks = self.remarks(rows);
         let values_without_verdict = rows.iter().filter(incomplete).count();
         let limits = limits(&remarks, values_without_verdict, rows.len());
         let AlongOptions {
@@ -65,7 +67,7 @@ impl ReportedStudy for Along<'_> {
         let survivors = (study.as_str(), "surviving motions");
         let friction = SurvivorFriction::of(demands, self.scenario, survivors);
         let condition = SlipWords::of(self.scenario).condition(friction.friction_demand, &study);
-        let answer = self.answer(&rows).with_friction(condition);
+        let answer = self.answer(rows).with_friction(condition);
         let report = Summary {
             all: CaseSummary::new(
                 (self.scenario, &self.options.varied()),
@@ -96,7 +98,7 @@ impl ReportedStudy for Along<'_> {
         let title = title.unwrap_or("Threshold of overturning");
         let mut cases = PageCases::default();
         let text = cases.add_text(&self.scenario.to_json(), false);
-        for row in &rows {
+        for row in rows {
             self.add_case(&mut cases, row, text);
         }
         let draw = |figure, spots: &[_]| picture::draw(figure, (title, key), &report.values, spots);
@@ -113,7 +115,7 @@ impl ReportedStudy for Along<'_> {
         page.command = factors.command();
         let marked = |figure| draw(figure, &cases.spots);
         let results = results.with_page("threshold_along.html", page, &cases, (&marked, &[]));
-        Ok(results.in_order(Self::FILES))
+        Ok(results.in_order(&FILES))
     }
 }
 
