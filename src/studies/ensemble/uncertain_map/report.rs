@@ -5,9 +5,7 @@ use std::collections::BTreeMap;
 use askama::Template;
 use serde::{Deserialize, Serialize};
 
-use super::{
-    CellCounts, CellRow, CellsOfSamples, Crossing, LEVELS, SampleCases, Samples, outcome_of,
-};
+use super::{CellCounts, CellRow, CellsOfSamples, Crossing, LEVELS, Samples, outcome_of};
 use crate::output::{Key, Mark, OutputError, Stroke, Table, color, column, each, list};
 use crate::scenario::Varied;
 use crate::studies::Study as _;
@@ -107,11 +105,8 @@ pub(super) fn report(
 ) -> Result<Results, OutputError> {
     let cells = study.map.count();
     let (own, rows) = rows.split_at(cells);
-    let SampleCases {
-        scenario,
-        uncertain,
-    } = study.samples;
-    let rows = &rows[..cells * uncertain.samples];
+    let scenario = study.samples.scenario;
+    let rows = &rows[..cells * study.samples.uncertain.samples];
     let counts = study.counts(rows);
     let crossings = study.crossings(&counts);
     let without = rows.iter().filter_map(|row| row.as_ref().err());
