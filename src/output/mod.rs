@@ -5,6 +5,7 @@
 pub(crate) mod axes;
 pub(crate) mod caption;
 pub(crate) mod chart;
+pub(crate) mod columns;
 pub(crate) mod elevation;
 pub(crate) mod envelope;
 pub(crate) mod figure;

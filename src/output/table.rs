@@ -28,6 +28,13 @@ pub(crate) enum Cell<'r> {
     Numbers(Cow<'r, [f64]>),
 }
 
+impl<R> Column<'_, R> {
+    /// Returns its names.
+    pub(crate) fn names(&self) -> impl Iterator<Item = &str> {
+        self.names.iter().map(|name| &**name)
+    }
+}
+
 /// Makes a column whose cells are computed from the row.
 pub(crate) fn column<'a, R, C: Into<Cell<'static>>>(
     name: impl Into<Cow<'a, str>>,

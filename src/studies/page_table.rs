@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::output::Table;
+use crate::output::{Table, columns};
 
 /// A table with rounded numbers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -19,8 +19,14 @@ pub(super) struct PageTable {
 }
 
 impl PageTable {
+    /// Returns the meaning of a column.
+    pub(super) fn meaning(&self, column: &str) -> &'static str {
+        columns::meaning(&self.name, column).unwrap_or_default()
+    }
+
     /// Takes the first rows of a table, with rounded numbers.
     pub(super) fn of(name: &str, table: &Table) -> Self {
+        columns::check(name, table.header.iter().map(String::as_str));
         Self {
             name: name.to_owned(),
             header: table.header.clone(),

@@ -5,7 +5,7 @@ use std::os::unix::fs::symlink;
 use std::path::Path;
 use std::{env, fs};
 
-use crate::common::documents::{pages, repository, words};
+use crate::common::documents::{assert_generated, pages, repository, words};
 use crate::common::program::{assert_shown_output_is_printed, scenarios};
 
 /// A page is read if it is short. Words in code blocks and in parts that tests write do not count.
@@ -42,6 +42,29 @@ fn commands_print_the_output_shown_in_the_documents() {
         assert_eq!(commands, shown, "{page}");
         columns_are_those_of_the_page(&folder.path().join("results"));
     }
+}
+
+/// The meanings of columns in docs/results.md are those of the program, which checks in tests that every column of a table has one.
+#[test]
+fn columns_have_the_meanings_of_the_program() {
+    let text = fs::read_to_string(repository().join("src/output/columns.txt")).unwrap();
+    let mut all = String::new();
+    for section in text.split("\n\n[").skip(1) {
+        let (files, lines) = section.split_once("]\n").unwrap();
+        let files = files.replace("] [", "`, `");
+        let _ = write!(all, "\n### `{files}`\n\n| column | meaning |\n|---|---|\n");
+        for line in lines.lines() {
+            let (names, meaning) = line.split_once(": ").unwrap();
+            let names = if names == "*" {
+                "any other"
+            } else {
+                &format!("`{names}`")
+            };
+            let _ = writeln!(all, "| {names} | {meaning} |");
+        }
+    }
+    let written_by = "tests/program/documents.rs from src/output/columns.txt";
+    assert_generated("docs/results.md", written_by, &all);
 }
 
 /// The first lines of tables are those in docs/results.md, where `...` stands for the first column or columns.

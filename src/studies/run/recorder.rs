@@ -8,7 +8,7 @@ use std::time::Duration;
 use super::{Drawings, EVENTS, IMPACTS, JOINTS, POSES, ROTATIONS, Run, Sinks, tables};
 use crate::clock;
 use crate::dynamics::FallEnd;
-use crate::output::{NewFile, OutputError, TableWriter};
+use crate::output::{Column, NewFile, OutputError, TableWriter, columns};
 use crate::studies::{Counted, Progress, RunnerError, StudyError, Watch};
 use crate::{Event, OpenHinge, Pose, Recorder, Sample};
 
@@ -62,6 +62,17 @@ pub(super) fn boxed<'f>(output: impl io::Write + 'f) -> Output<'f> {
     Box::new(output)
 }
 
+/// Begins a table.
+fn streamed<'f, R>(
+    name: &str,
+    file: Output<'f>,
+    columns: Vec<Column<'static, R>>,
+) -> Result<StreamedTable<'f, R>, OutputError> {
+    columns::check(name, columns.iter().flat_map(Column::names));
+    let what = format!("cannot write the {}", name.trim_end_matches(".csv"));
+    TableWriter::new(file, what, columns)
+}
+
 /// The tables of a run.
 #[derive(Default)]
 pub(super) struct Tables<'f> {
@@ -78,7 +89,6 @@ impl<'f> Tables<'f> {
         let model = &*run.model;
         let mut tables = Self::default();
         for (name, file) in outputs {
-            let what = format!("cannot write the {}", name.trim_end_matches(".csv"));
             let columns = match name {
                 ROTATIONS => {
                     let ground = run.scenario.ground_motion();
@@ -94,13 +104,13 @@ impl<'f> Tables<'f> {
                         Some(model) => tables::impacts(model),
                         None => tables::landings(model),
                     };
-                    let table = TableWriter::new(file, what, columns)?;
+                    let table = streamed(name, file, columns)?;
                     tables.events.push((name == IMPACTS, table));
                     continue;
                 }
                 _ => continue,
             };
-            tables.samples.push(TableWriter::new(file, what, columns)?);
+            tables.samples.push(streamed(name, file, columns)?);
         }
         Ok(tables)
     }

@@ -1,4 +1,4 @@
-//! The tables of a run: `rotations.csv`, `poses.csv`, `joints.csv`, `events.csv` and `impacts.csv`.
+//! The tables of a run: `rotations.csv`, `poses.csv`, `joints.csv`, `events.csv` and `impacts.csv`. Meanings of the columns: `output/columns.txt`.
 
 use crate::output::mechanisms::columns;
 use crate::output::{Cell, Column, column, fields, list, numbers, row_number, several};
@@ -8,16 +8,7 @@ use super::Scales;
 use crate::dynamics::TieSample;
 use crate::mechanics::Edge;
 
-/// Returns the columns of `rotations.csv`, one row per sample.
-///
-/// - time, acceleration of the ground, `phase` (number of events up to the sample), `state`, rotations and rates of all bodies;
-/// - `thrust_excess_ratio` of mechanisms, or `open_joints` of rows, whose thrust line never leaves the structure;
-/// - `friction_demand`; the vertical acceleration if the ground has one;
-/// - if the feet move differently, `right_foot_x_m` and `right_foot_y_m`: the displacement of the right foot relative to the left one, to the
-///   right and upwards.
-///
-/// With scales, three more columns: `p_t` (time times `p`), `acceleration_over_incipient` (acceleration of the ground over `g A_L`) and
-/// `rotation_over_critical` (see [`Sample::rotation_over_critical`]). The columns of observed points come last.
+/// Returns the columns of `rotations.csv`, one row per sample; three more with scales. The columns of observed points come last.
 pub(super) fn rotations(
     model: &dyn Model,
     ground: &GroundMotion,
@@ -68,11 +59,7 @@ pub(super) fn rotations(
     all
 }
 
-/// Returns the columns of `poses.csv`, one row per sample: `time_s`, then `x_..._m`, `y_..._m`, `rotation_..._rad` of each body.
-///
-/// `(x, y)` is the current position, relative to the ground, of the point of the body that is at the origin in the undeformed structure. The
-/// origin is the centre of a circular arch, or the middle of the base of a column. A corner that was at `c` is now at `(x, y) + R c`, where `R`
-/// is the anticlockwise rotation of the body.
+/// Returns the columns of `poses.csv`, one row per sample. The origin is the centre of a circular arch, or the middle of the base of a column.
 pub(super) fn poses(bodies: &[String]) -> Vec<Column<'static, Sample>> {
     let names = bodies.iter().flat_map(|body| {
         let body = std::slice::from_ref(body);
@@ -92,16 +79,6 @@ pub(super) fn poses(bodies: &[String]) -> Vec<Column<'static, Sample>> {
 }
 
 /// Returns the columns of `joints.csv`, one row per sample.
-///
-/// - `time_s`, then the gaps of all joints at both edges: `gap_0_intrados_m`, `gap_0_extrados_m` and so on;
-/// - if joints slip, `slip_0_m` and so on: the offset of the right face towards the extrados (in a column: of the upper face to the right);
-/// - if joints are elastic, for each joint `normal_0_n` (compression is positive), `shear_0_n` (positive if it resists slip of the right face
-///   towards the extrados), `eccentricity_0_ratio` (distance of the normal force from the middle towards the extrados, over the thickness; empty
-///   without compression), `contact_0_ratio` (the compressed fraction), `stress_0_intrados_pa` and `stress_0_extrados_pa`;
-/// - for each tie, from 1 on, `tie_1_force_n` and `tie_1_elongation_m` since the undeformed structure.
-///
-/// Joint 0 is the left springing, or the base of a column, whose intrados is its left side. The larger gap of a joint is measured along the arc:
-/// thickness times relative rotation, plus the smaller gap.
 pub(super) fn joints(model: &dyn Model) -> Vec<Column<'static, Sample>> {
     let (joints, ties) = model
         .row()
@@ -143,20 +120,7 @@ pub(super) fn joints(model: &dyn Model) -> Vec<Column<'static, Sample>> {
     ]
 }
 
-/// Returns the columns of `events.csv`, one row per event.
-///
-/// | column | |
-/// |---|---|
-/// | `time_s` | instant |
-/// | `phase` | the phase that begins, as in `rotations.csv`; phase 0 begins with the run, without a row |
-/// | `kind` | `uplift`, `impact`, `rest` or `overturned`; of a tie, `tie_yields` (for the first time) or `tie_breaks` |
-/// | `sway` | `right` or `left`, from here on; empty at rest |
-/// | `mechanism` | index in the chain: impacts since the last uplift or release; empty at rest, and for rows of blocks |
-/// | `tie` | if there are ties: number of the tie, from 1; empty for other events |
-/// | `rotation_..._rad`, `rate_..._rad_s` | of each body, just after |
-/// | `energy_j` | kinetic and potential, just after |
-/// | `hinge_a_deg`, `hinge_a_edge` ... | of the mechanism from here on, see [`impacts`]; empty at rest |
-/// | `joints_open`, `edges_open` | of a row of blocks: joints that are open from here on, and the edge about which each turns (`both`: the joint parts), separated by spaces |
+/// Returns the columns of `events.csv`, one row per event; phase 0 begins with the run, without a row.
 ///
 /// The table of a free-standing column has no hinges. A structure that is released starts in the first mechanism without a row; the first row of
 /// `impacts.csv` has the hinges of that mechanism as closed hinges.
@@ -198,14 +162,7 @@ pub(super) fn events(model: &dyn Model) -> Vec<Column<'static, Event>> {
 /// Returns the columns of `impacts.csv` for mechanisms, one row per impact.
 ///
 /// The mechanism after the impact is written with the energy that it would keep, even if this energy is so small that the structure comes to
-/// rest. Hinges are empty if no mechanism can follow. The table of a free-standing column has no hinges.
-///
-/// `hinge_a_deg` to `hinge_d_deg` are the hinges of the mechanism after the impact, from the left, in degrees from the left springing;
-/// `hinge_a_edge` to `hinge_d_edge` are their edges, `intrados` or `extrados`. `closed_a_deg`, `closed_a_edge` and so on are the hinges of the
-/// mechanism before the impact.
-///
-/// The impulses at the new hinges act on the part towards the crown, in the frame of the ground. They are empty if the restitution coefficient
-/// is prescribed.
+/// rest. Hinges are empty if no mechanism can follow.
 pub(super) fn impacts(model: &dyn MechanismModel) -> Vec<Column<'static, Event>> {
     let (bodies, sections) = (model.bodies(), sections(model));
     let rates = |moment: &str| columns(&bodies, "rate", &format!("{moment}_rad_s"));
@@ -251,13 +208,6 @@ pub(super) fn impacts(model: &dyn MechanismModel) -> Vec<Column<'static, Event>>
 }
 
 /// Returns the columns of `impacts.csv` for rows, one row per impact.
-///
-/// - `impact` (from 1), `time_s`;
-/// - `joints_shut` and `joints_opened`: numbers of joints, separated by spaces;
-/// - `edges_shut` and `edges_opened`: for each joint the edge that landed, or the edge about which the joint turns; `both` if both edges landed
-///   or the joint parts;
-/// - the kinetic energies `energy_before_j`, `energy_after_j` and `energy_taken_j`, and, if joints slip, `friction_j`: the energy dissipated by
-///   friction.
 pub(super) fn landings(model: &dyn Model) -> Vec<Column<'static, Event>> {
     let mut all = vec![
         row_number("impact"),
