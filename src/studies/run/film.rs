@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 
 use super::snapshots::{MAX_FILM_PICTURES, Snapshots};
 use super::{MILLISECONDS, scene};
+use crate::output::page::PROGRAM;
 use crate::output::{Background, Figure, FilmFormat, Reel};
 use crate::scenario::Scenario;
 use crate::studies::{Progress, RunnerError, StudyError, Watch};
@@ -113,6 +114,7 @@ impl Film {
             rate_hz,
             count: all,
             background,
+            program: PROGRAM,
             draw: &draw,
         };
         Ok(reel.encode(format, &mut |done| watch(Progress::new(done, all)))?)

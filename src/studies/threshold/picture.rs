@@ -5,11 +5,10 @@ use nalgebra::Vector2;
 use super::digits::rounded;
 use super::survival::{self, Survival};
 use super::{EDGE_WIDTH, FactorSample, RangeEnd, Threshold};
-use crate::output::chart::draw as draw_marks;
 use crate::output::page::Spot;
 use crate::output::{
     Anchor, Axes, BELOW_PX, Chart, Drawing, Figure, Frame, Key, LEFT_PX, Mark, PartHeight, Scale,
-    Sheet, Stroke, color,
+    Sheet, Stroke, color, draw_marks,
 };
 use crate::studies::ending::Verdict;
 use crate::studies::ending::columns::are_over_critical;
@@ -82,8 +81,8 @@ pub(super) fn drawn(
         let mut on_strip = Vec::new();
         for (sample, spot) in threshold.samples.iter().zip(&mut spots) {
             match peak(sample) {
-                Some(peak) => on_curves.push(Mark::spot(spot, (sample.factor, peak))),
-                None => on_strip.push(Mark::spot(spot, (sample.factor, 0.5))),
+                Some(peak) => on_curves.push(spot.mark((sample.factor, peak))),
+                None => on_strip.push(spot.mark((sample.factor, 0.5))),
             }
         }
         sheet.gap(EDGE_LABELS);
