@@ -168,7 +168,13 @@ impl Axes {
     }
 
     /// Draws frame, ticks and the label of the y axis. The label of a panel is above the frame.
-    pub fn draw(&self, drawing: &mut Drawing, decimal_mark: &str, y_label: &str, is_panel: bool) {
+    pub(crate) fn draw(
+        &self,
+        drawing: &mut Drawing,
+        decimal_mark: &str,
+        y_label: &str,
+        is_panel: bool,
+    ) {
         let widest_px = self.grid(drawing, decimal_mark);
         let [left, top, _, height] = self.frame.parts();
         if is_panel {
@@ -215,7 +221,7 @@ impl Axes {
     }
 
     /// Draws the tick texts on the lower side and the label of the axis; nothing without a label.
-    pub fn label_x(&self, drawing: &mut Drawing, decimal_mark: &str, label: &str) {
+    pub(crate) fn label_x(&self, drawing: &mut Drawing, decimal_mark: &str, label: &str) {
         if label.is_empty() {
             return;
         }

@@ -8,7 +8,7 @@ use crate::svg::{Drawing, Frame, Stroke, Symbol};
 /// Distance from the left side of the picture to a plot, with space for the label of the y axis.
 pub const LEFT_PX: f64 = 85.0;
 /// Distance from the left side of the picture to a panel, whose label is above it.
-pub const PANEL_LEFT_PX: f64 = 66.0;
+pub(crate) const PANEL_LEFT_PX: f64 = 66.0;
 /// Height of the texts below a plot.
 pub const BELOW_PX: f64 = 56.0;
 
@@ -92,10 +92,10 @@ impl Chart {
                 x: self.x.1,
                 y: self.y.1,
             };
-            draw_marks(drawing, &axes, &self.below);
+            draw(drawing, &axes, &self.below);
             axes.draw(drawing, figure.decimal_mark, &self.y.0, is_panel);
             axes.label_x(drawing, figure.decimal_mark, &self.x.0);
-            draw_marks(drawing, &axes, &self.marks);
+            draw(drawing, &axes, &self.marks);
         })
     }
 }
@@ -103,13 +103,15 @@ impl Chart {
 /// A mark of a chart: its name for scripts and tests, its shape, and its stroke, whose colour also fills areas.
 #[derive(Clone, Debug)]
 pub struct Mark {
+    /// Name of the mark.
     pub name: String,
+    /// Stroke of its lines.
     pub stroke: Stroke,
     shape: Shape,
 }
 
 /// Values on both axes.
-pub type Point = (f64, f64);
+type Point = (f64, f64);
 
 /// The shape of a mark.
 #[derive(Clone, Debug)]
@@ -138,6 +140,7 @@ pub enum Shape {
 const BETWEEN_TICKS_PX: f64 = 2.5;
 
 impl Mark {
+    /// Makes a mark.
     pub fn new(name: impl Into<String>, stroke: Stroke, shape: Shape) -> Self {
         let name = name.into();
         Self {
@@ -218,7 +221,8 @@ impl Mark {
         self.points().iter().all(|(_, value)| *value == 0.0)
     }
 
-    fn draw(&self, drawing: &mut Drawing, axes: &Axes) {
+    /// Draws the mark.
+    pub fn draw(&self, drawing: &mut Drawing, axes: &Axes) {
         let (name, stroke) = (&*self.name, self.stroke);
         let place = |(x, y): &Point| axes.place(*x, *y);
         match &self.shape {
@@ -271,14 +275,14 @@ impl Mark {
                 drawing.symbol(axes.place(x, y), symbol);
             }
             Shape::Clipped(marks) => {
-                drawing.within(&axes.frame, |drawing| draw_marks(drawing, axes, marks));
+                drawing.within(&axes.frame, |drawing| draw(drawing, axes, marks));
             }
         }
     }
 }
 
 /// Draws marks in order, the last on top.
-pub fn draw_marks(drawing: &mut Drawing, axes: &Axes, marks: &[Mark]) {
+fn draw(drawing: &mut Drawing, axes: &Axes, marks: &[Mark]) {
     for mark in marks {
         mark.draw(drawing, axes);
     }

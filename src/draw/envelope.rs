@@ -11,10 +11,12 @@ pub struct Thinned<T> {
     group: usize,
     /// Number of values in the last column.
     in_last: usize,
+    /// The columns.
     pub columns: Vec<T>,
 }
 
 impl<T> Thinned<T> {
+    /// Makes an empty series of at most this many columns.
     pub const fn new(most: usize) -> Self {
         Self {
             most,
@@ -67,6 +69,7 @@ impl Envelope {
         }
     }
 
+    /// Adds a value.
     pub fn push(&mut self, time_s: f64, value: f64) {
         let point = (time_s, value);
         self.last = Some(point);

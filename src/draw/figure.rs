@@ -12,7 +12,7 @@ pub struct Figure {
     /// Width in pixels.
     pub width_px: f64,
     /// Width in print, in mm; `None` for the screen.
-    pub width_mm: Option<f64>,
+    pub(crate) width_mm: Option<f64>,
     /// Height in print; `None` for the natural height. Plots are stretched to this height within limits.
     pub height: Option<Height>,
     /// True to draw a title.
@@ -34,7 +34,7 @@ const COLUMN_MM: f64 = 100.0;
 /// Largest height of a picture for a single column, in mm, unless its height is given.
 const COLUMN_HEIGHT_MM: f64 = 120.0;
 /// Distance of plots from the right side of the picture.
-pub const RIGHT_PX: f64 = 25.0;
+pub(crate) const RIGHT_PX: f64 = 25.0;
 /// Smallest width in pixels: that of 60 mm with text of 8 pt.
 const LEAST_WIDTH_PX: f64 = 60.0 / (MM_PER_PT * TEXT_PT) * TEXT_PX;
 
@@ -123,7 +123,7 @@ impl Figure {
     }
 
     /// Returns the height of a picture, in pixels, from its natural height.
-    pub fn wanted_px(&self, natural_px: f64) -> f64 {
+    pub(crate) fn wanted_px(&self, natural_px: f64) -> f64 {
         let Some(width_mm) = self.width_mm else {
             return natural_px;
         };

@@ -25,7 +25,7 @@ const FFMPEG: &str = "ffmpeg";
 
 impl FilmFormat {
     /// All formats.
-    pub const ALL: &[Self] = &[Self::Mp4, Self::WebM, Self::Gif, Self::Png];
+    const ALL: &[Self] = &[Self::Mp4, Self::WebM, Self::Gif, Self::Png];
 
     /// Returns the extension of files.
     pub const fn name(self) -> &'static str {
@@ -72,10 +72,6 @@ fn has_ffmpeg() -> bool {
 }
 
 /// The pictures of a film.
-#[cfg_attr(
-    not(feature = "print"),
-    expect(dead_code, reason = "only films read them")
-)]
 pub struct Reel<'a> {
     /// Width and height in pixels.
     pub size_px: [u32; 2],
@@ -92,7 +88,7 @@ pub struct Reel<'a> {
 }
 
 /// Receives the number of finished pictures; a break ends the work.
-pub type Done<'d> = &'d mut dyn FnMut(usize) -> ControlFlow<()>;
+type Done<'d> = &'d mut dyn FnMut(usize) -> ControlFlow<()>;
 
 impl Reel<'_> {
     /// Makes the file of the film.

@@ -38,7 +38,7 @@ mod svg;
 mod text;
 
 pub use axes::{Axes, Scale};
-pub use chart::{BELOW_PX, Chart, LEFT_PX, Mark, Shape, draw_marks};
+pub use chart::{BELOW_PX, Chart, LEFT_PX, Mark, Shape};
 pub use envelope::{COLUMNS, Envelope, Thinned};
 pub use figure::{Figure, Height};
 pub use film::{FilmFormat, Reel};

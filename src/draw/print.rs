@@ -69,7 +69,7 @@ impl FromStr for PictureFormat {
 
 impl PictureFormat {
     /// All formats.
-    pub const ALL: &[Self] = &[Self::Svg, Self::Pdf, Self::Png];
+    const ALL: &[Self] = &[Self::Svg, Self::Pdf, Self::Png];
 
     /// Returns the extension of files.
     pub const fn name(self) -> &'static str {
@@ -109,7 +109,7 @@ impl PictureFormat {
 }
 
 #[cfg(feature = "print")]
-pub use converted::Raster;
+pub(crate) use converted::Raster;
 
 #[cfg(feature = "print")]
 mod converted {

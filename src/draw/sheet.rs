@@ -16,6 +16,7 @@ const MOST_STRETCH: f64 = 20.0;
 
 /// A picture to be drawn.
 pub struct Sheet<'a> {
+    /// The size of the picture.
     pub figure: Figure,
     parts: Vec<(PartHeight, Draw<'a>)>,
 }
@@ -46,8 +47,11 @@ impl PartHeight {
 
 /// A picture, and the frames of its parts.
 pub struct FinishedSheet {
+    /// The picture as SVG.
     pub svg: String,
+    /// Its height in pixels.
     pub height_px: f64,
+    /// The frames of its parts, in order.
     pub frames: Vec<Frame>,
 }
 
@@ -211,16 +215,20 @@ fn draw_lines(drawing: &mut Drawing, mut at: Vector2<f64>, anchor: Anchor, lines
 /// An entry of a legend.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Key {
+    /// The text beside the sign.
     pub text: String,
+    /// The sign.
     pub sign: Sign,
 }
 
 impl Key {
+    /// Makes an entry.
     pub fn new(text: impl Into<String>, sign: Sign) -> Self {
         let text = text.into();
         Self { text, sign }
     }
 
+    /// Makes an entry for a line.
     pub fn line(text: impl Into<String>, stroke: Stroke) -> Self {
         Self::new(text, Sign::Line(stroke))
     }

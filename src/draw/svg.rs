@@ -140,7 +140,7 @@ pub struct Frame {
 
 impl Frame {
     /// Returns left, top, width and height.
-    pub const fn parts(&self) -> [f64; 4] {
+    pub(crate) const fn parts(&self) -> [f64; 4] {
         [self.left, self.top, self.width, self.height]
     }
 }

@@ -3,11 +3,11 @@
 use crate::shown::shown_lines;
 
 /// Fonts whose widths the layout uses.
-pub const FONTS: &str = "Helvetica, Arial, Liberation Sans, Nimbus Sans, sans-serif";
+pub(crate) const FONTS: &str = "Helvetica, Arial, Liberation Sans, Nimbus Sans, sans-serif";
 /// Size of text in pixels.
 pub const TEXT_PX: f64 = 13.0;
 /// Distance between the baselines of two lines of text, in pixels.
-pub const LINE_PX: f64 = 17.0;
+pub(crate) const LINE_PX: f64 = 17.0;
 /// Largest number of characters of a word; the rest is omitted.
 const LONGEST_WORD: usize = 130;
 
@@ -15,7 +15,7 @@ const LONGEST_WORD: usize = 130;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Text {
     /// Characters of the line; invisible ones are escaped.
-    pub shown: String,
+    pub(crate) shown: String,
     /// Width in thousandths of the size of the text.
     thousandths: u32,
 }
@@ -30,7 +30,7 @@ impl<T: AsRef<str>> From<T> for Text {
 
 impl Text {
     /// Divides a text into lines of at most this width, in pixels. Very long words are cut.
-    pub fn lines(text: &str, width_px: f64) -> Vec<Self> {
+    pub(crate) fn lines(text: &str, width_px: f64) -> Vec<Self> {
         let mut lines: Vec<Self> = Vec::new();
         for word in text.split_whitespace() {
             let mut shown: String = word.chars().take(LONGEST_WORD).collect();
@@ -53,7 +53,7 @@ impl Text {
     }
 
     /// Returns true if the width is exact; for other scripts than Latin it is an estimate.
-    pub fn is_measured(&self) -> bool {
+    pub(crate) fn is_measured(&self) -> bool {
         !self.shown.is_empty() && self.shown.chars().all(|character| character <= '\u{24f}')
     }
 }

@@ -23,7 +23,7 @@ use std::path::PathBuf;
 pub(crate) use archrock_draw::{
     Anchor, Axes, BELOW_PX, COLUMNS, CURVES, Chart, Drawing, Envelope, Frame, Key, LEFT_PX, Mark,
     Panels, PartHeight, Reel, Scale, Shape, Sheet, Sign, Stroke, Symbol, TEXT_PX, Text, Thinned,
-    color, draw_marks, escaped, scale_around, shown_lines,
+    color, escaped, scale_around, shown_lines,
 };
 pub use archrock_draw::{
     Background, Figure, FilmFormat, Height, PictureFormat, PrintError, text_px,

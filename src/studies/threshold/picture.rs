@@ -8,7 +8,7 @@ use super::{EDGE_WIDTH, FactorSample, RangeEnd, Threshold};
 use crate::output::page::Spot;
 use crate::output::{
     Anchor, Axes, BELOW_PX, Chart, Drawing, Figure, Frame, Key, LEFT_PX, Mark, PartHeight, Scale,
-    Sheet, Stroke, color, draw_marks,
+    Sheet, Stroke, color,
 };
 use crate::studies::ending::Verdict;
 use crate::studies::ending::columns::are_over_critical;
@@ -87,10 +87,10 @@ pub(super) fn drawn(
         }
         sheet.gap(EDGE_LABELS);
         sheet.part(PartHeight::Fixed(STRIP), move |drawing, part| {
-            let frame = figure.right_of(LEFT_PX, part);
-            strip(drawing, &Axes { frame, x, y }, threshold);
-            let y = Scale::exactly(0.0, 1.0, 1);
-            draw_marks(drawing, &Axes { frame, x, y }, &on_strip);
+            let (frame, y) = (figure.right_of(LEFT_PX, part), Scale::exactly(0.0, 1.0, 1));
+            let axes = Axes { frame, x, y };
+            strip(drawing, &axes, threshold);
+            on_strip.iter().for_each(|mark| mark.draw(drawing, &axes));
             let at = Vector2::new(frame.left - 8.0, frame.top + 0.5 * STRIP + 4.5);
             drawing.label(at, Anchor::End, 0.0, name);
         });

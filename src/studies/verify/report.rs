@@ -107,11 +107,8 @@ pub fn page_of(json: &str) -> serde_json::Result<String> {
 impl Page {
     /// Makes the page of a check.
     pub fn new(scenario: &Scenario, check: &Summary, date: Option<String>) -> Self {
-        let figure: Figure = "78mm".parse().expect("a width of a figure");
-        let figure = Figure {
-            decimal_mark: check.language.decimal_mark(),
-            ..figure
-        };
+        let mut figure: Figure = "78mm".parse().expect("a width of a figure");
+        figure.decimal_mark = check.language.decimal_mark();
         let drawn = |(sway, mechanism): (&Sway, _)| {
             let pictures = SidePictures {
                 mechanism: picture::mechanism(
