@@ -1,6 +1,6 @@
 //! The style of pictures.
 
-use archrock::output::{Figure, Height, Panel, PictureFormat};
+use archrock::output::{Figure, Height, PictureFormat};
 
 use super::Failure;
 use super::parsers::number;
@@ -41,25 +41,6 @@ impl FigureOption {
         figure.height = self.figure_height;
         figure.has_title = !self.no_title;
         Ok(figure)
-    }
-}
-
-/// Which panels the picture of a history has.
-#[derive(clap::Args, Clone, Debug)]
-pub struct PanelsOption {
-    /// Panels of history.svg: ground, rotation, joints, slip, points, energy, thrust [default: all that show something; below 100 mm
-    /// of width ground, rotation and energy].
-    #[arg(long, value_name = "P1,P2,...", value_delimiter = ',')]
-    panels: Vec<Panel>,
-}
-
-impl PanelsOption {
-    /// Selects the chosen panels of a figure.
-    pub fn of(&self, mut figure: Figure) -> Figure {
-        for panel in &self.panels {
-            figure.panels.get_or_insert_default()[*panel as usize] = true;
-        }
-        figure
     }
 }
 

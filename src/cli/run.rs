@@ -2,14 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use archrock::output::Origin;
+use archrock::output::{Origin, Panel};
 use archrock::scenario::Scenario;
 use archrock::studies::run::{RunOptions, check};
 use archrock::studies::{Options, RUN, Style};
 use nalgebra::Vector2;
 
 use super::execution::Execution;
-use super::figure::{FigureOption, PanelsOption};
+use super::figure::FigureOption;
 use super::models::ModelsOption;
 use super::parsers::{number, point_m};
 use super::scenario_file::{
@@ -75,12 +75,14 @@ pub struct Arguments {
     work: WorkOptions,
     #[command(flatten)]
     figure: FigureOption,
-    #[command(flatten)]
-    panels: PanelsOption,
+    /// Panels of history.svg: ground, rotation, joints, slip, points, energy, thrust [default: all that show something; below 100 mm
+    /// of width ground, rotation and energy].
+    #[arg(long, value_name = "P1,P2,...", value_delimiter = ',')]
+    panels: Vec<Panel>,
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let style = Style::of(arguments.panels.of(arguments.figure.get()?));
+    let style = Style::of(arguments.figure.get()?);
     let options = Options {
         run: arguments.options()?,
         ..Options::default()
@@ -145,6 +147,7 @@ impl Arguments {
             dimensionless: self.dimensionless,
             no_repeat: self.no_repeat,
             no_report: self.no_report,
+            panels: self.panels.clone(),
             snapshots_s: self.snapshots.clone(),
             film_rate_hz: self.film,
             exaggeration: self.exaggerate,

@@ -2,12 +2,11 @@
 
 use nalgebra::Vector2;
 
-use super::figure::Figure;
 use super::page::Spot;
 use super::scene::{Piece, Scene};
-use super::sheet::{PartHeight, Sheet};
-use super::svg::{Anchor, Drawing, Frame, Stroke, color};
-use super::text::{TEXT_PX, Text, text_px};
+use super::{
+    Anchor, Drawing, Figure, Frame, PartHeight, Sheet, Stroke, TEXT_PX, Text, color, text_px,
+};
 use crate::mechanics::BodyPoint;
 use crate::scenario::{Dimension, DimensionSide, Language, metres};
 use crate::{OpenHinge, Pose, Sway};
@@ -107,7 +106,7 @@ pub(crate) fn draw_hinges(
         let (poses, hinges) = &scene.stands;
         let place = SheetTransform::over([low_m, high_m], left_px + 0.5 * width_px, part);
         let view = View::new(scene, place, poses, hinges);
-        draw_dimensions(drawing, &view.place, scene, figure.language);
+        draw_dimensions(drawing, &view.place, scene, Language::English);
         supports(drawing, &view.place, scene);
         view.draw_behind(drawing);
         if !poses.is_empty() {
@@ -122,7 +121,7 @@ pub(crate) fn draw_hinges(
         for (index, (sway, at_m)) in hinges_m.iter().enumerate() {
             drawing.circle("hinge", place.px(*at_m), 6.0 + sway.sign(), HINGE);
             if let Some(spot) = spots.get(index) {
-                drawing.spot(place.px(*at_m), spot);
+                drawing.symbol(place.px(*at_m), &spot.symbol());
             }
         }
     });

@@ -10,8 +10,8 @@ use std::{fmt, mem};
 
 use tempfile::TempPath;
 
+use super::PictureFormat;
 use super::manifest::{MANIFEST, Manifest, Origin, command_line};
-use super::print::PictureFormat;
 use super::{OutputError, is_too_many_files, pretty};
 use crate::scenario::ModelKind;
 

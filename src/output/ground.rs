@@ -1,6 +1,6 @@
 //! The ground acceleration as a curve, including its jumps.
 
-use super::envelope::{COLUMNS, Envelope};
+use super::{COLUMNS, Envelope};
 use crate::GroundMotion;
 
 /// Number of parts into which a curved piece is divided.

@@ -2,14 +2,9 @@
 //!
 //! Numbers are written with the shortest digits that read back as the same `f64`.
 
-pub(crate) mod axes;
 pub(crate) mod caption;
-pub(crate) mod chart;
 pub(crate) mod columns;
 pub(crate) mod elevation;
-pub(crate) mod envelope;
-pub(crate) mod figure;
-pub(crate) mod film;
 mod folder;
 pub(crate) mod ground;
 mod manifest;
@@ -17,49 +12,40 @@ pub(crate) mod mechanisms;
 pub(crate) mod page;
 pub(crate) mod panels;
 pub(crate) mod point;
-pub(crate) mod print;
 pub(crate) mod record;
 pub(crate) mod scene;
-pub(crate) mod sheet;
 pub(crate) mod summary;
-pub(crate) mod svg;
 pub(crate) mod table;
 pub(crate) mod template;
-pub(crate) mod text;
 
 use std::io;
 use std::path::PathBuf;
 
-pub(crate) use axes::{Axes, Scale};
-pub(crate) use chart::{BELOW_PX, Chart, LEFT_PX, Mark, Shape};
+pub(crate) use archrock_draw::{
+    Anchor, Axes, BELOW_PX, COLUMNS, CURVES, Chart, Drawing, Envelope, Frame, Key, LEFT_PX, Mark,
+    Panels, PartHeight, Reel, Scale, Shape, Sheet, Sign, Stroke, Symbol, TEXT_PX, Text, Thinned,
+    color, escaped, scale_around, shown_lines,
+};
+pub use archrock_draw::{
+    Background, Figure, FilmFormat, Height, PictureFormat, PrintError, text_px,
+};
 pub use elevation::draw as draw_elevation;
-pub(crate) use envelope::{Envelope, Thinned};
-pub use figure::{Figure, Height, Panel};
-pub use film::FilmFormat;
-pub(crate) use film::Reel;
 pub(crate) use folder::NewFile;
 pub use folder::{Folder, UnpublishedFiles, check_named_file, write_named_file};
 pub use manifest::{Manifest, Origin};
-pub use panels::Subject;
-pub(crate) use panels::{Panels, StateHistory};
+pub(crate) use panels::{HistoryPanels, StateHistory};
+pub use panels::{Panel, Subject};
 pub use point::StructurePoint;
-pub use print::{PictureFormat, PrintError};
 pub use record::draw as draw_record;
 pub(crate) use scene::Piece;
 pub use scene::Scene;
 use serde_json::Value;
-pub(crate) use sheet::{Key, PartHeight, Sheet, Sign};
 pub(crate) use summary::{Named, summary_of};
-pub use svg::Background;
-pub(crate) use svg::{Anchor, CURVES, Drawing, Frame, Stroke, color};
 pub(crate) use table::{
     Cell, Column, Table, TableWriter, column, each, fields, list, numbers, row_number, several,
 };
 pub(crate) use template::{filters, render, render_in};
-pub use text::text_px;
 use thiserror::Error;
-
-use crate::scenario::shown_lines;
 
 /// Errors of writing results.
 #[derive(Debug, Error)]

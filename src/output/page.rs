@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::scenario::shown_lines;
+use super::{Mark, Symbol, shown_lines};
 
 /// The name and version of the program, as pages show them.
 pub(crate) const PROGRAM: &str = concat!(env!("CARGO_PKG_NAME"), " ", env!("CARGO_PKG_VERSION"));
@@ -86,6 +86,34 @@ pub(crate) struct Spot {
     pub(crate) outside: bool,
     /// The case and its outcome.
     pub(crate) words: String,
+}
+
+impl Spot {
+    /// Returns its mark in a chart, whose lines are in the style of the page.
+    pub(crate) fn mark(&self, at: (f64, f64)) -> Mark {
+        Mark::symbol(self.symbol(), at)
+    }
+
+    /// Returns its symbol.
+    pub(crate) fn symbol(&self) -> Symbol {
+        let outside = match self.outside {
+            true => format!("<path class=\"outside\" d=\"{OUTSIDE_MODEL}\"/>"),
+            false => String::new(),
+        };
+        let fill = match self.kind.fill() {
+            "" => String::new(),
+            fill => format!(" fill=\"{fill}\""),
+        };
+        Symbol {
+            attributes: format!(
+                "class=\"spot {}\" data-row=\"{}\"",
+                self.kind.name(),
+                self.row
+            ),
+            words: self.words.clone(),
+            shapes: format!("{outside}<path{fill} d=\"{}\"/>", self.kind.shape()),
+        }
+    }
 }
 
 /// Formats data as JSON for a script of a page: nothing in the text ends the script.

@@ -1,18 +1,13 @@
 //! Panels over a common time axis, for all pictures of histories.
 
-use super::axes::Scale;
-use super::chart::{Chart, Mark, PANEL_LEFT_PX, Shape};
-use super::figure::Figure;
+use std::str::FromStr;
+
 use super::ground;
-use super::sheet::{Key, Sheet, Sign};
-use super::svg::{Frame, Stroke, color};
+use super::{Figure, Key, Mark, Panels, Scale, Shape, Sign, Stroke, color, scale_around};
 use crate::{GroundMotion, State, Sway};
 
 /// Smallest width of a band, in pixels; narrower ones cannot be distinguished.
 const NARROWEST_PX: f64 = 1.0;
-
-/// Gap between panels.
-const GAP_PX: f64 = 30.0;
 
 /// The subject of the picture of a history.
 #[derive(Clone, Copy, Debug)]
@@ -38,82 +33,105 @@ pub(crate) struct StateHistory {
     pub(crate) changes: Vec<(f64, State)>,
 }
 
-/// A picture of panels, one below the other.
-pub(crate) struct Panels {
-    figure: Figure,
-    title: String,
-    /// The common time axis.
-    x: Scale,
-    panels: Vec<Chart>,
-    /// Entries of the legend that are specific to this picture.
-    pub(crate) keys: Vec<Key>,
+named! {
+    /// A panel of the picture of a history, in order from top to bottom.
+    pub enum Panel {
+        /// Acceleration of the ground.
+        Ground = "ground",
+        /// Rotations of the bodies.
+        Rotation = "rotation",
+        /// Open joints.
+        Joints = "joints",
+        /// Slips of the joints.
+        Slip = "slip",
+        /// Displacements of observed points.
+        Points = "points",
+        /// Energy, over the barrier if the barrier is known.
+        Energy = "energy",
+        /// Distance of the thrust line outside the structure.
+        Thrust = "thrust",
+    }
+}
+
+impl FromStr for Panel {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let found = Self::ALL.iter().find(|panel| panel.name() == text);
+        found.copied().ok_or_else(|| {
+            let names: Vec<_> = Self::ALL.iter().map(|panel| panel.name()).collect();
+            format!("the panels are {}", names.join(", "))
+        })
+    }
+}
+
+impl Panel {
+    /// Returns true if the panel is among the chosen ones; without a choice, if the picture has space for it. `watched` is true if there are
+    /// observed points.
+    pub(crate) fn is_drawn(self, chosen: &[Self], figure: Figure, watched: bool) -> bool {
+        match self {
+            _ if !chosen.is_empty() => chosen.contains(&self),
+            Self::Ground | Self::Rotation => true,
+            Self::Points => watched,
+            // A single column has space for three panels.
+            Self::Energy => !(figure.is_column() && watched),
+            Self::Joints | Self::Slip | Self::Thrust => !figure.is_column(),
+        }
+    }
+}
+
+/// The panels of a history, shaded by the states of the structure.
+pub(crate) struct HistoryPanels<'a> {
+    subject: &'a Subject<'a>,
+    /// The picture, for panels without shades and for the legend.
+    pub(crate) panels: Panels,
+    /// Shades of the states.
+    shades: Vec<Mark>,
     /// True if there are hops too short to distinguish.
     hops: bool,
     /// True if the accelerations that start the structure are drawn.
     incipient: bool,
 }
 
-impl Panels {
-    /// Makes panels over this range of times.
-    pub(crate) fn new(figure: Figure, title: &str, [start_s, end_s]: [f64; 2]) -> Self {
-        let end_s = end_s.max(start_s + f64::MIN_POSITIVE);
+impl<'a> HistoryPanels<'a> {
+    /// Makes panels from the start of the ground motion to this time.
+    pub(crate) fn new(
+        figure: Figure,
+        subject: &'a Subject<'a>,
+        end_s: f64,
+        states: Option<&StateHistory>,
+    ) -> Self {
+        let panels = Panels::new(figure, subject.title, [subject.ground.start_s(), end_s]);
+        let shades = states.map_or_else(Vec::new, |states| shade(&panels, states));
         Self {
-            figure,
-            title: title.to_owned(),
-            x: Scale::exactly(start_s, end_s, figure.ticks(10)),
-            panels: Vec::new(),
-            keys: Vec::new(),
+            subject,
+            panels,
+            shades,
             hops: false,
             incipient: false,
         }
     }
 
-    /// Adds a panel below the others, with this height on the screen, shaded by the states of the structure.
-    pub(crate) fn panel(
-        &mut self,
-        label: &str,
-        height_px: f64,
-        y: Scale,
-        states: Option<&StateHistory>,
-        marks: Vec<Mark>,
-    ) {
-        let mut shades = Vec::new();
-        if let Some(states) = states {
-            let hops;
-            (shades, hops) = shade(self.x, self.figure, states);
-            self.hops |= hops;
-        }
-        self.panels.push(Chart {
-            is_panel: true,
-            below: shades,
-            marks,
-            ..Chart::new(height_px, ("", self.x), (label, y))
-        });
+    /// Adds a panel below the others, with this height on the screen.
+    pub(crate) fn panel(&mut self, label: &str, height_px: f64, y: Scale, marks: Vec<Mark>) {
+        self.hops |= self.shades.iter().any(|mark| mark.name == HOPS.0);
+        let shades = self.shades.clone();
+        self.panels.panel(label, height_px, y, shades, marks);
     }
 
     /// Adds a panel with these curves, on a scale that contains all of them; nothing if all curves are zero.
-    pub(crate) fn curves(
-        &mut self,
-        label: &str,
-        height_px: f64,
-        curves: Vec<Mark>,
-        states: Option<&StateHistory>,
-    ) {
+    pub(crate) fn curves(&mut self, label: &str, height_px: f64, curves: Vec<Mark>) {
         if !curves.iter().all(Mark::is_flat) {
             let ticks = if height_px > 200.0 { 6 } else { 3 };
             let y = scale_around(&curves, [], ticks);
-            self.panel(label, height_px, y, states, curves);
+            self.panel(label, height_px, y, curves);
         }
     }
 
     /// Adds the panel of the ground, with the accelerations that start the structure; nothing if the ground does not move.
-    pub(crate) fn ground(
-        &mut self,
-        height_px: f64,
-        subject: &Subject<'_>,
-        states: Option<&StateHistory>,
-    ) {
-        let points = ground::curve_g(subject.ground, subject.gravity_m_s2, self.x.high);
+    pub(crate) fn ground(&mut self, height_px: f64) {
+        let (subject, x) = (self.subject, self.panels.x);
+        let points = ground::curve_g(subject.ground, subject.gravity_m_s2, x.high);
         let sizes_g = points.iter().map(|point| point.1.abs());
         let largest = sizes_g.fold(0.0, f64::max);
         let [right, left] = subject.incipient_g;
@@ -122,18 +140,18 @@ impl Panels {
         let mut curves: Vec<Mark> = levels
             .filter(|level| level.abs() < 4.0 * largest)
             .map(|level| {
-                let ends = [self.x.low, self.x.high].map(|time_s| (time_s, level));
+                let ends = [x.low, x.high].map(|time_s| (time_s, level));
                 Mark::curve("A_L", INCIPIENT, ends)
             })
             .collect();
         self.incipient |= !curves.is_empty();
         curves.push(Mark::curve("ground", MAIN, points));
-        self.curves("Ground (g)", height_px, curves, states);
+        self.curves("Ground (g)", height_px, curves);
     }
 
-    /// Draws the picture, with the time axis below the panels and a legend: first the specific entries, then those common to all pictures.
-    pub(crate) fn finish(self, shaded: bool) -> String {
-        let (mut panels, mut keys) = (self.panels, self.keys);
+    /// Draws the picture. Its legend has first the specific entries, then those common to all pictures.
+    pub(crate) fn finish(mut self, shaded: bool) -> String {
+        let keys = &mut self.panels.keys;
         if shaded {
             for ((_, fill), text) in [(SWAYS_RIGHT, "sways right"), (SWAYS_LEFT, "sways left")] {
                 keys.push(Key::new(text, Sign::Band(fill, OPACITY)));
@@ -145,31 +163,8 @@ impl Panels {
         if self.incipient {
             keys.push(Key::line("A_L, which starts it from rest", INCIPIENT));
         }
-        if let Some(last) = panels.last_mut() {
-            last.x.0 = "Time (s)".to_owned();
-        }
-        let mut sheet = Sheet::new(self.figure, &self.title);
-        sheet.gap(20.0);
-        for panel in panels {
-            panel.add_plot(&mut sheet);
-            sheet.gap(GAP_PX);
-        }
-        sheet.gap(30.0);
-        sheet.legend(PANEL_LEFT_PX, keys);
-        sheet.gap(12.0);
-        sheet.finish()
+        self.panels.finish()
     }
-}
-
-/// Returns a scale that contains curves, further values and zero, with a small margin so that no curve coincides with the frame.
-pub(crate) fn scale_around(
-    curves: &[Mark],
-    more: impl IntoIterator<Item = f64>,
-    ticks: u32,
-) -> Scale {
-    let values = curves.iter().flat_map(Mark::points).map(|point| point.1);
-    let values = values.chain(more).filter(|value| value.is_finite());
-    Scale::around(values.map(|value| 1.03 * value).chain([0.0]), ticks)
 }
 
 /// Name and colour of a band.
@@ -193,12 +188,10 @@ const fn shade_of(state: State) -> Option<Shade> {
     }
 }
 
-/// Returns the shades of the states of the structure, and true if there are hops too short to distinguish. A sequence of such hops has one
-/// common shade.
-fn shade(x: Scale, figure: Figure, states: &StateHistory) -> (Vec<Mark>, bool) {
-    let (start_s, end_s) = (x.low, x.high);
-    let width_px = figure.right_of(PANEL_LEFT_PX, Frame::default()).width;
-    let least_s = NARROWEST_PX * (end_s - start_s) / width_px;
+/// Returns the shades of the states of the structure. A sequence of hops too short to distinguish has one common shade.
+fn shade(panels: &Panels, states: &StateHistory) -> Vec<Mark> {
+    let (start_s, end_s) = (panels.x.low, panels.x.high);
+    let least_s = NARROWEST_PX * (end_s - start_s) / panels.width_px();
     let is_seen = |[from_s, to_s]: [f64; 2]| to_s - from_s >= least_s;
     let band = |(name, fill): Shade, ends| {
         let shape = Shape::Range(ends, OPACITY);
@@ -209,7 +202,7 @@ fn shade(x: Scale, figure: Figure, states: &StateHistory) -> (Vec<Mark>, bool) {
     let ends_s = changes.clone().map(|(time_s, _)| time_s).chain([end_s]);
     // The end of the last visible band.
     let mut drawn_s = start_s;
-    let (mut bands, mut hops) = (Vec::new(), false);
+    let mut bands = Vec::new();
     let begins = [(start_s, states.start)].into_iter().chain(changes);
     for ((from_s, state), to_s) in begins.zip(ends_s) {
         if !is_seen([from_s, to_s]) && to_s < end_s {
@@ -217,7 +210,6 @@ fn shade(x: Scale, figure: Figure, states: &StateHistory) -> (Vec<Mark>, bool) {
         }
         if is_seen([drawn_s, from_s]) {
             bands.push(band(HOPS, [drawn_s, from_s]));
-            hops = true;
             drawn_s = from_s;
         }
         if let Some(shade) = shade_of(state).filter(|_| is_seen([drawn_s, to_s])) {
@@ -225,7 +217,7 @@ fn shade(x: Scale, figure: Figure, states: &StateHistory) -> (Vec<Mark>, bool) {
         }
         drawn_s = to_s;
     }
-    (bands, hops)
+    bands
 }
 
 /// Returns the legend entry for the time of overturning.
@@ -236,4 +228,29 @@ pub(crate) fn overturns() -> Key {
 /// Returns the mark at the time of overturning.
 pub(crate) fn overturning(time_s: f64, y: Scale) -> Mark {
     Mark::upright("overturning", OVERTURNING, time_s, y)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_column_has_three_panels() {
+        let shown = |figure: Figure, watched| {
+            let shown = Panel::ALL.iter().copied();
+            shown
+                .filter(|panel| panel.is_drawn(&[], figure, watched))
+                .collect::<Vec<_>>()
+        };
+        let [narrow, wide] = ["84mm", "120mm"].map(|width| width.parse::<Figure>().unwrap());
+        let three = [Panel::Ground, Panel::Rotation, Panel::Energy];
+        assert_eq!(shown(narrow, false), three);
+        let three = [Panel::Ground, Panel::Rotation, Panel::Points];
+        assert_eq!(shown(narrow, true), three);
+        assert_eq!(shown(wide, true), Panel::ALL);
+        let chosen = [Panel::Thrust];
+        assert!(Panel::Thrust.is_drawn(&chosen, narrow, true));
+        assert!(!Panel::Ground.is_drawn(&chosen, narrow, true));
+        assert!("thrusts".parse::<Panel>().is_err());
+    }
 }

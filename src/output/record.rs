@@ -1,12 +1,6 @@
 //! A record of ground motion: its acceleration and the quantities derived from it.
 
-use super::axes::Scale;
-use super::chart::{Mark, Shape};
-use super::envelope::Envelope;
-use super::figure::Figure;
-use super::panels::{Panels, scale_around};
-use super::sheet::{Key, Sign};
-use super::svg::{Stroke, color};
+use super::{Envelope, Figure, Key, Mark, Panels, Scale, Shape, Sign, Stroke, color, scale_around};
 use crate::dynamics::Intensity;
 
 /// Draws acceleration, velocity, displacement and the build-up of the Arias intensity, with the significant duration shaded. `samples` are times
@@ -42,11 +36,11 @@ pub fn draw(
         };
         let range = Shape::Range(intensity.significant_s, SHADE.1);
         let shade = Mark::new("significant", Stroke::new(SHADE.0, 0.0, ""), range);
-        panels.panel(label, 145.0, y, None, vec![shade, curve]);
+        panels.panel(label, 145.0, y, Vec::new(), vec![shade, curve]);
     }
     let words = "from 5 % to 95 % of the Arias intensity";
     panels.keys = vec![Key::new(words, Sign::Band(SHADE.0, SHADE.1))];
-    panels.finish(false)
+    panels.finish()
 }
 
 const CURVE: Stroke = Stroke::new(color::BLACK, 1.0, "");

@@ -100,7 +100,7 @@ pub(crate) mod filters {
     use askama::filters::Safe;
     use askama::{Result, Values, filter_fn};
 
-    use super::super::text::escaped;
+    use super::super::escaped;
     use super::{Limits, Number, decimals_against, element, language};
     use crate::argument;
 

@@ -53,7 +53,6 @@ mod relation;
 mod right_foot;
 mod rule;
 mod sequence;
-mod shown;
 mod simulation;
 mod source;
 mod span;
@@ -78,6 +77,7 @@ use crate::{
     Column, FourLinkError, GroundMotion, ImpactModel, Initial, MechanismModel, Model, Request, Row,
     RowModelError,
 };
+pub use archrock_draw::{shown, shown_lines};
 pub use assignment::Assignment;
 use document::Entries;
 pub use elastic_joints::ELASTIC_JOINTS;
@@ -102,7 +102,6 @@ pub use record::{
 };
 pub use right_foot::RightFoot;
 pub use sequence::{Sequence, Spacing};
-pub use shown::{shown, shown_lines};
 pub use simulation::Simulation;
 pub use source::Source;
 pub use structure::{Dimension, DimensionSide, ModelError, Structure, metres};

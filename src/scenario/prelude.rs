@@ -10,6 +10,6 @@ pub(super) use super::error::{ensure, excerpt};
 pub(super) use super::relation::GIVE_ONE;
 pub(super) use super::relation::Relation::{self, *};
 pub(super) use super::rule::*;
-pub(super) use super::shown::shown;
+pub(super) use super::shown;
 pub(super) use super::table::{FaultRecorded, ReadResult, Reader, Table};
 pub(super) use crate::argument::{plain, short};

@@ -92,12 +92,14 @@ impl Language {
         }
     }
 
+    /// Returns the decimal mark.
+    pub(crate) const fn decimal_mark(self) -> &'static str {
+        self.choose(".", ",")
+    }
+
     /// Gives a printed number the decimal mark of this language.
     pub(crate) fn number(self, number: String) -> String {
-        match self {
-            Self::English => number,
-            Self::Italian => number.replace('.', ","),
-        }
+        number.replace('.', self.decimal_mark())
     }
 }
 

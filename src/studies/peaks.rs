@@ -207,7 +207,7 @@ fn draw(figure: Figure, title: &str, distributions: &[Distribution<'_>], spots: 
     let chart = Chart::new(405.0, (label, x), ("share with at most this rotation", y));
     let mut chart = chart.with_named(curves.collect());
     let rows = distributions.iter().flat_map(|(_, all)| all);
-    let marks = rows.zip(spots).map(|(at, spot)| Mark::spot(spot, *at));
+    let marks = rows.zip(spots).map(|(at, spot)| spot.mark(*at));
     chart.marks.extend(marks);
     chart.draw(figure, title)
 }

@@ -10,9 +10,10 @@ use crate::output::elevation::{
 };
 use crate::output::mechanisms::HINGES;
 use crate::output::scene::FARTHEST;
-use crate::output::text::Text;
-use crate::output::{Anchor, Drawing, Figure, Frame, PartHeight, Scene, Sheet, Stroke, color};
-use crate::scenario::DimensionSide;
+use crate::output::{
+    Anchor, Drawing, Figure, Frame, PartHeight, Scene, Sheet, Stroke, Text, color,
+};
+use crate::scenario::{DimensionSide, Language};
 use crate::{FourLinks, Hinge, MechanismModel as _, OpenHinge, Pose, Sway};
 
 /// Fraction of the limit rotation at which a mechanism is drawn, so that it is visibly open.
@@ -302,7 +303,7 @@ pub fn limit(figure: Figure, model: &FourLinks, first: Sway, scene: &Scene) -> S
                         placed.mechanism(drawing, open);
                         continue;
                     }
-                    draw_dimensions(drawing, &placed.place, scene, figure.language);
+                    draw_dimensions(drawing, &placed.place, scene, Language::English);
                     let view = placed.view(&[], &[]);
                     view.draw_behind(drawing);
                     view.draw_blocks(drawing, |_, _| ("block".to_owned(), "#f4f4f4"));
@@ -370,7 +371,7 @@ pub fn impact(figure: Figure, impact: &LinkImpact<'_>, scene: &Scene) -> Option<
     sheet.part(PartHeight::Structure(arch_px, arch_px), |drawing, part| {
         let placed = of.at(middle, part);
         if is_wide {
-            draw_dimensions(drawing, &placed.place, scene, figure.language);
+            draw_dimensions(drawing, &placed.place, scene, Language::English);
         }
         placed.impact(drawing, &before, &after);
     });

@@ -198,7 +198,7 @@ fn chart(sides: &Sides<Option<Capacity>>, figure: Figure, spots: &[Spot]) -> Cha
     let mut chart = Chart::around(figure, 330.0, labels, curves.collect());
     let marks = points(sides)
         .zip(spots)
-        .map(|((_, point), spot)| Mark::spot(spot, (point.displacement_m, point.acceleration_g)));
+        .map(|((_, point), spot)| spot.mark((point.displacement_m, point.acceleration_g)));
     chart.marks.extend(marks);
     chart
 }

@@ -4,7 +4,7 @@ use super::report::SampleSummary;
 use super::{NoAnswer, SampleRow, Samples};
 use crate::argument::plain;
 use crate::output::page::{Spot, SpotKind};
-use crate::output::{Chart, Figure, Mark, Scale};
+use crate::output::{Chart, Figure, Scale};
 use crate::studies::Results;
 use crate::studies::page::{CaseScenario, DrawPicture, Page, PageCases, input_in_words};
 
@@ -100,7 +100,7 @@ impl<A> SamplePage<'_, A> {
                 Ok((.., number)) => number.unwrap_or(y.high),
                 Err(_) => y.low,
             };
-            Mark::spot(spot, (at(line).unwrap_or(x.low), y))
+            spot.mark((at(line).unwrap_or(x.low), y))
         });
         let chart = Chart {
             marks: marks.collect(),

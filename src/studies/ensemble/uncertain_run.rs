@@ -13,10 +13,10 @@ use super::report::{self, Band, Line, SampleSummary, of_answer};
 use super::{NoAnswer, SampleCases, SampleRow, Samples};
 use crate::dynamics::repeatability::{CheckedHistory, checked, repeated};
 use crate::dynamics::{Direction, EndCondition, WithoutDemand};
-use crate::output::panels::{MAIN, scale_around};
+use crate::output::panels::MAIN;
 use crate::output::{
-    Figure, Key, Mark, OutputError, Panels, Scale, Sign, Stroke, Subject, Table, color, column,
-    each, filters, list,
+    Figure, HistoryPanels, Key, Mark, OutputError, Scale, Sign, Stroke, Subject, Table, color,
+    column, each, filters, list, scale_around,
 };
 use crate::scenario::{MotionModel, Scenario, Structure, Varied};
 use crate::studies::ending::columns::{self, OUTCOMES, OVERTURNED};
@@ -299,14 +299,14 @@ impl Histories<'_> {
         let scenario = samples.scenario;
         let title = samples.title(TITLE);
         let end_s = bands.last().map_or(1.0, |at| at.time_s);
-        let mut panels = Panels::new(figure, title, [0.0, end_s]);
         let subject = Subject {
             title,
             ground: scenario.ground_motion(),
             gravity_m_s2: scenario.gravity_m_s2(),
             incipient_g: [None; 2],
         };
-        panels.ground(90.0, &subject, None);
+        let mut panels = HistoryPanels::new(figure, &subject, end_s, None);
+        panels.ground(90.0);
         let values = bands.iter();
         let values = values.flat_map(|at| at.band_rad.into_iter().chain(at.own_rad));
         let y = scale_around(&[], values, 6);
@@ -328,15 +328,15 @@ impl Histories<'_> {
             Mark::curve("median", MEDIAN, at(1)),
             Mark::curve("own", MAIN, own),
         ];
-        panels.panel(&label, 330.0, y, None, marks);
+        panels.panel(&label, 330.0, y, marks);
         let all = samples.answers().count().max(1) as f64;
         let shares = bands.iter();
         let shares = shares.map(|at| (at.time_s, at.overturned as f64 / all));
         let shares = vec![Mark::curve("overturned", MEDIAN, shares)];
         let y = Scale::exactly(0.0, 1.0, 2);
-        panels.panel("Overturned", 70.0, y, None, shares);
+        panels.panel("Overturned", 70.0, y, shares);
         let beyond = "5 to 95 %; overturned samples are beyond";
-        panels.keys = vec![
+        panels.panels.keys = vec![
             Key::line("the scenario itself", MAIN),
             Key::line("median of the samples", MEDIAN),
             Key::new(beyond, Sign::Band(BAND, 1.0)),

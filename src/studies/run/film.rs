@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 use super::recorder::simulated;
 use super::snapshots::{MAX_FILM_PICTURES, Snapshots};
 use super::{MILLISECONDS, scene};
+use crate::output::page::PROGRAM;
 use crate::output::{Background, Figure, FilmFormat, Reel};
 use crate::scenario::Scenario;
 use crate::studies::{Counted, Progress, RunnerError, StudyError, Watch};
@@ -114,6 +115,7 @@ impl Film {
             rate_hz,
             count: all,
             background,
+            program: PROGRAM,
             draw: &draw,
         };
         let mut watch = |done| {

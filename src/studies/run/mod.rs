@@ -59,7 +59,7 @@ use crate::dynamics::repeatability::Repetitions;
 use crate::dynamics::{Directions, FallEnd, Repeatability, Variations};
 use crate::output::page::Spot;
 use crate::output::{
-    Figure, Folder, NewFile, OutputError, Scene, Subject, pretty, render, summary_of,
+    Figure, Folder, NewFile, OutputError, Panel, Scene, Subject, pretty, render, summary_of,
 };
 use crate::scenario::{ModelKind, Scenario};
 use crate::{Event, Model, OpenHinge, Pose, Recorder, Sample, Summary as History, Sway};
@@ -95,6 +95,8 @@ pub struct RunOptions {
     pub no_repeat: bool,
     /// Whether to write no page with an animation of the structure.
     pub no_report: bool,
+    /// The panels of the picture of a history; empty: those for which the picture has space.
+    pub panels: Vec<Panel>,
     /// The times at which the deformed structure is drawn, in seconds.
     pub snapshots_s: Vec<f64>,
     /// Pictures a second of a film of the structure; `None` without film.
@@ -578,7 +580,11 @@ impl Drawings {
     ) -> BTreeMap<&'static str, String> {
         let (figure, title) = (run.figure, title(run.scenario));
         let subject = run.subject(title);
-        let draw = || self.timeline.draw(figure, &subject, history, &self.points);
+        let panels = &run.options.panels;
+        let draw = || {
+            self.timeline
+                .draw(figure, panels, &subject, history, &self.points)
+        };
         let opening = [uncertainty, &summary.verdict_line()];
         let own = self.page(run.scenario, history, opening, summary);
         let other = other.and_then(|other| {

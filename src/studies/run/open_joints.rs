@@ -100,7 +100,7 @@ impl OpenJoints {
         }
         let ticks = u32::try_from(self.count.min(6)).unwrap_or(6);
         let y = Scale::exactly(-0.5, self.count as f64 - 0.5, ticks);
-        panels.panel("Open joint", height_px, y, None, marks);
+        panels.panel("Open joint", height_px, y, Vec::new(), marks);
     }
 
     /// Returns the intervals of time in which a joint is open in this way.

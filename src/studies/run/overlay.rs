@@ -1,8 +1,7 @@
 //! `overlay.svg`: histories of one structure by several models of motion in one picture.
 
 use crate::output::page::{Spot, SpotKind};
-use crate::output::panels::scale_around;
-use crate::output::{CURVES, Envelope, Figure, Mark, Panels, Subject};
+use crate::output::{CURVES, Envelope, Figure, HistoryPanels, Mark, Subject, scale_around};
 use crate::{Sample, Sway};
 
 /// Curves of a history that every model of motion has, thinned.
@@ -65,10 +64,9 @@ pub fn draw(
     spots: &[Spot],
 ) -> String {
     let ends_s = histories.iter().map(|(_, curves)| curves.end_s);
-    let start_s = subject.ground.start_s();
-    let span_s = [start_s, ends_s.fold(start_s, f64::max)];
-    let mut panels = Panels::new(figure, subject.title, span_s);
-    panels.ground(110.0, subject, None);
+    let end_s = ends_s.fold(subject.ground.start_s(), f64::max);
+    let mut panels = HistoryPanels::new(figure, subject, end_s, None);
+    panels.ground(110.0);
     let each = |quantity: fn(&Curves) -> Envelope| -> Vec<Mark> {
         let named = histories.iter().zip(CURVES);
         named
@@ -76,7 +74,7 @@ pub fn draw(
             .collect()
     };
     let mut rotations = each(Curves::rotation_rad);
-    panels.keys = rotations.iter().map(Mark::key).collect();
+    panels.panels.keys = rotations.iter().map(Mark::key).collect();
     let y = scale_around(&rotations, [], 6);
     let marks = rotations.iter().zip(spots).filter_map(|(curve, spot)| {
         let points = curve.points().iter();
@@ -84,7 +82,7 @@ pub fn draw(
             SpotKind::Overturns => points.last(),
             _ => points.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())),
         };
-        Some(Mark::spot(spot, *at?))
+        Some(spot.mark(*at?))
     });
     let marks: Vec<Mark> = marks.collect();
     rotations.extend(marks);
@@ -92,15 +90,9 @@ pub fn draw(
         "Largest rotation (rad), swaying left positive",
         280.0,
         y,
-        None,
         rotations,
     );
-    panels.curves(
-        "Energy (J)",
-        120.0,
-        each(|curves| curves.energy_j.clone()),
-        None,
-    );
+    panels.curves("Energy (J)", 120.0, each(|curves| curves.energy_j.clone()));
     panels.finish(false)
 }
 

@@ -3,12 +3,10 @@
 use super::open_joints::OpenJoints;
 use super::points::ObservedPoints;
 use crate::dynamics::HalfCycle;
-use crate::output::envelope::COLUMNS;
-use crate::output::figure::Panel;
-use crate::output::panels::{MAIN, overturning, overturns, scale_around};
+use crate::output::panels::{MAIN, overturning, overturns};
 use crate::output::{
-    CURVES, Envelope, Figure, Key, Mark, Panels, Scale, Shape, Sign, StateHistory, Stroke, Subject,
-    color,
+    COLUMNS, CURVES, Envelope, Figure, HistoryPanels, Key, Mark, Panel, Scale, Shape, Sign,
+    StateHistory, Stroke, Subject, color, scale_around,
 };
 use crate::{Event, Model, Outcome, Sample, State, Summary as History, Sway};
 
@@ -159,25 +157,25 @@ impl Timeline {
     pub(super) fn draw(
         &self,
         figure: Figure,
+        chosen: &[Panel],
         subject: &Subject<'_>,
         history: &History,
         points: &ObservedPoints,
     ) -> String {
         let span_s = [subject.ground.start_s(), self.end_s];
-        let mut panels = Panels::new(figure, subject.title, span_s);
         let states = match history.row() {
             Some(row) => &states(history, &row.half_cycles),
             None => &self.states,
         };
-        let states = Some(states);
-        let shows = |panel| figure.shows(panel, points.any());
+        let mut panels = HistoryPanels::new(figure, subject, self.end_s, Some(states));
+        let shows = |panel: Panel| panel.is_drawn(chosen, figure, points.any());
         let [ground_px, rotation_px, energy_px] = match self.joints {
             Some(_) => [110.0, 240.0, 120.0],
             None => [130.0, 260.0, 125.0],
         };
         if shows(Panel::Ground) {
-            panels.ground(ground_px, subject, states);
-            self.add_feet(&mut panels, states);
+            panels.ground(ground_px);
+            self.add_feet(&mut panels);
         }
         if shows(Panel::Rotation) {
             let (mut marks, y) = match self.joints {
@@ -186,22 +184,22 @@ impl Timeline {
             };
             let overturned_s = history.overturned_s();
             marks.extend(overturned_s.map(|time_s| overturning(time_s, y)));
-            panels.panel("Rotation (rad)", rotation_px, y, states, marks);
+            panels.panel("Rotation (rad)", rotation_px, y, marks);
         }
         if shows(Panel::Joints)
             && let Some(joints) = &self.joints
         {
-            joints.add_to(&mut panels, figure, self.end_s);
+            joints.add_to(&mut panels.panels, figure, self.end_s);
         }
         if shows(Panel::Slip) {
             let slips = self.slips_mm.iter().enumerate();
             let slips = slips
                 .map(|(joint, slip)| Mark::curve(format!("slip {joint}"), BLOCK, slip.points()));
             let slips = slips.filter(|slip| !slip.is_flat()).collect();
-            panels.curves("Slip (mm)", 120.0, slips, states);
+            panels.curves("Slip (mm)", 120.0, slips);
         }
         if shows(Panel::Points) {
-            points.draw(&mut panels, states);
+            points.draw(&mut panels);
         }
         let energy = Mark::curve("energy", MAIN, self.energy.points());
         // The energy of a structure that never moved is a rounding error.
@@ -218,41 +216,41 @@ impl Timeline {
                 let ends = span_s.map(|time_s| (time_s, 1.0));
                 curves.push(Mark::curve("barrier", BARRIER, ends));
                 let label = "the first mechanism overturns on quiet ground";
-                panels.keys.push(Key::line(label, BARRIER));
+                panels.panels.keys.push(Key::line(label, BARRIER));
             }
-            panels.curves(label, energy_px, curves, states);
+            panels.curves(label, energy_px, curves);
         }
         if shows(Panel::Thrust) && self.joints.is_none() {
             let excess = Mark::curve("excess", MAIN, self.excess_ratio.points());
-            panels.curves("Thrust line outside / t", energy_px, vec![excess], states);
+            panels.curves("Thrust line outside / t", energy_px, vec![excess]);
         }
         if shows(Panel::Rotation) && history.overturned_s().is_some() {
-            panels.keys.push(overturns());
+            panels.panels.keys.push(overturns());
         }
         panels.finish(moves)
     }
 
     /// Adds the panel of the right foot, if it moves.
-    fn add_feet(&self, panels: &mut Panels, states: Option<&StateHistory>) {
+    fn add_feet(&self, panels: &mut HistoryPanels<'_>) {
         let names = ["right foot to the right", "right foot upwards"];
         let feet = names.into_iter().zip(&self.feet_mm).zip([MAIN, UPWARDS]);
         let feet = feet.map(|((name, foot), stroke)| Mark::curve(name, stroke, foot.points()));
         let feet: Vec<Mark> = feet.filter(|foot| !foot.is_flat()).collect();
         if feet.len() > 1 {
-            panels.keys.extend(feet.iter().map(Mark::key));
+            panels.panels.keys.extend(feet.iter().map(Mark::key));
         }
-        panels.curves("Right foot (mm)", 110.0, feet, states);
+        panels.curves("Right foot (mm)", 110.0, feet);
     }
 
     /// Returns the curves of the rotations of a mechanism, with impacts and unstable equilibria, and their scale.
-    fn rotations(&self, panels: &mut Panels) -> (Vec<Mark>, Scale) {
+    fn rotations(&self, panels: &mut HistoryPanels<'_>) -> (Vec<Mark>, Scale) {
         let mut marks = Vec::new();
         let bodies = self.bodies.iter().zip(&self.rotations_rad);
         for ((body, envelope), stroke) in bodies.zip(CURVES) {
             let name = if body.is_empty() { "rotation" } else { body };
             marks.push(Mark::curve(name, stroke, envelope.points()));
             if !body.is_empty() {
-                panels.keys.push(Key::line(body, stroke));
+                panels.panels.keys.push(Key::line(body, stroke));
             }
         }
         marks.extend(self.large_cycles.iter().map(|cycle| {
@@ -263,20 +261,30 @@ impl Timeline {
         let ticks = Shape::Ticks(self.impacts_s.clone());
         marks.push(Mark::new("impact", IMPACT, ticks));
         if !self.impacts_s.is_empty() {
-            panels.keys.push(Key::new("impacts", Sign::Tick(IMPACT)));
+            panels
+                .panels
+                .keys
+                .push(Key::new("impacts", Sign::Tick(IMPACT)));
         }
         if let Some(cycle) = self.large_cycles.first() {
             let label = match self.bodies.len() {
                 1 => "unstable rotation",
                 _ => "unstable rotation of the body of that colour alone: others may go beyond it",
             };
-            panels.keys.push(Key::line(label, unstable(cycle.body)));
+            panels
+                .panels
+                .keys
+                .push(Key::line(label, unstable(cycle.body)));
         }
         (marks, y)
     }
 
     /// Returns the curves of the rotations of blocks and their scale. The block with the largest rotation is drawn last, on top.
-    fn rotations_of_row(&self, panels: &mut Panels, largest: usize) -> (Vec<Mark>, Scale) {
+    fn rotations_of_row(
+        &self,
+        panels: &mut HistoryPanels<'_>,
+        largest: usize,
+    ) -> (Vec<Mark>, Scale) {
         let others = (0..self.rotations_rad.len()).filter(|block| *block != largest);
         let strokes = others.map(|block| (block, BLOCK));
         let curves = strokes.chain([(largest, LARGEST)]).map(|(block, stroke)| {
@@ -287,7 +295,7 @@ impl Timeline {
         if marks.len() > 1 {
             let name = format!("block {}, which turns most", largest + 1);
             let keys = [Key::line(name, LARGEST), Key::line("others", BLOCK)];
-            panels.keys.extend(keys);
+            panels.panels.keys.extend(keys);
         }
         let y = scale_around(&marks, [], 6);
         (marks, y)

@@ -8,7 +8,7 @@ use super::summary::PointPeaks;
 use crate::dynamics::NO_RISE;
 use crate::output::mechanisms::columns;
 use crate::output::point::StructurePoint;
-use crate::output::{CURVES, Cell, Column, Envelope, Mark, Panels, Scene, StateHistory, several};
+use crate::output::{CURVES, Cell, Column, Envelope, HistoryPanels, Mark, Scene, several};
 use crate::{OpenHinge, Pose, Sample};
 
 /// Largest number of points: each has two curves with different strokes in the pictures.
@@ -137,7 +137,7 @@ impl ObservedPoints {
     }
 
     /// Adds the panel of the displacements.
-    pub(super) fn draw(&self, panels: &mut Panels, states: Option<&StateHistory>) {
+    pub(super) fn draw(&self, panels: &mut HistoryPanels<'_>) {
         let displacements = self
             .observed
             .iter()
@@ -148,9 +148,9 @@ impl ObservedPoints {
             .map(|((name, stroke), along)| Mark::curve(name, stroke, along.millimetres.points()))
             .collect();
         if !curves.iter().all(Mark::is_flat) {
-            panels.keys.extend(curves.iter().map(Mark::key));
+            panels.panels.keys.extend(curves.iter().map(Mark::key));
         }
-        panels.curves("Displacement (mm)", 150.0, curves, states);
+        panels.curves("Displacement (mm)", 150.0, curves);
     }
 
     /// Returns the names of the curves of each point, for displacements to the right and upwards.

@@ -85,7 +85,7 @@ fn pushes(figure: Figure, spread: &Summary, spots: &[Spot]) -> Chart {
     let stages = spread.paths.iter().flat_map(|path| &path.stages);
     chart.marks.extend(stages.zip(spots).map(|(stage, spot)| {
         let push_g = stage.smaller_push(Push::Capacity);
-        Mark::spot(spot, (stage.movement_m, push_g.unwrap_or(0.0)))
+        spot.mark((stage.movement_m, push_g.unwrap_or(0.0)))
     }));
     Chart { keys, ..chart }
 }

@@ -73,7 +73,7 @@ pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility, spots: 
         .marks
         .extend(results.cases.iter().zip(spots).map(|(case, spot)| {
             let peak = beyond(case).unwrap_or(0.0);
-            Mark::spot(spot, (peak, case.level(results.measure)))
+            spot.mark((peak, case.level(results.measure)))
         }));
     chart.draw(figure, heading.title())
 }

@@ -148,8 +148,7 @@ fn bands(x: &Scale, curves: &[(&Fragility, CurveStyle)]) -> Vec<Mark> {
 mod tests {
     use super::super::fragility::{Observation, fit};
     use super::*;
-    use crate::output::axes::Axes;
-    use crate::output::svg::Frame;
+    use crate::output::{Axes, Frame};
 
     /// However steep a curve is, it turns by a few degrees at most from one piece to the next on the sheet.
     #[test]

@@ -5,7 +5,6 @@ use nalgebra::Vector2;
 use super::digits::rounded;
 use super::survival::{self, Survival};
 use super::{EDGE_WIDTH, FactorSample, RangeEnd, Threshold};
-use crate::output::chart::draw as draw_marks;
 use crate::output::page::Spot;
 use crate::output::{
     Anchor, Axes, BELOW_PX, Chart, Drawing, Figure, Frame, Key, LEFT_PX, Mark, PartHeight, Scale,
@@ -82,16 +81,16 @@ pub(super) fn drawn(
         let mut on_strip = Vec::new();
         for (sample, spot) in threshold.samples.iter().zip(&mut spots) {
             match peak(sample) {
-                Some(peak) => on_curves.push(Mark::spot(spot, (sample.factor, peak))),
-                None => on_strip.push(Mark::spot(spot, (sample.factor, 0.5))),
+                Some(peak) => on_curves.push(spot.mark((sample.factor, peak))),
+                None => on_strip.push(spot.mark((sample.factor, 0.5))),
             }
         }
         sheet.gap(EDGE_LABELS);
         sheet.part(PartHeight::Fixed(STRIP), move |drawing, part| {
-            let frame = figure.right_of(LEFT_PX, part);
-            strip(drawing, &Axes { frame, x, y }, threshold);
-            let y = Scale::exactly(0.0, 1.0, 1);
-            draw_marks(drawing, &Axes { frame, x, y }, &on_strip);
+            let (frame, y) = (figure.right_of(LEFT_PX, part), Scale::exactly(0.0, 1.0, 1));
+            let axes = Axes { frame, x, y };
+            strip(drawing, &axes, threshold);
+            on_strip.iter().for_each(|mark| mark.draw(drawing, &axes));
             let at = Vector2::new(frame.left - 8.0, frame.top + 0.5 * STRIP + 4.5);
             drawing.label(at, Anchor::End, 0.0, name);
         });

@@ -11,7 +11,7 @@ use crate::output::{
     Anchor, CURVES, Chart, Drawing, Figure, Key, Mark, PartHeight, Scale, Scene, Shape, Sheet,
     Stroke, color,
 };
-use crate::scenario::{DimensionSide, Structure};
+use crate::scenario::{DimensionSide, Language, Structure};
 use crate::{OpenHinge, Sway};
 
 /// Colour of parts that do not move.
@@ -21,6 +21,7 @@ const STILL: &str = "#e9e9e9";
 /// displacements.
 pub(super) fn mechanism(
     figure: Figure,
+    language: Language,
     structure: &Structure,
     sway: Sway,
     mechanism: &Mechanism,
@@ -40,7 +41,7 @@ pub(super) fn mechanism(
     let tall_px = scale * size.y;
     sheet.part(PartHeight::Structure(tall_px, tall_px), |drawing, part| {
         let place = SheetTransform::over([low, high], left + 0.5 * width_px, part);
-        draw_dimensions(drawing, &place, &scene, figure.language);
+        draw_dimensions(drawing, &place, &scene, language);
         draw_mechanism(drawing, place, &scene, (sway, mechanism));
     });
     sheet.gap(room_px(&scene, DimensionSide::Below).max(26.0));
@@ -129,7 +130,7 @@ pub(super) fn capacity(
     let highest_g = demands().map(|side| 1.3 * side.demand_acceleration_g);
     let y = highest_g.chain([0.0, 1.6 * curve[0].1]);
     let (x, y) = (Scale::around(x, figure.ticks(8)), Scale::around(y, 5));
-    let language = figure.language;
+    let language = check.language;
     let capacity = language.choose("capacity, a/FC", "capacità, a/FC");
     let mut keys = vec![Key::line(capacity, CURVES[0])];
     let (mut below, mut above) = (Vec::new(), Vec::new());

@@ -107,11 +107,17 @@ pub fn page_of(json: &str) -> serde_json::Result<String> {
 impl Page {
     /// Makes the page of a check.
     pub fn new(scenario: &Scenario, check: &Summary, date: Option<String>) -> Self {
-        let figure: Figure = "78mm".parse().expect("a width of a figure");
-        let figure = figure.in_language(check.language);
+        let mut figure: Figure = "78mm".parse().expect("a width of a figure");
+        figure.decimal_mark = check.language.decimal_mark();
         let drawn = |(sway, mechanism): (&Sway, _)| {
             let pictures = SidePictures {
-                mechanism: picture::mechanism(figure, &scenario.structure, *sway, mechanism),
+                mechanism: picture::mechanism(
+                    figure,
+                    check.language,
+                    &scenario.structure,
+                    *sway,
+                    mechanism,
+                ),
                 curve: picture::capacity(figure, check, *sway, mechanism),
             };
             (*sway, pictures)

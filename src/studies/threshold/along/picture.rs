@@ -44,7 +44,7 @@ pub(super) fn draw(
     chart.marks.extend(circles);
     let spots = points.iter().zip(spots).map(|(point, spot)| {
         let known_g = point.overturns_from_g.or(point.survives_up_to_g);
-        Mark::spot(spot, (point.value, known_g.unwrap_or(0.0)))
+        spot.mark((point.value, known_g.unwrap_or(0.0)))
     });
     chart.marks.extend(spots);
     chart.draw(figure, title)

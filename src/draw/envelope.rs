@@ -1,21 +1,23 @@
 //! Thinning of long series for pictures.
 
 /// Largest number of columns to which a curve is thinned: about two per pixel.
-pub(crate) const COLUMNS: usize = 1600;
+pub const COLUMNS: usize = 1600;
 
 /// A long series in at most a given number of columns. All columns hold the same number of values; when there are too many columns, pairs of
 /// columns are joined.
 #[derive(Clone, Debug)]
-pub(crate) struct Thinned<T> {
+pub struct Thinned<T> {
     most: usize,
     group: usize,
     /// Number of values in the last column.
     in_last: usize,
-    pub(crate) columns: Vec<T>,
+    /// The columns.
+    pub columns: Vec<T>,
 }
 
 impl<T> Thinned<T> {
-    pub(crate) const fn new(most: usize) -> Self {
+    /// Makes an empty series of at most this many columns.
+    pub const fn new(most: usize) -> Self {
         Self {
             most,
             group: 1,
@@ -25,7 +27,7 @@ impl<T> Thinned<T> {
     }
 
     /// Returns the column of the next value; `None` if that value begins a new column. `join` adds a column to the previous one.
-    pub(crate) fn next(&mut self, join: impl Fn(&mut T, T)) -> Option<&mut T> {
+    pub fn next(&mut self, join: impl Fn(&mut T, T)) -> Option<&mut T> {
         if self.in_last == self.group && self.columns.len() == self.most {
             let mut all = std::mem::take(&mut self.columns).into_iter();
             while let Some(mut column) = all.next() {
@@ -46,7 +48,7 @@ impl<T> Thinned<T> {
 
 /// A long series of values, thinned to the smallest and the largest value of each column.
 #[derive(Clone, Debug)]
-pub(crate) struct Envelope {
+pub struct Envelope {
     /// Time and value of the minimum and of the maximum of each column.
     thinned: Thinned<[(f64, f64); 2]>,
     last: Option<(f64, f64)>,
@@ -60,14 +62,15 @@ impl Default for Envelope {
 
 impl Envelope {
     /// Makes an envelope of at most this many columns.
-    pub(crate) const fn of_columns(most: usize) -> Self {
+    pub const fn of_columns(most: usize) -> Self {
         Self {
             thinned: Thinned::new(most),
             last: None,
         }
     }
 
-    pub(crate) fn push(&mut self, time_s: f64, value: f64) {
+    /// Adds a value.
+    pub fn push(&mut self, time_s: f64, value: f64) {
         let point = (time_s, value);
         self.last = Some(point);
         match self.thinned.next(join) {
@@ -77,7 +80,7 @@ impl Envelope {
     }
 
     /// Returns the points to draw, in order of time.
-    pub(crate) fn points(&self) -> impl Iterator<Item = (f64, f64)> {
+    pub fn points(&self) -> impl Iterator<Item = (f64, f64)> {
         let mut points: Vec<(f64, f64)> = Vec::new();
         let extremes = self.thinned.columns.iter().flat_map(|extremes| {
             let mut in_order = *extremes;

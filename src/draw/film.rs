@@ -4,27 +4,39 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use super::print::PrintError;
-use super::svg::Background;
+use crate::print::PrintError;
+use crate::svg::Background;
 
-named! {
-    /// Format of a film, named by the extension of its file.
-    pub enum FilmFormat {
-        /// H.264, which all players and presentation programs show; encoded by `ffmpeg`.
-        Mp4 = "mp4",
-        /// VP9, for web pages; encoded by `ffmpeg`.
-        WebM = "webm",
-        /// 256 colours, repeated for ever.
-        Gif = "gif",
-        /// Animated PNG of 256 colours, repeated for ever; browsers show it.
-        Png = "png",
-    }
+/// Format of a film, named by the extension of its file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FilmFormat {
+    /// H.264, which all players and presentation programs show; encoded by `ffmpeg`.
+    Mp4,
+    /// VP9, for web pages; encoded by `ffmpeg`.
+    WebM,
+    /// 256 colours, repeated for ever.
+    Gif,
+    /// Animated PNG of 256 colours, repeated for ever; browsers show it.
+    Png,
 }
 
 /// The encoder of MP4 and WebM.
 const FFMPEG: &str = "ffmpeg";
 
 impl FilmFormat {
+    /// All formats.
+    const ALL: &[Self] = &[Self::Mp4, Self::WebM, Self::Gif, Self::Png];
+
+    /// Returns the extension of files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Mp4 => "mp4",
+            Self::WebM => "webm",
+            Self::Gif => "gif",
+            Self::Png => "png",
+        }
+    }
+
     /// Returns the format of a file from its extension.
     ///
     /// # Errors
@@ -60,24 +72,23 @@ fn has_ffmpeg() -> bool {
 }
 
 /// The pictures of a film.
-#[cfg_attr(
-    not(feature = "print"),
-    expect(dead_code, reason = "only films read them")
-)]
-pub(crate) struct Reel<'a> {
+pub struct Reel<'a> {
     /// Width and height in pixels.
-    pub(crate) size_px: [u32; 2],
+    pub size_px: [u32; 2],
     /// Pictures a second.
-    pub(crate) rate_hz: u16,
+    pub rate_hz: u16,
     /// Number of pictures.
-    pub(crate) count: usize,
-    pub(crate) background: Background,
+    pub count: usize,
+    /// Colour around the pictures.
+    pub background: Background,
+    /// Name and version of the program that draws, for the file.
+    pub program: &'a str,
     /// Draws a picture as SVG, from its number.
-    pub(crate) draw: &'a (dyn Fn(usize) -> String + Sync),
+    pub draw: &'a (dyn Fn(usize) -> String + Sync),
 }
 
 /// Receives the number of finished pictures; a break ends the work.
-pub(crate) type Done<'d> = &'d mut dyn FnMut(usize) -> ControlFlow<()>;
+type Done<'d> = &'d mut dyn FnMut(usize) -> ControlFlow<()>;
 
 impl Reel<'_> {
     /// Makes the file of the film.
@@ -85,7 +96,7 @@ impl Reel<'_> {
     /// # Errors
     /// When the program was built without films, the system has no suitable font, the encoder fails, or the work is ended.
     #[cfg(not(feature = "print"))]
-    pub(crate) fn encode(&self, _: FilmFormat, _: Done<'_>) -> Result<Vec<u8>, PrintError> {
+    pub fn encode(&self, _: FilmFormat, _: Done<'_>) -> Result<Vec<u8>, PrintError> {
         Err(PrintError::NotBuilt)
     }
 }
@@ -104,8 +115,7 @@ mod encoded {
     use rayon::iter::{IntoParallelIterator as _, ParallelIterator as _};
 
     use super::{Done, FFMPEG, FilmFormat, PrintError, Reel};
-    use crate::output::page::PROGRAM;
-    use crate::output::print::Raster;
+    use crate::print::Raster;
 
     type Encoded<T> = Result<T, Box<dyn Error>>;
 
@@ -114,11 +124,7 @@ mod encoded {
         ///
         /// # Errors
         /// When the system has no suitable font, the encoder fails, or the work is ended.
-        pub(crate) fn encode(
-            &self,
-            format: FilmFormat,
-            done: Done<'_>,
-        ) -> Result<Vec<u8>, PrintError> {
+        pub fn encode(&self, format: FilmFormat, done: Done<'_>) -> Result<Vec<u8>, PrintError> {
             let frames = Frames(self, Raster::new()?);
             let film = match format {
                 FilmFormat::Mp4 => {
@@ -171,6 +177,8 @@ mod encoded {
         /// Encodes the film by `ffmpeg`, with these options.
         fn ffmpeg(&self, options: &str, done: Done<'_>) -> Encoded<Vec<u8>> {
             let ([width, height], rate_hz) = (self.0.size_px, self.0.rate_hz);
+            // The arguments are divided at blanks.
+            let name = self.0.program.split(' ').next().unwrap_or_default();
             // A file, because the index at the beginning of a film is written last.
             let file = tempfile::NamedTempFile::new()?.into_temp_path();
             let mut messages = tempfile::tempfile()?;
@@ -178,8 +186,7 @@ mod encoded {
             let arguments = format!(
                 "-loglevel error -f rawvideo -pix_fmt rgb24 -video_size {width}x{height} -framerate {rate_hz} -i - \
                  -vf scale=out_color_matrix=bt709:out_range=tv -pix_fmt yuv420p -colorspace bt709 -color_primaries bt709 \
-                 -color_trc bt709 -metadata comment={} {options} -y",
-                env!("CARGO_PKG_NAME")
+                 -color_trc bt709 -metadata comment={name} {options} -y"
             );
             let mut command = Command::new(FFMPEG);
             let command = command.args(arguments.split(' ')).arg(&file);
@@ -224,7 +231,7 @@ mod encoded {
             let (mut file, mut last) = (Vec::new(), Vec::new());
             let mut encoder = gif::Encoder::new(&mut file, width, height, &palette)?;
             encoder.set_repeat(Repeat::Infinite)?;
-            encoder.write_raw_extension(COMMENT, &[PROGRAM.as_bytes()])?;
+            encoder.write_raw_extension(COMMENT, &[self.0.program.as_bytes()])?;
             let add = |frame| {
                 let changed = changes(&mut last, frame);
                 let transparent = Some(UNCHANGED);
@@ -255,7 +262,7 @@ mod encoded {
             encoder.set_animated(u32::try_from(self.0.count)?, 0)?;
             encoder.set_frame_delay(1, self.0.rate_hz)?;
             encoder.set_blend_op(BlendOp::Over)?;
-            encoder.add_text_chunk("Software".to_owned(), PROGRAM.to_owned())?;
+            encoder.add_text_chunk("Software".to_owned(), self.0.program.to_owned())?;
             let mut writer = encoder.write_header()?;
             let add = |frame| Ok(writer.write_image_data(&changes(&mut last, frame))?);
             self.each(|frame| indices(&palette, &frame), add, done)?;

@@ -6,16 +6,15 @@ use std::str::FromStr;
 
 use thiserror::Error;
 
-named! {
-    /// Format of a picture, named by the extension of its files.
-    pub enum PictureFormat {
-        /// Lines and texts, for browsers and drawing programs.
-        Svg = "svg",
-        /// Lines and texts for print, with fonts embedded.
-        Pdf = "pdf",
-        /// Pixels: 600 per inch of print, 2 per pixel of the screen.
-        Png = "png",
-    }
+/// Format of a picture, named by the extension of its files.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PictureFormat {
+    /// Lines and texts, for browsers and drawing programs.
+    Svg,
+    /// Lines and texts for print, with fonts embedded.
+    Pdf,
+    /// Pixels: 600 per inch of print, 2 per pixel of the screen.
+    Png,
 }
 
 /// Errors of converting a picture.
@@ -69,6 +68,18 @@ impl FromStr for PictureFormat {
 }
 
 impl PictureFormat {
+    /// All formats.
+    const ALL: &[Self] = &[Self::Svg, Self::Pdf, Self::Png];
+
+    /// Returns the extension of files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Svg => "svg",
+            Self::Pdf => "pdf",
+            Self::Png => "png",
+        }
+    }
+
     /// Returns the format of a file from its extension; SVG without an extension.
     ///
     /// # Errors
@@ -98,7 +109,7 @@ impl PictureFormat {
 }
 
 #[cfg(feature = "print")]
-pub(super) use converted::Raster;
+pub(crate) use converted::Raster;
 
 #[cfg(feature = "print")]
 mod converted {
@@ -111,8 +122,8 @@ mod converted {
     use resvg::usvg::{self, Options, Tree};
 
     use super::PrintError;
-    use crate::output::svg::Background;
-    use crate::output::text::FONTS;
+    use crate::svg::Background;
+    use crate::text::FONTS;
 
     /// Resolution of pictures for print and for the screen, in dots per inch.
     const PRINT_DPI: f32 = 600.0;
@@ -243,8 +254,8 @@ mod tests {
     #[cfg(feature = "print")]
     #[test]
     fn a_picture_keeps_its_size_and_its_texts() {
-        use crate::output::Figure;
-        use crate::output::sheet::Sheet;
+        use crate::Figure;
+        use crate::sheet::Sheet;
         let figure: Figure = "84mm".parse().unwrap();
         let drawn = |text: &str| {
             let mut sheet = Sheet::new(figure, "");

@@ -8,8 +8,7 @@ use std::str::FromStr;
 
 use nalgebra::Vector2;
 
-use super::page::{OUTSIDE_MODEL, Spot};
-use super::text::{FONTS, TEXT_PX, Text, escaped};
+use crate::text::{FONTS, TEXT_PX, Text, escaped};
 
 /// Dark colours that colour-blind people can distinguish (Okabe and Ito).
 pub mod color {
@@ -61,16 +60,15 @@ impl Stroke {
     }
 }
 
-named! {
-    /// Alignment of a text to its point.
-    pub enum Anchor {
-        /// The text begins at the point.
-        Start = "start",
-        /// The middle of the text is at the point.
-        Middle = "middle",
-        /// The text ends at the point.
-        End = "end",
-    }
+/// Alignment of a text to its point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Anchor {
+    /// The text begins at the point.
+    Start,
+    /// The middle of the text is at the point.
+    Middle,
+    /// The text ends at the point.
+    End,
 }
 
 /// Colour behind a picture: red, green and blue.
@@ -82,7 +80,7 @@ impl Background {
     pub const WHITE: Self = Self([255; 3]);
 
     /// Returns the colour of texts and lines that can be seen on this colour: black or white.
-    pub(crate) fn ink(self) -> &'static str {
+    pub fn ink(self) -> &'static str {
         // Weights of ITU-R BT.601.
         let [red, green, blue] = self.0.map(f64::from);
         let is_dark = 0.299 * red + 0.587 * green + 0.114 * blue < 128.0;
@@ -116,6 +114,17 @@ impl FromStr for Background {
     }
 }
 
+/// A mark with words that a browser shows under the pointer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Symbol {
+    /// Attributes of the mark in the notation of SVG, for styles and scripts of a page.
+    pub attributes: String,
+    /// The words.
+    pub words: String,
+    /// Shapes around zero, in the notation of SVG.
+    pub shapes: String,
+}
+
 /// A rectangle in pixels, y downwards.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Frame {
@@ -131,7 +140,7 @@ pub struct Frame {
 
 impl Frame {
     /// Returns left, top, width and height.
-    pub(super) const fn parts(&self) -> [f64; 4] {
+    pub(crate) const fn parts(&self) -> [f64; 4] {
         [self.left, self.top, self.width, self.height]
     }
 }
@@ -257,21 +266,19 @@ impl Drawing {
         );
     }
 
-    /// Adds the mark of a case, whose lines are in the style of the page.
-    pub fn spot(&mut self, at: Vector2<f64>, spot: &Spot) {
-        let (kind, row, words) = (spot.kind.name(), spot.row, escaped(&spot.words));
-        let fill = attribute("fill", spot.kind.fill());
-        let outside = match spot.outside {
-            true => format!("<path class=\"outside\" d=\"{OUTSIDE_MODEL}\"/>"),
-            false => String::new(),
-        };
+    /// Adds a symbol.
+    pub fn symbol(&mut self, at: Vector2<f64>, symbol: &Symbol) {
+        let Symbol {
+            attributes,
+            words,
+            shapes,
+        } = symbol;
         let _ = writeln!(
             self.0,
-            "<g class=\"spot {kind}\" data-row=\"{row}\" transform=\"translate({:.2} {:.2})\"><title>{words}</title>\
-             {outside}<path{fill} d=\"{}\"/></g>",
+            "<g {attributes} transform=\"translate({:.2} {:.2})\"><title>{}</title>{shapes}</g>",
             at.x,
             at.y,
-            spot.kind.shape(),
+            escaped(words),
         );
     }
 
@@ -305,7 +312,12 @@ impl Drawing {
         turn_deg: f64,
         text: impl Into<Text>,
     ) {
-        let (text, anchor) = (text.into(), anchor.name());
+        let text = text.into();
+        let anchor = match anchor {
+            Anchor::Start => "start",
+            Anchor::Middle => "middle",
+            Anchor::End => "end",
+        };
         let mut turn = String::new();
         if turn_deg != 0.0 {
             turn = format!("rotate({} {:.2} {:.2})", -turn_deg, at.x, at.y);

@@ -2,10 +2,9 @@
 
 use nalgebra::Vector2;
 
-use super::figure::RIGHT_PX;
-use super::svg::{Anchor, Drawing, Frame, Stroke, color};
-use super::text::{LINE_PX, TEXT_PX, Text};
-use crate::scenario::Language;
+use crate::figure::RIGHT_PX;
+use crate::svg::{Anchor, Drawing, Frame, Stroke, color};
+use crate::text::{LINE_PX, TEXT_PX, Text};
 
 /// A range of values along an axis, widened to its outer ticks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,7 +67,7 @@ impl Scale {
     }
 
     /// Returns the positions of the ticks with their texts.
-    pub(crate) fn ticks(&self) -> Vec<(f64, String)> {
+    pub fn ticks(&self) -> Vec<(f64, String)> {
         match self.spacing {
             TickSpacing::Linear(step) => self.linear_ticks(step),
             TickSpacing::Logarithmic => self.logarithmic_ticks(),
@@ -172,11 +171,11 @@ impl Axes {
     pub(crate) fn draw(
         &self,
         drawing: &mut Drawing,
-        language: Language,
+        decimal_mark: &str,
         y_label: &str,
         is_panel: bool,
     ) {
-        let widest_px = self.grid(drawing, language);
+        let widest_px = self.grid(drawing, decimal_mark);
         let [left, top, _, height] = self.frame.parts();
         if is_panel {
             let at = Vector2::new(left, top - 7.0);
@@ -192,7 +191,7 @@ impl Axes {
     }
 
     /// Draws frame and ticks, and the texts of the y axis. Returns the width of the widest text.
-    fn grid(&self, drawing: &mut Drawing, language: Language) -> f64 {
+    fn grid(&self, drawing: &mut Drawing, decimal_mark: &str) -> f64 {
         let thin = Stroke::new(color::BLACK, 0.8, "");
         let faint = Stroke::new("#dddddd", 0.6, "");
         let [left, top, width, height] = self.frame.parts();
@@ -205,7 +204,7 @@ impl Axes {
             drawing.line(Vector2::new(left, y), Vector2::new(right, y), faint);
             drawing.line(Vector2::new(left - 5.0, y), Vector2::new(left, y), thin);
             if highest - y >= TEXT_PX {
-                let text = Text::from(language.number(text));
+                let text = Text::from(text.replace('.', decimal_mark));
                 widest_px = widest_px.max(text.px());
                 let at = Vector2::new(left - TICK_TEXT_PX, y + 4.5);
                 drawing.label(at, Anchor::End, 0.0, text);
@@ -222,7 +221,7 @@ impl Axes {
     }
 
     /// Draws the tick texts on the lower side and the label of the axis; nothing without a label.
-    pub(crate) fn label_x(&self, drawing: &mut Drawing, language: Language, label: &str) {
+    pub(crate) fn label_x(&self, drawing: &mut Drawing, decimal_mark: &str, label: &str) {
         if label.is_empty() {
             return;
         }
@@ -230,7 +229,7 @@ impl Axes {
         // Texts are drawn from left to right; overlapping ones are omitted.
         let mut farthest = f64::NEG_INFINITY;
         for (value, text) in self.x.ticks() {
-            let text = Text::from(language.number(text));
+            let text = Text::from(text.replace('.', decimal_mark));
             let half = 0.5 * text.px();
             let at = Vector2::new(self.place(value, self.y.low).x, bottom + 19.0);
             if at.x - half >= farthest {

@@ -1,39 +1,38 @@
 //! Charts: axes, marks in the units of the axes, and a legend.
 
-use super::axes::{Axes, Scale};
-use super::figure::Figure;
-use super::page::Spot;
-use super::sheet::{Key, PartHeight, Sheet};
-use super::svg::{Drawing, Frame, Stroke};
+use crate::axes::{Axes, Scale};
+use crate::figure::Figure;
+use crate::sheet::{Key, PartHeight, Sheet};
+use crate::svg::{Drawing, Frame, Stroke, Symbol};
 
 /// Distance from the left side of the picture to a plot, with space for the label of the y axis.
-pub(crate) const LEFT_PX: f64 = 85.0;
+pub const LEFT_PX: f64 = 85.0;
 /// Distance from the left side of the picture to a panel, whose label is above it.
 pub(crate) const PANEL_LEFT_PX: f64 = 66.0;
 /// Height of the texts below a plot.
-pub(crate) const BELOW_PX: f64 = 56.0;
+pub const BELOW_PX: f64 = 56.0;
 
 /// A chart, or one of several panels with a common x axis.
-pub(crate) struct Chart {
+pub struct Chart {
     /// Height of the plot on the screen, in pixels.
-    pub(crate) height_px: f64,
+    pub height_px: f64,
     /// Label and scale of the lower side; with an empty label only ticks are drawn.
-    pub(crate) x: (String, Scale),
+    pub x: (String, Scale),
     /// Label and scale of the left side.
-    pub(crate) y: (String, Scale),
+    pub y: (String, Scale),
     /// True if the label of the y axis is above the plot.
-    pub(crate) is_panel: bool,
+    pub is_panel: bool,
     /// Entries of the legend.
-    pub(crate) keys: Vec<Key>,
+    pub keys: Vec<Key>,
     /// Marks drawn before the grid.
-    pub(crate) below: Vec<Mark>,
+    pub below: Vec<Mark>,
     /// Marks drawn after the grid.
-    pub(crate) marks: Vec<Mark>,
+    pub marks: Vec<Mark>,
 }
 
 impl Chart {
     /// Makes a chart with axes and without marks.
-    pub(crate) fn new(height_px: f64, x: (&str, Scale), y: (&str, Scale)) -> Self {
+    pub fn new(height_px: f64, x: (&str, Scale), y: (&str, Scale)) -> Self {
         Self {
             height_px,
             x: (x.0.to_owned(), x.1),
@@ -46,7 +45,7 @@ impl Chart {
     }
 
     /// Makes a chart of curves on scales that contain all curves, and zero on the y axis. Each curve is in the legend.
-    pub(crate) fn around(
+    pub fn around(
         figure: Figure,
         height_px: f64,
         [x_label, y_label]: [&str; 2],
@@ -59,21 +58,21 @@ impl Chart {
     }
 
     /// Adds marks, each also as an entry of the legend.
-    pub(crate) fn with_named(mut self, marks: Vec<Mark>) -> Self {
+    pub fn with_named(mut self, marks: Vec<Mark>) -> Self {
         self.keys.extend(marks.iter().map(Mark::key));
         self.marks.extend(marks);
         self
     }
 
     /// Draws the chart alone, below a title.
-    pub(crate) fn draw(self, figure: Figure, title: &str) -> String {
+    pub fn draw(self, figure: Figure, title: &str) -> String {
         let mut sheet = Sheet::new(figure, title);
         self.add_to(&mut sheet);
         sheet.finish()
     }
 
     /// Adds legend, plot and axes to a picture. Returns the index of the plot among the parts of the picture.
-    pub(crate) fn add_to(mut self, sheet: &mut Sheet<'_>) -> usize {
+    pub fn add_to(mut self, sheet: &mut Sheet<'_>) -> usize {
         sheet.legend(LEFT_PX, std::mem::take(&mut self.keys));
         sheet.gap(8.0);
         let plot = self.add_plot(sheet);
@@ -82,7 +81,7 @@ impl Chart {
     }
 
     /// Adds plot and axes to a picture. Returns the index of the plot among the parts of the picture.
-    pub(crate) fn add_plot(self, sheet: &mut Sheet<'_>) -> usize {
+    pub fn add_plot(self, sheet: &mut Sheet<'_>) -> usize {
         let figure = sheet.figure;
         let height = PartHeight::Plot(figure.height_px(self.height_px));
         sheet.part(height, move |drawing, part| {
@@ -94,8 +93,8 @@ impl Chart {
                 y: self.y.1,
             };
             draw(drawing, &axes, &self.below);
-            axes.draw(drawing, figure.language, &self.y.0, is_panel);
-            axes.label_x(drawing, figure.language, &self.x.0);
+            axes.draw(drawing, figure.decimal_mark, &self.y.0, is_panel);
+            axes.label_x(drawing, figure.decimal_mark, &self.x.0);
             draw(drawing, &axes, &self.marks);
         })
     }
@@ -103,18 +102,20 @@ impl Chart {
 
 /// A mark of a chart: its name for scripts and tests, its shape, and its stroke, whose colour also fills areas.
 #[derive(Clone, Debug)]
-pub(crate) struct Mark {
-    pub(crate) name: String,
-    pub(crate) stroke: Stroke,
+pub struct Mark {
+    /// Name of the mark.
+    pub name: String,
+    /// Stroke of its lines.
+    pub stroke: Stroke,
     shape: Shape,
 }
 
 /// Values on both axes.
-pub(crate) type Point = (f64, f64);
+type Point = (f64, f64);
 
 /// The shape of a mark.
 #[derive(Clone, Debug)]
-pub(crate) enum Shape {
+pub enum Shape {
     /// A curve, interrupted at values that are not finite.
     Curve(Vec<Point>),
     /// A filled area.
@@ -131,15 +132,16 @@ pub(crate) enum Shape {
     Ticks(Vec<f64>),
     /// Marks clipped to the plot.
     Clipped(Vec<Mark>),
-    /// A case, on a page. It is drawn inside the plot.
-    Spot(Point, Spot),
+    /// A symbol, moved inside the plot.
+    Symbol(Point, Symbol),
 }
 
 /// Smallest distance between ticks, in pixels; closer ones would merge.
 const BETWEEN_TICKS_PX: f64 = 2.5;
 
 impl Mark {
-    pub(crate) fn new(name: impl Into<String>, stroke: Stroke, shape: Shape) -> Self {
+    /// Makes a mark.
+    pub fn new(name: impl Into<String>, stroke: Stroke, shape: Shape) -> Self {
         let name = name.into();
         Self {
             name,
@@ -149,7 +151,7 @@ impl Mark {
     }
 
     /// Makes a curve, interrupted at values that are not finite.
-    pub(crate) fn curve(
+    pub fn curve(
         name: impl Into<String>,
         stroke: Stroke,
         points: impl IntoIterator<Item = Point>,
@@ -158,7 +160,7 @@ impl Mark {
     }
 
     /// Makes a step curve across the scale: it starts at `first` and jumps at each x of `rises` to the given y.
-    pub(crate) fn staircase(
+    pub fn staircase(
         name: impl Into<String>,
         stroke: Stroke,
         (x, first): (Scale, f64),
@@ -175,12 +177,12 @@ impl Mark {
     }
 
     /// Makes a vertical line across the plot.
-    pub(crate) fn upright(name: impl Into<String>, stroke: Stroke, x: f64, y: Scale) -> Self {
+    pub fn upright(name: impl Into<String>, stroke: Stroke, x: f64, y: Scale) -> Self {
         Self::curve(name, stroke, [(x, y.low), (x, y.high)])
     }
 
     /// Makes an area between a lower and an upper curve.
-    pub(crate) fn between(
+    pub fn between(
         name: &str,
         fill: &'static str,
         low: impl IntoIterator<Item = Point>,
@@ -192,22 +194,22 @@ impl Mark {
     }
 
     /// Clips marks to the plot.
-    pub(crate) fn clipped(marks: Vec<Self>) -> Self {
+    pub fn clipped(marks: Vec<Self>) -> Self {
         Self::new("", Stroke::new("", 0.0, ""), Shape::Clipped(marks))
     }
 
-    /// Marks a case with its outcome, on a page.
-    pub(crate) fn spot(spot: &Spot, at: Point) -> Self {
-        Self::new("", Stroke::new("", 0.0, ""), Shape::Spot(at, spot.clone()))
+    /// Makes a symbol.
+    pub fn symbol(symbol: Symbol, at: Point) -> Self {
+        Self::new("", Stroke::new("", 0.0, ""), Shape::Symbol(at, symbol))
     }
 
     /// Returns the entry in a legend.
-    pub(crate) fn key(&self) -> Key {
+    pub fn key(&self) -> Key {
         Key::line(&self.name, self.stroke)
     }
 
     /// Returns the points of a curve; empty for other marks.
-    pub(crate) fn points(&self) -> &[Point] {
+    pub fn points(&self) -> &[Point] {
         match &self.shape {
             Shape::Curve(points) => points,
             _ => &[],
@@ -215,11 +217,12 @@ impl Mark {
     }
 
     /// Returns true if a curve is zero throughout.
-    pub(crate) fn is_flat(&self) -> bool {
+    pub fn is_flat(&self) -> bool {
         self.points().iter().all(|(_, value)| *value == 0.0)
     }
 
-    fn draw(&self, drawing: &mut Drawing, axes: &Axes) {
+    /// Draws the mark.
+    pub fn draw(&self, drawing: &mut Drawing, axes: &Axes) {
         let (name, stroke) = (&*self.name, self.stroke);
         let place = |(x, y): &Point| axes.place(*x, *y);
         match &self.shape {
@@ -263,13 +266,13 @@ impl Mark {
                     }
                 }
             }
-            Shape::Spot((x, y), spot) => {
+            Shape::Symbol((x, y), symbol) => {
                 let [x, y] = [(x, &axes.x), (y, &axes.y)].map(|(at, scale)| {
                     // Without a number it is at the end of the axis.
                     let at = if at.is_nan() { scale.low } else { *at };
                     at.clamp(scale.low, scale.high)
                 });
-                drawing.spot(axes.place(x, y), spot);
+                drawing.symbol(axes.place(x, y), symbol);
             }
             Shape::Clipped(marks) => {
                 drawing.within(&axes.frame, |drawing| draw(drawing, axes, marks));
@@ -279,7 +282,7 @@ impl Mark {
 }
 
 /// Draws marks in order, the last on top.
-pub(crate) fn draw(drawing: &mut Drawing, axes: &Axes, marks: &[Mark]) {
+fn draw(drawing: &mut Drawing, axes: &Axes, marks: &[Mark]) {
     for mark in marks {
         mark.draw(drawing, axes);
     }

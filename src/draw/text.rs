@@ -1,11 +1,11 @@
 //! Text on pictures: drawn characters and their width.
 
-use crate::scenario::shown_lines;
+use crate::shown::shown_lines;
 
 /// Fonts whose widths the layout uses.
 pub(crate) const FONTS: &str = "Helvetica, Arial, Liberation Sans, Nimbus Sans, sans-serif";
 /// Size of text in pixels.
-pub(crate) const TEXT_PX: f64 = 13.0;
+pub const TEXT_PX: f64 = 13.0;
 /// Distance between the baselines of two lines of text, in pixels.
 pub(crate) const LINE_PX: f64 = 17.0;
 /// Largest number of characters of a word; the rest is omitted.
@@ -13,7 +13,7 @@ const LONGEST_WORD: usize = 130;
 
 /// A line of text.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Text {
+pub struct Text {
     /// Characters of the line; invisible ones are escaped.
     pub(crate) shown: String,
     /// Width in thousandths of the size of the text.
@@ -48,7 +48,7 @@ impl Text {
     }
 
     /// Returns the width in pixels.
-    pub(crate) fn px(&self) -> f64 {
+    pub fn px(&self) -> f64 {
         TEXT_PX * f64::from(self.thousandths) / 1000.0
     }
 
@@ -64,7 +64,7 @@ pub fn text_px(text: &str) -> f64 {
 }
 
 /// Escapes hidden characters and the special characters of XML; keeps line ends and tabs.
-pub(crate) fn escaped(text: &str) -> String {
+pub fn escaped(text: &str) -> String {
     let mut escaped = String::new();
     for character in shown_lines(text).chars() {
         match character {

@@ -3,27 +3,24 @@
 use std::ops::RangeInclusive;
 use std::str::FromStr;
 
-use super::svg::{Background, Frame};
-use super::text::TEXT_PX;
-use crate::scenario::Language;
+use crate::svg::{Background, Frame};
+use crate::text::TEXT_PX;
 
 /// The size of a picture. The layout is in pixels, with text of 13 pixels. Wider pictures have more space, not larger text.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Figure {
     /// Width in pixels.
-    pub(crate) width_px: f64,
+    pub width_px: f64,
     /// Width in print, in mm; `None` for the screen.
     pub(crate) width_mm: Option<f64>,
     /// Height in print; `None` for the natural height. Plots are stretched to this height within limits.
     pub height: Option<Height>,
     /// True to draw a title.
     pub has_title: bool,
-    /// The panels of a history to draw; `None` for all, and for the three most important ones in a narrow picture.
-    pub panels: Option<[bool; Panel::ALL.len()]>,
     /// Colour behind everything.
     pub background: Background,
-    /// Language of its words and numbers.
-    pub(crate) language: Language,
+    /// Decimal mark of the numbers at ticks.
+    pub decimal_mark: &'static str,
 }
 
 /// Size of text in print, in points.
@@ -41,38 +38,6 @@ pub(crate) const RIGHT_PX: f64 = 25.0;
 /// Smallest width in pixels: that of 60 mm with text of 8 pt.
 const LEAST_WIDTH_PX: f64 = 60.0 / (MM_PER_PT * TEXT_PT) * TEXT_PX;
 
-named! {
-    /// A panel of the picture of a history, in order from top to bottom.
-    pub enum Panel {
-        /// Acceleration of the ground.
-        Ground = "ground",
-        /// Rotations of the bodies.
-        Rotation = "rotation",
-        /// Open joints.
-        Joints = "joints",
-        /// Slips of the joints.
-        Slip = "slip",
-        /// Displacements of observed points.
-        Points = "points",
-        /// Energy, over the barrier if the barrier is known.
-        Energy = "energy",
-        /// Distance of the thrust line outside the structure.
-        Thrust = "thrust",
-    }
-}
-
-impl FromStr for Panel {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let found = Self::ALL.iter().find(|panel| panel.name() == text);
-        found.copied().ok_or_else(|| {
-            let names: Vec<_> = Self::ALL.iter().map(|panel| panel.name()).collect();
-            format!("the panels are {}", names.join(", "))
-        })
-    }
-}
-
 impl Figure {
     /// Picture for the screen: 900 pixels wide.
     pub const SCREEN: Self = Self {
@@ -80,18 +45,17 @@ impl Figure {
         width_mm: None,
         height: None,
         has_title: true,
-        panels: None,
         background: Background::WHITE,
-        language: Language::English,
+        decimal_mark: ".",
     };
 
     /// Picture on a page, below its title.
-    pub(crate) const PAGE: Self = Self {
+    pub const PAGE: Self = Self {
         has_title: false,
         ..Self::SCREEN
     };
     /// Picture on a page on a phone, whose text is not smaller than that of the page.
-    pub(crate) const PHONE: Self = Self {
+    pub const PHONE: Self = Self {
         width_px: 366.0,
         ..Self::PAGE
     };
@@ -112,7 +76,7 @@ impl Figure {
 
     /// Makes a picture with the proportions of a frame of a film, in pixels of the film. Text is as large as on the screen if the longer side is
     /// 900 pixels, and grows with it; in smaller films it does not shrink below 11 pixels.
-    pub(crate) fn of_frame(size_px: [u32; 2], background: Background) -> Self {
+    pub fn of_frame(size_px: [u32; 2], background: Background) -> Self {
         let [width_px, height_px] = size_px.map(f64::from);
         let longer_px = width_px.max(height_px);
         let layout_px = Self::SCREEN
@@ -127,11 +91,6 @@ impl Figure {
             background,
             ..Self::SCREEN
         }
-    }
-
-    /// Changes the language of words and numbers.
-    pub(crate) const fn in_language(self, language: Language) -> Self {
-        Self { language, ..self }
     }
 
     /// Changes the size of text, in points.
@@ -152,19 +111,8 @@ impl Figure {
         Ok(Self { width_px, ..self })
     }
 
-    /// Returns true if a panel of a history is drawn. `watched` is true if there are observed points.
-    pub fn shows(&self, panel: Panel, watched: bool) -> bool {
-        match (self.panels, panel) {
-            (Some(shown), panel) => shown[panel as usize],
-            (None, Panel::Ground | Panel::Rotation) => true,
-            (None, Panel::Points) => watched,
-            // A single column has space for three panels.
-            (None, Panel::Energy) => !(self.is_column() && watched),
-            (None, Panel::Joints | Panel::Slip | Panel::Thrust) => !self.is_column(),
-        }
-    }
-
-    fn is_column(&self) -> bool {
+    /// Returns true if it is for a single column of a journal.
+    pub fn is_column(&self) -> bool {
         self.width_mm.is_some_and(|width_mm| width_mm < COLUMN_MM)
     }
 
@@ -200,7 +148,7 @@ impl Figure {
     }
 
     /// Returns the frame of a plot in a part of the picture, at this distance from the left side.
-    pub(crate) fn right_of(&self, left: f64, part: Frame) -> Frame {
+    pub fn right_of(&self, left: f64, part: Frame) -> Frame {
         Frame {
             left,
             width: self.width_px - left - RIGHT_PX,
@@ -243,33 +191,4 @@ fn length_mm(text: &str) -> Option<f64> {
         // Removes rounding errors.
         Some((number * mm * 1e6).round() / 1e6)
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_column_has_three_panels() {
-        let shown = |figure: Figure, watched| {
-            let shown = Panel::ALL.iter().copied();
-            shown
-                .filter(|panel| figure.shows(*panel, watched))
-                .collect::<Vec<_>>()
-        };
-        let [narrow, wide] = ["84mm", "120mm"].map(|width| width.parse::<Figure>().unwrap());
-        let three = [Panel::Ground, Panel::Rotation, Panel::Energy];
-        assert_eq!(shown(narrow, false), three);
-        let three = [Panel::Ground, Panel::Rotation, Panel::Points];
-        assert_eq!(shown(narrow, true), three);
-        assert_eq!(shown(wide, true), Panel::ALL);
-        let mut panels = [false; Panel::ALL.len()];
-        panels[Panel::Thrust as usize] = true;
-        let one = Figure {
-            panels: Some(panels),
-            ..narrow
-        };
-        assert_eq!(shown(one, true), [Panel::Thrust]);
-        assert!("thrusts".parse::<Panel>().is_err());
-    }
 }

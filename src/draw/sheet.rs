@@ -2,10 +2,9 @@
 
 use nalgebra::Vector2;
 
-use super::figure::Figure;
-use super::svg::{Anchor, Drawing, Frame, Stroke, color};
-use super::text::{LINE_PX, TEXT_PX, Text};
-use crate::bisection::{Width, bisect};
+use crate::figure::Figure;
+use crate::svg::{Anchor, Drawing, Frame, Stroke, color};
+use crate::text::{LINE_PX, TEXT_PX, Text};
 
 /// Largest number of lines of a title; the rest is omitted.
 const TITLE_LINES: usize = 3;
@@ -16,8 +15,9 @@ const LEAST_STRETCH: f64 = 0.15;
 const MOST_STRETCH: f64 = 20.0;
 
 /// A picture to be drawn.
-pub(crate) struct Sheet<'a> {
-    pub(crate) figure: Figure,
+pub struct Sheet<'a> {
+    /// The size of the picture.
+    pub figure: Figure,
     parts: Vec<(PartHeight, Draw<'a>)>,
 }
 
@@ -26,7 +26,7 @@ type Draw<'a> = Box<dyn FnOnce(&mut Drawing, Frame) + 'a>;
 
 /// The height of a part in pixels.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum PartHeight {
+pub enum PartHeight {
     /// Texts and gaps.
     Fixed(f64),
     /// A plot, which is stretched to give the picture its height.
@@ -46,15 +46,18 @@ impl PartHeight {
 }
 
 /// A picture, and the frames of its parts.
-pub(crate) struct FinishedSheet {
-    pub(crate) svg: String,
-    pub(crate) height_px: f64,
-    pub(crate) frames: Vec<Frame>,
+pub struct FinishedSheet {
+    /// The picture as SVG.
+    pub svg: String,
+    /// Its height in pixels.
+    pub height_px: f64,
+    /// The frames of its parts, in order.
+    pub frames: Vec<Frame>,
 }
 
 impl<'a> Sheet<'a> {
     /// Makes a sheet with a title of at most a few lines.
-    pub(crate) fn new(figure: Figure, title: &str) -> Self {
+    pub fn new(figure: Figure, title: &str) -> Self {
         let mut sheet = Self {
             figure,
             parts: Vec::new(),
@@ -73,7 +76,7 @@ impl<'a> Sheet<'a> {
     }
 
     /// Adds a part; returns its index.
-    pub(crate) fn part(
+    pub fn part(
         &mut self,
         height: PartHeight,
         draw: impl FnOnce(&mut Drawing, Frame) + 'a,
@@ -83,17 +86,17 @@ impl<'a> Sheet<'a> {
     }
 
     /// Adds a gap.
-    pub(crate) fn gap(&mut self, height_px: f64) {
+    pub fn gap(&mut self, height_px: f64) {
         self.part(PartHeight::Fixed(height_px), |_, _| ());
     }
 
     /// Adds a centred text with as many lines as necessary. The first baseline is `above_px` below the last part.
-    pub(crate) fn caption(&mut self, above_px: f64, text: &str) {
+    pub fn caption(&mut self, above_px: f64, text: &str) {
         self.captions(above_px, &[text]);
     }
 
     /// Adds centred texts side by side.
-    pub(crate) fn captions(&mut self, above_px: f64, texts: &[&str]) {
+    pub fn captions(&mut self, above_px: f64, texts: &[&str]) {
         let cell_px = self.figure.width_px / texts.len() as f64;
         let margin_px = if texts.len() == 1 { 20.0 } else { 16.0 };
         let cells = texts.iter().enumerate().map(|(index, text)| {
@@ -117,7 +120,7 @@ impl<'a> Sheet<'a> {
     }
 
     /// Adds a legend from `left` on, with as many rows as necessary; nothing without entries.
-    pub(crate) fn legend(&mut self, left: f64, keys: Vec<Key>) {
+    pub fn legend(&mut self, left: f64, keys: Vec<Key>) {
         if keys.is_empty() {
             return;
         }
@@ -153,7 +156,7 @@ impl<'a> Sheet<'a> {
     }
 
     /// Draws the picture with the height of the figure, within the limits of stretch.
-    pub(crate) fn drawn(self) -> FinishedSheet {
+    pub fn drawn(self) -> FinishedSheet {
         let Self { figure, parts } = self;
         let height = |stretch: f64| parts.iter().map(|(height, _)| height.at(stretch)).sum();
         let stretch = stretch(&height, figure.wanted_px(height(1.0)));
@@ -177,7 +180,7 @@ impl<'a> Sheet<'a> {
     }
 
     /// Draws the picture and returns its SVG.
-    pub(crate) fn finish(self) -> String {
+    pub fn finish(self) -> String {
         self.drawn().svg
     }
 }
@@ -187,8 +190,18 @@ fn stretch(height: &dyn Fn(f64) -> f64, wanted_px: f64) -> f64 {
     if height(1.0) == wanted_px {
         return 1.0;
     }
-    let is_enough = |stretch: f64| height(stretch) >= wanted_px;
-    bisect(LEAST_STRETCH, MOST_STRETCH, Width::Rounding, is_enough).1
+    let (mut low, mut high) = (LEAST_STRETCH, MOST_STRETCH);
+    loop {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            return high;
+        }
+        if height(middle) >= wanted_px {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
 }
 
 /// Draws lines of text below one another, the first at this position.
@@ -201,25 +214,29 @@ fn draw_lines(drawing: &mut Drawing, mut at: Vector2<f64>, anchor: Anchor, lines
 
 /// An entry of a legend.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Key {
-    pub(crate) text: String,
-    pub(crate) sign: Sign,
+pub struct Key {
+    /// The text beside the sign.
+    pub text: String,
+    /// The sign.
+    pub sign: Sign,
 }
 
 impl Key {
-    pub(crate) fn new(text: impl Into<String>, sign: Sign) -> Self {
+    /// Makes an entry.
+    pub fn new(text: impl Into<String>, sign: Sign) -> Self {
         let text = text.into();
         Self { text, sign }
     }
 
-    pub(crate) fn line(text: impl Into<String>, stroke: Stroke) -> Self {
+    /// Makes an entry for a line.
+    pub fn line(text: impl Into<String>, stroke: Stroke) -> Self {
         Self::new(text, Sign::Line(stroke))
     }
 }
 
 /// The sign of an entry of a legend.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Sign {
+pub enum Sign {
     /// A line.
     Line(Stroke),
     /// A square of this colour with the name of its hatching, which rises to the right if the last value is true. On dark pages both keep their
@@ -297,7 +314,6 @@ impl Sign {
 
 #[cfg(test)]
 mod tests {
-    use super::super::figure;
     use super::*;
 
     /// Returns the part of a picture between two texts.
@@ -357,7 +373,7 @@ mod tests {
         let height = "20mm".parse().ok();
         assert!(height_mm(Figure { height, ..figure }) > 20.0);
         for wrong in ["70", "5mm", "-7cm", "8000mm"] {
-            assert!(wrong.parse::<figure::Height>().is_err(), "{wrong}");
+            assert!(wrong.parse::<crate::Height>().is_err(), "{wrong}");
         }
     }
 
