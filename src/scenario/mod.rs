@@ -46,14 +46,12 @@ mod masonry;
 mod meanings;
 mod model_kind;
 mod models;
-mod plain_text;
 mod prelude;
 mod record;
 mod relation;
 mod right_foot;
 mod rule;
 mod sequence;
-mod shown;
 mod simulation;
 mod source;
 mod span;
@@ -72,6 +70,8 @@ mod verify;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+
+pub use archrock_text::{shown, shown_lines};
 
 use crate::dynamics::{Direction, Directions, Variation};
 use crate::{
@@ -98,11 +98,11 @@ use prelude::*;
 use record::KnownRecords;
 pub use record::{
     Baseline, Component, Contents, Decimal, Format, Layout, LineFault, Record, RecordedQuantity,
-    Sampling, Scaling, Series, TableColumn, Times, Unit,
+    Sampling, Scaling, Series, TableColumn, Times, Unit, describes_tables, format_of_file,
+    unknown_format,
 };
 pub use right_foot::RightFoot;
 pub use sequence::{Sequence, Spacing};
-pub use shown::{shown, shown_lines};
 pub use simulation::Simulation;
 pub use source::Source;
 pub use structure::{Dimension, DimensionSide, ModelError, Structure, metres};

@@ -6,7 +6,7 @@
 /// The joiners U+200C and U+200D are kept after letters that are not ASCII, because several scripts need them.
 ///
 /// ```
-/// use archrock::scenario::shown;
+/// use archrock_text::shown;
 ///
 /// assert_eq!(shown("a\u{202e}b\nc\u{7}"), r"a\u202eb\nc\u0007");
 /// assert_eq!(shown("mea\u{feff}n"), r"mea\ufeffn");
@@ -37,7 +37,7 @@ fn escape(text: &str, is_meant: impl Fn(char) -> bool) -> String {
 }
 
 /// Returns true if a character is invisible or changes the display of others.
-pub(super) fn is_hidden(c: char) -> bool {
+pub fn is_hidden(c: char) -> bool {
     c.is_control()
         || matches!(
             c,

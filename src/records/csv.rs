@@ -4,11 +4,11 @@ use std::borrow::Cow;
 use std::io::Read as _;
 
 use ::csv::{ReaderBuilder, StringRecord, Terminator};
+use archrock_text::{ensure, excerpt};
 
-use super::layout::{Decimal, Format, Layout, Parser, TableColumn, Times};
-use super::samples::*;
-use super::unit::Unit;
-use crate::scenario::prelude::*;
+use crate::layout::{Decimal, Format, Layout, Parser, TableColumn, Times};
+use crate::samples::*;
+use crate::unit::Unit;
 
 impl Format {
     /// A table with a column of samples and one of times, or with samples at a constant step.
@@ -444,7 +444,7 @@ fn names_column(cell: &str, decimal: Decimal) -> bool {
 const MAX_NUMBER: f64 = 1e6;
 
 /// Reads rows of exactly `N` numbers. Returns each with its line. A first row without any number contains names.
-pub(super) fn numbers<const N: usize>(
+pub(crate) fn numbers<const N: usize>(
     text: &str,
     decimal: Decimal,
 ) -> Parsed<Vec<(usize, [f64; N])>> {
@@ -638,9 +638,9 @@ impl Times {
 
 #[cfg(test)]
 mod tests {
-    use crate::scenario::record::tests::parse;
-    use crate::scenario::record::tests::{assert_fault, csv_layout};
-    use crate::scenario::record::{Decimal, Layout, TableColumn, Times, Unit};
+    use crate::tests::parse;
+    use crate::tests::{assert_fault, csv_layout};
+    use crate::{Decimal, Layout, TableColumn, Times, Unit};
 
     #[test]
     fn tables_of_all_kinds_are_read() {
