@@ -65,6 +65,12 @@ pub(crate) fn high_pass(samples: &[(f64, f64)], corner_hz: f64) -> Parsed<Sample
     let step_s = sampling
         .step_s
         .ok_or_else(|| fault("`high_pass_hz` needs a constant step between samples".to_owned()))?;
+    ensure(corner_hz > 0.0, || {
+        fault(format!(
+            "`high_pass_hz = {}` must be above 0",
+            plain(corner_hz)
+        ))
+    })?;
     let highest_hz = 0.5 / step_s;
     ensure(corner_hz < highest_hz, || {
         let [corner, highest] = [corner_hz, highest_hz].map(plain);
@@ -298,6 +304,8 @@ mod tests {
         uneven[3].0 += 0.004;
         for (samples, corner_hz, words) in [
             (&uneven, 1.0, "needs a constant step"),
+            (&even, 0.0, "`high_pass_hz = 0` must be above 0"),
+            (&even, f64::NAN, "must be above 0"),
             (
                 &even,
                 50.0,

@@ -87,6 +87,7 @@ fn parse_table(
     let (samples, repeated) = match *times {
         Times::Step(step_s) => {
             columns.check_header(&values, step_s)?;
+            checked_step("`dt_s`", step_s).map_err(LineFault::on(last_line))?;
             (values.evenly(step_s, last_line, "`dt_s`")?, None)
         }
         Times::Column(_) => clock.samples(values)?,
@@ -242,6 +243,7 @@ impl<'a> Columns<'a> {
 
     fn index(&self, column: &TableColumn) -> Result<usize, String> {
         let wanted = match column {
+            TableColumn::Number(0) => return Err("columns are counted from 1".to_owned()),
             TableColumn::Number(number) => return Ok(number - 1),
             TableColumn::Name(name) => name,
         };
@@ -772,6 +774,14 @@ mod tests {
             "`dt_s` and the number of samples make a record of 2e6 s",
         );
         fault("1\n", 1, "number of samples is 1");
+        for step_s in [0.0, -1.0, f64::NAN] {
+            assert_fault("1\n2\n", &layout(step_s), 2, "must be at least 1e-6 s");
+        }
+        let column_0 = Layout {
+            acceleration_column: Some(TableColumn::Number(0)),
+            ..layout(0.1)
+        };
+        assert_fault("1\n2\n", &column_0, 1, "columns are counted from 1");
         let message =
             "there is no column 2 in `1`; if the file has accelerations only, give `dt_s`";
         assert_fault("1\n2\n", &numbered(), 1, message);

@@ -17,8 +17,9 @@
 //!     ..Layout::table(Times::Column(TableColumn::Number(1)), Unit::Gravity)
 //! };
 //! assert_eq!(layout.parse(b"time,north,up\n0,1,2\n0.5,3,4\n")?.samples, [(0.0, 2.0), (0.5, 4.0)]);
-//! let fault = layout.parse(b"time,north,up\n0,1,2\n0.5,3,x\n").unwrap_err();
-//! assert_eq!(fault.to_string(), "3: `x` is not a finite number");
+//!
+//! let fault = Layout::new(Format::AT2).parse(b"NPTS= 4, DT= .01 SEC\n1 2 3\n").unwrap_err();
+//! assert_eq!(fault.to_string(), "2: the number of samples is 3: line 1 announces 4 (NPTS)");
 //! # Ok::<(), archrock_records::LineFault>(())
 //! ```
 //!

@@ -266,7 +266,8 @@ impl Clock {
         let mut equal: Vec<f64> = steps.iter().map(|step| step.1).collect();
         equal.sort_by(f64::total_cmp);
         let median_s = *equal.get(equal.len() / 2)?;
-        equal.retain(|step_s| is_step(*step_s, median_s, last_s));
+        let is_usual = is_step(median_s, last_s);
+        equal.retain(|step_s| is_usual(*step_s));
         let is_regular = 3 * equal.len() >= 2 * steps.len();
         let usual_s = equal.iter().sum::<f64>() / equal.len() as f64;
         let mut long = steps.iter().filter(|step| step.1 > 1.5 * usual_s);
@@ -282,12 +283,13 @@ impl Clock {
     }
 }
 
-/// Returns true if a step equals the usual one of a record that ends at `last_s`: to a thousandth, and to the rounding of times to six digits. A step of
-/// twice the usual one is never equal.
-pub(crate) fn is_step(step_s: f64, usual_s: f64, last_s: f64) -> bool {
+/// Returns the test whether a step equals the usual one of a record that ends at `last_s`: to a thousandth, and to the rounding of times to six digits. A
+/// step of twice the usual one is never equal.
+pub(crate) fn is_step(usual_s: f64, last_s: f64) -> impl Fn(f64) -> bool {
     const EVEN: f64 = 1e-3;
     let rounding_s = libm::pow(10.0, libm::log10(last_s.abs()).floor() - 5.0);
-    (step_s - usual_s).abs() <= EVEN * usual_s + rounding_s.min(0.4 * usual_s)
+    let tolerance_s = EVEN * usual_s + rounding_s.min(0.4 * usual_s);
+    move |step_s| (step_s - usual_s).abs() <= tolerance_s
 }
 
 /// Checks samples that a program gives in place of a table, and returns the contents of that table. A fault has the number of its sample, from 1.

@@ -26,9 +26,7 @@ impl Sampling {
         let mean_s = duration_s / (samples.len() - 1) as f64;
         Self {
             count: samples.len(),
-            step_s: steps()
-                .all(|step_s| is_step(step_s, mean_s, last_s))
-                .then_some(mean_s),
+            step_s: steps().all(is_step(mean_s, last_s)).then_some(mean_s),
             least_step_s: steps().fold(f64::INFINITY, f64::min),
             duration_s,
         }
