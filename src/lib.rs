@@ -73,7 +73,7 @@
 #![cfg_attr(test, allow(clippy::disallowed_methods))]
 
 #[macro_use]
-extern crate archrock_motion;
+extern crate archrock_text;
 
 use archrock_motion::{argument, bisection, work};
 

@@ -3,7 +3,7 @@
 
 mod common;
 
-use archrock::scenario::{Format, Layout};
+use archrock_records::{Format, Layout};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|contents: &[u8]| common::check(&Layout::new(Format::AT2), contents));

@@ -1,6 +1,6 @@
 //! Properties of the readers of all record files.
 
-use archrock::scenario::{Contents, Layout};
+use archrock_records::{Contents, Layout};
 
 /// Reads the contents of a file. They give samples for a ground motion, or an error on one of the lines, in printable words.
 pub fn check(layout: &Layout, contents: &[u8]) {

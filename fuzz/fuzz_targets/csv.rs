@@ -3,7 +3,7 @@
 
 mod common;
 
-use archrock::scenario::{Decimal, Layout, TableColumn, Times, Unit};
+use archrock_records::{Decimal, Layout, TableColumn, Times, Unit};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|input: &[u8]| {

@@ -4,7 +4,7 @@
 
 mod common;
 
-use archrock::scenario::{Baseline, Format, Layout, RecordedQuantity, TableColumn};
+use archrock_records::{Baseline, Format, Layout, RecordedQuantity, TableColumn};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|input: &[u8]| {

@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 
 use archrock::dynamics::Intensity;
 use archrock::output::{Scene, draw_elevation, draw_record};
-use archrock::scenario::{Format, Layout, Scenario, ScenarioErrors, Series};
+use archrock::scenario::{
+    Format, Scenario, ScenarioErrors, Series, describes_tables, format_of_file, unknown_format,
+};
 use archrock::studies::run::{self, RunOptions};
 use archrock::studies::{StudyError, record};
 use archrock::{GroundMotion, Request};
@@ -66,11 +68,11 @@ type Described = (String, Value);
 
 /// Returns the contents of a file. A record file has those of all its channels.
 fn check_file(file: &Path, arguments: &Arguments) -> Result<Vec<Described>, Failure> {
-    let format = Format::of_file(file);
+    let format = format_of_file(file);
     if format.is_some() || is_format_given(arguments) {
         return check_record(file, format, arguments);
     }
-    if let Some(errors) = Format::unknown(file) {
+    if let Some(errors) = unknown_format(file) {
         return Err(with_hint(&errors));
     }
     let scenario = read(&arguments.set.open(file)?)?;
@@ -189,13 +191,13 @@ fn check_record(
         None => is_format_given(arguments),
     };
     let mut files = arguments.files.iter();
-    let has_all = is_table(format) || !files.any(|file| is_table(Format::of_file(file)));
+    let has_all = is_table(format) || !files.any(|file| is_table(format_of_file(file)));
     let (keys, left_out): (Vec<_>, Vec<_>) = arguments
         .set
         .assignments()
         .iter()
         .cloned()
-        .partition(|assignment| has_all || !Layout::is_of_tables(assignment.key()));
+        .partition(|assignment| has_all || !describes_tables(assignment.key()));
     if left_out.iter().any(|assignment| assignment.key() == "unit") {
         super::warn(&[format!(
             "{}: ignored `unit`: this file states its unit",

@@ -2,7 +2,7 @@
 //!
 //! From the bottom up:
 //!
-//! - [`Drawing`]: shapes and texts as SVG, in pixels, y downwards. Hidden characters of texts are escaped ([`shown`](fn@shown)), and texts have the
+//! - [`Drawing`]: shapes and texts as SVG, in pixels, y downwards. Hidden characters of texts are escaped ([`archrock_text::shown`]), and texts have the
 //!   computed width ([`Text`]) in every font.
 //! - [`Figure`]: the size of a picture, on the screen or in print.
 //! - [`Sheet`]: a picture as parts below one another: titles, legends, plots, captions. It stretches the plots to the height of the figure.
@@ -33,7 +33,6 @@ mod film;
 mod panels;
 mod print;
 mod sheet;
-mod shown;
 mod svg;
 mod text;
 
@@ -45,6 +44,5 @@ pub use film::{FilmFormat, Reel};
 pub use panels::{Panels, scale_around};
 pub use print::{PictureFormat, PrintError};
 pub use sheet::{FinishedSheet, Key, PartHeight, Sheet, Sign};
-pub use shown::{is_hidden, shown, shown_lines};
 pub use svg::{Anchor, Background, CURVES, Drawing, Frame, Stroke, Symbol, color};
 pub use text::{TEXT_PX, Text, escaped, text_px};

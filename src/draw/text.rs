@@ -1,6 +1,6 @@
 //! Text on pictures: drawn characters and their width.
 
-use crate::shown::shown_lines;
+use archrock_text::shown_lines;
 
 /// Fonts whose widths the layout uses.
 pub(crate) const FONTS: &str = "Helvetica, Arial, Liberation Sans, Nimbus Sans, sans-serif";

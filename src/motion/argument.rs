@@ -3,6 +3,7 @@
 use std::fmt::Display;
 use std::ops::RangeInclusive;
 
+pub use archrock_text::{fixed, plain, short};
 use thiserror::Error;
 
 /// Argument of a constructor that is out of range.
@@ -80,21 +81,6 @@ pub fn above(
     allow(value > low && value <= high, argument, value, allowed)
 }
 
-/// Returns a number in decimal notation with at most six digits: 0.12, not 0.12000000000000002.
-pub fn plain(x: f64) -> String {
-    // Six digits, in the notation that gives the fewest digits without trailing zeros.
-    short(format!("{x:.5e}").parse().unwrap_or(x))
-}
-
-/// Returns a number with `decimals` decimals; zero has no sign.
-pub fn fixed(x: f64, decimals: usize) -> String {
-    let text = format!("{x:.decimals$}");
-    match text.strip_prefix('-') {
-        Some(size) if text.parse() == Ok(0.0) => size.to_owned(),
-        _ => text,
-    }
-}
-
 /// Rounds up to four significant digits, so that a bound in a message is itself allowed.
 pub fn rounded_up(x: f64) -> f64 {
     let unit = whole(x, 4.0);
@@ -110,13 +96,4 @@ pub fn rounded_down(x: f64) -> f64 {
 /// Returns the factor that gives a positive number `digits` digits before the decimal point.
 fn whole(x: f64, digits: f64) -> f64 {
     libm::pow(10.0, digits - 1.0 - libm::log10(x).floor())
-}
-
-/// Returns a bound in the shortest notation: 1e6, not 1000000.0.
-pub fn short(x: f64) -> String {
-    if x != 0.0 && !(1e-3..1e5).contains(&x.abs()) {
-        format!("{x:e}")
-    } else {
-        format!("{x}")
-    }
 }

@@ -6,7 +6,8 @@
 #![cfg_attr(test, allow(clippy::disallowed_methods))]
 
 #[macro_use]
-mod named;
+extern crate archrock_text;
+
 pub mod argument;
 pub mod bisection;
 pub mod dynamics;

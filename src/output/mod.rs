@@ -24,11 +24,12 @@ use std::path::PathBuf;
 pub(crate) use archrock_draw::{
     Anchor, Axes, BELOW_PX, COLUMNS, CURVES, Chart, Drawing, Envelope, Frame, Key, LEFT_PX, Mark,
     Panels, PartHeight, Reel, Scale, Shape, Sheet, Sign, Stroke, Symbol, TEXT_PX, Text, Thinned,
-    color, escaped, scale_around, shown_lines,
+    color, escaped, scale_around,
 };
 pub use archrock_draw::{
     Background, Figure, FilmFormat, Height, PictureFormat, PrintError, text_px,
 };
+use archrock_text::shown_lines;
 pub use elevation::draw as draw_elevation;
 pub(crate) use folder::NewFile;
 pub use folder::{Folder, UnpublishedFiles, check_named_file, write_named_file};

@@ -1,8 +1,9 @@
 //! Building blocks of HTML pages.
 
+use archrock_text::shown_lines;
 use serde::Serialize;
 
-use super::{Mark, Symbol, shown_lines};
+use super::{Mark, Symbol};
 
 /// The name and version of the program, as pages show them.
 pub(crate) const PROGRAM: &str = concat!(env!("CARGO_PKG_NAME"), " ", env!("CARGO_PKG_VERSION"));

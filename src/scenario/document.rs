@@ -4,12 +4,13 @@ use std::collections::HashMap;
 use std::mem;
 use std::ops::Range;
 
+use archrock_text::excerpt;
 use serde_json::{Map, Value};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::assignment::Assignment;
-use super::error::{Fault, excerpt};
+use super::error::Fault;
 use super::files::Files;
 use super::toml_text::inline;
 

@@ -1,9 +1,9 @@
 //! Errors of scenarios, with their positions in the file.
 
+use archrock_text::{excerpt, shown};
 use thiserror::Error;
 
 use super::assignment::Assignment;
-use super::shown;
 
 /// An error of a scenario.
 ///
@@ -126,22 +126,4 @@ impl Fault {
             of_file: false,
         }
     }
-}
-
-/// Returns the message as error unless a condition holds.
-pub(super) fn ensure<E>(holds: bool, wrong: impl FnOnce() -> E) -> Result<(), E> {
-    holds.then_some(()).ok_or_else(wrong)
-}
-
-/// Returns an excerpt of the file for a message: the first line, shortened if it is long.
-pub(super) fn excerpt(text: &str) -> String {
-    const MAX_CHARS: usize = 50;
-    let line = text.trim().lines().next().unwrap_or_default();
-    // Escaping makes the text longer.
-    let whole = shown(&line.chars().take(MAX_CHARS + 1).collect::<String>());
-    let mut short: String = whole.chars().take(MAX_CHARS).collect();
-    if short.len() < whole.len() {
-        short.push_str("...");
-    }
-    short
 }

@@ -7,10 +7,8 @@ use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
+use archrock_text::{ensure, shown};
 use glob::{MatchOptions, Pattern, PatternError};
-
-use super::error::ensure;
-use super::shown;
 
 /// The place of the files of a scenario.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
 use super::prelude::*;
-use super::record::{Format, Layout, Series};
+use super::record::{Format, Layout, Series, format, layout};
 
 /// The files that keys of a table name, and their format.
 pub(super) struct RecordListing {
@@ -44,7 +44,7 @@ impl RecordListing {
             // Each of the other tables has its required keys, here or in its entry.
             formats.clear();
         }
-        let layout = Layout::read(table, &formats);
+        let layout = layout::read(table, &formats);
         Self { files, layout }
     }
 
@@ -52,21 +52,22 @@ impl RecordListing {
     /// they apply to such files.
     pub(super) fn of_entry(table: &mut Table<'_>) -> Self {
         let pattern = table.required(FILE, &text());
-        let format = Format::inherit(table);
+        let format = format::inherit(table);
         let given = Some(pattern).filter(|pattern| !pattern.is_empty() || table.gives(FILE));
         let patterns: Vec<_> = given.into_iter().collect();
         let files = list(table, (FILE, &patterns), format, BTreeSet::new());
         let formats = formats(&files);
-        Layout::inherit(table, &formats);
-        let layout = Layout::read(table, &formats);
+        layout::inherit(table, &formats);
+        let layout = layout::read(table, &formats);
         Self { files, layout }
     }
 
     /// Records a fault of each given key that describes neither a listed file nor an entry, which takes it as a default.
     pub(super) fn refuse_without_effect(&self, table: &mut Table<'_>) -> ReadResult<()> {
         let formats = formats(&self.files);
-        let describes = |key| self.layout.describes(key, &formats) || table.is_default(key);
-        let given = Layout::keys().filter(|key| table.gives(key));
+        let describes =
+            |key| layout::describes(&self.layout, key, &formats) || table.is_default(key);
+        let given = layout::keys().filter(|key| table.gives(key));
         let vain: Vec<_> = given.filter(|key| !describes(key)).collect();
         for key in vain {
             let wrong = "has no effect: each entry [[suite.record]] gives its own value or cannot use it; leave it out";
@@ -163,7 +164,7 @@ fn list(
         }
     }
     let listed = found.into_iter().filter_map(|(file, element)| {
-        let found = || Format::find(table.files(), &file, Layout::has_table_keys(table));
+        let found = || format::find(table.files(), &file, layout::has_table_keys(table));
         let format = format.map_or_else(found, Ok);
         let format = format.map_err(|wrong| {
             let wrong = format!("names {}, which {wrong}", shown(&file));

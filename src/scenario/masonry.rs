@@ -16,7 +16,7 @@ use super::LineFault;
 use super::files::Files;
 use super::load::{self, LoadTable, NO_CONSTANT_FORCES};
 use super::prelude::*;
-use super::record::{Decimal, faulty, read_numbers};
+use super::record::{Decimal, faulty, layout, read_numbers};
 use super::tie::{self, PULLS_OVER, TieTable};
 use crate::Masonry;
 use crate::argument::ArgumentError;
@@ -88,7 +88,7 @@ fn read_dimensions(table: &mut Table<'_>, is_pointed: bool) -> ReadResult<Dimens
 fn read_blocks(table: &mut Table<'_>) -> ReadResult<GivenBlocks> {
     let joints_file = table.required("joints", &text());
     let outlines_file = table.optional("outlines", &text());
-    let decimal = Decimal::read(table);
+    let decimal = layout::decimal(table);
     let supports = table.or("supports", &one_of(Supports::ALL), Supports::Both);
     let depth_m = table.or("depth_m", &MAGNITUDE, DEPTH_M);
     let densities = one_or_more(&MAGNITUDE);
@@ -133,9 +133,13 @@ fn read_blocks(table: &mut Table<'_>) -> ReadResult<GivenBlocks> {
         Err(MasonryError::Row(error)) => {
             let joint = GivenBlocks::joint_of(&error).unwrap_or(0);
             let line = rows.get(joint).map_or(1, |(line, _)| *line);
-            faulty(&path, &LineFault::on(line)(why_no_row(&error)))
+            let message = why_no_row(&error);
+            faulty(&path, &LineFault { line, message })
         }
-        Err(error) => faulty(&path, &LineFault::on(rows[0].0)(error.to_string())),
+        Err(error) => {
+            let (line, message) = (rows[0].0, error.to_string());
+            faulty(&path, &LineFault { line, message })
+        }
     };
     Err(table.wrong("joints", wrong))
 }
@@ -173,7 +177,7 @@ fn read_outlines(
     let path = &files.path(file);
     let rows = read_numbers::<3>(files, path, decimal)?;
     let blocks = given.joints.len() - 1;
-    let fault = |line: usize, message: String| faulty(path, &LineFault::on(line)(message));
+    let fault = |line: usize, message: String| faulty(path, &LineFault { line, message });
     let mut outlines = Outlines::new();
     let mut lines = Vec::new();
     for (line, [block, x, y]) in rows {

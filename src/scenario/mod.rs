@@ -46,7 +46,6 @@ mod masonry;
 mod meanings;
 mod model_kind;
 mod models;
-mod plain_text;
 mod prelude;
 mod record;
 mod relation;
@@ -72,12 +71,13 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+pub use archrock_text::{shown, shown_lines};
+
 use crate::dynamics::{Direction, Directions, Variation};
 use crate::{
     Column, FourLinkError, GroundMotion, ImpactModel, Initial, MechanismModel, Model, Request, Row,
     RowModelError,
 };
-pub use archrock_draw::{shown, shown_lines};
 pub use assignment::Assignment;
 use document::Entries;
 pub use elastic_joints::ELASTIC_JOINTS;
@@ -98,7 +98,8 @@ use prelude::*;
 use record::KnownRecords;
 pub use record::{
     Baseline, Component, Contents, Decimal, Format, Layout, LineFault, Record, RecordedQuantity,
-    Sampling, Scaling, Series, TableColumn, Times, Unit,
+    Sampling, Scaling, Series, TableColumn, Times, Unit, describes_tables, format_of_file,
+    unknown_format,
 };
 pub use right_foot::RightFoot;
 pub use sequence::{Sequence, Spacing};

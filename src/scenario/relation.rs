@@ -1,9 +1,9 @@
 //! Relations between the keys of a table.
 
+use archrock_text::ensure;
 use serde_json::{Value, json};
 
 use super::document::KeyGroup;
-use super::error::ensure;
 use super::table::{FaultRecorded, ReadResult, Table};
 
 /// A relation between the given keys of a table.

@@ -3,12 +3,11 @@
 use std::ops::Bound::{self, Excluded, Included, Unbounded};
 use std::ops::{RangeBounds as _, RangeInclusive};
 
+use archrock_text::{excerpt, short};
 use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::document::{NOT_FINITE, kind};
-use super::error::excerpt;
-use crate::argument::short;
 
 /// A rule for a value.
 pub(super) trait Rule {

@@ -5,9 +5,10 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use archrock_records::not_plain;
+
 use super::error::{Fault, ScenarioErrors};
 use super::files::{FileContents, Files, read_at_most, without_current_folders};
-use super::plain_text::not_plain;
 
 /// The text of a scenario, and its name in errors.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -22,7 +22,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::change::BOTH_SIGNS;
 use super::listing::{RecordListing, written};
 use super::prelude::*;
-use super::record::{self, Component, Format, Record, Scaling, Series};
+use super::record::{self, Component, Record, Scaling, Series, format};
 use super::sequence::Sequence;
 use super::simulation::Simulation;
 use crate::dynamics::Directions;
@@ -129,7 +129,7 @@ impl Suite {
         simulation: Option<&Simulation>,
     ) -> ReadResult<(Self, Option<Directions>)> {
         let patterns = table.optional(RECORDS, &one_or_more(&text()));
-        let format = Format::read(table);
+        let format = format::read(table);
         let levels = Measure::ALL.iter().filter_map(|&measure| {
             let levels = Sequence::read(table, measure.key(), measure.range())?;
             Some((measure, levels))

@@ -10,16 +10,16 @@ use std::collections::BTreeSet;
 use std::fmt::Display;
 use std::sync::LazyLock;
 
+use archrock_text::{ensure, excerpt, shown};
 use serde_json::{Value, json};
 
 use super::assignment::Assignment;
 use super::change;
 use super::document::{Document, Entries, KeyGroup, Span, kind};
-use super::error::{Fault, ensure, excerpt};
+use super::error::Fault;
 use super::files::Files;
 use super::input_file::InputFile;
 use super::rule::{Rule, did_you_mean};
-use super::shown;
 
 /// Error of a value that could not be read; its reason is recorded as a [`Fault`].
 #[derive(Clone, Copy, Debug)]

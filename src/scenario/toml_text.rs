@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value};
 
-use archrock_draw::is_hidden;
+use archrock_text::is_hidden;
 
 /// Returns the text of a table and of all tables in it. A table with the key `from` or `deviation` is a range or a distribution, and is written
 /// in one line.

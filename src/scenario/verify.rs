@@ -36,7 +36,7 @@ use serde::Deserialize;
 use super::files::Files;
 use super::listing::{RecordListing, written};
 use super::prelude::*;
-use super::record::{Decimal, Format, LineFault, Series, faulty, read_numbers};
+use super::record::{Decimal, LineFault, Series, faulty, format, layout, read_numbers};
 use super::study_table::StudyTable;
 use crate::dynamics::demand::{Hazard, Mode, PointSpectrum, Soil, Topography};
 use crate::dynamics::{GroundSpectrum, Site};
@@ -220,7 +220,7 @@ impl Records {
         if given.is_empty() && !table.describes() {
             return Ok(Self::default());
         }
-        let format = Format::read(table);
+        let format = format::read(table);
         let listing = RecordListing::read(table, &given, format, &[]);
         table.check_faultless()?;
         let gravity_m_s2 = gravity_m_s2.ok_or(FaultRecorded)?;
@@ -408,7 +408,7 @@ pub struct PointDemand {
     /// Name of the file.
     pub spectrum: String,
     /// Decimal mark of its numbers.
-    #[serde(skip_serializing_if = "Decimal::is_point")]
+    #[serde(skip_serializing_if = "is_point")]
     pub decimal: Decimal,
     /// Damping of the given spectrum, in per cent.
     pub damping_percent: f64,
@@ -612,11 +612,15 @@ impl BuildingMode {
     }
 }
 
+fn is_point(decimal: &Decimal) -> bool {
+    *decimal == Decimal::Point
+}
+
 impl PointDemand {
     fn read(table: &mut Table<'_>, state: LimitState, confidence_factor: f64) -> ReadResult<Self> {
         let spectrum = table.required("spectrum", &text());
         let damping_percent = table.or("damping_percent", &DAMPING_PERCENT, 5.0);
-        let decimal = Decimal::read(table);
+        let decimal = layout::decimal(table);
         let default = StateRule::circolare(state, confidence_factor);
         let rule = default.map(|default| {
             table.table_or_defaults("state", |table| StateRule::read(table, default))
@@ -648,7 +652,13 @@ fn read_points(
     PointSpectrum::new(points.collect(), damping_percent).map_err(|error| {
         let (line, message) = (error.row.and_then(|row| rows.get(row)), error.to_string());
         line.map_or(message.clone(), |(line, _)| {
-            faulty(path, &LineFault::on(*line)(message))
+            faulty(
+                path,
+                &LineFault {
+                    line: *line,
+                    message,
+                },
+            )
         })
     })
 }

@@ -242,15 +242,18 @@ fn variants(one: &syn::ItemEnum) -> String {
 fn the_public_items_are_those_of_the_list() {
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let mut packages = Packages::default();
-    for (package, folder) in [
+    let sources = [
+        ("archrock_text", source.join("text")),
         ("archrock_draw", source.join("draw")),
         ("archrock_motion", source.join("motion")),
+        ("archrock_records", source.join("records")),
         ("archrock", source),
-    ] {
-        packages.read(&[package.to_owned()], &folder.join("lib.rs"), &folder);
+    ];
+    for (package, folder) in &sources {
+        packages.read(&[(*package).to_owned()], &folder.join("lib.rs"), folder);
     }
     let mut paths = BTreeMap::new();
-    for package in ["archrock_draw", "archrock_motion", "archrock"] {
+    for (package, _) in sources {
         let root = vec![package.to_owned()];
         packages.list(&root, &root, &mut paths);
     }

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use archrock::scenario::{
     Contents, Format, Layout, LineFault, RecordedQuantity, Scenario, TableColumn, Unit,
+    format_of_file,
 };
 
 use serde_json::{Value, json};
@@ -115,7 +116,7 @@ fn formats_are_recognised_by_their_content() {
             let marked = format!("\u{feff}{}", text.replace('\n', "\r\n"));
             for text in [text, marked] {
                 fs::write(&file, text).unwrap();
-                assert_eq!(Format::of_file(&file), Some(format), "{name} {ending}");
+                assert_eq!(format_of_file(&file), Some(format), "{name} {ending}");
                 let file = file.to_str().unwrap();
                 let channel = ["--set", "channel=1"];
                 let has_columns = COLUMNS.iter().any(|column| column.0 == name);
@@ -670,7 +671,7 @@ fn columns_of_a_text_are_channels() {
         // The header shows the format, whatever the ending.
         let file = folder.path().join("x.rec");
         fs::write(&file, &text).unwrap();
-        assert_eq!(Format::of_file(&file), Some(format));
+        assert_eq!(format_of_file(&file), Some(format));
         // A peak that differs.
         let text = text
             .replace("(N-S) 2.5", "(N-S) 3.5")
@@ -1001,12 +1002,12 @@ fn scenarios_and_tables_are_no_records_of_networks() {
         "# Corrected acceleration (Format v01.20 with 13 text lines)",
     ] {
         fs::write(path("s.toml"), format!("{first}\n{scenario}")).unwrap();
-        assert_eq!(Format::of_file(&path("s.toml")), None, "{first}");
+        assert_eq!(format_of_file(&path("s.toml")), None, "{first}");
         let said = stdout(&archrock(folder.path(), &["check", "s.toml"]));
         assert!(said.contains("height_m = 4.0"), "{said}");
     }
     fs::write(path("x.csv"), "# exported (format v2)\n0,1\n1,2\n").unwrap();
-    assert_eq!(Format::of_file(&path("x.csv")), Some(Format::CSV));
+    assert_eq!(format_of_file(&path("x.csv")), Some(Format::CSV));
 }
 
 #[test]
@@ -1111,7 +1112,7 @@ fn formats_are_recognised_by_the_start_of_a_file() {
     fs::write(&large, text("smc.smc")).unwrap();
     let file = fs::OpenOptions::new().write(true).open(&large).unwrap();
     file.set_len((64 << 20) + 1).unwrap();
-    assert_eq!(Format::of_file(&large), Some(Format::SMC));
+    assert_eq!(format_of_file(&large), Some(Format::SMC));
     let said = refusal(&archrock(folder.path(), &["check", "large.rec"]));
     assert!(said.contains("is larger than 64 MiB"), "{said}");
 }

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use archrock::scenario::{Format, ScenarioErrors};
+use archrock::scenario::{ScenarioErrors, unknown_format};
 
 use crate::common::ARCH;
 use crate::common::program::{archrock, refusal, stdout};
@@ -174,7 +174,7 @@ fn scenarios_are_no_unknown_records() {
         ("x.acc", "column = { height_m = 4.0, width_m = 0.8 }\n"),
     ] {
         fs::write(folder.path().join(name), text).unwrap();
-        assert_eq!(Format::unknown(&folder.path().join(name)), None);
+        assert_eq!(unknown_format(&folder.path().join(name)), None);
         assert!(stdout(&archrock(folder.path(), &["check", name])).contains("height_m = 4.0"));
     }
     for (name, text, words) in [
@@ -190,11 +190,11 @@ fn scenarios_are_no_unknown_records() {
         if name != "missing.acc" {
             fs::write(folder.path().join(name), text).unwrap();
         }
-        assert_eq!(Format::unknown(&folder.path().join(name)), None);
+        assert_eq!(unknown_format(&folder.path().join(name)), None);
         let said = refusal(&archrock(folder.path(), &["check", name]));
         assert!(said.contains(words), "{said}");
     }
     fs::write(folder.path().join("x.acc"), "0.1\n0.2\n0.3\n").unwrap();
-    let ScenarioErrors(errors) = Format::unknown(&folder.path().join("x.acc")).unwrap();
+    let ScenarioErrors(errors) = unknown_format(&folder.path().join("x.acc")).unwrap();
     assert_eq!((errors.len(), errors[0].place), (1, None));
 }

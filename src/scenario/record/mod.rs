@@ -23,46 +23,27 @@
 //! [`Layout`] describes the files. Straight lines join the samples, so the acceleration of a record of velocities is constant between samples.
 //! Before the first sample and after the last one the acceleration is zero. Units of gravity are those of the simulation, `gravity_m_s2`.
 
-mod afad;
-mod asc;
-mod at2;
-mod correction;
-mod cosmos;
-mod csmip;
-mod csmnc;
-mod csv;
-mod cwb;
-mod format;
-mod geonet;
-mod histories;
-mod history;
-mod knet;
-mod layout;
-mod networks;
-mod samples;
-mod smc;
-mod unam;
-mod unit;
+pub(super) mod format;
+pub(super) mod layout;
 
 use std::borrow::Cow;
-use std::fmt;
 use std::path::Path;
 use std::sync::Arc;
 
-pub use correction::Baseline;
-use layout::Parser;
-pub use layout::{Decimal, Format, Layout, TableColumn, Times};
-pub use samples::{Contents, LineFault};
-use samples::{MAX_TIME_S, Parsed, is_step};
-pub use unit::{RecordedQuantity, Unit};
+pub use archrock_records::{
+    Baseline, Contents, Decimal, Format, Layout, LineFault, RecordedQuantity, Sampling,
+    TableColumn, Times, Unit,
+};
+use archrock_records::{MAX_TIME_S, mean, numbers};
 
 use super::assignment::Assignment;
 use super::error::ScenarioErrors;
 use super::files::Files;
-use super::plain_text::not_plain;
 use super::prelude::*;
 use super::table;
 use crate::GroundMotion;
+pub use format::{format_of_file, unknown_format};
+pub use layout::describes_tables;
 
 /// Rounding error of the time at which a record begins, in s; shorter than any step.
 const ROUNDING_S: f64 = 1e-9;
@@ -158,54 +139,6 @@ pub struct Series {
     /// Ascending times in s, and accelerations or velocities in the unit of the file, corrected as the layout demands.
     #[serde(skip)]
     pub samples: Arc<[(f64, f64)]>,
-}
-
-/// The number and spacing of the samples of a record.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sampling {
-    /// Number of samples.
-    pub count: usize,
-    /// Time between samples in s; `None` if it is not constant.
-    pub step_s: Option<f64>,
-    /// Shortest time between samples, in s.
-    pub least_step_s: f64,
-    /// Time from the first to the last sample, in s.
-    pub duration_s: f64,
-}
-
-impl Sampling {
-    /// Returns number and spacing of at least two samples.
-    fn of(samples: &[(f64, f64)]) -> Self {
-        let steps = || samples.windows(2).map(|pair| pair[1].0 - pair[0].0);
-        let [first_s, last_s] = [samples.first(), samples.last()].map(|s| s.map_or(0.0, |s| s.0));
-        let duration_s = last_s - first_s;
-        let mean_s = duration_s / (samples.len() - 1) as f64;
-        Self {
-            count: samples.len(),
-            step_s: steps()
-                .all(|step_s| is_step(step_s, mean_s, last_s))
-                .then_some(mean_s),
-            least_step_s: steps().fold(f64::INFINITY, f64::min),
-            duration_s,
-        }
-    }
-}
-
-/// Number, spacing and duration of the samples.
-impl fmt::Display for Sampling {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // At most six digits, without trailing zeros.
-        let rounded = |value: f64| format!("{value:.5e}").parse().unwrap_or(value);
-        let steps = match self.step_s {
-            Some(step_s) => format!("every {} s", rounded(step_s)),
-            None => format!(
-                "at unequal steps (smallest {} s)",
-                rounded(self.least_step_s)
-            ),
-        };
-        let duration_s = rounded(self.duration_s);
-        write!(f, "{} samples {steps}, {duration_s} s long", self.count)
-    }
 }
 
 /// Ground motion from one or two files.
@@ -322,15 +255,12 @@ impl Series {
     /// Reads the unscaled samples of a file. The error is a phrase that follows the name of the file.
     pub(super) fn of_file(files: &Files, file: String, layout: Layout) -> Result<Self, String> {
         let path = files.path(&file);
-        let contents = match files.samples(&path).zip(layout.unit) {
-            Some((samples, unit)) if layout == layout.of_samples() => {
-                let contents = samples::checked(samples, unit);
-                let contents = contents.and_then(|contents| layout.corrected(contents));
-                contents.map_err(|LineFault { line, message }| {
-                    format!("is faulty: sample {line}: {message}")
-                })
-            }
-            _ => {
+        let samples = files.samples(&path);
+        let contents = match samples.and_then(|samples| layout.parse_samples(samples)) {
+            Some(contents) => contents.map_err(|LineFault { line, message }| {
+                format!("is faulty: sample {line}: {message}")
+            }),
+            None => {
                 let contents = layout.parse(&files.read(&path)?);
                 contents.map_err(|fault| faulty(&path, &fault))
             }
@@ -361,8 +291,8 @@ impl Series {
         let name = path.display().to_string();
         let layout = table::read_text(("", &Files::default()), keys, |table| {
             table.rename("the record");
-            let format = Format::read_or_ending(table, &name);
-            Ok(Layout::read(table, format.as_slice()))
+            let format = format::read_or_ending(table, &name);
+            Ok(layout::read(table, format.as_slice()))
         })
         .map_err(|faults| ScenarioErrors::placed(("", &name), keys, faults).without_places())?;
         let bytes = Files::default().read(path);
@@ -500,9 +430,9 @@ impl Series {
     fn read(table: &mut Table<'_>, known: KnownRecords<'_>, start_s: f64) -> ReadResult<Self> {
         let (known, gravity_m_s2, _) = known;
         let file = table.required("file", &text());
-        let format = Format::read_or_ending(table, &file);
+        let format = format::read_or_ending(table, &file);
         let scaling = Scaling::read(table);
-        let layout = Layout::read(table, format.as_slice());
+        let layout = layout::read(table, format.as_slice());
         let scaling = scaling?;
         table.check_faultless()?;
         let mut known = known.iter();
@@ -532,98 +462,13 @@ impl Series {
     }
 }
 
-impl Layout {
-    /// Parses the bytes of a file.
-    ///
-    /// # Errors
-    ///
-    /// The first fault in the bytes.
-    pub fn parse(&self, bytes: &[u8]) -> Result<Contents, LineFault> {
-        let text = decode_text(bytes)?;
-        let contents = match self.format.parser {
-            Parser::Record(parse, _) => parse(&text, self),
-            Parser::History(find) | Parser::Channels(find) => histories::read(&text, self, find),
-        }?;
-        self.corrected(contents)
-    }
-
-    /// Returns the layout of samples that a program gives in place of a file: a table of times and values, with the corrections of this layout.
-    fn of_samples(&self) -> Self {
-        Self {
-            times: Some(Times::Column(TableColumn::Number(1))),
-            unit: self.unit,
-            quantity: self.quantity,
-            baseline: self.baseline,
-            high_pass_hz: self.high_pass_hz,
-            ..Self::new(Format::CSV)
-        }
-    }
-
-    /// Checks the unit of samples, and corrects them as the layout demands.
-    fn corrected(&self, mut contents: Contents) -> Result<Contents, LineFault> {
-        let unit = contents.unit;
-        ensure(unit.quantity() == self.quantity, || {
-            let (unit, other) = (unit.name(), unit.other_quantity());
-            LineFault::on(1)(format!("the unit is {unit:?}, {other}"))
-        })?;
-        if let Some(baseline) = self.baseline {
-            baseline.subtract(&mut contents.samples);
-        }
-        if let Some(corner_hz) = self.high_pass_hz {
-            contents.samples = correction::high_pass(&contents.samples, corner_hz)?;
-        }
-        Ok(contents)
-    }
-}
-
-impl Layout {
-    /// Returns the layout of each channel of a file: this layout alone if it chooses a channel, or if there is only one.
-    fn by_channel(&self, bytes: &[u8]) -> Parsed<Vec<Self>> {
-        let count = match self.format.parser {
-            Parser::Channels(find) if self.channel.is_none() => {
-                histories::count(&decode_text(bytes)?, self, find)?
-            }
-            _ => 1,
-        };
-        if count < 2 {
-            return Ok(vec![self.clone()]);
-        }
-        let channel = |number| Self {
-            channel: Some(TableColumn::Number(number)),
-            ..self.clone()
-        };
-        Ok((1..=count).map(channel).collect())
-    }
-}
-
-/// Returns the text of a file. Headers may have any encoding with the digits of ASCII.
-fn decode_text(bytes: &[u8]) -> Result<String, LineFault> {
-    not_plain(bytes).map_or(Ok(()), |wrong| Err(LineFault::on(1)(wrong)))?;
-    let text = String::from_utf8_lossy(bytes);
-    Ok(text.trim_start_matches('\u{feff}').to_owned())
-}
-
-/// Computes the mean over time of samples joined by straight lines.
-fn mean(samples: &[(f64, f64)]) -> f64 {
-    let [Some(first), Some(last)] = [samples.first(), samples.last()] else {
-        return 0.0;
-    };
-    let areas = samples.windows(2).map(|pair| {
-        let [(t0, a0), (t1, a1)] = [pair[0], pair[1]];
-        0.5 * (a0 + a1) * (t1 - t0)
-    });
-    areas.sum::<f64>() / (last.0 - first.0)
-}
-
 /// Reads rows of `N` numbers from a file, each with its line. The first row may contain names.
 pub(super) fn read_numbers<const N: usize>(
     files: &Files,
     path: &Path,
     decimal: Decimal,
 ) -> Result<Vec<(usize, [f64; N])>, String> {
-    let bytes = files.read(path)?;
-    let numbers = decode_text(&bytes).and_then(|text| csv::numbers(&text, decimal));
-    numbers.map_err(|fault| faulty(path, &fault))
+    numbers(&files.read(path)?, decimal).map_err(|fault| faulty(path, &fault))
 }
 
 /// Returns the message about a wrong line of a file.
@@ -639,133 +484,4 @@ pub(super) fn free_fall(time_s: f64) -> String {
          structure; vertical accelerations must stay above -1 g",
         plain(time_s)
     )
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use proptest::prelude::*;
-
-    pub(super) fn csv_layout() -> Layout {
-        let number = TableColumn::Number(1);
-        Layout {
-            acceleration_column: Some(TableColumn::Name("a".to_owned())),
-            ..Layout::table(Times::Column(number), Unit::Gravity)
-        }
-    }
-
-    pub(super) fn parse(text: &str, layout: &Layout) -> Result<Vec<(f64, f64)>, LineFault> {
-        layout
-            .parse(text.as_bytes())
-            .map(|contents| contents.samples)
-    }
-
-    #[track_caller]
-    pub(super) fn assert_fault(text: &str, layout: &Layout, line: usize, words: &str) {
-        let fault = parse(text, layout).expect_err("faulty");
-        assert_eq!(fault.line, line, "{fault:?}");
-        assert!(fault.message.contains(words), "{fault:?}");
-    }
-
-    proptest! {
-        /// Random and damaged files are either read with ascending times, or are an error.
-        #[test]
-        fn readers_never_panic(
-            noise in any::<String>(),
-            words in proptest::collection::vec(proptest::sample::select(WORDS), 0..40),
-        ) {
-            let damaged: String = words.concat();
-            let text = format!("t,a\n{damaged}");
-            for text in [&noise, &damaged, &text] {
-                let blanks = Layout {
-                    times: Some(Times::Step(0.01)),
-                    skip_rows: 1,
-                    decimal: Decimal::Comma,
-                    ..Layout::table(Times::Step(0.01), Unit::Gravity)
-                };
-                let wrapped = Layout {
-                    wrapped: true,
-                    skip_rows: 0,
-                    ..blanks.clone()
-                };
-                let formats = Format::ALL.iter().map(|format| Layout::new(*format));
-                let layouts = formats.chain([csv_layout(), blanks, wrapped]);
-                let corrected = layouts.clone().map(|layout| Layout {
-                    baseline: Some(Baseline::Linear),
-                    high_pass_hz: Some(1.0),
-                    ..layout
-                });
-                for layout in layouts.chain(corrected) {
-                    match parse(text, &layout) {
-                        Ok(samples) => {
-                            prop_assert!(samples.len() >= 2);
-                            prop_assert!(samples.windows(2).all(|pair| pair[0].0 < pair[1].0));
-                            prop_assert!(samples.iter().all(|s| s.0.is_finite() && s.1.is_finite()));
-                        }
-                        Err(fault) => {
-                            let lines = text.split('\n').count();
-                            prop_assert!((1..=lines).contains(&fault.line));
-                            prop_assert!(!fault.message.contains(char::is_control));
-                        }
-                    }
-                }
-            }
-        }
-    }
-
-    const WORDS: &[&str] = &[
-        "Sampling Freq(Hz) 10Hz\n",
-        "Scale Factor 3920(gal)/6182761\n",
-        "Memo.\n",
-        "2 CORRECTED ACCELEROGRAM\n",
-        "Corrected accelerogram\n",
-        "3 points of accel data equally spaced at .01 sec, in cm/sec2. (8f10.6)\n",
-        "3 POINTS OF ACC DATA EQUALLY SPACED AT .01 SEC.\n",
-        "* VOL1DS FILE\n",
-        "NO. OF POINTS = 2 DURATION = .02\nUNITS ARE SECONDS AND G/10\n",
-        "NO. OF POINTS = 2\nUNITS OF UNCOR ACCEL ARE SEC AND G/10.\n",
-        "/& End of data\n",
-        "1 Real-header values follow on 8 lines, Format= (8F13.6)\n",
-        "3 acceleration pts, approx 0 secs, units=cm/sec2(04),Format=(8F10.5)\n",
-        "Site \n",
-        "Number of points 3\n",
-        "1 2 3 4 5 6 7 8 9 10\n",
-        "|\n",
-        "NUMBER OF DATA : 3\nSAMPLING INTERVAL (sec) : .01\nRAW PGA VALUES (gal) : (N-S) 2\nN-S E-W U-D\n",
-        "#RecordLength(sec): 0\n#SampleRate(Hz): 100\n#AmplitudeUnit: gal.\n#DataSequence: Time U(+)\n",
-        "ORIENTACION C1: /V/N\nINTERVALO DE MUESTREO, C1: /.01/.01\nNUM. TOTAL DE MUESTRAS, C1: /2/2\nUNIDADES DE LOS DATOS: (Gal)\n----\n",
-        "UNCORRECTED ACCELERATION UNIT: GAL\nNO. OF POINTS: 3 SPACED INTERVALS OF: .01 SEC\nPEAK VALUE: 2\n",
-        "1e308",
-        "NPTS",
-        "DT",
-        "=",
-        " ",
-        ",",
-        ";",
-        "\t",
-        "\n",
-        "\r\n",
-        "2",
-        "3",
-        ".01",
-        "-.5E-03",
-        "+",
-        "-",
-        "e",
-        "D",
-        "é",
-        "\u{1a}",
-        "\"",
-        "#",
-        "UNITS OF ",
-        "SAMPLING_INTERVAL_S: .01\n",
-        "UNITS: cm/s^2\n",
-        "G",
-        "nan",
-        "VELOCITY TIME",
-        "t",
-        "a",
-        "0,0\n",
-        "1,1\n",
-    ];
 }

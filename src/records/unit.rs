@@ -1,6 +1,6 @@
 //! Units of recorded accelerations and velocities.
 
-use crate::scenario::prelude::*;
+use archrock_text::{ensure, excerpt};
 
 named! {
     /// The quantity that the samples of a record measure.
@@ -56,7 +56,7 @@ impl Unit {
     }
 
     /// Returns the unit in m/s2, or m/s.
-    pub(super) const fn in_si(self, gravity_m_s2: f64) -> f64 {
+    pub const fn in_si(self, gravity_m_s2: f64) -> f64 {
         match self {
             Self::Gravity => gravity_m_s2,
             Self::MetrePerS2 | Self::MetrePerS => 1.0,
@@ -70,7 +70,7 @@ impl Unit {
     }
 
     /// Returns the message that the unit belongs to the other quantity, with the remedy.
-    pub(super) const fn other_quantity(self) -> &'static str {
+    pub const fn other_quantity(self) -> &'static str {
         match self.quantity() {
             RecordedQuantity::Velocity => {
                 "a unit of velocity; give `quantity = \"velocity\"` if the record is one of velocities"
@@ -82,7 +82,7 @@ impl Unit {
     }
 
     /// Returns the unit in a header, which must be a unit of this quantity. `remedy` is for unknown units.
-    pub(super) fn of_header(
+    pub(crate) fn of_header(
         text: &str,
         quantity: RecordedQuantity,
         remedy: &str,
@@ -100,7 +100,7 @@ impl Unit {
     ///
     /// # Errors
     /// When it is another unit.
-    pub(super) fn check_name(self, name: &str) -> Result<bool, String> {
+    pub(crate) fn check_name(self, name: &str) -> Result<bool, String> {
         let bracket = name
             .strip_suffix([')', ']'])
             .and_then(|name| name.rsplit(['(', '[']).next());
@@ -123,7 +123,7 @@ impl Unit {
     }
 
     /// Parses one of the spellings in files: `cm/s^2`, `CM/SEC/SEC`, `gal`, `g.`.
-    pub(super) fn written(text: &str) -> Option<Self> {
+    pub fn written(text: &str) -> Option<Self> {
         let text = text.trim_end_matches('.');
         let plain = text.replace(|c: char| c.is_whitespace() || "^*()[]".contains(c), "");
         match plain.to_ascii_lowercase().replace("sec", "s").as_str() {
@@ -141,18 +141,6 @@ impl Unit {
             _ => None,
         }
     }
-}
-
-/// Returns the rule for a unit, by its name or a spelling in files.
-pub(super) fn any_unit() -> Custom<'static, Unit> {
-    let names = one_of(Unit::ALL);
-    let allowed = format!("{} or \"gal\"", names.allowed());
-    let read = move |value: &Value| {
-        let written = value.as_str().and_then(Unit::written);
-        written.map_or_else(|| names.read(value), Ok)
-    };
-    let schema = json!({ "type": "string", "examples": Unit::ALL });
-    Custom(allowed, schema, Box::new(read))
 }
 
 #[cfg(test)]

@@ -4,13 +4,14 @@
 //! gravity unless a line of the header names a unit, or velocities. Fortran wrote several numbers per line with a fixed width, so sometimes only
 //! a minus sign separates two numbers.
 
-use super::layout::{Format, Layout, Parser};
-use super::samples::{
+use archrock_text::{ensure, plain};
+
+use crate::layout::{Format, Layout, Parser};
+use crate::samples::{
     Contents, IF_TABLE, LineFault, MAX_SAMPLES, Parsed, Values, checked_step, header_words, number,
     words,
 };
-use super::unit::{RecordedQuantity, Unit};
-use crate::scenario::prelude::*;
+use crate::unit::{RecordedQuantity, Unit};
 
 impl Format {
     /// PEER strong motion database (AT2, VT2).
@@ -178,8 +179,8 @@ fn unit_named(line: &str) -> Option<&str> {
 
 #[cfg(test)]
 mod tests {
-    use crate::scenario::record::tests::{assert_fault, parse};
-    use crate::scenario::record::{Format, Layout, RecordedQuantity, Unit};
+    use crate::tests::{assert_fault, parse};
+    use crate::{Format, Layout, RecordedQuantity, Unit};
 
     #[test]
     fn headers_of_all_wordings_are_read() {

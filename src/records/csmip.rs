@@ -10,12 +10,12 @@
 
 use std::ops::Range;
 
-use super::history::{
+use crate::history::{
     History, count_and_step, is_text, lines_of_numbers, rest, single_blanks, width_in, word_after,
 };
-use super::layout::{Format, Parser};
-use super::samples::{LineFault, Parsed, checked_step, number, step_of_rate};
-use super::unit::Unit;
+use crate::layout::{Format, Parser};
+use crate::samples::{LineFault, Parsed, checked_step, number, step_of_rate};
+use crate::unit::Unit;
 
 impl Format {
     /// California Strong Motion Instrumentation Program (V1, V2), RENADIC.

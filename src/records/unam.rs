@@ -3,12 +3,13 @@
 //! It follows the readers in the USGS's `gmprocess` (group unam), in OpenQuake's `smtk` (ASA), and of the Institute of Engineering, which agree; no
 //! original description was at hand.
 
-use super::history::{History, count_and_step, has, is_text, rest, single_blanks};
-use super::layout::{Format, Parser};
-use super::networks::refuse_words;
-use super::samples::{LineFault, Parsed, number};
-use super::unit::Unit;
-use crate::scenario::prelude::*;
+use archrock_text::ensure;
+
+use crate::history::{History, count_and_step, has, is_text, rest, single_blanks};
+use crate::layout::{Format, Parser};
+use crate::networks::refuse_words;
+use crate::samples::{LineFault, Parsed, number};
+use crate::unit::Unit;
 
 impl Format {
     /// Institute of Engineering of UNAM, Mexico (ASA).

@@ -2,14 +2,15 @@
 //!
 //! A reader of such a format only finds the histories; this module chooses one of them, reads its numbers, and compares them with the header.
 
-use super::history::{Finder, History, single_blanks};
-use super::layout::{Layout, TableColumn};
-use super::samples::{Contents, LineFault, Parsed, different_peak, peak_of};
-use super::unit::{RecordedQuantity, Unit};
-use crate::scenario::prelude::*;
+use archrock_text::{ensure, excerpt, plain};
+
+use crate::history::{Finder, History, single_blanks};
+use crate::layout::{Layout, TableColumn};
+use crate::samples::{Contents, LineFault, Parsed, different_peak, peak_of};
+use crate::unit::{RecordedQuantity, Unit};
 
 /// Returns the number of channels of a file: of its histories of the wanted quantity.
-pub(super) fn count(text: &str, layout: &Layout, histories: Finder) -> Parsed<usize> {
+pub(crate) fn count(text: &str, layout: &Layout, histories: Finder) -> Parsed<usize> {
     let lines: Vec<&str> = text.lines().collect();
     let histories = histories(&lines)?;
     let wanted = layout.quantity.name();
@@ -20,7 +21,7 @@ pub(super) fn count(text: &str, layout: &Layout, histories: Finder) -> Parsed<us
 }
 
 /// Reads the history that the layout chooses among those of a file.
-pub(super) fn read(text: &str, layout: &Layout, histories: Finder) -> Parsed<Contents> {
+pub(crate) fn read(text: &str, layout: &Layout, histories: Finder) -> Parsed<Contents> {
     let lines: Vec<&str> = text.lines().collect();
     let histories = histories(&lines)?;
     ensure(!histories.is_empty(), || {

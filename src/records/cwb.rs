@@ -2,11 +2,12 @@
 //!
 //! A header of lines that begin with `#`, then rows of a time and the components. Source: files of CWB, and the reader in the USGS's `gmprocess` (group cwb).
 
-use super::history::{History, count_and_step, fields, has, largest, rest, single_blanks};
-use super::layout::{Format, Parser};
-use super::networks::{find, header_and_data};
-use super::samples::{LineFault, Parsed, number, step_of_rate, surplus, words};
-use crate::scenario::prelude::*;
+use archrock_text::{ensure, plain};
+
+use crate::history::{History, count_and_step, fields, has, largest, rest, single_blanks};
+use crate::layout::{Format, Parser};
+use crate::networks::{find, header_and_data};
+use crate::samples::{LineFault, Parsed, number, step_of_rate, surplus, words};
 
 impl Format {
     /// Central Weather Bureau, Taiwan.

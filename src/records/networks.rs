@@ -2,15 +2,16 @@
 
 use std::ops::Range;
 
-use super::history::{is_text, single_blanks, word_after};
-use super::samples::{LineFault, Parsed, words};
-use crate::scenario::prelude::*;
+use archrock_text::excerpt;
+
+use crate::history::{is_text, single_blanks, word_after};
+use crate::samples::{LineFault, Parsed, words};
 
 /// Largest number of lines of a header.
 const MAX_HEADER_LINES: usize = 64;
 
 /// Finds the line of a header with a phrase in lower case, single blanks between words. Returns its number, from 1, and the word after the phrase.
-pub(super) fn find(header: &[&str], phrase: &str) -> Parsed<(usize, String)> {
+pub(crate) fn find(header: &[&str], phrase: &str) -> Parsed<(usize, String)> {
     let mut lines = header.iter().zip(1..).take(MAX_HEADER_LINES);
     let found = lines.find_map(|(line, number)| {
         let line = single_blanks(line);
@@ -24,7 +25,7 @@ pub(super) fn find(header: &[&str], phrase: &str) -> Parsed<(usize, String)> {
 
 /// Splits a file into header and numbers. The header extends to the line with a phrase, and over further lines that are blank or satisfy `is_header`.
 /// Words among the numbers are a fault, or the numbers of another record would be read with this header.
-pub(super) fn header_and_data<'l, 't>(
+pub(crate) fn header_and_data<'l, 't>(
     lines: &'l [&'t str],
     phrase: &str,
     is_header: fn(&str) -> bool,
@@ -38,7 +39,7 @@ pub(super) fn header_and_data<'l, 't>(
 }
 
 /// Returns a fault if there are words among the numbers.
-pub(super) fn refuse_words(lines: &[&str], mut data: Range<usize>) -> Parsed<()> {
+pub(crate) fn refuse_words(lines: &[&str], mut data: Range<usize>) -> Parsed<()> {
     if let Some(index) = data.find(|index| is_text(lines[*index])) {
         let text = excerpt(lines[index]);
         return Err(LineFault::on(index + 1)(format!(

@@ -2,44 +2,45 @@
 
 use std::ops::Range;
 
-use super::samples::{Clock, LineFault, Parsed, Values, checked_step, in_range, number, words};
-use super::unit::RecordedQuantity;
-use crate::scenario::prelude::*;
+use archrock_text::{ensure, excerpt};
+
+use crate::samples::{Clock, LineFault, Parsed, Values, checked_step, in_range, number, words};
+use crate::unit::RecordedQuantity;
 
 /// A history of a file, as the header describes it.
-pub(super) struct History {
+pub(crate) struct History {
     /// Name of its channel in the file; may be empty.
-    pub(super) name: String,
+    pub(crate) name: String,
     /// The quantity of the samples: the name of a [`RecordedQuantity`] or of another quantity.
-    pub(super) quantity: String,
+    pub(crate) quantity: String,
     /// Line of the header that describes the samples, from 1.
-    pub(super) line: usize,
+    pub(crate) line: usize,
     /// Unit of the samples, as files write it.
-    pub(super) unit: String,
+    pub(crate) unit: String,
     /// Factor that converts the numbers of the file to samples in this unit.
-    pub(super) factor: f64,
+    pub(crate) factor: f64,
     /// Step between samples, in s; `None` if the first number of every row is the time in s.
-    pub(super) step_s: Option<f64>,
+    pub(crate) step_s: Option<f64>,
     /// Number of samples.
-    pub(super) count: f64,
+    pub(crate) count: f64,
     /// Number of numbers for one sample, and index of the sample among them.
-    pub(super) columns: (usize, usize),
+    pub(crate) columns: (usize, usize),
     /// True if every line has the numbers of one sample.
-    pub(super) is_table: bool,
+    pub(crate) is_table: bool,
     /// The peak that the header states, in the unit of the samples.
-    pub(super) peak: Option<String>,
+    pub(crate) peak: Option<String>,
     /// Indices of the lines with the numbers.
-    pub(super) data: Range<usize>,
+    pub(crate) data: Range<usize>,
     /// Number of characters of a number, for numbers that touch; 0 if unknown.
-    pub(super) width: usize,
+    pub(crate) width: usize,
 }
 
 /// Finds the histories in the lines of a file.
-pub(super) type Finder = fn(&[&str]) -> Parsed<Vec<History>>;
+pub(crate) type Finder = fn(&[&str]) -> Parsed<Vec<History>>;
 
 impl History {
     /// Returns a history of accelerations, one number per sample, that this line of the header describes. Name, unit, peak and data are empty.
-    pub(super) fn new(line: usize, count: f64, step_s: Option<f64>) -> Self {
+    pub(crate) fn new(line: usize, count: f64, step_s: Option<f64>) -> Self {
         Self {
             name: String::new(),
             quantity: RecordedQuantity::Acceleration.name().to_owned(),
@@ -57,7 +58,7 @@ impl History {
     }
 
     /// Reads the numbers: the times, if the file has them, and the samples.
-    pub(super) fn numbers(&self, lines: &[&str]) -> Parsed<(Clock, Values)> {
+    pub(crate) fn numbers(&self, lines: &[&str]) -> Parsed<(Clock, Values)> {
         let (mut clock, (of_sample, wanted)) = (Clock::default(), self.columns);
         let mut values = Values {
             line: self.data.start.max(1),
@@ -94,7 +95,7 @@ impl History {
 
 /// Splits a line into numbers. Numbers that touch have `width` characters each; 0 if unknown. A line that lost characters is not cut, because all
 /// numbers after them would be wrong.
-pub(super) fn fields(line: &str, width: usize) -> Vec<&str> {
+pub(crate) fn fields(line: &str, width: usize) -> Vec<&str> {
     let separate: Vec<_> = words(line).collect();
     let is_number = |word: &&str| number(word).is_ok();
     let line = line.trim_end();
@@ -108,7 +109,7 @@ pub(super) fn fields(line: &str, width: usize) -> Vec<&str> {
 }
 
 /// Returns the numbers on lines of a header, as text. Fewer than `least` are a fault.
-pub(super) fn header_fields<'t>(
+pub(crate) fn header_fields<'t>(
     lines: &[&'t str],
     at: Range<usize>,
     width: usize,
@@ -131,7 +132,7 @@ pub(super) fn header_fields<'t>(
 }
 
 /// Returns the lines with numbers from an index on: those before the next line with words, or with the mark `/&` of an end.
-pub(super) fn lines_of_numbers(lines: &[&str], from: usize) -> Range<usize> {
+pub(crate) fn lines_of_numbers(lines: &[&str], from: usize) -> Range<usize> {
     let from = from.min(lines.len());
     let ends = |line: &&str| is_text(line) || line.starts_with("/&");
     let end = lines[from..].iter().position(ends);
@@ -139,24 +140,24 @@ pub(super) fn lines_of_numbers(lines: &[&str], from: usize) -> Range<usize> {
 }
 
 /// Returns true for a line with letters other than those of exponents.
-pub(super) fn is_text(line: &str) -> bool {
+pub(crate) fn is_text(line: &str) -> bool {
     line.contains(|c: char| c.is_alphabetic() && !"eEdD".contains(c))
 }
 
 /// Returns the part of a line after a phrase in lower case.
-pub(super) fn rest<'t>(line: &'t str, phrase: &str) -> Option<&'t str> {
+pub(crate) fn rest<'t>(line: &'t str, phrase: &str) -> Option<&'t str> {
     let at = line.to_ascii_lowercase().find(phrase)? + phrase.len();
     Some(&line[at..])
 }
 
 /// Returns the first word after a phrase in lower case.
-pub(super) fn word_after<'t>(line: &'t str, phrase: &str) -> Option<&'t str> {
+pub(crate) fn word_after<'t>(line: &'t str, phrase: &str) -> Option<&'t str> {
     let word = rest(line, phrase)?.split_whitespace().next()?;
     Some(word.trim_end_matches([',', ';', ')']))
 }
 
 /// Returns the width of numbers in a line with their Fortran format, as `(8F10.5)`; 0 if there is none.
-pub(super) fn width_in(line: &str) -> usize {
+pub(crate) fn width_in(line: &str) -> usize {
     let format = line.rsplit_once('(').map_or("", |(_, format)| format);
     let width = format.trim_start_matches(|c: char| c.is_ascii_digit());
     let width = width.trim_start_matches(|c: char| c.is_ascii_alphabetic());
@@ -166,19 +167,19 @@ pub(super) fn width_in(line: &str) -> usize {
 }
 
 /// Returns a name with single blanks between its words.
-pub(super) fn single_blanks(name: &str) -> String {
+pub(crate) fn single_blanks(name: &str) -> String {
     name.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 /// Returns the number with the largest magnitude, as text.
-pub(super) fn largest<'t>(words: impl Iterator<Item = &'t str>) -> Option<String> {
+pub(crate) fn largest<'t>(words: impl Iterator<Item = &'t str>) -> Option<String> {
     let numbers = words.filter_map(|word| Some((number(word).ok()?.abs(), word)));
     let largest = numbers.max_by(|one, other| one.0.total_cmp(&other.0));
     largest.map(|(_, word)| word.to_owned())
 }
 
 /// Reads the number of samples on a line, and their step in s on the same or another line.
-pub(super) fn count_and_step(
+pub(crate) fn count_and_step(
     (line, count): (usize, &str),
     (step_line, step_s): (usize, Result<f64, String>),
 ) -> Parsed<(f64, f64)> {
@@ -190,6 +191,6 @@ pub(super) fn count_and_step(
 }
 
 /// Returns true if one of the lines contains a phrase.
-pub(super) fn has(lines: &[&str], phrase: &str) -> bool {
+pub(crate) fn has(lines: &[&str], phrase: &str) -> bool {
     lines.iter().any(|line| line.contains(phrase))
 }

@@ -6,7 +6,7 @@
 /// The joiners U+200C and U+200D are kept after letters that are not ASCII, because several scripts need them.
 ///
 /// ```
-/// use archrock_draw::shown;
+/// use archrock_text::shown;
 ///
 /// assert_eq!(shown("a\u{202e}b\nc\u{7}"), r"a\u202eb\nc\u0007");
 /// assert_eq!(shown("mea\u{feff}n"), r"mea\ufeffn");

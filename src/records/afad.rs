@@ -2,11 +2,12 @@
 //!
 //! A header in words, then rows of three components. Source: files of AFAD, and the reader in the USGS's `gmprocess` (group nsmn).
 
-use super::history::{History, count_and_step, is_text, single_blanks, word_after};
-use super::layout::{Format, Parser};
-use super::networks::{find, header_and_data};
-use super::samples::{LineFault, Parsed, number};
-use crate::scenario::prelude::*;
+use archrock_text::ensure;
+
+use crate::history::{History, count_and_step, is_text, single_blanks, word_after};
+use crate::layout::{Format, Parser};
+use crate::networks::{find, header_and_data};
+use crate::samples::{LineFault, Parsed, number};
 
 impl Format {
     /// AFAD, Turkey.

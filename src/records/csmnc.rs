@@ -2,10 +2,10 @@
 //!
 //! A header in words, then the samples, several a row. Source: files of CSMNC, and their reader `CSMNC2SAC`.
 
-use super::history::{History, count_and_step, has, is_text};
-use super::layout::{Format, Parser};
-use super::networks::{find, header_and_data};
-use super::samples::{Parsed, number};
+use crate::history::{History, count_and_step, has, is_text};
+use crate::layout::{Format, Parser};
+use crate::networks::{find, header_and_data};
+use crate::samples::{Parsed, number};
 
 impl Format {
     /// China Strong Motion Networks Center.

@@ -4,10 +4,11 @@
 //! fields of ten characters. If the header has no sampling rate, every sample follows its time. Source: the format description of the USGS
 //! (escweb.wr.usgs.gov/nsmp-data/smcfmt.html), as its `gmprocess` and the files of its tests follow it.
 
-use super::history::{History, count_and_step, header_fields, largest, single_blanks};
-use super::layout::{Format, Parser};
-use super::samples::{LineFault, Parsed, number, step_of_rate};
-use crate::scenario::prelude::*;
+use archrock_text::ensure;
+
+use crate::history::{History, count_and_step, header_fields, largest, single_blanks};
+use crate::layout::{Format, Parser};
+use crate::samples::{LineFault, Parsed, number, step_of_rate};
 
 impl Format {
     /// U.S. Geological Survey (SMC).

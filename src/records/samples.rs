@@ -1,27 +1,27 @@
 //! Samples of record files: numbers on lines, at given times or at a constant step.
 
+use archrock_text::{ensure, excerpt, plain, short};
 use thiserror::Error;
 
-use super::unit::Unit;
-use crate::scenario::prelude::*;
+use crate::unit::Unit;
 
 /// Result of parsing a file.
-pub(super) type Parsed<T> = Result<T, LineFault>;
+pub(crate) type Parsed<T> = Result<T, LineFault>;
 
 /// Times in s, and accelerations or velocities.
-pub(super) type Samples = Vec<(f64, f64)>;
+pub(crate) type Samples = Vec<(f64, f64)>;
 
 /// Largest number of samples: an hour at 500 Hz.
-pub(super) const MAX_SAMPLES: usize = 1_800_000;
+pub(crate) const MAX_SAMPLES: usize = 1_800_000;
 /// Largest magnitude of the times of a record, in s.
-pub(super) const MAX_TIME_S: f64 = 1e6;
+pub const MAX_TIME_S: f64 = 1e6;
 /// Smallest step between samples, in s: a jump may take a microsecond.
-pub(super) const MIN_STEP_S: f64 = 1e-6;
+pub const MIN_STEP_S: f64 = 1e-6;
 /// Largest magnitude of a sample in any unit: products and squares of samples stay in the range of an `f64`.
-pub(super) const MAX_SAMPLE: f64 = 1e12;
+pub(crate) const MAX_SAMPLE: f64 = 1e12;
 
 /// The remedy for a table whose name ends as that of another format.
-pub(super) const IF_TABLE: &str = "Give `format = \"csv\"` if it is a table";
+pub(crate) const IF_TABLE: &str = "Give `format = \"csv\"` if it is a table";
 
 /// The contents of a file.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,7 +41,7 @@ pub struct Contents {
 }
 
 impl Contents {
-    pub(super) fn new(samples: Samples, unit: Unit) -> Self {
+    pub(crate) fn new(samples: Samples, unit: Unit) -> Self {
         Self {
             samples,
             unit,
@@ -53,7 +53,7 @@ impl Contents {
     }
 
     /// Adds phrases about doubtful samples to [`Contents::difference`].
-    pub(super) fn doubted(mut self, doubts: impl IntoIterator<Item = String>) -> Self {
+    pub(crate) fn doubted(mut self, doubts: impl IntoIterator<Item = String>) -> Self {
         let all = self.difference.into_iter().chain(doubts);
         self.difference = all.reduce(|first, next| {
             let stop = if first.ends_with('?') { "" } else { "." };
@@ -65,7 +65,7 @@ impl Contents {
 
 /// Compares the peak that a header states with that of the samples, in one unit. Returns a warning if they differ by more than the rounding. It is no
 /// error: headers may state the peak before an offset was subtracted. `what` describes the compared samples, after a blank.
-pub(super) fn different_peak(stated: &str, found: f64, unit: Unit, what: &str) -> Option<String> {
+pub(crate) fn different_peak(stated: &str, found: f64, unit: Unit, what: &str) -> Option<String> {
     const TOLERANCE: f64 = 0.01;
     let peak = number(stated).ok()?.abs();
     let decimals = stated.split('.').nth(1).map_or(0, str::len);
@@ -81,7 +81,7 @@ pub(super) fn different_peak(stated: &str, found: f64, unit: Unit, what: &str) -
 }
 
 /// Returns the largest magnitude of values, as differences from `offset`.
-pub(super) fn peak_of(values: &[f64], offset: f64) -> f64 {
+pub(crate) fn peak_of(values: &[f64], offset: f64) -> f64 {
     let magnitudes = values.iter().map(|value| (value - offset).abs());
     magnitudes.fold(0.0, f64::max)
 }
@@ -100,7 +100,7 @@ pub struct LineFault {
 
 impl LineFault {
     /// Returns a function that makes faults of this line from messages.
-    pub(in crate::scenario) fn on<M: Into<String>>(line: usize) -> impl Fn(M) -> Self + Copy {
+    pub(crate) fn on<M: Into<String>>(line: usize) -> impl Fn(M) -> Self + Copy {
         move |message| Self {
             line,
             message: message.into(),
@@ -110,15 +110,15 @@ impl LineFault {
 
 /// Numbers of a file, in order.
 #[derive(Default)]
-pub(super) struct Values {
-    pub(super) values: Vec<f64>,
+pub(crate) struct Values {
+    pub(crate) values: Vec<f64>,
     /// Line of the last number, from 1.
-    pub(super) line: usize,
+    pub(crate) line: usize,
 }
 
 impl Values {
     /// Reads the samples below a header of `header_lines` lines. `words` divides a line into numbers.
-    pub(super) fn below<'t, W: Iterator<Item = &'t str>>(
+    pub(crate) fn below<'t, W: Iterator<Item = &'t str>>(
         text: &'t str,
         header_lines: usize,
         words: impl Fn(&'t str) -> W,
@@ -135,7 +135,7 @@ impl Values {
     }
 
     /// Adds a sample of a line.
-    pub(super) fn push(&mut self, line: usize, value: f64) -> Parsed<()> {
+    pub(crate) fn push(&mut self, line: usize, value: f64) -> Parsed<()> {
         self.line = line;
         let wrong = || {
             self.fault(format!(
@@ -148,12 +148,12 @@ impl Values {
     }
 
     /// Returns a fault on the line of the last number.
-    pub(super) fn fault(&self, message: impl Into<String>) -> LineFault {
+    pub(crate) fn fault(&self, message: impl Into<String>) -> LineFault {
         LineFault::on(self.line)(message)
     }
 
     /// Returns an error if the number of samples is not the one that a line of the header announces.
-    pub(super) fn check_count(&self, (line, count): (usize, f64), key: &str) -> Parsed<()> {
+    pub(crate) fn check_count(&self, (line, count): (usize, f64), key: &str) -> Parsed<()> {
         let found = self.values.len();
         ensure(count == found as f64, || {
             let announced = plain(count);
@@ -165,14 +165,14 @@ impl Values {
     }
 
     /// Returns an error if there are too few samples for a record.
-    pub(super) fn check_enough(&self) -> Parsed<()> {
+    pub(crate) fn check_enough(&self) -> Parsed<()> {
         let found = self.values.len();
         let wrong = format!("the number of samples is {found}; must be at least 2");
         ensure(found >= 2, || self.fault(wrong))
     }
 
     /// Returns the samples at a constant step, the first at time zero. `key` on this line gives the step.
-    pub(super) fn evenly(self, step_s: f64, line: usize, key: &str) -> Parsed<Samples> {
+    pub(crate) fn evenly(self, step_s: f64, line: usize, key: &str) -> Parsed<Samples> {
         self.check_enough()?;
         // Counts below 2^53 are exact.
         let times_s = (0..self.values.len()).map(|index| index as f64 * step_s);
@@ -188,7 +188,7 @@ impl Values {
 }
 
 /// Returns the remedy for more samples than a line of the header announces; empty for fewer.
-pub(super) fn surplus(more: f64, line: usize) -> String {
+pub(crate) fn surplus(more: f64, line: usize) -> String {
     match more > 0.0 {
         true => format!(
             "; delete the last {}, if they are not of this record, or correct line {line}",
@@ -200,13 +200,13 @@ pub(super) fn surplus(more: f64, line: usize) -> String {
 
 /// The times of samples, each with the line of its row.
 #[derive(Default)]
-pub(super) struct Clock {
+pub(crate) struct Clock {
     times: Vec<(usize, f64)>,
 }
 
 impl Clock {
     /// Adds the time of the sample on a line. It may repeat the time before, but not be earlier.
-    pub(super) fn push(&mut self, line: usize, time_s: f64) -> Parsed<()> {
+    pub(crate) fn push(&mut self, line: usize, time_s: f64) -> Parsed<()> {
         let before_s = self.times.last().map(|time| time.1);
         if before_s != Some(time_s) {
             check_time(time_s, before_s).map_err(LineFault::on(line))?;
@@ -217,7 +217,7 @@ impl Clock {
 
     /// Joins times and samples. Keeps the first of several samples at the same time. Returns a warning about the others, as a phrase that follows the name of
     /// the file. Many of them are an error: such times are rounded.
-    pub(super) fn samples(self, values: Values) -> Parsed<(Samples, Option<String>)> {
+    pub(crate) fn samples(self, values: Values) -> Parsed<(Samples, Option<String>)> {
         values.check_enough()?;
         let count = self.times.len() as f64;
         let rows = || self.times.iter().zip(&values.values);
@@ -258,7 +258,7 @@ impl Clock {
     }
 
     /// Returns a warning if most steps are equal and others longer, as a phrase that follows the name of the file.
-    pub(super) fn gap(&self) -> Option<String> {
+    pub(crate) fn gap(&self) -> Option<String> {
         let last_s = self.times.last()?.1;
         let pairs = self.times.windows(2);
         let steps = pairs.map(|pair| (pair[1].0, pair[1].1 - pair[0].1));
@@ -266,7 +266,8 @@ impl Clock {
         let mut equal: Vec<f64> = steps.iter().map(|step| step.1).collect();
         equal.sort_by(f64::total_cmp);
         let median_s = *equal.get(equal.len() / 2)?;
-        equal.retain(|step_s| is_step(*step_s, median_s, last_s));
+        let is_usual = is_step(median_s, last_s);
+        equal.retain(|step_s| is_usual(*step_s));
         let is_regular = 3 * equal.len() >= 2 * steps.len();
         let usual_s = equal.iter().sum::<f64>() / equal.len() as f64;
         let mut long = steps.iter().filter(|step| step.1 > 1.5 * usual_s);
@@ -282,16 +283,17 @@ impl Clock {
     }
 }
 
-/// Returns true if a step equals the usual one of a record that ends at `last_s`: to a thousandth, and to the rounding of times to six digits. A step of
-/// twice the usual one is never equal.
-pub(super) fn is_step(step_s: f64, usual_s: f64, last_s: f64) -> bool {
+/// Returns the test whether a step equals the usual one of a record that ends at `last_s`: to a thousandth, and to the rounding of times to six digits. A
+/// step of twice the usual one is never equal.
+pub(crate) fn is_step(usual_s: f64, last_s: f64) -> impl Fn(f64) -> bool {
     const EVEN: f64 = 1e-3;
     let rounding_s = libm::pow(10.0, libm::log10(last_s.abs()).floor() - 5.0);
-    (step_s - usual_s).abs() <= EVEN * usual_s + rounding_s.min(0.4 * usual_s)
+    let tolerance_s = EVEN * usual_s + rounding_s.min(0.4 * usual_s);
+    move |step_s| (step_s - usual_s).abs() <= tolerance_s
 }
 
 /// Checks samples that a program gives in place of a table, and returns the contents of that table. A fault has the number of its sample, from 1.
-pub(super) fn checked(samples: &[(f64, f64)], unit: Unit) -> Parsed<Contents> {
+pub(crate) fn checked(samples: &[(f64, f64)], unit: Unit) -> Parsed<Contents> {
     let finite = |value: f64| {
         let message = || format!("`{value}` is not a finite number").to_lowercase();
         ensure(value.is_finite(), message).map(|()| value)
@@ -314,7 +316,7 @@ pub(super) fn checked(samples: &[(f64, f64)], unit: Unit) -> Parsed<Contents> {
 
 /// Returns the words of a line. Fortran writes numbers with a fixed width, so that only a sign may separate two of them: a sign begins a word,
 /// except in an exponent.
-pub(super) fn words(line: &str) -> impl Iterator<Item = &str> {
+pub(crate) fn words(line: &str) -> impl Iterator<Item = &str> {
     // Some files end with the end-of-file character of DOS.
     let blank = |c: char| c.is_whitespace() || c == '\u{1a}';
     line.split(blank).flat_map(|mut rest| {
@@ -333,12 +335,12 @@ pub(super) fn words(line: &str) -> impl Iterator<Item = &str> {
 }
 
 /// Returns the words of a line of a header.
-pub(super) fn header_words(line: &str) -> impl Iterator<Item = &str> {
+pub(crate) fn header_words(line: &str) -> impl Iterator<Item = &str> {
     line.split(|c: char| c.is_whitespace() || "=,:;()".contains(c))
 }
 
 /// Returns an error for a step that is too short.
-pub(super) fn checked_step(key: &str, step_s: f64) -> Result<f64, String> {
+pub(crate) fn checked_step(key: &str, step_s: f64) -> Result<f64, String> {
     ensure(step_s >= MIN_STEP_S, || {
         let (step, least) = (plain(step_s), short(MIN_STEP_S));
         format!("{key} is {step} s; must be at least {least} s")
@@ -347,7 +349,7 @@ pub(super) fn checked_step(key: &str, step_s: f64) -> Result<f64, String> {
 }
 
 /// Returns the step in s between samples at a rate, in Hz.
-pub(super) fn step_of_rate(key: &str, rate_hz: f64) -> Result<f64, String> {
+pub(crate) fn step_of_rate(key: &str, rate_hz: f64) -> Result<f64, String> {
     let step_s = 1.0 / rate_hz;
     ensure(step_s.is_finite() && step_s >= MIN_STEP_S, || {
         let [given, most] = [plain(rate_hz), short(1.0 / MIN_STEP_S)];
@@ -357,7 +359,7 @@ pub(super) fn step_of_rate(key: &str, rate_hz: f64) -> Result<f64, String> {
 }
 
 /// Returns an error if a time is out of range, or not later than the previous time.
-pub(super) fn check_time(time_s: f64, before_s: Option<f64>) -> Result<(), String> {
+pub(crate) fn check_time(time_s: f64, before_s: Option<f64>) -> Result<(), String> {
     ensure(time_s.abs() <= MAX_TIME_S, || {
         let (time, most) = (plain(time_s), short(MAX_TIME_S));
         format!("the time {time} s is out of range; its magnitude must be at most {most} s")
@@ -372,7 +374,7 @@ pub(super) fn check_time(time_s: f64, before_s: Option<f64>) -> Result<(), Strin
 }
 
 /// Parses a finite number as programs write it; Fortran's `D` may begin the exponent.
-pub(super) fn number(given: &str) -> Result<f64, String> {
+pub(crate) fn number(given: &str) -> Result<f64, String> {
     // The standard parser also accepts "inf" and "nan".
     let numeric = |c: char| c.is_ascii_digit() || "+-.eEdD".contains(c);
     let word = Some(given).filter(|word| word.len() <= 60 && word.chars().all(numeric));
@@ -382,7 +384,7 @@ pub(super) fn number(given: &str) -> Result<f64, String> {
 }
 
 /// Returns an error for a sample that is out of range.
-pub(super) fn in_range(value: f64) -> Result<f64, String> {
+pub(crate) fn in_range(value: f64) -> Result<f64, String> {
     ensure(value.abs() <= MAX_SAMPLE, || {
         let (value, most) = (plain(value), short(MAX_SAMPLE));
         format!("`{value}` is out of range; samples must be at most {most} in magnitude")

@@ -4,11 +4,12 @@
 //! with ten numbers a line, in mm/s2, mm/s and mm. The integers have the number of samples of each block, the numbers step and peaks. Source: GNS Accelerogram Data File
 //! Format (GeoNet), as files of the USGS's tests of `gmprocess` follow it.
 
-use super::history::{History, header_fields, lines_of_numbers, rest, single_blanks};
-use super::layout::{Format, Parser};
-use super::samples::{LineFault, Parsed, checked_step, number, words};
-use super::unit::Unit;
-use crate::scenario::prelude::*;
+use archrock_text::{ensure, plain};
+
+use crate::history::{History, header_fields, lines_of_numbers, rest, single_blanks};
+use crate::layout::{Format, Parser};
+use crate::samples::{LineFault, Parsed, checked_step, number, words};
+use crate::unit::Unit;
 
 impl Format {
     /// GeoNet, New Zealand (V1A, V2A).

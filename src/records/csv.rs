@@ -4,11 +4,11 @@ use std::borrow::Cow;
 use std::io::Read as _;
 
 use ::csv::{ReaderBuilder, StringRecord, Terminator};
+use archrock_text::{ensure, excerpt};
 
-use super::layout::{Decimal, Format, Layout, Parser, TableColumn, Times};
-use super::samples::*;
-use super::unit::Unit;
-use crate::scenario::prelude::*;
+use crate::layout::{Decimal, Format, Layout, Parser, TableColumn, Times};
+use crate::samples::*;
+use crate::unit::Unit;
 
 impl Format {
     /// A table with a column of samples and one of times, or with samples at a constant step.
@@ -87,6 +87,7 @@ fn parse_table(
     let (samples, repeated) = match *times {
         Times::Step(step_s) => {
             columns.check_header(&values, step_s)?;
+            checked_step("`dt_s`", step_s).map_err(LineFault::on(last_line))?;
             (values.evenly(step_s, last_line, "`dt_s`")?, None)
         }
         Times::Column(_) => clock.samples(values)?,
@@ -242,6 +243,7 @@ impl<'a> Columns<'a> {
 
     fn index(&self, column: &TableColumn) -> Result<usize, String> {
         let wanted = match column {
+            TableColumn::Number(0) => return Err("columns are counted from 1".to_owned()),
             TableColumn::Number(number) => return Ok(number - 1),
             TableColumn::Name(name) => name,
         };
@@ -444,7 +446,7 @@ fn names_column(cell: &str, decimal: Decimal) -> bool {
 const MAX_NUMBER: f64 = 1e6;
 
 /// Reads rows of exactly `N` numbers. Returns each with its line. A first row without any number contains names.
-pub(super) fn numbers<const N: usize>(
+pub(crate) fn numbers<const N: usize>(
     text: &str,
     decimal: Decimal,
 ) -> Parsed<Vec<(usize, [f64; N])>> {
@@ -638,9 +640,9 @@ impl Times {
 
 #[cfg(test)]
 mod tests {
-    use crate::scenario::record::tests::parse;
-    use crate::scenario::record::tests::{assert_fault, csv_layout};
-    use crate::scenario::record::{Decimal, Layout, TableColumn, Times, Unit};
+    use crate::tests::parse;
+    use crate::tests::{assert_fault, csv_layout};
+    use crate::{Decimal, Layout, TableColumn, Times, Unit};
 
     #[test]
     fn tables_of_all_kinds_are_read() {
@@ -772,6 +774,14 @@ mod tests {
             "`dt_s` and the number of samples make a record of 2e6 s",
         );
         fault("1\n", 1, "number of samples is 1");
+        for step_s in [0.0, -1.0, f64::NAN] {
+            assert_fault("1\n2\n", &layout(step_s), 2, "must be at least 1e-6 s");
+        }
+        let column_0 = Layout {
+            acceleration_column: Some(TableColumn::Number(0)),
+            ..layout(0.1)
+        };
+        assert_fault("1\n2\n", &column_0, 1, "columns are counted from 1");
         let message =
             "there is no column 2 in `1`; if the file has accelerations only, give `dt_s`";
         assert_fault("1\n2\n", &numbered(), 1, message);

@@ -4,14 +4,15 @@
 //! Multiplied by the `Scale Factor`, such as `3920(gal)/6182761`, they are accelerations in gal, including the offset of the instrument. For
 //! `Max. Acc. (gal)` their mean is subtracted. Source: the descriptions of both formats (NIED, kyoshin.bosai.go.jp).
 
-use super::history::has;
-use super::layout::{Format, Layout, Parser};
-use super::samples::{
+use archrock_text::{ensure, excerpt, plain};
+
+use crate::history::has;
+use crate::layout::{Format, Layout, Parser};
+use crate::samples::{
     Contents, IF_TABLE, LineFault, Parsed, Values, different_peak, number, peak_of, step_of_rate,
     surplus, words,
 };
-use super::unit::Unit;
-use crate::scenario::prelude::*;
+use crate::unit::Unit;
 
 impl Format {
     /// K-NET and KiK-net.
@@ -114,8 +115,8 @@ fn read_scale(scale: &str) -> Result<f64, String> {
 
 #[cfg(test)]
 mod tests {
-    use crate::scenario::record::tests::assert_fault;
-    use crate::scenario::record::{Baseline, Format, Layout, Unit};
+    use crate::tests::assert_fault;
+    use crate::{Baseline, Format, Layout, Unit};
 
     const FILE: &str = "Origin Time       2024/01/02 03:04:05\nLat.              37.0\nStation Code      XXX001\n\
                         Record Time       2024/01/02 03:04:06\nSampling Freq(Hz) 4Hz\nDuration Time(s)  3\n\

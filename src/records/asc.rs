@@ -4,14 +4,15 @@
 
 use std::collections::HashMap;
 
-use super::history::has;
-use super::layout::{Format, Layout, Parser};
-use super::samples::{
+use archrock_text::{ensure, excerpt};
+
+use crate::history::has;
+use crate::layout::{Format, Layout, Parser};
+use crate::samples::{
     Contents, IF_TABLE, LineFault, Parsed, Values, checked_step, different_peak, number, peak_of,
     words,
 };
-use super::unit::{RecordedQuantity, Unit};
-use crate::scenario::prelude::*;
+use crate::unit::{RecordedQuantity, Unit};
 
 impl Format {
     /// Engineering Strong Motion database (ASC).
@@ -90,8 +91,8 @@ fn check_quantity(held: &str, quantity: RecordedQuantity) -> Result<(), String> 
 
 #[cfg(test)]
 mod tests {
-    use crate::scenario::record::tests::assert_fault;
-    use crate::scenario::record::{Contents, Format, Layout, RecordedQuantity, Unit};
+    use crate::tests::assert_fault;
+    use crate::{Contents, Format, Layout, RecordedQuantity, Unit};
 
     fn asc() -> Layout {
         Layout::new(Format::ASC)

@@ -4,13 +4,14 @@
 //! a line such as `7000 acceleration pts, approx 70 secs, units=cm/sec2(04),Format=(8F10.5)`. The numbers 62 and 64 are the step in ms and the peak. Source: COSMOS
 //! Strong Motion Data Format (COSMOS 2001, strongmotioncenter.org/vdc/cosmos_format_1_20.pdf), with the indices of the USGS's PRISM.
 
-use super::history::{
+use archrock_text::{ensure, plain};
+
+use crate::history::{
     History, count_and_step, header_fields, is_text, lines_of_numbers, single_blanks, width_in,
     word_after,
 };
-use super::layout::{Format, Parser};
-use super::samples::{LineFault, Parsed, number};
-use crate::scenario::prelude::*;
+use crate::layout::{Format, Parser};
+use crate::samples::{LineFault, Parsed, number};
 
 impl Format {
     /// COSMOS strong-motion format (V1, V2).

@@ -2,9 +2,10 @@
 
 use std::f64::consts::{PI, SQRT_2};
 
-use super::samples::{LineFault, MAX_SAMPLES, Parsed, Samples, check_time};
-use super::{Sampling, mean};
-use crate::scenario::prelude::*;
+use archrock_text::{ensure, plain, short};
+
+use crate::samples::{LineFault, MAX_SAMPLES, Parsed, Samples, check_time};
+use crate::sampling::{Sampling, mean};
 
 named! {
     /// The baseline that is subtracted from accelerations.
@@ -18,7 +19,7 @@ named! {
 
 impl Baseline {
     /// Subtracts the baseline from accelerations that straight lines join.
-    pub(in crate::scenario) fn subtract(self, samples: &mut [(f64, f64)]) {
+    pub fn subtract(self, samples: &mut [(f64, f64)]) {
         let [(first_s, _), .., (last_s, _)] = *samples else {
             return;
         };
@@ -49,40 +50,6 @@ fn slope(samples: &[(f64, f64)], middle_s: f64, duration_s: f64) -> f64 {
     12.0 * moments.sum::<f64>()
 }
 
-/// Keys of the baseline and of the filter, and an older key of the mean.
-pub(super) const KEYS: [&str; 3] = [BASELINE, FILTER, REMOVE_MEAN];
-const BASELINE: &str = "baseline";
-const FILTER: &str = "high_pass_hz";
-const REMOVE_MEAN: &str = "remove_mean";
-
-/// Baseline and corner of the high-pass filter, in Hz.
-type Corrections = (Option<Baseline>, Option<f64>);
-
-/// Reads the keys of the corrections.
-pub(super) fn read(table: &mut Table<'_>) -> Corrections {
-    let baseline = table.optional(BASELINE, &one_of(Baseline::ALL));
-    let corner_hz = table.optional(FILTER, &HIGH_PASS_HZ);
-    let mean = table.or(REMOVE_MEAN, &switch(), false);
-    let newer = "`baseline = \"mean\"` is the newer name of `remove_mean = true`";
-    let _ = table.apply_relations(&[AtMostOne(&[BASELINE, REMOVE_MEAN], newer)]);
-    (baseline.or(mean.then_some(Baseline::Mean)), corner_hz)
-}
-
-/// Records a fault for each correction of a record of velocities.
-pub(super) fn refuse(table: &mut Table<'_>, (baseline, corner_hz): Corrections) {
-    let wrong = "applies to accelerations: a uniform velocity shakes nothing; leave it out";
-    let given = match table.gives(BASELINE) {
-        true => BASELINE,
-        false => REMOVE_MEAN,
-    };
-    let _ = table.refuse(baseline.is_some(), given, wrong);
-    let wrong = "applies to accelerations: filter the velocities before, or leave it out";
-    let _ = table.refuse(corner_hz.is_some(), FILTER, wrong);
-}
-
-/// Range of the corner of the filter, in Hz.
-const HIGH_PASS_HZ: Number = within(&(1e-3..=100.0));
-
 /// Zeros before and after the record during the filter, in periods of the corner. The impulse response has then decayed to exp(-3 sqrt(2) pi), 2e-6.
 /// Converse and Brady (USGS Open-File Report 92-296A, 1992) take 1.5 periods times the order of the filter, for both ends together.
 const PADS: f64 = 3.0;
@@ -92,12 +59,18 @@ const PADS: f64 = 3.0;
 ///
 /// The zeros before and after the record, filtered, are part of the result: without them velocity and displacement would not end at zero (Boore
 /// and Bommer, Soil Dynamics and Earthquake Engineering 25, 2005). Times before the record may be negative.
-pub(super) fn high_pass(samples: &[(f64, f64)], corner_hz: f64) -> Parsed<Samples> {
+pub(crate) fn high_pass(samples: &[(f64, f64)], corner_hz: f64) -> Parsed<Samples> {
     let fault = LineFault::on::<String>(1);
     let sampling = Sampling::of(samples);
     let step_s = sampling
         .step_s
         .ok_or_else(|| fault("`high_pass_hz` needs a constant step between samples".to_owned()))?;
+    ensure(corner_hz > 0.0, || {
+        fault(format!(
+            "`high_pass_hz = {}` must be above 0",
+            plain(corner_hz)
+        ))
+    })?;
     let highest_hz = 0.5 / step_s;
     ensure(corner_hz < highest_hz, || {
         let [corner, highest] = [corner_hz, highest_hz].map(plain);
@@ -331,6 +304,8 @@ mod tests {
         uneven[3].0 += 0.004;
         for (samples, corner_hz, words) in [
             (&uneven, 1.0, "needs a constant step"),
+            (&even, 0.0, "`high_pass_hz = 0` must be above 0"),
+            (&even, f64::NAN, "must be above 0"),
             (
                 &even,
                 50.0,
