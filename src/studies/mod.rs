@@ -64,7 +64,7 @@ pub use part::{
 };
 pub use peaks::{FILES as PEAKS_FILES, Summary as PeaksSummary, results as peak_results};
 pub use pictures::{impact as draw_impact, limit as draw_limit};
-pub use quotable::{ModelAnswer, in_words as quoted_in_words};
+pub use quotable::{ModelAnswer, quote_answers as quoted_in_words};
 pub use record::record;
 use remarks::{CaseSummary, ModelCheck, OutcomeCounts, Remark, Remarks, no_verdict, one_direction};
 pub use report::{Report, Statement, Warnings};
@@ -74,4 +74,4 @@ use runner::Watch;
 pub use runner::{Progress, Runner, RunnerError, SearchStep, Study, Task};
 pub use spread::{Direction, Summary as SpreadSummary, spread};
 pub use statistics::Share;
-use threshold::{rounded, rounded_down};
+use threshold::{format_edge, rounded_down};

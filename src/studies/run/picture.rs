@@ -31,7 +31,7 @@ struct LargeCycle {
 const LARGE_RATIO: f64 = 0.25;
 
 /// Returns the stroke for the unstable rotation of a body, in the colour of its curve.
-const fn unstable(body: usize) -> Stroke {
+const fn unstable_stroke(body: usize) -> Stroke {
     Stroke::new(CURVES[body % CURVES.len()].color, 1.0, "1 3")
 }
 
@@ -166,11 +166,11 @@ impl Timeline {
         let span_s = [subject.ground.start_s(), self.end_s];
         let mut panels = Panels::new(figure, subject.title, span_s);
         let states = match history.row() {
-            Some(row) => &states(history, &row.half_cycles),
+            Some(row) => &row_states(history, &row.half_cycles),
             None => &self.states,
         };
         let states = Some(states);
-        let shows = |panel| figure.shows(panel, points.any());
+        let shows = |panel| figure.shows(panel, points.has_points());
         let [ground_px, rotation_px, energy_px] = match self.joints {
             Some(_) => [110.0, 240.0, 120.0],
             None => [130.0, 260.0, 125.0],
@@ -257,7 +257,7 @@ impl Timeline {
         }
         marks.extend(self.large_cycles.iter().map(|cycle| {
             let ends = [cycle.from_s, cycle.to_s].map(|time_s| (time_s, cycle.unstable_rad));
-            Mark::curve("unstable", unstable(cycle.body), ends)
+            Mark::curve("unstable", unstable_stroke(cycle.body), ends)
         }));
         let y = scale_around(&marks, [], 6);
         let ticks = Shape::Ticks(self.impacts_s.clone());
@@ -270,7 +270,9 @@ impl Timeline {
                 1 => "unstable rotation",
                 _ => "unstable rotation of the body of that colour alone: others may go beyond it",
             };
-            panels.keys.push(Key::line(label, unstable(cycle.body)));
+            panels
+                .keys
+                .push(Key::line(label, unstable_stroke(cycle.body)));
         }
         (marks, y)
     }
@@ -295,7 +297,7 @@ impl Timeline {
 }
 
 /// Returns the states of a row: its half cycles, and the end.
-fn states(history: &History, half_cycles: &[HalfCycle]) -> StateHistory {
+fn row_states(history: &History, half_cycles: &[HalfCycle]) -> StateHistory {
     let end = match history.outcome {
         Outcome::Rest => Some(State::Rest),
         Outcome::Overturned(sway) => Some(State::Overturned(sway)),
