@@ -133,7 +133,7 @@ fn full_closure(bencher: Bencher, voussoirs: usize) {
     let row = Row::arch(&ring, voussoirs, 1.0, 1.0, 1.0).expect("an arch");
     let onset = incipient(&ring, HingeSites::Voussoirs(voussoirs)).expect("it stands");
     let closing = onset.mechanism.field().scaled(-1.0);
-    let at = |angle_rad: f64| closing.at(angle_rad, Side::After);
+    let at = |angle_rad: f64| closing.twist_at(angle_rad, Side::After);
     let sections = ring.sections(voussoirs);
     let free: Vec<Twist> = sections
         .windows(2)
@@ -146,7 +146,7 @@ fn full_closure(bencher: Bencher, voussoirs: usize) {
     };
     let mut program = ContactProgram::new(&row);
     bencher.bench_local(|| {
-        program.place(&placement);
+        program.set_positions(&placement);
         program.reset();
         program.solve(&load).map(|effort| effort.iterations)
     });

@@ -53,7 +53,7 @@ fn chain_of_30_links(bencher: Bencher) {
 fn right_hand_side(bencher: Bencher) {
     let ground = pulse(-0.3, 0.2);
     let rocking = Rocking::new(&*ARCH, &ground, GRAVITY_M_S2, 1e-8);
-    let mode = rocking.released(Sway::Right);
+    let mode = rocking.released_mode(Sway::Right);
     let now = SystemState {
         time_s: 0.1,
         piece: 0,

@@ -11,7 +11,7 @@ use pyo3::PyErr;
 use pyo3::exceptions::{PyMemoryError, PyOSError, PyRuntimeError, PyValueError};
 
 /// A value that the library refuses, with its explanation.
-pub fn refused(error: impl Display) -> PyErr {
+pub fn refused_value(error: impl Display) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
@@ -22,7 +22,7 @@ pub fn too_large(error: MemoryError) -> PyErr {
 
 /// The errors of a scenario: with their places if a person wrote the text, otherwise the messages alone. Those of a change name the
 /// argument `changes`, not the option of the program.
-pub fn in_words(errors: &ScenarioErrors, placed: bool) -> String {
+pub fn errors_in_words(errors: &ScenarioErrors, placed: bool) -> String {
     let words = |error: &ScenarioError| match error.file.strip_prefix("--set ") {
         Some(change) if error.place.is_none() => format!("changes {change:?}: {}", error.message),
         _ if placed => error.to_string(),
@@ -35,16 +35,16 @@ pub fn in_words(errors: &ScenarioErrors, placed: bool) -> String {
 /// An error of the runner of studies.
 pub fn not_run(error: RunnerError) -> PyErr {
     match error {
-        RunnerError::Part(error) => unusable(error),
+        RunnerError::Part(error) => unusable_part(error),
         _ => PyRuntimeError::new_err(error.to_string()),
     }
 }
 
 /// Why a part cannot be used.
-pub fn unusable(error: PartError) -> PyErr {
+pub fn unusable_part(error: PartError) -> PyErr {
     match error.kind {
         PartErrorKind::System | PartErrorKind::Folder => PyOSError::new_err(error.message),
-        _ => refused(error),
+        _ => refused_value(error),
     }
 }
 

@@ -23,10 +23,10 @@ use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use serde_json::Value;
 
-use crate::error::{not_written, panicked, refused, too_large};
+use crate::error::{not_written, panicked, refused_value, too_large};
 use crate::scenario::{Ground, Scenario};
 use crate::studies::failed;
-use crate::watched::watched;
+use crate::watched::watch_work;
 
 /// Interval at which a history looks for signals.
 const TICK: Duration = Duration::from_millis(100);
@@ -98,12 +98,12 @@ impl Recorder for Filming {
         true
     }
 
-    fn fall(&mut self, sample: &Sample) -> ControlFlow<()> {
+    fn fall_sample(&mut self, sample: &Sample) -> ControlFlow<()> {
         self.report.push_fall(sample);
         self.signals.go_on()
     }
 
-    fn fell(&mut self, end: FallEnd) {
+    fn fall_end(&mut self, end: FallEnd) {
         self.report.end_fall(end);
     }
 }
@@ -178,7 +178,7 @@ fn simulate<R: Recorder + Send>(
     }
     let simulated: Result<Summary, SimulationError> =
         simulated.map_err(|panic| panicked(&*panic))?;
-    simulated.map_err(refused)
+    simulated.map_err(refused_value)
 }
 
 impl History {
@@ -271,9 +271,9 @@ impl History {
             ),
             "thrust_excess_ratio" => array(py, demand(|one| one.excess_ratio), &[count]),
             "friction_demand" => array(py, demand(|one| one.friction), &[count]),
-            "phase" => array(py, self.whole(|all| mem::take(&mut all.phase)), &[count]),
+            "phase" => array(py, self.take_indices(|all| mem::take(&mut all.phase)), &[count]),
             "open_hinges" => {
-                let open = self.whole(|all| {
+                let open = self.take_indices(|all| {
                     let ends = all.first_hinge.iter().skip(1).copied();
                     let ends = ends.chain([all.hinges.len()]);
                     let first = all.first_hinge.iter();
@@ -282,7 +282,7 @@ impl History {
                 array(py, open, &[count])
             }
             "state" => {
-                let codes = self.whole(|all| {
+                let codes = self.take_indices(|all| {
                     let states = mem::take(&mut all.state);
                     states.into_iter().map(code).collect()
                 });
@@ -292,7 +292,7 @@ impl History {
         }
     }
 
-    fn whole(&self, take: impl FnOnce(&mut Samples) -> Vec<usize>) -> Vec<i64> {
+    fn take_indices(&self, take: impl FnOnce(&mut Samples) -> Vec<usize>) -> Vec<i64> {
         let values = take(&mut self.samples.lock().unwrap_or_else(PoisonError::into_inner));
         // Counts of things in memory are far below the largest of these.
         values.into_iter().map(|one| one as i64).collect()
@@ -301,9 +301,9 @@ impl History {
     /// The comparison with its repetitions.
     fn repeated(&self, py: Python<'_>) -> PyResult<&Repeated> {
         if self.repeated.get().is_none() {
-            let (scenario, model) = (self.shaken(), Arc::clone(&self.model));
+            let (scenario, model) = (self.shaken_scenario(), Arc::clone(&self.model));
             let summary = self.summary.clone();
-            let found = watched(py, None, move |_| {
+            let found = watch_work(py, None, move |_| {
                 Ok(run::repeat(&scenario, &*model, &summary))
             })?;
             // Another thread may have repeated it meanwhile, with the same result.
@@ -315,9 +315,9 @@ impl History {
     /// The result under the mirrored ground motion, with its repetitions.
     fn mirrored(&self, py: Python<'_>) -> PyResult<Option<&MirroredSummary>> {
         if self.mirrored.get().is_none() {
-            let (scenario, model) = (self.shaken(), Arc::clone(&self.model));
-            let found = watched(py, None, move |_| {
-                Ok(MirroredSummary::computed(&scenario, &*model, true))
+            let (scenario, model) = (self.shaken_scenario(), Arc::clone(&self.model));
+            let found = watch_work(py, None, move |_| {
+                Ok(MirroredSummary::compute(&scenario, &*model, true))
             })?;
             // Another thread may have computed it meanwhile, with the same result.
             let _ = self.mirrored.set(found);
@@ -328,9 +328,9 @@ impl History {
     /// The results with other properties.
     fn varied(&self, py: Python<'_>) -> PyResult<&[VariedRun]> {
         if self.varied.get().is_none() {
-            let (scenario, model) = (self.shaken(), Arc::clone(&self.model));
-            let found = watched(py, None, move |_| {
-                run::varied(&scenario, &*model).map_err(failed)
+            let (scenario, model) = (self.shaken_scenario(), Arc::clone(&self.model));
+            let found = watch_work(py, None, move |_| {
+                run::compute_varied(&scenario, &*model).map_err(failed)
             })?;
             // Another thread may have computed them meanwhile, with equal results.
             let _ = self.varied.set(found);
@@ -339,7 +339,7 @@ impl History {
     }
 
     /// The history alone in a scenario.
-    fn alone<'a>(&'a self, scenario: &'a archrock::Scenario) -> ComputedRun<'a> {
+    fn run_alone<'a>(&'a self, scenario: &'a archrock::Scenario) -> ComputedRun<'a> {
         ComputedRun {
             scenario,
             model: &*self.model,
@@ -352,7 +352,7 @@ impl History {
     }
 
     /// The history in a scenario, with its repetitions, the mirrored ground motion and other properties.
-    fn computed<'a>(
+    fn run_with_repetitions<'a>(
         &'a self,
         py: Python<'_>,
         scenario: &'a archrock::Scenario,
@@ -361,7 +361,7 @@ impl History {
             repeated: self.repeated(py)?.as_ref(),
             mirrored: self.mirrored(py)?.cloned(),
             varied: self.varied(py)?,
-            ..self.alone(scenario)
+            ..self.run_alone(scenario)
         })
     }
 
@@ -386,7 +386,7 @@ impl History {
     }
 
     /// The scenario with the ground on which it was simulated.
-    fn shaken(&self) -> Arc<archrock::Scenario> {
+    fn shaken_scenario(&self) -> Arc<archrock::Scenario> {
         match &self.ground {
             Some(ground) => Arc::new(self.scenario.with_ground(Some(ground.clone()))),
             None => Arc::clone(&self.scenario),
@@ -403,9 +403,9 @@ fn code(state: State) -> usize {
 }
 
 /// A point of a structure, given by its undeformed position.
-fn in_structure(scene: &Scene, at_m: [f64; 2]) -> PyResult<StructurePoint> {
+fn structure_point(scene: &Scene, at_m: [f64; 2]) -> PyResult<StructurePoint> {
     scene.point(at_m).map_err(|nearest_m| {
-        refused(format!(
+        refused_value(format!(
             "`point = ({:?}, {:?})` is in no block: the nearest place of one is ({:.3}, {:.3})",
             at_m[0], at_m[1], nearest_m.x, nearest_m.y
         ))
@@ -426,7 +426,7 @@ fn array<'py, T: Element>(
 
 /// An event as JSON; its impact with its own time, and with the sway of the mechanism that opened.
 fn event(event: &Event) -> PyResult<Value> {
-    let mut json = serde_json::to_value(event).map_err(refused)?;
+    let mut json = serde_json::to_value(event).map_err(refused_value)?;
     if let (Some(impact), Some(fields)) = (&event.impact, json["impact"].as_object_mut()) {
         fields.insert("time_s".to_owned(), event.time_s.into());
         fields.insert("sway_after".to_owned(), impact.sway_after().name().into());
@@ -455,13 +455,13 @@ impl History {
         let motion = match &other {
             Some(motion) => motion,
             None => {
-                inner.check_for_run().map_err(refused)?;
+                inner.check_for_run().map_err(refused_value)?;
                 inner.ground_motion()
             }
         };
         let model = scenario.model(py)?;
         let scene = run::scene(inner, &**model);
-        let point = point.map(|[x, y]| in_structure(&scene, [x, y]));
+        let point = point.map(|[x, y]| structure_point(&scene, [x, y]));
         let point = point.transpose()?;
         let needed_bytes = model.sample_bytes(motion, &inner.request_under(motion));
         let recording = Recording::new(needed_bytes, memory_bytes).map_err(too_large)?;
@@ -476,7 +476,7 @@ impl History {
         let displaced = |point: &StructurePoint| {
             let moved_m = samples.iter().map(|sample| {
                 let carried = scene.body_point(point, &sample.hinges);
-                carried.moved(&sample.poses, 1.0) - point.at_m
+                carried.current_position(&sample.poses, 1.0) - point.at_m
             });
             moved_m.flat_map(|moved_m| [moved_m.x, moved_m.y]).collect()
         };
@@ -540,7 +540,7 @@ impl History {
 
     /// The outcome, as in `summary.json`.
     fn ended_json(&self) -> PyResult<String> {
-        serde_json::to_string(&OutcomeSummary::of(&self.summary)).map_err(refused)
+        serde_json::to_string(&OutcomeSummary::of(&self.summary)).map_err(refused_value)
     }
 
     /// The events as JSON.
@@ -551,15 +551,15 @@ impl History {
 
     /// The scenario with the ground on which it was simulated.
     fn scenario(&self) -> Scenario {
-        Scenario::new(self.shaken())
+        Scenario::new(self.shaken_scenario())
     }
 
     /// `summary.json` of the program; without `repeat`, `verdict` is that of the history alone.
     fn summary_json(&self, py: Python<'_>, repeat: bool) -> PyResult<String> {
-        let scenario = self.shaken();
+        let scenario = self.shaken_scenario();
         let computed = match repeat {
-            true => self.computed(py, &scenario)?,
-            false => self.alone(&scenario),
+            true => self.run_with_repetitions(py, &scenario)?,
+            false => self.run_alone(&scenario),
         };
         let summary = run::summary(&computed);
         Ok(summary.map_err(not_written)?.to_string())
@@ -568,7 +568,7 @@ impl History {
     /// `warnings` of `summary.json`.
     fn warnings(&self, py: Python<'_>) -> Vec<String> {
         py.detach(|| {
-            run::Summary::of(&self.alone(&self.shaken()))
+            run::Summary::of(&self.run_alone(&self.shaken_scenario()))
                 .warnings
                 .all()
                 .to_vec()
@@ -585,19 +585,19 @@ impl History {
         background: &str,
         caption: Option<String>,
     ) -> PyResult<()> {
-        let format = FilmFormat::of_file(&path).map_err(refused)?;
+        let format = FilmFormat::of_file(&path).map_err(refused_value)?;
         let (speed, exaggeration) = factors;
         let options = FilmOptions {
             speed,
             size_px,
-            background: background.parse().map_err(refused)?,
+            background: background.parse().map_err(refused_value)?,
             caption,
             exaggeration,
         };
-        options.check().map_err(refused)?;
+        options.check().map_err(refused_value)?;
         check_named_file(&path).map_err(not_written)?;
-        let (scenario, model) = (self.shaken(), Arc::clone(&self.model));
-        let film = watched(py, None, move |watch| {
+        let (scenario, model) = (self.shaken_scenario(), Arc::clone(&self.model));
+        let film = watch_work(py, None, move |watch| {
             let film = Film::simulate(&scenario, &*model, &options, &mut *watch);
             film.and_then(|film| film.encode(format, watch))
                 .map_err(failed)
@@ -607,9 +607,9 @@ impl History {
 
     /// `report.html` with the verdict on it, which opens with the worse direction. Simulates the history again, with the line of thrust.
     fn report(&self, py: Python<'_>) -> PyResult<String> {
-        let scenario = self.shaken();
+        let scenario = self.shaken_scenario();
         let mirrored = self.mirrored(py)?;
-        let summary = run::Summary::of(&self.computed(py, &scenario)?);
+        let summary = run::Summary::of(&self.run_with_repetitions(py, &scenario)?);
         let verdict = summary.verdict_line();
         let own = self.page(py, &scenario, &verdict)?;
         let computed = mirrored.filter(|mirrored| mirrored.failed.is_none());
@@ -619,8 +619,8 @@ impl History {
                 let turned = scenario.in_directions(Directions::Mirrored);
                 let other = self.page(py, &turned, &verdict)?;
                 match summary.worse_mirrored() {
-                    Some(_) => other.beside(own),
-                    None => own.beside(other),
+                    Some(_) => other.with_other_direction(own),
+                    None => own.with_other_direction(other),
                 }
             }
         };

@@ -15,7 +15,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use serde_json::json;
 
-use crate::error::{in_words, refused};
+use crate::error::{errors_in_words, refused_value};
 
 /// Files of a scenario that are held in memory, by the names that the scenario uses.
 pub type Files<'py> = BTreeMap<String, Held<'py>>;
@@ -89,7 +89,7 @@ impl Text {
         &self,
         read: impl FnOnce(&Source) -> Result<T, ScenarioErrors>,
     ) -> Result<T, String> {
-        read(&self.source).map_err(|errors| in_words(&errors, self.placed))
+        read(&self.source).map_err(|errors| errors_in_words(&errors, self.placed))
     }
 }
 
@@ -116,7 +116,7 @@ impl Scenario {
     /// The scenario for a computation that moves the structure: its ground motion and its model of motion were read.
     pub fn moving(&self) -> PyResult<&Arc<archrock::Scenario>> {
         match &self.unmovable {
-            Some(errors) => Err(refused(errors)),
+            Some(errors) => Err(refused_value(errors)),
             None => Ok(&self.inner),
         }
     }
@@ -131,11 +131,11 @@ impl Scenario {
             Some(model) => model,
             None => py.detach(|| self.model.get_or_init(make)),
         };
-        model.as_ref().map_err(refused)
+        model.as_ref().map_err(refused_value)
     }
 
     /// Applies `read` to the scenario's mechanisms, even if the scenario uses another model.
-    fn of_mechanisms<T: Send>(
+    fn read_mechanisms<T: Send>(
         &self,
         py: Python<'_>,
         read: impl FnOnce(&dyn MechanismModel) -> T + Send,
@@ -148,7 +148,7 @@ impl Scenario {
                 &*self.inner.mechanisms().map_err(|error| error.to_string())?,
             )),
         })
-        .map_err(|error: String| refused(error))
+        .map_err(|error: String| refused_value(error))
     }
 }
 
@@ -186,7 +186,7 @@ impl Scenario {
             .iter()
             .map(|change| change.parse::<Assignment>())
             .collect::<Result<Vec<_>, _>>()
-            .map_err(refused)?;
+            .map_err(refused_value)?;
         let text = Text::new(text, name, files)?;
         let read = |statics: bool| {
             let changes = ReadOptions {
@@ -207,7 +207,7 @@ impl Scenario {
                     },
                 },
             })
-            .map_err(refused)?;
+            .map_err(refused_value)?;
         Ok(Self {
             unmovable,
             ..Self::new(Arc::new(inner))
@@ -231,7 +231,7 @@ impl Scenario {
 
     /// The structure that stands on the ground, with its ties, as JSON with the dimensions that were given.
     fn structure_json(&self) -> PyResult<String> {
-        let structure = serde_json::to_value(&self.inner.structure).map_err(refused)?;
+        let structure = serde_json::to_value(&self.inner.structure).map_err(refused_value)?;
         let mut all = self.inner.to_json();
         if let Some(all) = all.as_object_mut() {
             let is_beside = |table: &str| ["load", "tie"].contains(&table);
@@ -253,7 +253,7 @@ impl Scenario {
 
     /// The acceleration that starts it to either side, as `archrock limit --format json`.
     fn limit_json(&self, py: Python<'_>) -> PyResult<String> {
-        let answer = py.detach(|| limit(&self.inner)).map_err(refused)?;
+        let answer = py.detach(|| limit(&self.inner)).map_err(refused_value)?;
         Ok(answer.json.to_string())
     }
 
@@ -261,23 +261,23 @@ impl Scenario {
     fn chain_json(&self, py: Python<'_>, sway: &str, count: usize) -> PyResult<String> {
         let first = Sway::ALL.iter().copied().find(|one| one.name() == sway);
         let first = first.ok_or_else(|| {
-            refused(format!(
+            refused_value(format!(
                 "`sway = {sway:?}` is not one of \"right\" and \"left\""
             ))
         })?;
         if self.inner.structure.wall_behind() == Some(first) {
             let away = first.opposite().name();
-            return Err(refused(format!(
+            return Err(refused_value(format!(
                 "`sway = {sway:?}` points to the wall behind the column; choose {away:?}"
             )));
         }
-        let impacts = self.of_mechanisms(py, |model| impact_chain(model, first, count))?;
+        let impacts = self.read_mechanisms(py, |model| impact_chain(model, first, count))?;
         Ok(json!(impacts).to_string())
     }
 
     /// Its unlikely numbers, a sentence each.
     fn unlikely(&self, py: Python<'_>) -> Vec<String> {
-        py.detach(|| self.inner.unlikely())
+        py.detach(|| self.inner.unlikely_values())
     }
 
     /// Names of the bodies.
@@ -301,7 +301,7 @@ impl Ground {
         match &*latest {
             Some((of, motion)) if *of == gravity_m_s2 => Ok(Arc::clone(motion)),
             _ => {
-                let motion = Arc::new(self.inner.ground_motion(gravity_m_s2).map_err(refused)?);
+                let motion = Arc::new(self.inner.ground_motion(gravity_m_s2).map_err(refused_value)?);
                 *latest = Some((gravity_m_s2, Arc::clone(&motion)));
                 Ok(motion)
             }
@@ -323,7 +323,7 @@ impl Ground {
         let text = Text::new(text, None, files)?;
         let inner = py
             .detach(|| text.read(|source| archrock::scenario::Ground::of(source, GRAVITY_M_S2)))
-            .map_err(refused)?;
+            .map_err(refused_value)?;
         Ok(Self {
             inner,
             latest: Mutex::default(),
@@ -332,7 +332,7 @@ impl Ground {
 
     /// The tables of `[ground]` as JSON.
     fn to_json(&self) -> PyResult<String> {
-        serde_json::to_string(&self.inner).map_err(refused)
+        serde_json::to_string(&self.inner).map_err(refused_value)
     }
 
     /// Unit of a record's samples; `None` for a pulse.

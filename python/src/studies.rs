@@ -16,9 +16,9 @@ use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-use crate::error::{not_run, not_written, refused, unusable};
+use crate::error::{not_run, not_written, refused_value, unusable_part};
 use crate::scenario::Scenario;
-use crate::watched::watched;
+use crate::watched::watch_work;
 
 /// The files of results with their names; the seal comes last.
 type Files<'py> = Vec<(&'static str, Bound<'py, PyBytes>)>;
@@ -44,10 +44,10 @@ fn kind_of(name: &str) -> PyResult<StudyKind> {
 
 pub fn failed(error: StudyError) -> PyErr {
     match error {
-        StudyError::Scenario(message) => refused(message),
-        StudyError::Read(error) => refused(error),
+        StudyError::Scenario(message) => refused_value(message),
+        StudyError::Read(error) => refused_value(error),
         StudyError::Runner(error) => not_run(error),
-        StudyError::Part(error) => unusable(error),
+        StudyError::Part(error) => unusable_part(error),
         StudyError::Output(error) => not_written(error),
         _ => PyRuntimeError::new_err(error.to_string()),
     }
@@ -73,7 +73,7 @@ fn compute(
     (runner, part): (Runner, Option<(Shard, PathBuf)>),
 ) -> PyResult<Computation> {
     let scenario = Arc::clone(scenario);
-    watched(py, progress, move |watch| {
+    watch_work(py, progress, move |watch| {
         let task = part.as_ref().map(|(shard, folder)| Task {
             folder,
             shard: *shard,
@@ -104,7 +104,7 @@ pub fn study<'py>(
 ) -> PyResult<(Files<'py>, String, TextColumns)> {
     let (kind, runner) = (kind_of(kind)?, runner(threads));
     let factors = factors.map(|(from, to, stride)| Factors::new(from, to, stride));
-    let factors = factors.transpose().map_err(refused)?.unwrap_or_default();
+    let factors = factors.transpose().map_err(refused_value)?.unwrap_or_default();
     let along = along.map(|(along, no_impact)| {
         Ok::<_, &str>(AlongOptions {
             along: along.parse()?,
@@ -114,7 +114,7 @@ pub fn study<'py>(
     });
     let options = Options {
         factors,
-        along: along.transpose().map_err(refused)?,
+        along: along.transpose().map_err(refused_value)?,
         ..Options::default()
     };
     // Statics need no motion.
@@ -145,9 +145,9 @@ pub fn compute_part(
 ) -> PyResult<PathBuf> {
     let (kind, runner) = (kind_of(kind)?, runner(threads));
     if !kind.has_parts() {
-        return Err(refused(format!("{:?} has no parts", kind.name)));
+        return Err(refused_value(format!("{:?} has no parts", kind.name)));
     }
-    let shard = shard.parse::<Shard>().map_err(refused)?;
+    let shard = shard.parse::<Shard>().map_err(refused_value)?;
     let part = (runner, Some((shard, folder)));
     let options = Options::default();
     let done = compute(py, progress, kind, scenario.moving()?, options, part)?;
@@ -172,7 +172,7 @@ pub fn merge<'py>(
     if parts.is_empty() {
         return Err(PyValueError::new_err("no parts given"));
     }
-    let merged = watched(py, None, move |_| {
+    let merged = watch_work(py, None, move |_| {
         studies::merge(&parts, scenario.as_deref(), &mut |_, _| Ok(STYLE)).map_err(failed)
     })?;
     let (files, texts) = to_python(py, merged.results);
@@ -181,7 +181,7 @@ pub fn merge<'py>(
 }
 
 fn to_json(origin: &Origin) -> PyResult<String> {
-    serde_json::to_string(origin).map_err(refused)
+    serde_json::to_string(origin).map_err(refused_value)
 }
 
 /// Writes files of this origin into a folder: all of them, or none. They replace everything that the last run of the same command left there. Returns
@@ -193,7 +193,7 @@ pub fn save(
     files: Vec<(String, Vec<u8>)>,
     origin: &str,
 ) -> PyResult<Vec<String>> {
-    let origin = serde_json::from_str(origin).map_err(refused)?;
+    let origin = serde_json::from_str(origin).map_err(refused_value)?;
     py.detach(|| write(&folder, &files, origin))
 }
 

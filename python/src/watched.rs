@@ -25,7 +25,7 @@ pub type Watch<'a> = dyn FnMut(Progress) -> ControlFlow<()> + 'a;
 
 /// Does the work on a thread of its own, while this thread waits for signals and calls `progress(done, all)`.
 /// An exception of `progress`, or a signal, cancels the work.
-pub fn watched<T: Send + 'static>(
+pub fn watch_work<T: Send + 'static>(
     py: Python<'_>,
     progress: Option<Py<PyAny>>,
     work: impl FnOnce(&mut Watch<'_>) -> PyResult<T> + Send + 'static,

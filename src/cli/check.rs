@@ -76,11 +76,11 @@ fn check_file(file: &Path, arguments: &Arguments) -> Result<Vec<Described>, Fail
         return Err(with_hint(&errors));
     }
     let scenario = read(&arguments.set.open(file)?)?;
-    super::warn(&scenario.unlikely());
+    super::warn(&scenario.unlikely_values());
     if let Some(plot) = &arguments.plot {
         let scene = drawn(&scenario)?;
         let title = scenario.title.as_deref().unwrap_or("Structure");
-        let mut text = scenario.structure.described();
+        let mut text = scenario.structure.describe();
         text += "; blue arrow: positive ground acceleration, which pushes to the left";
         if scene.has_settled() {
             text += "; dashed: as built; circles: open hinges";

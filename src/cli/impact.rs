@@ -55,7 +55,7 @@ impl Arguments {
 pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
     let input = arguments.scenario.open()?;
     let scenario = input.without_moved_springings(input.read(None)?)?;
-    warn(&scenario.unlikely());
+    warn(&scenario.unlikely_values());
     let (first, count) = (arguments.first.sway, usize::from(arguments.count));
     if !scenario.structure.has_horizontal_thrust() && !arguments.of_arches_only() {
         let model = scenario.mechanisms();
@@ -81,7 +81,7 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
                        --line a file";
         return Err(message.into());
     }
-    if (others || line.is_some()) && impact.before().is_none() {
+    if (others || line.is_some()) && impact.mechanism_before().is_none() {
         let message = "an earlier impact stops the arch; give a smaller number";
         return Err(format!("--link {index}: {message}").into());
     }
@@ -115,7 +115,7 @@ pub fn impact(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn write_line(path: &Path, impact: &LinkImpact<'_>) -> Result<(), Failure> {
-    if impact.after().is_none() {
+    if impact.mechanism_after().is_none() {
         let message = format!("no mechanism can follow impact {}", impact.index);
         return Err(format!("--line: {message}, so it has no impulse line").into());
     }

@@ -82,7 +82,7 @@ where
     I: IntoIterator<Item = &'s Scenario> + Clone,
 {
     super::warn(&Scenario::unlikely_of_all(scenarios.clone(), study));
-    if let Some(ignored) = scenarios.into_iter().find_map(Scenario::ignored) {
+    if let Some(ignored) = scenarios.into_iter().find_map(Scenario::ignored_table) {
         print_status(ignored);
     }
 }

@@ -3,7 +3,7 @@
 use std::fmt::Display;
 use std::ops::RangeInclusive;
 
-pub use archrock_text::{fixed, plain, short};
+pub use archrock_text::{format_fixed, plain, short};
 use thiserror::Error;
 
 /// Argument of a constructor that is out of range.
@@ -33,7 +33,7 @@ impl ArgumentError {
 ///
 /// # Errors
 /// If the condition does not hold. The error names the allowed values.
-pub fn allow(
+pub fn require(
     holds: bool,
     argument: &'static str,
     value: f64,
@@ -46,7 +46,7 @@ pub fn allow(
 }
 
 /// Returns the value if it is in the range; NaN never is.
-pub fn within(
+pub fn require_within(
     argument: &'static str,
     value: f64,
     range: RangeInclusive<f64>,
@@ -60,40 +60,40 @@ pub fn within(
 }
 
 /// Returns the count if it is in the range.
-pub fn counted(
+pub fn require_count(
     argument: &'static str,
     count: usize,
     range: RangeInclusive<usize>,
 ) -> Result<usize, ArgumentError> {
     let allowed = format_args!("from {} to {}", range.start(), range.end());
-    allow(range.contains(&count), argument, count as f64, allowed)?;
+    require(range.contains(&count), argument, count as f64, allowed)?;
     Ok(count)
 }
 
 /// Returns the value if it is above the first bound and at most the second one; NaN never is.
-pub fn above(
+pub fn require_above(
     argument: &'static str,
     value: f64,
     low: f64,
     high: f64,
 ) -> Result<f64, ArgumentError> {
     let allowed = format_args!("a number above {} and at most {}", short(low), short(high));
-    allow(value > low && value <= high, argument, value, allowed)
+    require(value > low && value <= high, argument, value, allowed)
 }
 
 /// Rounds up to four significant digits, so that a bound in a message is itself allowed.
 pub fn rounded_up(x: f64) -> f64 {
-    let unit = whole(x, 4.0);
+    let unit = digits_factor(x, 4.0);
     (x * unit).ceil() / unit
 }
 
 /// Rounds down to six significant digits, so that a bound in a message is itself allowed.
 pub fn rounded_down(x: f64) -> f64 {
-    let unit = whole(x, 6.0);
+    let unit = digits_factor(x, 6.0);
     (x * unit).floor() / unit
 }
 
 /// Returns the factor that gives a positive number `digits` digits before the decimal point.
-fn whole(x: f64, digits: f64) -> f64 {
+fn digits_factor(x: f64, digits: f64) -> f64 {
     libm::pow(10.0, digits - 1.0 - libm::log10(x).floor())
 }

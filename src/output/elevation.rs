@@ -164,7 +164,8 @@ impl<'a> View<'a> {
 
     /// Returns the position of a point on the sheet.
     pub(crate) fn px(&self, point: &BodyPoint) -> Vector2<f64> {
-        self.place.px(point.moved(self.poses, self.exaggeration))
+        self.place
+            .px(point.current_position(self.poses, self.exaggeration))
     }
 
     fn corners(&self, piece: &Piece) -> impl Iterator<Item = Vector2<f64>> {

@@ -45,7 +45,7 @@ impl Scene {
         }
         let part = match &self.outline {
             Outline::Ring { ring, .. } => {
-                let left = ring.radial(0.0);
+                let left = ring.radial_direction(0.0);
                 let angle_rad = -libm::atan2(left.perp(&at_m), left.dot(&at_m));
                 // Points just below the left springing have angles down to this one; smaller angles are beyond the right springing.
                 let before_rad = 0.5 * (ring.embrace_rad - TAU);

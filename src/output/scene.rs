@@ -84,8 +84,8 @@ impl Piece {
     /// Returns the current positions of the corners, with their displacements multiplied by `exaggeration`.
     pub fn moved(&self, poses: &[Pose], exaggeration: f64) -> Vec<Vector2<f64>> {
         let (body, corners) = (self.body, self.outline_m.iter());
-        let corners =
-            corners.map(|at_m| BodyPoint { body, at_m: *at_m }.moved(poses, exaggeration));
+        let corners = corners
+            .map(|at_m| BodyPoint { body, at_m: *at_m }.current_position(poses, exaggeration));
         corners.collect()
     }
 }
@@ -149,7 +149,7 @@ impl Scene {
             .map(|(section, pose)| {
                 [-0.5, 0.5].map(|part| {
                     let built_m = section.middle_m + section.across_m * part;
-                    built_m + (pose.of(built_m) - built_m) * exaggeration
+                    built_m + (pose.current_position(built_m) - built_m) * exaggeration
                 })
             })
             .collect()
@@ -253,7 +253,7 @@ impl Scene {
             Outline::Block(_) => Vec::new(),
             Outline::Row(_) => (0..)
                 .map_while(|joint| self.corners(joint))
-                .map(|corners| corners.map(|corner| corner.moved(&self.stands.0, 1.0)))
+                .map(|corners| corners.map(|corner| corner.current_position(&self.stands.0, 1.0)))
                 .collect(),
         }
     }

@@ -75,7 +75,7 @@ const MOST_DECIMALS: usize = 30;
 /// rounding never contradicts the verdict beside it.
 fn decimals_against(number: f64, least: usize, limits: &[f64]) -> usize {
     let differ = |decimals: &usize| {
-        let printed = |number| argument::fixed(number, *decimals);
+        let printed = |number| argument::format_fixed(number, *decimals);
         let mut limits = limits.iter();
         limits.all(|limit| *limit == number || printed(*limit) != printed(number))
     };
@@ -88,7 +88,7 @@ fn element(number: &impl Number, values: &dyn Values, decimals: impl Fn(f64) -> 
     let Some(number) = number.value() else {
         return "\u{2013}".to_owned();
     };
-    let shown = language(values).number(argument::fixed(number, decimals(number)));
+    let shown = language(values).number(argument::format_fixed(number, decimals(number)));
     // Adding zero makes a negative zero positive.
     format!("<data value=\"{:?}\">{shown}</data>", number + 0.0)
 }
@@ -119,7 +119,7 @@ pub(crate) mod filters {
     /// Formats a number with this many decimals; zero has no sign.
     #[filter_fn]
     pub fn fixed(number: impl Number, values: &dyn Values, decimals: usize) -> Result<String> {
-        let fixed = |number| language(values).number(argument::fixed(number, decimals));
+        let fixed = |number| language(values).number(argument::format_fixed(number, decimals));
         Ok(number.value().map_or_else(|| "-".to_owned(), fixed))
     }
 
@@ -133,7 +133,7 @@ pub(crate) mod filters {
     ) -> Result<String> {
         let text = |number| {
             let decimals = decimals_against(number, least, &limits.limits());
-            language(values).number(argument::fixed(number, decimals))
+            language(values).number(argument::format_fixed(number, decimals))
         };
         Ok(number.value().map_or_else(|| "-".to_owned(), text))
     }
@@ -216,7 +216,7 @@ pub(crate) mod filters {
     #[filter_fn]
     pub fn kilonewtons(forces_n: &[f64], _: &dyn Values) -> Result<String> {
         let forces = forces_n.iter().map(|force_n| 1e-3 * force_n);
-        let forces = forces.map(|force_kn| format!("{} kN", argument::fixed(force_kn, 6)));
+        let forces = forces.map(|force_kn| format!("{} kN", argument::format_fixed(force_kn, 6)));
         Ok(forces.collect::<Vec<_>>().join(", "))
     }
 

@@ -5,7 +5,7 @@ use std::str::FromStr;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::toml_text::quoted;
+use super::toml_text::quote_string;
 
 /// A value that replaces a value in the text of a scenario, or is added to the text.
 ///
@@ -44,7 +44,7 @@ impl FromStr for Assignment {
         if value.is_empty() {
             return Err(wrong());
         }
-        let text = [value.to_owned(), quoted(value)]
+        let text = [value.to_owned(), quote_string(value)]
             .into_iter()
             .map(|value| format!("{key} = {value}"))
             .find(|text| DeTable::parse(text).is_ok_and(|table| table.get_ref().len() == 1))

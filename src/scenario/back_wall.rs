@@ -20,7 +20,7 @@ pub(super) fn read(table: &mut Table<'_>) -> ReadResult<BackWall> {
 }
 
 /// Puts a wall behind a column. With `lands` its drums are rigid blocks that land on each other.
-pub(super) fn before_wall(
+pub(super) fn place_before_wall(
     table: &mut Table<'_>,
     column: Column,
     back: Option<BackWall>,

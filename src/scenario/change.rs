@@ -49,7 +49,7 @@ pub(super) fn is_replaced(tables: &[&str], key: &str, given: &Entries) -> bool {
 /// Changes values that are not compatible with new ones. `new` are the paths of the new values, such as `/load/0/mass_kg`, which are in the tables
 /// already. Alternatives of new values are removed. If a new mean radius replaces span and rise of an arch, the arch keeps its embrace angle. The
 /// joints of an arch keep their proportions under a new embrace angle, and the drums of a column under a new height. New drums set the height.
-pub(super) fn follow(root: &mut Entries, new: &[String]) {
+pub(super) fn adjust_others(root: &mut Entries, new: &[String]) {
     let mut tables = Value::Object(mem::take(root));
     let is_new = |path: &str| {
         let mut new = new.iter().filter_map(|new| new.strip_prefix(path));

@@ -149,14 +149,14 @@ impl<'a> Document<'a> {
     pub(super) fn parse(text: &'a str, files: &Files) -> Result<Self, ParseError> {
         // Each fault needs another pass over the text.
         const MAX_SYNTAX_FAULTS: usize = 20;
-        let mut legible = text.to_owned();
+        let mut blanked = text.to_owned();
         let (mut unread, mut faults) = (String::new(), Vec::new());
         while faults.len() < MAX_SYNTAX_FAULTS {
-            let (root, errors) = DeTable::parse_recoverable(&legible);
+            let (root, errors) = DeTable::parse_recoverable(&blanked);
             // Only the error about too deep nesting has no position.
             let start = |error: &toml::de::Error| error.span().map_or(0, |span| span.start);
             let Some(first) = errors.into_iter().min_by_key(start) else {
-                if let Some(fault) = not_a_scenario([text, &legible], &faults) {
+                if let Some(fault) = not_a_scenario([text, &blanked], &faults) {
                     return Err(ParseError::NoScenario(fault));
                 }
                 let mut parser = Parser::default();
@@ -170,20 +170,20 @@ impl<'a> Document<'a> {
                 });
             };
             let offset = start(&first);
-            let line = faulty_part(&legible, offset);
+            let line = faulty_part(&blanked, offset);
             let message = match excerpt(&text[line.clone()]).as_str() {
                 "" => format!("not valid TOML: {}", first.message()),
                 line => format!("not valid TOML in `{line}`: {}", first.message()),
             };
             faults.push(Fault::new(0, offset, message));
-            if legible[line.clone()].trim().is_empty() {
+            if blanked[line.clone()].trim().is_empty() {
                 break;
             }
             unread.push_str(&text[line.clone()]);
             let blank = " ".repeat(line.len());
-            legible.replace_range(line, &blank);
+            blanked.replace_range(line, &blank);
         }
-        match not_a_scenario([text, &legible], &faults) {
+        match not_a_scenario([text, &blanked], &faults) {
             Some(fault) => Err(ParseError::NoScenario(fault)),
             None => Err(ParseError::NoToml(faults)),
         }
@@ -293,11 +293,11 @@ pub(super) fn is_scenario(text: &str) -> bool {
 
 /// Returns the single fault of a text that is not a scenario, such as a record: several lines are not valid, or none sets a key, and no line begins a
 /// table. `None` for other texts.
-fn not_a_scenario([text, legible]: [&str; 2], faults: &[Fault]) -> Option<Fault> {
+fn not_a_scenario([text, blanked]: [&str; 2], faults: &[Fault]) -> Option<Fault> {
     const FEW: usize = 2;
     let has_keys = text.contains('=');
     let first = faults.first().filter(|_| faults.len() > FEW || !has_keys)?;
-    let mut lines = legible.lines();
+    let mut lines = blanked.lines();
     if lines.any(|line| line.trim_start().starts_with('[')) {
         return None;
     }

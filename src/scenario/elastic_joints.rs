@@ -29,12 +29,12 @@ const TABLE: &[&str] = &["elastic_joints"];
 /// Largest normal stiffness: stiffer joints are practically rigid.
 const STIFFEST_GPA_M: f64 = 1000.0;
 
-const MODULUS_GPA: Number = scaled(&ElasticProperties::MODULUS_PA, GPA);
+const MODULUS_GPA: Number = scale_range(&ElasticProperties::MODULUS_PA, GPA);
 const ONE_POINT: &str = "one does not hold a block";
 const POINTS: Count = Count(ElasticProperties::CONTACT_POINTS, ONE_POINT);
 
 /// Returns a range in another unit.
-const fn scaled(range: &RangeInclusive<f64>, unit: f64) -> Number {
+const fn scale_range(range: &RangeInclusive<f64>, unit: f64) -> Number {
     within(&(*range.start() / unit..=*range.end() / unit))
 }
 
@@ -86,7 +86,7 @@ struct ElasticTable {
 impl ElasticTable {
     /// Reads `[elastic_joints]`.
     fn read(table: &mut Table<'_>) -> ReadResult<Self> {
-        const STRENGTH_MPA: Number = scaled(&ElasticProperties::STRENGTH_PA, MPA);
+        const STRENGTH_MPA: Number = scale_range(&ElasticProperties::STRENGTH_PA, MPA);
         let softest_gpa_m = *ElasticProperties::NORMAL_STIFFNESS_PA_M.start() / GPA;
         let stiffness = within(&(softest_gpa_m..=STIFFEST_GPA_M)).because("stiffer joints are as good as rigid, and take very many steps: use [free_hinges], the limit of stiff joints");
         let mortar_m = within(&ElasticProperties::MORTAR_M);
@@ -181,7 +181,7 @@ impl ElasticTable {
     }
 
     /// Makes the model of a structure. An error if the structure has no joints, or cannot stand on these joints.
-    fn elastic(&self, structure: &Structure, site: &Site) -> Result<ElasticJoints, ModelError> {
+    fn build_model(&self, structure: &Structure, site: &Site) -> Result<ElasticJoints, ModelError> {
         let (depth_m, _) = structure.depth_and_density();
         let (gravity_m_s2, properties) = (site.gravity_m_s2, self.properties(depth_m));
         let model = match structure.column() {
@@ -207,16 +207,18 @@ impl ModelOptions for ElasticTable {
     }
 
     fn model(&self, structure: &Structure, site: &Site) -> AnyModel {
-        Ok(Box::new(self.elastic(structure, site)?))
+        Ok(Box::new(self.build_model(structure, site)?))
     }
 
     fn model_for_many_cases(&self, structure: &Structure, site: &Site) -> AnyModel {
-        Ok(Box::new(self.elastic(structure, site)?.for_many_cases()))
+        Ok(Box::new(
+            self.build_model(structure, site)?.for_many_cases(),
+        ))
     }
 
     /// Makes models with other stiffness and contact, and one with rigid joints, unless a wall stands behind the structure.
     fn variations(&self, structure: &Structure, site: &Site) -> Result<Vec<Variation>, ModelError> {
-        let mut variations = self.elastic(structure, site)?.variations();
+        let mut variations = self.build_model(structure, site)?.variations();
         if structure.wall_behind().is_some() {
             return Ok(variations);
         }

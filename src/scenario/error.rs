@@ -9,7 +9,7 @@ use super::assignment::Assignment;
 ///
 /// Displayed as `file:line:column: message`, a format that editors recognize.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("{}:{} {message}", shown(file), before(place.as_ref()))]
+#[error("{}:{} {message}", shown(file), position_prefix(place.as_ref()))]
 pub struct ScenarioError {
     /// Name of the file as the caller gave it, or the assignment after `--set`.
     pub file: String,
@@ -29,7 +29,7 @@ pub struct TextPosition {
 }
 
 /// Returns the position before a message.
-fn before(place: Option<&TextPosition>) -> String {
+fn position_prefix(place: Option<&TextPosition>) -> String {
     place.map_or_else(String::new, |place| {
         format!("{}:{}:", place.line, place.column)
     })

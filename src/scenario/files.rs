@@ -66,10 +66,10 @@ impl Files {
     }
 
     /// Reads up to this number of bytes from the start of a file. The error is a phrase that follows the name.
-    pub(super) fn start(&self, path: &Path, bytes: usize) -> Result<Vec<u8>, String> {
+    pub(super) fn read_start(&self, path: &Path, bytes: usize) -> Result<Vec<u8>, String> {
         let mut start = Vec::new();
         let read = self.open(path)?.take(bytes as u64).read_to_end(&mut start);
-        read.map(|_| start).map_err(unreadable)
+        read.map(|_| start).map_err(describe_error)
     }
 
     /// Returns the samples that a program has given in place of a file.
@@ -86,9 +86,9 @@ impl Files {
             let contents = contents.ok_or("is not among the given files")?;
             return Ok(Box::new(io::Cursor::new(contents.bytes())));
         }
-        let is_file = fs::metadata(path).map_err(unreadable)?.is_file();
+        let is_file = fs::metadata(path).map_err(describe_error)?.is_file();
         ensure(is_file, || "is not a file")?;
-        Ok(Box::new(fs::File::open(path).map_err(unreadable)?))
+        Ok(Box::new(fs::File::open(path).map_err(describe_error)?))
     }
 
     /// Returns the one path of a file that may have several.
@@ -100,7 +100,7 @@ impl Files {
     }
 
     /// Returns true if there is a file with this path.
-    fn has(&self, path: &Path) -> bool {
+    fn has_file(&self, path: &Path) -> bool {
         match &self.in_memory {
             Some(in_memory) => in_memory.contains_key(path),
             None => path.is_file(),
@@ -115,7 +115,7 @@ impl Files {
             |is: &str| format!("{is}; must be a file or a pattern such as \"folder/*.at2\"");
         let is_folder = self.in_memory.is_none() && path.is_dir();
         ensure(!is_folder, || no_file("is a folder"))?;
-        if self.has(&path) {
+        if self.has_file(&path) {
             return Ok(vec![file_name(Path::new(pattern))?]);
         }
         let is_pattern = pattern.contains(['*', '?', '[']);
@@ -157,7 +157,7 @@ impl Files {
     }
 }
 
-fn unreadable(error: io::Error) -> String {
+fn describe_error(error: io::Error) -> String {
     format!("cannot be read: {error}")
 }
 
@@ -166,7 +166,7 @@ pub(super) fn read_at_most(reader: impl Read, mib: u64, what: &str) -> Result<Ve
     let (most, mut bytes) = (mib << 20, Vec::new());
     // The limit applies while reading, because not every file has a known size.
     let read = reader.take(most + 1).read_to_end(&mut bytes);
-    read.map_err(unreadable)?;
+    read.map_err(describe_error)?;
     ensure(bytes.len() as u64 <= most, || {
         format!("is larger than {mib} MiB, too large for a {what}")
     })?;

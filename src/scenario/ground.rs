@@ -65,7 +65,7 @@ impl Ground {
     /// # Errors
     /// When gravity is outside that range.
     pub fn ground_motion(&self, gravity_m_s2: f64) -> Result<GroundMotion, ArgumentError> {
-        argument::within("gravity_m_s2", gravity_m_s2, Request::GRAVITY_M_S2)?;
+        argument::require_within("gravity_m_s2", gravity_m_s2, Request::GRAVITY_M_S2)?;
         Ok(self.ground_motion_under(gravity_m_s2))
     }
 

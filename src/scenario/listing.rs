@@ -35,7 +35,7 @@ impl RecordListing {
         let seen: BTreeSet<_> = others.iter().map(|other| identity(&other.file)).collect();
         let keys = keys.iter();
         let files: Vec<_> = keys
-            .flat_map(|(key, patterns)| list(table, (key, patterns), format, seen.clone()))
+            .flat_map(|(key, patterns)| list_files(table, (key, patterns), format, seen.clone()))
             .collect();
         let mut formats = formats(&files);
         let has_tables = formats.contains(&Format::CSV);
@@ -55,7 +55,7 @@ impl RecordListing {
         let format = format::inherit(table);
         let given = Some(pattern).filter(|pattern| !pattern.is_empty() || table.gives(FILE));
         let patterns: Vec<_> = given.into_iter().collect();
-        let files = list(table, (FILE, &patterns), format, BTreeSet::new());
+        let files = list_files(table, (FILE, &patterns), format, BTreeSet::new());
         let formats = formats(&files);
         layout::inherit(table, &formats);
         let layout = layout::read(table, &formats);
@@ -116,7 +116,7 @@ impl RecordListing {
 const FILE: &str = "file";
 
 /// Returns records as entries of a table: the files of each key, and the keys of their layout.
-pub(super) fn written(keys: &[(&str, &[Series])]) -> Map<String, Value> {
+pub(super) fn table_entries(keys: &[(&str, &[Series])]) -> Map<String, Value> {
     let keys = keys.iter().filter(|(_, records)| !records.is_empty());
     let files = keys.clone().map(|(key, records)| {
         let files = records.iter().map(|series| Value::from(&*series.file));
@@ -144,7 +144,7 @@ fn formats(files: &[ListedFile]) -> Vec<Format> {
 }
 
 /// Returns all files that match the patterns, sorted by name, without duplicates. Paths in `seen` are left out.
-fn list(
+fn list_files(
     table: &mut Table<'_>,
     (key, patterns): (&'static str, &[String]),
     format: Option<Format>,

@@ -42,7 +42,7 @@ impl LoadTable {
     ///
     /// # Errors
     /// A key that is missing, or that applies to piers and columns only, with the reason.
-    fn on_arch(&self) -> Result<PlacedLoad, WrongKey> {
+    fn place_on_arch(&self) -> Result<PlacedLoad, WrongKey> {
         if self.load.pier.is_none() {
             let wrong = "applies to columns and piers: loads of an arch are on its extrados; leave it out, or give `pier`";
             ensure(self.load.height_m.is_none(), || ("height_m", wrong))?;
@@ -56,7 +56,7 @@ impl LoadTable {
     ///
     /// # Errors
     /// A key that applies to arches only, with the reason.
-    fn on_column(&self) -> Result<PlacedLoad, WrongKey> {
+    fn place_on_column(&self) -> Result<PlacedLoad, WrongKey> {
         let wrong = "applies to arches: a load on a column acts at a point; leave it out";
         ensure(self.load.width_m == 0.0, || ("width_m", wrong))?;
         ensure(self.load.pier.is_none(), || ("pier", wrong))?;
@@ -68,11 +68,14 @@ impl LoadTable {
 type WrongKey = (&'static str, &'static str);
 
 /// Returns loads for an arch and its piers.
-pub(super) fn on_arch(table: &mut Table<'_>, loads: &[LoadTable]) -> ReadResult<Vec<PlacedLoad>> {
-    placed(table, loads, LoadTable::on_arch)
+pub(super) fn place_loads_on_arch(
+    table: &mut Table<'_>,
+    loads: &[LoadTable],
+) -> ReadResult<Vec<PlacedLoad>> {
+    place_loads(table, loads, LoadTable::place_on_arch)
 }
 
-fn placed(
+fn place_loads(
     table: &mut Table<'_>,
     loads: &[LoadTable],
     place: fn(&LoadTable) -> Result<PlacedLoad, WrongKey>,
@@ -94,7 +97,7 @@ pub(super) fn loaded_column(
     if loads.is_empty() {
         return Ok(column);
     }
-    let placed = placed(table, loads, LoadTable::on_column)?;
+    let placed = place_loads(table, loads, LoadTable::place_on_column)?;
     let wall = column.wall().map(|(wall, _)| wall.side);
     let column = column.with_loads(placed, gravity_m_s2);
     let column = column.map_err(|error| match error {

@@ -142,7 +142,7 @@ impl Map {
         let repeat = table.or(REPEAT, &switch(), false);
         let wrong = "goes with a table [free_hinges] or [elastic_joints]: four links are integrated to a tolerance, not in steps";
         let _ = table.refuse(repeat && !kind.is_repeated, REPEAT, wrong);
-        let is_no_ring = structure.is_some_and(|structure| structure.circular().is_none());
+        let is_no_ring = structure.is_some_and(|structure| structure.circular_arch().is_none());
         let is_found = motion.is_some_and(|motion| !motion.impact().model.is_prescribed());
         // Message about a quantity that the scenario does not have.
         let unsuited = |quantity| match quantity {

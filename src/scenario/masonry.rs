@@ -239,7 +239,7 @@ impl Additions {
     }
 
     /// Records that the additions do not fit a structure of this kind.
-    pub fn refused(&self, table: &mut Table<'_>, wrong: &str) -> FaultRecorded {
+    pub fn reject_all(&self, table: &mut Table<'_>, wrong: &str) -> FaultRecorded {
         let key = match self {
             _ if !self.piers.are_none() => "piers",
             Self { fill: Some(_), .. } => "fill",
@@ -249,18 +249,18 @@ impl Additions {
     }
 
     /// Makes the arch with its additions and ties. A fault is recorded if it cannot stand, unless that is `unproved`.
-    pub fn complete(
+    pub fn build_masonry(
         self,
         table: &mut Table<'_>,
         shape: Shape,
         (gravity_m_s2, unproved): (f64, bool),
     ) -> ReadResult<Masonry> {
         let key = shape.name();
-        let loads = load::on_arch(table, &self.loads)?;
+        let loads = load::place_loads_on_arch(table, &self.loads)?;
         let masonry = Masonry::new(shape, self.piers, self.fill, loads);
-        let masonry = masonry.map_err(|error| self.wrong(table, key, &error))?;
+        let masonry = masonry.map_err(|error| self.reject_for(table, key, &error))?;
         let on = (&masonry.row, masonry.springing_joints());
-        let ties = tie::placed(table, &self.ties, on)?;
+        let ties = tie::place_ties(table, &self.ties, on)?;
         let is_tied = !ties.is_empty();
         let tied = masonry.with_ties(ties, gravity_m_s2);
         let mut masonry =
@@ -285,7 +285,7 @@ impl Additions {
         }
     }
 
-    fn wrong(
+    fn reject_for(
         &self,
         table: &mut Table<'_>,
         shape: &'static str,
@@ -309,7 +309,7 @@ impl Additions {
                 let wrong = "names a pier that the arch does not have; give [piers], or leave `pier` out";
                 table.wrong_in_element(("load", *index), "pier", wrong)
             }
-            MasonryError::Blocks => self.refused(
+            MasonryError::Blocks => self.reject_all(
                 table,
                 "goes with arches that are given by their dimensions: give piers and fill of [blocks] as blocks",
             ),

@@ -210,7 +210,10 @@ impl Scenario {
 
     fn all_series(&self) -> impl Iterator<Item = &Series> {
         let suite = self.suite.iter().flat_map(|suite| &suite.records);
-        let checked = self.verify.iter().flat_map(|verify| verify.records.all());
+        let checked = self
+            .verify
+            .iter()
+            .flat_map(|verify| verify.records.all_records());
         self.series().chain(suite).chain(checked)
     }
 
@@ -241,7 +244,7 @@ impl Scenario {
     }
 
     /// Returns the message about a table that the model of motion ignores; `None` if it ignores no table of the file.
-    pub fn ignored(&self) -> Option<&'static str> {
+    pub fn ignored_table(&self) -> Option<&'static str> {
         let message = self.motion.kind.ignored;
         message.filter(|_| self.ignores_impact)
     }
@@ -324,7 +327,7 @@ impl Scenario {
         let structure = built.as_ref().ok().map(|(structure, _)| structure);
         let known = (known, gravity_m_s2, options.statics);
         let ground = GroundInput::read(table, known, options.statics);
-        let motion = motion.complete(table, gravity_m_s2);
+        let motion = motion.read_remaining(table, gravity_m_s2);
         let right_foot = ground.as_ref().ok().and_then(|it| it.right_foot.as_ref());
         let right_foot_fits =
             right_foot.map_or(Ok(()), |it| it.check_model(table, structure, kind));
@@ -382,7 +385,7 @@ impl Scenario {
             suite::check_directions(table, certain.simulation.direction, named)?;
             certain = certain.in_directions(named);
         }
-        certain.ground_motion = Arc::new(certain.under_both_feet(ground.motion));
+        certain.ground_motion = Arc::new(certain.move_both_feet(ground.motion));
         let end_s = certain.request().end_s;
         certain.simulation.check_default_end(table, end_s)?;
         certain.with_uncertain(table, uncertain?)
@@ -418,9 +421,9 @@ impl Scenario {
             suite: None,
             ..self.clone().without_uncertain()
         };
-        shaken.ground_motion = Arc::new(shaken.under_both_feet(left));
+        shaken.ground_motion = Arc::new(shaken.move_both_feet(left));
         shaken.ground = ground;
-        let ground = shaken.resolved().get("ground").cloned();
+        let ground = shaken.resolved_values().get("ground").cloned();
         let tables = &mut shaken.given.tables;
         tables.shift_remove("ground");
         tables.extend(ground.map(|ground| ("ground".to_owned(), ground)));
@@ -448,12 +451,12 @@ impl Scenario {
     }
 
     /// Returns the motion of both feet for a motion of the left one, mirrored if only the mirrored direction is requested.
-    pub(crate) fn under_both_feet(&self, left: GroundMotion) -> GroundMotion {
-        self.under_both_feet_in(self.simulation.direction.first(), left)
+    pub(crate) fn move_both_feet(&self, left: GroundMotion) -> GroundMotion {
+        self.move_both_feet_in(self.simulation.direction.first(), left)
     }
 
     /// Returns the motion of both feet in a direction, for a motion of the left one as given.
-    pub(crate) fn under_both_feet_in(
+    pub(crate) fn move_both_feet_in(
         &self,
         direction: Direction,
         left: GroundMotion,
@@ -704,11 +707,11 @@ impl Scenario {
     /// Returns the scenario as JSON with the given keys and all defaults. A default `duration_s` is omitted, because it depends on the ground
     /// motion.
     pub fn to_json(&self) -> Value {
-        self.given.with_defaults(self.resolved())
+        self.given.with_defaults(self.resolved_values())
     }
 
     /// Returns the scenario as JSON. A circular arch has mean radius, thickness ratio and embrace angle, regardless of the keys in the file.
-    pub(crate) fn resolved(&self) -> Value {
+    pub(crate) fn resolved_values(&self) -> Value {
         let mut ground = self.unread_ground.clone();
         let ground = ground.get_or_insert_with(|| json!(self.ground));
         if let (Value::Object(ground), Some(right)) = (&mut *ground, &self.right_foot) {

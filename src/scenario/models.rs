@@ -138,7 +138,7 @@ impl Tables {
 
     /// Reads the impact law. Returns the model, and true if the model ignores an `[impact]` of the text. `gravity_m_s2` is that of
     /// `[simulation]`, if it is known.
-    pub(super) fn complete(
+    pub(super) fn read_remaining(
         self,
         table: &mut Table<'_>,
         gravity_m_s2: Option<f64>,

@@ -110,10 +110,10 @@ pub(super) const GIVE_ONE: &str = "give one of them";
 fn exclude(table: &mut Table<'_>, keys: &[&str], remedy: &str) -> bool {
     let given = keys.iter().copied().filter(|key| table.gives(key));
     let mut given: Vec<_> = given.collect();
-    given.sort_by_key(|key| table.place(key));
+    given.sort_by_key(|key| table.value_position(key));
     if let [first, others @ ..] = &given[..] {
         for key in others {
-            table.excluded(key, first, remedy);
+            table.reject_excluded(key, first, remedy);
         }
     }
     !given.is_empty()

@@ -81,7 +81,7 @@ impl Rule for Number {
                 .as_f64()
                 .filter(|x| self.contains(*x))
                 .ok_or("is out of range".to_owned()),
-            _ => Err(is(value)),
+            _ => Err(kind_phrase(value)),
         }
     }
 
@@ -128,10 +128,10 @@ impl<T: Serialize> Rule for Custom<'_, T> {
 }
 
 /// Returns the rule for an array whose elements follow a rule.
-pub(super) fn list<R: Rule>(rule: &R) -> Custom<'_, Vec<R::Output>> {
+pub(super) fn list_of<R: Rule>(rule: &R) -> Custom<'_, Vec<R::Output>> {
     let allowed = format!("an array, each element {}", rule.allowed());
     let read = |value: &Value| {
-        let elements = value.as_array().ok_or_else(|| is(value))?;
+        let elements = value.as_array().ok_or_else(|| kind_phrase(value))?;
         let read = |(element, place): (&Value, usize)| {
             let wrong = |wrong| format!("has an element (number {place}) that {wrong}");
             rule.read(element).map_err(wrong)
@@ -145,7 +145,7 @@ pub(super) fn list<R: Rule>(rule: &R) -> Custom<'_, Vec<R::Output>> {
 /// Returns the rule for a value that follows a rule, or a non-empty array of such values.
 pub(super) fn one_or_more<R: Rule>(rule: &R) -> Custom<'_, Vec<R::Output>> {
     let allowed = format!("{} or an array of at least one", rule.allowed());
-    let (one, list) = (rule.schema(), list(rule));
+    let (one, list) = (rule.schema(), list_of(rule));
     let read = move |value: &Value| match value {
         Value::Array(elements) if elements.is_empty() => Err("is empty".to_owned()),
         Value::Array(_) => list.read(value),
@@ -157,18 +157,22 @@ pub(super) fn one_or_more<R: Rule>(rule: &R) -> Custom<'_, Vec<R::Output>> {
 
 /// Returns the rule for true or false.
 pub(super) fn switch() -> Custom<'static, bool> {
-    any("true or false", "boolean", Value::as_bool)
+    value_of_kind("true or false", "boolean", Value::as_bool)
 }
 
 /// Returns the rule for any string.
 pub(super) fn text() -> Custom<'static, String> {
     let read = |value: &Value| string(value).map(str::to_owned);
-    any("a string", "string", read)
+    value_of_kind("a string", "string", read)
 }
 
 /// Returns the rule for any value of a JSON type.
-fn any<T: 'static>(allowed: &str, kind: &str, read: fn(&Value) -> Option<T>) -> Custom<'static, T> {
-    let read = move |value: &Value| read(value).ok_or_else(|| is(value));
+fn value_of_kind<T: 'static>(
+    allowed: &str,
+    kind: &str,
+    read: fn(&Value) -> Option<T>,
+) -> Custom<'static, T> {
+    let read = move |value: &Value| read(value).ok_or_else(|| kind_phrase(value));
     Custom(allowed.to_owned(), json!({ "type": kind }), Box::new(read))
 }
 
@@ -179,7 +183,7 @@ pub(super) fn one_of<T: Copy + Serialize>(all: &[T]) -> Custom<'_, T> {
     let allowed = format!("one of {}", quoted.join(", "));
     let schema = json!({ "enum": names });
     let read = move |value: &Value| {
-        let text = string(value).ok_or_else(|| is(value))?;
+        let text = string(value).ok_or_else(|| kind_phrase(value))?;
         let index = names.iter().position(|name| *name == text);
         let unknown = || {
             format!(
@@ -209,7 +213,7 @@ impl Rule for Count {
         match count.filter(|count| self.0.contains(count)) {
             Some(count) => Ok(count),
             None if is_whole => Err("is out of range".to_owned()),
-            None => Err(is(value)),
+            None => Err(kind_phrase(value)),
         }
     }
 
@@ -224,7 +228,7 @@ pub(super) fn string(value: &Value) -> Option<&str> {
 }
 
 /// Returns a phrase with the kind of a value: `is a string`.
-fn is(value: &Value) -> String {
+fn kind_phrase(value: &Value) -> String {
     format!("is {}", kind(value))
 }
 

@@ -39,7 +39,7 @@ fn ascending(number: &Number) -> Custom<'_, Vec<f64>> {
     );
     let read = |value: &Value| {
         ensure(!value.is_number(), || "is a single number")?;
-        let values = list(number).read(value)?;
+        let values = list_of(number).read(value)?;
         ensure(!values.is_empty(), || "is empty")?;
         ensure(ascend(&values), || "does not ascend")?;
         Ok(values)
@@ -66,7 +66,7 @@ impl Sequence {
                 count,
                 spacing,
             } => (0..*count)
-                .map(|index| between(*from, *to, index, count - 1, *spacing))
+                .map(|index| number_at(*from, *to, index, count - 1, *spacing))
                 .collect(),
         }
     }
@@ -120,7 +120,7 @@ impl Sequence {
 
 /// Rounds a number as people would write it: 0.12 instead of 0.12000000000000002. The largest number has twelve digits; there are more decimals
 /// if a millionth of a step needs them.
-fn round(value: f64, largest: f64, step: f64) -> f64 {
+fn round_readably(value: f64, largest: f64, step: f64) -> f64 {
     let digits = (12.0 - libm::log10(largest).floor()).max(6.0 - libm::log10(step).floor());
     let digits = digits.clamp(0.0, 340.0) as usize;
     let rounded: f64 = format!("{value:.digits$}").parse().unwrap_or(value);
@@ -129,14 +129,14 @@ fn round(value: f64, largest: f64, step: f64) -> f64 {
 }
 
 /// Returns a number of a range. The ends are exact, and so is every number with few digits.
-fn between(from: f64, to: f64, index: usize, last: usize, spacing: Spacing) -> f64 {
+fn number_at(from: f64, to: f64, index: usize, last: usize, spacing: Spacing) -> f64 {
     let part = index as f64 / last as f64;
     match spacing {
         _ if index == 0 => from,
         _ if index == last => to,
         Spacing::Linear => {
             let (largest, step) = (from.abs().max(to.abs()), (to - from) / last as f64);
-            round(from * (1.0 - part) + to * part, largest, step)
+            round_readably(from * (1.0 - part) + to * part, largest, step)
         }
         Spacing::Logarithmic => from * libm::pow(to / from, part),
     }

@@ -20,7 +20,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::change::BOTH_SIGNS;
-use super::listing::{RecordListing, written};
+use super::listing::{RecordListing, table_entries};
 use super::prelude::*;
 use super::record::{self, Component, Record, Scaling, Series, format};
 use super::sequence::Sequence;
@@ -237,7 +237,7 @@ impl Serialize for Suite {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let records = match self.has_entries {
             true => Map::from_iter([(ENTRIES.to_owned(), json!(self.records))]),
-            false => written(&[(RECORDS, &self.records)]),
+            false => table_entries(&[(RECORDS, &self.records)]),
         };
         let own = [
             (self.measure.key(), json!(self.levels)),

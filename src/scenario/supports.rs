@@ -67,7 +67,7 @@ pub(super) fn check(
             return Err(table.wrong_element("tie", tie, wrong));
         }
         Err(error) => {
-            let place = error.at().map_or_else(String::new, |part| {
+            let place = error.path_position().map_or_else(String::new, |part| {
                 format!(" beyond {:.2} % of this movement", 1e2 * part)
             });
             format!("cannot be followed{place}: {error}; give another movement or other joints")

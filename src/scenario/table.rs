@@ -41,7 +41,7 @@ pub(super) fn read_text<T>(
 ) -> Result<T, Vec<Fault>> {
     let mut document = Document::parse(text, files)?;
     let set = document.assign(set);
-    change::follow(&mut document.root, &set);
+    change::adjust_others(&mut document.root, &set);
     read_document(document, read)
 }
 
@@ -330,7 +330,7 @@ impl<'a> Table<'a> {
     }
 
     /// Returns the position of the value of a key.
-    pub(super) fn place(&self, key: &str) -> Option<(usize, usize)> {
+    pub(super) fn value_position(&self, key: &str) -> Option<(usize, usize)> {
         self.place_of(&format!("{}/{key}", self.path))
     }
 
@@ -506,8 +506,8 @@ impl<'a> Table<'a> {
     }
 
     /// Records that a key is given which another key excludes.
-    pub(super) fn excluded(&mut self, key: &str, other: &str, remedy: &str) {
-        let place = self.place(key).unwrap_or(self.place);
+    pub(super) fn reject_excluded(&mut self, key: &str, other: &str, remedy: &str) {
+        let place = self.value_position(key).unwrap_or(self.place);
         let message = format!("`{key}` cannot be combined with `{other}`; {remedy}");
         self.fault(place, message);
     }
@@ -551,7 +551,7 @@ impl<'a> Table<'a> {
     ) -> ReadResult<T> {
         let mut table = self.inner(key, table);
         let value = read(&mut table);
-        self.close(key, table).and(value)
+        self.close_nested(key, table).and(value)
     }
 
     /// Opens the table with this path and these entries, or an empty one.
@@ -571,7 +571,7 @@ impl<'a> Table<'a> {
     }
 
     /// Takes over what a table in this one has recorded. Succeeds if that table is faultless.
-    fn close(&mut self, key: &str, mut table: Self) -> ReadResult<()> {
+    fn close_nested(&mut self, key: &str, mut table: Self) -> ReadResult<()> {
         table.reject_unknown_keys();
         let faultless = table.check_faultless();
         self.faults.append(&mut table.faults);
@@ -587,7 +587,7 @@ impl<'a> Table<'a> {
     }
 
     fn reject_unknown_keys(&mut self) {
-        // A reader that rejects the whole table reads no keys.
+        // After a fault of the whole table no key has been read.
         if self.known.is_empty() && !self.faults.is_empty() {
             return;
         }

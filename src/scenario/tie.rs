@@ -122,8 +122,8 @@ impl TieTable {
     ///
     /// # Errors
     /// The change that the tie needs.
-    fn placed(&self, row: &Row, springings: Option<[usize; 2]>) -> Result<Tie, String> {
-        let ends = self.ends(row, springings)?;
+    fn place_tie(&self, row: &Row, springings: Option<[usize; 2]>) -> Result<Tie, String> {
+        let ends = self.find_ends(row, springings)?;
         let [first, second] = ends.map(|end| end.at_m);
         let length_m = (second - first).norm();
         let stiffness_n_m = match (self.area_mm2, self.modulus_gpa, self.stiffness_n_m) {
@@ -168,7 +168,7 @@ impl TieTable {
         })
     }
 
-    fn ends(&self, row: &Row, springings: Option<[usize; 2]>) -> Result<[Anchor; 2], String> {
+    fn find_ends(&self, row: &Row, springings: Option<[usize; 2]>) -> Result<[Anchor; 2], String> {
         if let (Some(from_m), Some(to_m)) = (self.from_m, self.to_m) {
             return Ok([
                 anchor(row, from_m, self.from_block, "from")?,
@@ -176,7 +176,7 @@ impl TieTable {
             ]);
         }
         if let Some(height_m) = self.height_m {
-            return at_height(row, height_m);
+            return points_at_height(row, height_m);
         }
         let missing = "is between springings, which only arches given by their dimensions have: give `from_m` and `to_m`";
         let [left, right] = springings.ok_or(missing)?;
@@ -191,7 +191,7 @@ impl TieTable {
 }
 
 fn read_point(table: &mut Table<'_>, key: &str) -> Option<[f64; 2]> {
-    let numbers = table.optional(key, &list(&COORDINATE_M))?;
+    let numbers = table.optional(key, &list_of(&COORDINATE_M))?;
     let point = <[f64; 2]>::try_from(numbers);
     let wrong = "has not two elements; must be a point [x, y] in m";
     table.accept(key, point.map_err(|_| wrong)).ok()
@@ -244,7 +244,7 @@ fn anchor(row: &Row, point_m: [f64; 2], block: Option<usize>, end: &str) -> Resu
 }
 
 /// Returns the two points of the intrados at a height. The intrados is a straight line between joints.
-fn at_height(row: &Row, height_m: f64) -> Result<[Anchor; 2], String> {
+fn points_at_height(row: &Row, height_m: f64) -> Result<[Anchor; 2], String> {
     let pairs = row.joints.windows(2).enumerate();
     let crossings = pairs.filter_map(|(block, pair)| {
         let (from, to) = (pair[0].intrados_m, pair[1].intrados_m);
@@ -267,13 +267,13 @@ fn at_height(row: &Row, height_m: f64) -> Result<[Anchor; 2], String> {
 }
 
 /// Makes the ties of a structure.
-pub(super) fn placed(
+pub(super) fn place_ties(
     table: &mut Table<'_>,
     ties: &[TieTable],
     (row, springings): (&Row, Option<[usize; 2]>),
 ) -> ReadResult<Vec<Tie>> {
     let placed = ties.iter().enumerate().map(|(index, tie)| {
-        let placed = tie.placed(row, springings);
+        let placed = tie.place_tie(row, springings);
         placed.map_err(|wrong| table.wrong_element("tie", index, wrong))
     });
     placed.collect()
@@ -292,7 +292,7 @@ pub(super) fn tied_column(
     let row = column.row();
     let row = row.map_err(|error| format!("makes no row of blocks: {error}"));
     let row = table.accept("column", row)?;
-    let ties = placed(table, ties, (&row, None))?;
+    let ties = place_ties(table, ties, (&row, None))?;
     let column = column.with_ties(ties, gravity_m_s2);
     let column = column.map_err(|(index, error)| table.wrong_element("tie", index, error))?;
     let row = column.row().map_err(|error| error.to_string());

@@ -42,7 +42,7 @@ fn write_table(text: &mut String, name: &str, table: &Map<String, Value>) {
 pub(super) fn inline(value: &Value) -> String {
     let all = |values: &[Value]| values.iter().map(inline).collect::<Vec<_>>();
     match value {
-        Value::String(text) => quoted(text),
+        Value::String(text) => quote_string(text),
         Value::Array(values) if values.iter().any(Value::is_string) => {
             format!("[\n    {},\n]", all(values).join(",\n    "))
         }
@@ -64,14 +64,14 @@ pub(super) fn inline(value: &Value) -> String {
 /// Returns a key, in quotation marks if it contains a dot.
 fn bare(key: &str) -> String {
     if key.contains('.') {
-        quoted(key)
+        quote_string(key)
     } else {
         key.to_owned()
     }
 }
 
 /// Returns a string in the syntax of TOML.
-pub(super) fn quoted(text: &str) -> String {
+pub(super) fn quote_string(text: &str) -> String {
     let mut quoted = String::from("\"");
     for c in text.chars() {
         match c {

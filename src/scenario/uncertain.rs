@@ -75,7 +75,7 @@ pub struct Uncertain {
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub total_indices: bool,
     /// The numbers, at least one, in the order of the file.
-    #[serde(flatten, serialize_with = "by_key")]
+    #[serde(flatten, serialize_with = "serialize_by_key")]
     pub keys: Vec<UncertainKey>,
 }
 
@@ -118,7 +118,7 @@ impl Distribution {
     }
 
     /// Computes the quantile: the value below which the fraction `part` of all values lies, from 0 to 1. `own` is the value in the scenario.
-    fn at(self, part: f64, own: f64) -> f64 {
+    fn quantile(self, part: f64, own: f64) -> f64 {
         match self {
             Self::Range { from, to, spacing } => match spacing {
                 Spacing::Linear => from * (1.0 - part) + to * part,
@@ -155,7 +155,10 @@ fn cut_normal(part: f64) -> f64 {
 }
 
 /// Writes each key with its distribution.
-fn by_key<S: Serializer>(keys: &[UncertainKey], serializer: S) -> Result<S::Ok, S::Error> {
+fn serialize_by_key<S: Serializer>(
+    keys: &[UncertainKey],
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
     serializer.collect_map(keys.iter().map(|key| (&key.key, key.distribution)))
 }
 
@@ -200,16 +203,19 @@ impl Uncertain {
     /// contains `[uncertain]`.
     pub(super) fn check(mut self, table: &mut Table<'_>, scenario: &Scenario) -> ReadResult<Self> {
         let mut faulty = Ok(());
-        let known = [scenario.to_resolved_json(), scenario.resolved()];
+        let known = [scenario.to_resolved_json(), scenario.resolved_values()];
         for index in 0..self.keys.len() {
             let (before, others) = self.keys.split_at_mut(index);
-            if let Err(wrong) = others[0].complete(before, &known) {
+            if let Err(wrong) = others[0].add_scenario_value(before, &known) {
                 faulty = Err(table.wrong_in(&[TABLE], &self.keys[index].key, wrong));
             }
         }
         faulty?;
         let allows = |keys: &[UncertainKey], part: f64| {
-            let values: Vec<_> = keys.iter().map(|key| (&*key.key, key.at(part))).collect();
+            let values: Vec<_> = keys
+                .iter()
+                .map(|key| (&*key.key, key.quantile(part)))
+                .collect();
             scenario.with_values(&values)
         };
         // Reading a scenario takes time, so all keys are tried together first.
@@ -266,7 +272,7 @@ impl Uncertain {
     /// Returns the values of a sample, counted from 0, in the order of the keys.
     pub fn values(&self, sample: usize) -> Vec<f64> {
         let parts = self.point(sample).into_iter().zip(&self.keys);
-        parts.map(|(part, key)| key.at(part)).collect()
+        parts.map(|(part, key)| key.quantile(part)).collect()
     }
 
     /// Returns the scenario with these values of the keys, without studies and without uncertain numbers.
@@ -286,7 +292,7 @@ const PROBED: [f64; 3] = [0.0, 1.0, 0.381_966];
 impl UncertainKey {
     /// Adds the value in the scenario. Rejects a key that is not a number, or is one of the previous keys. `known` is the scenario with the given
     /// keys, and with resolved ones.
-    fn complete(&mut self, before: &[Self], known: &[Value; 2]) -> Result<(), String> {
+    fn add_scenario_value(&mut self, before: &[Self], known: &[Value; 2]) -> Result<(), String> {
         let mut before = before.iter();
         let is_known = before.any(|other| parts(&other.key) == parts(&self.key));
         let wrong = "is the same as a key before it; leave one out";
@@ -313,10 +319,10 @@ impl UncertainKey {
 
     /// Rejects values that the scenario does not allow while all other keys have their own values.
     fn check(&self, scenario: &Scenario) -> Result<(), String> {
-        let largest = self.at(0.0).abs().max(self.at(1.0).abs());
+        let largest = self.quantile(0.0).abs().max(self.quantile(1.0).abs());
         for part in PROBED {
             // A bound that differs from zero by rounding errors only is zero.
-            let value = Some(self.at(part)).filter(|value| value.abs() > 1e-12 * largest);
+            let value = Some(self.quantile(part)).filter(|value| value.abs() > 1e-12 * largest);
             let value = value.unwrap_or(0.0);
             let allowed = scenario.with_values(&[(&self.key, value)]);
             let value = plain(value);
@@ -328,8 +334,8 @@ impl UncertainKey {
     }
 
     /// Computes the quantile: the value below which the fraction `part` of all values lies, from 0 to 1.
-    pub fn at(&self, part: f64) -> f64 {
-        self.distribution.at(part, self.own.unwrap_or(0.0))
+    pub fn quantile(&self, part: f64) -> f64 {
+        self.distribution.quantile(part, self.own.unwrap_or(0.0))
     }
 }
 

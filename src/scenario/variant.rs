@@ -41,7 +41,7 @@ impl Scenario {
             let [.., path] = replaced.map_err(|wrong| shown(&wrong))?;
             paths.push(path);
         }
-        change::follow(&mut document.root, &paths);
+        change::adjust_others(&mut document.root, &paths);
         let known: Vec<Series> = self.series().cloned().collect();
         let options = ReadOptions {
             model: *model,

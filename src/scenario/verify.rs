@@ -34,7 +34,7 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 
 use super::files::Files;
-use super::listing::{RecordListing, written};
+use super::listing::{RecordListing, table_entries};
 use super::prelude::*;
 use super::record::{Decimal, LineFault, Series, faulty, format, layout, read_numbers};
 use super::study_table::StudyTable;
@@ -199,17 +199,17 @@ impl Records {
     pub fn keys(&self) -> Vec<&'static str> {
         let given = RECORDS
             .iter()
-            .filter(|(state, _)| !self.of(*state).is_empty());
+            .filter(|(state, _)| !self.records_of(*state).is_empty());
         given.map(|(_, key)| *key).collect()
     }
 
     /// Returns the records of a limit state.
-    pub fn of(&self, state: LimitState) -> &[Series] {
+    pub fn records_of(&self, state: LimitState) -> &[Series] {
         self.0.get(&state).map_or(&[], Vec::as_slice)
     }
 
     /// Returns the records of all limit states.
-    pub(super) fn all(&self) -> impl Iterator<Item = &Series> + Clone {
+    pub(super) fn all_records(&self) -> impl Iterator<Item = &Series> + Clone {
         self.0.values().flatten()
     }
 
@@ -236,7 +236,7 @@ impl Records {
             records.0.entry(state).or_default().push(series);
         }
         for (state, key) in RECORDS {
-            let count = records.of(state).len();
+            let count = records.records_of(state).len();
             let is_few = table.gives(key) && count < LEAST_RECORDS;
             let wrong = format!(
                 "has {count} records; must be at least {LEAST_RECORDS}, of which the worst counts, or 7 for their mean \
@@ -250,7 +250,8 @@ impl Records {
 
 impl Serialize for Records {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        written(&RECORDS.map(|(state, key)| (key, self.of(state)))).serialize(serializer)
+        table_entries(&RECORDS.map(|(state, key)| (key, self.records_of(state))))
+            .serialize(serializer)
     }
 }
 
@@ -298,9 +299,11 @@ impl Verify {
         table: &mut Table<'_>,
         demand: Option<&Demand>,
     ) -> ReadResult<()> {
-        let has_records = |(state, _): &(LimitState, _)| !self.records.of(*state).is_empty();
+        let has_records =
+            |(state, _): &(LimitState, _)| !self.records.records_of(*state).is_empty();
         for (state, key) in RECORDS.into_iter().filter(has_records) {
-            let is_checked = demand.is_some_and(|demand| demand.states().any(|one| one == state));
+            let is_checked =
+                demand.is_some_and(|demand| demand.limit_states().any(|one| one == state));
             let wrong = match self.sides {
                 _ if !is_checked => {
                     format!("needs [demand.{}], which sets the limits", state.name())
@@ -501,14 +504,14 @@ impl Demand {
             Self::Code(CodeDemand::read(table)?)
         };
         table.check_faultless()?;
-        let is_damage = demand.states().all(|state| state == LimitState::Sld);
+        let is_damage = demand.limit_states().all(|state| state == LimitState::Sld);
         let wrong = "has nothing to check beyond damage: give [demand.slv] or [demand.slc]";
         table.refuse_all(is_damage, wrong)?;
         Ok(demand)
     }
 
     /// Returns the checked limit states.
-    pub fn states(&self) -> impl Iterator<Item = LimitState> {
+    pub fn limit_states(&self) -> impl Iterator<Item = LimitState> {
         let states = LimitState::ALL.iter().copied();
         states.filter(move |state| match self {
             Self::Code(code) => code.hazards.contains_key(state),
@@ -581,7 +584,7 @@ impl Building {
     }
 
     /// Returns the modes at a limit state.
-    pub fn at(&self, state: LimitState) -> Vec<Mode> {
+    pub fn modes_at(&self, state: LimitState) -> Vec<Mode> {
         let modes = self.modes.iter();
         let modes = modes.filter_map(|mode| {
             let at_state = mode.states.get(&state)?;

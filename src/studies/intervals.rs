@@ -35,7 +35,7 @@ pub(super) const LOW_PART: f64 = 0.05;
 pub(super) const LEAST_FOR_LIMIT: usize = 59;
 
 /// Returns the ends of the interval of a dispersion of maximum likelihood from `count` independent values; `None` with fewer than two.
-pub(super) fn of_dispersion(dispersion: f64, count: usize) -> Option<[f64; 2]> {
+pub(super) fn dispersion_interval(dispersion: f64, count: usize) -> Option<[f64; 2]> {
     let degrees = count.checked_sub(1).filter(|degrees| *degrees > 0)?;
     // The sum of squares of `count` logarithms about their mean.
     let squares = dispersion * dispersion * count as f64;
@@ -44,7 +44,7 @@ pub(super) fn of_dispersion(dispersion: f64, count: usize) -> Option<[f64; 2]> {
 }
 
 /// Returns the ends of the interval of a median from `count` independent values with this dispersion; `None` with fewer than two.
-pub(super) fn of_median(median: f64, dispersion: f64, count: usize) -> Option<[f64; 2]> {
+pub(super) fn median_interval(median: f64, dispersion: f64, count: usize) -> Option<[f64; 2]> {
     let degrees = count.checked_sub(1).filter(|degrees| *degrees > 0)?;
     let margin = student_quantile(degrees) * dispersion / (degrees as f64).sqrt();
     Some([-margin, margin].map(|margin| median * libm::exp(margin)))
@@ -86,13 +86,13 @@ impl FractileIntervals {
     }
 
     /// Returns the ends of the interval of a dispersion.
-    pub(super) fn of_dispersion(&self, dispersion: f64) -> [f64; 2] {
+    pub(super) fn dispersion_interval(&self, dispersion: f64) -> [f64; 2] {
         let [low, high] = self.ratios;
         [dispersion / high, dispersion / low]
     }
 
     /// Returns the ends of the interval of a median with this dispersion.
-    pub(super) fn of_median(&self, median: f64, dispersion: f64) -> [f64; 2] {
+    pub(super) fn median_interval(&self, median: f64, dispersion: f64) -> [f64; 2] {
         let margin = self.margin * dispersion;
         [-margin, margin].map(|margin| median * libm::exp(margin))
     }
@@ -245,16 +245,16 @@ mod tests {
     /// With values 0 and `2 s` the standard deviation of `n - 1 = 1` degree is known, so the ends follow from the tables.
     #[test]
     fn intervals_follow_from_the_quantiles() {
-        let [low, high] = of_dispersion(0.4, 8).unwrap();
+        let [low, high] = dispersion_interval(0.4, 8).unwrap();
         let deviation = 0.4 * (8.0_f64 / 7.0).sqrt();
         assert!((low - deviation * (7.0_f64 / 16.012_764).sqrt()).abs() < 1e-5);
         assert!((high - deviation * (7.0_f64 / 1.689_869).sqrt()).abs() < 1e-5);
-        let [low, high] = of_median(0.5, 0.4, 8).unwrap();
+        let [low, high] = median_interval(0.5, 0.4, 8).unwrap();
         let margin = 2.364_624 * deviation / 8.0_f64.sqrt();
         assert!((libm::log(high / 0.5) - margin).abs() < 1e-6);
         assert!((low * high - 0.25).abs() < 1e-12);
         assert_eq!(
-            (of_dispersion(0.4, 1), of_median(0.5, 0.4, 0)),
+            (dispersion_interval(0.4, 1), median_interval(0.5, 0.4, 0)),
             (None, None)
         );
     }
@@ -319,7 +319,7 @@ mod tests {
     fn intervals_of_lognormal_values_contain_the_truth() {
         let mut random = RandomNumbers::default();
         // Other numbers than those of the simulated quantiles.
-        random.next();
+        random.next_number();
         for count in [3, 8, 20] {
             let (mut counts, intervals) = ([0; 3], FractileIntervals::of(count).unwrap());
             for _ in 0..suites() {
@@ -328,9 +328,9 @@ mod tests {
                 let [low, middle, high] = FRACTILES.map(|part| quantile(&values, part).unwrap());
                 let scatter = 0.5 * (high - low);
                 let all = [
-                    (of_dispersion(variance.sqrt(), count).unwrap(), 0.5),
-                    (intervals.of_dispersion(scatter), 0.5),
-                    (intervals.of_median(libm::exp(middle), scatter), 1.0),
+                    (dispersion_interval(variance.sqrt(), count).unwrap(), 0.5),
+                    (intervals.dispersion_interval(scatter), 0.5),
+                    (intervals.median_interval(libm::exp(middle), scatter), 1.0),
                 ];
                 for (covered, ([low, high], truth)) in counts.iter_mut().zip(all) {
                     *covered += usize::from(low <= truth && truth <= high);
@@ -368,8 +368,8 @@ mod tests {
                 let [low, middle, high] = FRACTILES.map(|part| quantile(&values, part).unwrap());
                 let scatter = 0.5 * (high - low);
                 let all = [
-                    (intervals.of_dispersion(scatter), truth),
-                    (intervals.of_median(libm::exp(middle), scatter), 1.0),
+                    (intervals.dispersion_interval(scatter), truth),
+                    (intervals.median_interval(libm::exp(middle), scatter), 1.0),
                 ];
                 for (covered, ([low, high], truth)) in counts.iter_mut().zip(all) {
                     *covered += usize::from(low <= truth && truth <= high);

@@ -67,7 +67,7 @@ pub use part::{
 };
 pub use peaks::{FILES as PEAKS_FILES, Summary as PeaksSummary, results as peak_results};
 pub use pictures::{impact as draw_impact, limit as draw_limit};
-pub use quotable::{ModelAnswer, in_words as quoted_in_words};
+pub use quotable::{ModelAnswer, quote_answers as quoted_in_words};
 pub use record::record;
 use remarks::{CaseSummary, ModelCheck, OutcomeCounts, Remark, Remarks, no_verdict, one_direction};
 pub use report::{Report, Statement, Warnings};
@@ -77,4 +77,4 @@ pub use runner::{Counted, Progress, Runner, RunnerError, SearchStep, Task};
 pub use spread::{Direction, Summary as SpreadSummary, spread};
 pub use statistics::Share;
 pub use study::Study;
-use threshold::{rounded, rounded_down};
+use threshold::{format_edge, rounded_down};

@@ -40,7 +40,7 @@ impl Shard {
     }
 
     /// Returns true if the case with this index belongs to the shard.
-    pub const fn has(self, case: usize) -> bool {
+    pub const fn has_case(self, case: usize) -> bool {
         case % self.count == self.index - 1
     }
 
@@ -135,7 +135,7 @@ impl Header {
     }
 
     /// Returns the first difference from another header, in words; `None` if both belong to the same part.
-    fn other(&self, other: &Self) -> Option<String> {
+    fn first_difference(&self, other: &Self) -> Option<String> {
         self.difference(other).or_else(|| {
             let (here, there) = (self.shard, other.shard);
             (here != there).then(|| format!("part {there} instead of {here}"))
@@ -144,12 +144,12 @@ impl Header {
 
     /// Returns the first input that only one of the two headers has, in words.
     fn other_input(&self, other: &Self) -> Option<String> {
-        fn only<'h>(here: &'h Header, there: &Header) -> Option<&'h str> {
+        fn key_only_here<'h>(here: &'h Header, there: &Header) -> Option<&'h str> {
             let input = here.inputs.iter().find(|i| !there.inputs.contains(i))?;
             // A checksum means nothing to the user.
             Some(input.rsplit_once(' ').map_or(input, |(name, _)| name))
         }
-        match (only(self, other), only(other, self)) {
+        match (key_only_here(self, other), key_only_here(other, self)) {
             (Some(here), Some(there)) if here == there => {
                 Some(format!("other contents of {there}"))
             }
@@ -189,7 +189,7 @@ fn to_line(index: usize, row: &impl Serialize) -> Result<String, serde_json::Err
 }
 
 /// Reads the index and the row from a line; `None` if the line is damaged.
-fn from_line<R: DeserializeOwned>(line: &str) -> Option<(usize, R)> {
+fn parse_line<R: DeserializeOwned>(line: &str) -> Option<(usize, R)> {
     let (checksum, content) = line.split_once(',')?;
     let checksum = u32::from_str_radix(checksum, 16).ok()?;
     let (index, row) = content.split_once(',')?;
@@ -232,7 +232,7 @@ pub enum PartErrorKind {
 
 impl PartErrorKind {
     /// An error of this kind in a file.
-    fn of(self, path: &Path, problem: impl Display) -> PartError {
+    fn error(self, path: &Path, problem: impl Display) -> PartError {
         PartError {
             kind: self,
             message: format!("{}: {problem}", path.display()),
@@ -240,14 +240,14 @@ impl PartErrorKind {
     }
 }
 
-fn unusable(path: &Path, problem: impl Display) -> PartError {
-    PartErrorKind::Unusable.of(path, problem)
+fn unusable_part(path: &Path, problem: impl Display) -> PartError {
+    PartErrorKind::Unusable.error(path, problem)
 }
 
 /// Returns an error for a path that exists but is not a file: reading a pipe would never end.
 fn check_file(path: &Path) -> Result<(), PartError> {
     match fs::metadata(path) {
-        Ok(found) if !found.is_file() => Err(unusable(path, "is not a file")),
+        Ok(found) if !found.is_file() => Err(unusable_part(path, "is not a file")),
         _ => Ok(()),
     }
 }
@@ -263,15 +263,15 @@ impl<'p> Lines<'p> {
         check_file(path)?;
         let bytes = fs::read(path);
         let mut bytes =
-            bytes.map_err(|error| unusable(path, format!("cannot be read: {error}")))?;
+            bytes.map_err(|error| unusable_part(path, format!("cannot be read: {error}")))?;
         // An incomplete last line was being written when the program was killed.
         let last = bytes.iter().rposition(|byte| *byte == b'\n');
         let begins_header = bytes.starts_with(HEADER) || HEADER.starts_with(&bytes);
         if last.is_none() && !begins_header {
-            return Err(unusable(path, NO_PART));
+            return Err(unusable_part(path, NO_PART));
         }
         bytes.truncate(last.map_or(0, |last| last + 1));
-        let text = String::from_utf8(bytes).map_err(|_| unusable(path, NO_PART))?;
+        let text = String::from_utf8(bytes).map_err(|_| unusable_part(path, NO_PART))?;
         Ok(Self { path, text })
     }
 
@@ -280,11 +280,11 @@ impl<'p> Lines<'p> {
         let first = self.text.lines().next();
         let header = first.map(|first| match serde_json::from_str::<Header>(first) {
             Ok(header) if header.program != env!("CARGO_PKG_NAME") => {
-                Err(unusable(self.path, NO_PART))
+                Err(unusable_part(self.path, NO_PART))
             }
             Ok(header) if header.row_format != ROW_FORMAT => {
                 let (version, format) = (&header.version, header.row_format);
-                Err(unusable(
+                Err(unusable_part(
                     self.path,
                     format!(
                         "was written by archrock {version}, with rows of format {format}, and this version reads format {ROW_FORMAT}: delete the file and compute the part again, or use archrock {version}"
@@ -292,7 +292,7 @@ impl<'p> Lines<'p> {
                 ))
             }
             Ok(header) => Ok(header),
-            Err(_) => Err(unusable(self.path, NO_PART)),
+            Err(_) => Err(unusable_part(self.path, NO_PART)),
         });
         header.transpose()
     }
@@ -300,7 +300,7 @@ impl<'p> Lines<'p> {
     /// Returns the header, or an error if the file has none.
     fn known_header(&self) -> Result<Header, PartError> {
         self.header()?
-            .ok_or_else(|| unusable(self.path, "is empty"))
+            .ok_or_else(|| unusable_part(self.path, "is empty"))
     }
 
     /// Returns the number of rows, damaged ones included.
@@ -314,10 +314,10 @@ impl<'p> Lines<'p> {
         for (number, line) in (1..).zip(self.text.lines()).skip(1) {
             let damaged = |what: &str| {
                 let what = format!("line {number}: {what}; compute this part again");
-                unusable(self.path, what)
+                unusable_part(self.path, what)
             };
-            let (index, row) = from_line(line).ok_or_else(|| damaged("damaged"))?;
-            if !header.shard.has(index) || index >= header.cases {
+            let (index, row) = parse_line(line).ok_or_else(|| damaged("damaged"))?;
+            if !header.shard.has_case(index) || index >= header.cases {
                 return Err(damaged("a case of another part"));
             }
             if rows.insert(index, row).is_some() {
@@ -377,7 +377,7 @@ impl PartFile {
     ) -> Result<(Self, Rows<R>), PartError> {
         check_file(path)?;
         if path.is_symlink() {
-            return Err(unusable(
+            return Err(unusable_part(
                 path,
                 "is a link, and no part is written through it",
             ));
@@ -387,10 +387,10 @@ impl PartFile {
             .read(true)
             .append(true)
             .open(path)
-            .map_err(|error| unusable(path, format!("cannot be written: {error}")))?;
+            .map_err(|error| unusable_part(path, format!("cannot be written: {error}")))?;
         // On systems where files cannot be locked, two programs may write to the same file.
         if let Err(fs::TryLockError::WouldBlock) = file.try_lock() {
-            return Err(unusable(
+            return Err(unusable_part(
                 path,
                 "another archrock is writing this file: wait until it ends",
             ));
@@ -405,9 +405,9 @@ impl PartFile {
             Some(found) => {
                 // Only a header without rows may be overwritten without `resume`.
                 let begun = resume || lines.count() > 0;
-                if begun && let Some(difference) = header.other(&found) {
+                if begun && let Some(difference) = header.first_difference(&found) {
                     let problem = format!("belongs to another study: {difference}");
-                    return Err(PartErrorKind::Other.of(path, problem));
+                    return Err(PartErrorKind::Other.error(path, problem));
                 }
                 lines.rows(header)?
             }
@@ -415,15 +415,17 @@ impl PartFile {
         let done = rows.len();
         if !resume && (1..header.shard_cases()).contains(&done) {
             let problem = format!("has {done} cases of this study, from an interrupted run");
-            return Err(PartErrorKind::Interrupted.of(path, problem));
+            return Err(PartErrorKind::Interrupted.error(path, problem));
         }
         let length = match rows.is_empty() {
             true => 0,
             false => lines.text.len() as u64,
         };
-        part.file.set_len(length).map_err(part.cannot("shorten"))?;
+        part.file
+            .set_len(length)
+            .map_err(part.error_of("shorten"))?;
         if length == 0 {
-            let mut line = serde_json::to_string(header).map_err(part.cannot("write"))?;
+            let mut line = serde_json::to_string(header).map_err(part.error_of("write"))?;
             line.push('\n');
             part.write(&line)?;
         }
@@ -442,14 +444,14 @@ impl PartFile {
     pub fn append<R: Serialize>(&mut self, rows: &[(usize, R)]) -> Result<(), PartError> {
         let mut lines = String::new();
         for (index, row) in rows {
-            lines += &to_line(*index, row).map_err(self.cannot("write"))?;
+            lines += &to_line(*index, row).map_err(self.error_of("write"))?;
         }
         self.write(&lines)
     }
 
     fn write(&mut self, lines: &str) -> Result<(), PartError> {
         let written = self.file.write_all(lines.as_bytes());
-        written.map_err(self.cannot("write"))
+        written.map_err(self.error_of("write"))
     }
 
     /// Removes the file, after the results are complete.
@@ -459,7 +461,7 @@ impl PartFile {
     pub fn remove(self) -> Result<(), PartError> {
         match fs::remove_file(&self.path) {
             Err(error) if error.kind() != io::ErrorKind::NotFound => {
-                Err(self.cannot("remove")(error))
+                Err(self.error_of("remove")(error))
             }
             _ => Ok(()),
         }
@@ -471,10 +473,10 @@ impl PartFile {
             return Ok(());
         }
         let gone = "it was removed while it was written; compute this part again";
-        Err(self.cannot("keep")(gone))
+        Err(self.error_of("keep")(gone))
     }
 
-    fn cannot<E: Display>(&self, what: &str) -> impl FnOnce(E) -> PartError + use<E> {
+    fn error_of<E: Display>(&self, what: &str) -> impl FnOnce(E) -> PartError + use<E> {
         let what = format!("cannot {what} {}", self.path.display());
         move |error| PartError {
             kind: PartErrorKind::System,
@@ -501,18 +503,18 @@ pub fn merge<R: DeserializeOwned>(paths: &[PathBuf]) -> Result<(Header, Vec<R>),
             });
             if let Some(difference) = difference {
                 let what = format!("does not belong to {}: {difference}", paths[0].display());
-                return Err(unusable(path, what));
+                return Err(unusable_part(path, what));
             }
         }
         let rows = lines.rows(&header)?;
         let (done, all) = (rows.len(), header.shard_cases());
         if done < all {
             let problem = format!("part {shard} has {done} of its {all} cases");
-            return Err(PartErrorKind::Incomplete(shard).of(path, problem));
+            return Err(PartErrorKind::Incomplete(shard).error(path, problem));
         }
         if let Some(earlier) = places.insert(shard.index, path) {
             let what = format!("is part {shard}, and so is {}", earlier.display());
-            return Err(unusable(path, what));
+            return Err(unusable_part(path, what));
         }
         match &mut whole {
             Some((_, all)) => all.extend(rows),
@@ -520,13 +522,13 @@ pub fn merge<R: DeserializeOwned>(paths: &[PathBuf]) -> Result<(Header, Vec<R>),
         }
     }
     let Some((mut header, rows)) = whole else {
-        return Err(unusable(Path::new("merge"), "no parts given"));
+        return Err(unusable_part(Path::new("merge"), "no parts given"));
     };
     let count = header.shard.count;
     if let Some(first) = (1..=count).find(|index| !places.contains_key(index)) {
         let missing = count - places.len();
         let what = format!("{missing} of {count} parts missing: the first is {first}/{count}");
-        return Err(unusable(&paths[0], what));
+        return Err(unusable_part(&paths[0], what));
     }
     header.shard = Shard::WHOLE;
     Ok((header, rows.into_values().collect()))

@@ -11,7 +11,7 @@ use super::page::{Page, PageCases, input_in_words};
 use super::report::Report;
 use super::results::Results;
 use super::statistics::{ascending, fractile, shares_up_to};
-use crate::argument::fixed;
+use crate::argument::format_fixed;
 use crate::output::page::Spot;
 use crate::output::{CURVES, Chart, Figure, Mark, OutputError, Scale, Table, column};
 use crate::scenario::{ModelKind, Scenario};
@@ -81,12 +81,14 @@ impl Report for Summary {
 
 impl Distance {
     fn in_words(&self) -> String {
-        let ([one, other], at_rad) = (&self.models, fixed(self.at_rotation_rad, 4));
-        let [one_there, other_there] = self.shares_there.map(|share| fixed(100.0 * share, 0));
+        let ([one, other], at_rad) = (&self.models, format_fixed(self.at_rotation_rad, 4));
+        let [one_there, other_there] = self
+            .shares_there
+            .map(|share| format_fixed(100.0 * share, 0));
         format!(
             "largest rotation, {one} against {other}: Kolmogorov distance {}, at {at_rad} rad, which {one_there} % and {other_there} % of \
              the cases do not exceed",
-            fixed(self.kolmogorov_distance, 2)
+            format_fixed(self.kolmogorov_distance, 2)
         )
     }
 }
@@ -172,7 +174,7 @@ pub fn results(all: &[(&Scenario, &Results)], figure: Figure) -> Result<Results,
         ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
         let first = cases.add_texts_of(&found.cases);
         for ((_, row), (_, share)) in ranked.iter().zip(distribution) {
-            let share = fixed(100.0 * share, 1);
+            let share = format_fixed(100.0 * share, 1);
             let before = format!("{model}, {share} % of the cases up to here; ");
             cases.push_copy(&before, (&found.cases, first), *row);
         }

@@ -88,7 +88,7 @@ impl<'a> FourLinkStructure<'a> {
     }
 
     /// Places the structure around `middle` in a part of the sheet.
-    fn at(&self, middle: f64, part: Frame) -> PlacedStructure<'a> {
+    fn place_around(&self, middle: f64, part: Frame) -> PlacedStructure<'a> {
         let place = SheetTransform::over(self.scene.blocks_m(), middle, part);
         PlacedStructure { of: *self, place }
     }
@@ -139,7 +139,7 @@ impl PlacedStructure<'_> {
                 Edge::Intrados => -1.0,
                 Edge::Extrados => 1.0,
             };
-            let outward = profile.outward(section);
+            let outward = profile.outward_direction(section);
             // A white ground keeps other lines off the letter.
             let named = Text::from(format!("{letter}{mark}"));
             let half = Vector2::new(0.5 * named.px() + 2.0, 7.5);
@@ -159,7 +159,7 @@ impl PlacedStructure<'_> {
             let e = line.section(section).eccentricity_ratio;
             let e = if e.is_finite() { e } else { 0.0 };
             let out = profile.thickness(section) * e.clamp(-FARTHEST, FARTHEST);
-            let at = profile.middle(section) + profile.outward(section) * out;
+            let at = profile.middle(section) + profile.outward_direction(section) * out;
             self.px(at, sway)
         });
         drawing.curve(name, points, Stroke::new(color::BLUE, 1.8, ""));
@@ -192,7 +192,7 @@ impl PlacedStructure<'_> {
         let closing = closing_field(&before.link.mechanism, profile);
         let field = after.link.mechanism.field();
         let cuts = closing.minus(&field).cuts_rad.into_iter();
-        let mut cuts: Vec<f64> = cuts.map(|cut| sway.from_left(profile, cut)).collect();
+        let mut cuts: Vec<f64> = cuts.map(|cut| sway.convert_section(profile, cut)).collect();
         cuts.sort_by(f64::total_cmp);
         cuts.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
         let hinges = cuts.iter().map(|section| {
@@ -213,7 +213,7 @@ impl PlacedStructure<'_> {
         view.draw_loads(drawing, None, true);
         for (number, ends) in (1..).zip(cuts.windows(2)) {
             let middle = 0.5 * (ends[0] + ends[1]);
-            let at = self.beside(seen, middle) + Vector2::new(0.0, 4.5);
+            let at = self.number_position(seen, middle) + Vector2::new(0.0, 4.5);
             drawing.label(at, Anchor::Middle, 0.0, format!("{number}"));
         }
         let change = closing.minus(&field.scaled(after.link.link.rate_ratio));
@@ -228,10 +228,10 @@ impl PlacedStructure<'_> {
 
     /// Returns the position of the number of a body: outside the extrados of a ring. In a row it is inside the intrados, midway between two
     /// joints, because buttresses stand behind the extrados.
-    fn beside(&self, profile: &dyn Profile, section: f64) -> Vector2<f64> {
+    fn number_position(&self, profile: &dyn Profile, section: f64) -> Vector2<f64> {
         let out = 30.0 / (self.place.scale * self.of.model.length_m());
         let at = |section: f64, edge: Edge, out: f64| {
-            let at = profile.point(section, edge) + profile.outward(section) * out;
+            let at = profile.point(section, edge) + profile.outward_direction(section) * out;
             self.px(at, Sway::Right)
         };
         if profile.joint(section).is_none() {
@@ -298,7 +298,7 @@ pub fn limit(figure: Figure, model: &FourLinks, first: Sway, scene: &Scene) -> S
             move |drawing, part| {
                 for (cell, middle) in cells {
                     let middle = middle * cell_px + 0.5 * (left - right);
-                    let placed = of.at(middle, part);
+                    let placed = of.place_around(middle, part);
                     if cell == 1 {
                         placed.mechanism(drawing, open);
                         continue;
@@ -336,7 +336,7 @@ pub fn impact(figure: Figure, impact: &LinkImpact<'_>, scene: &Scene) -> Option<
     let title = format!(
         "Impact {}{}: restitution (kinetic energy after/before) r = {:.6}; {}",
         impact.index,
-        impact.after_first(),
+        impact.words_after_number(),
         after.link.link.restitution,
         shape(impact.profile())
     );
@@ -357,7 +357,7 @@ pub fn impact(figure: Figure, impact: &LinkImpact<'_>, scene: &Scene) -> Option<
     let arch_px = of.height_px((0.8 * half_px).min(half_px - 2.0 * LETTER_PX));
     sheet.part(PartHeight::Structure(arch_px, arch_px), |drawing, part| {
         for (open, middle) in [(&before, 0.5), (&after, 1.5)] {
-            let placed = of.at(middle * half_px, part);
+            let placed = of.place_around(middle * half_px, part);
             placed.mechanism(drawing, open);
         }
     });
@@ -369,7 +369,7 @@ pub fn impact(figure: Figure, impact: &LinkImpact<'_>, scene: &Scene) -> Option<
     let middle = 0.5 * (figure.width_px + left - right);
     let arch_px = of.height_px(width_px);
     sheet.part(PartHeight::Structure(arch_px, arch_px), |drawing, part| {
-        let placed = of.at(middle, part);
+        let placed = of.place_around(middle, part);
         if is_wide {
             draw_dimensions(drawing, &placed.place, scene, Language::English);
         }

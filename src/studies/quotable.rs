@@ -48,7 +48,7 @@ impl SlipWords {
     /// Returns the words for a scenario.
     pub(super) fn of(scenario: &Scenario) -> Self {
         let (structure, motion) = (&scenario.structure, &scenario.motion);
-        let arch = structure.circular();
+        let arch = structure.circular_arch();
         let is_continuous = arch.is_some_and(|arch| arch.voussoirs.is_none());
         let has_free_hinges = structure.wall_behind().is_none() && !is_continuous;
         let is_free = motion.kind == &FREE_HINGES && !motion.ignores_elastic_joints;
@@ -101,14 +101,14 @@ impl FrictionCondition {
             false => format!(
                 " if {} a friction coefficient of {}",
                 self.surfaces,
-                in_digits(self.coefficient)
+                format_friction(self.coefficient)
             ),
         }
     }
 
     /// Returns the condition in words; `need` is a verb with its subject.
     fn in_words(&self, need: &str) -> String {
-        let condition = needed(self.coefficient, need);
+        let condition = friction_in_words(self.coefficient, need);
         if !self.may_slip() {
             return condition;
         }
@@ -133,7 +133,7 @@ fn may_slip(coefficient: f64) -> bool {
 }
 
 /// Returns a needed friction coefficient in words, and whether joints of stone may slip under weaker motions. `need` is a verb with its subject.
-fn needed(coefficient: f64, need: &str) -> String {
+fn friction_in_words(coefficient: f64, need: &str) -> String {
     let need = match coefficient > MOST_FRICTION {
         true => need.trim_end_matches(" up to"),
         false => need,
@@ -143,20 +143,20 @@ fn needed(coefficient: f64, need: &str) -> String {
     } else {
         ""
     };
-    format!("{before}{need} {}", in_digits(coefficient))
+    format!("{before}{need} {}", format_friction(coefficient))
 }
 
 /// Returns the friction coefficient that a history needs, in words; `None` if stone certainly has it.
 pub(super) fn condition_of(demand: Option<f64>) -> Option<String> {
     let demand = demand.filter(|demand| *demand > STONE_FRICTION[0])?;
-    Some(needed(demand, NEEDS))
+    Some(friction_in_words(demand, NEEDS))
 }
 
 /// Coefficient of friction above which values are not printed. No stone has them; they occur at almost unloaded joints.
 pub(super) const MOST_FRICTION: f64 = 10.0;
 
 /// Returns a needed coefficient of friction as text, rounded up: with less, joints slip.
-fn in_digits(coefficient: f64) -> String {
+fn format_friction(coefficient: f64) -> String {
     match coefficient > MOST_FRICTION {
         true => format!("more than {MOST_FRICTION}"),
         false => format!("{:.2}", libm::ceil(100.0 * coefficient - 1e-9) / 100.0),
@@ -343,7 +343,7 @@ fn outside_four_links(excess_ratio: Option<f64>) -> Option<String> {
 pub(super) const NO_ANSWER: &str = "to quote: no answer";
 
 /// Returns the answer that may be quoted, in words; `None` without models.
-pub fn in_words(answers: &[ModelAnswer]) -> Option<String> {
+pub fn quote_answers(answers: &[ModelAnswer]) -> Option<String> {
     let best = answers.iter().max_by_key(|one| one.model.rank())?;
     let label = best.label;
     let more = match best.model {

@@ -90,7 +90,11 @@ impl StepRange {
 
 impl Remarks {
     /// Adds the ending of a case, or the reason of its failure. A structure that cannot stand, or is no mechanism of four links, is no failure.
-    pub(crate) fn note(&mut self, case: impl Fn() -> String, result: &Result<Ending, NoHistory>) {
+    pub(crate) fn add_case(
+        &mut self,
+        case: impl Fn() -> String,
+        result: &Result<Ending, NoHistory>,
+    ) {
         match result {
             Ok(ending) => {
                 self.uncertain.extend(ending.doubt().map(|count| Remark {
@@ -110,7 +114,7 @@ impl Remarks {
     pub(crate) fn note_history(&mut self, ending: &Ending) {
         self.histories += 1;
         self.histories_without_verdict += usize::from(ending.verdict() == Verdict::Incomplete);
-        self.model.note(ending.thrust_excess_ratio);
+        self.model.add_history(ending.thrust_excess_ratio);
         if let Some(steps) = ending.steps {
             self.longest_step_s = StepRange::with(self.longest_step_s, steps.longest_s);
             self.shortest_step_s = StepRange::with(self.shortest_step_s, steps.shortest_s);
@@ -185,7 +189,7 @@ impl ModelCheck {
         let mut check = Self::default();
         excess_ratios
             .into_iter()
-            .for_each(|ratio| check.note(ratio));
+            .for_each(|ratio| check.add_history(ratio));
         check
     }
 
@@ -212,7 +216,7 @@ impl ModelCheck {
     }
 
     /// Adds a history.
-    fn note(&mut self, excess_ratio: Option<f64>) {
+    fn add_history(&mut self, excess_ratio: Option<f64>) {
         let Some(ratio) = excess_ratio else {
             return;
         };

@@ -124,7 +124,7 @@ pub(super) fn shares_up_to(values: impl IntoIterator<Item = [f64; 2]>) -> Vec<(f
 /// Computes a quantile of ascending values, for a `part` of 0 to 1. Value `i` of `n`, counted from 1, is the quantile of `(i - 1/2) / n`
 /// (Hazen). Quantiles between neighbours are interpolated linearly. Infinite if a neighbour is infinite; `None` without values.
 pub fn quantile(ascending: &[f64], part: f64) -> Option<f64> {
-    between(&alike(ascending), part, |low, high, way| {
+    interpolate_quantile(&equal_weights(ascending), part, |low, high, way| {
         low + way * (high - low)
     })
 }
@@ -132,12 +132,12 @@ pub fn quantile(ascending: &[f64], part: f64) -> Option<f64> {
 /// Computes a fractile of ascending values of at least 0 as [`quantile`] does, but interpolates logarithms: strengths and peaks scatter by
 /// ratios. 0 if the lower neighbour is 0.
 pub fn fractile(ascending: &[f64], part: f64) -> Option<f64> {
-    weighted_fractile(&alike(ascending), part)
+    weighted_fractile(&equal_weights(ascending), part)
 }
 
 /// Computes a fractile of values with weights, [ascending](ascending_weighted). A value lies in the middle of its weight.
 pub fn weighted_fractile(ascending: &[[f64; 2]], part: f64) -> Option<f64> {
-    between(ascending, part, |low, high, way| {
+    interpolate_quantile(ascending, part, |low, high, way| {
         if low > 0.0 {
             low * libm::exp(way * libm::log(high / low))
         } else {
@@ -146,12 +146,12 @@ pub fn weighted_fractile(ascending: &[[f64; 2]], part: f64) -> Option<f64> {
     })
 }
 
-fn alike(values: &[f64]) -> Vec<[f64; 2]> {
+fn equal_weights(values: &[f64]) -> Vec<[f64; 2]> {
     values.iter().map(|value| [*value, 1.0]).collect()
 }
 
 /// Interpolates between the neighbours of a quantile of values with weights.
-fn between(
+fn interpolate_quantile(
     ascending: &[[f64; 2]],
     part: f64,
     interpolate: impl Fn(f64, f64, f64) -> f64,
@@ -237,7 +237,7 @@ pub const REPLICATES: usize = 300;
 pub(super) struct RandomNumbers(u64);
 
 impl RandomNumbers {
-    pub(super) fn next(&mut self) -> u64 {
+    pub(super) fn next_number(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut mixed = self.0;
         mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -247,14 +247,14 @@ impl RandomNumbers {
 
     /// Returns a number below `count`.
     fn index(&mut self, count: usize) -> usize {
-        ((u128::from(self.next()) * count as u128) >> 64) as usize
+        ((u128::from(self.next_number()) * count as u128) >> 64) as usize
     }
 
     /// Returns a number from the standard normal distribution (Box and Muller 1958).
     pub(super) fn normal(&mut self) -> f64 {
         // The middle of one of 2^53 equal parts of 0 to 1.
         let [radius, angle] =
-            [(); 2].map(|()| ((self.next() >> 11) as f64 + 0.5) / (1_u64 << 53) as f64);
+            [(); 2].map(|()| ((self.next_number() >> 11) as f64 + 0.5) / (1_u64 << 53) as f64);
         (-2.0 * libm::log(radius)).sqrt() * libm::cos(std::f64::consts::TAU * angle)
     }
 }

@@ -16,5 +16,5 @@ mod number;
 mod shown;
 
 pub use message::{ensure, excerpt};
-pub use number::{fixed, plain, short};
+pub use number::{format_fixed, plain, short};
 pub use shown::{is_hidden, shown, shown_lines};

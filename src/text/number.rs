@@ -7,7 +7,7 @@ pub fn plain(x: f64) -> String {
 }
 
 /// Returns a number with `decimals` decimals; zero has no sign.
-pub fn fixed(x: f64, decimals: usize) -> String {
+pub fn format_fixed(x: f64, decimals: usize) -> String {
     let text = format!("{x:.decimals$}");
     match text.strip_prefix('-') {
         Some(size) if text.parse() == Ok(0.0) => size.to_owned(),

@@ -35,8 +35,8 @@ impl MomentumTheorems {
                 whole.linear.x,
                 whole.linear.y,
                 whole.angular,
-                first.about(point_b),
-                last.about(point_c),
+                first.moment_about(point_b),
+                last.moment_about(point_c),
             )
         };
         let of_field =

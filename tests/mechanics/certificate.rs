@@ -129,7 +129,7 @@ fn the_field_opens_joints_and_has_the_reported_energy() {
         // Both springings stand still, so the rotations close. The tolerances are those of the solver, 1e-10,
         // summed over the joints.
         let end = projection.joints.last().unwrap().angle_rad;
-        let right = field.at(end, archrock::mechanics::Side::After);
+        let right = field.twist_at(end, archrock::mechanics::Side::After);
         assert!(
             right.rate.abs() < 1e-8 && right.at_center.norm() < 1e-8,
             "{right:?}"
@@ -155,7 +155,7 @@ fn the_impulses_are_compressive_inside_the_ring_and_complementary() {
         let vector = |joint: &archrock::mechanics::four_link::Joint| {
             let (tangent, radial) = (
                 case.ring.tangent(joint.angle_rad),
-                case.ring.radial(joint.angle_rad),
+                case.ring.radial_direction(joint.angle_rad),
             );
             let impulse = tangent * joint.impulse.normal + radial * joint.impulse.tangential;
             let arm = radial * (1.0 + joint.impulse.eccentricity_ratio * case.ring.thickness_ratio);
@@ -206,7 +206,7 @@ fn no_four_link_mechanism_keeps_more() {
             let joints = joints_rad(&ring, ANYWHERE, 180, None);
             let stop = project(&closing_field(&closing, &ring), &ring, &joints).unwrap();
             assert!(stop.restitution < 1e-12, "{}", stop.restitution);
-            assert!(stop.opened().next().is_none());
+            assert!(stop.opening_joints().next().is_none());
             continue;
         };
         let second = Case::after(ring, ANYWHERE, &first.next.mechanism);
@@ -257,7 +257,7 @@ fn if_four_joints_open_both_methods_agree() {
             };
             let projection = case.project(DEFAULT_JOINTS);
             let gap = projection.restitution - case.next.restitution;
-            let opened: Vec<_> = projection.opened().collect();
+            let opened: Vec<_> = projection.opening_joints().collect();
             let extremes = case
                 .next
                 .impulse_line
@@ -296,7 +296,7 @@ fn a_ring_that_moves_admissibly_loses_nothing() {
         "{}",
         found.restitution
     );
-    let opened: Vec<_> = found.opened().collect();
+    let opened: Vec<_> = found.opening_joints().collect();
     for ((_, _, rate), expected) in opened.iter().zip(case.next.mechanism.openings) {
         // Impulses vanish together with openings at the other joints; this leaves the square root of the tolerance.
         assert!((rate - expected.abs()).abs() < 1e-5);

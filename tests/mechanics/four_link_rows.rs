@@ -109,7 +109,7 @@ fn many_sided_voussoirs_converge_to_sectors() {
     let errors = [8, 16, 32].map(|sides| {
         let outline = |ends: &[f64]| {
             let at = |i: u32| ends[0] + (ends[1] - ends[0]) * f64::from(i) / f64::from(sides);
-            let point = |i, radius: f64| ring(157.5).radial(at(i)) * (5.0 * radius);
+            let point = |i, radius: f64| ring(157.5).radial_direction(at(i)) * (5.0 * radius);
             let outer = (0..=sides).map(|i| point(i, 1.075));
             outer
                 .chain((0..=sides).rev().map(|i| point(i, 0.925)))
@@ -274,8 +274,8 @@ fn the_certificate_bounds_the_impact_of_a_row() {
         for (section, edge) in own.mechanism.hinges_from_left(profile, Sway::Right) {
             let moment = line
                 .resultants
-                .at(section)
-                .about(profile.point(section, edge));
+                .resultant_at(section)
+                .moment_about(profile.point(section, edge));
             assert!(moment.abs() < 1e-12);
         }
     }
@@ -314,7 +314,9 @@ fn the_thrust_line_in_motion_passes_through_the_hinges() {
         let line = linkage.thrust_line(&motion);
         let profile = chain.profile(0);
         for (section, edge) in link.mechanism.hinges_from_left(profile, Sway::Right) {
-            let moment = line.at(section).about(profile.point(section, edge));
+            let moment = line
+                .resultant_at(section)
+                .moment_about(profile.point(section, edge));
             assert!(moment.abs() < 1e-12, "{moment}");
         }
     }

@@ -155,9 +155,12 @@ fn quadrature(v: &Field, w: &Field, ring: &Ring, cuts: u32) -> f64 {
         for j in 0..layers {
             let r = inner + t * (f64::from(j) + 0.5) / f64::from(layers);
             let area = r * t / f64::from(layers) * ring.embrace_rad / f64::from(cuts);
-            let point = ring.radial(angle) * r;
-            let (at_v, at_w) = (v.at(angle, Side::After), w.at(angle, Side::After));
-            sum += area * at_v.at(point).dot(&at_w.at(point));
+            let point = ring.radial_direction(angle) * r;
+            let (at_v, at_w) = (
+                v.twist_at(angle, Side::After),
+                w.twist_at(angle, Side::After),
+            );
+            sum += area * at_v.velocity_at(point).dot(&at_w.velocity_at(point));
         }
     }
     sum

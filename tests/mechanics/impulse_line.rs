@@ -230,8 +230,8 @@ fn the_frame_of_the_ground_is_the_mirror_image_for_a_sway_to_the_left() {
         .hinges_from_left(ring, sway)[0];
     let section = line.section_from_left(angle, sway);
     let [at_a, ..] = line.hinge_impulses_from_left(sway);
-    assert!((section.normal - at_a.dot(&ring.onward(angle))).abs() < 1e-12);
-    assert!((section.tangential - at_a.dot(&ring.outward(angle))).abs() < 1e-12);
+    assert!((section.normal - at_a.dot(&ring.onward_normal(angle))).abs() < 1e-12);
+    assert!((section.tangential - at_a.dot(&ring.outward_direction(angle))).abs() < 1e-12);
     let extremes = line.extremes_from_left(ANYWHERE, sway);
     let there = line.section_from_left(extremes.normal.angle_rad, sway);
     assert!((there.normal - extremes.normal.value).abs() < 1e-15);
@@ -245,9 +245,9 @@ fn the_part_that_stands_is_stopped_by_its_own_impulses() {
     let link = chain.link(2).unwrap();
     let [first, ..] = link.mechanism.hinges_rad;
     let closing = closing_field(&chain.link(1).unwrap().mechanism, chain.profile(0));
-    assert!(first > 0.09 && closing.at(0.5 * first, Side::After).rate.abs() > 0.01);
+    assert!(first > 0.09 && closing.twist_at(0.5 * first, Side::After).rate.abs() > 0.01);
     let line = &link.impulse_line.as_ref().unwrap().resultants;
-    let gained = line.at(first) - line.at(0.0);
+    let gained = line.resultant_at(first) - line.resultant_at(0.0);
     let lost = closing.momentum_to(chain.profile(0), first);
     assert!((gained - lost).linear.norm() < 1e-14);
 }
@@ -484,7 +484,7 @@ fn impulses_of_a_run_are_in_newton_seconds() {
             + right.momentum(&ring.sector(closing_c.to_radians(), PI));
         let after =
             about(point_d, value("rate_right_after_rad_s")).momentum(&ring.sector(from, PI));
-        let gain = (after - before).about(point_c) * (mass * radius * radius);
+        let gain = (after - before).moment_about(point_c) * (mass * radius * radius);
         let moment = ((point_d - point_c) * radius).perp(&d);
         assert!(
             (gain - moment).abs() < 1e-8 * moment.abs(),

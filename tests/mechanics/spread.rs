@@ -449,7 +449,7 @@ fn an_arch_falls_when_its_energy_minimum_vanishes() {
                 assert_eq!(reached.unwrap(), None);
                 let crown = row.joints[voussoirs / 2].extrados_m;
                 let pose = follower.stance.placement.poses[voussoirs / 2 - 1];
-                let drop = (crown - pose.of(crown)).y;
+                let drop = (crown - pose.current_position(crown)).y;
                 // The judge rests where no block goes by more than 1e-7.
                 assert!((drop - blocks.crown_drop()).abs() < 1e-6, "{what}: {drop}");
             }
@@ -587,7 +587,7 @@ fn a_tied_arch_follows_its_energy_minimum() {
                 break;
             }
             let crown = row.joints[8].extrados_m;
-            let drop = (crown - follower.stance.placement.poses[7].of(crown)).y;
+            let drop = (crown - follower.stance.placement.poses[7].current_position(crown)).y;
             let force = follower.stance.forces_n().sum::<f64>() / weight_n;
             let due = blocks.pull(&blocks.bars[0]);
             // The judge rests where no block goes by more than 1e-7, and where it is that times the stiffness.
@@ -680,7 +680,7 @@ fn an_arch_with_two_ties_follows_its_energy_minimum() {
             blocks.support = direction.map(|part| part * to);
             assert!(blocks.settle(), "{what}");
             let crown = row.joints[8].extrados_m;
-            let drop = (crown - follower.stance.placement.poses[7].of(crown)).y;
+            let drop = (crown - follower.stance.placement.poses[7].current_position(crown)).y;
             assert!((drop - blocks.crown_drop()).abs() < 2e-6, "{what}: {drop}");
             let forces = follower.stance.forces_n().map(|force_n| force_n / weight_n);
             let pairs: Vec<(f64, f64)> = forces
@@ -781,12 +781,12 @@ fn commands_report_an_arch_held_by_its_tie() {
     let blocks = named(&picture, "block 1");
     assert_eq!((ties.len(), blocks.len()), (2, 2));
     for ((tie, block), stage) in ties.iter().zip(&blocks).zip(last) {
-        let corner_m = |corner: usize| stage.poses[0].of(row.outlines_m[0][corner]);
+        let corner_m = |corner: usize| stage.poses[0].current_position(row.outlines_m[0][corner]);
         let (tie_px, block_px) = (points(tie), points(block));
         let apart_m = corner_m(1) - corner_m(0);
         let scale = (block_px[1] - block_px[0]).norm() / apart_m.norm();
         for (end_px, anchor) in tie_px.iter().zip(row.ties[0].ends) {
-            let end_m = stage.poses[anchor.block.unwrap()].of(anchor.at_m);
+            let end_m = stage.poses[anchor.block.unwrap()].current_position(anchor.at_m);
             let from_m = end_m - corner_m(0);
             let due_px = block_px[0] + Vector2::new(from_m.x, -from_m.y) * scale;
             // Coordinates have two digits of a pixel, and the scale is that of a joint.
@@ -1332,7 +1332,7 @@ fn pins_may_change_sides() {
     for stage in &path.stages {
         assert_eq!(stage.not_found, []);
         for (sway, first_g) in stage.first_motion_g.iter() {
-            assert!(first_g.unwrap() <= stage.capacity_g.to(sway).unwrap());
+            assert!(first_g.unwrap() <= stage.capacity_g.get(sway).unwrap());
         }
     }
 }

@@ -76,9 +76,9 @@ fn at_the_onset_it_is_the_line_of_limit_analysis() {
         );
         for i in 0..=50 {
             let angle = arch.chain().profile(0).end() * f64::from(i) / 50.0;
-            let expected = incipient.thrust_line.at(angle);
+            let expected = incipient.thrust_line.resultant_at(angle);
             for line in [&line, &at_rest] {
-                let difference = line.at(angle) - expected;
+                let difference = line.resultant_at(angle) - expected;
                 assert!(difference.linear.norm() < 1e-12, "{angle}");
                 assert!(difference.angular.abs() < 1e-12, "{angle}");
             }
@@ -152,7 +152,7 @@ fn hinge_forces_and_acceleration_solve_the_equilibrium_of_three_bodies() {
             let turns = [0.0, now.0[0], now.0[1], now.0[2], 0.0];
             for hinge in 0..4 {
                 let force = nalgebra::Rotation2::new(turns[hinge])
-                    * line.at(mechanism.hinges_rad[hinge]).linear;
+                    * line.resultant_at(mechanism.hinges_rad[hinge]).linear;
                 let expected = Vector2::new(solution[2 * hinge], solution[2 * hinge + 1]);
                 assert!(
                     (force - expected).norm() < tolerance,
@@ -180,9 +180,12 @@ fn the_line_passes_through_the_hinges_from_both_sides() {
                     // Resultants of both parts that meet there: the moment about the hinge is zero, and the forces
                     // are equal except for the rotation. For B, on its left side, this is the equation of motion.
                     let forces = [parts[hinge], parts[hinge + 1]].map(|part| {
-                        let resultant = part.at(ring, angle);
+                        let resultant = part.resultant_at(ring, angle);
                         let scale = 1.0 + resultant.linear.norm();
-                        assert!(resultant.about(pole).abs() < 1e-12 * scale, "{hinge}");
+                        assert!(
+                            resultant.moment_about(pole).abs() < 1e-12 * scale,
+                            "{hinge}"
+                        );
                         resultant.linear.norm()
                     });
                     assert!((forces[0] - forces[1]).abs() < 1e-12 * (1.0 + forces[0]));
@@ -200,7 +203,7 @@ fn the_parts_that_stand_carry_their_weight_to_the_springings() {
     let a = arch.chain().link(0).unwrap().mechanism.hinges_rad[0];
     let line = linkage.thrust_line(&motion(linkage, 0.02, 0.1, 0.0));
     // Nothing accelerates before A: between springing and hinge the force grows by the weight.
-    let weight = line.at(a).linear - line.at(0.0).linear;
+    let weight = line.resultant_at(a).linear - line.resultant_at(0.0).linear;
     let expected = Vector2::new(0.0, -ring.sector(0.0, a).mass);
     assert!((weight - expected).norm() < 1e-14);
 }
@@ -220,7 +223,7 @@ fn at_rest_the_line_stays_inside_up_to_the_onset() {
                 ring,
                 body_force,
             );
-            let load = line.at(ring.end()).linear - line.at(0.0).linear;
+            let load = line.resultant_at(ring.end()).linear - line.resultant_at(0.0).linear;
             let mass = ring.moments_to(ring.end()).mass;
             assert!((load - body_force * mass).norm() < 1e-14);
         }

@@ -87,7 +87,7 @@ fn extreme_push(row: &Row, sway: Sway, bounds: &[[f64; 2]], sign: f64) -> Option
     };
     for (index, joint) in row.joints.iter().enumerate() {
         // Normal force and moments on the part before the joint: compression at both corners.
-        let along = joint.along();
+        let along = joint.direction();
         let across = Vector2::new(-along.y, along.x) * -row.handedness;
         for corner in [Edge::Intrados, Edge::Extrados] {
             // The moment about one corner equals the force at the other times the distance.
@@ -114,7 +114,7 @@ fn extreme_push(row: &Row, sway: Sway, bounds: &[[f64; 2]], sign: f64) -> Option
             known[axis] += falls[axis];
         }
         for (number, tie) in row.ties.iter().enumerate() {
-            for (anchor, towards) in tie.ends.iter().zip([tie.along(), -tie.along()]) {
+            for (anchor, towards) in tie.ends.iter().zip([tie.direction(), -tie.direction()]) {
                 if anchor.block == Some(index) {
                     let pull = wrench(anchor.at_m, towards);
                     let sums = by_unknown[4 + number].iter_mut();

@@ -286,7 +286,7 @@ fn drums_stay_before_the_wall() {
             for (drum, pose) in sample.poses.iter().enumerate() {
                 for corner in [drum, drum + 1] {
                     let y_m = part_m * corner as f64;
-                    let at_m = pose.of(Vector2::new(-0.5 * WIDTH_M, y_m));
+                    let at_m = pose.current_position(Vector2::new(-0.5 * WIDTH_M, y_m));
                     assert!(
                         at_m.x > -0.5 * WIDTH_M - 2e-3 || at_m.y > HEIGHT_M,
                         "{at_m}"

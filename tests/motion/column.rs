@@ -357,7 +357,7 @@ fn too_many_events_are_an_error_with_a_remedy() {
     };
     let start = RockingState::new(0.1, 0.0, 0.0);
     let result = |most| {
-        let mode = rocking.released(Sway::Right);
+        let mode = rocking.released_mode(Sway::Right);
         simulate(&rocking, mode, start, &settings(most), &mut Nobody)
     };
     let error = result(5).unwrap_err();

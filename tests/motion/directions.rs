@@ -275,7 +275,7 @@ struct FirstRepetitions {
 }
 
 impl Jobs for FirstRepetitions {
-    fn next(&mut self) -> Option<Job> {
+    fn next_job(&mut self) -> Option<Job> {
         Some(Job {
             case: self.waiting.pop()?,
             repetition: Some(0),
@@ -283,7 +283,7 @@ impl Jobs for FirstRepetitions {
         })
     }
 
-    fn ended(&mut self, job: Job, answer: Result<Summary, SimulationError>) {
+    fn receive_result(&mut self, job: Job, answer: Result<Summary, SimulationError>) {
         self.ended[job.case] = Some(answer.unwrap());
     }
 }

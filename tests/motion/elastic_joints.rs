@@ -246,7 +246,7 @@ fn the_crown_of_a_published_arch_has_the_published_motion() {
     let model = ElasticJoints::new(lemos(), properties).unwrap();
     let (mut start_m, mut peak) = (None, (0.0, 0.0));
     let mut recorder = |sample: &Sample| {
-        let crown_m = sample.poses[8].of(Vector2::new(0.0, 4.2)).x;
+        let crown_m = sample.poses[8].current_position(Vector2::new(0.0, 4.2)).x;
         let moved_m = crown_m - *start_m.get_or_insert(crown_m);
         if moved_m > peak.0 {
             peak = (moved_m, sample.time_s);
@@ -376,11 +376,11 @@ impl Everything {
 }
 
 impl Jobs for Everything {
-    fn next(&mut self) -> Option<Job> {
+    fn next_job(&mut self) -> Option<Job> {
         self.waiting.pop()
     }
 
-    fn ended(&mut self, job: Job, answer: Result<Summary, SimulationError>) {
+    fn receive_result(&mut self, job: Job, answer: Result<Summary, SimulationError>) {
         self.answers.push((job, answer.unwrap()));
     }
 }
@@ -448,7 +448,7 @@ fn the_energy_balance_closes_with_the_square_of_the_step() {
             let summary = model
                 .simulate(&ground.unwrap(), &request(9.81, 0.8), None)
                 .unwrap();
-            let elastic = summary.elastic().unwrap();
+            let elastic = summary.elastic_summary().unwrap();
             assert!(
                 elastic.damped_j > 0.0 && elastic.friction_j >= 0.0 && elastic.crushed_j >= 0.0
             );
@@ -734,7 +734,7 @@ fn no_history_fails_silently() {
         };
         let summary = model.simulate(&ground, &request(9.81, end_s), None);
         let summary = summary.unwrap_or_else(|error| panic!("{case}: {error}; {properties:?}"));
-        let (row, elastic) = (summary.row().unwrap(), summary.elastic().unwrap());
+        let (row, elastic) = (summary.row().unwrap(), summary.elastic_summary().unwrap());
         for taken_j in [elastic.friction_j, elastic.damped_j, elastic.crushed_j] {
             assert!(taken_j > -1e-6 * unit_j, "{case}: {taken_j}");
         }
@@ -775,14 +775,14 @@ fn friction_at_points_takes_energy_and_slips_are_compared() {
             .unwrap()
             .largest_offsets_m[0]
     };
-    let friction_j = |own: &Summary| own.elastic().unwrap().friction_j;
+    let friction_j = |own: &Summary| own.elastic_summary().unwrap().friction_j;
     assert!((slip_m(&fine.1) / 3.36e-3 - 1.0).abs() < 0.01);
     let fine_j = friction_j(&fine.1);
     assert!((fine_j / 1.88 - 1.0).abs() < 0.03, "{fine_j}");
     let own_j = friction_j(&own.1);
     assert!(own_j > 0.0, "{own_j}");
     // The rows add up.
-    let elastic = own.1.elastic().unwrap();
+    let elastic = own.1.elastic_summary().unwrap();
     let taken_j = elastic.damped_j + elastic.friction_j + elastic.crushed_j;
     assert!((own.1.row().unwrap().energy_taken_j / taken_j - 1.0).abs() < 1e-12);
     let slip = own.0.slips_m[own.0.uncertain_slip().unwrap()];

@@ -175,7 +175,7 @@ fn onset_by_linear_program(row: &Row, sway: Sway) -> Option<f64> {
         right[3 * index + 1] = block.mass_kg / mass;
     }
     for (index, joint) in row.joints.iter().enumerate() {
-        let along = joint.along();
+        let along = joint.direction();
         let normal = Vector2::new(-along.y, along.x) * row.handedness;
         let forces = [
             (joint.intrados_m, normal),
@@ -270,7 +270,7 @@ fn a_full_closure_keeps_the_energy_of_the_cone() {
         let free: Vec<Twist> = (0..voussoirs)
             .map(|i| {
                 let middle = ring.embrace_rad * (i as f64 + 0.5) / voussoirs as f64;
-                closing.at(middle, Side::After)
+                closing.twist_at(middle, Side::After)
             })
             .collect();
         let row = Row::arch(&ring, voussoirs, 1.0, 1.0, 1.0).unwrap();
@@ -935,7 +935,7 @@ impl Recorder for Potential<'_> {
             .blocks
             .iter()
             .zip(&sample.poses)
-            .map(|(block, pose)| block.mass_kg * pose.of(block.centre_m).y);
+            .map(|(block, pose)| block.mass_kg * pose.current_position(block.centre_m).y);
         let before_rad = self.at.last().map_or(0.0, |at| at.2);
         let rotations_rad = sample.rotations_rad.iter().map(|rotation| rotation.abs());
         let peak_rad = rotations_rad.fold(before_rad, f64::max);

@@ -60,7 +60,7 @@ fn assert_works(ground: Result<GroundMotion, GroundError>, other: f64) {
     for piece in pieces {
         let end_s = piece.end_s.min(piece.start_s + 1e9);
         for time_s in [piece.start_s, 0.5 * (piece.start_s + end_s), end_s] {
-            let (acceleration, rate) = piece.at(time_s);
+            let (acceleration, rate) = piece.acceleration_and_rate(time_s);
             assert!(
                 acceleration.iter().chain(&rate).all(|x| x.is_finite()),
                 "{piece:?}"

@@ -209,7 +209,8 @@ fn an_arch_starts_with_the_energy_of_its_mechanism() {
             let (before, after) = (placed(from), placed(to));
             let blocks = row.blocks.iter().zip(before.poses.iter().zip(&after.poses));
             let twice = blocks.map(|(block, (before, after))| {
-                let moved_m = after.of(block.centre_m) - before.of(block.centre_m);
+                let moved_m = after.current_position(block.centre_m)
+                    - before.current_position(block.centre_m);
                 let turned = after.rotation_rad() - before.rotation_rad();
                 (block.mass_kg * moved_m.norm_squared() + block.inertia_kg_m2 * turned * turned)
                     / (to - from).powi(2)

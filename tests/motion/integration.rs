@@ -216,7 +216,7 @@ impl HybridSystem<2> for Ball {
         State::<2>::new(now.state[1], wind - self.gravity)
     }
 
-    fn between(&self, step: &Step<2>, time_s: f64) -> State<2> {
+    fn interpolate(&self, step: &Step<2>, time_s: f64) -> State<2> {
         let since = time_s - step.start_s;
         let acceleration = step.start_slope[1];
         State::<2>::new(

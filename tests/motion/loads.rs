@@ -215,7 +215,7 @@ fn statics_and_impacts_are_those_of_the_moments() {
             let critical = model.critical_rotations_rad(*sway)[0].abs();
             assert!((critical - body.critical()).abs() < 1e-14);
             for part in [0.0, 0.3, 0.9] {
-                let displaced = model.displaced(*sway, part).unwrap();
+                let displaced = model.displaced_mechanism(*sway, part).unwrap();
                 let push_g = displaced.acceleration_g;
                 let scale = body.onset_g() * body.inertia_kg_m2() * GRAVITY_M_S2;
                 let moment = body.moment_n_m(part * critical, [-push_g, 0.0]);

@@ -47,7 +47,7 @@ fn assert_joined(sample: &Sample, point: impl Fn(Hinge) -> Vector2<f64>) {
     let bodies: Vec<&Pose> = ground.iter().chain(&sample.poses).chain(&ground).collect();
     for (i, open) in sample.hinges.iter().enumerate() {
         for body in [bodies[i], bodies[i + 1]] {
-            let error_m = (body.of(point(open.hinge)) - open.position_m).norm();
+            let error_m = (body.current_position(point(open.hinge)) - open.position_m).norm();
             assert!(
                 error_m < 1e-12,
                 "{open:?} at {} s: {error_m}",

@@ -137,7 +137,7 @@ fn an_elastic_row_at_rest_hardly_moves() {
         let ground = scenario.ground_motion();
         let summary = model.simulate(ground, &scenario.request(), Some(&mut record));
         let summary = summary.unwrap();
-        let elastic = summary.elastic().unwrap();
+        let elastic = summary.elastic_summary().unwrap();
         outcomes.push(summary.outcome);
         if summary.outcome == Outcome::Rest {
             let (_, last) = rotations.last().unwrap();

@@ -370,7 +370,7 @@ impl Recorder for Block {
                 continue;
             };
             let side = if edge == Edge::Intrados { -1.0 } else { 1.0 };
-            let own = pose.of(Vector2::new(side * self.half_width_m, 0.0));
+            let own = pose.current_position(Vector2::new(side * self.half_width_m, 0.0));
             let miss_m = (open.position_m - own).norm();
             assert!(miss_m < 1e-9, "{} {edge:?} {miss_m}", sample.time_s);
             self.hinges += 1;
@@ -1084,7 +1084,7 @@ fn every_step_solves_the_complementarity_problem() {
         let kick = Vector3::new(push, lift - 1.0, 0.0) * (GRAVITY * step);
         let free: Vec<Vector3<f64>> = velocities.iter().map(|v| v + kick).collect();
         let before = program.impulses.to_vec();
-        program.place(&faces, &contacts, &positions);
+        program.set_positions(&faces, &contacts, &positions);
         program.load(|block| free[block]);
         let solution = program.solve(|joint| lags[joint], 1e-9 * (GRAVITY * step + fastest));
         assert!(solution.bound_error < 1e-9, "{count} {solution:?}");

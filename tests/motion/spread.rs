@@ -144,7 +144,10 @@ fn a_settled_arch_stays_at_rest() {
                 assert_eq!(open, expected);
                 for (pose, there) in sample.poses.iter().zip(&follower.stance.placement.poses) {
                     let centre = row.blocks[0].centre_m;
-                    assert!((pose.of(centre) - there.of(centre)).norm() < 1e-12);
+                    assert!(
+                        (pose.current_position(centre) - there.current_position(centre)).norm()
+                            < 1e-12
+                    );
                 }
             }
         }

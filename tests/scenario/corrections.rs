@@ -207,7 +207,7 @@ fn checks_correct_their_records() {
         Ok(&scenario)
     );
     let verify = scenario.verify.as_ref().unwrap();
-    let records = verify.records.of(LimitState::Slv);
+    let records = verify.records.records_of(LimitState::Slv);
     assert_eq!(records.len(), 3);
     for series in records {
         assert_eq!(

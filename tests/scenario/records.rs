@@ -71,7 +71,7 @@ fn further_corners_change_nothing() {
         let value = |ground: &GroundMotion| {
             let pieces = &ground.pieces;
             let piece = pieces.iter().rfind(|p| p.start_s <= *corner).unwrap();
-            piece.at(*corner)
+            piece.acceleration_and_rate(*corner)
         };
         assert_eq!(value(&ground), value(&cut));
     }
@@ -287,7 +287,7 @@ fn the_ground_has_the_recorded_velocities() {
                 expected_m += 0.5 * (gained(*v) + gained(v0)) * (t - t0);
             }
             assert!(
-                (velocity.at(0.7 + t)[axis] - gained(*v)).abs() < 1e-11,
+                (velocity.velocity_at(0.7 + t)[axis] - gained(*v)).abs() < 1e-11,
                 "{t}"
             );
             assert!((displacements[i][axis] - expected_m).abs() < 1e-11, "{t}");

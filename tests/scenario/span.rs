@@ -118,7 +118,7 @@ fn dimensions_are_printed_as_given() {
         assert_eq!(dimensions[1].words, "rise 1.4 m at the intrados");
         let [left, right] = dimensions[0].ends_m;
         assert!((right.x - left.x - 4.2).abs() < 1e-12);
-        let words = scenario.structure.described();
+        let words = scenario.structure.describe();
         assert!(words.contains("span and rise at the intrados"), "{words}");
     }
     let text =
@@ -130,7 +130,7 @@ fn dimensions_are_printed_as_given() {
     let varied = scenario
         .with_values(&[("arch.mean_radius_m", 6.0)])
         .unwrap();
-    let arch = varied.structure.circular().unwrap();
+    let arch = varied.structure.circular_arch().unwrap();
     assert_eq!((arch.mean_radius_m, arch.thickness_ratio), (6.0, 0.15));
 }
 
@@ -165,7 +165,7 @@ fn check_states_the_frame_of_reference() {
         let [from, to] = structure.ties()[0].ends;
         assert!((from.at_m.y - height_m).abs() < 1e-9 && (to.at_m.y - height_m).abs() < 1e-9);
         for words in [origin, place] {
-            assert!(structure.described().contains(words));
+            assert!(structure.describe().contains(words));
         }
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("s.toml"), &text).unwrap();

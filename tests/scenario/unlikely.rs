@@ -238,7 +238,7 @@ fn ranges_of_options_are_checked() {
     let name = folder.path().join("s.toml");
     let scenario = Scenario::parse(&correct("column"), name.to_str().unwrap()).unwrap();
     let along = |key, ends| Varied {
-        along: Some((key, ends)),
+        key_range: Some((key, ends)),
         ..Varied::default()
     };
     let of_factor = |factor| Varied {

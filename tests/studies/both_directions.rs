@@ -163,7 +163,7 @@ fn thresholds_quote_the_lower_direction() {
         };
         assert!(near(exchanged.survives_up_to(), both.survives_up_to()));
         assert!(exchanged.governing().direction != governs);
-        let first = |one: &Threshold| one.of(Verdict::Survives).first().copied();
+        let first = |one: &Threshold| one.ranges_with(Verdict::Survives).first().copied();
         let [one, other] = [first(&exchanged), first(&mirrored)];
         let to = |range: Option<FactorRange>| range.map(|range| range.to);
         assert!(near(to(one), to(other)));

@@ -35,7 +35,7 @@ fn a_column_has_the_capacity_of_a_block() {
     for side in &capacity(&scenario, None).unwrap() {
         assert!((side.mass_fraction - 1.0).abs() < 1e-12);
         assert!((side.participating_mass_kg / (2000.0 * height_m * width_m) - 1.0).abs() < 1e-12);
-        let (end, start) = (side.end(), side.start());
+        let (end, start) = (side.end(), side.first_point());
         assert!((end.q_rad - alpha).abs() < 1e-12);
         assert!((start.acceleration_g - width_m / height_m).abs() < 1e-12);
         for point in &side.curve {
@@ -57,17 +57,17 @@ fn a_column_has_the_capacity_of_a_block() {
 }
 
 fn check_side(side: &Capacity, incipient_g: f64) {
-    assert!((side.start().acceleration_g / incipient_g - 1.0).abs() < 1e-9);
+    assert!((side.first_point().acceleration_g / incipient_g - 1.0).abs() < 1e-9);
     assert_eq!(side.end().acceleration_g, 0.0);
     assert!(side.curve[99].acceleration_g > 0.0);
-    assert!((side.start().displacement_m).abs() < 1e-12);
+    assert!((side.first_point().displacement_m).abs() < 1e-12);
     let falls = side.curve.windows(2);
     for pair in falls {
         assert!(pair[1].acceleration_g < pair[0].acceleration_g);
         assert!(pair[1].displacement_m > pair[0].displacement_m);
     }
     assert!(side.mass_fraction > 0.0 && side.mass_fraction < 1.0);
-    let start = side.start();
+    let start = side.first_point();
     let part = start.acceleration_g / start.oscillator_acceleration_g;
     assert!((part - side.mass_fraction).abs() < 1e-12);
 }
@@ -161,7 +161,10 @@ fn the_command_writes_table_picture_and_summary() {
         .collect();
     for (index, side) in own.iter().enumerate() {
         let reported = &json["capacity"][side.sway.name()];
-        assert_eq!(reported["acceleration_g"], side.start().acceleration_g);
+        assert_eq!(
+            reported["acceleration_g"],
+            side.first_point().acceleration_g
+        );
         assert_eq!(
             reported["ultimate_displacement_m"],
             side.end().displacement_m
@@ -260,7 +263,7 @@ fn a_tied_column_has_the_capacity_of_a_block_and_a_bar() {
         ));
         let [right, left] = capacity(&scenario, None).unwrap();
         // The value of this column by the clause.
-        assert!((right.start().acceleration_g - 0.339_366_718).abs() < 5e-10);
+        assert!((right.first_point().acceleration_g - 0.339_366_718).abs() < 5e-10);
         let weight = 6400.0 * 9.81;
         let bears = |q: f64| {
             let (sin, cos) = q.sin_cos();
@@ -309,7 +312,7 @@ fn a_tied_column_has_the_capacity_of_a_block_and_a_bar() {
         // In a sway to the left the bar goes slack at once. The column falls as without it, from a push reduced by the force at
         // rest.
         let least = 0.2 - 5e3 * 3.5 / (weight * 2.0);
-        assert!((left.start().acceleration_g - least).abs() < 1e-9);
+        assert!((left.first_point().acceleration_g - least).abs() < 1e-9);
     }
 }
 
@@ -342,15 +345,15 @@ fn the_capacity_of_a_tied_arch_is_the_slope_of_its_energy() {
     for side in SIDES {
         let held = Held::new(&row, side).unwrap();
         let start_g = onset(&row, side).unwrap().unwrap().acceleration_g;
-        assert!((held.displaced(0.0).acceleration_g - start_g).abs() < 1e-9);
+        assert!((held.displaced_mechanism(0.0).acceleration_g - start_g).abs() < 1e-9);
         // Heights, lateral displacements and energy of the bar, over the whole mass.
         let known = |part: f64| {
-            let displaced = held.displaced(part);
+            let displaced = held.displaced_mechanism(part);
             let joints: Vec<usize> = held.pins.hinges.iter().map(|hinge| hinge.joint).collect();
             let place = |block: usize, at: Vector2<f64>| {
                 let before = joints.iter().filter(|joint| **joint <= block).count();
                 let body = before.checked_sub(1).filter(|body| *body < 3);
-                body.map_or(at, |body| displaced.poses[body].of(at))
+                body.map_or(at, |body| displaced.poses[body].current_position(at))
             };
             let blocks = row.blocks.iter().enumerate();
             let sum: Vector2<f64> = blocks
@@ -369,7 +372,7 @@ fn the_capacity_of_a_tied_arch_is_the_slope_of_its_energy() {
         for part in [0.05, 0.3, 0.6, 0.95] {
             let ((before, left), (after, right)) = (known(part - 1e-4), known(part + 1e-4));
             let due_g = (after - before) / (right - left);
-            let told_g = held.displaced(part).acceleration_g;
+            let told_g = held.displaced_mechanism(part).acceleration_g;
             assert!((told_g - due_g).abs() < 1e-6, "{part}: {told_g} {due_g}");
         }
     }

@@ -182,7 +182,7 @@ fn thresholds_equal_those_of_single_runs() {
         (matches!(own.outcome, Outcome::Overturned(_)), own)
     };
     let samples = &found[0].samples;
-    assert!(samples.len() >= factors.searched(None).unwrap().values().len());
+    assert!(samples.len() >= factors.factors_to_search(None).unwrap().values().len());
     let mut first = None;
     for pair in samples.windows(2) {
         let (below, own) = falls(pair[0].factor);

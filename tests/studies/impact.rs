@@ -242,7 +242,7 @@ fn on_a_pier(folder: &Path) -> (Row, f64) {
 /// Velocities of the blocks in m/s and rad/s.
 fn velocities(field: &Field, row: &Row) -> Vec<Twist> {
     let blocks = 0..row.blocks.len();
-    let twists = blocks.map(|block| field.at(block as f64 + 0.5, Side::After));
+    let twists = blocks.map(|block| field.twist_at(block as f64 + 0.5, Side::After));
     twists
         .map(|twist| Twist {
             at_center: twist.at_center * row.size_m,
@@ -275,7 +275,7 @@ fn impulses_of_the_ground_are_the_momentum_that_blocks_gain() {
         let momentum = |field: &Field| -> Vector2<f64> {
             let moving = blocks.blocks.iter().zip(velocities(field, &blocks));
             moving
-                .map(|(block, twist)| twist.at(block.centre_m) * block.mass_kg)
+                .map(|(block, twist)| twist.velocity_at(block.centre_m) * block.mass_kg)
                 .sum()
         };
         let gained = momentum(&moved) - momentum(&closing);

@@ -696,7 +696,7 @@ fn the_friction_of_four_links_is_that_of_their_thrust_line() {
     let of_line = |text: &str| {
         let scenario = parsed(text);
         let model = scenario.mechanisms().unwrap();
-        [Sway::Right, Sway::Left].map(|sway| model.displaced(sway, 0.0).unwrap().friction)
+        [Sway::Right, Sway::Left].map(|sway| model.displaced_mechanism(sway, 0.0).unwrap().friction)
     };
     for count in [12, 20, 33] {
         let text = arch(&format!("voussoirs = {count}\n"));

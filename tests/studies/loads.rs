@@ -206,9 +206,7 @@ fn pictures_and_words_have_the_loads() {
     let mut labels = svg.descendants();
     let label = labels.find(|node| node.has_tag_name("text") && node.text() == Some(label));
     assert_eq!(label.unwrap().attribute("text-anchor"), Some("start"));
-    let described = parsed(&format!("{WALL}{ROOF}{VAULT}"))
-        .structure
-        .described();
+    let described = parsed(&format!("{WALL}{ROOF}{VAULT}")).structure.describe();
     assert!(
         described.contains("load at (-0.15, 8) m: 1500 kg;"),
         "{described}"
@@ -284,10 +282,10 @@ fn keys_of_loads_can_vary() {
 #[test]
 fn unlikely_loads_are_noticed() {
     let load = |keys: &str| parsed(&format!("{WALL}[[load]]\n{keys}\n"));
-    let empty = load("mass_kg = 0\nmoves = false").structure.described();
+    let empty = load("mass_kg = 0\nmoves = false").structure.describe();
     assert!(empty.contains("load at (0, 8) m: 0 kg;"), "{empty}");
     for (x_m, count) in [(-0.85, 0), (0.95, 1)] {
-        let warnings = load(&format!("mass_kg = 10\nx_m = {x_m}")).unlikely();
+        let warnings = load(&format!("mass_kg = 10\nx_m = {x_m}")).unlikely_values();
         assert_eq!(warnings.len(), count, "{warnings:?}");
         let names = |warning: &String| warning.starts_with("load 1 is at x = 0.95 m");
         assert!(warnings.iter().all(names), "{warnings:?}");
@@ -457,7 +455,7 @@ fn verify_of_an_arch_on_piers_has_the_forces() {
     let mirrored = onsets_g(&format!("{fill}{right}"));
     assert!((mirrored[0] / onset_g[1] - 1.0).abs() < 1e-9);
     assert!((mirrored[1] / onset_g[0] - 1.0).abs() < 1e-9);
-    let words = parsed(&format!("{PIERS}{left}")).structure.described();
+    let words = parsed(&format!("{PIERS}{left}")).structure.describe();
     assert!(words.contains("load on the left pier 2.5 m above its foot: 800 kg as constant weight, thrust of 3 kN to the left"), "{words}");
 }
 
@@ -468,7 +466,7 @@ fn an_arch_on_piers_has_a_capacity_with_constant_forces() {
     let onset_g = onsets_g(thrust);
     let curves = capacity(&parsed(&format!("{PIERS}{thrust}")), None).unwrap();
     for (side, sway) in [Sway::Right, Sway::Left].into_iter().enumerate() {
-        let curve = &curves.to(sway).as_ref().unwrap().curve;
+        let curve = &curves.get(sway).as_ref().unwrap().curve;
         assert!((curve[0].acceleration_g / onset_g[side] - 1.0).abs() < 1e-9);
         assert!(curve.last().unwrap().acceleration_g.abs() < 1e-9);
     }

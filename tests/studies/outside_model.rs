@@ -79,7 +79,7 @@ fn pulses_that_four_links_survive_only_outside_their_model() {
         (low, 0.7, 1.073, 1.114),
     ] {
         let scenario = parsed(text);
-        let arch = scenario.structure.circular().unwrap();
+        let arch = scenario.structure.circular_arch().unwrap();
         let four = scenario.mechanisms().unwrap();
         let free = FreeHinges::of_arch(arch).unwrap();
         let overturns = |model: &dyn Model, amplitude_g: f64| {

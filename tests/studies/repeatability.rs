@@ -570,7 +570,7 @@ fn maps_of_elastic_joints_have_the_outcomes_of_runs() {
             }
             if let (true, Some(barrier_j)) = (falls(whole.outcome), barrier_j) {
                 overturned += 1;
-                let elastic = whole.elastic().unwrap();
+                let elastic = whole.elastic_summary().unwrap();
                 let times_s = ground.end_s()..whole.outcome_time_s;
                 let on_its_way = energies.iter().filter(|(time, _)| times_s.contains(time));
                 if elastic.friction_j < 0.01 * barrier_j {

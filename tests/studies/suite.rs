@@ -684,7 +684,7 @@ fn uncertain_cases_are_counted_by_fractions_as_surviving_and_as_overturning() {
         let [low, high] = [low.curve.unwrap(), high.curve.unwrap()];
         assert!(from <= low[1] && low[0] <= at && at <= high[0] && high[2] <= to);
     }
-    assert_eq!(doubtful.always(Verdict::Survives), [""; 0]);
+    assert_eq!(doubtful.records_with(Verdict::Survives), [""; 0]);
     let survivals = doubtful.survivals();
     assert_eq!(survivals[0].1.overturns_from, Some(4.0));
     assert_eq!(survivals[0].1.survives_up_to, Some(2.0));

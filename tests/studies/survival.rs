@@ -1,7 +1,7 @@
 //! The line of words about the strengths that a structure survives.
 
 use archrock::studies::Verdict;
-use archrock::studies::threshold::{Survival, in_words};
+use archrock::studies::threshold::{Survival, survival_in_words};
 
 fn survival(outcomes: &str) -> Survival {
     let levels = outcomes.bytes().zip(1..).map(|(outcome, level)| {
@@ -70,13 +70,13 @@ fn the_words_are_one_line_that_begins_with_the_safe_strengths() {
         ),
         ("", "no history"),
     ] {
-        assert_eq!(in_words(&survival(outcomes), " g", None), words);
+        assert_eq!(survival_in_words(&survival(outcomes), " g", None), words);
     }
     let at_most = Survival {
         at_most: true,
         ..survival(".~x")
     };
-    let words = in_words(&at_most, " g", None);
+    let words = survival_in_words(&at_most, " g", None);
     assert!(words.ends_with("certainly overturns at or below 3.000 g"));
     // A safe strength is never rounded upwards.
     let found = Survival::of_levels(&[
@@ -84,7 +84,7 @@ fn the_words_are_one_line_that_begins_with_the_safe_strengths() {
         (0.123_48, Some(Verdict::Overturns)),
     ]);
     assert_eq!(
-        in_words(&found, "", Some(10.0)),
+        survival_in_words(&found, "", Some(10.0)),
         "survives up to 0.1234 (1.234 g); overturns from 0.1235 (1.235 g)"
     );
 }

@@ -47,7 +47,7 @@ fn factors(from: f64, to: f64, stride: f64) -> Factors {
 
 /// All factors of a search without a known onset.
 fn searched(factors: &Factors) -> Vec<f64> {
-    factors.searched(None).unwrap().values()
+    factors.factors_to_search(None).unwrap().values()
 }
 
 /// Slender column, rectangular pulse `(a, t)`: `cosh(p t) = 1 + 1 / (2 x (x - 1))`, `x = a / (g alpha)`, solved

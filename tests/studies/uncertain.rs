@@ -103,8 +103,9 @@ fn the_probability_that_a_block_overturns_is_inside_the_interval() {
              [uncertain]\nsamples = 24\nseed = {seed}\n'column.width_m' = {{ deviation = 0.03 }}\n"
         ));
         let rows = histories(&scenario, 2);
-        let overturned =
-            |row: &&SampleRow<HistoryAnswer>| row.answer.as_ref().unwrap().overturned() == 1.0;
+        let overturned = |row: &&SampleRow<HistoryAnswer>| {
+            row.answer.as_ref().unwrap().overturned_weight() == 1.0
+        };
         let share = Share::of(rows[1..].iter().filter(overturned).count(), 24).unwrap();
         inside += u32::from(share.low <= probability && probability <= share.high);
         // With one uncertain number, samples are spread evenly, so the share is right to a sample or two.
@@ -798,7 +799,7 @@ fn related_dimensions_vary_together() {
     assert_eq!(uncertain.keys[1].own, Some(0.75));
     let values = uncertain.values(3);
     let sample = uncertain.scenario(&scenario, &values).unwrap();
-    let ratio = sample.structure.circular().unwrap().thickness_ratio;
+    let ratio = sample.structure.circular_arch().unwrap().thickness_ratio;
     assert!((ratio - values[1] / values[0]).abs() < 1e-15);
     let joints = parsed(&format!(
         "[arch]\nmean_radius_m = 3.0\nthickness_m = 0.6\nembrace_deg = 150.0\n\
@@ -849,7 +850,7 @@ fn measured_arches_vary_in_their_measured_dimensions() {
     assert_eq!(known.keys[0].own, Some(6.0));
     let values = known.values(5);
     let sample = known.scenario(&scenario, &values).unwrap();
-    let arch = sample.structure.circular().unwrap();
+    let arch = sample.structure.circular_arch().unwrap();
     let [span_m, rise_m, thickness_m] = values[..] else {
         panic!("{values:?}");
     };

@@ -182,7 +182,7 @@ fn c8_7_1_2_1_the_control_point_at_the_crown() {
         // The displacement of the crown itself does not depend on the grouping of masses.
         let scenario = parsed(&format!("{structure}{DEMAND}"));
         let grouped = archrock::studies::capacity(&scenario, None).unwrap();
-        let grouped = grouped.to(*sway).as_ref().unwrap();
+        let grouped = grouped.get(*sway).as_ref().unwrap();
         let ratio = grouped.end().displacement_m / crown.end().displacement_m;
         assert!((ratio - 1.0).abs() < 1e-12);
     }
@@ -514,7 +514,8 @@ fn c8_7_1_2_1_3_a_stack_on_one_support_is_a_block_about_its_toe() {
     let drums = check(&format!("{DRUMS}{DEMAND}"));
     for state in [LimitState::Sld, LimitState::Slv, LimitState::Slc] {
         for sway in [Sway::Right, Sway::Left] {
-            let [own, block] = [&drums, &column].map(|check| side(check, state, sway).governing());
+            let [own, block] =
+                [&drums, &column].map(|check| side(check, state, sway).governing_result());
             let ((method, own), (same, block)) = (own.unwrap(), block.unwrap());
             assert_eq!(method, same);
             assert!((own.zeta_e / block.zeta_e - 1.0).abs() < 1e-9);

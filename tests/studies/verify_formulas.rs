@@ -459,7 +459,7 @@ fn of_bodies(model: &dyn MechanismModel, sway: Sway) -> Capacity {
             (body.mass_kg, body_of)
         })
         .collect();
-    let displaced = |part| model.displaced(sway, part).unwrap();
+    let displaced = |part| model.displaced_mechanism(sway, part).unwrap();
     let control = Control::centre_of(&masses);
     Capacity::new(sway, displaced, &masses, control, GRAVITY).unwrap()
 }
@@ -551,11 +551,12 @@ fn c8_7_1_2_1_2_virtual_displacements_are_those_of_the_motion() {
     for (scenario, sway, _) in cases() {
         let model = model(&scenario);
         let bodies = model.moving_bodies(sway).unwrap();
-        let at = |part| model.displaced(sway, part).unwrap();
+        let at = |part| model.displaced_mechanism(sway, part).unwrap();
         let (before, after) = (at(-1e-5), at(1e-5));
         for ((body, before_pose), after_pose) in bodies.iter().zip(&before.poses).zip(&after.poses)
         {
-            let moved = (after_pose.of(body.centre_m) - before_pose.of(body.centre_m))
+            let moved = (after_pose.current_position(body.centre_m)
+                - before_pose.current_position(body.centre_m))
                 / (after.q_rad - before.q_rad);
             let own = Vector2::new(sway.sign() * body.displacement.x, body.displacement.y);
             // The difference quotient has an error of the square of its step, plus rounding divided by the step.
@@ -567,7 +568,7 @@ fn c8_7_1_2_1_2_virtual_displacements_are_those_of_the_motion() {
     }
     let column = model(&parsed(COLUMN));
     for part in [0.0, 0.3, 0.8] {
-        let displaced = column.displaced(Sway::Left, part).unwrap();
+        let displaced = column.displaced_mechanism(Sway::Left, part).unwrap();
         assert!((displaced.friction - displaced.acceleration_g).abs() < 1e-12);
     }
     let on_piers_read = on_piers();
@@ -658,10 +659,11 @@ fn c8_7_1_10_the_period_of_a_curve_that_is_not_straight() {
     let capacity = of_bodies(&*model, Sway::Right);
     let mass_kg: f64 = bodies.iter().map(|body| body.mass_kg).sum();
     let centre_m = |part: f64| {
-        let displaced = model.displaced(Sway::Right, part).unwrap();
+        let displaced = model.displaced_mechanism(Sway::Right, part).unwrap();
         let moved = bodies.iter().zip(&displaced.poses);
-        let moved =
-            moved.map(|(body, pose)| body.mass_kg * (pose.of(body.centre_m) - body.centre_m).x);
+        let moved = moved.map(|(body, pose)| {
+            body.mass_kg * (pose.current_position(body.centre_m) - body.centre_m).x
+        });
         moved.sum::<f64>() / mass_kg
     };
     let aim_m = 0.4 * centre_m(1.0);
@@ -674,8 +676,11 @@ fn c8_7_1_10_the_period_of_a_curve_that_is_not_straight() {
             high = middle
         }
     }
-    let exact_g =
-        model.displaced(Sway::Right, low).unwrap().acceleration_g / capacity.mass_fraction;
+    let exact_g = model
+        .displaced_mechanism(Sway::Right, low)
+        .unwrap()
+        .acceleration_g
+        / capacity.mass_fraction;
     let own_g = capacity.oscillator_acceleration_g(0.4);
     // T is proportional to one over the square root of a.
     let ratio = (exact_g / own_g).sqrt();

@@ -60,8 +60,8 @@ fn limit_and_capacity_have_one_side() {
         let curves = capacity(&parsed(&text), None).unwrap();
         let of_free = capacity(&parsed(FREE), None).unwrap();
         let away: Sway = serde_json::from_value(away.into()).unwrap();
-        assert!(curves.to(away.opposite()).is_none());
-        assert_eq!(curves.to(away), of_free.to(away));
+        assert!(curves.get(away.opposite()).is_none());
+        assert_eq!(curves.get(away), of_free.get(away));
     }
     assert!(both.get("wall_behind").is_none());
     let words = printed(folder.path(), &["capacity", "s.toml"]);
@@ -460,7 +460,7 @@ fn words_name_the_wall() {
     );
     let law = "[impact]\nmodel = 'prescribed'\nrestitution = 0.36\n";
     for more in ["", law] {
-        let words = parsed(&facade(more)).structure.described();
+        let words = parsed(&facade(more)).structure.describe();
         assert!(
             words.contains("against a wall of 8 m on its left;") && !words.contains("restitution"),
             "{words}"

@@ -139,14 +139,14 @@ struct MirroredBack<'a> {
 }
 
 impl Jobs for MirroredBack<'_> {
-    fn next(&mut self) -> Option<Job> {
-        self.jobs.next()
+    fn next_job(&mut self) -> Option<Job> {
+        self.jobs.next_job()
     }
 
-    fn ended(&mut self, job: Job, answer: Result<Summary, SimulationError>) {
+    fn receive_result(&mut self, job: Job, answer: Result<Summary, SimulationError>) {
         let row = self.row;
         self.jobs
-            .ended(job, answer.map(|summary| summary.mirrored(row)));
+            .receive_result(job, answer.map(|summary| summary.mirrored(row)));
     }
 }
 
@@ -168,11 +168,11 @@ impl Summary {
         self.outcome = self.outcome.mirrored();
         if let Details::Mechanisms(of) = &mut self.details {
             let own_kg_m = of.largest_shifts_kg_m;
-            of.largest_shifts_kg_m = Sides::of(|sway| *own_kg_m.to(sway.opposite()));
+            of.largest_shifts_kg_m = Sides::of(|sway| *own_kg_m.get(sway.opposite()));
         }
         let Some(row) = row else { return self };
         self.peak_rotations_rad = (0..self.peak_rotations_rad.len())
-            .map(|block| self.peak_rotations_rad[row.opposite(block)])
+            .map(|block| self.peak_rotations_rad[row.mirrored_block(block)])
             .collect();
         match &mut self.details {
             Details::Mechanisms(_) => {}

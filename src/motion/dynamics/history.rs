@@ -87,7 +87,7 @@ named! {
 
 impl OutcomeKind {
     /// Returns the outcome, with the side to which the structure overturned.
-    pub fn to(self, sway: Option<Sway>) -> Outcome {
+    pub fn to_outcome(self, sway: Option<Sway>) -> Outcome {
         match self {
             Self::NeverMoved => Outcome::NeverMoved,
             Self::Vibrates => Outcome::Vibrates,
@@ -270,7 +270,7 @@ impl TieSummary {
     }
 
     /// Records force and state of the tie at a time; returns the events since the last call.
-    pub(in crate::dynamics) fn note(
+    pub(in crate::dynamics) fn record_state(
         &mut self,
         tie: &Tie,
         memory: &TieMemory<Lanes<1>>,
@@ -316,7 +316,7 @@ pub struct JointPressure {
 
 impl Sample {
     /// Resets this sample to a state of rest at another time. All lists are empty and keep their memory.
-    pub(super) fn begin(&mut self, time_s: f64, ground_m_s2: Vector2<f64>, phase: usize) {
+    pub(super) fn reset_to_rest(&mut self, time_s: f64, ground_m_s2: Vector2<f64>, phase: usize) {
         self.time_s = time_s;
         // Adding zero makes a negative zero positive.
         self.ground_acceleration_m_s2 = ground_m_s2.x + 0.0;
@@ -535,7 +535,7 @@ impl Summary {
     }
 
     /// Returns the results of elastic joints; `None` for other models.
-    pub const fn elastic(&self) -> Option<&ElasticSummary> {
+    pub const fn elastic_summary(&self) -> Option<&ElasticSummary> {
         match &self.details {
             Details::Elastic(_, elastic) => Some(elastic),
             Details::Mechanisms(_) | Details::Rigid(_) => None,
@@ -574,10 +574,10 @@ impl Summary {
     /// Returns the friction coefficient on which the history depends, because joints that slip would move otherwise. `None` if joints slip or are
     /// elastic.
     pub fn required_friction(&self) -> Option<f64> {
-        let rigid = self.elastic().is_none();
+        let rigid = self.elastic_summary().is_none();
         let slips = self.row().is_some_and(|row| row.sliding.is_some());
         let friction = self.friction.filter(|_| rigid && !slips);
-        friction.map(|friction| friction.required())
+        friction.map(|friction| friction.required_coefficient())
     }
 
     /// Returns the largest rotation of any body, without sign, in radians.
@@ -595,7 +595,7 @@ impl Summary {
 
     /// Returns the number of impacts; `None` for elastic joints, which have no instantaneous impacts.
     pub fn known_impacts(&self) -> Option<usize> {
-        self.elastic().is_none().then_some(self.impacts)
+        self.elastic_summary().is_none().then_some(self.impacts)
     }
 
     /// Returns the time of overturning, in seconds; `None` if the structure did not overturn.

@@ -218,22 +218,22 @@ impl Job {
 /// Queue of motions to compute; the result of one motion may add others.
 pub trait Jobs {
     /// Returns the next job; `None` if there is none until another one has ended.
-    fn next(&mut self) -> Option<Job>;
+    fn next_job(&mut self) -> Option<Job>;
 
     /// Receives the result of a job.
-    fn ended(&mut self, job: Job, answer: Result<Summary, SimulationError>);
+    fn receive_result(&mut self, job: Job, answer: Result<Summary, SimulationError>);
 }
 
 /// Computes jobs one by one.
 pub(super) fn one_by_one<M: Model + ?Sized>(model: &M, cases: &[Case], jobs: &mut dyn Jobs) {
     let repetitions = model.repetitions();
-    while let Some(job) = jobs.next() {
+    while let Some(job) = jobs.next_job() {
         let case = &cases[job.case];
         let answer = match job.repetition {
             None => model.simulate_until(job.until, case),
             Some(index) => repetitions[index].model.simulate_until(job.until, case),
         };
-        jobs.ended(job, answer);
+        jobs.receive_result(job, answer);
     }
 }
 
@@ -245,11 +245,11 @@ struct CaseQueue {
 }
 
 impl Jobs for CaseQueue {
-    fn next(&mut self) -> Option<Job> {
+    fn next_job(&mut self) -> Option<Job> {
         self.waiting.next().map(|case| Job::of(case, self.until))
     }
 
-    fn ended(&mut self, job: Job, answer: Result<Summary, SimulationError>) {
+    fn receive_result(&mut self, job: Job, answer: Result<Summary, SimulationError>) {
         self.answers[job.case] = Some(answer);
     }
 }
@@ -294,7 +294,7 @@ pub trait MechanismModel: Model {
     fn equivalent(&self, sway: Sway, gravity_m_s2: f64) -> Option<Equivalent>;
 
     /// Returns the first mechanism to a side at a fraction `part` of the rotation at its unstable equilibrium; `None` without such a mechanism.
-    fn displaced(&self, sway: Sway, part: f64) -> Option<Displaced>;
+    fn displaced_mechanism(&self, sway: Sway, part: f64) -> Option<Displaced>;
 
     /// Returns the rigid bodies of the first mechanism to a side; `None` without such a mechanism.
     fn moving_bodies(&self, sway: Sway) -> Option<Vec<MovingBody>>;

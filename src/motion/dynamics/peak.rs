@@ -13,7 +13,7 @@ pub struct Peak {
 }
 
 impl Peak {
-    pub(super) fn note(&mut self, value: f64, time_s: f64) {
+    pub(super) fn record_value(&mut self, value: f64, time_s: f64) {
         if value > self.value * (1.0 + NO_RISE) {
             *self = Self { value, time_s };
         }

@@ -51,12 +51,12 @@ pub trait Recorder {
     }
 
     /// Receives a sample of the fall. These follow all samples and events of the history and are no part of it. Breaking ends the fall.
-    fn fall(&mut self, _sample: &Sample) -> ControlFlow<()> {
+    fn fall_sample(&mut self, _sample: &Sample) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
 
     /// Receives the reason for the end of the fall.
-    fn fell(&mut self, _end: FallEnd) {}
+    fn fall_end(&mut self, _end: FallEnd) {}
 }
 
 /// A function is a recorder of samples.

@@ -169,7 +169,7 @@ pub const MEMORY_BYTES: u64 = 4_000_000_000;
 #[error(
     "a history of so many samples and events takes {} of memory, and {} are allowed: take a longer output_step_s or a \
      shorter duration_s, or allow more",
-    in_words(*.needed_bytes), in_words(*.allowed_bytes)
+    size_in_words(*.needed_bytes), size_in_words(*.allowed_bytes)
 )]
 pub struct MemoryError {
     /// Total memory needed, or memory needed up to the failure, in bytes.
@@ -179,7 +179,7 @@ pub struct MemoryError {
 }
 
 /// Returns a size in readable units.
-fn in_words(bytes: u64) -> String {
+fn size_in_words(bytes: u64) -> String {
     let megabytes = bytes as f64 / 1e6;
     if megabytes < 1e3 {
         format!("{megabytes:.1} MB")

@@ -248,9 +248,11 @@ impl Repeatability {
             half_cycles,
             largest_rad: all_stand.then(largest_rad),
             slips_m: slips_m.unwrap_or_default(),
-            largest_slip_m: all_stand.then(|| slid(&runs, Sliding::largest_m)).flatten(),
+            largest_slip_m: all_stand
+                .then(|| repeated_slip(&runs, Sliding::largest_m))
+                .flatten(),
             friction_j: all_stand
-                .then(|| slid(&runs, |sliding| sliding.friction_j))
+                .then(|| repeated_slip(&runs, |sliding| sliding.friction_j))
                 .flatten(),
             friction_demand: required_friction(runs),
         }
@@ -278,7 +280,7 @@ impl Repeatability {
 }
 
 /// Returns a quantity of the slip in all these motions; `None` if joints do not slip.
-fn slid(runs: &[&Summary], value: impl Fn(&Sliding) -> f64) -> Option<RepeatedValue> {
+fn repeated_slip(runs: &[&Summary], value: impl Fn(&Sliding) -> f64) -> Option<RepeatedValue> {
     let values = runs
         .iter()
         .map(|run| Some(value(run.row()?.sliding.as_ref()?)));
@@ -302,12 +304,12 @@ fn slips_m(runs: &[&Summary]) -> Option<Vec<RepeatedValue>> {
 /// The fall of a motion that overturns does not count.
 fn path_repeats(one: &Summary, other: &Summary) -> bool {
     one.outcome.overturning_sway() == other.outcome.overturning_sway()
-        && follows(one, other)
-        && follows(other, one)
+        && has_same_half_cycles(one, other)
+        && has_same_half_cycles(other, one)
 }
 
 /// Returns whether the half cycles of a motion up to its largest have counterparts with the same peaks in another motion.
-fn follows(own: &Summary, other: &Summary) -> bool {
+fn has_same_half_cycles(own: &Summary, other: &Summary) -> bool {
     let others = other.row().map_or(&[][..], |row| &row.half_cycles);
     let cycles = own.row().map_or(&[][..], |row| &row.half_cycles);
     let peaks_rad = cycles.iter().map(|cycle| cycle.peak_rad);
@@ -349,7 +351,7 @@ impl<'a> Repetitions<'a> {
             model,
             ground,
             request,
-            first: started(first, ground, request),
+            first: start_repetitions(first, ground, request),
             others,
         }
     }
@@ -359,15 +361,15 @@ impl<'a> Repetitions<'a> {
         let ended = |(name, running): (_, PendingMotion)| (name, running.wait());
         let mut repeated: Vec<_> = self.first.into_iter().map(ended).collect();
         let first = repeated.iter().map(|(_, result)| result);
-        if !suffice(self.model, self.request, own, first) {
-            let others = started(self.others, self.ground, self.request);
+        if !repetitions_suffice(self.model, self.request, own, first) {
+            let others = start_repetitions(self.others, self.ground, self.request);
             repeated.extend(others.into_iter().map(ended));
         }
         Repeatability::new(own, &repeated)
     }
 }
 
-fn started(
+fn start_repetitions(
     repetitions: Vec<Repetition>,
     ground: &GroundMotion,
     request: &Request,
@@ -381,7 +383,7 @@ fn started(
 }
 
 /// Returns whether the first repetitions of a motion decide on its verdict, or no repetition can give one.
-fn suffice<'a>(
+fn repetitions_suffice<'a>(
     model: &dyn Model,
     request: &Request,
     own: &Summary,
@@ -499,7 +501,7 @@ pub fn checked_in(
 }
 
 /// Repeats known histories of cases where repetitions may change the verdict. Returns them in the order of the cases.
-pub fn repeated(
+pub fn repeat_cases(
     model: &dyn Model,
     cases: &[Case],
     own: Vec<Result<Summary, SimulationError>>,
@@ -615,7 +617,9 @@ impl<'a> Checks<'a> {
             return;
         }
         let (all, request) = (self.repetitions.len(), &self.cases[case].1);
-        if results.repeated.len() == all || suffice(self.model, request, own, known.clone()) {
+        if results.repeated.len() == all
+            || repetitions_suffice(self.model, request, own, known.clone())
+        {
             let named = self.repetitions.iter().copied().zip(known.clone());
             results.count = Some(OutcomeCount::new(own, named));
             results.friction_demand = required_friction(known.flatten());
@@ -646,11 +650,11 @@ impl<'a> Checks<'a> {
 }
 
 impl Jobs for Checks<'_> {
-    fn next(&mut self) -> Option<Job> {
+    fn next_job(&mut self) -> Option<Job> {
         self.waiting.pop_front()
     }
 
-    fn ended(&mut self, job: Job, answer: Result<Summary, SimulationError>) {
+    fn receive_result(&mut self, job: Job, answer: Result<Summary, SimulationError>) {
         match job.repetition {
             None => self.store_result(job.case, answer),
             Some(repetition) => self.store_repetition(job.case, repetition, answer),

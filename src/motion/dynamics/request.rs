@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 
 use serde::Serialize;
 
-use crate::argument::{ArgumentError, allow, within};
+use crate::argument::{ArgumentError, require, require_within};
 use crate::dynamics::GroundMotion;
 use crate::mechanics::Sway;
 
@@ -77,7 +77,7 @@ impl Initial {
         let allowed =
             format_args!("below {limit_rad:?}, the limit position of the first mechanism");
         let fits = rotation_rad < limit_rad;
-        allow(fits, "rotation_rad", rotation_rad, allowed).map(drop)
+        require(fits, "rotation_rad", rotation_rad, allowed).map(drop)
     }
 }
 
@@ -133,18 +133,18 @@ impl Request {
             ("relative_tolerance", tolerance, Self::RELATIVE_TOLERANCE),
             ("rest_energy_ratio", rest_ratio, Self::REST_ENERGY_RATIO),
         ] {
-            within(argument, value, range)?;
+            require_within(argument, value, range)?;
         }
         if let Some(initial) = self.initial {
-            let rotation_rad = within("rotation_rad", initial.rotation_rad, 0.0..=PI)?;
-            within("rate_rad_s", initial.rate_rad_s, Initial::RATE_RAD_S)?;
+            let rotation_rad = require_within("rotation_rad", initial.rotation_rad, 0.0..=PI)?;
+            require_within("rate_rad_s", initial.rate_rad_s, Initial::RATE_RAD_S)?;
             let allowed = "at least 1e-100, or 0 with a positive `rate_rad_s`";
-            allow(initial.moves(), "rotation_rad", rotation_rad, allowed)?;
+            require(initial.moves(), "rotation_rad", rotation_rad, allowed)?;
         }
         let lasts_s = self.lasts_s(ground);
         let (step_s, least_s) = (self.output_step_s, lasts_s / Self::MOST_SAMPLES);
         let allowed = format_args!("at least {least_s:?}, for ten million samples");
         let are_few = lasts_s / step_s <= Self::MOST_SAMPLES;
-        allow(are_few, "output_step_s", step_s, allowed).map(drop)
+        require(are_few, "output_step_s", step_s, allowed).map(drop)
     }
 }

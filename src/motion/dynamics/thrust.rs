@@ -34,7 +34,7 @@ pub struct FrictionRecord {
 
 impl FrictionRecord {
     /// Returns the coefficient that prevents slip, except for short peaks of rows.
-    pub fn required(&self) -> f64 {
+    pub fn required_coefficient(&self) -> f64 {
         self.lasting.unwrap_or(self.largest.value)
     }
 }
@@ -90,10 +90,10 @@ pub(super) struct Until {
 
 impl FrictionDemands {
     /// Adds a step of a row that ends at `time_s` and lasts `lasts_s`, in seconds. The row `moves` or is at rest.
-    pub fn note(&mut self, demand: f64, [time_s, lasts_s]: [f64; 2], moves: bool) {
+    pub fn add_step(&mut self, demand: f64, [time_s, lasts_s]: [f64; 2], moves: bool) {
         self.demands.push(demand as f32, lasts_s as f32);
         self.until.steps += 1;
-        self.until.largest.note(demand, time_s);
+        self.until.largest.record_value(demand, time_s);
         if moves {
             self.until.moving_s += lasts_s;
         }
@@ -199,11 +199,12 @@ pub const MODEL_LIMIT: f64 = 0.5;
 impl ThrustRecord {
     /// Adds the demand at an instant.
     pub(crate) fn note_demand(&mut self, time_s: f64, demand: &Demand) {
-        self.largest_excess.note(demand.excess_ratio, time_s);
+        self.largest_excess
+            .record_value(demand.excess_ratio, time_s);
     }
 
     /// Adds a sample; `moving` is false at rest.
-    pub fn note(&mut self, time_s: f64, moving: bool, demand: &Demand) {
+    pub fn add_sample(&mut self, time_s: f64, moving: bool, demand: &Demand) {
         self.note_demand(time_s, demand);
         if moving {
             self.moving += 1;
@@ -232,7 +233,7 @@ mod tests {
             let time_s = 1e-3 * step as f64;
             // Steps of different lengths, as those at impacts.
             let lasts_s = if step % 7 == 0 { 1e-4 } else { 1e-3 };
-            demands.note(libm::sin(0.37 * time_s).abs(), [time_s, lasts_s], true);
+            demands.add_step(libm::sin(0.37 * time_s).abs(), [time_s, lasts_s], true);
         }
         assert!(demands.demands.kept.len() <= MOST_DEMANDS);
         let lasts_s: f64 = demands

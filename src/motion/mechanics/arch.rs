@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 
 use serde::Serialize;
 
-use crate::argument::{ArgumentError, allow, counted, within};
+use crate::argument::{ArgumentError, require, require_count, require_within};
 use crate::mechanics::four_link::limit::{Incipient, incipient};
 use crate::mechanics::four_link::mechanism::HingeSites;
 use crate::mechanics::{LimitError, Ring, Row, RowError};
@@ -121,9 +121,9 @@ impl Arch {
         embrace_deg: f64,
     ) -> Result<Self, ArgumentError> {
         let arch = Self {
-            mean_radius_m: within("mean_radius_m", mean_radius_m, MAGNITUDE)?,
+            mean_radius_m: require_within("mean_radius_m", mean_radius_m, MAGNITUDE)?,
             thickness_ratio,
-            embrace_deg: within("embrace_deg", embrace_deg, EMBRACE_DEG)?,
+            embrace_deg: require_within("embrace_deg", embrace_deg, EMBRACE_DEG)?,
             depth_m: DEPTH_M,
             density_kg_m3: DENSITY_KG_M3,
             voussoirs: None,
@@ -141,7 +141,7 @@ impl Arch {
         let ratio = self.thickness_ratio;
         let range = MIN_THICKNESS_RATIO..THICKNESS_RATIO_BOUND;
         let allowed = format_args!("a number from {:?} to below {:?}", range.start, range.end);
-        allow(range.contains(&ratio), "thickness_ratio", ratio, allowed)?;
+        require(range.contains(&ratio), "thickness_ratio", ratio, allowed)?;
         self.incipient = Arc::default();
         Ok(self)
     }
@@ -151,7 +151,7 @@ impl Arch {
     /// # Errors
     /// When it is outside 0.001 to 1e6.
     pub fn with_mean_radius_m(mut self, mean_radius_m: f64) -> Result<Self, ArgumentError> {
-        self.mean_radius_m = within("mean_radius_m", mean_radius_m, MAGNITUDE)?;
+        self.mean_radius_m = require_within("mean_radius_m", mean_radius_m, MAGNITUDE)?;
         Ok(self)
     }
 
@@ -169,7 +169,7 @@ impl Arch {
     /// # Errors
     /// When it is outside 1 to 180.
     pub fn with_embrace_deg(mut self, embrace_deg: f64) -> Result<Self, ArgumentError> {
-        self.embrace_deg = within("embrace_deg", embrace_deg, EMBRACE_DEG)?;
+        self.embrace_deg = require_within("embrace_deg", embrace_deg, EMBRACE_DEG)?;
         self.reshaped()
     }
 
@@ -178,7 +178,7 @@ impl Arch {
     /// # Errors
     /// When there are fewer than 3, as four hinges need four joints, or more than 200.
     pub fn with_voussoirs(mut self, voussoirs: usize) -> Result<Self, ArgumentError> {
-        self.voussoirs = Some(counted("voussoirs", voussoirs, VOUSSOIRS)?);
+        self.voussoirs = Some(require_count("voussoirs", voussoirs, VOUSSOIRS)?);
         self.reshaped()
     }
 
@@ -187,7 +187,7 @@ impl Arch {
     /// # Errors
     /// When it is outside 0.001 to 1e6.
     pub fn with_depth_m(mut self, depth_m: f64) -> Result<Self, ArgumentError> {
-        self.depth_m = within("depth_m", depth_m, MAGNITUDE)?;
+        self.depth_m = require_within("depth_m", depth_m, MAGNITUDE)?;
         Ok(self)
     }
 
@@ -196,7 +196,7 @@ impl Arch {
     /// # Errors
     /// When it is outside 0.001 to 1e6.
     pub fn with_density_kg_m3(mut self, density_kg_m3: f64) -> Result<Self, ArgumentError> {
-        self.density_kg_m3 = within("density_kg_m3", density_kg_m3, MAGNITUDE)?;
+        self.density_kg_m3 = require_within("density_kg_m3", density_kg_m3, MAGNITUDE)?;
         Ok(self)
     }
 

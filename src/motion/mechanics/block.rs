@@ -33,7 +33,9 @@ impl Block {
         depth_m: f64,
         density_kg_m3: f64,
     ) -> Self {
-        let swept = outline_m.into_iter().map(|curve| curve.swept(pole_m));
+        let swept = outline_m
+            .into_iter()
+            .map(|curve| curve.swept_moments(pole_m));
         let moments = swept.fold(MassMoments::default(), Add::add);
         let surface_kg_m2 = depth_m * density_kg_m3 * moments.mass.signum();
         let centre = moments.first / moments.mass;
@@ -92,7 +94,7 @@ impl Joint {
     }
 
     /// Returns the unit vector from the intrados to the extrados.
-    pub fn along(&self) -> Vector2<f64> {
+    pub fn direction(&self) -> Vector2<f64> {
         (self.extrados_m - self.intrados_m) / self.thickness_m()
     }
 

@@ -145,9 +145,9 @@ impl Row {
         supports: Supports,
         size_m: f64,
     ) -> Result<Self, RowError> {
-        positive("size in m", size_m)?;
+        check_positive("size in m", size_m)?;
         let count = blocks.len();
-        counted(count)?;
+        check_block_count(count)?;
         if joints.len() != count + usize::from(supports == Supports::Both) {
             return Err(RowError::Joints {
                 blocks: count,
@@ -158,7 +158,7 @@ impl Row {
         check_blocks(&blocks)?;
         let side = |joint: usize, block: usize| {
             let arm_m = blocks[block].centre_m - joints[joint].intrados_m;
-            joints[joint].along().perp(&arm_m)
+            joints[joint].direction().perp(&arm_m)
         };
         let handedness = side(0, 0).signum();
         for joint in 0..joints.len() {
@@ -309,7 +309,7 @@ impl Row {
         density_kg_m3: f64,
     ) -> Result<Self, RowError> {
         let surface_kg_m2 = surface_density(depth_m, density_kg_m3)?;
-        positive("mean radius in m", mean_radius_m)?;
+        check_positive("mean radius in m", mean_radius_m)?;
         let blocks = sections_rad.windows(2).map(|ends| {
             let sector = ring.sector(ends[0], ends[1]);
             Block {
@@ -343,7 +343,7 @@ impl Row {
         depth_m: f64,
         density_kg_m3: f64,
     ) -> Result<Self, RowError> {
-        counted(voussoirs)?;
+        check_block_count(voussoirs)?;
         let sections_rad = ring.sections(voussoirs);
         Self::annular(ring, &sections_rad, mean_radius_m, depth_m, density_kg_m3)
     }
@@ -355,7 +355,7 @@ impl Row {
     /// When a dimension is not positive and finite, or the number of drums out of range.
     pub fn stack(drums: &[Drum], depth_m: f64, density_kg_m3: f64) -> Result<Self, RowError> {
         surface_density(depth_m, density_kg_m3)?;
-        counted(drums.len())?;
+        check_block_count(drums.len())?;
         let face = |width_m: f64, y: f64| Joint {
             intrados_m: Vector2::new(-0.5 * width_m, y),
             extrados_m: Vector2::new(0.5 * width_m, y),
@@ -364,9 +364,9 @@ impl Row {
         let mut outlines_m = Vec::new();
         let mut below_m = f64::INFINITY;
         for drum in drums {
-            positive("height of a drum in m", drum.height_m)?;
-            positive("width of a drum in m", drum.base_width_m)?;
-            positive("width of a drum in m", drum.top_width_m)?;
+            check_positive("height of a drum in m", drum.height_m)?;
+            check_positive("width of a drum in m", drum.base_width_m)?;
+            check_positive("width of a drum in m", drum.top_width_m)?;
             joints.push(face(drum.base_width_m.min(below_m), y));
             let top = face(drum.top_width_m, y + drum.height_m);
             let outline = face(drum.base_width_m, y).outline_m(&top);
@@ -419,7 +419,7 @@ impl Row {
     }
 }
 
-fn positive(name: &'static str, value: f64) -> Result<(), RowError> {
+fn check_positive(name: &'static str, value: f64) -> Result<(), RowError> {
     let holds = value > 0.0 && value < f64::INFINITY;
     let error = RowError::Dimension(name, value);
     holds.then_some(()).ok_or(error)
@@ -427,12 +427,12 @@ fn positive(name: &'static str, value: f64) -> Result<(), RowError> {
 
 /// Returns the mass per unit area, in kg/m2.
 fn surface_density(depth_m: f64, density_kg_m3: f64) -> Result<f64, RowError> {
-    positive("depth in m", depth_m)?;
-    positive("density in kg/m3", density_kg_m3)?;
+    check_positive("depth in m", depth_m)?;
+    check_positive("density in kg/m3", density_kg_m3)?;
     Ok(depth_m * density_kg_m3)
 }
 
-fn counted(blocks: usize) -> Result<(), RowError> {
+fn check_block_count(blocks: usize) -> Result<(), RowError> {
     let holds = (1..=MAX_BLOCKS).contains(&blocks);
     holds.then_some(()).ok_or(RowError::Count(blocks))
 }

@@ -42,7 +42,11 @@ pub struct Displaced {
 }
 
 /// Returns the first mechanism to a side at a fraction `part` of the rotation at its unstable equilibrium. `None` without such a mechanism.
-pub fn displaced<C: MechanismChain>(structure: &C, sway: Sway, part: f64) -> Option<Displaced> {
+pub fn displaced_mechanism<C: MechanismChain>(
+    structure: &C,
+    sway: Sway,
+    part: f64,
+) -> Option<Displaced> {
     let link = structure.link_from(sway, 0)?;
     let q_rad = part * link.critical_rad;
     let coefficients = link.mechanism.coefficients(q_rad);
@@ -70,7 +74,7 @@ pub fn displaced<C: MechanismChain>(structure: &C, sway: Sway, part: f64) -> Opt
 pub fn moving_bodies<C: MechanismChain>(structure: &C, sway: Sway) -> Option<Vec<MovingBody>> {
     let mechanism = &structure.link_from(sway, 0)?.mechanism;
     let (mut poses, mut hinges) = (Vec::new(), Vec::new());
-    mechanism.place(0.0, &mut poses, &mut hinges);
+    mechanism.write_poses(0.0, &mut poses, &mut hinges);
     let rates = mechanism.rotation_rates(0.0);
     // Every hinge adds a rotation about itself to the motion of the body before it.
     let mut twist = Twist::ZERO;
@@ -81,7 +85,7 @@ pub fn moving_bodies<C: MechanismChain>(structure: &C, sway: Sway) -> Option<Vec
         MovingBody {
             mass_kg: moments.mass * structure.mass_unit_kg(),
             centre_m: Vector2::new(sway.sign() * centre.x, centre.y) * structure.length_m(),
-            displacement: twist.at(centre) * structure.length_m(),
+            displacement: twist.velocity_at(centre) * structure.length_m(),
             rotation: -rate,
         }
     });
@@ -97,14 +101,14 @@ pub fn moving_bodies<C: MechanismChain>(structure: &C, sway: Sway) -> Option<Vec
 pub fn moving_forces<C: MechanismChain>(structure: &C, sway: Sway) -> Option<Vec<MovingForce>> {
     let mechanism = &structure.link_from(sway, 0)?.mechanism;
     let (mut poses, mut hinges) = (Vec::new(), Vec::new());
-    mechanism.place(0.0, &mut poses, &mut hinges);
+    mechanism.write_poses(0.0, &mut poses, &mut hinges);
     let rates = mechanism.rotation_rates(0.0);
     let twist = Twist::rotation(hinges[0], rates.as_ref()[0]);
     let forces = mechanism.constant_forces().into_iter();
     let forces = forces.map(|(at, force)| MovingForce {
         at_m: Vector2::new(sway.sign() * at.x, at.y) * structure.length_m(),
         force_kg: force * structure.mass_unit_kg(),
-        displacement: twist.at(at) * structure.length_m(),
+        displacement: twist.velocity_at(at) * structure.length_m(),
     });
     Some(forces.collect())
 }
@@ -113,7 +117,7 @@ impl BodyPoint {
     /// Returns the horizontal displacement of the point, in metres.
     fn shift_m(&self, poses: &[Pose]) -> f64 {
         let pose = self.body.and_then(|body| poses.get(body));
-        pose.map_or(0.0, |pose| (pose.of(self.at_m) - self.at_m).x)
+        pose.map_or(0.0, |pose| (pose.current_position(self.at_m) - self.at_m).x)
     }
 }
 
@@ -335,7 +339,7 @@ impl Capacity {
     ///
     /// # Panics
     /// Never: a curve has points.
-    pub fn start(&self) -> &CurvePoint {
+    pub fn first_point(&self) -> &CurvePoint {
         self.curve.first().expect("a curve has points")
     }
 

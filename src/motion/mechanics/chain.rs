@@ -87,7 +87,7 @@ pub trait Mechanism {
     /// Returns the rotation rates of the bodies at `q` for `q' = 1`.
     fn rotation_rates(&self, q_rad: f64) -> Self::Rotations;
     /// Writes the poses of the bodies at `q`, from left to right, and the positions of the hinges into two lists, which are emptied first.
-    fn place(&self, q_rad: f64, poses: &mut Vec<Pose>, hinges: &mut Vec<Vector2<f64>>);
+    fn write_poses(&self, q_rad: f64, poses: &mut Vec<Pose>, hinges: &mut Vec<Vector2<f64>>);
 }
 
 /// Mechanism in the sequence that impacts produce.
@@ -119,15 +119,15 @@ pub enum Hinge {
         /// Angle of the section from the left springing, in radians; in files `angle_deg`, in degrees.
         #[serde(
             rename = "angle_deg",
-            serialize_with = "in_degrees",
-            deserialize_with = "of_degrees"
+            serialize_with = "serialize_degrees",
+            deserialize_with = "deserialize_degrees"
         )]
         angle_rad: f64,
         /// The edge.
         edge: Edge,
     },
     /// Hinge at the toe of a column's base on this side; `toe` in files.
-    Toe(#[serde(serialize_with = "as_toe", deserialize_with = "of_toe")] Sway),
+    Toe(#[serde(serialize_with = "serialize_toe", deserialize_with = "deserialize_toe")] Sway),
     /// Hinge at a joint of a row of blocks.
     Joint {
         /// Index of the joint, from 0 at the left springing or the base.
@@ -137,19 +137,19 @@ pub enum Hinge {
     },
 }
 
-fn in_degrees<S: Serializer>(angle_rad: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+fn serialize_degrees<S: Serializer>(angle_rad: &f64, serializer: S) -> Result<S::Ok, S::Error> {
     angle_rad.to_degrees().serialize(serializer)
 }
 
-fn of_degrees<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+fn deserialize_degrees<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     f64::deserialize(deserializer).map(f64::to_radians)
 }
 
-fn as_toe<S: Serializer>(side: &Sway, serializer: S) -> Result<S::Ok, S::Error> {
+fn serialize_toe<S: Serializer>(side: &Sway, serializer: S) -> Result<S::Ok, S::Error> {
     BTreeMap::from([("toe", side)]).serialize(serializer)
 }
 
-fn of_toe<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Sway, D::Error> {
+fn deserialize_toe<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Sway, D::Error> {
     #[derive(Deserialize)]
     struct OfToe {
         toe: Sway,
@@ -210,7 +210,7 @@ pub trait MechanismChain: std::fmt::Debug + Send + Sync {
         poses: &mut Vec<Pose>,
         hinges_m: &mut Vec<Vector2<f64>>,
     ) {
-        mechanism.place(q_rad, poses, hinges_m);
+        mechanism.write_poses(q_rad, poses, hinges_m);
         if sway == Sway::Left {
             poses.reverse();
             hinges_m.reverse();

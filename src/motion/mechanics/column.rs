@@ -31,7 +31,7 @@ use super::blocks::{GRAVITY_M_S2, MAX_BLOCKS};
 use super::chain::MechanismState;
 use super::tie::TieError;
 use super::tilting::{Tilting, thrust_section_parts};
-use crate::argument::{ArgumentError, allow, plain, within};
+use crate::argument::{ArgumentError, plain, require, require_within};
 use crate::mechanics::four_link::resultant::SectionResultant;
 use crate::mechanics::masonry::LoadOutlines;
 use crate::mechanics::{
@@ -100,8 +100,8 @@ impl Column {
     /// When a size is outside 1e-9 to 1e12 m.
     pub fn new(height_m: f64, width_m: f64) -> Result<Self, ArgumentError> {
         Ok(Self {
-            height_m: within("height_m", height_m, MAGNITUDE)?,
-            width_m: within("width_m", width_m, MAGNITUDE)?,
+            height_m: require_within("height_m", height_m, MAGNITUDE)?,
+            width_m: require_within("width_m", width_m, MAGNITUDE)?,
             depth_m: DEPTH_M,
             density_kg_m3: DENSITY_KG_M3,
             drum_heights_m: None,
@@ -120,7 +120,7 @@ impl Column {
     /// If there is none, or more than a row of blocks may have.
     pub fn with_drums(mut self, drums: usize) -> Result<Self, ArgumentError> {
         let count = drums as f64;
-        within("drums", count, 1.0..=MAX_BLOCKS as f64)?;
+        require_within("drums", count, 1.0..=MAX_BLOCKS as f64)?;
         self.drum_heights_m = Some(vec![self.height_m / count; drums]);
         Ok(self)
     }
@@ -131,14 +131,14 @@ impl Column {
     /// When a height is outside 1e-9 to 1e12, they do not add up to the height of the column (to a millionth), or
     /// there are none or too many.
     pub fn with_drum_heights_m(mut self, heights_m: Vec<f64>) -> Result<Self, ArgumentError> {
-        within("drums", heights_m.len() as f64, 1.0..=MAX_BLOCKS as f64)?;
+        require_within("drums", heights_m.len() as f64, 1.0..=MAX_BLOCKS as f64)?;
         for height_m in &heights_m {
-            within("drum_heights_m", *height_m, MAGNITUDE)?;
+            require_within("drum_heights_m", *height_m, MAGNITUDE)?;
         }
         let sum_m: f64 = heights_m.iter().sum();
         let fits = (sum_m - self.height_m).abs() <= 1e-6 * self.height_m;
         let allowed = format_args!("the height of the column, {:?}", self.height_m);
-        allow(fits, "sum of drum_heights_m", sum_m, allowed)?;
+        require(fits, "sum of drum_heights_m", sum_m, allowed)?;
         self.drum_heights_m = Some(heights_m);
         Ok(self)
     }
@@ -148,7 +148,7 @@ impl Column {
     /// # Errors
     /// When it is outside 1e-9 to 1e12.
     pub fn with_top_width_m(mut self, top_width_m: f64) -> Result<Self, ArgumentError> {
-        self.top_width_m = Some(within("top_width_m", top_width_m, MAGNITUDE)?);
+        self.top_width_m = Some(require_within("top_width_m", top_width_m, MAGNITUDE)?);
         Ok(self)
     }
 
@@ -183,9 +183,9 @@ impl Column {
         let height_m = back.height_m.unwrap_or(self.height_m);
         let allowed = format_args!("from 0 to the height of the column, {:?} m", self.height_m);
         let fits = (0.0..=self.height_m).contains(&height_m);
-        allow(fits, "height_m", height_m, allowed)?;
+        require(fits, "height_m", height_m, allowed)?;
         if let Some(rate_ratio) = back.rate_ratio {
-            within("restitution", rate_ratio, 0.0..=1.0)?;
+            require_within("restitution", rate_ratio, 0.0..=1.0)?;
         }
         self.back = Some(back);
         self.check_wall_height()?;
@@ -202,7 +202,7 @@ impl Column {
             "0 for no wall, or at least {centre_m:?} m, the height of the centre of gravity: a push turns the column over the top of a lower wall, which \
              the model does not compute"
         );
-        allow(height_m >= centre_m, "height_m", height_m, allowed).map(|_| ())
+        require(height_m >= centre_m, "height_m", height_m, allowed).map(|_| ())
     }
 
     /// Returns this column with these loads, under this gravity. The column carries its loads as a rigid block, or as drums: each load is on the drum
@@ -239,11 +239,11 @@ impl Column {
             None => false,
         };
         let mut sides = Sway::ALL.iter().copied();
-        sides.find(|sway| self.tilting(*sway).incipient_g() <= 0.0 && !is_held(*sway))
+        sides.find(|sway| self.tilting_block(*sway).incipient_g() <= 0.0 && !is_held(*sway))
     }
 
     /// Returns the column as one block that sways to this side.
-    fn tilting(&self, sway: Sway) -> Tilting {
+    fn tilting_block(&self, sway: Sway) -> Tilting {
         let size_m = [self.height_m, self.width_m];
         let loads = self.placed_loads();
         Tilting::new(size_m, self.prism_kg(), loads, self.gravity_m_s2, sway)
@@ -352,7 +352,7 @@ impl Column {
         let half_m = self.half_diagonal_m();
         let outer = Vector2::new(0.5 * self.width_m / half_m, 0.0);
         let contact = Vector2::new(0.0, self.height_m / half_m) - outer;
-        let tilting = self.tilting(wall.side.opposite());
+        let tilting = self.tilting_block(wall.side.opposite());
         let ratio = three_impacts(tilting.body(), [outer, -outer, contact]);
         let wide = NoWallRatio::Wide(self.width_m / self.height_m);
         ratio.map(Some).ok_or(wide)
@@ -385,13 +385,13 @@ impl Column {
         let least_m = (self.height_m - 0.5 * top_m).max(loaded_m.unwrap_or(0.0));
         let tapers = self.top_width_m() != self.width_m;
         let foot_only = "that of the base with a wall behind the column, which a tapered face touches at its foot only";
-        allow(!tapers, "top_width_m", self.top_width_m(), foot_only)?;
-        allow(self.ties.is_empty(), "height_m", height_m, "0 with ties")?;
+        require(!tapers, "top_width_m", self.top_width_m(), foot_only)?;
+        require(self.ties.is_empty(), "height_m", height_m, "0 with ties")?;
         let allowed = format!(
             "0 for no wall, or at least {} m, the centre of the top drum: a push turns a drum over the top of a lower wall, and its onset is not computed",
             plain(least_m)
         );
-        allow(height_m >= least_m, "height_m", height_m, allowed)?;
+        require(height_m >= least_m, "height_m", height_m, allowed)?;
         Ok(Some((wall.side, height_m)))
     }
 
@@ -457,7 +457,7 @@ impl Column {
     /// # Errors
     /// When it is outside 1e-9 to 1e12.
     pub fn with_depth_m(mut self, depth_m: f64) -> Result<Self, ArgumentError> {
-        self.depth_m = within("depth_m", depth_m, MAGNITUDE)?;
+        self.depth_m = require_within("depth_m", depth_m, MAGNITUDE)?;
         Ok(self)
     }
 
@@ -466,7 +466,7 @@ impl Column {
     /// # Errors
     /// When it is outside 1e-9 to 1e12.
     pub fn with_density_kg_m3(mut self, density_kg_m3: f64) -> Result<Self, ArgumentError> {
-        self.density_kg_m3 = within("density_kg_m3", density_kg_m3, MAGNITUDE)?;
+        self.density_kg_m3 = require_within("density_kg_m3", density_kg_m3, MAGNITUDE)?;
         Ok(self)
     }
 
@@ -510,14 +510,14 @@ impl RockingColumn {
         law.check()?;
         let (drums, top_m) = (column.drum_heights_m().len(), column.top_width_m());
         let one = "1 in Housner's model: a column of drums needs free hinges";
-        allow(drums <= 1, "drums", drums as f64, one)?;
+        require(drums <= 1, "drums", drums as f64, one)?;
         let width = "the width in Housner's model: a taper needs free hinges";
-        allow(top_m == column.width_m, "top_width_m", top_m, width)?;
+        require(top_m == column.width_m, "top_width_m", top_m, width)?;
         let half_diagonal_m = column.half_diagonal_m();
-        let tilting = Sides::of(|sway| column.tilting(sway));
+        let tilting = Sides::of(|sway| column.tilting_block(sway));
         let slenderness_rad = column.slenderness_rad();
         let link = |sway: Sway, rate_ratio, restitution| {
-            let tilting = tilting.to(sway).clone();
+            let tilting = tilting.get(sway).clone();
             let critical_rad = tilting.critical_rad(slenderness_rad);
             Link::new(tilting, critical_rad, FRAC_PI_2, rate_ratio, restitution)
         };
@@ -529,7 +529,7 @@ impl RockingColumn {
         // The impact that starts a sway to this side.
         let next = |sway: Sway| {
             let before = wall.map_or(sway.opposite(), |_| sway);
-            let [before, after] = [before, sway].map(|sway| tilting.to(sway));
+            let [before, after] = [before, sway].map(|sway| tilting.get(sway));
             let inertia_ratio = after.unit_inertia() / before.unit_inertia();
             let (rate_ratio, restitution) = match law.model {
                 ImpactModel::Prescribed { restitution } => {
@@ -540,7 +540,7 @@ impl RockingColumn {
                     (rate_ratio, rate_ratio * rate_ratio * inertia_ratio)
                 }
             };
-            let (rate_ratio, restitution) = law.measured(rate_ratio, restitution);
+            let (rate_ratio, restitution) = law.rate_and_restitution(rate_ratio, restitution);
             (rate_ratio > 0.0).then(|| link(sway, rate_ratio, restitution))
         };
         Ok(Self {
@@ -587,7 +587,7 @@ impl MechanismChain for RockingColumn {
     }
 
     fn incipient_towards_g(&self, sway: Sway) -> f64 {
-        self.first.to(sway).mechanism.incipient_g()
+        self.first.get(sway).mechanism.incipient_g()
     }
 
     const THRUSTS: bool = false;
@@ -632,8 +632,8 @@ impl MechanismChain for RockingColumn {
     fn link_from(&self, first: Sway, impacts: usize) -> Option<&Link<Tilting>> {
         match impacts {
             _ if self.wall == Some(first) => None,
-            0 => Some(self.first.to(first)),
-            _ => self.next.to(self.sway_after(first, impacts)).as_ref(),
+            0 => Some(self.first.get(first)),
+            _ => self.next.get(self.sway_after(first, impacts)).as_ref(),
         }
     }
 

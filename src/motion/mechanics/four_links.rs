@@ -16,7 +16,7 @@ use super::four_link::linkage::Linkage;
 use super::four_link::mechanism::HingeSites;
 use super::four_link::thrust::ThrustLine;
 use super::stability::collapse_mechanism;
-use crate::argument::{ArgumentError, within};
+use crate::argument::{ArgumentError, require_within};
 use crate::mechanics::{
     Arch, Demand, Hinge, ImpactLaw, LimitError, Link, MechanismChain, NoWallRatio, Profile as _,
     Row, Sides, Sway,
@@ -111,7 +111,7 @@ impl FourLinks {
         let law = law.into();
         law.check()?;
         let incipient = arch.incipient()?.clone();
-        let ring = arch.ring().shared();
+        let ring = arch.ring().to_shared();
         let chain = Chain::new([ring.clone(), ring], arch.sites(), incipient, law);
         let chain = Arc::new(chain);
         Ok(Self {
@@ -145,7 +145,7 @@ impl FourLinks {
         }
         let sections = own.sections(0);
         let sites = HingeSites::Voussoirs(row.blocks.len());
-        let [own, mirrored] = [own, mirrored].map(|profile| profile.shared());
+        let [own, mirrored] = [own, mirrored].map(|profile| profile.to_shared());
         let chain = |sway| {
             let profiles = match sway {
                 Sway::Right => [own.clone(), mirrored.clone()],
@@ -192,7 +192,7 @@ impl FourLinks {
     /// # Errors
     /// When it is outside 0.001 to 1e6.
     pub fn with_depth_m(mut self, depth_m: f64) -> Result<Self, ArgumentError> {
-        within("depth_m", depth_m, MAGNITUDE)?;
+        require_within("depth_m", depth_m, MAGNITUDE)?;
         self.size.impulse_n_s_per_m = self.size.mass_kg * self.size.length_m / depth_m;
         Ok(self)
     }
@@ -204,7 +204,7 @@ impl FourLinks {
 
     /// Returns the sequence of mechanisms after a first sway to this side.
     pub fn chain_from(&self, first: Sway) -> &Chain {
-        self.chains.to(first)
+        self.chains.get(first)
     }
 
     /// Returns the unit of the impulses of an impact: N s per metre of depth and per rad/s of the closing mechanism.

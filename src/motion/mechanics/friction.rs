@@ -220,7 +220,7 @@ fn loads(row: &Row, stance: &RowState) -> Vec<f64> {
     let weights = row.blocks.iter().map(|block| block.mass_kg / mass_kg);
     let mut loads: Vec<f64> = weights.flat_map(|weight| [0.0, weight, 0.0]).collect();
     for (line, force_n) in stance.lines(row).zip(stance.forces_n()) {
-        let pull = line.along * (force_n / (row.gravity_m_s2 * mass_kg));
+        let pull = line.direction * (force_n / (row.gravity_m_s2 * mass_kg));
         for (end, pull) in [pull, -pull].into_iter().enumerate() {
             if let Some(number) = line.ends[end] {
                 let moment = (line.ends_m[end] - centres_m[number]).perp(&pull) / size_m;
@@ -259,7 +259,7 @@ impl FrictionProgram {
             let forces = [
                 (frame.corner_m(Edge::Intrados), frame.normal),
                 (frame.corner_m(Edge::Extrados), frame.normal),
-                (frame.intrados_m, frame.along),
+                (frame.intrados_m, frame.tangent),
             ];
             for (block, side) in [(index.checked_sub(1), -1.0), (Some(index), 1.0)] {
                 let Some((number, centre_m)) =
@@ -274,7 +274,7 @@ impl FrictionProgram {
                     }
                 }
             }
-            let [intrados, extrados, along] = [0, 1, 2].map(|kind| 1 + 3 * index + kind);
+            let [intrados, extrados, tangent] = [0, 1, 2].map(|kind| 1 + 3 * index + kind);
             let first = equations + 4 * index;
             for (edge, corner) in [intrados, extrados].into_iter().enumerate() {
                 // A variable that is fixed to zero needs no other bound.
@@ -288,7 +288,7 @@ impl FrictionProgram {
             for (slip, sign) in [(2, 1.0), (3, -1.0)] {
                 put(first + slip, intrados, -coefficient);
                 put(first + slip, extrados, -coefficient);
-                put(first + slip, along, sign);
+                put(first + slip, tangent, sign);
                 if objective == Objective::FrictionExcess {
                     put(first + slip, 0, -1.0);
                 }

@@ -11,7 +11,7 @@
 
 use nalgebra::{Vector2, Vector3};
 
-use crate::mechanics::geometry::field::turned;
+use crate::mechanics::geometry::field::quarter_turn;
 use crate::mechanics::geometry::pose::{product, unit};
 use crate::mechanics::{Edge, Joint, Pose, Row, Supports, Twist};
 
@@ -25,7 +25,7 @@ pub struct Frame {
     /// thickness along the joint from the midpoint of the extrados corners.
     pub intrados_m: Vector2<f64>,
     /// Unit vector to the extrados.
-    pub along: Vector2<f64>,
+    pub tangent: Vector2<f64>,
     /// Unit normal towards the right block.
     pub normal: Vector2<f64>,
     /// Thickness in metres.
@@ -37,7 +37,7 @@ impl Frame {
     pub fn corner_m(&self, edge: Edge) -> Vector2<f64> {
         match edge {
             Edge::Intrados => self.intrados_m,
-            Edge::Extrados => self.intrados_m + self.along * self.thickness_m,
+            Edge::Extrados => self.intrados_m + self.tangent * self.thickness_m,
         }
     }
 }
@@ -47,7 +47,7 @@ impl Frame {
 struct Face {
     joint: Joint,
     middle: Vector2<f64>,
-    along: Vector2<f64>,
+    tangent: Vector2<f64>,
     thickness: f64,
 }
 
@@ -87,7 +87,7 @@ impl Placement {
         let faces = row.joints.iter().map(|joint| Face {
             joint: *joint,
             middle: joint.middle_m(),
-            along: joint.along(),
+            tangent: joint.direction(),
             thickness: joint.thickness_m(),
         });
         let faces: Vec<Face> = faces.collect();
@@ -104,11 +104,11 @@ impl Placement {
             faces,
             undeformed_m,
         };
-        placement.place();
+        placement.update_positions();
         placement
     }
 
-    /// Sets the poses of the supports without changing the gaps. The next [`Placement::open`] or [`Placement::turn`] places the blocks between them.
+    /// Sets the poses of the supports without changing the gaps. The next [`Placement::change_gaps`] or [`Placement::turn`] places the blocks between them.
     pub const fn move_supports(&mut self, poses: [Pose; 2]) {
         self.support_poses = poses;
     }
@@ -154,7 +154,7 @@ impl Placement {
             }
         }
         if found {
-            self.place();
+            self.update_positions();
         }
         found
     }
@@ -178,7 +178,7 @@ impl Placement {
             let opening = self.handedness * (at(joint).unwrap_or(last) - left);
             self.gaps_m[joint] = hinge_gaps_m(opening * self.faces[joint].thickness, 0.0);
         }
-        self.place();
+        self.update_positions();
     }
 
     /// Returns the edge about which a joint turns when it opens at this rate, in rad/s: the edge in contact, or in a closed joint the edge that stays
@@ -218,22 +218,23 @@ impl Placement {
     pub fn velocities(&self, rates_rad_s: &[f64]) -> Vec<Vector3<f64>> {
         let (motions, _) = self.motions(rates_rad_s);
         let moving = motions.iter().zip(&self.centres_m);
-        let velocities = moving.map(|(motion, centre_m)| motion.at(*centre_m).push(motion.rate));
+        let velocities =
+            moving.map(|(motion, centre_m)| motion.velocity_at(*centre_m).push(motion.rate));
         velocities.collect()
     }
 
     /// Adds changes to the gaps, closes those below [`SHUT_RATIO`], and updates the positions.
-    pub fn open(&mut self, change_m: impl Fn(usize) -> [f64; 2]) {
+    pub fn change_gaps(&mut self, change_m: impl Fn(usize) -> [f64; 2]) {
         for joint in 0..self.faces.len() {
             for (gap, change) in self.gaps_m[joint].iter_mut().zip(change_m(joint)) {
                 *gap = closed_gap(*gap + change, &self.faces[joint]);
             }
         }
-        self.place();
+        self.update_positions();
     }
 
     /// Computes the positions from the gaps, from left to right.
-    fn place(&mut self) {
+    fn update_positions(&mut self) {
         let last_open = match self.supports {
             Supports::Left => None,
             Supports::Both => self.gaps_m.iter().rposition(|gaps| *gaps != [0.0; 2]),
@@ -260,7 +261,7 @@ impl Placement {
             let right = self.frame(joint, &left, right, closing);
             if let Some(pose) = self.poses.get_mut(joint) {
                 *pose = right;
-                self.centres_m[joint] = right.of(self.undeformed_m[joint]);
+                self.centres_m[joint] = right.current_position(self.undeformed_m[joint]);
             }
             left = right;
         }
@@ -272,23 +273,23 @@ impl Placement {
         let s = self.handedness;
         let gaps = self.gaps_m[joint];
         if gaps == [0.0; 2] {
-            let along = left.turned(face.along);
+            let tangent = left.current_direction(face.tangent);
             self.frames[joint] = Frame {
-                intrados_m: left.of(face.joint.intrados_m),
-                along,
-                normal: turned(along) * s,
+                intrados_m: left.current_position(face.joint.intrados_m),
+                tangent,
+                normal: quarter_turn(tangent) * s,
                 thickness_m: face.thickness,
             };
             return right;
         }
         let opening = (gaps[1] - gaps[0]) / face.thickness;
-        let along = product(unit(left.rotation_rad() + 0.5 * s * opening), face.along);
-        let normal = turned(along) * s;
+        let tangent = product(unit(left.rotation_rad() + 0.5 * s * opening), face.tangent);
+        let normal = quarter_turn(tangent) * s;
         let chord = face.thickness * libm::sin(0.5 * opening.abs());
         let nearer = gaps[0].min(gaps[1]);
-        let start = left.of(face.middle) + normal * (nearer + chord);
+        let start = left.current_position(face.middle) + normal * (nearer + chord);
         if closing {
-            let mut error_m = right.of(face.middle) - start;
+            let mut error_m = right.current_position(face.middle) - start;
             // In a joint that is open at both corners, a change of the gaps removes the normal part of the error.
             if nearer > 0.0 {
                 let change = normal.dot(&error_m).max(-nearer);
@@ -297,18 +298,18 @@ impl Placement {
             }
             self.closure = Some(Closure { joint, error_m });
         } else {
-            right.translation = start - right.turned(face.middle);
+            right.translation = start - right.current_direction(face.middle);
         }
         let gaps = self.gaps_m[joint];
         let (edge, offset) = match gaps[0] <= gaps[1] {
             true => (Edge::Intrados, 0.0),
             false => (Edge::Extrados, face.thickness),
         };
-        let corner = left.of(face.joint.corner_m(edge));
+        let corner = left.current_position(face.joint.corner_m(edge));
         let nearer_corner = corner + normal * (0.5 * gaps[0].min(gaps[1]));
         self.frames[joint] = Frame {
-            intrados_m: nearer_corner - along * offset,
-            along,
+            intrados_m: nearer_corner - tangent * offset,
+            tangent,
             normal,
             thickness_m: face.thickness,
         };

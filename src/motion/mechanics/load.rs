@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::arch::MAGNITUDE;
 use super::block::Block;
-use crate::argument::{ArgumentError, allow, within};
+use crate::argument::{ArgumentError, require, require_within};
 use crate::mechanics::Sway;
 
 /// Load at a point, or a mass distributed uniformly over a width of an arch.
@@ -73,20 +73,20 @@ impl PlacedLoad {
 
     fn check_numbers(&self, least_kg: f64) -> Result<(), ArgumentError> {
         let thrusts_n = -LARGEST_THRUST_N..=LARGEST_THRUST_N;
-        within("mass_kg", self.mass_kg, least_kg..=1e15)?;
-        within("x_m", self.x_m, -1e6..=1e6)?;
-        within("thrust_n", self.thrust_n, thrusts_n).map(drop)
+        require_within("mass_kg", self.mass_kg, least_kg..=1e15)?;
+        require_within("x_m", self.x_m, -1e6..=1e6)?;
+        require_within("thrust_n", self.thrust_n, thrusts_n).map(drop)
     }
 
     /// Checks the numbers of a load on a column of this height.
     pub(super) fn check_on_column(&self, column_height_m: f64) -> Result<(), ArgumentError> {
         self.check_numbers(0.0)?;
         let at_a_point = "0: a load on a column acts at a point";
-        allow(self.width_m == 0.0, "width_m", self.width_m, at_a_point)?;
+        require(self.width_m == 0.0, "width_m", self.width_m, at_a_point)?;
         let height_m = self.height_m.unwrap_or(0.0);
         let allowed = format_args!("from 0 to the height of the column, {column_height_m:?} m");
         let fits = (0.0..=column_height_m).contains(&height_m);
-        allow(fits, "height_m", height_m, allowed).map(|_| ())
+        require(fits, "height_m", height_m, allowed).map(|_| ())
     }
 
     /// Checks the numbers of a load on an arch.
@@ -94,11 +94,11 @@ impl PlacedLoad {
         let least_kg = if self.thrust_n == 0.0 { 1e-6 } else { 0.0 };
         self.check_numbers(least_kg)?;
         if self.width_m != 0.0 {
-            within("width_m", self.width_m, MAGNITUDE)?;
+            require_within("width_m", self.width_m, MAGNITUDE)?;
             let is_spread = self.moves && self.thrust_n == 0.0 && self.pier.is_none();
             let at_a_point =
                 "0: only masses on the extrados that move are spread; other loads act at a point";
-            allow(is_spread, "width_m", self.width_m, at_a_point)?;
+            require(is_spread, "width_m", self.width_m, at_a_point)?;
         }
         Ok(())
     }

@@ -53,7 +53,7 @@ pub use self::four_link::limit::LimitError;
 pub use self::four_links::{FourLinkError, FourLinks};
 pub use self::friction::FrictionError;
 pub use self::geometry::curve::Curve;
-pub use self::geometry::field::{Field, Momentum, Side, Twist, turned};
+pub use self::geometry::field::{Field, Momentum, Side, Twist, quarter_turn};
 pub use self::geometry::pose::{BodyPoint, Pose};
 pub use self::geometry::profile::Profile;
 pub(crate) use self::geometry::rigid::mirrored;
@@ -70,5 +70,5 @@ pub use self::stability::{RowOnset, StabilityError};
 pub use self::sway::Sway;
 pub use self::tie::{Anchor, Tie, TieError, TieLine, TieMemory};
 pub use self::virtual_work::{
-    MovingBody, MovingForce, MovingTie, Participation, load_multiplier, per_displacement_of_centre,
+    MovingBody, MovingForce, MovingTie, Participation, displacement_factor, load_multiplier,
 };

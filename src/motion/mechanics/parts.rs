@@ -99,8 +99,8 @@ impl Parts for Arch {
         let (ring, mean_radius_m) = (self.ring(), self.mean_radius_m);
         let sections = self.thrust_sections_rad().into_iter();
         let sections = sections.map(|angle_rad| Section {
-            middle_m: ring.radial(angle_rad) * mean_radius_m,
-            across_m: ring.radial(angle_rad) * (ring.thickness_ratio * mean_radius_m),
+            middle_m: ring.radial_direction(angle_rad) * mean_radius_m,
+            across_m: ring.radial_direction(angle_rad) * (ring.thickness_ratio * mean_radius_m),
             angle_rad: Some(angle_rad),
         });
         sections.collect()
@@ -276,12 +276,12 @@ fn middle_of(block: usize) -> f64 {
 fn contains(outline: &[Vector2<f64>], point: Vector2<f64>) -> bool {
     let mut inside = false;
     for [from, to] in sides(outline) {
-        let along = to - from;
-        if distance([from, to], point) <= 1e-9 * along.norm() {
+        let direction = to - from;
+        if distance([from, to], point) <= 1e-9 * direction.norm() {
             return true;
         }
         if (from.y > point.y) != (to.y > point.y)
-            && point.x < from.x + along.x * (point.y - from.y) / along.y
+            && point.x < from.x + direction.x * (point.y - from.y) / direction.y
         {
             inside = !inside;
         }

@@ -56,7 +56,10 @@ pub fn lines(
     row.ties.iter().map(move |tie| {
         tie.line(tie.ends.map(|anchor| {
             let support = || supports[anchor.support(feet_m)];
-            anchor.block.map_or_else(support, &pose).of(anchor.at_m)
+            anchor
+                .block
+                .map_or_else(support, &pose)
+                .current_position(anchor.at_m)
         }))
     })
 }

@@ -33,7 +33,7 @@ impl<T> Sides<T> {
     }
 
     /// Returns the result for one side.
-    pub const fn to(&self, sway: Sway) -> &T {
+    pub const fn get(&self, sway: Sway) -> &T {
         match sway {
             Sway::Right => &self.right,
             Sway::Left => &self.left,
@@ -55,7 +55,7 @@ impl<T> Sides<T> {
 
     /// Computes new results for both sides from these.
     pub fn map<U>(&self, mut result: impl FnMut(&T) -> U) -> Sides<U> {
-        Sides::of(|sway| result(self.to(sway)))
+        Sides::of(|sway| result(self.get(sway)))
     }
 }
 

@@ -11,7 +11,7 @@
 
 use nalgebra::{Matrix3, RowVector3, Vector2, Vector3};
 
-use super::geometry::field::turned;
+use super::geometry::field::quarter_turn;
 use super::geometry::pose::{product, unit};
 use crate::mechanics::{Edge, Joint, Pose, Row};
 
@@ -64,12 +64,12 @@ impl Position {
     }
 
     /// Returns the current position of the point at `arm_m` from the centre in the undeformed row.
-    pub(crate) fn of_arm(&self, arm_m: Vector2<f64>) -> Vector2<f64> {
-        self.centre_m + self.turned(arm_m)
+    pub(crate) fn current_position(&self, arm_m: Vector2<f64>) -> Vector2<f64> {
+        self.centre_m + self.current_direction(arm_m)
     }
 
     /// Returns the current direction of a vector of the block in the undeformed row.
-    fn turned(&self, vector: Vector2<f64>) -> Vector2<f64> {
+    fn current_direction(&self, vector: Vector2<f64>) -> Vector2<f64> {
         product(product(self.half, self.half), vector)
     }
 }
@@ -79,7 +79,7 @@ impl Position {
 pub struct Faces {
     /// Vectors from the centres of the left and the right block to the intrados corner.
     arms_m: [Vector2<f64>; 2],
-    along: Vector2<f64>,
+    tangent: Vector2<f64>,
     /// Length of the faces in metres.
     pub thickness_m: f64,
     handedness: f64,
@@ -104,7 +104,7 @@ impl Faces {
             },
             arms_m: [centre(index.checked_sub(1)), centre(Some(index))]
                 .map(|centre| joint.intrados_m - centre),
-            along: joint.along(),
+            tangent: joint.direction(),
             thickness_m: joint.thickness_m(),
             handedness: row.handedness,
         };
@@ -119,18 +119,21 @@ impl Faces {
         }
         let s = self.handedness;
         let half = product(right.half, Vector2::new(left.half.x, -left.half.y));
-        let along = product(product(left.half, right.half), self.along);
-        let normal = turned(along) * s;
-        let corners = [left.of_arm(self.arms_m[0]), right.of_arm(self.arms_m[1])];
+        let tangent = product(product(left.half, right.half), self.tangent);
+        let normal = quarter_turn(tangent) * s;
+        let corners = [
+            left.current_position(self.arms_m[0]),
+            right.current_position(self.arms_m[1]),
+        ];
         let apart = corners[1] - corners[0];
-        let offset_m = apart.dot(&along);
-        let tangent = half.y / half.x;
+        let offset_m = apart.dot(&tangent);
+        let tan_half = half.y / half.x;
         let inset_m = 0.5 * offset_m.abs();
         let ends_m = [inset_m, self.thickness_m * half.x - inset_m];
-        let gap = |x: f64| apart.dot(&normal) + 2.0 * s * tangent * x;
+        let gap = |x: f64| apart.dot(&normal) + 2.0 * s * tan_half * x;
         FaceContact {
             middle_m: (corners[0] + corners[1]) * 0.5,
-            along,
+            tangent,
             normal,
             half,
             ends_m,
@@ -145,15 +148,15 @@ impl Faces {
         support: &Position,
         side: usize,
     ) -> FaceContact {
-        let along = support.turned(self.along);
-        let normal = turned(along) * self.handedness;
+        let tangent = support.current_direction(self.tangent);
+        let normal = quarter_turn(tangent) * self.handedness;
         // Coordinates are those of the right face; for a block on the left, the sign is opposite.
         let sign = if side == 1 { 1.0 } else { -1.0 };
-        let intrados_m = block.of_arm(self.arms_m[side]);
-        let face = block.turned(self.along) * self.thickness_m;
-        let moved = intrados_m - support.of_arm(self.arms_m[1 - side]);
+        let intrados_m = block.current_position(self.arms_m[side]);
+        let face = block.current_direction(self.tangent) * self.thickness_m;
+        let moved = intrados_m - support.current_position(self.arms_m[1 - side]);
         let gaps_m = [moved, moved + face].map(|corner| sign * corner.dot(&normal));
-        let reach_m = face.dot(&along);
+        let reach_m = face.dot(&tangent);
         let (middle_m, ends_m, shift_m) = if gaps_m[0] <= gaps_m[1] {
             (intrados_m, [0.0, reach_m], 0.0)
         } else {
@@ -162,11 +165,15 @@ impl Faces {
         };
         FaceContact {
             middle_m,
-            along,
+            tangent,
             normal,
             half: Vector2::new(1.0, 0.0),
             ends_m,
-            coordinates_m: Vector3::new(gaps_m[0], gaps_m[1], sign * (moved.dot(&along) + shift_m)),
+            coordinates_m: Vector3::new(
+                gaps_m[0],
+                gaps_m[1],
+                sign * (moved.dot(&tangent) + shift_m),
+            ),
         }
     }
 }
@@ -177,7 +184,7 @@ pub struct FaceContact {
     /// Midpoint between the intrados corners of the faces, in metres; on a support that extends beyond the joint, the corner nearer to the support.
     pub middle_m: Vector2<f64>,
     /// Unit vector from intrados to extrados in the mean direction of the faces; along the support if that extends beyond the joint.
-    pub along: Vector2<f64>,
+    pub tangent: Vector2<f64>,
     /// Unit normal towards the right block.
     pub normal: Vector2<f64>,
     /// Cosine and sine of half the angle between the faces; also the inclination of the forces on offset faces.
@@ -191,10 +198,10 @@ pub struct FaceContact {
 impl FaceContact {
     /// Returns the end of the overlap at an edge.
     pub fn corner_m(&self, edge: Edge) -> Vector2<f64> {
-        let intrados_m = self.middle_m + self.along * self.ends_m[0];
+        let intrados_m = self.middle_m + self.tangent * self.ends_m[0];
         match edge {
             Edge::Intrados => intrados_m,
-            Edge::Extrados => intrados_m + self.along * (self.ends_m[1] - self.ends_m[0]),
+            Edge::Extrados => intrados_m + self.tangent * (self.ends_m[1] - self.ends_m[0]),
         }
     }
 
@@ -209,7 +216,7 @@ impl FaceContact {
     }
 
     /// Returns the rates of the three coordinates for a translation of the right block.
-    pub fn carried(&self, faces: &Faces, velocity_m_s: Vector2<f64>) -> Vector3<f64> {
+    pub fn rates_of_translation(&self, faces: &Faces, velocity_m_s: Vector2<f64>) -> Vector3<f64> {
         let [_, right] = self.gradients(faces, self.middle_m, self.middle_m);
         right * velocity_m_s.push(0.0)
     }
@@ -226,9 +233,9 @@ impl FaceContact {
         let c = self.half.x;
         let lean = self.lean(faces);
         let forces = [
-            self.normal + self.along * lean,
-            self.normal - self.along * lean,
-            self.along,
+            self.normal + self.tangent * lean,
+            self.normal - self.tangent * lean,
+            self.tangent,
         ];
         let squared = c * c;
         let couples = [

@@ -71,7 +71,7 @@ pub(crate) fn collapse_mechanism_at(
     stance: &RowState,
 ) -> Result<Option<Vec<OpeningJoint>>, ContactError> {
     let mut trial = Trial::new(row, stance);
-    let moves = trial.moves(Vector2::new(0.0, -1.0), true)?;
+    let moves = trial.motion_of_masses(Vector2::new(0.0, -1.0), true)?;
     Ok(moves.map(|_| trial.openings()))
 }
 
@@ -114,13 +114,16 @@ pub fn onset_at(
         return Ok(None);
     }
     let mut trial = Trial::new(row, stance);
-    if trial.moves(Vector2::new(0.0, -1.0), true)?.is_some() {
+    if trial
+        .motion_of_masses(Vector2::new(0.0, -1.0), true)?
+        .is_some()
+    {
         return Err(StabilityError::CannotStand(trial.openings()));
     }
     let mut load = Vector2::new(sway.sign(), 0.0);
     let mut found: Option<RowOnset> = None;
     // The first trial is an infinite push, compared with which ties have no effect.
-    while let Some(work) = trial.moves(load, found.is_some())? {
+    while let Some(work) = trial.motion_of_masses(load, found.is_some())? {
         let lengthening = trial.lengthening();
         let ties = lengthening.iter().zip(&trial.ties_kg);
         let resists: f64 = ties.map(|(rate, kg)| rate * kg).sum();
@@ -184,7 +187,7 @@ pub fn limit_with_yielding_ties(
         let mut lower_g = push_g;
         let known = push_program.planes.len();
         // Reduce the push at the same tie forces, down to the one that is carried.
-        while trial.moves(pushed(lower_g), true)?.is_some() {
+        while trial.motion_of_masses(pushed(lower_g), true)?.is_some() {
             let plane = Plane::new(row, trial.work(), &trial.lengthening(), sway);
             let bound_g = plane.bound_g(&forces);
             push_program.planes.push(plane);
@@ -208,7 +211,7 @@ pub fn limit_with_yielding_ties(
         return Ok(None);
     }
     // A slightly larger push shows the mechanism.
-    trial.moves(pushed(push_g * (1.0 + PUSH_INCREASE)), true)?;
+    trial.motion_of_masses(pushed(push_g * (1.0 + PUSH_INCREASE)), true)?;
     let ties = row.ties.iter().zip(&forces);
     let forces_n = ties.map(|(tie, force)| (force * weight_n).min(tie.yield_force_n));
     let (onset, forces_n) = (trial.onset(push_g), forces_n.collect());
@@ -378,7 +381,8 @@ impl LargestPushProgram {
 /// Returns the integral of the velocities over the masses.
 fn work(row: &Row, placement: &Placement, velocities: &[Twist]) -> Vector2<f64> {
     let blocks = row.blocks.iter().zip(&placement.centres_m).zip(velocities);
-    let each = blocks.map(|((block, centre_m), twist)| twist.at(*centre_m) * block.mass_kg);
+    let each =
+        blocks.map(|((block, centre_m), twist)| twist.velocity_at(*centre_m) * block.mass_kg);
     each.sum()
 }
 
@@ -397,7 +401,7 @@ impl<'a> Trial<'a> {
     fn new(row: &'a Row, stance: &'a RowState) -> Self {
         let placement = &stance.placement;
         let mut program = ContactProgram::new(row);
-        program.place(placement);
+        program.set_positions(placement);
         let ties_kg = stance.forces_n().map(|force_n| force_n / row.gravity_m_s2);
         Self {
             row,
@@ -420,7 +424,7 @@ impl<'a> Trial<'a> {
     }
 
     /// Returns the integral of the velocities over the masses under a load per unit mass; `None` if the row does not move.
-    fn moves(
+    fn motion_of_masses(
         &mut self,
         load: Vector2<f64>,
         with_ties: bool,

@@ -42,7 +42,7 @@ impl Sway {
 
     /// Converts a section from the frame in which this sway goes right to the frame of the ground, or back. A section is an angle in radians from the
     /// left springing, or a joint.
-    pub fn from_left(self, profile: &dyn Profile, section: f64) -> f64 {
+    pub fn convert_section(self, profile: &dyn Profile, section: f64) -> f64 {
         match self {
             Self::Right => section,
             Self::Left => profile.end() - section,

@@ -19,7 +19,8 @@ impl Row {
         let [left, right] = self.supports_extend;
         let supports = self.supports == Supports::Left || left == right;
         let blocks = self.blocks.iter().enumerate();
-        let mut blocks = blocks.map(|(index, block)| (block, &self.blocks[self.opposite(index)]));
+        let mut blocks =
+            blocks.map(|(index, block)| (block, &self.blocks[self.mirrored_block(index)]));
         let joints = self.joints.iter().enumerate();
         let mut joints =
             joints.map(|(index, joint)| (joint, &self.joints[self.opposite_joint(index)]));
@@ -30,7 +31,7 @@ impl Row {
     }
 
     /// Returns the index of the block at the place of the mirror image of a block.
-    pub(crate) fn opposite(&self, block: usize) -> usize {
+    pub(crate) fn mirrored_block(&self, block: usize) -> usize {
         match self.supports {
             Supports::Both => self.blocks.len() - 1 - block,
             Supports::Left => block,
@@ -63,14 +64,14 @@ impl Row {
         Vector2::new(left_m.x + right_m.x - point_m.x, point_m.y)
     }
 
-    fn coincide(&self, one_m: Vector2<f64>, other_m: Vector2<f64>) -> bool {
+    fn points_coincide(&self, one_m: Vector2<f64>, other_m: Vector2<f64>) -> bool {
         (one_m - other_m).amax() <= SAME_RATIO * self.size_m
     }
 
     fn is_mirror_image(&self, block: &Block, other: &Block) -> bool {
         is_same(block.mass_kg, other.mass_kg)
             && is_same(block.inertia_kg_m2, other.inertia_kg_m2)
-            && self.coincide(self.image_m(block.centre_m), other.centre_m)
+            && self.points_coincide(self.image_m(block.centre_m), other.centre_m)
     }
 
     fn are_opposite(&self, joint: &Joint, other: &Joint) -> bool {
@@ -81,7 +82,7 @@ impl Row {
         };
         let images_m = [joint.intrados_m, joint.extrados_m].map(|corner_m| self.image_m(corner_m));
         let mut pairs_m = images_m.into_iter().zip(corners_m);
-        pairs_m.all(|(image_m, corner_m)| self.coincide(image_m, corner_m))
+        pairs_m.all(|(image_m, corner_m)| self.points_coincide(image_m, corner_m))
     }
 
     fn is_opposite_tie(&self, tie: &Tie, other: &Tie) -> bool {
@@ -91,8 +92,8 @@ impl Row {
             && is_same(tie.yield_force_n, other.yield_force_n)
             && is_same(tie.breaks_at_strain, other.breaks_at_strain);
         let meets = |anchor: &Anchor, other: &Anchor| {
-            anchor.block.map(|block| self.opposite(block)) == other.block
-                && self.coincide(self.image_m(anchor.at_m), other.at_m)
+            anchor.block.map(|block| self.mirrored_block(block)) == other.block
+                && self.points_coincide(self.image_m(anchor.at_m), other.at_m)
         };
         let [from, to] = &tie.ends;
         let [other_from, other_to] = &other.ends;

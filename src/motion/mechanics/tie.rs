@@ -90,7 +90,7 @@ impl Tie {
 
     /// Returns the constant force in N, or the force of the tie in the undeformed structure, on the block at its first end.
     pub fn force_at_rest_n(&self) -> Vector2<f64> {
-        self.along() * self.prestress_n
+        self.direction() * self.prestress_n
     }
 
     /// Checks the numbers of the tie, and that it connects two of `blocks` blocks, or a block and a support. `size_m` is the size of the structure.
@@ -162,7 +162,7 @@ impl Tie {
     }
 
     /// Returns the unit vector from its first end to its second one, in the undeformed structure.
-    pub fn along(&self) -> Vector2<f64> {
+    pub fn direction(&self) -> Vector2<f64> {
         (self.ends[1].at_m - self.ends[0].at_m) / self.length_m()
     }
 
@@ -173,7 +173,7 @@ impl Tie {
         TieLine {
             ends: self.ends.map(|anchor| anchor.block),
             ends_m,
-            along: Vector2::new(span.along[0].0[0], span.along[1].0[0]),
+            direction: Vector2::new(span.direction[0].0[0], span.direction[1].0[0]),
             stretch_m: span.stretch_m.0[0],
         }
     }
@@ -196,11 +196,11 @@ impl Tie {
     #[inline(always)]
     pub fn span<R: Real>(&self, moved_m: [[R; 2]; 2]) -> TieSpan<R> {
         if self.is_constant_force() {
-            let along = self.along();
+            let direction = self.direction();
             let by = moved_m[0];
             return TieSpan {
-                stretch_m: -(by[0] * R::of(along.x) + by[1] * R::of(along.y)),
-                along: both!(i: R::of(along[i])),
+                stretch_m: -(by[0] * R::of(direction.x) + by[1] * R::of(direction.y)),
+                direction: both!(i: R::of(direction[i])),
             };
         }
         let apart = self.ends[1].at_m - self.ends[0].at_m;
@@ -213,7 +213,7 @@ impl Tie {
         let per_length = R::of(1.0) / length;
         TieSpan {
             stretch_m: lengthened + R::of(self.prestress_n / self.stiffness_n_m),
-            along: both!(i: now[i] * per_length),
+            direction: both!(i: now[i] * per_length),
         }
     }
 
@@ -261,7 +261,7 @@ pub struct TieSpan<R> {
     /// Stretch beyond the unstressed length, in m.
     pub stretch_m: R,
     /// Unit vector from its first end to its second one.
-    pub along: [R; 2],
+    pub direction: [R; 2],
 }
 
 /// Line of action of a tie between blocks in any position.
@@ -272,7 +272,7 @@ pub struct TieLine {
     /// Positions of its ends, in metres.
     pub ends_m: [Vector2<f64>; 2],
     /// Unit vector from its first end to its second one.
-    pub along: Vector2<f64>,
+    pub direction: Vector2<f64>,
     /// Stretch beyond the unstressed length, in m.
     pub stretch_m: f64,
 }
@@ -287,7 +287,7 @@ impl TieLine {
         impulse: f64,
         mut gain: impl FnMut(usize, Vector2<f64>, f64),
     ) {
-        let impulse = self.along * impulse;
+        let impulse = self.direction * impulse;
         for (end, impulse) in [impulse, -impulse].into_iter().enumerate() {
             let Some(index) = self.ends[end] else {
                 continue;
@@ -300,7 +300,7 @@ impl TieLine {
 
     /// Returns a unit force on the block at its first end; the force on the block at its second end is opposite.
     fn unit_pull(&self) -> Momentum {
-        Momentum::applied_at(self.ends_m[0], self.along)
+        Momentum::applied_at(self.ends_m[0], self.direction)
     }
 
     /// Returns the rate at which the tie lengthens for given velocities of the blocks; supports are at rest.
@@ -348,7 +348,7 @@ pub(crate) fn pull_blocks<'a>(
     let pulls = sum_pulls(blocks.len(), ties);
     let bodies = blocks.iter().zip(centres_m).zip(&pulls);
     for (((block, centre_m), pull), velocity) in bodies.zip(velocities) {
-        let rate = pull.about(*centre_m) / block.inertia_kg_m2;
+        let rate = pull.moment_about(*centre_m) / block.inertia_kg_m2;
         let gained = Twist::translation(pull.linear / block.mass_kg);
         *velocity = *velocity + gained + Twist::rotation(*centre_m, rate);
     }

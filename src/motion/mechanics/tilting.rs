@@ -169,7 +169,7 @@ impl Tilting {
         body_force_g: Vector2<f64>,
         wall: Option<Sway>,
     ) -> (Vector2<f64>, f64) {
-        let onto_base = self.pressing(body_force_g, wall);
+        let onto_base = self.pressing_forces(body_force_g, wall);
         let reaction = -onto_base(body_force_g + self.constant_force());
         let centre = self.body.centroid();
         let own = onto_base(body_force_g);
@@ -191,13 +191,13 @@ impl Tilting {
         body_force_g: Vector2<f64>,
         wall: Option<Sway>,
     ) -> Vec<Option<f64>> {
-        let onto_base = self.pressing(body_force_g, wall);
+        let onto_base = self.pressing_forces(body_force_g, wall);
         self.crossings(&Load::uniform(onto_base(body_force_g)), onto_base)
     }
 
     /// Returns a function of the forces at rest that returns their parts which press on the base. A wall on the side `wall` carries the horizontal
     /// forces, at their heights, if their sum points to it.
-    fn pressing(
+    fn pressing_forces(
         &self,
         body_force_g: Vector2<f64>,
         wall: Option<Sway>,
@@ -252,7 +252,7 @@ impl Tilting {
                 sum + Momentum::applied_at(load.at, force(load.force))
             });
             let normal = -resultant.linear.y;
-            let eccentricity_ratio = -resultant.about(section) / (normal * width);
+            let eccentricity_ratio = -resultant.moment_about(section) / (normal * width);
             (normal > 0.0).then_some(eccentricity_ratio)
         };
         thrust_section_parts().map(crossing).collect()
@@ -322,7 +322,7 @@ impl Mechanism for Tilting {
     }
 
     /// Positions are relative to the middle of the base, the origin.
-    fn place(&self, q_rad: f64, poses: &mut Vec<Pose>, hinges: &mut Vec<Vector2<f64>>) {
+    fn write_poses(&self, q_rad: f64, poses: &mut Vec<Pose>, hinges: &mut Vec<Vector2<f64>>) {
         let toe = self.toe();
         poses.clear();
         hinges.clear();

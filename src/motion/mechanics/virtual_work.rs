@@ -99,7 +99,7 @@ impl Participation {
 }
 
 /// Returns the factor on virtual displacements for which the centre of all masses moves by one.
-pub fn per_displacement_of_centre(bodies: &[MovingBody]) -> f64 {
+pub fn displacement_factor(bodies: &[MovingBody]) -> f64 {
     let mass_kg: f64 = bodies.iter().map(|body| body.mass_kg).sum();
     let first = bodies.iter().map(|body| body.mass_kg * body.displacement.x);
     mass_kg / first.sum::<f64>()

@@ -57,7 +57,7 @@ pub(in crate::scenario) fn find(
     if is_table || has_scenario_ending(Path::new(file)) {
         return by_ending;
     }
-    let contents = files.start(&files.path(file), SEARCHED);
+    let contents = files.read_start(&files.path(file), SEARCHED);
     let contents = contents.unwrap_or_default();
     let kind = binary_kind(&contents).filter(|_| ending.is_none());
     match (Format::of_contents(&contents), kind) {
@@ -72,7 +72,7 @@ pub fn unknown_format(file: &Path) -> Option<ScenarioErrors> {
     if format_of_file(file).is_some() || has_scenario_ending(file) {
         return None;
     }
-    let bytes = Files::default().start(file, SEARCHED).ok()?;
+    let bytes = Files::default().read_start(file, SEARCHED).ok()?;
     let start = String::from_utf8_lossy(&bytes);
     let wrong = match not_plain(&bytes) {
         Some(wrong) => wrong,

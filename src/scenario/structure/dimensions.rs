@@ -91,16 +91,17 @@ impl Structure {
                 let ring = arch.ring();
                 let line = arch.measured_at;
                 let radius_m = arch.radius_at_m(line.unwrap_or(MeasuredAt::Mean));
-                let ends = [0.0, ring.embrace_rad].map(|angle| ring.radial(angle) * radius_m);
+                let ends =
+                    [0.0, ring.embrace_rad].map(|angle| ring.radial_direction(angle) * radius_m);
                 span_and_rise(ends, radius_m, line).into()
             }
             Self::Column(column) => {
                 let half_m = 0.5 * column.width_m;
                 let high = Vector2::new(half_m, column.height_m);
                 let own = width_and_height([Vector2::new(-half_m, 0.0), high]);
-                own.into_iter().chain(of_wall(column)).collect()
+                own.into_iter().chain(wall_height(column)).collect()
             }
-            Self::Masonry(masonry) => of_masonry(masonry),
+            Self::Masonry(masonry) => masonry_dimensions(masonry),
         }
     }
 }
@@ -121,7 +122,7 @@ impl Structure {
 }
 
 /// Returns the circular arch of masonry, which may have piers, fill and loads; `None` for other shapes.
-pub(super) fn circular(masonry: &Masonry) -> Option<&Arch> {
+pub(super) fn circular_arch(masonry: &Masonry) -> Option<&Arch> {
     match &masonry.shape {
         Shape::Circular(circular) => Some(&circular.arch),
         _ => None,
@@ -161,7 +162,7 @@ fn span_and_rise(ends: Ends, crown_m: f64, line: Option<MeasuredAt>) -> [Dimensi
 }
 
 /// Returns the height of the wall behind a column if it is lower than the column.
-fn of_wall(column: &Column) -> Option<Dimension> {
+fn wall_height(column: &Column) -> Option<Dimension> {
     let (wall, height_m) = column.wall()?;
     let x_m = 0.5 * column.width_m * wall.side.sign();
     let side = match wall.side {
@@ -173,11 +174,11 @@ fn of_wall(column: &Column) -> Option<Dimension> {
     Some(wall).filter(|_| height_m < column.height_m)
 }
 
-fn of_masonry(masonry: &Masonry) -> Vec<Dimension> {
+fn masonry_dimensions(masonry: &Masonry) -> Vec<Dimension> {
     let Some([start, end]) = masonry.springings() else {
         return width_and_height(bounds_m(&masonry.row)).into();
     };
-    let line = circular(masonry).and_then(|arch| arch.measured_at);
+    let line = circular_arch(masonry).and_then(|arch| arch.measured_at);
     let ends = [start, end].map(|joint| match line {
         Some(MeasuredAt::Intrados) => joint.intrados_m,
         Some(MeasuredAt::Extrados) => joint.extrados_m,
@@ -200,7 +201,7 @@ fn of_masonry(masonry: &Masonry) -> Vec<Dimension> {
         (other, end, DimensionSide::Right),
     ];
     for (pier, joint, side) in piers {
-        let pier = pier.map(|pier| of_pier(&pier, joint.intrados_m, side));
+        let pier = pier.map(|pier| pier_dimensions(&pier, joint.intrados_m, side));
         dimensions.extend(pier.into_iter().flatten());
     }
     let fill = masonry.load_outlines.fill_m.iter();
@@ -218,7 +219,7 @@ fn of_masonry(masonry: &Masonry) -> Vec<Dimension> {
 }
 
 /// Returns height and width of a pier, from the inner corner at its springing.
-fn of_pier(pier: &Pier, inner: Vector2<f64>, side: DimensionSide) -> [Dimension; 2] {
+fn pier_dimensions(pier: &Pier, inner: Vector2<f64>, side: DimensionSide) -> [Dimension; 2] {
     let foot = inner - Vector2::new(0.0, pier.height_m);
     let base = match side {
         DimensionSide::Left => [foot - Vector2::new(pier.width_m, 0.0), foot],

@@ -80,7 +80,8 @@ impl Structure {
         let structure = match read {
             StructureTable::Arch(arch) => Self::Arch(arch),
             StructureTable::Column(column, back) if beside.fits_column() => {
-                let column = back_wall::before_wall(table, column, back, (has_joints, lands))?;
+                let column =
+                    back_wall::place_before_wall(table, column, back, (has_joints, lands))?;
                 let has_joints = has_joints || !ties.is_empty();
                 let by = (has_joints, gravity_m_s2);
                 let column = loaded_column(table, &beside.loads, column, by)?;
@@ -91,10 +92,10 @@ impl Structure {
                 Self::Column(tie::tied_column(table, &ties, column, gravity_m_s2)?)
             }
             StructureTable::Column(..) => {
-                return Err(beside.refused(table, "applies to an arch, not to a column"));
+                return Err(beside.reject_all(table, "applies to an arch, not to a column"));
             }
             StructureTable::Shape(shape) => {
-                let masonry = beside.complete(table, shape, (gravity_m_s2, unproved))?;
+                let masonry = beside.build_masonry(table, shape, (gravity_m_s2, unproved))?;
                 Self::Masonry(Box::new(masonry))
             }
         };
@@ -197,7 +198,7 @@ impl Structure {
     }
 
     /// Returns the circular arch; `None` for other structures, and for an arch with piers, fill, loads or ties.
-    pub const fn circular(&self) -> Option<&Arch> {
+    pub const fn circular_arch(&self) -> Option<&Arch> {
         match self {
             Self::Arch(arch) => Some(arch),
             Self::Column(_) | Self::Masonry(_) => None,
@@ -293,7 +294,7 @@ fn read_arch(
     let depth_m = table.or("depth_m", &MAGNITUDE, DEPTH_M);
     let density_kg_m3 = table.or("density_kg_m3", &MAGNITUDE, DENSITY_KG_M3);
     let voussoirs = table.optional("voussoirs", &VOUSSOIRS);
-    let joints_deg = table.optional("joints_deg", &list(&JOINT_DEG));
+    let joints_deg = table.optional("joints_deg", &list_of(&JOINT_DEG));
     let equal = "`voussoirs` are equal: give one of them";
     table.check_relations(&[AtMostOne(&["voussoirs", "joints_deg"], equal)])?;
     let circular = circular?;
@@ -378,7 +379,7 @@ fn read_column(table: &mut Table<'_>, has_joints: bool) -> ReadResult<(Column, O
     let height_m = table.required("height_m", &MAGNITUDE);
     let width_m = table.required("width_m", &MAGNITUDE);
     let drums = table.optional("drums", &DRUMS);
-    let drum_heights_m = table.optional("drum_heights_m", &list(&MAGNITUDE));
+    let drum_heights_m = table.optional("drum_heights_m", &list_of(&MAGNITUDE));
     let top_width_m = table.optional("top_width_m", &MAGNITUDE);
     let depth_m = table.or("depth_m", &MAGNITUDE, DEPTH_M);
     let density_kg_m3 = table.or("density_kg_m3", &MAGNITUDE, DENSITY_KG_M3);

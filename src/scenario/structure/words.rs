@@ -1,14 +1,14 @@
 //! A structure in words: dimensions, frame of reference and positions of ties.
 
 use super::Structure;
-use super::dimensions::{circular, metres};
+use super::dimensions::{circular_arch, metres};
 use crate::mechanics::masonry::FillLevel;
 use crate::mechanics::{MeasuredAt, PlacedLoad, Shape, Tie};
 use crate::{Arch, Column, Masonry};
 
 impl Structure {
     /// Returns the structure in words, with properties that its drawing does not show.
-    pub fn described(&self) -> String {
+    pub fn describe(&self) -> String {
         let (depth_m, density_kg_m3) = self.depth_and_density();
         let mut parts = Vec::new();
         match self {
@@ -19,10 +19,10 @@ impl Structure {
                     "circular arch of {degrees} degrees, {thick} m thick"
                 ));
                 parts.extend(arch.voussoirs.map(|count| format!("{count} voussoirs")));
-                parts.extend(measured(arch));
+                parts.extend(measured_line(arch));
             }
-            Self::Column(column) => parts.extend(of_column(column)),
-            Self::Masonry(masonry) => parts.extend(of_masonry(masonry)),
+            Self::Column(column) => parts.extend(column_words(column)),
+            Self::Masonry(masonry) => parts.extend(masonry_words(masonry)),
         }
         let [depth, density] = [depth_m, density_kg_m3].map(metres);
         parts.push(format!("{depth} m deep, {density} kg/m3"));
@@ -36,7 +36,7 @@ impl Structure {
         let circular = match self {
             Self::Arch(arch) => Some(arch),
             Self::Column(_) => None,
-            Self::Masonry(masonry) => circular(masonry),
+            Self::Masonry(masonry) => circular_arch(masonry),
         };
         if let Some(arch) = circular {
             let below = match springing_m(arch) {
@@ -73,18 +73,18 @@ impl Structure {
             Self::Arch(_) | Self::Column(_) => None,
         };
         let ties = self.ties().iter().enumerate();
-        ties.map(|(index, tie)| format!("tie {} {}", index + 1, place(tie, springing_m)))
+        ties.map(|(index, tie)| format!("tie {} {}", index + 1, tie_position(tie, springing_m)))
             .collect()
     }
 }
 
 /// Returns the line along which span and rise are measured, in words; `None` if the scenario does not give them.
-fn measured(arch: &Arch) -> Option<String> {
+fn measured_line(arch: &Arch) -> Option<String> {
     let line = arch.measured_at?;
     Some(format!("span and rise {}", line.in_words()))
 }
 
-fn of_column(column: &Column) -> Vec<String> {
+fn column_words(column: &Column) -> Vec<String> {
     let wall = column.wall().map(|(wall, height_m)| {
         let (side, height) = (wall.side.name(), metres(height_m));
         format!(" against a wall of {height} m on its {side}")
@@ -128,7 +128,7 @@ pub fn load_in_words(load: &PlacedLoad) -> String {
     }
 }
 
-fn of_masonry(masonry: &Masonry) -> Vec<String> {
+fn masonry_words(masonry: &Masonry) -> Vec<String> {
     let name = match masonry.shape {
         Shape::Circular(_) => "circular arch",
         Shape::PointedArch(_) => "pointed arch",
@@ -141,7 +141,7 @@ fn of_masonry(masonry: &Masonry) -> Vec<String> {
         format!(", {} m thick", metres(thick_m))
     });
     let mut parts = vec![format!("{name}{}", thick.unwrap_or_default())];
-    parts.extend(circular(masonry).and_then(measured));
+    parts.extend(circular_arch(masonry).and_then(measured_line));
     parts.push(format!("{} blocks", masonry.row.blocks.len()));
     parts.extend(masonry.fill.map(|fill| {
         let (height_m, line) = match fill.level {
@@ -184,7 +184,7 @@ fn springing_m(arch: &Arch) -> f64 {
     }
 }
 
-fn place(tie: &Tie, springing_m: Option<f64>) -> String {
+fn tie_position(tie: &Tie, springing_m: Option<f64>) -> String {
     let ends_m = tie.ends.map(|end| end.at_m);
     let [from, to] = ends_m.map(|at| format!("({}, {})", metres(at.x + 0.0), metres(at.y + 0.0)));
     let above = springing_m.map_or_else(String::new, |springing_m| {

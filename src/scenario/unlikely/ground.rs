@@ -51,11 +51,18 @@ impl Scenario {
             None => {}
         }
         let suite = self.suite.iter().flat_map(|suite| &suite.records);
-        unlikely.extend(of_several(suite, "the suite", gravity_m_s2));
-        let verify = self.verify.iter().flat_map(|verify| verify.records.all());
-        unlikely.extend(of_several(verify, "[verify]", gravity_m_s2));
+        unlikely.extend(unlikely_records(suite, "the suite", gravity_m_s2));
+        let verify = self
+            .verify
+            .iter()
+            .flat_map(|verify| verify.records.all_records());
+        unlikely.extend(unlikely_records(verify, "[verify]", gravity_m_s2));
         let strengths = self.strengths(study);
-        unlikely.extend(strengths.iter().filter_map(|one| one.unlikely(&starts_g)));
+        unlikely.extend(
+            strengths
+                .iter()
+                .filter_map(|one| one.unlikely_strength(&starts_g)),
+        );
         unlikely
     }
 
@@ -66,7 +73,7 @@ impl Scenario {
         let unit = "is its amplitude in units of gravity?";
         let doubt = |value_g: f64, phrase: String| {
             let warning = format!("the pulse {phrase}: {unit}");
-            Unlikely::new(key.clone(), value_g, "g", warning).in_likely(PEAK.likely(value_g))
+            Unlikely::new(key.clone(), value_g, "g", warning).in_likely(PEAK.nearest_unit(value_g))
         };
         if peak_g > *PEAK_G.end() {
             return Some(doubt(peak_g, format!("peaks at {} g", plain(peak_g))));
@@ -136,14 +143,14 @@ impl Scenario {
         let mut all = Vec::new();
         if let Some(ground) = &self.ground {
             let axes = self.map.iter().flat_map(|map| [&map.x, &map.y]);
-            let axes = axes.filter_map(|axis| self.of_axis(axis, ground));
+            let axes = axes.filter_map(|axis| self.axis_strengths(axis, ground));
             all.extend(axes);
-            let along = study.along.map(|(key, ends)| Axis {
+            let axis = study.key_range.map(|(key, ends)| Axis {
                 quantity: Quantity::Other,
                 key: key.to_owned(),
                 sequence: Sequence::List(ends.into()),
             });
-            all.extend(along.and_then(|axis| self.of_axis(&axis, ground)));
+            all.extend(axis.and_then(|axis| self.axis_strengths(&axis, ground)));
         }
         if let Some(suite) = &self.suite {
             let peaks_g = suite
@@ -173,7 +180,7 @@ impl Scenario {
     }
 
     /// Returns the strengths along an axis; `None` if it varies another quantity.
-    fn of_axis(&self, axis: &Axis, ground: &Ground) -> Option<Strengths> {
+    fn axis_strengths(&self, axis: &Axis, ground: &Ground) -> Option<Strengths> {
         let unit_g = match (axis.quantity_under(ground), ground) {
             (Quantity::Amplitude | Quantity::PeakG, _) => 1.0,
             (Quantity::Scale, Ground::Record(record)) => {
@@ -228,11 +235,11 @@ impl Strengths {
     }
 
     /// Returns a warning about motions that are too strong, or all too weak or too strong for the structure.
-    fn unlikely(&self, starts_g: StartsG<'_>) -> Option<Unlikely> {
+    fn unlikely_strength(&self, starts_g: StartsG<'_>) -> Option<Unlikely> {
         let doubt = |value_g: f64, (verb, end): (&str, &str)| {
             let (what, value, question) = (&self.what, plain(value_g), self.question);
             let warning = format!("{what} {verb} {value} g{end}: {question}");
-            let likely = self.likely.or_else(|| PEAK.likely(self.middle_g()));
+            let likely = self.likely.or_else(|| PEAK.nearest_unit(self.middle_g()));
             Unlikely::new(self.key.clone(), value_g, "g", warning).in_likely(likely)
         };
         let (weakest_g, strongest_g) = (self.weakest_g, self.strongest_g);
@@ -255,7 +262,7 @@ impl Strengths {
 }
 
 /// Returns the warnings about several records. A wrong unit affects all tables, so only the first record is described.
-fn of_several<'s>(
+fn unlikely_records<'s>(
     records: impl Iterator<Item = &'s Series> + Clone,
     of: &str,
     gravity_m_s2: f64,

@@ -85,7 +85,7 @@ pub struct Varied<'a> {
     /// The model of motion, if it is known already.
     pub model: Option<&'a dyn Model>,
     /// A key, and the ends of the range along which it varies.
-    pub along: Option<(&'a str, [f64; 2])>,
+    pub key_range: Option<(&'a str, [f64; 2])>,
     /// The largest factor on the ground motion.
     pub factor: Option<f64>,
 }
@@ -102,7 +102,7 @@ impl<'a> Varied<'a> {
 
 impl Scenario {
     /// Returns sentences about unlikely values, each with the probably intended unit.
-    pub fn unlikely(&self) -> Vec<String> {
+    pub fn unlikely_values(&self) -> Vec<String> {
         Unlikely::sentences(&self.unlikely_in(&Varied::default()))
     }
 
@@ -114,13 +114,13 @@ impl Scenario {
         numbers.add_computed(&self.structure);
         numbers.add_ranges(self, study);
         let mut unlikely: Vec<Unlikely> = Vec::new();
-        let mut by_key = numbers.unlikely(&[]);
+        let mut by_key = numbers.unlikely_numbers(&[]);
         // Weights and pushes depend on size and density.
         let is_sized = !by_key
             .iter()
             .any(|one| ["m", "kg/m3"].contains(&&*one.unit));
         if is_sized {
-            by_key = numbers.unlikely(&self.usual_forces(&numbers));
+            by_key = numbers.unlikely_numbers(&self.usual_forces(&numbers));
         }
         let all = by_key.into_iter().chain(self.unlikely_together(&numbers));
         for one in all.chain(self.unlikely_gravity()) {
@@ -280,7 +280,7 @@ impl Numbers {
                 .filter_map(Value::as_f64);
             self.0.extend(ends.map(|value| (key.clone(), value)));
         }
-        if let Some((key, ends)) = study.along {
+        if let Some((key, ends)) = study.key_range {
             self.0.extend(ends.map(|value| (key.to_owned(), value)));
         }
     }
@@ -294,7 +294,7 @@ impl Numbers {
     }
 
     /// Returns the numbers outside the usual range of their key. `forces` are the usual forces of the structure.
-    fn unlikely(&self, forces: &[Usual]) -> Vec<Unlikely> {
+    fn unlikely_numbers(&self, forces: &[Usual]) -> Vec<Unlikely> {
         let numbers = self.0.iter().filter_map(|(path, value)| {
             let mut all = USUAL.iter().chain(forces);
             let usual = all.find(|usual| usual.fits(path))?;
@@ -330,7 +330,7 @@ impl Usual {
             "" => String::new(),
             unit => format!(" {unit}"),
         };
-        let likely = self.likely(value.abs());
+        let likely = self.nearest_unit(value.abs());
         let end = likely.map_or(", which is unlikely".to_owned(), |unit| {
             format!(": is it in {unit}?")
         });

@@ -8,9 +8,12 @@ impl Scenario {
     /// Returns the mistakes that only several numbers together show.
     pub(super) fn unlikely_together(&self, numbers: &Numbers) -> Vec<Unlikely> {
         let column = self.structure.column();
-        let alone = column
-            .into_iter()
-            .flat_map(|column| [exchanged(column), beyond_balance(column, numbers)]);
+        let alone = column.into_iter().flat_map(|column| {
+            [
+                width_exchanged(column),
+                released_beyond_balance(column, numbers),
+            ]
+        });
         let loads = column.into_iter().flat_map(loads_beside);
         let found = alone.flatten().chain(loads);
         let others = [stiff_mortar(numbers), falling_hazard(numbers)];
@@ -19,7 +22,7 @@ impl Scenario {
 }
 
 /// Returns a warning about a column that is wider than twice its height: it rocks under no ground motion below 2 g.
-fn exchanged(column: &Column) -> Option<Unlikely> {
+fn width_exchanged(column: &Column) -> Option<Unlikely> {
     let (height_m, width_m) = (column.height_m, column.width_m);
     (width_m > 2.0 * height_m).then(|| {
         let [height, width] = [height_m, width_m].map(plain);
@@ -31,7 +34,7 @@ fn exchanged(column: &Column) -> Option<Unlikely> {
 }
 
 /// Returns a warning about a column that is released beyond its unstable equilibrium, from where it falls.
-fn beyond_balance(column: &Column, numbers: &Numbers) -> Option<Unlikely> {
+fn released_beyond_balance(column: &Column, numbers: &Numbers) -> Option<Unlikely> {
     let key = "initial.rotation_rad";
     let rotation_rad = numbers.get(key).filter(|_| column.is_one_prism())?;
     let slenderness_rad = column.slenderness_rad();

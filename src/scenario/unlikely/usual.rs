@@ -27,7 +27,7 @@ pub(super) struct Usual {
 impl Usual {
     /// Returns the unit in which a number would be nearest to the middle of the usual ones, on a logarithmic scale; `None` if it would be unusual in
     /// all units.
-    pub(super) fn likely(&self, magnitude: f64) -> Option<&'static str> {
+    pub(super) fn nearest_unit(&self, magnitude: f64) -> Option<&'static str> {
         let (low, high) = (*self.range.start(), *self.range.end());
         let middle = (low.max(1e-3 * high) * high).sqrt();
         let usual = self.others.iter().filter_map(|(unit, size)| {
@@ -40,7 +40,7 @@ impl Usual {
     }
 }
 
-const fn usual(
+const fn usual_range(
     key: &'static str,
     what: &'static str,
     unit: &'static str,
@@ -81,14 +81,14 @@ pub(super) fn usual_forces(mass_kg: f64, size_m: f64, gravity_m_s2: f64) -> [Usu
     const KILONEWTONS: &[(&str, f64)] = &[("kN", 1e3)];
     let times = |factor: f64| PART_OF_WEIGHT.start() * factor..=PART_OF_WEIGHT.end() * factor;
     let weight_n = mass_kg * gravity_m_s2;
-    let force = |key, what, part| usual(key, what, "N", times(part * weight_n), KILONEWTONS);
+    let force = |key, what, part| usual_range(key, what, "N", times(part * weight_n), KILONEWTONS);
     let masses: &[_] = &[("tonnes", 1e3), ("kN", 1e3 / 9.81), ("grams", 1e-3)];
     // At the lower end a tie as long as the structure would double its length under the weight; the upper end is that of the key.
     let stiffness_n_m = weight_n / size_m..=1e10;
     // A blow that gives the structure some cm/s.
     let impulse_n_s = times(weight_n);
     [
-        usual(
+        usual_range(
             "mass_kg",
             "the mass of {of} is",
             "kg",
@@ -99,14 +99,14 @@ pub(super) fn usual_forces(mass_kg: f64, size_m: f64, gravity_m_s2: f64) -> [Usu
         // A tie may be tightened by hand.
         force("prestress_n", "the prestress of {of} is", 0.1),
         force("yield_force_n", "the yield force of {of} is", 1.0),
-        usual(
+        usual_range(
             "stiffness_n_m",
             "the stiffness of {of} is",
             "N/m",
             stiffness_n_m,
             &[("kN/m", 1e3), ("kN/mm", 1e6)],
         ),
-        usual(
+        usual_range(
             "impulse_n_s",
             "the impulse is",
             "N s",
@@ -117,7 +117,7 @@ pub(super) fn usual_forces(mass_kg: f64, size_m: f64, gravity_m_s2: f64) -> [Usu
 }
 
 /// Peaks of ground motions, in g, and the units with which users confuse it.
-pub(super) const PEAK: Usual = usual(
+pub(super) const PEAK: Usual = usual_range(
     "",
     "",
     "g",
@@ -132,7 +132,7 @@ pub(super) const PEAK: Usual = usual(
 /// Makes a table of usual numbers, one key on each line: key, subject and verb, unit, range and other units, and numbers that are chosen on purpose.
 macro_rules! usual_numbers {
     ($($key:literal, $what:literal, $unit:literal, $range:expr, $others:expr $(, unless $on_purpose:expr)?;)*) => {
-        &[$(usual($key, $what, $unit, $range, $others)$(.unless($on_purpose))?),*]
+        &[$(usual_range($key, $what, $unit, $range, $others)$(.unless($on_purpose))?),*]
     };
 }
 

@@ -49,7 +49,7 @@ pub fn capacity(
                 return Ok(None);
             }
             let held = Held::new(&row, sway)?;
-            let displaced = |part| held.displaced(part);
+            let displaced = |part| held.displaced_mechanism(part);
             let (masses, control) = Bodies::of_row(&held).masses(&row, control);
             let capacity = Capacity::new(sway, displaced, &masses, control, gravity_m_s2)?;
             // Ties change the push that the first mechanism of a row resists.
@@ -65,7 +65,7 @@ pub fn capacity(
             return Ok(None);
         }
         let displaced = |part| {
-            let displaced = model.displaced(sway, part);
+            let displaced = model.displaced_mechanism(sway, part);
             displaced.expect("a structure has its first mechanism")
         };
         let (masses, control) = Bodies::of_model(&*model, sway).masses(structure, control);

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::held_row;
-use crate::argument::{fixed, plain};
+use crate::argument::{format_fixed, plain};
 use crate::mechanics::{Capacity, CurvePoint, Parts as _, Sides, TieEventDisplacements};
 use crate::output::page::{Spot, SpotKind};
 use crate::output::{
@@ -83,7 +83,7 @@ impl Summary {
 
 impl CapacitySide {
     fn of(side: &Capacity, gravity_m_s2: f64) -> Self {
-        let (start, end) = (side.start(), side.end());
+        let (start, end) = (side.first_point(), side.end());
         let period_s = |part| side.secant_period_s(part, gravity_m_s2);
         let periods_s = [0.2, 0.4, 0.6, 0.8].map(|part| (part.to_string(), period_s(part)));
         Self {
@@ -145,7 +145,7 @@ pub fn report(
     let control_m = control_m.unwrap_or_default();
     let draw = |figure| chart(sides, figure, &cases.spots).draw(figure, title);
     let masses = format!("masses at the centres of {}", summary.masses);
-    let what = scenario.structure.described();
+    let what = scenario.structure.describe();
     let mut page = Page::new(title, what, &[STATIC, &masses], &[]);
     page.command = format!(
         "capacity - --point {:?},{:?} --out case",
@@ -161,7 +161,7 @@ impl Report for Summary {
     fn verdict(&self) -> String {
         let sides = self.sides().into_iter().map(|(sway, side)| {
             let (start_g, end_m) = (side.acceleration_g, side.ultimate_displacement_m);
-            let (sway, start_g, end_m) = (sway.name(), fixed(start_g, 4), fixed(end_m, 4));
+            let (sway, start_g, end_m) = (sway.name(), format_fixed(start_g, 4), format_fixed(end_m, 4));
             format!(
                 "to the {sway}: {start_g} g starts it, and it would fall at a displacement of {end_m} m"
             )

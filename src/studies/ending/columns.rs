@@ -133,6 +133,6 @@ pub(crate) fn direction<'a, R: 'a>(ended: Ended<R>) -> Column<'a, R> {
 }
 
 /// Returns a truth value for the cell of a table.
-pub(crate) const fn yes(is_true: bool) -> &'static str {
+pub(crate) const fn yes_or_no(is_true: bool) -> &'static str {
     if is_true { "yes" } else { "no" }
 }

@@ -65,7 +65,7 @@ impl Influences {
             );
         };
         if let [only] = &numbers[..] {
-            return format!("{} alone decides {answer}", only.spoken(numbers));
+            return format!("{} alone decides {answer}", only.key_in_words(numbers));
         }
         let mut sorted: Vec<&NumberInfluence> = numbers.iter().collect();
         sorted.sort_by(|a, b| {
@@ -86,10 +86,10 @@ impl Influences {
         let Some((first, others)) = sorted.split_first() else {
             return format!("no number alone decides {answer}: several together do, or chance");
         };
-        let (name, share_of_first) = (first.spoken(numbers), share(first));
+        let (name, share_of_first) = (first.key_in_words(numbers), share(first));
         let mut words = format!("{name} decides {share_of_first} of {answer}");
         for other in others {
-            words += &format!(", {} {}", other.spoken(numbers), share(other));
+            words += &format!(", {} {}", other.key_in_words(numbers), share(other));
         }
         let all = numbers.iter().map(|number| &number.sensitivity);
         let known: f64 = all.clone().map(|one| one.first_order).sum();
@@ -103,7 +103,7 @@ impl Influences {
     }
 
     /// Returns the index of the number with the largest influence on the first answer with known influences.
-    pub(super) fn strongest(&self) -> Option<usize> {
+    pub(super) fn find_strongest(&self) -> Option<usize> {
         let shares = self.0.values().flatten().next()?.iter();
         let shares = shares.map(|number| number.sensitivity.first_order);
         let strongest = shares.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
@@ -141,7 +141,7 @@ impl Influences {
                 }
                 let mut row = axes.frame.top;
                 for number in numbers {
-                    bar(drawing, &axes, row, (&number.spoken(numbers), number));
+                    bar(drawing, &axes, row, (&number.key_in_words(numbers), number));
                     row += ROW_PX;
                 }
             });
@@ -154,7 +154,7 @@ impl Influences {
 
 impl NumberInfluence {
     /// Returns the key in words: `thickness ratio` for `arch.thickness_ratio`; the key itself if another key has the same last part.
-    fn spoken(&self, all: &[Self]) -> String {
+    fn key_in_words(&self, all: &[Self]) -> String {
         const UNITS: [&str; 12] = [
             "_m_s2", "_kg_m3", "_gpa_m", "_mpa", "_gpa", "_rad", "_deg", "_hz", "_kn", "_m", "_s",
             "_g",

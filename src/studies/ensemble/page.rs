@@ -47,7 +47,7 @@ impl<A> SamplePage<'_, A> {
                 number => format!("sample {number}"),
             };
             let label = self.label;
-            let (kind, outside, words) = match self.of(row) {
+            let (kind, outside, words) = match self.page_answer(row) {
                 Ok((kind, outside, number)) => {
                     let number = number.map_or("beyond the axis".to_owned(), plain);
                     let outcome = match kind {
@@ -64,7 +64,7 @@ impl<A> SamplePage<'_, A> {
                 is_valid.then(|| CaseScenario::of(text, values))
             });
         }
-        let key = all.what_matters.strongest().unwrap_or(0);
+        let key = all.what_matters.find_strongest().unwrap_or(0);
         let draw = |figure: Figure| self.draw(figure, samples, key, &cases.spots);
         let numbers = format!(
             "numbers are independent, and distributed as [uncertain] says; {}",
@@ -81,7 +81,7 @@ impl<A> SamplePage<'_, A> {
         results.with_page(SAMPLES, page, &cases, (&draw, &[self.picture, &influences]))
     }
 
-    fn of<'r>(&self, row: &'r SampleRow<A>) -> Result<PageAnswer, &'r NoAnswer> {
+    fn page_answer<'r>(&self, row: &'r SampleRow<A>) -> Result<PageAnswer, &'r NoAnswer> {
         row.answer.as_ref().map(self.answer)
     }
 
@@ -92,11 +92,13 @@ impl<A> SamplePage<'_, A> {
             0 => uncertain.own,
             _ => row.values.get(key).copied(),
         };
-        let numbers = samples.lines().filter_map(|(_, row)| self.of(row).ok()?.2);
+        let numbers = samples
+            .lines()
+            .filter_map(|(_, row)| self.page_answer(row).ok()?.2);
         let y = Scale::around(numbers.chain([0.0]), 6);
         let x = Scale::around(samples.lines().filter_map(at), figure.ticks(8));
         let marks = samples.lines().zip(spots).map(|(line, spot)| {
-            let y = match self.of(line.1) {
+            let y = match self.page_answer(line.1) {
                 Ok((.., number)) => number.unwrap_or(y.high),
                 Err(_) => y.low,
             };

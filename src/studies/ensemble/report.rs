@@ -37,7 +37,7 @@ pub(super) fn table<'a, A: 'a>(
 }
 
 /// Returns a column of the answers; it is empty for samples without an answer.
-pub(super) fn of_answer<'a, A: 'a, C: Into<Cell<'static>>>(
+pub(super) fn answer_column<'a, A: 'a, C: Into<Cell<'static>>>(
     name: &'static str,
     cell: impl Fn(&A) -> C + 'a,
 ) -> Column<'a, Line<'a, A>> {
@@ -128,11 +128,13 @@ impl SampleSummary {
         let limits = limits.into_iter().flatten().chain(condition);
         let limits = limits.chain(one_direction.clone());
         let own = samples.own.as_ref().err();
-        let without = samples.without().map(|(sample, why)| WithoutAnswer {
-            sample,
-            why: why.name().to_owned(),
-            reason: why.reason().to_owned(),
-        });
+        let without = samples
+            .samples_without_answer()
+            .map(|(sample, why)| WithoutAnswer {
+                sample,
+                why: why.name().to_owned(),
+                reason: why.reason().to_owned(),
+            });
         Self {
             program: env!("CARGO_PKG_NAME").to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),

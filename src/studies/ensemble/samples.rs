@@ -68,7 +68,9 @@ impl<'a, A> Samples<'a, A> {
     }
 
     /// Returns the numbers of the samples without an answer, from 1, and the reasons.
-    pub(super) fn without(&self) -> impl Iterator<Item = (usize, &'a NoAnswer)> + use<'a, A> {
+    pub(super) fn samples_without_answer(
+        &self,
+    ) -> impl Iterator<Item = (usize, &'a NoAnswer)> + use<'a, A> {
         let rows = self.lines().skip(1);
         rows.filter_map(|(number, row)| Some((number, row.answer.as_ref().err()?)))
     }
@@ -92,14 +94,14 @@ impl<'a, A> Samples<'a, A> {
     }
 
     /// Returns the number of valid structures without an answer.
-    pub(super) fn unknown(&self) -> usize {
+    pub(super) fn count_unknown(&self) -> usize {
         let reasons = self.reasons();
         reasons.failed + reasons.incomplete + reasons.outside
     }
 
     /// Returns the numbers of samples without an answer.
     pub(super) fn reasons(&self) -> ReasonCounts {
-        ReasonCounts::of(self.without().map(|(_, why)| why))
+        ReasonCounts::of(self.samples_without_answer().map(|(_, why)| why))
     }
 
     /// Returns the number of samples without a verdict, and the remedy, in words; `None` if the number is zero.
@@ -172,7 +174,7 @@ impl ReasonCounts {
         counts
     }
 
-    pub(super) const fn all(&self) -> usize {
+    pub(super) const fn total(&self) -> usize {
         self.invalid + self.failed + self.incomplete + self.outside
     }
 

@@ -100,12 +100,12 @@ pub fn sensitivities(values: &[Vec<f64>], answers: &[f64]) -> Option<Vec<Sensiti
         let expansion = Expansion::of(&own_ranks);
         let all: Vec<usize> = (0..count).collect();
         let raw = expansion.index(&all, answers)?;
-        let first_order = unbiased(raw, expansion.bias());
+        let first_order = correct_bias(raw, expansion.bias());
         // Resampling adds noise of the same size again.
         let drawn = resampled
             .iter()
             .filter_map(|drawn| expansion.index(drawn, answers))
-            .map(|raw| unbiased(raw, 2.0 * expansion.bias()));
+            .map(|raw| correct_bias(raw, 2.0 * expansion.bias()));
         let [low, high] = interval(drawn.collect())?;
         let pairs = |drawn: &[usize]| {
             let drawn = drawn.iter();
@@ -125,7 +125,7 @@ pub fn sensitivities(values: &[Vec<f64>], answers: &[f64]) -> Option<Vec<Sensiti
 }
 
 /// Corrects an index for noise. Noise increases the index by `bias` times the unexplained part.
-fn unbiased(raw: f64, bias: f64) -> f64 {
+fn correct_bias(raw: f64, bias: f64) -> f64 {
     ((raw - bias) / (1.0 - bias)).clamp(0.0, 1.0)
 }
 

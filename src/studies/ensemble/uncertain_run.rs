@@ -9,9 +9,9 @@ use serde::{Deserialize, Serialize};
 
 use super::influence::{InfluencedAnswer, NumberInfluence, percent};
 use super::page::{PageAnswer, SAMPLES, SamplePage};
-use super::report::{self, Band, Line, SampleSummary, of_answer};
+use super::report::{self, Band, Line, SampleSummary, answer_column};
 use super::{NoAnswer, SampleCases, SampleRow, Samples};
-use crate::dynamics::repeatability::{CheckedHistory, checked, repeated};
+use crate::dynamics::repeatability::{CheckedHistory, checked, repeat_cases};
 use crate::dynamics::{Direction, EndCondition, WithoutDemand};
 use crate::output::panels::MAIN;
 use crate::output::{
@@ -147,7 +147,7 @@ impl Study for Histories<'_> {
         let largest_rotations_rad: Vec<_> = iter::once(None).chain(of_samples).collect();
         let outcomes = OUTCOMES.into_iter().filter_map(|name| {
             let share = samples.share(|answer| match name {
-                OVERTURNED => answer.overturned(),
+                OVERTURNED => answer.overturned_weight(),
                 _ => f64::from(answer.ending.outcome_name() == name),
             });
             Some((name.to_owned(), share?))
@@ -187,8 +187,8 @@ impl Study for Histories<'_> {
             answer.map(|answer| &answer.ending).map_err(NoAnswer::name)
         }));
         columns.push(match kind.has_mechanism {
-            false => of_answer("peak_potential_over_barrier", potential),
-            true => of_answer("peak_rotation_rad", rotation),
+            false => answer_column("peak_potential_over_barrier", potential),
+            true => answer_column("peak_rotation_rad", rotation),
         });
         let bands = self.bands(samples);
         let results = Results::of("uncertain.json", &report)?
@@ -224,10 +224,12 @@ type OnAnswer = (InfluencedAnswer, Option<Vec<NumberInfluence>>);
 /// Returns the influences on overturning, if enough samples overturn and survive, and on the rank of the largest rotation.
 fn influences(samples: &Samples<'_, HistoryAnswer>) -> [OnAnswer; 2] {
     let is_enough = [1.0, 0.0].into_iter().all(|end| {
-        let alike = samples.answers().filter(|one| one.overturned() == end);
+        let alike = samples
+            .answers()
+            .filter(|one| one.overturned_weight() == end);
         alike.count() >= LEAST_OF_EACH
     });
-    let overturning = is_enough.then(|| samples.influence(false, HistoryAnswer::overturned));
+    let overturning = is_enough.then(|| samples.influence(false, HistoryAnswer::overturned_weight));
     let rank = samples.influence(true, peak_rad);
     [
         (InfluencedAnswer::Overturning, overturning.flatten()),
@@ -255,10 +257,10 @@ impl Histories<'_> {
         });
         let case = (ground.clone(), request);
         let own = vec![model.simulate(ground, &request, Some(&mut record))];
-        let checked = repeated(model, &[case], own).remove(0);
-        let given = ended(checked)?;
+        let checked = repeat_cases(model, &[case], own).remove(0);
+        let given = ended_history(checked)?;
         let course_overturns = given.0.overturned_itself();
-        let (ending, potential_over_barrier) = worse(given, scenario, model)?;
+        let (ending, potential_over_barrier) = worse_direction(given, scenario, model)?;
         if ending.verdict() == Verdict::Incomplete {
             return Err(NoAnswer::Incomplete);
         }
@@ -348,7 +350,7 @@ impl Histories<'_> {
 /// The ending of a history, and its largest potential energy over the barrier.
 type Ended = (Ending, Option<f64>);
 
-fn ended(checked: CheckedHistory) -> Result<Ended, NoHistory> {
+fn ended_history(checked: CheckedHistory) -> Result<Ended, NoHistory> {
     let own = checked.own.as_ref().ok();
     let potential = own.and_then(|own| own.peak_potential_over_barrier());
     Ok((Ending::of_checked(checked)?, potential))
@@ -356,7 +358,7 @@ fn ended(checked: CheckedHistory) -> Result<Ended, NoHistory> {
 
 /// Returns the history of a scenario in its first direction, or the history under the mirrored ground motion if that is worse. The mirrored history is
 /// computed if the first survives or is uncertain.
-fn worse(
+fn worse_direction(
     (mut ending, potential): Ended,
     scenario: &Scenario,
     model: &dyn Model,
@@ -367,11 +369,11 @@ fn worse(
         return Ok((ending, potential));
     }
     let case = (scenario.ground_motion().mirrored(), scenario.request());
-    let (mirrored, of_mirrored) = match ended(checked(model, &[case], EndCondition::End).remove(0))
-    {
-        Ok((ending, potential)) => (Ok(ending), potential),
-        Err(reason) => (Err(reason), None),
-    };
+    let (mirrored, of_mirrored) =
+        match ended_history(checked(model, &[case], EndCondition::End).remove(0)) {
+            Ok((ending, potential)) => (Ok(ending), potential),
+            Err(reason) => (Err(reason), None),
+        };
     let worse = ending.or_worse(Some(mirrored))?;
     let potential = match worse.direction {
         Direction::AsGiven => potential,
@@ -382,7 +384,7 @@ fn worse(
 
 impl HistoryAnswer {
     /// Returns the weight of the sample as overturned: 1 or 0, or the fraction of its repetitions that overturn.
-    pub fn overturned(&self) -> f64 {
+    pub fn overturned_weight(&self) -> f64 {
         let share = self.ending.overturning_share();
         share.expect("a sample with an incomplete history has no answer")
     }
@@ -440,7 +442,7 @@ impl OwnHistory {
     fn of(answer: &HistoryAnswer) -> Self {
         Self {
             verdict: answer.ending.verdict(),
-            overturning_share: answer.overturned(),
+            overturning_share: answer.overturned_weight(),
             peak_rotation_over_critical: answer.ending.peak_over_critical,
             peak_potential_over_barrier: answer.potential_over_barrier,
         }

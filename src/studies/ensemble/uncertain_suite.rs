@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::influence::InfluencedAnswer;
 use super::page::{SAMPLES, SamplePage};
-use super::report::{self, SampleSummary, of_answer, why_not};
+use super::report::{self, SampleSummary, answer_column, why_not};
 use super::uncertain_threshold::{StrengthBand, first_strength};
 use super::{NoAnswer, SampleCases, SampleRow, Samples};
 use crate::dynamics::{Direction, Directions};
@@ -22,7 +22,7 @@ use crate::studies::statistics::{ascending_weighted, shares_up_to, weighted_frac
 use crate::studies::suite::strength::warning_of_few_records;
 use crate::studies::suite::{OF_LEVELS, case, directions, records_in_words};
 use crate::studies::threshold::first_edge::{FirstEdge, TREATMENTS, Treatment, TriedHistory};
-use crate::studies::threshold::{rounded, rounded_range};
+use crate::studies::threshold::{format_edge, rounded_range};
 use crate::studies::{Ending, ModelCheck, Results, Study, Style};
 
 const TITLE: &str = "Fragility with uncertain data";
@@ -89,7 +89,7 @@ impl<'a> Capacities<'a> {
     }
 
     /// Returns the name and the sign of each record, in the order of the answers.
-    fn shakes(&self) -> impl Iterator<Item = (&str, i64)> {
+    fn records_and_signs(&self) -> impl Iterator<Item = (&str, i64)> {
         let signs: &[_] = match self.directions {
             Directions::Both => &[1, -1],
             Directions::AsGiven => &[1],
@@ -101,7 +101,7 @@ impl<'a> Capacities<'a> {
 
     /// Returns the answer that may be quoted: median and dispersion over records and samples. `excess_ratio` is the largest excess of the thrust line, and
     /// `demand` the largest friction demand.
-    fn quoted(
+    fn quotable_answer(
         &self,
         samples: &Samples<'_, EdgePerRecord>,
         both: &Estimated,
@@ -131,7 +131,7 @@ impl<'a> Capacities<'a> {
         type Row<'a> = (usize, &'a str, i64, &'a FirstEdge);
         let mut rows: Vec<Row<'_>> = Vec::new();
         for (number, row) in samples.lines() {
-            let edges = row.answer.iter().flatten().zip(self.shakes());
+            let edges = row.answer.iter().flatten().zip(self.records_and_signs());
             rows.extend(edges.map(|(edge, (record, sign))| (number, record, sign, edge)));
         }
         let mut columns = vec![
@@ -225,7 +225,7 @@ impl Study for Capacities<'_> {
             InfluencedAnswer::MedianIntensity,
             samples.influence(false, median),
         )];
-        let edges = counted.of_samples();
+        let edges = counted.sample_edges();
         let model = ModelCheck::of(edges.clone().map(|edge| edge.thrust_excess_ratio));
         let edges = edges.filter(|edge| !edge.is_outside_model());
         let demands = edges.clone().map(|edge| edge.friction_demand);
@@ -235,7 +235,8 @@ impl Study for Capacities<'_> {
         let fragility = counted.fragilities();
         let excess = edges.clone().filter_map(|edge| edge.thrust_excess_ratio);
         let demand = friction.friction_demand;
-        let quoted = self.quoted(samples, &fragility.both, excess.reduce(f64::max), demand);
+        let quoted =
+            self.quotable_answer(samples, &fragility.both, excess.reduce(f64::max), demand);
         let report = Summary {
             all: SampleSummary::new(
                 (samples, &Varied::default()),
@@ -245,10 +246,10 @@ impl Study for Capacities<'_> {
                 influences,
             ),
             intensity: self.suite.measure,
-            to_quote: quotable::in_words(std::slice::from_ref(&quoted)),
+            to_quote: quotable::quote_answers(std::slice::from_ref(&quoted)),
             quote: "both".to_owned(),
             first_intensity: StrengthBand::of(edges.clone()),
-            own_first_intensity: StrengthBand::of(counted.of_itself()),
+            own_first_intensity: StrengthBand::of(counted.scenario_edges()),
             fragility,
             records: self.suite.records.len(),
             edges: edges.clone().count(),
@@ -256,11 +257,11 @@ impl Study for Capacities<'_> {
         };
         let overturned =
             |edges: &EdgePerRecord| edges.iter().filter(|edge| edge.factor.is_some()).count();
-        let columns = [of_answer("overturned", overturned), why_not()];
+        let columns = [answer_column("overturned", overturned), why_not()];
         let results = Results::of("uncertain.json", &report)?
             .with_table("samples.csv", report::table(samples, columns)?)
             .with_table("capacities.csv", self.table(samples)?)
-            .with_table("fragility.csv", counted.at_levels()?)
+            .with_table("fragility.csv", counted.table_of_levels()?)
             .with_file("fragility.svg", self.draw(figure, samples))
             .with_file("matters.svg", report.all.draw_influences(samples, figure));
         let answer = |edges: &EdgePerRecord| {
@@ -373,7 +374,7 @@ struct Estimated {
 
 impl Fragilities {
     /// Returns the distributions with their names in words.
-    fn named(&self) -> [(&'static str, &Estimated); 3] {
+    fn named_distributions(&self) -> [(&'static str, &Estimated); 3] {
         [
             ("record to record", &self.record_to_record),
             ("uncertain data", &self.uncertain_data),
@@ -388,7 +389,7 @@ fn estimated(number: &Option<f64>, ends: &Option<[f64; 2]>, unit: &str) -> Strin
     let ends = ends.map_or(String::new(), |[low, high]| {
         format!(" ({low} to {high}{unit})")
     });
-    let number = number.map(|number| rounded(number) + unit);
+    let number = number.map(|number| format_edge(number) + unit);
     number.unwrap_or("not known".to_owned()) + &ends
 }
 
@@ -430,18 +431,18 @@ impl<'a> EdgesThatCount<'a> {
             question,
             own: own.map(counted).unwrap_or_default(),
             samples: samples.answers().map(counted).collect(),
-            unknown: samples.unknown(),
+            unknown: samples.count_unknown(),
         }
     }
 
     /// Returns the edges of the scenario itself that are inside the model.
-    fn of_itself(&self) -> impl Iterator<Item = &'a FirstEdge> + Clone {
+    fn scenario_edges(&self) -> impl Iterator<Item = &'a FirstEdge> + Clone {
         let edges = self.own.iter().copied().flatten();
         edges.filter(|edge| !edge.is_outside_model())
     }
 
     /// Returns the edges of all samples, also those outside the model.
-    fn of_samples(&self) -> impl Iterator<Item = &'a FirstEdge> + Clone {
+    fn sample_edges(&self) -> impl Iterator<Item = &'a FirstEdge> + Clone {
         self.samples.iter().flatten().copied().flatten()
     }
 
@@ -460,7 +461,7 @@ impl<'a> EdgesThatCount<'a> {
             let scatter = if which == 0 { dispersion } else { found[2][1] };
             let both = intervals.as_ref().zip(median.zip(scatter));
             let median_interval = both.and_then(|(intervals, (median, scatter))| {
-                let [low, high] = intervals.of_median(median, scatter);
+                let [low, high] = intervals.median_interval(median, scatter);
                 Some([low.min(ends[0][which][0]?), high.max(ends[1][which][0]?)])
             });
             // Few records leave scatter of pairs of record and sample in the medians of the samples, which this interval would miss.
@@ -469,7 +470,8 @@ impl<'a> EdgesThatCount<'a> {
                 median,
                 median_interval,
                 dispersion,
-                dispersion_interval: both.map(|(of, dispersion)| of.of_dispersion(dispersion)),
+                dispersion_interval: both
+                    .map(|(of, dispersion)| of.dispersion_interval(dispersion)),
             }
         };
         Fragilities {
@@ -511,14 +513,14 @@ impl<'a> EdgesThatCount<'a> {
     }
 
     /// Makes the table of the shares that overturn up to each level: of the records with the scenario itself, and of all samples.
-    fn at_levels(&self) -> Result<Table, OutputError> {
+    fn table_of_levels(&self) -> Result<Table, OutputError> {
         let share = |edges: Vec<&FirstEdge>, level: f64| {
             let overturned = edges.iter().filter_map(|edge| edge.overturns_up_to(level));
             (!edges.is_empty()).then(|| overturned.sum::<f64>() / edges.len() as f64)
         };
-        let own = |level: &f64| share(self.of_itself().collect(), *level);
+        let own = |level: &f64| share(self.scenario_edges().collect(), *level);
         let inside = |edge: &&FirstEdge| !edge.is_outside_model();
-        let all = |level: &f64| share(self.of_samples().filter(inside).collect(), *level);
+        let all = |level: &f64| share(self.sample_edges().filter(inside).collect(), *level);
         let columns = [
             column(self.question.suite.measure.name(), |level: &f64| *level),
             column("record_to_record", own),

@@ -24,7 +24,7 @@ use crate::studies::statistics::{
 };
 use crate::studies::threshold::below::Fineness;
 use crate::studies::threshold::first_edge::{FirstEdge, TREATMENTS};
-use crate::studies::threshold::{Factors, check, peak_g, rounded, rounded_down};
+use crate::studies::threshold::{Factors, check, format_edge, peak_g, rounded_down};
 use crate::studies::{Results, Study, Style};
 
 /// The study of the first edge of each sample.
@@ -93,7 +93,7 @@ impl StrengthBand {
 
 fn strength_in_words(strength: f64, at_most: bool, [at, unit]: [&str; 2]) -> String {
     let or_below = if at_most { "at or below" } else { "at" };
-    format!("{or_below} {at}{}{unit}", rounded(strength))
+    format!("{or_below} {at}{}{unit}", format_edge(strength))
 }
 
 impl<'a> FirstEdges<'a> {
@@ -172,7 +172,7 @@ impl Study for FirstEdges<'_> {
         let lower_limit = LowerLimit::of(samples);
         let excess = edges.clone().filter_map(|edge| edge.thrust_excess_ratio);
         let excess = excess.reduce(f64::max);
-        let quoted = lower_limit.quoted(samples.scenario, excess);
+        let quoted = lower_limit.quotable_answer(samples.scenario, excess);
         let condition = SlipWords::of(samples.scenario).condition(friction.friction_demand, &study);
         let quoted = quoted.with_friction(condition);
         let report = Summary {
@@ -183,7 +183,7 @@ impl Study for FirstEdges<'_> {
                 limits,
                 influences,
             ),
-            to_quote: quotable::in_words(std::slice::from_ref(&quoted)),
+            to_quote: quotable::quote_answers(std::slice::from_ref(&quoted)),
             lower_limit,
             survives_up_to_factor: each(band(
                 edges.clone().map(FirstEdge::safe_or_zero).collect(),
@@ -245,7 +245,7 @@ struct LowerLimit {
 impl LowerLimit {
     fn of(samples: &Samples<'_, FirstEdge>) -> Self {
         let known = samples.answers().map(FirstEdge::safe_or_zero);
-        let safe = ascending(known.chain(std::iter::repeat_n(0.0, samples.unknown())));
+        let safe = ascending(known.chain(std::iter::repeat_n(0.0, samples.count_unknown())));
         let rank = rank_of_lower_limit(safe.len());
         Self {
             counted: safe.len(),
@@ -255,7 +255,7 @@ impl LowerLimit {
     }
 
     /// Returns the answer that may be quoted. `excess_ratio` is the largest excess of the thrust line of the samples.
-    fn quoted(&self, scenario: &Scenario, excess_ratio: Option<f64>) -> ModelAnswer {
+    fn quotable_answer(&self, scenario: &Scenario, excess_ratio: Option<f64>) -> ModelAnswer {
         let (directions, counted) = (scenario.simulation.direction, self.counted);
         let uncertain = scenario
             .uncertain
@@ -324,7 +324,7 @@ fn probabilities(samples: &Samples<'_, FirstEdge>) -> Vec<ProbabilityAt> {
     let edges = samples.answers();
     let strengths = |how| edges.clone().flat_map(move |edge| edge.strengths(how));
     let [steps, possible, certain] = TREATMENTS.map(|how| ascending_weighted(strengths(how)));
-    let (all, unknown, mut expected) = (edges.clone().count(), samples.unknown(), 0.0);
+    let (all, unknown, mut expected) = (edges.clone().count(), samples.count_unknown(), 0.0);
     let at = |alike: &[[f64; 2]]| {
         let factor = alike[0][0];
         expected += alike.iter().map(|[_, share]| share).sum::<f64>();
@@ -352,8 +352,8 @@ impl Report for Summary {
             } = &self.survives_up_to_factor;
             format!(
                 "95 % of the samples certainly survive up to {}, half of them up to {}, the scenario itself up to {}",
-                safe(quantile_05),
-                safe(median),
+                safe_factor_in_words(quantile_05),
+                safe_factor_in_words(median),
                 self.own_safe()
             )
         })
@@ -373,13 +373,16 @@ impl Summary {
     fn own_safe(&self) -> String {
         match self.all.own_without_answer {
             Some(_) => "an unknown factor".to_owned(),
-            None => safe(&self.own_survives_up_to_factor),
+            None => safe_factor_in_words(&self.own_survives_up_to_factor),
         }
     }
 
     /// Returns a quantile of the first factors, counted from 0, in words.
     fn first(&self, which: usize) -> String {
-        let beyond = format!("beyond {}", rounded(self.tried_to_factor.unwrap_or(0.0)));
+        let beyond = format!(
+            "beyond {}",
+            format_edge(self.tried_to_factor.unwrap_or(0.0))
+        );
         self.first_factor.in_words(which, &[""; 2], &beyond)
     }
 
@@ -394,7 +397,7 @@ impl Summary {
 }
 
 /// Returns a factor up to which a structure certainly survives, in words.
-fn safe(factor: &Option<f64>) -> String {
+fn safe_factor_in_words(factor: &Option<f64>) -> String {
     let factor = factor.filter(|factor| *factor > 0.0);
     factor.map_or("less than the smallest factor".to_owned(), rounded_down)
 }

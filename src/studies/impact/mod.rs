@@ -31,22 +31,22 @@ impl<'a> LinkImpact<'a> {
     }
 
     /// Returns the mechanism before the impact; `None` if an earlier impact stops the structure.
-    pub fn before(&self) -> Option<&'a ArchLink> {
+    pub fn mechanism_before(&self) -> Option<&'a ArchLink> {
         self.chain().link(self.index.checked_sub(1)?)
     }
 
     /// Returns the mechanism after the impact; `None` if no mechanism can follow.
-    pub fn after(&self) -> Option<&'a ArchLink> {
+    pub fn mechanism_after(&self) -> Option<&'a ArchLink> {
         self.chain().link(self.index)
     }
 
     /// Returns the impulse line; `None` if no mechanism can follow, or the restitution coefficient is prescribed.
     pub fn line(&self) -> Option<&'a ImpulseLine> {
-        self.after()?.impulse_line.as_ref()
+        self.mechanism_after()?.impulse_line.as_ref()
     }
 
     /// Returns words that follow the number of the impact; empty for a first sway to the right.
-    pub const fn after_first(&self) -> &'static str {
+    pub const fn words_after_number(&self) -> &'static str {
         match self.first {
             Sway::Right => "",
             Sway::Left => " after a first sway to the left",
@@ -64,7 +64,7 @@ impl<'a> LinkImpact<'a> {
     }
 
     /// Computes this impact by the models that obey the momentum theorems, and by the model of the scenario.
-    fn by_models(&self, before: &FourLink, own: ImpactModel) -> Vec<ModelComparison> {
+    fn compare_models(&self, before: &FourLink, own: ImpactModel) -> Vec<ModelComparison> {
         let all = ImpactModel::ALL.iter().copied();
         let theories = all.filter(|model| !model.is_prescribed());
         let (profile, sites) = (self.profile(), self.chain().sites);
@@ -81,7 +81,7 @@ impl<'a> LinkImpact<'a> {
         joints: Option<usize>,
     ) -> Result<Projection, ProjectionError> {
         let (profile, sites) = (self.profile(), self.chain().sites);
-        let mechanism = self.after().map(|link| &link.mechanism);
+        let mechanism = self.mechanism_after().map(|link| &link.mechanism);
         let joints = joints.unwrap_or(DEFAULT_JOINTS);
         let joints_rad = joints_rad(profile, sites, joints, mechanism);
         project(&closing_field(before, profile), profile, &joints_rad)
@@ -140,10 +140,14 @@ pub fn four_links_result(
     };
     let impacts = |first| chain_of_four_links(&LinkImpact { first, ..*impact }, count);
     let mut summary = Summary::new(scenario, model, (sides, count), impacts);
-    summary.chosen = Some(format!("impact {}{}", impact.index, impact.after_first()));
-    if let Some(before) = impact.before().map(|link| &link.mechanism) {
+    summary.chosen = Some(format!(
+        "impact {}{}",
+        impact.index,
+        impact.words_after_number()
+    ));
+    if let Some(before) = impact.mechanism_before().map(|link| &link.mechanism) {
         if options.models {
-            summary.models = Some(impact.by_models(before, scenario.motion.impact().model));
+            summary.models = Some(impact.compare_models(before, scenario.motion.impact().model));
         }
         if options.certificate {
             let projection = impact.largest_restitution(before, options.joints);

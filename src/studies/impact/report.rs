@@ -9,7 +9,7 @@ use askama::Template;
 use serde::{Deserialize, Serialize};
 
 use super::LinkImpact;
-use crate::argument::fixed;
+use crate::argument::format_fixed;
 use crate::mechanics::four_link::{HingeSites, Impact, ImpulseLine, Projection};
 use crate::mechanics::{Edge, Profile};
 use crate::output::mechanisms::{HINGES, degrees};
@@ -271,7 +271,7 @@ impl SectionPosition {
 fn cell(joint: &Option<usize>, angle_deg: &Option<f64>) -> String {
     match (joint, angle_deg) {
         (Some(joint), _) => joint.to_string(),
-        (None, angle_deg) => fixed(angle_deg.unwrap_or_default(), 3),
+        (None, angle_deg) => format_fixed(angle_deg.unwrap_or_default(), 3),
     }
 }
 
@@ -302,7 +302,7 @@ impl LineExtremes {
         self.least_normal_n_s_per_m.is_none_or(|least| least <= 0.0)
     }
 
-    const fn whole(&self) -> &'static str {
+    const fn structure_name(&self) -> &'static str {
         match self.least_normal_joint {
             Some(_) => "row",
             None => "ring",
@@ -313,7 +313,7 @@ impl LineExtremes {
         match (self.admissible, self.is_in_tension()) {
             (true, _) => "admissible".to_owned(),
             (false, true) => "in tension".to_owned(),
-            (false, false) => format!("leaves the {}", self.whole()),
+            (false, false) => format!("leaves the {}", self.structure_name()),
         }
     }
 }
@@ -339,12 +339,15 @@ impl ModelComparison {
 impl Certificate {
     pub(super) fn of(impact: &LinkImpact<'_>, projection: &Projection) -> Self {
         let (sway, profile) = (impact.sway(), impact.profile());
-        let from_left = |joint: usize| sway.from_left(profile, projection.joints[joint].angle_rad);
-        let opened = projection.opened().map(|(joint, edge, rate)| OpenedJoint {
-            place: SectionPosition::of(profile, from_left(joint)),
-            edge,
-            opening_rate_ratio: rate,
-        });
+        let from_left =
+            |joint: usize| sway.convert_section(profile, projection.joints[joint].angle_rad);
+        let opened = projection
+            .opening_joints()
+            .map(|(joint, edge, rate)| OpenedJoint {
+                place: SectionPosition::of(profile, from_left(joint)),
+                edge,
+                opening_rate_ratio: rate,
+            });
         let mut opened_joints: Vec<OpenedJoint> = opened.collect();
         if sway == Sway::Left {
             opened_joints.reverse();
@@ -352,7 +355,9 @@ impl Certificate {
         let is_ring = impact.chain().sites == HingeSites::Anywhere;
         let mut zones: Vec<([f64; 2], Zone)> = Vec::new();
         for edge in [Edge::Intrados, Edge::Extrados] {
-            let opened = projection.opened().filter(|(_, own, _)| *own == edge);
+            let opened = projection
+                .opening_joints()
+                .filter(|(_, own, _)| *own == edge);
             let opened: Vec<_> = opened.collect();
             for zone in opened.chunk_by(|a, b| is_ring && a.0 + 1 == b.0) {
                 let mut ends = [zone[0].0, zone[zone.len() - 1].0].map(from_left);
@@ -369,7 +374,9 @@ impl Certificate {
             }
         }
         zones.sort_by(|(a, _), (b, _)| a[0].total_cmp(&b[0]));
-        let four_link = impact.after().map_or(0.0, |link| link.link.restitution);
+        let four_link = impact
+            .mechanism_after()
+            .map_or(0.0, |link| link.link.restitution);
         let line = impact.line().map(|line| LineExtremes::of(impact, line));
         Self {
             index: impact.index,
@@ -405,7 +412,7 @@ impl Report for Summary {
         first.map_or(
             "no mechanism can follow the first impact".to_owned(),
             |first| {
-                let restitution = fixed(first.restitution, 4);
+                let restitution = format_fixed(first.restitution, 4);
                 format!("energy after the first impact over that before: {restitution}")
             },
         )
@@ -505,7 +512,10 @@ impl LinkImpact<'_> {
             HingeSites::Anywhere => LINE_PARTS,
             HingeSites::Voussoirs(count) => LINE_PARTS.next_multiple_of(count),
         });
-        let hinges = self.after()?.mechanism.hinges_from_left(profile, sway);
+        let hinges = self
+            .mechanism_after()?
+            .mechanism
+            .hinges_from_left(profile, sway);
         sections.extend(hinges.map(|(section, _)| section));
         sections.sort_by(f64::total_cmp);
         sections.dedup_by(|a, b| (*a - *b).abs() < 1e-12);

@@ -47,10 +47,10 @@ fn summary(scenario: &Scenario) -> Result<Summary, StudyError> {
     };
     let coefficient = scenario.motion.options.friction_coefficient();
     if let Some(movements) = scenario.motion.supports() {
-        return of_moved_row(scenario, &row()?, &movements, coefficient);
+        return compute_moved_row(scenario, &row()?, &movements, coefficient);
     }
     let mut summary = match scenario.row().map_err(StudyError::scenario)? {
-        Some(row) => of_row(scenario, &row).map_err(StudyError::scenario)?,
+        Some(row) => compute_row(scenario, &row).map_err(StudyError::scenario)?,
         None => {
             let model = scenario.mechanisms_without_impacts();
             let model = model.map_err(StudyError::scenario)?;
@@ -67,7 +67,7 @@ fn summary(scenario: &Scenario) -> Result<Summary, StudyError> {
         // An arch without joints may slide at any section.
         Err(_) => {
             let model = scenario.mechanisms().map_err(StudyError::scenario)?;
-            Sides::of(|sway| Some(model.displaced(sway, 0.0)?.friction))
+            Sides::of(|sway| Some(model.displaced_mechanism(sway, 0.0)?.friction))
         }
     };
     if let Some(coefficient) = coefficient {
@@ -84,11 +84,11 @@ fn friction_demand(
     demand: impl Fn(f64, Sway) -> Result<Option<f64>, FrictionError>,
 ) -> Sides<Option<f64>> {
     let starts_g = &summary.incipient_acceleration_g;
-    Sides::of(|sway| demand((*starts_g.to(sway))?, sway).ok().flatten())
+    Sides::of(|sway| demand((*starts_g.get(sway))?, sway).ok().flatten())
 }
 
 /// Computes the onset of an undeformed row by the static theorem of limit analysis.
-fn of_row(scenario: &Scenario, row: &Row) -> Result<Summary, StabilityError> {
+fn compute_row(scenario: &Scenario, row: &Row) -> Result<Summary, StabilityError> {
     let gravity_m_s2 = scenario.gravity_m_s2();
     let wall_behind = scenario.structure.wall_behind();
     let onsets = Sides::try_of(|sway| match wall_behind == Some(sway) {
@@ -186,7 +186,7 @@ fn with_friction(
 }
 
 /// Computes the push of the first motion and the push at collapse of a row with moved springings: see [`crate::mechanics::settling`].
-fn of_moved_row(
+fn compute_moved_row(
     scenario: &Scenario,
     row: &Row,
     movements: &Movements,
@@ -200,7 +200,7 @@ fn of_moved_row(
     let starts_g = Sides::try_of(|sway| follower.first_motion_g(sway));
     let starts_g = starts_g.map_err(StudyError::scenario)?;
     let mechanism = Sides::of(|sway| open_joints(row, mechanism(row, &follower, sway).as_ref()));
-    let capacity = Sides::of(|sway| match *starts_g.to(sway) {
+    let capacity = Sides::of(|sway| match *starts_g.get(sway) {
         Some(start_g) => follower.capacity_g(sway, start_g),
         None => Ok(None),
     });

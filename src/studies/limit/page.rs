@@ -1,7 +1,7 @@
 //! Files of limit analysis: the page, the picture and the summary.
 
 use super::summary;
-use crate::argument::fixed;
+use crate::argument::format_fixed;
 use crate::output::elevation::draw_hinges;
 use crate::output::page::{Spot, SpotKind};
 use crate::output::{Figure, Scene};
@@ -30,8 +30,8 @@ pub fn results(scenario: &Scenario, figure: Figure) -> Result<Results, StudyErro
     let case = || Some(text.clone());
     for (sway, hinges) in summary.mechanism.iter() {
         for (index, hinge) in hinges.iter().enumerate() {
-            let (at_m, words, push) = (hinge.at_m(&scene), hinge.words(&index), sway.name());
-            let [x, y] = [at_m.x, at_m.y].map(|at_m| fixed(at_m, 5));
+            let (at_m, words, push) = (hinge.position_m(&scene), hinge.words(&index), sway.name());
+            let [x, y] = [at_m.x, at_m.y].map(|at_m| format_fixed(at_m, 5));
             let words = format!("push to the {push}, ({x}, {y}) m: {words}");
             cases.push((SpotKind::Hinge, false), words, case);
             hinges_m.push((sway, at_m));
@@ -51,7 +51,7 @@ pub fn results(scenario: &Scenario, figure: Figure) -> Result<Results, StudyErro
     let rocking = |figure, sway| Some(draw_limit(figure, model.as_ref()?, sway, &scene));
     let picture = rocking(figure, Sway::Right).unwrap_or_else(|| at_rest(figure, &[]));
     let results = Results::of("limit.json", &summary)?.with_file("limit.svg", picture);
-    let mut page = Page::new(title, scenario.structure.described(), &[SLOWLY], &[]);
+    let mut page = Page::new(title, scenario.structure.describe(), &[SLOWLY], &[]);
     page.marked = Marked::Hinges;
     page.command = "limit - --out case".to_owned();
     let draw = |figure| at_rest(figure, &cases.spots);

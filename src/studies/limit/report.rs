@@ -6,7 +6,7 @@ use askama::Template;
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
-use crate::argument::fixed;
+use crate::argument::format_fixed;
 use crate::mechanics::friction::YieldingJoint;
 use crate::mechanics::settling::Pin;
 use crate::mechanics::{Edge, Equivalent, RowOnset, Sides};
@@ -197,10 +197,10 @@ impl Report for Summary {
 
     fn verdict(&self) -> String {
         let friction = self.friction.as_ref().map(|friction| {
-            let [right, left] = Sides::of(|sway| friction.starts(&sway)).into();
+            let [right, left] = Sides::of(|sway| friction.start_in_words(&sway)).into();
             format!("{}: {right}; {left}", friction.heading())
         });
-        let all = self.pushes().into_iter();
+        let all = self.pushes_in_words().into_iter();
         let all = all.chain(self.needs_friction()).chain(friction);
         all.collect::<Vec<_>>().join("; ")
     }
@@ -255,7 +255,7 @@ impl Summary {
     /// Returns the coefficients of friction that the mechanisms need in words; `None` if none is known.
     fn needs_friction(&self) -> Option<String> {
         let needs = self.friction_demand.iter().filter_map(|(sway, needed)| {
-            let needed = fixed((*needed)?, 4);
+            let needed = format_fixed((*needed)?, 4);
             Some((needed, sway.name()))
         });
         let needs: Vec<(String, &str)> = needs.collect();
@@ -274,12 +274,12 @@ impl Summary {
     }
 
     /// Returns the pushes that start the structure and those at which it falls in words, without slip.
-    fn pushes(&self) -> Vec<String> {
+    fn pushes_in_words(&self) -> Vec<String> {
         let sides = match self.wall_behind {
             Some(wall) if self.unstable_rotations.is_some() => [wall.opposite(), wall],
             _ => [Sway::Right, Sway::Left],
         };
-        let each = |sway| iter::once(self.starts(sway)).chain(self.falls(sway));
+        let each = |sway| iter::once(self.start_in_words(sway)).chain(self.fall_in_words(sway));
         let mut lines: Vec<String> = sides.iter().flat_map(each).collect();
         // One line for both sides of a structure that is its mirror image.
         lines.dedup();
@@ -287,10 +287,10 @@ impl Summary {
     }
 
     /// Returns the push that starts the structure to one side in words.
-    fn starts(&self, sway: &Sway) -> String {
+    fn start_in_words(&self, sway: &Sway) -> String {
         let name = sway.name();
         let shown = |starts: &Sides<Option<f64>>, decimals| {
-            starts.to(*sway).map(|push| fixed(push, decimals))
+            starts.get(*sway).map(|push| format_fixed(push, decimals))
         };
         let is_moved = self.hinges.is_some();
         match shown(&self.incipient_acceleration_g, 8) {
@@ -302,7 +302,7 @@ impl Summary {
                 let reason = reason.map_or(String::new(), |reason| format!(": {reason}"));
                 format!("no push to the {name} moves it without sliding{reason}")
             }
-            Some(_) if is_moved && self.mechanism.to(*sway).is_empty() => {
+            Some(_) if is_moved && self.mechanism.get(*sway).is_empty() => {
                 format!("any push to the {name} moves it")
             }
             Some(push_g) if is_moved => {
@@ -321,27 +321,29 @@ impl Summary {
     }
 
     /// Returns the push at which a structure on moved springings falls to one side in words; `None` if no push starts it.
-    fn falls(&self, sway: &Sway) -> Option<String> {
+    fn fall_in_words(&self, sway: &Sway) -> Option<String> {
         let (name, pushes_g) = (sway.name(), self.capacity_g.as_ref()?);
-        self.incipient_acceleration_g.to(*sway).as_ref()?;
-        if let Some(reason) = self.capacity_not_found.as_ref()?.to(*sway) {
+        self.incipient_acceleration_g.get(*sway).as_ref()?;
+        if let Some(reason) = self.capacity_not_found.as_ref()?.get(*sway) {
             return Some(format!("capacity to the {name} not found: {reason}"));
         }
-        Some(match pushes_g.to(*sway).map(|push_g| fixed(push_g, 8)) {
-            Some(push_g) => format!("capacity to the {name}, where it falls: {push_g} g"),
-            None => format!("no push to the {name} was found at which it falls"),
-        })
+        Some(
+            match pushes_g.get(*sway).map(|push_g| format_fixed(push_g, 8)) {
+                Some(push_g) => format!("capacity to the {name}, where it falls: {push_g} g"),
+                None => format!("no push to the {name} was found at which it falls"),
+            },
+        )
     }
 
     /// Returns rotations with the names of their bodies.
-    fn by_body(&self, rotations_rad: &[f64]) -> String {
+    fn rotations_by_body(&self, rotations_rad: &[f64]) -> String {
         by_body(&self.bodies, rotations_rad)
     }
 
     /// Returns the rotations at the unstable equilibrium with the names of their bodies.
     fn unstable_by_body(&self, Named(rotations_rad): &Named<f64>) -> String {
         let rotations_rad = rotations_rad.iter().map(|(_, value)| *value);
-        self.by_body(&rotations_rad.collect::<Vec<_>>())
+        self.rotations_by_body(&rotations_rad.collect::<Vec<_>>())
     }
 }
 
@@ -352,18 +354,18 @@ impl Friction {
     }
 
     /// Returns the push that starts the row to one side in words.
-    fn starts(&self, sway: &Sway) -> String {
+    fn start_in_words(&self, sway: &Sway) -> String {
         let name = sway.name();
         let (push_g, slips) = match &self.onset {
             FrictionLimit::Moved {
                 incipient_acceleration_g: pushes_g,
-            } => (*pushes_g.to(*sway), None),
+            } => (*pushes_g.get(*sway), None),
             FrictionLimit::Undeformed { sides, .. } => {
-                let side = sides.to(*sway);
+                let side = sides.get(*sway);
                 (side.incipient_acceleration_g, Some(side.sliding_governs))
             }
         };
-        match (push_g.map(|push_g| fixed(push_g, 8)), slips) {
+        match (push_g.map(|push_g| format_fixed(push_g, 8)), slips) {
             (None, _) => format!("no push to the {name} starts it"),
             (Some(push_g), None) => format!("first motion to the {name} at {push_g} g"),
             (Some(push_g), Some(false)) => {
@@ -395,7 +397,7 @@ pub(super) fn open_joints(row: &Row, onset: Option<&RowOnset>) -> Vec<MechanismH
 
 impl MechanismHinge {
     /// Returns the place of the hinge in the undeformed structure, in metres.
-    pub(super) fn at_m(&self, scene: &Scene) -> Vector2<f64> {
+    pub(super) fn position_m(&self, scene: &Scene) -> Vector2<f64> {
         match self {
             Self::Joint { x_m, y_m, .. } => Vector2::new(*x_m, *y_m),
             Self::Link(hinge) => {
@@ -416,8 +418,8 @@ impl MechanismHinge {
                 y_m,
             } => format!(
                 "joint {joint:>3} at x {:>10} m, y {:>10} m, {}",
-                fixed(*x_m, 5),
-                fixed(*y_m, 5),
+                format_fixed(*x_m, 5),
+                format_fixed(*y_m, 5),
                 named(edge, "both edges")
             ),
             Self::Link(Hinge::Section { angle_rad, edge }) => format!(

@@ -45,7 +45,7 @@ impl CellRow {
     }
 
     /// Returns the ending, or the outcome to report without one.
-    fn ended(&self) -> Result<&Ending, &'static str> {
+    fn ending(&self) -> Result<&Ending, &'static str> {
         self.result.as_ref().map_err(NoHistory::name)
     }
 
@@ -148,13 +148,13 @@ impl<T: Clone> PerAxes<T> {
     }
 
     /// Returns the index of the value for a cell; `None` if values are not shared.
-    fn place(&self, place: [usize; 2]) -> Option<usize> {
+    fn value_index(&self, place: [usize; 2]) -> Option<usize> {
         let index = self.axis.map_or(0, |axis| place[axis]);
         (index < self.values.len()).then_some(index)
     }
 
-    fn get(&self, place: [usize; 2], make: impl FnOnce() -> T) -> T {
-        match self.place(place) {
+    fn get_or_make(&self, place: [usize; 2], make: impl FnOnce() -> T) -> T {
+        match self.value_index(place) {
             Some(index) => self.values[index].get_or_init(make).clone(),
             None => make(),
         }
@@ -171,7 +171,7 @@ impl<'a> OverturningMap<'a> {
         if let Some(map) = &scenario.map {
             map.check(scenario.ground.as_ref(), &scenario.simulation)?;
         }
-        let map = Self::of_sample(scenario, scenario.clone()).ok_or(
+        let map = Self::with_sample(scenario, scenario.clone()).ok_or(
             "the scenario has no [map]: give it a table with two axes, such as\n\n\
              [map]\n\
              duration_s = { from = 0.05, to = 1.0, count = 40 }\n\
@@ -187,7 +187,7 @@ impl<'a> OverturningMap<'a> {
     }
 
     /// Makes the map of a scenario whose other values are those of `sample`. `None` if the scenario has no map or no ground motion.
-    pub(super) fn of_sample(scenario: &'a Scenario, sample: Scenario) -> Option<Self> {
+    pub(super) fn with_sample(scenario: &'a Scenario, sample: Scenario) -> Option<Self> {
         let (Some(map), Some(ground)) = (&scenario.map, scenario.ground.as_ref()) else {
             return None;
         };
@@ -221,7 +221,7 @@ impl<'a> OverturningMap<'a> {
         let Some(variants) = &self.variants else {
             return Ok(Arc::clone(&self.base));
         };
-        variants.get(self.place(index), || {
+        variants.get_or_make(self.axis_indices(index), || {
             let coordinates = self.coordinates(index);
             let values = coordinates.into_iter().enumerate();
             let changes = values.filter(|(axis, _)| self.is_of_variant(*axis));
@@ -240,21 +240,21 @@ impl<'a> OverturningMap<'a> {
 
     /// Returns the scenario with the thickness ratio of its arch, which is constant under a mean radius; `None` without that axis.
     fn with_constant_ratio(quantities: &[Quantity; 2], sample: &Scenario) -> Option<Scenario> {
-        let arch = sample.structure.circular();
+        let arch = sample.structure.circular_arch();
         let arch = arch.filter(|_| quantities.contains(&Quantity::MeanRadius))?;
         let ratio = ("arch.thickness_ratio", arch.thickness_ratio);
         sample.with_unproved_values(&[ratio]).ok()
     }
 
     /// Returns the indices of a cell along x and y.
-    fn place(&self, index: usize) -> [usize; 2] {
+    fn axis_indices(&self, index: usize) -> [usize; 2] {
         let rows = self.values[1].len();
         [index / rows, index % rows]
     }
 
     /// Returns the values of x and y of a cell.
     pub fn coordinates(&self, index: usize) -> [f64; 2] {
-        let [x, y] = self.place(index);
+        let [x, y] = self.axis_indices(index);
         [self.values[0][x], self.values[1][y]]
     }
 
@@ -267,7 +267,7 @@ impl<'a> OverturningMap<'a> {
 
     /// Returns the model of motion of a cell, whose scenario has the values of keys outside `[map]`.
     fn model(&self, index: usize, scenario: &Scenario) -> Result<Arc<dyn Model>, ModelError> {
-        self.models.get(self.place(index), || {
+        self.models.get_or_make(self.axis_indices(index), || {
             if let Some(links) = self.links_of_size(scenario) {
                 return Ok(Arc::new(links) as Arc<dyn Model>);
             }
@@ -281,7 +281,7 @@ impl<'a> OverturningMap<'a> {
     fn links_of_size(&self, scenario: &Scenario) -> Option<FourLinks> {
         let shape = |scenario: &Scenario| {
             let law = scenario.motion.options.law()?;
-            let arch = scenario.structure.circular()?;
+            let arch = scenario.structure.circular_arch()?;
             Some((arch.thickness_ratio, arch.embrace_deg, arch.voussoirs, law))
         };
         let (own, other) = (shape(&self.base)?, shape(scenario)?);
@@ -289,10 +289,10 @@ impl<'a> OverturningMap<'a> {
             return None;
         }
         let links = self.links.get_or_init(|| {
-            let arch = self.base.structure.circular()?;
+            let arch = self.base.structure.circular_arch()?;
             FourLinks::of_arch(arch, own.3).ok()
         });
-        let arch = scenario.structure.circular()?;
+        let arch = scenario.structure.circular_arch()?;
         Some(links.as_ref()?.with_size_of(arch))
     }
 
@@ -302,7 +302,7 @@ impl<'a> OverturningMap<'a> {
         let value = |quantity| self.value(index, quantity);
         let motion = match scenario.ground.as_ref() {
             Some(Ground::Pulse(pulse)) => {
-                let shape = self.pulses.get(self.place(index), || {
+                let shape = self.pulses.get_or_make(self.axis_indices(index), || {
                     let of_frequency = value(Quantity::Frequency).map(f64::recip);
                     let duration_s = of_frequency.or(value(Quantity::Duration));
                     let mut pulse = pulse.clone();
@@ -323,7 +323,7 @@ impl<'a> OverturningMap<'a> {
             None => None,
         };
         Ok(match motion {
-            Some(motion) => scenario.under_both_feet(motion),
+            Some(motion) => scenario.move_both_feet(motion),
             None => scenario.ground_motion().clone(),
         })
     }
@@ -447,7 +447,7 @@ impl Study for OverturningMap<'_> {
     /// Returns the family of cells with the same structure; `None` unless their model computes several motions faster together.
     fn family(&self, index: usize) -> Option<usize> {
         let has_lanes = self.scenario.motion.kind.has_lanes;
-        has_lanes.then(|| self.models.place(self.place(index)))?
+        has_lanes.then(|| self.models.value_index(self.axis_indices(index)))?
     }
 
     fn rows(&self, indices: &[usize]) -> Vec<CellRow> {
@@ -483,7 +483,7 @@ impl Study for OverturningMap<'_> {
 }
 
 /// Returns the use of a map of four links of an arch, in words, with the measured shares of wrong cells; `None` for other models and for columns.
-fn for_looking(scenario: &Scenario) -> Option<&'static str> {
+fn use_in_words(scenario: &Scenario) -> Option<&'static str> {
     let is_looked_at =
         scenario.motion.kind.has_mechanism && scenario.structure.has_horizontal_thrust();
     is_looked_at.then_some(

@@ -221,11 +221,11 @@ fn runs<'c>(
 /// Draws a map.
 pub fn draw(title: &str, map: &OverturningMap<'_>, rows: &[CellRow], style: Style) -> String {
     let cells = ColoredCells::of_outcomes(rows, style);
-    drawn(title, map, rows, &cells, style).picture
+    draw_cells(title, map, rows, &cells, style).picture
 }
 
 /// Returns the picture of a map, with the positions of its cells.
-pub(super) fn drawn(
+pub(super) fn draw_cells(
     title: &str,
     map: &OverturningMap<'_>,
     rows: &[CellRow],

@@ -45,7 +45,7 @@ impl OverturningMap<'_> {
         let scenario = self.scenario;
         let title = scenario.title.as_deref().unwrap_or("Overturning map");
         let remarks = remarks(self, cells);
-        let for_looking = super::for_looking(scenario).map(str::to_owned);
+        let for_looking = super::use_in_words(scenario).map(str::to_owned);
         let warnings = remarks.warnings("cells").chain(for_looking.clone());
         let survivors = cells.iter().filter_map(|cell| cell.result.as_ref().ok());
         let survivors = survivors
@@ -67,7 +67,7 @@ impl OverturningMap<'_> {
             ),
         };
         let colored = ColoredCells::of_outcomes(cells, style);
-        let picture = |style| picture::drawn(title, self, cells, &colored, style);
+        let picture = |style| picture::draw_cells(title, self, cells, &colored, style);
         let results = Results::of(SUMMARY, &report)?;
         let (doubts, columns) = (page::doubts(cells), page::columns(cells));
         let page = colored.page(
@@ -104,8 +104,8 @@ impl OverturningMap<'_> {
             column(y, |row: &CellRow| row.y),
         ];
         let is_repeated = self.scenario.motion.kind.is_repeated;
-        all.extend(columns::columns(is_repeated, CellRow::ended));
-        all.push(columns::direction(CellRow::ended));
+        all.extend(columns::columns(is_repeated, CellRow::ending));
+        all.push(columns::direction(CellRow::ending));
         if self.repeat {
             all.push(column("outcomes", |row: &CellRow| {
                 let outcomes = row.outcomes.as_ref();
@@ -125,7 +125,7 @@ fn remarks(map: &OverturningMap<'_>, cells: &[CellRow]) -> Remarks {
     let mut remarks = Remarks::default();
     for cell in cells {
         let case = || format!("{x_name} {}, {y_name} {}", plain(cell.x), plain(cell.y));
-        remarks.note(case, &cell.result);
+        remarks.add_case(case, &cell.result);
         if let Some(Err(reason)) = &cell.outcomes {
             remarks.failures.push(Remark::new(case(), reason));
         }

@@ -48,7 +48,7 @@ impl Comparison<Summary> {
             let both_survive = [best, other]
                 .iter()
                 .all(|one| one.verdict == Verdict::Survives);
-            are_known && !(both_survive && best.worse().largest_peak_rotation_rad == 0.0)
+            are_known && !(both_survive && best.worse_direction().largest_peak_rotation_rad == 0.0)
         };
         pairs.filter(differs).collect()
     }

@@ -51,7 +51,7 @@ impl MirroredSummary {
 
     /// Computes a scenario under its mirrored ground motion, and its repetitions if they are requested; `None` if it has no
     /// [second direction](Scenario::has_second_direction).
-    pub fn computed(scenario: &Scenario, model: &dyn Model, repeats: bool) -> Option<Self> {
+    pub fn compute(scenario: &Scenario, model: &dyn Model, repeats: bool) -> Option<Self> {
         if !scenario.has_second_direction(model) {
             return None;
         }
@@ -76,7 +76,10 @@ impl MirroredSummary {
 }
 
 /// Returns each result with other properties, with that under the mirrored ground motion if there is one.
-pub(super) fn in_pairs(own: Vec<VariationResult>, turned: &[VariationResult]) -> Vec<VariedRun> {
+pub(super) fn pair_results(
+    own: Vec<VariationResult>,
+    turned: &[VariationResult],
+) -> Vec<VariedRun> {
     let mut turned = turned.iter().cloned();
     own.into_iter().map(|own| (own, turned.next())).collect()
 }
@@ -224,7 +227,7 @@ impl Summary {
     }
 
     /// Returns the end of the worse direction.
-    pub(super) fn worse(&self) -> DirectionEnd {
+    pub(super) fn worse_direction(&self) -> DirectionEnd {
         let mirrored = self.worse_mirrored().and_then(|mirrored| {
             Some(DirectionEnd {
                 is_mirrored: true,
@@ -251,7 +254,7 @@ impl Summary {
 
     /// Returns the outcome in words that precede "this motion", with the direction in words that follow it. `only` is the single direction that is
     /// computed, if the other one is another problem.
-    pub(super) fn happens(&self, only: Option<Directions>) -> [&'static str; 2] {
+    pub(super) fn outcome_in_words(&self, only: Option<Directions>) -> [&'static str; 2] {
         let overturns = |verdict| verdict == Verdict::Overturns;
         let mirrored = self.mirrored.as_ref();
         let mirrored = mirrored.map(|mirrored| overturns(mirrored.verdict));

@@ -102,7 +102,7 @@ impl Film {
     pub fn encode(&self, format: FilmFormat, watch: Watch<'_>) -> Result<Vec<u8>, StudyError> {
         let (size_px, background) = (self.options.size_px, self.options.background);
         let (shown, figure) = (
-            self.snapshots.shown(),
+            self.snapshots.drawn_samples(),
             Figure::of_frame(size_px, background),
         );
         let (all, rate_hz) = (shown.len(), Self::RATE_HZ);
@@ -165,7 +165,7 @@ impl Recorder for Camera<'_> {
         true
     }
 
-    fn fall(&mut self, sample: &Sample) -> ControlFlow<()> {
+    fn fall_sample(&mut self, sample: &Sample) -> ControlFlow<()> {
         self.sample(sample)
     }
 }

@@ -27,14 +27,16 @@ pub struct NotableImpacts(Vec<(f64, ImpactSummary)>);
 impl<'a> FromIterator<&'a Event> for NotableImpacts {
     fn from_iter<I: IntoIterator<Item = &'a Event>>(events: I) -> Self {
         let mut notable = Self::default();
-        events.into_iter().for_each(|event| notable.note(event));
+        events
+            .into_iter()
+            .for_each(|event| notable.add_event(event));
         notable
     }
 }
 
 impl NotableImpacts {
     /// Adds an event. Events come in the order of time.
-    pub(super) fn note(&mut self, event: &Event) {
+    pub(super) fn add_event(&mut self, event: &Event) {
         let Some(impact) = &event.impact else { return };
         let loss_j = energy_loss_j(impact);
         if self

@@ -199,7 +199,7 @@ pub fn results(
         let answers: Vec<_> = all.iter().map(|one| one.answer.clone()).collect();
         let summaries = all.iter().map(|one| one.summary.clone());
         let models = all_models.iter().copied().zip(summaries);
-        Comparison::new(models, quotable::in_words(&answers), None)
+        Comparison::new(models, quotable::quote_answers(&answers), None)
     });
     results.summary = match &comparison {
         None => summary_of(&all[0].summary)?,
@@ -276,14 +276,17 @@ pub fn repeat(scenario: &Scenario, model: &dyn Model, history: &History) -> Opti
 ///
 /// # Errors
 /// When the structure with another property has no model of motion.
-pub fn varied(scenario: &Scenario, model: &dyn Model) -> Result<Vec<VariedRun>, StudyError> {
+pub fn compute_varied(
+    scenario: &Scenario,
+    model: &dyn Model,
+) -> Result<Vec<VariedRun>, StudyError> {
     let turned = scenario
         .has_second_direction(model)
         .then(|| scenario.in_directions(Directions::Mirrored));
     let own = variations(scenario)?;
     let turned = turned.as_ref().map(variations).transpose()?;
     let turned = turned.map_or_else(Vec::new, Variations::wait);
-    Ok(directions::in_pairs(own.wait(), &turned))
+    Ok(directions::pair_results(own.wait(), &turned))
 }
 
 /// Starts the motions of a scenario with other properties.
@@ -388,7 +391,7 @@ impl<'a> Run<'a> {
         });
         let mirrored = mirrored.map(MirroredRun::finish);
         let turned = mirrored.as_ref().map_or(&[][..], |run| &run.varied);
-        let varied = directions::in_pairs(variations.wait(), turned);
+        let varied = directions::pair_results(variations.wait(), turned);
         let mut summary = Summary::of(&ComputedRun {
             scenario,
             model,
@@ -399,7 +402,7 @@ impl<'a> Run<'a> {
             mirrored: mirrored.as_ref().map(|run| run.summary.clone()),
         });
         summary.points = drawings.points.peaks();
-        self.complete(&mut summary, &history, samples);
+        self.add_study_words(&mut summary, &history, samples);
         let of_samples = samples.map_or("", |samples| &samples.words);
         let other = mirrored.and_then(|run| run.page);
         let mut texts = drawings.texts(self, &names, &history, (of_samples, other), &summary);
@@ -443,7 +446,7 @@ impl<'a> Run<'a> {
     }
 
     /// Adds what a summary has of this computation and of the other models and samples.
-    fn complete(&self, summary: &mut Summary, history: &History, samples: Option<&Results>) {
+    fn add_study_words(&self, summary: &mut Summary, history: &History, samples: Option<&Results>) {
         // [`summary`] omits the computing time, so that equal histories have equal summaries.
         let longest_step = history.row().and_then(|row| row.longest_step);
         summary.longest_step_us = longest_step.map(|step| (step.as_secs_f64() * 1e6).round());
@@ -593,8 +596,8 @@ impl Drawings {
             drawings.page(run.mirrored.as_ref()?, history, opening, summary)
         });
         let report = own.map(|own| match (other, summary.worse_mirrored()) {
-            (Some(other), Some(_)) => other.beside(own).html(),
-            (Some(other), None) => own.beside(other).html(),
+            (Some(other), Some(_)) => other.with_other_direction(own).html(),
+            (Some(other), None) => own.with_other_direction(other).html(),
             (None, _) => own.html(),
         });
         let snapshots = self.snapshots.as_ref();
@@ -640,7 +643,7 @@ impl Recorder for Drawings {
     }
 
     fn event(&mut self, event: &Event) -> ControlFlow<()> {
-        self.notable.note(event);
+        self.notable.add_event(event);
         self.timeline.event(event);
         ControlFlow::Continue(())
     }
@@ -657,7 +660,7 @@ impl Recorder for Drawings {
         self.report.is_some() || self.film.is_some()
     }
 
-    fn fall(&mut self, sample: &Sample) -> ControlFlow<()> {
+    fn fall_sample(&mut self, sample: &Sample) -> ControlFlow<()> {
         if let Some(report) = &mut self.report {
             report.push_fall(sample);
         }
@@ -667,7 +670,7 @@ impl Recorder for Drawings {
         ControlFlow::Continue(())
     }
 
-    fn fell(&mut self, end: FallEnd) {
+    fn fall_end(&mut self, end: FallEnd) {
         if let Some(report) = &mut self.report {
             report.end_fall(end);
         }

@@ -27,7 +27,7 @@ pub(super) struct OpenJoints {
 }
 
 /// Adds the bits of a column to those of another column.
-fn join((_, bits): &mut (f64, Vec<u8>), (_, after): (f64, Vec<u8>)) {
+fn join_columns((_, bits): &mut (f64, Vec<u8>), (_, after): (f64, Vec<u8>)) {
     for (own, after) in bits.iter_mut().zip(after) {
         *own |= after;
     }
@@ -51,7 +51,7 @@ impl OpenJoints {
     }
 
     /// Returns true if a joint is ever open in one of these ways.
-    fn has(&self, kinds: u8) -> bool {
+    fn has_kinds(&self, kinds: u8) -> bool {
         let mut columns = self.thinned.columns.iter();
         columns.any(|(_, bits)| bits.iter().any(|bits| bits & kinds != 0))
     }
@@ -68,15 +68,15 @@ impl OpenJoints {
             }
         }
         let own = (sample.time_s, bits);
-        match self.thinned.next(join) {
-            Some(column) => join(column, own),
+        match self.thinned.next(join_columns) {
+            Some(column) => join_columns(column, own),
             None => self.thinned.columns.push(own),
         }
     }
 
     /// Adds the panel of the joints if a joint is ever open.
     pub(super) fn add_to(&self, panels: &mut Panels, figure: Figure, end_s: f64) {
-        if !self.has(u8::MAX) {
+        if !self.has_kinds(u8::MAX) {
             return;
         }
         let height_px = (14.0 * self.count as f64).clamp(60.0, 260.0);
@@ -94,7 +94,7 @@ impl OpenJoints {
             });
             let boxes = Shape::Boxes(boxes.collect());
             marks.push(Mark::new(name, Stroke::new(fill, 0.0, ""), boxes));
-            if self.has(bit) {
+            if self.has_kinds(bit) {
                 panels.keys.push(Key::new(text, Sign::Band(fill, 1.0)));
             }
         }

@@ -29,7 +29,7 @@ struct LargeCycle {
 const LARGE_RATIO: f64 = 0.25;
 
 /// Returns the stroke for the unstable rotation of a body, in the colour of its curve.
-const fn unstable(body: usize) -> Stroke {
+const fn unstable_stroke(body: usize) -> Stroke {
     Stroke::new(CURVES[body % CURVES.len()].color, 1.0, "1 3")
 }
 
@@ -164,11 +164,11 @@ impl Timeline {
     ) -> String {
         let span_s = [subject.ground.start_s(), self.end_s];
         let states = match history.row() {
-            Some(row) => &states(history, &row.half_cycles),
+            Some(row) => &row_states(history, &row.half_cycles),
             None => &self.states,
         };
         let mut panels = HistoryPanels::new(figure, subject, self.end_s, Some(states));
-        let shows = |panel: Panel| panel.is_drawn(chosen, figure, points.any());
+        let shows = |panel: Panel| panel.is_drawn(chosen, figure, points.has_points());
         let [ground_px, rotation_px, energy_px] = match self.joints {
             Some(_) => [110.0, 240.0, 120.0],
             None => [130.0, 260.0, 125.0],
@@ -255,7 +255,7 @@ impl Timeline {
         }
         marks.extend(self.large_cycles.iter().map(|cycle| {
             let ends = [cycle.from_s, cycle.to_s].map(|time_s| (time_s, cycle.unstable_rad));
-            Mark::curve("unstable", unstable(cycle.body), ends)
+            Mark::curve("unstable", unstable_stroke(cycle.body), ends)
         }));
         let y = scale_around(&marks, [], 6);
         let ticks = Shape::Ticks(self.impacts_s.clone());
@@ -274,7 +274,7 @@ impl Timeline {
             panels
                 .panels
                 .keys
-                .push(Key::line(label, unstable(cycle.body)));
+                .push(Key::line(label, unstable_stroke(cycle.body)));
         }
         (marks, y)
     }
@@ -303,7 +303,7 @@ impl Timeline {
 }
 
 /// Returns the states of a row: its half cycles, and the end.
-fn states(history: &History, half_cycles: &[HalfCycle]) -> StateHistory {
+fn row_states(history: &History, half_cycles: &[HalfCycle]) -> StateHistory {
     let end = match history.outcome {
         Outcome::Rest => Some(State::Rest),
         Outcome::Overturned(sway) => Some(State::Overturned(sway)),

@@ -59,10 +59,10 @@ impl ObservedPoints {
                 let [low_m, high_m] = scene.bounds_m();
                 format!(
                     "--point {} is in no block: the nearest place of one is {}; the structure lies between {} and {} (in metres)",
-                    place(*at_m),
-                    place(nearest_m),
-                    place(low_m),
-                    place(high_m)
+                    format_point(*at_m),
+                    format_point(nearest_m),
+                    format_point(low_m),
+                    format_point(high_m)
                 )
             })?;
             observed.push(ObservedPoint {
@@ -78,7 +78,7 @@ impl ObservedPoints {
     }
 
     /// Returns true if there are observed points.
-    pub(super) const fn any(&self) -> bool {
+    pub(super) const fn has_points(&self) -> bool {
         !self.observed.is_empty()
     }
 
@@ -91,12 +91,14 @@ impl ObservedPoints {
     ) {
         for observed in &mut self.observed {
             let displaced_m = displacement_m(&self.scene, &observed.point, poses, hinges);
-            for (along, displaced_m) in observed.displacements.iter_mut().zip(displaced_m.iter()) {
+            for (component, displaced_m) in
+                observed.displacements.iter_mut().zip(displaced_m.iter())
+            {
                 if is_sample {
-                    along.millimetres.push(time_s, 1e3 * displaced_m);
+                    component.millimetres.push(time_s, 1e3 * displaced_m);
                 }
-                if displaced_m.abs() > along.farthest_m.abs() * (1.0 + NO_RISE) {
-                    (along.farthest_m, along.time_s) = (*displaced_m, time_s);
+                if displaced_m.abs() > component.farthest_m.abs() * (1.0 + NO_RISE) {
+                    (component.farthest_m, component.time_s) = (*displaced_m, time_s);
                 }
             }
         }
@@ -145,7 +147,9 @@ impl ObservedPoints {
         let named = self.names().into_iter().flatten().zip(CURVES);
         let curves: Vec<Mark> = named
             .zip(displacements)
-            .map(|((name, stroke), along)| Mark::curve(name, stroke, along.millimetres.points()))
+            .map(|((name, stroke), component)| {
+                Mark::curve(name, stroke, component.millimetres.points())
+            })
             .collect();
         if !curves.iter().all(Mark::is_flat) {
             panels.panels.keys.extend(curves.iter().map(Mark::key));
@@ -155,7 +159,7 @@ impl ObservedPoints {
 
     /// Returns the names of the curves of each point, for displacements to the right and upwards.
     pub(super) fn names(&self) -> Vec<[String; 2]> {
-        let places = self.observed.iter().map(|one| place(one.point.at_m));
+        let places = self.observed.iter().map(|one| format_point(one.point.at_m));
         let named = places.map(|at| AXES.map(|(_, positive)| format!("point {at}, {positive}")));
         named.collect()
     }
@@ -170,7 +174,7 @@ impl ObservedPoints {
     }
 
     /// Returns the positions and named curves of the points, in millimetres, for the page.
-    pub(super) fn on_page(&self) -> Vec<PointCurves> {
+    pub(super) fn page_curves(&self) -> Vec<PointCurves> {
         let observed = self.observed.iter().zip(self.names());
         let point = |(observed, names): (&ObservedPoint, [String; 2])| PointCurves {
             at_m: observed.point.at_m,
@@ -203,11 +207,11 @@ fn displacement_m(
     hinges: &[OpenHinge],
 ) -> Vector2<f64> {
     let carried = scene.body_point(point, hinges);
-    carried.moved(poses, 1.0) - point.at_m
+    carried.current_position(poses, 1.0) - point.at_m
 }
 
 /// Returns a position in the format of `--point`.
-pub(super) fn place(at_m: Vector2<f64>) -> String {
+pub(super) fn format_point(at_m: Vector2<f64>) -> String {
     // Rounds to a millimetre. Adding zero makes a negative zero positive.
     let [x, y] = [at_m.x, at_m.y].map(|metres| (1e3 * metres).round() / 1e3 + 0.0);
     format!("{x},{y}")

@@ -208,11 +208,11 @@ impl Recorder for RunRecorder<'_, '_> {
         self.drawings.wants_fall()
     }
 
-    fn fall(&mut self, sample: &Sample) -> ControlFlow<()> {
-        self.drawings.fall(sample)
+    fn fall_sample(&mut self, sample: &Sample) -> ControlFlow<()> {
+        self.drawings.fall_sample(sample)
     }
 
-    fn fell(&mut self, end: FallEnd) {
-        self.drawings.fell(end);
+    fn fall_end(&mut self, end: FallEnd) {
+        self.drawings.fall_end(end);
     }
 }

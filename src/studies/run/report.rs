@@ -113,7 +113,7 @@ pub struct ReportPage(Page);
 impl ReportPage {
     /// Returns a page that opens with this one, and has the history of the other direction beside it.
     #[must_use]
-    pub fn beside(mut self, other: Self) -> Self {
+    pub fn with_other_direction(mut self, other: Self) -> Self {
         self.0.other = Some(Box::new(other.0));
         self
     }
@@ -252,10 +252,10 @@ impl Report {
         let sections = self.scene.sections.iter();
         let faces = |exaggeration| {
             let faces = self.scene.supports_m(exaggeration).into_iter();
-            faces.map(flat).collect()
+            faces.map(flatten_corners).collect()
         };
         let dimensions = self.scene.dimensions.iter().map(|dimension| Size {
-            ends_m: flat(dimension.ends_m),
+            ends_m: flatten_corners(dimension.ends_m),
             side: dimension.side,
             text: dimension.label(Language::English),
         });
@@ -270,7 +270,7 @@ impl Report {
         let falls = frames.last().is_some_and(|frame| frame.time_s > end_s);
         let fall_end = self.fall_end.as_ref();
         let fall_end = fall_end.filter(|end| falls || **end != FallEnd::Turned);
-        let (structure, shaken) = (scenario.structure.described(), ground_in_words(scenario));
+        let (structure, shaken) = (scenario.structure.describe(), ground_in_words(scenario));
         ReportPage(Page {
             direction: scenario.simulation.direction.first(),
             other: None,
@@ -296,13 +296,13 @@ impl Report {
             ties: ties.map(|ends| ends.map(point)).collect(),
             ties_broken_s: broken_s.collect(),
             sections: sections
-                .map(|one| flat([one.middle_m, one.across_m]))
+                .map(|one| flatten_corners([one.middle_m, one.across_m]))
                 .collect(),
             frames: self.frames(ground, &frames, layout_of, joints.len()),
             joints,
             across: across.collect(),
             layouts: hinges.iter().map(layout).collect(),
-            points: points.map(ObservedPoints::on_page),
+            points: points.map(ObservedPoints::page_curves),
             energy_label: self.energy_label(history),
             curves: Curves {
                 ground_g: curve(curve_g(ground, self.gravity_m_s2, end_s)),
@@ -438,7 +438,7 @@ fn point(point: BodyPoint) -> Point {
     (body_number(point.body), point.at_m.x, point.at_m.y)
 }
 
-fn flat([a, b]: [Vector2<f64>; 2]) -> [f64; 4] {
+fn flatten_corners([a, b]: [Vector2<f64>; 2]) -> [f64; 4] {
     [a.x, a.y, b.x, b.y]
 }
 

@@ -99,7 +99,7 @@ impl Snapshots {
             while film.next_s <= time_s + SAME_S && self.taken.len() < MAX_FILM_PICTURES {
                 let shown = match &film.last {
                     Some(last) if film.next_s < time_s - SAME_S => {
-                        between(last, sample, film.next_s)
+                        interpolate_sample(last, sample, film.next_s)
                     }
                     _ => sample.clone(),
                 };
@@ -131,7 +131,7 @@ impl Snapshots {
     /// Returns the largest joint stress in all pictures, in Pa.
     fn largest_pa(&self) -> f64 {
         *self.largest_pa.get_or_init(|| {
-            let pressures = self.shown().into_iter();
+            let pressures = self.drawn_samples().into_iter();
             let pressures = pressures.flat_map(|sample| &sample.pressures);
             let stresses_pa = pressures.flat_map(|pressure| pressure.edge_stresses_pa);
             stresses_pa.fold(0.0, f64::max)
@@ -146,19 +146,19 @@ impl Snapshots {
     }
 
     /// Returns the samples that are drawn.
-    pub(super) fn shown(&self) -> Vec<&Sample> {
+    pub(super) fn drawn_samples(&self) -> Vec<&Sample> {
         let taken = self.taken.iter();
         taken.filter_map(|(_, sample)| sample.as_ref()).collect()
     }
 
     /// Draws all snapshots in one picture.
     pub(super) fn draw(&self, figure: Figure, title: &str) -> String {
-        self.sheet(figure, title, &self.shown())
+        self.sheet(figure, title, &self.drawn_samples())
     }
 
     /// Draws each snapshot as a separate picture, all with one scale.
     pub(super) fn film_pictures(&self, figure: Figure, title: &str) -> Vec<String> {
-        let shown = self.shown().into_iter();
+        let shown = self.drawn_samples().into_iter();
         shown
             .map(|sample| self.sheet(figure, title, &[sample]))
             .collect()
@@ -295,7 +295,7 @@ impl Snapshots {
 
 /// Returns the state between two samples. The bodies move evenly from one to the other; everything else is that of the first one. At a change
 /// of the mechanism, whose bodies are others, it is the nearer sample.
-fn between(first: &Sample, second: &Sample, time_s: f64) -> Sample {
+fn interpolate_sample(first: &Sample, second: &Sample, time_s: f64) -> Sample {
     let part = (time_s - first.time_s) / (second.time_s - first.time_s);
     let mut hinges = first.hinges.iter().zip(&second.hinges);
     let are_equal =

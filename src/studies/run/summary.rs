@@ -173,7 +173,7 @@ pub struct FrictionDemand {
 
 impl FrictionDemand {
     /// Returns the friction coefficient that prevents sliding, except for short peaks of rows.
-    pub(super) fn required(&self) -> f64 {
+    pub(super) fn required_coefficient(&self) -> f64 {
         self.lasting_friction_demand
             .unwrap_or(self.largest_friction_demand)
     }
@@ -389,7 +389,7 @@ impl OutcomeSummary {
 
     /// Returns the outcome with its side.
     pub(super) fn with_side(&self) -> Outcome {
-        self.outcome.to(self.overturning_sway)
+        self.outcome.to_outcome(self.overturning_sway)
     }
 }
 
@@ -454,13 +454,13 @@ impl Summary {
         summary.verdict = mirrored.map_or(own, |mirrored| own.max(mirrored.verdict));
         let caveats = summary.caveats();
         summary.warnings.extend(caveats);
-        summary.to_quote = quotable::in_words(&[summary.answer(scenario, model)]);
+        summary.to_quote = quotable::quote_answers(&[summary.answer(scenario, model)]);
         summary
     }
 
     /// Returns the answer that may be quoted: a certain outcome that does not depend on the stiffness and contact of its joints.
     pub(super) fn answer(&self, scenario: &Scenario, model: &dyn Model) -> ModelAnswer {
-        let [happens, direction] = self.happens(only_direction(scenario, model));
+        let [happens, direction] = self.outcome_in_words(only_direction(scenario, model));
         let no_answer = match (self.verdict, self.changed_outcome()) {
             (Verdict::Incomplete, _) => Some("the run has no verdict".to_owned()),
             (Verdict::Uncertain, _) => Some("it is uncertain whether it overturns".to_owned()),
@@ -556,7 +556,7 @@ impl MechanismResults {
                 Some(Ground::Pulse(pulse)) => Some(pulse.duration_s * scales.frequency_rad_s),
                 Some(Ground::Record(_)) | None => None,
             },
-            peak_acceleration_over_incipient: scales.over_incipient(pushes_m_s2),
+            peak_acceleration_over_incipient: scales.ratio_to_incipient(pushes_m_s2),
         };
         let structure = &scenario.structure;
         let thrust = |thrust: &ThrustRecord| {
@@ -570,7 +570,7 @@ impl MechanismResults {
                 rocking_share_thrust_excess_below_0_05: near,
                 four_links: rocks.then(|| FourLinkQuality::of(history, thrust)),
                 is_continuous: structure
-                    .circular()
+                    .circular_arch()
                     .is_some_and(|arch| arch.voussoirs.is_none()),
             }
         };
@@ -605,7 +605,7 @@ impl RowResults {
         slipped_joints.sort_by(|a, b| largest_m[*b].total_cmp(&largest_m[*a]));
         Some(Self {
             half_cycles: history.half_cycles(),
-            elastic: history.elastic().copied(),
+            elastic: history.elastic_summary().copied(),
             row: row.clone(),
             feet: FeetApart::of(scenario, history),
             friction_coefficient: scenario.motion.options.friction_coefficient(),
@@ -631,7 +631,7 @@ impl RepeatabilitySummary {
     }
 
     /// Returns the names of the repetitions that did not fail.
-    pub(super) fn repeated(&self) -> Vec<String> {
+    pub(super) fn repetition_names(&self) -> Vec<String> {
         let Self { outcomes, .. } = self;
         outcomes.0[1..]
             .iter()
@@ -641,7 +641,7 @@ impl RepeatabilitySummary {
 
     /// Returns whether one of the repetitions is that under the mirrored ground motion.
     pub(super) fn is_mirrored(&self) -> bool {
-        let mut repeated = self.repeated().into_iter();
+        let mut repeated = self.repetition_names().into_iter();
         repeated.any(|name| name == Repetition::MIRRORED)
     }
 
@@ -666,7 +666,7 @@ impl RepeatabilitySummary {
         let kinds = self.outcomes.0.iter();
         let mut outcomes = kinds.zip(&self.overturning_sways.0);
         let ((_, kind), (_, sway)) = outcomes.next()?;
-        Some(kind.to(*sway))
+        Some(kind.to_outcome(*sway))
     }
 
     /// Returns the other outcomes, including those that differ in the side of overturning alone, each with the names of its repetitions.
@@ -679,10 +679,10 @@ impl RepeatabilitySummary {
         let mut outcomes = kinds
             .iter()
             .zip(sways)
-            .map(|((_, kind), (_, sway))| kind.to(*sway));
+            .map(|((_, kind), (_, sway))| kind.to_outcome(*sway));
         let own = outcomes.next();
         let mut others: Vec<(Outcome, String)> = Vec::new();
-        for (name, outcome) in self.repeated().into_iter().zip(outcomes) {
+        for (name, outcome) in self.repetition_names().into_iter().zip(outcomes) {
             match others.iter_mut().find(|(other, _)| *other == outcome) {
                 Some((_, names)) => *names += &format!(" and {name}"),
                 None if Some(outcome) == own => {}
@@ -717,7 +717,7 @@ impl VariationSummary {
     }
 
     /// Returns the ends in all directions, with their names.
-    pub(super) fn ends(&self) -> impl Iterator<Item = (&'static str, &VariationOutcome)> {
+    pub(super) fn named_ends(&self) -> impl Iterator<Item = (&'static str, &VariationOutcome)> {
         let mirrored = self.mirrored.iter().map(|end| ("; mirrored: ", end));
         [("", &self.end)].into_iter().chain(mirrored)
     }

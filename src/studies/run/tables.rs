@@ -166,15 +166,15 @@ pub(super) fn events(model: &dyn Model) -> Vec<Column<'static, Event>> {
 pub(super) fn impacts(model: &dyn MechanismModel) -> Vec<Column<'static, Event>> {
     let (bodies, sections) = (model.bodies(), sections(model));
     let rates = |moment: &str| columns(&bodies, "rate", &format!("{moment}_rad_s"));
-    let impulses = by_hinge(sections, "impulse", ["x_n_s", "y_n_s"]);
+    let impulses = hinge_columns(sections, "impulse", ["x_n_s", "y_n_s"]);
     vec![
         row_number("impact"),
         column("time_s", |event: &Event| event.time_s),
-        of_impact("sway_before", |impact| impact.sway_before.name()),
-        of_impact("sway_after", |impact| impact.sway_after().name()),
-        of_impact("restitution", |impact| impact.restitution),
-        of_impact("energy_before_j", |impact| impact.energy_before_j),
-        of_impact("energy_after_j", |impact| impact.energy_after_j),
+        impact_column("sway_before", |impact| impact.sway_before.name()),
+        impact_column("sway_after", |impact| impact.sway_after().name()),
+        impact_column("restitution", |impact| impact.restitution),
+        impact_column("energy_before_j", |impact| impact.energy_before_j),
+        impact_column("energy_after_j", |impact| impact.energy_after_j),
         numbers(rates("before"), |event: &Event| {
             impact(event).map_or(&[][..], |impact| &impact.rates_before_rad_s)
         }),
@@ -182,9 +182,9 @@ pub(super) fn impacts(model: &dyn MechanismModel) -> Vec<Column<'static, Event>>
             impact(event).map_or(&[][..], |impact| &impact.rates_after_rad_s)
         }),
         list(
-            by_hinge(sections, "hinge", ["deg"]),
+            hinge_columns(sections, "hinge", ["deg"]),
             move |event: &Event| {
-                let opened = hinge_cells(opened(event), sections).into_iter();
+                let opened = hinge_cells(opened_hinges(event), sections).into_iter();
                 opened.map(|(angle_deg, _)| angle_deg)
             },
         ),
@@ -195,9 +195,9 @@ pub(super) fn impacts(model: &dyn MechanismModel) -> Vec<Column<'static, Event>>
             all.take(2 * sections).collect::<Vec<_>>()
         }),
         list(
-            by_hinge(sections, "hinge", ["edge"]),
+            hinge_columns(sections, "hinge", ["edge"]),
             move |event: &Event| {
-                let opened = hinge_cells(opened(event), sections).into_iter();
+                let opened = hinge_cells(opened_hinges(event), sections).into_iter();
                 opened.map(|(_, edge)| edge)
             },
         ),
@@ -212,16 +212,16 @@ pub(super) fn landings(model: &dyn Model) -> Vec<Column<'static, Event>> {
     let mut all = vec![
         row_number("impact"),
         column("time_s", |event: &Event| event.time_s),
-        of_impact("joints_shut", |impact| joint_numbers(&impact.closed)),
-        of_impact("edges_shut", |impact| joint_edges(&impact.closed)),
-        of_impact("joints_opened", |impact| joint_numbers(&impact.opened)),
-        of_impact("edges_opened", |impact| joint_edges(&impact.opened)),
-        of_impact("energy_before_j", |impact| impact.energy_before_j),
-        of_impact("energy_after_j", |impact| impact.energy_after_j),
-        of_impact("energy_taken_j", energy_loss_j),
+        impact_column("joints_shut", |impact| joint_numbers(&impact.closed)),
+        impact_column("edges_shut", |impact| joint_edges(&impact.closed)),
+        impact_column("joints_opened", |impact| joint_numbers(&impact.opened)),
+        impact_column("edges_opened", |impact| joint_edges(&impact.opened)),
+        impact_column("energy_before_j", |impact| impact.energy_before_j),
+        impact_column("energy_after_j", |impact| impact.energy_after_j),
+        impact_column("energy_taken_j", energy_loss_j),
     ];
     if model.slips() {
-        all.push(of_impact("friction_j", |impact| impact.friction_j));
+        all.push(impact_column("friction_j", |impact| impact.friction_j));
     }
     all
 }
@@ -235,12 +235,12 @@ fn impact(event: &Event) -> Option<&Impact> {
     event.impact.as_ref()
 }
 
-fn opened(event: &Event) -> &[Hinge] {
+fn opened_hinges(event: &Event) -> &[Hinge] {
     impact(event).map_or(&[], |impact| &impact.opened)
 }
 
 /// Returns a column with a quantity of the impact; empty for other events.
-fn of_impact<C: Into<Cell<'static>>>(
+fn impact_column<C: Into<Cell<'static>>>(
     name: &'static str,
     cell: impl Fn(&Impact) -> C + 'static,
 ) -> Column<'static, Event> {
@@ -251,7 +251,7 @@ fn of_impact<C: Into<Cell<'static>>>(
 const HINGES: [&str; 4] = ["a", "b", "c", "d"];
 
 /// Returns names of columns: `parts` of each of a number of hinges.
-fn by_hinge<const N: usize>(sections: usize, what: &str, parts: [&str; N]) -> Vec<String> {
+fn hinge_columns<const N: usize>(sections: usize, what: &str, parts: [&str; N]) -> Vec<String> {
     let hinges = HINGES.iter().take(sections);
     let names = hinges.flat_map(|hinge| parts.map(|part| format!("{what}_{hinge}_{part}")));
     names.collect()
@@ -268,10 +268,13 @@ fn hinges(
     sections: usize,
     of: impl Fn(&Event) -> &[Hinge] + 'static,
 ) -> Column<'static, Event> {
-    list(by_hinge(sections, what, ["deg", "edge"]), move |event| {
-        let cells = hinge_cells(of(event), sections).into_iter();
-        cells.flat_map(|(angle_deg, edge)| [Cell::from(angle_deg), Cell::from(edge)])
-    })
+    list(
+        hinge_columns(sections, what, ["deg", "edge"]),
+        move |event| {
+            let cells = hinge_cells(of(event), sections).into_iter();
+            cells.flat_map(|(angle_deg, edge)| [Cell::from(angle_deg), Cell::from(edge)])
+        },
+    )
 }
 
 /// Returns the angles, in degrees from the left springing, and the edges of hinges at sections of an arch, with empty cells up to the number
@@ -290,15 +293,15 @@ fn hinge_cells(hinges: &[Hinge], least: usize) -> Vec<(Option<f64>, Option<&'sta
 
 /// Returns the numbers of the joints of these hinges, separated by spaces.
 fn joint_numbers(hinges: &[Hinge]) -> String {
-    of_joints(hinges, |joint, _| joint.to_string())
+    joints_in_words(hinges, |joint, _| joint.to_string())
 }
 
 /// Returns the edges of these hinges, separated by spaces.
 fn joint_edges(hinges: &[Hinge]) -> String {
-    of_joints(hinges, |_, edge| edge.map_or("both", Edge::name).to_owned())
+    joints_in_words(hinges, |_, edge| edge.map_or("both", Edge::name).to_owned())
 }
 
-fn of_joints(hinges: &[Hinge], text: impl Fn(usize, Option<Edge>) -> String) -> String {
+fn joints_in_words(hinges: &[Hinge], text: impl Fn(usize, Option<Edge>) -> String) -> String {
     let texts = hinges.iter().filter_map(|hinge| match *hinge {
         Hinge::Joint { joint, edge } => Some(text(joint, edge)),
         Hinge::Section { .. } | Hinge::Toe(_) => None,

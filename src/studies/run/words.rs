@@ -9,7 +9,7 @@ use serde_json::Value;
 
 use super::caveats::{Caveat, coefficient, largest_coefficient};
 use super::impacts::ImpactSummary;
-use super::points::place;
+use super::points::format_point;
 use super::summary::{
     FourLinkQuality, FrictionDemand, PointPeaks, STRAIGHT_RAD, Summary, VariationOutcome,
 };
@@ -128,7 +128,7 @@ impl Summary {
     /// Returns the time since which elastic joints that still move at the end only vibrate, in s; `None` for other outcomes.
     pub(super) fn vibrates_since_s(&self) -> Option<f64> {
         let moves = self.outcome.outcome == OutcomeKind::StillRocking;
-        self.elastic()?.vibrates_since_s.filter(|_| moves)
+        self.elastic_summary()?.vibrates_since_s.filter(|_| moves)
     }
 
     /// Returns true if the runs of several models are printed together, and this one is among them.
@@ -136,7 +136,7 @@ impl Summary {
         self.compared_models.contains(&model)
     }
 
-    fn elastic(&self) -> Option<ElasticSummary> {
+    fn elastic_summary(&self) -> Option<ElasticSummary> {
         self.row.as_ref()?.elastic
     }
 
@@ -174,7 +174,7 @@ impl Summary {
     /// Returns the half cycles with the largest peaks that are printed as nonzero, in order of time.
     fn half_cycles(&self) -> Vec<&HalfCycle> {
         let cycles = self.row.iter().flat_map(|row| &row.half_cycles);
-        largest(cycles.collect(), |one| one.peak_rad)
+        select_largest(cycles.collect(), |one| one.peak_rad)
     }
 
     /// Returns the comparisons of these half cycles with the repetitions: first the certain ones, then the others.
@@ -186,7 +186,7 @@ impl Summary {
             let own = cycles().find(|own| own.peak_time_s == repeated.peak_time_s)?;
             Some((own, repeated))
         });
-        let described = largest(pairs.collect(), |(own, _)| own.peak_rad).into_iter();
+        let described = select_largest(pairs.collect(), |(own, _)| own.peak_rad).into_iter();
         let (same, differ) = described.partition(|(_, repeated)| repeated.is_certain());
         [same, differ]
     }
@@ -281,7 +281,7 @@ fn largest_end_mm(slips: &[Slip]) -> f64 {
 
 /// Returns the position of a point in the format of `--point`.
 fn place_of(point: &PointPeaks) -> String {
-    place(Vector2::new(point.x_m, point.y_m))
+    format_point(Vector2::new(point.x_m, point.y_m))
 }
 
 /// Returns the ratio of a push to the push that starts the structure, in words; empty if the structure starts at zero push.
@@ -320,7 +320,7 @@ fn joint_numbers(joints: &[usize]) -> String {
 }
 
 /// Returns the values with the largest peaks that are printed as nonzero, in their order.
-fn largest<T: Copy>(cycles: Vec<T>, peak_rad: impl Fn(T) -> f64) -> Vec<T> {
+fn select_largest<T: Copy>(cycles: Vec<T>, peak_rad: impl Fn(T) -> f64) -> Vec<T> {
     let mut rocking: Vec<usize> = (0..cycles.len())
         .filter(|index| peak_rad(cycles[*index]) > STRAIGHT_RAD)
         .collect();

@@ -12,7 +12,7 @@ pub use self::report::{FILES, report};
 use super::StudyError;
 use super::report::{Report, Warnings};
 use super::runner::in_parallel;
-use crate::argument::fixed;
+use crate::argument::format_fixed;
 use crate::mechanics::settling::{HingeState, Movement, Pin, Snap};
 use crate::mechanics::{Follower, Movements, Parts as _, SettlingError, Sides};
 use crate::output::filters;
@@ -225,7 +225,11 @@ fn path(
     let (end_m, falls_at_m, mut lost) = match scout.move_supports(movements, 0.0, longest_m) {
         Ok(falls_at_m) => (falls_at_m.unwrap_or(longest_m), falls_at_m, None),
         // If the end is unknown, the loop below ends before it.
-        Err(error) => (error.at().unwrap_or(longest_m), None, Some(error)),
+        Err(error) => (
+            error.path_position().unwrap_or(longest_m),
+            None,
+            Some(error),
+        ),
     };
     let mut follower = start;
     let mut places = vec![(follower.clone(), 0.0)];
@@ -308,7 +312,7 @@ fn stage(follower: &Follower<'_>, movement_m: f64, weight_n: f64) -> Stage {
         thrust_ratio: reaction.map(|force| force.x.abs()),
         right_support_force_n: reaction.map(|force| force * weight_n),
         friction_demand: state.as_ref().map(|state| state.friction),
-        crown_drop_m: (crown_m - poses[place as usize].of(crown_m)).y,
+        crown_drop_m: (crown_m - poses[place as usize].current_position(crown_m)).y,
         first_motion_g: pushes.map(|pushes| pushes.map(|(first_g, _)| first_g)),
         capacity_g: pushes.map(|pushes| pushes.and_then(|(_, capacity_g)| capacity_g)),
         not_found,
@@ -325,7 +329,10 @@ impl Summary {
 
     /// Returns the end of a path in words.
     fn end_of(&self, path: &SpreadPath) -> String {
-        let (moving, span_m) = (path.moving(&self.support), fixed(self.clear_span_m, 3));
+        let (moving, span_m) = (
+            path.movement_in_words(&self.support),
+            format_fixed(self.clear_span_m, 3),
+        );
         let further = match self.is_further() {
             true => ", further than `[supports]`",
             false => "",
@@ -333,11 +340,11 @@ impl Summary {
         let falls = path.falls_at_m.zip(path.falls_at_part_of_clear_span);
         let end = match (falls, &path.lost, path.stages.last()) {
             (Some((at_m, part)), ..) => {
-                let (at_m, part) = (fixed(at_m, 6), fixed(part, 5));
+                let (at_m, part) = (format_fixed(at_m, 6), format_fixed(part, 5));
                 format!("falls at {at_m} m, {part} of the clear span of {span_m} m")
             }
             (None, Some(reason), Some(last)) => {
-                let up_to_m = fixed(last.movement_m, 6);
+                let up_to_m = format_fixed(last.movement_m, 6);
                 format!("stands up to {up_to_m} m, and cannot be followed further: {reason}")
             }
             _ => format!("does not fall up to the clear span of {span_m} m"),
@@ -386,19 +393,19 @@ impl Stage {
 
 impl SpreadPath {
     /// Returns the moving support, whose name is `support`, and its direction.
-    fn moving(&self, support: &str) -> String {
+    fn movement_in_words(&self, support: &str) -> String {
         let Direction { springing, .. } = self.direction;
         format!("{} {support} {}", springing.name(), self.direction.label())
     }
 
     /// Returns the stages that words show.
-    fn shown(&self) -> impl Iterator<Item = &Stage> {
+    fn shown_stages(&self) -> impl Iterator<Item = &Stage> {
         let last = self.stages.len() - 1;
         PARTS.iter().map(move |part| &self.stages[*part.min(&last)])
     }
 
     /// Returns each push that was not found, with the number of stages and the movement of the first stage.
-    fn missing(&self) -> Vec<(usize, f64, &MissingPush)> {
+    fn missing_pushes(&self) -> Vec<(usize, f64, &MissingPush)> {
         let mut missing: Vec<(usize, f64, &MissingPush)> = Vec::new();
         for stage in &self.stages {
             for one in &stage.not_found {

@@ -29,7 +29,7 @@ pub(super) fn draw(
     spots: &[Spot],
 ) -> String {
     let mut sheet = Sheet::new(figure, title);
-    pushes(figure, spread, spots).add_to(&mut sheet);
+    draw_pushes(figure, spread, spots).add_to(&mut sheet);
     sheet.gap(10.0);
     let columns = figure.columns(spread.paths.len().clamp(1, COLUMNS), LEAST_PX);
     let cell_px = figure.width_px / columns as f64;
@@ -60,11 +60,11 @@ pub(super) fn draw(
 }
 
 /// Draws the smaller push of both sides against the movement: capacity and first motion.
-fn pushes(figure: Figure, spread: &Summary, spots: &[Spot]) -> Chart {
+fn draw_pushes(figure: Figure, spread: &Summary, spots: &[Spot]) -> Chart {
     let thin = |color| Stroke::new(color, FIRST_MOTION_PX, "3 3");
     let (mut marks, mut keys) = (Vec::new(), Vec::new());
     for (path, stroke) in spread.paths.iter().zip(CURVES.into_iter().cycle()) {
-        let direction = path.moving(&spread.support);
+        let direction = path.movement_in_words(&spread.support);
         let solid = Stroke::new(stroke.color, stroke.width, "");
         for (push, stroke) in [
             (Push::Capacity, solid),
@@ -127,9 +127,9 @@ impl<'a> Cell<'a> {
         })
     }
 
-    /// Draws the arch around `middle` at the bottom of a part, with its height multiplied by `squeezed`.
-    fn draw(&self, drawing: &mut Drawing, middle: f64, part: Frame, squeezed: f64) {
-        let height = squeezed * self.height_px;
+    /// Draws the arch around `middle` at the bottom of a part, with its height multiplied by `height_factor`.
+    fn draw(&self, drawing: &mut Drawing, middle: f64, part: Frame, height_factor: f64) {
+        let height = height_factor * self.height_px;
         let top = part.top + part.height - height;
         let own = Frame {
             top,

@@ -43,7 +43,7 @@ pub fn report(
         let push_g = stage.smaller_push(Push::Capacity);
         let words = format!(
             "{}{further} {} m: {}",
-            path.moving(&spread.support),
+            path.movement_in_words(&spread.support),
             plain(stage.movement_m),
             push_g.map_or("no push found".to_owned(), |g| format!(
                 "falls at {} g",
@@ -56,7 +56,7 @@ pub fn report(
         });
     }
     let own = "the supports move slowly, and joints do not slip; the arch rests on three hinges, or on more with ties, and snaps to others";
-    let (what, picture) = (scenario.structure.described(), |figure| {
+    let (what, picture) = (scenario.structure.describe(), |figure| {
         drawn(figure, &cases.spots)
     });
     let mut page = Page::new(title, what, &[own], &[]);

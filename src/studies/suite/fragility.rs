@@ -31,7 +31,7 @@ use nalgebra::{Matrix2, Vector2};
 use thiserror::Error;
 
 use crate::argument::plain;
-use crate::studies::intervals::{of_dispersion, of_median, student_quantile};
+use crate::studies::intervals::{dispersion_interval, median_interval, student_quantile};
 use crate::studies::statistics::TWO_SIDED_95;
 
 /// The outcome of a record at one intensity.
@@ -101,14 +101,14 @@ pub enum NoFit {
     /// Every case survives: their number, and the highest intensity.
     #[error(
         "{} up to the intensity {highest}: add higher intensities",
-        in_words(*.0, "the only case does not overturn", |cases| format!("none of {cases} cases overturns")),
+        count_in_words(*.0, "the only case does not overturn", |cases| format!("none of {cases} cases overturns")),
         highest = plain(*.1)
     )]
     NoneOverturned(usize, f64),
     /// No case survives: their number, and the lowest intensity.
     #[error(
         "{} down to the intensity {lowest}: add lower intensities",
-        in_words(*.0, "the only case overturns", |cases| format!("all {cases} cases overturn")),
+        count_in_words(*.0, "the only case overturns", |cases| format!("all {cases} cases overturn")),
         lowest = plain(*.1)
     )]
     AllOverturned(usize, f64),
@@ -145,7 +145,7 @@ pub enum NoFit {
 }
 
 /// Returns a number of cases in words, which differ for one case.
-fn in_words(cases: usize, only: &str, several: fn(usize) -> String) -> String {
+fn count_in_words(cases: usize, only: &str, several: fn(usize) -> String) -> String {
     match cases {
         1 => only.to_owned(),
         _ => several(cases),
@@ -155,17 +155,17 @@ fn in_words(cases: usize, only: &str, several: fn(usize) -> String) -> String {
 impl Fragility {
     /// Returns the probability that a ground motion of intensity `x` overturns the structure; zero at zero intensity.
     pub fn probability(&self, x: f64) -> f64 {
-        normal_probability(self.line.at(logarithm(x)))
+        normal_probability(self.line.value_at(logarithm(x)))
     }
 
     /// Returns the ends of the 95 % interval of the median, by Student's distribution for the number of records; `None` with one record.
     pub fn median_interval(&self) -> Option<[f64; 2]> {
-        of_median(self.median, self.dispersion, self.records)
+        median_interval(self.median, self.dispersion, self.records)
     }
 
     /// Returns the ends of the 95 % interval of the dispersion, by the chi-square distribution for the number of records; `None` with one record.
     pub fn dispersion_interval(&self) -> Option<[f64; 2]> {
-        of_dispersion(self.dispersion, self.records)
+        dispersion_interval(self.dispersion, self.records)
     }
 
     /// Returns the pointwise 95 % confidence band of the curve at intensity `x`: `Phi(eta -+ t s)`. `s` is the larger standard error of
@@ -181,7 +181,7 @@ impl Fragility {
             0 | 1 => TWO_SIDED_95,
             records => student_quantile(records - 1),
         };
-        let (eta, margin) = (self.line.at(log), quantile * error);
+        let (eta, margin) = (self.line.value_at(log), quantile * error);
         let [low, high] = [eta - margin, eta + margin].map(normal_probability);
         (low, high)
     }
@@ -232,7 +232,7 @@ fn logarithm(x: f64) -> f64 {
 }
 
 /// Groups cases by intensity, the lowest first. Only exactly equal intensities form a group.
-pub(super) fn by_intensity<T: Copy>(
+pub(super) fn group_by_intensity<T: Copy>(
     mut cases: Vec<T>,
     intensity: impl Fn(T) -> f64,
 ) -> Vec<(f64, Vec<T>)> {
@@ -245,7 +245,7 @@ pub(super) fn by_intensity<T: Copy>(
 
 /// Returns the fraction of overturned cases at each intensity, the lowest first.
 pub fn fractions(observations: &[Observation]) -> Vec<Fraction> {
-    by_intensity(observations.to_vec(), |case| case.intensity)
+    group_by_intensity(observations.to_vec(), |case| case.intensity)
         .into_iter()
         .map(|(intensity, cases)| Fraction {
             intensity,
@@ -357,7 +357,7 @@ struct Line {
 }
 
 impl Line {
-    fn at(&self, log: f64) -> f64 {
+    fn value_at(&self, log: f64) -> f64 {
         self.coefficients.x + self.coefficients.y * (log - self.pivot)
     }
 }
@@ -385,14 +385,14 @@ const SHORT: f64 = 1e-20;
 impl Likelihood {
     fn at(levels: &[Fraction], mut line: Line) -> Self {
         let terms = levels.iter();
-        let terms = terms.map(|level| level.log_probability(line.at(level.log())));
+        let terms = terms.map(|level| level.log_probability(line.value_at(level.log())));
         let terms: Vec<LogProbability> = terms.collect();
         let information: f64 = terms.iter().map(|term| term.bend).sum();
         let lever: f64 = (levels.iter().zip(&terms))
             .map(|(level, term)| term.bend * (level.log() - line.pivot))
             .sum();
         let pivot = line.pivot + lever / information;
-        line.coefficients.x = line.at(pivot);
+        line.coefficients.x = line.value_at(pivot);
         line.pivot = pivot;
         let mut likelihood = Self {
             line,
@@ -463,7 +463,7 @@ fn clustered_covariance(
     // Derivatives of the log-probability of the outcome of a case by level and slope.
     let score = |case: &Observation| {
         let case = fractions(&[*case])[0];
-        let slope = case.log_probability(line.at(case.log())).slope;
+        let slope = case.log_probability(line.value_at(case.log())).slope;
         Vector2::new(slope, slope * (case.log() - line.pivot))
     };
     for record in sorted.chunk_by(|a, b| a.record == b.record) {

@@ -1,6 +1,6 @@
 //! Incremental dynamic analysis: the response to each record at increasing intensity.
 
-use super::fragility::by_intensity;
+use super::fragility::group_by_intensity;
 use super::{CaseRow, Heading, SuiteFragility};
 use crate::output::page::{Spot, SpotKind};
 use crate::output::{CURVES, Chart, Figure, Key, Mark, Scale, Shape, Sign, Stroke, color};
@@ -18,7 +18,7 @@ const SURVIVED: f64 = 0.94;
 /// of its own history. On a page every case has a mark.
 pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility, spots: &[Spot]) -> String {
     let over_critical = are_over_critical(results.cases.iter().map(|case| &case.result));
-    let endings = results.cases.iter().filter_map(CaseRow::complete);
+    let endings = results.cases.iter().filter_map(CaseRow::complete_ending);
     let survived = endings.filter(|ending| !ending.overturned_itself());
     let least = if over_critical { 1.0 } else { 1e-3 };
     let largest = survived.map(peak).fold(least, f64::max);
@@ -34,7 +34,7 @@ pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility, spots: 
     let mut chart = Chart::new(480.0, (&label, x), (y_label, y));
     let critical = Mark::upright("critical", CRITICAL, 1.0, y);
     chart.marks.extend(over_critical.then_some(critical));
-    let records: Vec<&[CaseRow]> = results.shakes().collect();
+    let records: Vec<&[CaseRow]> = results.cases_by_record().collect();
     let are_named = records.len() <= NAMED;
     for (cases, named) in records.iter().zip(CURVES.into_iter().cycle()) {
         let stroke = if are_named { named } else { MANY };
@@ -42,7 +42,9 @@ pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility, spots: 
         if are_named {
             chart.keys.push(Key::line(&name, stroke));
         }
-        chart.marks.extend(of_record(&name, stroke, cases, results));
+        chart
+            .marks
+            .extend(draw_record(&name, stroke, cases, results));
     }
     if !are_named {
         let both = match results.has_both_signs() {
@@ -72,22 +74,27 @@ pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility, spots: 
     chart
         .marks
         .extend(results.cases.iter().zip(spots).map(|(case, spot)| {
-            let peak = beyond(case).unwrap_or(0.0);
+            let peak = peak_or_infinity(case).unwrap_or(0.0);
             spot.mark((peak, case.level(results.measure)))
         }));
     chart.draw(figure, heading.title())
 }
 
 /// Draws the curve of a record through its surviving cases, and a mark for each case.
-fn of_record(name: &str, stroke: Stroke, cases: &[CaseRow], results: &SuiteFragility) -> Vec<Mark> {
+fn draw_record(
+    name: &str,
+    stroke: Stroke,
+    cases: &[CaseRow],
+    results: &SuiteFragility,
+) -> Vec<Mark> {
     let level = |case: &CaseRow| case.level(results.measure);
     // Overturned cases interrupt the curve.
     let points = cases.iter();
-    let points = points.filter_map(|case| Some((beyond(case)?, level(case))));
+    let points = points.filter_map(|case| Some((peak_or_infinity(case)?, level(case))));
     let mut marks = vec![Mark::curve(name, stroke, points)];
     let plain = Stroke::new(stroke.color, 1.0, "");
     for case in cases {
-        let Some(ending) = case.complete() else {
+        let Some(ending) = case.complete_ending() else {
             continue;
         };
         let is_certain = ending.doubt().is_none();
@@ -137,13 +144,13 @@ fn peak(ending: &Ending) -> f64 {
 
 /// Computes the fractiles of the peaks at each level (Vamvatsikos and Cornell, Earthquake Engineering and Structural Dynamics 31, 2002).
 pub fn fractiles(results: &SuiteFragility) -> Vec<Fractiles> {
-    let levels = by_intensity(results.cases.iter().collect(), |case: &CaseRow| {
+    let levels = group_by_intensity(results.cases.iter().collect(), |case: &CaseRow| {
         case.level(results.measure)
     })
     .into_iter();
     levels
         .map(|(intensity, cases)| {
-            let peaks = ascending(cases.into_iter().filter_map(beyond));
+            let peaks = ascending(cases.into_iter().filter_map(peak_or_infinity));
             let finite = |peak: &f64| peak.is_finite();
             Fractiles {
                 intensity,
@@ -160,7 +167,7 @@ const UNCERTAIN: Stroke = Stroke::new(SpotKind::Uncertain.fill(), 1.6, "");
 
 /// Returns the largest rotation of each case, in radians, infinite if the case overturned; `None` without a complete history.
 pub(super) fn rotations_rad(cases: &[CaseRow]) -> Vec<Option<f64>> {
-    let endings = cases.iter().map(CaseRow::complete);
+    let endings = cases.iter().map(CaseRow::complete_ending);
     endings
         .map(|ending| ending.map(Ending::peak_or_infinite_rad))
         .collect()
@@ -169,13 +176,13 @@ pub(super) fn rotations_rad(cases: &[CaseRow]) -> Vec<Option<f64>> {
 /// Returns the distribution of the peaks of all cases: ascending finite peaks, as in [`Fractiles`], each with the share of cases up
 /// to the peak. The last share is below 1 if cases overturned.
 pub fn peaks(results: &SuiteFragility) -> Vec<(f64, f64)> {
-    let peaks = results.cases.iter().filter_map(beyond);
+    let peaks = results.cases.iter().filter_map(peak_or_infinity);
     shares_up_to(peaks.map(|peak| [peak, 1.0]))
 }
 
 /// Returns the peak of a case with a complete history, infinite if the case overturned.
-fn beyond(case: &CaseRow) -> Option<f64> {
-    let ending = case.complete()?;
+fn peak_or_infinity(case: &CaseRow) -> Option<f64> {
+    let ending = case.complete_ending()?;
     match ending.overturned_itself() {
         true => Some(f64::INFINITY),
         false => Some(peak(ending)),

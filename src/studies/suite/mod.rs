@@ -13,14 +13,14 @@ use std::sync::OnceLock;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use self::fragility::by_intensity;
+use self::fragility::group_by_intensity;
 pub use self::fragility::{Errors, Fraction, Fragility, NoFit, Observation, fit, fractions};
 pub use self::heading::Heading;
 pub(super) use self::report::OF_LEVELS;
 pub use self::report::Summary;
 pub use self::strength::{Strength, efficiencies};
 use super::ending::{Ending, NoHistory, Verdict, check_finite};
-use super::threshold::below::{FineHistory, Fineness, below_edge};
+use super::threshold::below::{FineHistory, Fineness, search_below_edge};
 use super::threshold::first_edge::{FirstEdge, TriedHistory};
 use super::threshold::onset_factor;
 use super::threshold::survival::{Survival, VerdictRange};
@@ -95,17 +95,17 @@ impl CaseRow {
     }
 
     /// Returns the ending of a complete history; `None` if there is no history, or the history is incomplete.
-    pub(super) fn complete(&self) -> Option<&Ending> {
-        complete(&self.result)
+    pub(super) fn complete_ending(&self) -> Option<&Ending> {
+        complete_ending(&self.result)
     }
 
     /// Returns the verdict; `None` if there is no history, or the history is incomplete.
     pub fn known_verdict(&self) -> Option<Verdict> {
-        self.complete().map(Ending::verdict)
+        self.complete_ending().map(Ending::verdict)
     }
 
     /// Returns true if both cases apply one record with one sign.
-    fn has_shake_of(&self, other: &Self) -> bool {
+    fn has_same_record(&self, other: &Self) -> bool {
         (&self.record, self.mirrored) == (&other.record, other.mirrored)
     }
 
@@ -192,7 +192,7 @@ impl Study for RecordSuite<'_> {
 
     fn rows(&self, indices: &[usize]) -> Vec<CaseRow> {
         let cases = indices.iter().map(|index| {
-            let (level, record, direction) = self.place(*index);
+            let (level, record, direction) = self.case_parts(*index);
             case(self.scenario, self.suite, record, level, direction)
         });
         let cases: Vec<Case> = cases.collect();
@@ -211,7 +211,7 @@ impl Study for RecordSuite<'_> {
         };
         let edges: Vec<Option<Edge>> = (0..indices.len()).map(edge).collect();
         let row = |((index, result), edge): ((&usize, _), Option<Edge>)| {
-            let (level, record, direction) = self.place(*index);
+            let (level, record, direction) = self.case_parts(*index);
             let series = &self.suite.records[record];
             let own_g = series.peak_g(self.scenario.gravity_m_s2());
             let (scale, peak_g) = match self.suite.measure {
@@ -277,7 +277,7 @@ pub(super) fn case(
 ) -> Case {
     let shake = suite.record_at(record, level);
     let shake = shake.ground_motion(scenario.gravity_m_s2());
-    let ground = scenario.under_both_feet_in(direction, shake);
+    let ground = scenario.move_both_feet_in(direction, shake);
     let request = scenario.request_on(&ground, &scenario.structure);
     (ground, request)
 }
@@ -291,14 +291,14 @@ pub(super) fn records_in_words(records: usize) -> String {
 }
 
 /// Returns the ending of a complete history; `None` if there is none.
-fn complete(result: &Result<Ending, NoHistory>) -> Option<&Ending> {
+fn complete_ending(result: &Result<Ending, NoHistory>) -> Option<&Ending> {
     let ending = result.as_ref().ok();
     ending.filter(|ending| ending.verdict() != Verdict::Incomplete)
 }
 
 /// Returns true if a history certainly overturns; `None` without a complete history.
 fn overturns_certainly(result: &Result<Ending, NoHistory>) -> Option<bool> {
-    complete(result).map(|ending| ending.verdict() == Verdict::Overturns)
+    complete_ending(result).map(|ending| ending.verdict() == Verdict::Overturns)
 }
 
 /// The edge below a level that overturns.
@@ -324,7 +324,7 @@ impl RecordSuite<'_> {
     }
 
     /// Returns the level of a case, the index of its record, and the direction in which the record acts.
-    fn place(&self, index: usize) -> (f64, usize, Direction) {
+    fn case_parts(&self, index: usize) -> (f64, usize, Direction) {
         let (shake, level) = (index / self.levels.len(), index % self.levels.len());
         let all = self.directions.len();
         (
@@ -340,7 +340,7 @@ impl RecordSuite<'_> {
         if let Some(below) = (index % self.levels.len()).checked_sub(1) {
             return Some(self.levels[below]);
         }
-        let (level, record, direction) = self.place(index);
+        let (level, record, direction) = self.case_parts(index);
         let (ground, request) = case(self.scenario, self.suite, record, level, direction);
         let onset = onset_factor(&*self.model, Directions::AsGiven, (&ground, &request))?;
         Some(level * onset).filter(|onset| *onset < level)
@@ -348,11 +348,11 @@ impl RecordSuite<'_> {
 
     /// Returns the lowest edge of all records, without repetitions: below the lowest level at which one of them overturns the structure. Infinite if none
     /// does.
-    fn lowest(&self) -> f64 {
+    fn find_lowest_edge(&self) -> f64 {
         *self.lowest.get_or_init(|| {
             let shakes = 0..self.count() / self.levels.len();
             let overturns = |index: usize, level: f64| {
-                let (_, record, direction) = self.place(index);
+                let (_, record, direction) = self.case_parts(index);
                 let case = case(self.scenario, self.suite, record, level, direction);
                 let history = self.model.simulate_until(EndCondition::Safe, &case);
                 history.is_ok_and(|one| Verdict::from(one.outcome) == Verdict::Overturns)
@@ -391,12 +391,12 @@ impl RecordSuite<'_> {
         own: &Result<Ending, NoHistory>,
         edge: Option<Edge>,
     ) -> Option<f64> {
-        let (level, ..) = self.place(index);
+        let (level, ..) = self.case_parts(index);
         let survives = own
             .as_ref()
             .is_ok_and(|own| own.verdict() == Verdict::Survives);
         let safe = edge.map_or(survives.then_some(level), |edge| edge.safe)?;
-        let at = safe.min(self.lowest());
+        let at = safe.min(self.find_lowest_edge());
         self.level_below(index)
             .is_some_and(|below| below < at)
             .then_some(at)
@@ -409,7 +409,7 @@ impl RecordSuite<'_> {
         (own, edge): (&Result<Ending, NoHistory>, Option<Edge>),
         at: f64,
     ) -> Option<FirstEdge> {
-        let (level, record, direction) = self.place(index);
+        let (level, record, direction) = self.case_parts(index);
         let from = self.level_below(index)?;
         let first = match at == level {
             true => own.clone(),
@@ -424,7 +424,7 @@ impl RecordSuite<'_> {
         };
         let below = |safe| {
             let close = histories(&[safe], 0)?[0].close;
-            below_edge((safe, close), from, Fineness::LEVELS, histories)
+            search_below_edge((safe, close), from, Fineness::LEVELS, histories)
         };
         let history = |strength: f64| match strength == at {
             true => first.clone().map(TriedHistory::from),
@@ -444,7 +444,7 @@ impl RecordSuite<'_> {
 
     /// Finds the edge between the level of a case that overturns and the level `below`; `None` if that level overturns as well.
     fn edge(&self, index: usize, below: f64, survives_below: bool) -> Option<Edge> {
-        let (level, record, direction) = self.place(index);
+        let (level, record, direction) = self.case_parts(index);
         let ending = |level: f64| self.ending(record, level, direction);
         if !survives_below && overturns_certainly(&ending(below))? {
             return None;
@@ -599,7 +599,8 @@ impl SuiteFragility {
             let (low, high) = fit.band(intensity);
             Some([fit.probability(intensity), low, high])
         };
-        let levels = by_intensity(cases.iter().collect(), |case: &CaseRow| case.level(measure));
+        let levels =
+            group_by_intensity(cases.iter().collect(), |case: &CaseRow| case.level(measure));
         let levels = levels.into_iter().map(|(intensity, cases)| {
             let others = ends.iter().filter_map(|fit| curve(fit, intensity));
             let widened =
@@ -635,7 +636,7 @@ impl SuiteFragility {
     /// results differ. The first overturning intensity is found by bisection and a finer search, the others are levels of the suite.
     pub fn survivals(&self) -> Vec<(&[CaseRow], Survival)> {
         let mut survivals: Vec<(&[CaseRow], Survival)> = Vec::new();
-        for cases in self.shakes() {
+        for cases in self.cases_by_record() {
             let survival = self.survival(cases);
             let case = &cases[0];
             let last = survivals.last();
@@ -702,8 +703,8 @@ impl SuiteFragility {
     }
 
     /// Returns the cases, grouped by record and sign, the weakest first.
-    fn shakes(&self) -> impl Iterator<Item = &[CaseRow]> + Clone {
-        self.cases.chunk_by(CaseRow::has_shake_of)
+    fn cases_by_record(&self) -> impl Iterator<Item = &[CaseRow]> + Clone {
+        self.cases.chunk_by(CaseRow::has_same_record)
     }
 
     /// Returns true if records act with both signs.
@@ -719,7 +720,7 @@ impl SuiteFragility {
     }
 
     /// Returns the names of the records whose cases all have this verdict.
-    pub fn always(&self, verdict: Verdict) -> Vec<&str> {
+    pub fn records_with(&self, verdict: Verdict) -> Vec<&str> {
         let mut alike: BTreeMap<&str, bool> = BTreeMap::new();
         for case in &self.cases {
             if let Some(known) = case.known_verdict() {

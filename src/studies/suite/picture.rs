@@ -18,7 +18,7 @@ pub(super) fn draw(
     let curves = curves(results);
     let mut marks: Vec<Mark> = Vec::new();
     for (fit, (name, _, line)) in &curves {
-        let intensities = along(&x, &curves).into_iter();
+        let intensities = axis_values(&x, &curves).into_iter();
         let points = intensities.map(|x| (x, fit.probability(x)));
         marks.push(Mark::curve(*name, *line, points));
     }
@@ -105,7 +105,7 @@ const POINTS: u32 = 200;
 const RISES: f64 = 4.0;
 
 /// Returns positive values along an axis: evenly spaced ones, and closer ones where a curve rises.
-fn along(scale: &Scale, curves: &[(&Fragility, CurveStyle)]) -> Vec<f64> {
+fn axis_values(scale: &Scale, curves: &[(&Fragility, CurveStyle)]) -> Vec<f64> {
     let parts = (0..=POINTS).map(|i| f64::from(i) / f64::from(POINTS));
     let even = parts.clone().map(|part| scale.at(part));
     let rising = curves.iter().flat_map(|(fit, _)| {
@@ -125,7 +125,7 @@ fn bands(x: &Scale, curves: &[(&Fragility, CurveStyle)]) -> Vec<Mark> {
         })
     };
     let area = |name, color, ends: &dyn Fn(f64) -> [f64; 2]| {
-        let xs = along(x, curves);
+        let xs = axis_values(x, curves);
         let [low, high] = [0, 1].map(|end: usize| xs.iter().map(move |x| (*x, ends(*x)[end])));
         Mark::between(name, color, low, high)
     };
@@ -178,7 +178,7 @@ mod tests {
                 y: Scale::exactly(0.0, 1.0, 5),
             };
             let curves = STYLES.map(|style| (&fit, style));
-            let points: Vec<_> = along(&x, &curves)
+            let points: Vec<_> = axis_values(&x, &curves)
                 .into_iter()
                 .map(|x| axes.place(x, fit.probability(x)))
                 .collect();

@@ -14,18 +14,18 @@ use crate::argument::plain;
 use crate::dynamics::Direction;
 use crate::output::{Column, Figure, OutputError, Table, column, each, fields, list};
 use crate::scenario::{Measure, Spectral, shown};
-use crate::studies::ending::columns::{self, FAILED, yes};
+use crate::studies::ending::columns::{self, FAILED, yes_or_no};
 use crate::studies::page::{DrawPicture, Page, PageCases};
 use crate::studies::quotable::{self, ModelAnswer, directions_in_words};
 use crate::studies::report::{Report, Warnings};
 use crate::studies::threshold::rounded_range;
-use crate::studies::threshold::survival::{self, Survival};
-use crate::studies::{OutcomeCounts, Remarks, Results, Verdict, rounded, rounded_down};
+use crate::studies::threshold::survival::{Survival, survival_in_words};
+use crate::studies::{OutcomeCounts, Remarks, Results, Verdict, format_edge, rounded_down};
 
 /// Words after intensities that are the lowest of the levels tried.
 pub const OF_LEVELS: &str = ", of the levels tried";
 
-const fn of_levels(levels_only: bool) -> &'static str {
+const fn levels_suffix(levels_only: bool) -> &'static str {
     if levels_only { OF_LEVELS } else { "" }
 }
 
@@ -226,7 +226,7 @@ impl Heading {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             scenario: self.scenario.clone(),
             warnings: self.warnings.clone().with(limits),
-            to_quote: quotable::in_words(std::slice::from_ref(&answer)),
+            to_quote: quotable::quote_answers(std::slice::from_ref(&answer)),
             friction_demand,
             outcomes: OutcomeCounts::of(results.cases.iter().map(|case| &case.result)),
             intensity: self.measure,
@@ -246,8 +246,8 @@ impl Heading {
             capacities_at_most: capacities.iter().filter(|one| one.at_most).count(),
             intensity_measures: efficiencies(&capacities),
             mirrored_cases_count: results.has_both_signs(),
-            records_that_never_overturn: owned(results.always(Verdict::Survives)),
-            records_that_always_overturn: owned(results.always(Verdict::Overturns)),
+            records_that_never_overturn: owned(results.records_with(Verdict::Survives)),
+            records_that_always_overturn: owned(results.records_with(Verdict::Overturns)),
             with_uncertain_as_survived: end(0),
             with_uncertain_as_overturned: end(1),
             remarks,
@@ -329,7 +329,7 @@ impl Heading {
         let lowest = survivals.min_by(|(_, a), (_, b)| safe(a).total_cmp(&safe(b)));
         let quoted = lowest.as_ref().map_or(0.0, |(_, survival)| safe(survival));
         // The quoted intensity may lie between two levels. The thrust line is then followed up to the upper one, which is on the safe side.
-        let cases = results.shakes().flat_map(|cases| {
+        let cases = results.cases_by_record().flat_map(|cases| {
             let is_above = |case: &CaseRow| case.level(self.measure) >= quoted;
             let above = cases.iter().position(is_above);
             &cases[..above.map_or(cases.len(), |above| above + 1)]
@@ -349,7 +349,7 @@ impl Heading {
                 Some(safe) => Ok(format!(
                     "survives all records up to {safe}{unit} ({record}){}{}",
                     directions_in_words(self.directions, Direction::AsGiven),
-                    of_levels(SuiteFragility::is_of_levels_only(cases, &survival))
+                    levels_suffix(SuiteFragility::is_of_levels_only(cases, &survival))
                 )),
                 None => Err(format!(
                     "the lowest level of {record} is not certainly survived"
@@ -366,7 +366,7 @@ impl Heading {
         let mut remarks = Remarks::default();
         for case in &results.cases {
             let name = || format!("{}, {}", case.record_in_words(), self.level(case));
-            remarks.note(name, &case.result);
+            remarks.add_case(name, &case.result);
         }
         remarks
     }
@@ -425,8 +425,10 @@ fn capacity_columns<'r>() -> [Column<'r, Capacity<'r>>; 7] {
         }),
         column("scale", |one: &Capacity<'_>| one.scale),
         list(measures, |one: &Capacity<'_>| one.in_measures),
-        column("at_most", |one: &Capacity<'_>| yes(one.at_most)),
-        column("levels_only", |one: &Capacity<'_>| yes(one.levels_only)),
+        column("at_most", |one: &Capacity<'_>| yes_or_no(one.at_most)),
+        column("levels_only", |one: &Capacity<'_>| {
+            yes_or_no(one.levels_only)
+        }),
     ]
 }
 
@@ -513,8 +515,8 @@ impl Summary {
     }
 
     /// Returns the words after the dispersion of all capacities.
-    fn of_levels(&self) -> &'static str {
-        of_levels(self.survivals.iter().any(|one| one.levels_only))
+    fn levels_suffix(&self) -> &'static str {
+        levels_suffix(self.survivals.iter().any(|one| one.levels_only))
     }
 
     /// Returns all measures but the best, in words.
@@ -527,7 +529,7 @@ impl Summary {
 
 impl RecordSurvival {
     fn in_words(&self, unit: &str) -> String {
-        survival::in_words(&self.survival, unit, None) + of_levels(self.levels_only)
+        survival_in_words(&self.survival, unit, None) + levels_suffix(self.levels_only)
     }
 }
 
@@ -542,13 +544,16 @@ impl Curve {
         };
         let (median, dispersion) = (self.median?, self.dispersion?);
         let extrapolated = self.extrapolated_beyond.map_or(String::new(), |level| {
-            format!(", extrapolated beyond the level {}{unit}", rounded(level))
+            format!(
+                ", extrapolated beyond the level {}{unit}",
+                format_edge(level)
+            )
         });
         Some(format!(
             "median {}{unit}{extrapolated}{}, dispersion {}{}",
-            rounded(median),
+            format_edge(median),
             interval(self.median_interval, unit),
-            rounded(dispersion),
+            format_edge(dispersion),
             interval(self.dispersion_interval, "")
         ))
     }

@@ -10,7 +10,7 @@ use super::{CaseRow, SuiteFragility};
 use crate::dynamics::Intensity;
 use crate::dynamics::demand::peak_displacement;
 use crate::scenario::{Series, Spectral};
-use crate::studies::intervals::of_dispersion;
+use crate::studies::intervals::dispersion_interval;
 use crate::studies::statistics::bootstrap;
 use crate::studies::threshold::Survival;
 
@@ -90,7 +90,9 @@ pub struct Efficiency {
 impl SuiteFragility {
     /// Computes the capacity under each record and each mirrored record.
     pub fn capacities(&self) -> Vec<Capacity<'_>> {
-        self.shakes().map(|levels| self.capacity(levels)).collect()
+        self.cases_by_record()
+            .map(|levels| self.capacity(levels))
+            .collect()
     }
 
     fn capacity<'a>(&self, levels: &'a [CaseRow]) -> Capacity<'a> {
@@ -199,7 +201,7 @@ pub fn efficiencies(capacities: &[Capacity<'_>]) -> Vec<Efficiency> {
             median,
             dispersion,
             dispersion_of_factor,
-            dispersion_of_factor_interval: of_dispersion(likeliest, records.len()),
+            dispersion_of_factor_interval: dispersion_interval(likeliest, records.len()),
             best_share: best.count() as f64 / drawn.len() as f64,
         })
     };

@@ -51,7 +51,7 @@ impl Fineness {
     };
 
     /// Returns the expected number of histories after a halving, counted from 1, over that of this halving.
-    fn after_halving(self, halving: u32) -> f64 {
+    fn histories_after_halving(self, halving: u32) -> f64 {
         let last = libm::ceil(libm::log2(self.step / (WIDE * self.finest_step)));
         let left = (last - f64::from(halving)).max(0.0);
         (libm::pow(GROWTH, left + 1.0) - GROWTH) / (GROWTH - 1.0)
@@ -186,7 +186,7 @@ pub struct FineSearch {
 
 impl FineSearch {
     /// Returns the index of the lowest history that does not survive; `None` if all survive.
-    fn lowest(&self) -> Option<usize> {
+    fn lowest_index(&self) -> Option<usize> {
         let mut histories = self.histories.iter();
         histories.rposition(|history| !history.close.survives())
     }
@@ -194,7 +194,7 @@ impl FineSearch {
     /// Returns the lowest factor whose history does not survive, and the survived factor above those next to it that do not survive either: the ends of
     /// a band, of which both are survived or repeated. `None` if all survive.
     pub fn upper_edge(&self) -> Option<(f64, f64)> {
-        let above = &self.histories[..=self.lowest()?];
+        let above = &self.histories[..=self.lowest_index()?];
         let survived = above.iter().rposition(|history| history.close.survives())?;
         Some((above[survived + 1].factor, above[survived].factor))
     }
@@ -203,11 +203,11 @@ impl FineSearch {
     ///
     /// # Errors
     /// Those of the histories.
-    pub fn confirm<E>(
+    pub fn confirm_lowest<E>(
         &self,
         mut verdict: impl FnMut(f64) -> Result<Verdict, E>,
     ) -> Result<Option<LowestEdge>, E> {
-        let Some(lowest) = self.lowest() else {
+        let Some(lowest) = self.lowest_index() else {
             return Ok(None);
         };
         let factors = self.histories[lowest..].iter().map(|one| one.factor);
@@ -236,7 +236,7 @@ impl FineSearch {
 ///
 /// # Errors
 /// Those of the histories.
-pub fn below_edge<E>(
+pub fn search_below_edge<E>(
     (safe, close): (f64, Closeness),
     from: f64,
     fineness: Fineness,
@@ -248,7 +248,7 @@ pub fn below_edge<E>(
     let mut halvings = 0_u32;
     loop {
         let tried = &search.histories;
-        let lowest = search.lowest().unwrap_or(0);
+        let lowest = search.lowest_index().unwrap_or(0);
         let least = from.max(fineness.reach * tried[lowest].factor);
         let last = tried[tried.len() - 1].factor;
         let steps =
@@ -261,13 +261,13 @@ pub fn below_edge<E>(
         let later = if next.is_empty() {
             halvings += 1;
             next = halved();
-            fineness.after_halving(halvings) * next.len() as f64
+            fineness.histories_after_halving(halvings) * next.len() as f64
         } else {
             let steps = next.len();
             next.truncate(GROUP);
             let after_steps = match tried.len() {
                 ..=GROUP => AFTER_STEPS * steps as f64,
-                _ => (1.0 + fineness.after_halving(1)) * halved().len() as f64,
+                _ => (1.0 + fineness.histories_after_halving(1)) * halved().len() as f64,
             };
             after_steps + (steps - next.len()) as f64
         };
@@ -324,7 +324,7 @@ mod tests {
     fn search(from: f64, band: (f64, f64)) -> (Option<f64>, usize) {
         let (mut histories, mut expected) = (0, Vec::new());
         let edge = (1.0, Closeness::EDGE);
-        let found = below_edge(edge, from, Fineness::THRESHOLD, |factors, later| {
+        let found = search_below_edge(edge, from, Fineness::THRESHOLD, |factors, later| {
             histories += factors.len();
             expected.push(histories + later);
             assert!(factors.iter().all(|factor| (from..1.0).contains(factor)));
@@ -338,7 +338,7 @@ mod tests {
             "{expected:?}"
         );
         assert_eq!(good.next_back(), Some(1.0));
-        let lowest = found.lowest();
+        let lowest = found.lowest_index();
         if let Some(lowest) = lowest {
             let (hit, survived) = found.upper_edge().unwrap();
             assert!(hit < survived && !close_at(hit, band).survives());
@@ -376,7 +376,7 @@ mod tests {
             }
         };
         let edge = (1.0, Closeness::EDGE);
-        let found = below_edge(edge, 0.1, Fineness::THRESHOLD, |factors, _| {
+        let found = search_below_edge(edge, 0.1, Fineness::THRESHOLD, |factors, _| {
             Ok::<_, Infallible>(fine(factors, hits))
         });
         let Ok(found) = found;
@@ -389,7 +389,7 @@ mod tests {
                 Verdict::Uncertain
             })
         };
-        let Ok(confirmed) = found.confirm(verdict);
+        let Ok(confirmed) = found.confirm_lowest(verdict);
         let edge = confirmed.unwrap();
         assert_eq!(edge.verdict, Verdict::Uncertain);
         assert!((0.49..0.4925).contains(&edge.factor) && edge.survived.unwrap() < 0.49);

@@ -3,17 +3,17 @@
 use crate::output::range_ends;
 
 /// Returns a factor or an acceleration with four digits: the usual accuracy of an edge.
-pub fn rounded(value: f64) -> String {
+pub fn format_edge(value: f64) -> String {
     let decimals = decimals(value);
     format!("{value:.decimals$}")
 }
 
 /// Returns a strength that is safe with four digits, never rounded upwards.
 pub fn rounded_down(value: f64) -> String {
-    lowered(value, decimals(value))
+    round_down(value, decimals(value))
 }
 
-fn lowered(value: f64, decimals: usize) -> String {
+fn round_down(value: f64, decimals: usize) -> String {
     // A little less than half a digit keeps decimal numbers such as 0.45 unchanged.
     let lowered = value - (0.5 - 1e-9) * 0.1_f64.powi(decimals as i32);
     format!("{lowered:.decimals$}")
@@ -21,7 +21,7 @@ fn lowered(value: f64, decimals: usize) -> String {
 
 /// Returns both ends of a range with four digits, or with as many as needed to distinguish them.
 pub fn rounded_range(ends: [f64; 2]) -> [String; 2] {
-    match ends.map(rounded) {
+    match ends.map(format_edge) {
         [from, to] if from != to => [from, to],
         _ => range_ends(ends, decimals(ends[1])),
     }
@@ -32,12 +32,15 @@ pub fn rounded_edge(ends: [Option<f64>; 2]) -> [Option<String>; 2] {
     // More decimals than two different strengths need.
     const MOST: usize = 12;
     let [Some(safe), Some(overturns)] = ends else {
-        return [ends[0].map(rounded_down), ends[1].map(rounded)];
+        return [ends[0].map(rounded_down), ends[1].map(format_edge)];
     };
     let [below, above] = [safe, overturns].map(decimals);
     let with = |more: usize| {
         let above = above + more;
-        [lowered(safe, below + more), format!("{overturns:.above$}")]
+        [
+            round_down(safe, below + more),
+            format!("{overturns:.above$}"),
+        ]
     };
     let longer = (0..MOST).filter(|_| safe != overturns);
     let distinct = longer.map(with).find(|[safe, other]| safe != other);

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::argument::{ArgumentError, above, plain, within};
+use crate::argument::{ArgumentError, plain, require_above, require_within};
 use crate::dynamics::Directions;
 use crate::scenario::Varied;
 use crate::{GroundMotion, Model, Request, Sway};
@@ -52,12 +52,12 @@ impl Factors {
     ) -> Result<Self, ArgumentError> {
         let (from, to) = (from.into(), to.into());
         if let Some(from) = from {
-            within("from", from, 1e-6..=1e6)?;
+            require_within("from", from, 1e-6..=1e6)?;
         }
         if let Some(to) = to {
-            above("to", to, from.unwrap_or(1e-6), 1e6)?;
+            require_above("to", to, from.unwrap_or(1e-6), 1e6)?;
         }
-        let stride = within("stride", stride, 1e-4..=1.0)?;
+        let stride = require_within("stride", stride, 1e-4..=1.0)?;
         Ok(Self { from, to, stride })
     }
 
@@ -89,7 +89,7 @@ impl Factors {
     ///
     /// # Errors
     /// If no factor moves the structure, or the last factor is not above the first.
-    pub fn searched(&self, onset: Option<f64>) -> Result<SearchedFactors, String> {
+    pub fn factors_to_search(&self, onset: Option<f64>) -> Result<SearchedFactors, String> {
         if onset == Some(f64::INFINITY) {
             return Err(
                 "there is no threshold: no push of the ground moves the structure without sliding"
@@ -180,7 +180,7 @@ mod tests {
 
     fn values(from: f64, to: f64, stride: f64) -> Vec<f64> {
         let factors = Factors::new(from, to, stride).unwrap();
-        factors.searched(None).unwrap().values()
+        factors.factors_to_search(None).unwrap().values()
     }
 
     #[test]
@@ -188,7 +188,7 @@ mod tests {
         assert_eq!(values(1.0, 8.0, 1.0), [1.0, 2.0, 4.0, 8.0]);
         assert_eq!(values(1.0, 5.0, 1.0), [1.0, 2.0, 4.0, 5.0]);
         assert_eq!(values(1.0, 1.02, 0.02), [1.0, 1.02]);
-        let default = Factors::default().searched(None).unwrap().values();
+        let default = Factors::default().factors_to_search(None).unwrap().values();
         assert_eq!((default.len(), default[0]), (234, 0.1));
         assert!(
             default
@@ -203,7 +203,7 @@ mod tests {
         let search = |from, onset| {
             Factors::new(from, None, 0.02)
                 .unwrap()
-                .searched(onset)
+                .factors_to_search(onset)
                 .unwrap()
         };
         let own = search(None, Some(0.4));
@@ -216,7 +216,7 @@ mod tests {
             10.0 * search(None, Some(3.0)).from
         );
         let below = Factors::new(None, 0.3, 0.02).unwrap();
-        assert!(below.searched(Some(0.4)).is_err());
+        assert!(below.factors_to_search(Some(0.4)).is_err());
     }
 
     #[test]

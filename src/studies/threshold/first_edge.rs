@@ -4,13 +4,13 @@ use std::cell::RefCell;
 
 use serde::{Deserialize, Serialize};
 
-use super::below::{Closeness, FineHistory, FineSearch, Fineness, below_edge};
+use super::below::{Closeness, FineHistory, FineSearch, Fineness, search_below_edge};
 use super::factors::{EDGE_WIDTH, Factors, UNCERTAIN_EDGE_WIDTH, onset_factor};
 use crate::bisection::{Width, try_bisect};
 use crate::dynamics::{Direction, MODEL_LIMIT};
 use crate::output::page::SpotKind;
 use crate::output::{Column, column};
-use crate::studies::ending::columns::yes;
+use crate::studies::ending::columns::yes_or_no;
 use crate::studies::ending::{Ending, NoAnswer, NoHistory, Verdict};
 use crate::studies::statistics::ascending_weighted;
 use crate::{GroundMotion, Model, Scenario, SimulationError};
@@ -113,7 +113,9 @@ impl FirstEdge {
         let request = scenario.request_on(ground, &scenario.structure);
         let directions = scenario.simulation.direction;
         let onset = onset_factor(&*model, directions, (ground, &request));
-        let searched = factors.searched(onset).map_err(NoAnswer::Invalid)?;
+        let searched = factors
+            .factors_to_search(onset)
+            .map_err(NoAnswer::Invalid)?;
         let history = |factor: f64| {
             let ground = ground.scaled(factor).map_err(SimulationError::from)?;
             let ending = Ending::of_all_in(directions, &*model, &[(ground, request)]).remove(0);
@@ -136,7 +138,7 @@ impl FirstEdge {
         };
         let below = |safe| {
             let edge = (safe, Closeness::EDGE);
-            below_edge(edge, searched.from, fineness(&*model), histories)
+            search_below_edge(edge, searched.from, fineness(&*model), histories)
         };
         let edge = Self::search(&searched.values(), EDGE_WIDTH, history, below)?;
         Ok(Self {
@@ -225,7 +227,7 @@ impl FirstEdge {
         }
         let fine = edge.survives_up_to.map(below).transpose()?;
         let fine = fine.unwrap_or_default();
-        if let Some(lowest) = fine.confirm(known)? {
+        if let Some(lowest) = fine.confirm_lowest(known)? {
             let mut first = (lowest.factor, lowest.verdict);
             edge.survives_up_to = None;
             if let Some(lower) = lowest.survived {
@@ -278,7 +280,7 @@ impl FirstEdge {
             column(factor, move |row| of(row)?.factor),
             column("tried_to", move |row| Some(of(row)?.tried_to)),
             column("uncertain_from", move |row| of(row)?.uncertain_from),
-            column("at_most", move |row| Some(yes(of(row)?.at_most))),
+            column("at_most", move |row| Some(yes_or_no(of(row)?.at_most))),
             column("thrust_excess_ratio", move |row| {
                 of(row)?.thrust_excess_ratio
             }),
@@ -349,7 +351,7 @@ fn verdict_of(share: f64) -> Verdict {
 ///
 /// # Errors
 /// The first error of a history.
-pub(super) fn lowest<E>(
+pub(super) fn find_lowest_strength<E>(
     histories: impl Iterator<Item = (f64, Result<bool, E>)>,
     width: f64,
     overturns: impl FnMut(f64) -> Result<bool, E>,

@@ -16,12 +16,12 @@ pub(crate) mod survival;
 mod varied;
 
 pub use along::{Along, AlongOptions, AlongRow, KeyRange, Summary as AlongSummary};
-pub(super) use digits::{rounded, rounded_down, rounded_edge, rounded_range};
+pub(super) use digits::{format_edge, rounded_down, rounded_edge, rounded_range};
 use factors::UNCERTAIN_EDGE_WIDTH;
 pub use factors::{EDGE_WIDTH, Factors, SearchedFactors, onset_factor};
 pub use picture::draw;
 pub use report::{FILES, Summary};
-pub use survival::{Survival, VerdictRange, in_words};
+pub use survival::{Survival, VerdictRange, survival_in_words};
 use varied::repeat_governing;
 pub use varied::{VariedThreshold, vary};
 
@@ -108,14 +108,14 @@ pub struct Threshold {
 
 impl Threshold {
     /// Returns the ranges with a verdict, ascending.
-    pub fn of(&self, wanted: Verdict) -> Vec<FactorRange> {
+    pub fn ranges_with(&self, wanted: Verdict) -> Vec<FactorRange> {
         let is_wanted = |range: &FactorRange| range.verdict == Some(wanted);
         self.ranges.iter().copied().filter(is_wanted).collect()
     }
 
     /// Returns the ranges that overturn the structure, ascending.
     pub fn bands(&self) -> Vec<FactorRange> {
-        self.of(Verdict::Overturns)
+        self.ranges_with(Verdict::Overturns)
     }
 
     /// Returns the safe ranges between bands, ascending.
@@ -125,7 +125,7 @@ impl Threshold {
             bands.iter().any(|band| band.to < gap.from)
                 && bands.iter().any(|band| band.from > gap.to)
         };
-        let mut gaps = self.of(Verdict::Survives);
+        let mut gaps = self.ranges_with(Verdict::Survives);
         gaps.retain(between);
         gaps
     }
@@ -216,7 +216,7 @@ impl Threshold {
     }
 
     /// Follows thrust line and friction demand up to the largest safe factor, in the samples of all directions and in these other histories.
-    fn follow(&mut self, others: &[OtherHistories]) {
+    fn add_thrust_and_friction(&mut self, others: &[OtherHistories]) {
         let Some(safe) = self.survives_up_to() else {
             return;
         };
@@ -252,7 +252,9 @@ pub fn threshold(
 ) -> Result<Threshold, StudyError> {
     request.check(ground).map_err(StudyError::scenario)?;
     let onset = onset_factor(model, directions, (ground, request));
-    let searched = factors.searched(onset).map_err(StudyError::Scenario)?;
+    let searched = factors
+        .factors_to_search(onset)
+        .map_err(StudyError::Scenario)?;
     let shaking = Shaking {
         direction: directions.first(),
         model,
@@ -278,7 +280,7 @@ pub fn threshold(
         others.push(of_mirrored);
         threshold.mirrored = Some(Box::new(mirrored));
     }
-    threshold.follow(&others);
+    threshold.add_thrust_and_friction(&others);
     Ok(threshold)
 }
 

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector2;
 
-use super::digits::rounded;
-use super::survival::{self, Survival};
+use super::digits::format_edge;
+use super::survival::{Survival, survival_in_words};
 use super::{EDGE_WIDTH, FactorSample, RangeEnd, Threshold};
 use crate::output::page::Spot;
 use crate::output::{
@@ -31,11 +31,11 @@ const HATCH_PX: f64 = 6.0;
 /// Draws the outcome against the factor: a strip for each model with the edges of its bands, and the largest rotation below. `peak_g` is the
 /// peak ground acceleration at factor 1.
 pub fn draw(figure: Figure, title: &str, peak_g: f64, thresholds: &[Threshold]) -> String {
-    drawn(figure, title, peak_g, thresholds, &[])
+    draw_marked(figure, title, peak_g, thresholds, &[])
 }
 
 /// Draws the same picture with marks for the histories of all models, in their order, on a page.
-pub(super) fn drawn(
+pub(super) fn draw_marked(
     figure: Figure,
     title: &str,
     peak_g: f64,
@@ -46,8 +46,7 @@ pub(super) fn drawn(
     let samples = thresholds.iter().flat_map(|threshold| &threshold.samples);
     let results = samples.clone().map(|sample| &sample.result);
     let kinds: Vec<OutcomeColor> = results.clone().map(OutcomeColor::of_result).collect();
-    let names = thresholds.iter().map(|one| one.name_in_words());
-    let names: Vec<String> = names.collect();
+    let names: Vec<String> = thresholds.iter().map(|one| one.name_in_words()).collect();
     let over_critical = are_over_critical(results);
     let peak = |sample: &FactorSample| sample.peak(over_critical);
     let (least, y_label) = match over_critical {
@@ -62,7 +61,7 @@ pub(super) fn drawn(
         let named = names.iter().zip(curves());
         keys.extend(named.map(|(name, stroke)| Key::line(name, stroke)));
     }
-    let [first, last] = ends(samples.map(|sample| sample.factor));
+    let [first, last] = find_range(samples.map(|sample| sample.factor));
     let x = match last < 2.0 * first {
         true => Scale::exactly(first, last, figure.ticks(8)),
         false => Scale::logarithmic(first, last),
@@ -71,7 +70,7 @@ pub(super) fn drawn(
     let mut sheet = Sheet::new(figure, title);
     // A page has these words beside the picture.
     for (&threshold, name) in thresholds.iter().zip(&names).filter(|_| spots.is_empty()) {
-        let words = survival::in_words(&Survival::of_threshold(threshold), "", Some(peak_g));
+        let words = survival_in_words(&Survival::of_threshold(threshold), "", Some(peak_g));
         sheet.caption(16.0, &format!("{name}: {words}"));
     }
     sheet.legend(LEFT_PX, keys);
@@ -107,7 +106,7 @@ pub(super) fn drawn(
         let name = format!("{} peak", threshold.name());
         marks.push(Mark::curve(name, stroke, points));
     }
-    let peak_g = rounded(peak_g);
+    let peak_g = format_edge(peak_g);
     let label = format!("factor on the ground motion (factor 1 = {peak_g} g)");
     let chart = Chart {
         marks: [vec![Mark::clipped(marks)], on_curves].concat(),
@@ -119,7 +118,7 @@ pub(super) fn drawn(
 }
 
 /// Returns the smallest and the largest factor.
-fn ends(factors: impl Iterator<Item = f64>) -> [f64; 2] {
+fn find_range(factors: impl Iterator<Item = f64>) -> [f64; 2] {
     factors.fold([f64::INFINITY, 0.0], |[first, last], factor| {
         [first.min(factor), last.max(factor)]
     })
@@ -233,7 +232,7 @@ fn strip(drawing: &mut Drawing, axes: &Axes, threshold: &Threshold) {
         let head = Vector2::new(beside, top - 14.0);
         drawing.line(foot, head, EDGE);
         let text = head + Vector2::new(4.5, -3.0);
-        drawing.label(text, Anchor::Start, 90.0, rounded(*edge));
+        drawing.label(text, Anchor::Start, 90.0, format_edge(*edge));
     }
 }
 
@@ -276,7 +275,7 @@ mod tests {
 
     #[test]
     fn rounded_numbers_have_four_digits() {
-        let texts = [0.0, 0.012_345, 0.5, 2.113_06, 12.5, 123.456, 98_765.0].map(rounded);
+        let texts = [0.0, 0.012_345, 0.5, 2.113_06, 12.5, 123.456, 98_765.0].map(format_edge);
         assert_eq!(
             texts,
             [

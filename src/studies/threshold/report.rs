@@ -4,8 +4,8 @@ use askama::Template;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::digits::{rounded, rounded_down};
-use super::survival::{self, Survival, VerdictRange};
+use super::digits::{format_edge, rounded_down};
+use super::survival::{Survival, VerdictRange, survival_in_words};
 use super::{
     EDGE_WIDTH, FactorRange, FactorSample, Factors, RangeEnd, SearchedFactors, Threshold,
     UNCERTAIN_EDGE_WIDTH, VariedThreshold, peak_g, picture,
@@ -226,7 +226,7 @@ pub fn report(
         factors: *factors,
         free_fall_factor: ground.free_fall_factor(gravity_m_s2).filter(|_| falls),
         warnings: Warnings::new(unlikely, limits(&models, frictions)),
-        to_quote: quotable::in_words(&answers),
+        to_quote: quotable::quote_answers(&answers),
         models,
     };
     let picture = picture::draw(figure, title, peak_g, thresholds);
@@ -237,7 +237,7 @@ pub fn report(
     for (threshold, scenario) in thresholds.iter().zip(scenarios) {
         threshold.add_to(&mut cases, scenario, peak_g);
     }
-    let draw = |figure| picture::drawn(figure, title, peak_g, thresholds, &cases.spots);
+    let draw = |figure| picture::draw_marked(figure, title, peak_g, thresholds, &cases.spots);
     let searched = thresholds.iter().map(|one| one.factors.in_words());
     let mut searched: Vec<String> = searched.collect();
     searched.dedup();
@@ -347,7 +347,7 @@ impl Threshold {
         for one in self.directions() {
             for sample in &one.samples {
                 let (name, factor) = (one.name_in_words(), sample.factor);
-                let case = format!("{name}, factor {}", at(&factor, &peak_g));
+                let case = format!("{name}, factor {}", factor_in_words(&factor, &peak_g));
                 cases.push_history(&case, &sample.result, || {
                     let case = CaseScenario::of(text, scenario.ground_values_times(factor));
                     Some(match self.mirrored {
@@ -372,7 +372,7 @@ impl Threshold {
         self.name().replace('_', " ")
     }
 
-    fn of_direction(&self, peak_g: f64) -> DirectionSummary {
+    fn direction_summary(&self, peak_g: f64) -> DirectionSummary {
         let ranges = |ranges: Vec<FactorRange>| {
             let ranges = ranges.into_iter().map(|range| RangeSummary {
                 from_peak_g: range.from * peak_g,
@@ -385,8 +385,8 @@ impl Threshold {
             ranges: Survival::of_threshold(self).ranges,
             bands: ranges(self.bands()),
             gaps: ranges(self.gaps()),
-            uncertain: ranges(self.of(Verdict::Uncertain)),
-            incomplete: ranges(self.of(Verdict::Incomplete)),
+            uncertain: ranges(self.ranges_with(Verdict::Uncertain)),
+            incomplete: ranges(self.ranges_with(Verdict::Incomplete)),
             samples: self.samples.iter().map(TriedFactor::of).collect(),
         }
     }
@@ -418,8 +418,11 @@ impl Threshold {
             lowest_factor: self.lowest_factor(),
             friction_demand: self.friction_demand,
             direction: self.governing().direction,
-            given: self.of_direction(peak_g),
-            mirrored: self.mirrored.as_ref().map(|one| one.of_direction(peak_g)),
+            given: self.direction_summary(peak_g),
+            mirrored: self
+                .mirrored
+                .as_ref()
+                .map(|one| one.direction_summary(peak_g)),
             remarks: self.remarks(),
             variations: varied.collect(),
         }
@@ -512,7 +515,7 @@ impl ModelSummary {
     fn strengths(&self, peak_g: &f64) -> Vec<String> {
         let in_words = |(direction, of): (Direction, &DirectionSummary)| {
             let survival = Survival::of_ranges(of.ranges.clone());
-            let words = survival::in_words(&survival, "", Some(*peak_g));
+            let words = survival_in_words(&survival, "", Some(*peak_g));
             match &self.mirrored {
                 Some(_) => format!("{}: {words}", direction.name().replace('_', " ")),
                 None => words,
@@ -535,7 +538,7 @@ impl ModelSummary {
         });
         let (factor, reason) = reasons.next()?;
         let (count, all) = (1 + reasons.count(), self.histories().count());
-        let factor = rounded(factor);
+        let factor = format_edge(factor);
         Some(format!(
             "{what}: {count} of {all} histories; the first, at factor {factor}: {reason}"
         ))
@@ -604,8 +607,12 @@ impl TriedFactor {
 }
 
 /// Returns a factor with the peak ground acceleration, in words.
-fn at(factor: &f64, peak_g: &f64) -> String {
-    format!("{} ({} g)", rounded(*factor), rounded(factor * peak_g))
+fn factor_in_words(factor: &f64, peak_g: &f64) -> String {
+    format!(
+        "{} ({} g)",
+        format_edge(*factor),
+        format_edge(factor * peak_g)
+    )
 }
 
 impl Factors {
@@ -621,7 +628,7 @@ impl SearchedFactors {
     /// Returns the factors in words.
     fn in_words(&self) -> String {
         let from = match self.begins_at_onset {
-            true => format!("{}, the onset of motion,", rounded(self.from)),
+            true => format!("{}, the onset of motion,", format_edge(self.from)),
             false => plain(self.from),
         };
         let to = match self.ends_at_collapse {

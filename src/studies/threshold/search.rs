@@ -3,7 +3,7 @@
 
 use std::ops::ControlFlow;
 
-use super::below::{Closeness, FineHistory, FineSearch, Fineness, below_edge};
+use super::below::{Closeness, FineHistory, FineSearch, Fineness, search_below_edge};
 use super::factors::{EDGE_WIDTH, SearchedFactors, UNCERTAIN_EDGE_WIDTH};
 use super::{FactorSample, Survival, Threshold};
 use crate::bisection::{Width, next_middles, try_bisect};
@@ -49,7 +49,7 @@ fn step_after(samples: &[FactorSample], is_open: bool) -> SearchStep {
 }
 
 /// Returns a function that reports the progress of a step of a search.
-fn in_step(
+fn report_step(
     step: SearchStep,
     mut watch: impl FnMut(Progress) -> ControlFlow<()>,
 ) -> impl FnMut(Progress) -> ControlFlow<()> {
@@ -71,7 +71,7 @@ impl Shaking<'_> {
         runner: &Runner,
         mut watch: impl FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<(Threshold, OtherHistories), StudyError> {
-        let mut samples = self.upwards(factors, runner, &mut watch)?;
+        let mut samples = self.search_upwards(factors, runner, &mut watch)?;
         let (mut edges, mut others) = self.bisect(&mut samples, runner, &mut watch)?;
         let first = Threshold::new(name.to_owned(), *self.searched, samples, &edges);
         let safe = Survival::of_threshold(&first).survives_up_to;
@@ -80,7 +80,7 @@ impl Shaking<'_> {
         if let Some(safe) = safe {
             let found = (&mut samples, &mut edges);
             let tried;
-            (tried, fine) = self.below(safe, found, runner, &mut watch)?;
+            (tried, fine) = self.search_below(safe, found, runner, &mut watch)?;
             others.extend(tried);
         }
         let threshold = Threshold {
@@ -98,7 +98,7 @@ impl Shaking<'_> {
     }
 
     /// Computes the histories for these ascending factors, or up to the first one that certainly overturns the structure.
-    fn upwards(
+    fn search_upwards(
         &self,
         factors: &[f64],
         runner: &Runner,
@@ -109,7 +109,7 @@ impl Shaking<'_> {
         for some in factors.chunks(TOGETHER) {
             let (before, all) = (samples.len(), factors.len());
             let step = step_after(&samples, ends_at_collapse);
-            let mut watch = in_step(step, &mut watch);
+            let mut watch = report_step(step, &mut watch);
             let watch = |progress: Progress| {
                 let done = before + progress.done;
                 watch(Progress {
@@ -118,7 +118,7 @@ impl Shaking<'_> {
                     ..progress
                 })
             };
-            let found = self.in_parallel(some, |some| self.samples(some), runner, watch)?;
+            let found = self.compute_in_parallel(some, |some| self.samples(some), runner, watch)?;
             samples.extend(found);
             let overturns = |sample: &FactorSample| sample.verdict() == Some(Verdict::Overturns);
             let first = samples.iter().position(overturns);
@@ -131,7 +131,7 @@ impl Shaking<'_> {
     }
 
     /// Computes results for several factors on all threads, in their order.
-    fn in_parallel<R: Send>(
+    fn compute_in_parallel<R: Send>(
         &self,
         factors: &[f64],
         compute: impl Fn(&[f64]) -> Vec<R> + Sync,
@@ -161,7 +161,7 @@ impl Shaking<'_> {
         });
         let changes: Vec<Change<'_>> = changes.collect();
         let search = |index: usize| self.search(changes[index]);
-        let watch = in_step(step_after(samples, false), watch);
+        let watch = report_step(step_after(samples, false), watch);
         let found = runner.each(changes.len(), search, watch)?;
         let (mut edges, mut tried) = (Vec::new(), Vec::new());
         for found in found.into_iter().flatten() {
@@ -177,7 +177,7 @@ impl Shaking<'_> {
 
     /// Searches below the first edge for factors whose histories do not survive. Adds the lowest to the samples, with the next lower factor that is
     /// certainly survived, and adds their edges. Returns the other histories of bisections, and those of the search.
-    fn below(
+    fn search_below(
         &self,
         safe: f64,
         (samples, edges): (&mut Vec<FactorSample>, &mut Edges),
@@ -191,8 +191,8 @@ impl Shaking<'_> {
                 let ground = |factor| self.ground.scaled(factor);
                 FineHistory::of_all(self.model, self.request, some, ground)
             };
-            let mut watch = in_step(step, &mut watch);
-            let found = self.in_parallel(factors, compute, runner, |progress| {
+            let mut watch = report_step(step, &mut watch);
+            let found = self.compute_in_parallel(factors, compute, runner, |progress| {
                 watch(Progress {
                     done: before + progress.done,
                     all: before + factors.len() + later,
@@ -203,7 +203,7 @@ impl Shaking<'_> {
             found
         };
         let edge = (safe, Closeness::EDGE);
-        let fine = below_edge(
+        let fine = search_below_edge(
             edge,
             self.searched.from,
             Fineness::of_threshold(self.model),
@@ -214,7 +214,7 @@ impl Shaking<'_> {
             lower.splice(0..0, self.samples(&[factor]));
             Ok::<_, RunnerError>(lower[0].verdict().unwrap_or(Verdict::Incomplete))
         };
-        fine.confirm(repeated)?;
+        fine.confirm_lowest(repeated)?;
         if let Some((hit, _)) = fine.upper_edge()
             && lower.iter().all(|sample| sample.factor != hit)
         {

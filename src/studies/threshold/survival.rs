@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::Threshold;
-use super::digits::{rounded, rounded_edge, rounded_range};
+use super::digits::{format_edge, rounded_edge, rounded_range};
 use super::first_edge::FirstEdge;
 use crate::studies::ending::Verdict;
 
@@ -147,7 +147,7 @@ fn listed(
             .iter()
             .filter(|range| range.verdict == *kind)
             .map(|range| match rounded_range([range.from, range.to]) {
-                _ if range.from == range.to => rounded(range.from) + unit,
+                _ if range.from == range.to => format_edge(range.from) + unit,
                 [from, to] => format!("{from} to {to}{unit}"),
             })
             .collect();
@@ -161,15 +161,14 @@ fn listed(
 
 /// Returns the line of words: `survives up to 2.113; uncertain from there; certainly overturns from 2.401 (gaps above: 2.604 to 2.871)`. The unit
 /// of strengths may be empty. For factors, `peak_g` is the peak ground acceleration at factor 1.
-pub fn in_words(survival: &Survival, unit: &str, peak_g: Option<f64>) -> String {
+pub fn survival_in_words(survival: &Survival, unit: &str, peak_g: Option<f64>) -> String {
     let both = |strength: String, in_g: String| match peak_g {
         Some(_) => format!("{strength} ({in_g} g)"),
         None => strength + unit,
     };
     let to_g = peak_g.unwrap_or(1.0);
-    let at = |strength: f64, rounded: fn(f64) -> String| {
-        both(rounded(strength), rounded(strength * to_g))
-    };
+    let at =
+        |strength: f64, format: fn(f64) -> String| both(format(strength), format(strength * to_g));
     let ends = [survival.survives_up_to, survival.overturns_from];
     let [own, in_g] = [1.0, to_g].map(|unit| rounded_edge(ends.map(|end| Some(end? * unit))));
     let ([safe, overturns_from], [safe_g, from_g]) = (own, in_g);
@@ -183,7 +182,7 @@ pub fn in_words(survival: &Survival, unit: &str, peak_g: Option<f64>) -> String 
     let mut parts = vec![match safe {
         Some(safe) => format!("survives up to {safe}"),
         None => {
-            let (what, from) = (word(first.verdict), at(first.from, rounded));
+            let (what, from) = (word(first.verdict), at(first.from, format_edge));
             format!("{what} at {from} already, the smallest tried")
         }
     }];
@@ -210,7 +209,7 @@ pub fn in_words(survival: &Survival, unit: &str, peak_g: Option<f64>) -> String 
         }
         (None, Some(_)) if is_certain => parts[0] += ", the largest tried",
         (None, Some(known)) => {
-            let to = at(known.to, rounded);
+            let to = at(known.to, format_edge);
             parts.push(format!("does not certainly overturn up to {to}"));
         }
         _ => {}

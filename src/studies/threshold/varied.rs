@@ -3,7 +3,7 @@
 use std::cell::Cell;
 use std::ops::ControlFlow;
 
-use super::first_edge::lowest;
+use super::first_edge::find_lowest_strength;
 use super::{EDGE_WIDTH, Factors, SearchedFactors, threshold};
 use crate::dynamics::{Directions, Variation};
 use crate::studies::ending::answer_valid_cases;
@@ -162,7 +162,7 @@ fn lowest_factor_of(
     };
     let histories = factors.chunks(TOGETHER).flat_map(histories);
     let histories = histories.map(|(factor, history)| (factor, falls(history)));
-    lowest(histories, EDGE_WIDTH, |factor| {
+    find_lowest_strength(histories, EDGE_WIDTH, |factor| {
         falls(model.simulate_until(EndCondition::Safe, &case(factor)?))
     })
 }

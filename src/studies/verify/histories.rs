@@ -167,7 +167,7 @@ pub(super) fn histories(
     sides: &BTreeMap<Sway, SideCheck>,
 ) -> Result<Option<Histories>, VerifyError> {
     let (scenario, gravity_m_s2) = (input.scenario, input.gravity_m_s2);
-    let records = input.settings.records.of(state);
+    let records = input.settings.records.records_of(state);
     let slides = mechanisms.values().any(|one| one.sliding.is_some());
     if records.is_empty() || slides {
         return Ok(None);
@@ -258,7 +258,7 @@ fn record_peaks(
     let both = both.into_iter();
     let both = both.collect::<Result<Vec<(Sides<Peak>, Option<f64>)>, _>>()?;
     let larger = |sway: Sway| {
-        let (one, other) = (both[0].0.to(sway), both[1].0.to(sway));
+        let (one, other) = (both[0].0.get(sway), both[1].0.get(sway));
         let overturned = one.overturned || other.overturned;
         let incomplete = one.incomplete || other.incomplete;
         let displacement_m = one.displacement_m.max(other.displacement_m);
@@ -340,7 +340,7 @@ fn peaks(
     };
     let mut peaks = Sides::of(|sway| Peak {
         displacement_m: (mechanisms.get(&sway))
-            .map_or(0.0, |own| shifts_kg_m.to(sway) / own.m_star_kg),
+            .map_or(0.0, |own| shifts_kg_m.get(sway) / own.m_star_kg),
         ..Peak::default()
     });
     match summary.outcome {

@@ -11,8 +11,8 @@ use crate::mechanics::settling::{Held, HeldError};
 use crate::mechanics::stability::onset;
 use crate::mechanics::{
     Anchor, BodyPoint, Capacity, CapacityError, Control, Displaced, Edge, FrictionError,
-    MovingBody, MovingForce, MovingTie, Participation, Parts as _, RowOnset, friction,
-    load_multiplier, per_displacement_of_centre,
+    MovingBody, MovingForce, MovingTie, Participation, Parts as _, RowOnset, displacement_factor,
+    friction, load_multiplier,
 };
 use crate::scenario::{CheckedSides, Language, Structure};
 use crate::studies::capacity::Bodies;
@@ -313,7 +313,7 @@ impl CapacityCurves {
         let whole_kg: f64 = bodies.iter().map(|body| body.mass_kg).sum();
         let centres_m = |at: &Displaced| {
             let centres = at.poses.iter().zip(bodies);
-            let centres = centres.map(|(pose, body)| pose.of(body.centre_m));
+            let centres = centres.map(|(pose, body)| pose.current_position(body.centre_m));
             centres.collect::<Vec<_>>()
         };
         let oscillator_m = |at: &Displaced| {
@@ -375,7 +375,7 @@ impl Mechanism {
         let weight_kn = |mass_kg: f64| mass_kg * input.gravity_m_s2 / 1000.0;
         let alpha0 = found.alpha0();
         let participation = Participation::of_bodies(&found.bodies);
-        let scale = per_displacement_of_centre(&found.bodies);
+        let scale = displacement_factor(&found.bodies);
         let bodies = found.bodies.iter().enumerate().map(|(index, body)| Body {
             mass_kg: body.mass_kg,
             weight_kn: weight_kn(body.mass_kg),
@@ -402,7 +402,7 @@ impl Mechanism {
         let furthest_part = input.parts_of_d0().fold(0.0, f64::max);
         let crown = curves.and_then(|curves| Some(curves.crown.as_ref()?.end()));
         let end = curves.map(|curves| curves.centre.end());
-        let yielding = curves.and_then(|curves| input.yielding(curves));
+        let yielding = curves.and_then(|curves| input.find_yield_point(curves));
         let hinges = found.hinges.iter().map(|(hinge, at_m)| PlacedHinge {
             hinge: *hinge,
             x_m: at_m.x + 0.0,
@@ -516,10 +516,10 @@ impl VirtualMechanism {
         input: &CheckInput<'_>,
     ) -> Option<Self> {
         let bodies = model.moving_bodies(sway)?;
-        let at_rest = model.displaced(sway, 0.0)?;
+        let at_rest = model.displaced_mechanism(sway, 0.0)?;
         let named = model.hinges_after(0, sway).into_iter();
         let displaced = |part| {
-            let displaced = model.displaced(sway, part);
+            let displaced = model.displaced_mechanism(sway, part);
             displaced.expect("a structure has its first mechanism")
         };
         let crown = Bodies::of_model(model, sway).body_point(structure.as_parts().crown());
@@ -540,7 +540,7 @@ impl VirtualMechanism {
         let opens = |joint: usize| onset.openings.iter().any(|open| open.joint == joint);
         let fastest = |block: usize| {
             let twist = onset.velocities[block];
-            twist.at(row.blocks[block].centre_m).norm() + twist.rate.abs() * row.size_m
+            twist.velocity_at(row.blocks[block].centre_m).norm() + twist.rate.abs() * row.size_m
         };
         let blocks = row.blocks.len();
         let most = (0..blocks).map(fastest).fold(0.0, f64::max);
@@ -571,7 +571,7 @@ impl VirtualMechanism {
             MovingBody {
                 mass_kg,
                 centre_m,
-                displacement: towards(twist.at(centre_m)),
+                displacement: towards(twist.velocity_at(centre_m)),
                 rotation: -sway.sign() * twist.rate,
             }
         });
@@ -587,7 +587,7 @@ impl VirtualMechanism {
             MovingForce {
                 at_m,
                 force_kg: towards(force_n) / row.gravity_m_s2,
-                displacement: towards(onset.velocities[block].at(at_m)),
+                displacement: towards(onset.velocities[block].velocity_at(at_m)),
             }
         });
         let ties = row.bars().iter().zip(&onset.lengthening);
@@ -601,7 +601,7 @@ impl VirtualMechanism {
             }
             let held = Held::new(row, sway)?;
             let crown = Bodies::of_row(&held).body_point(row.crown());
-            let displaced = |part| held.displaced(part);
+            let displaced = |part| held.displaced_mechanism(part);
             CapacityCurves::new(sway, displaced, &bodies, crown, input)
         };
         Self {
@@ -623,7 +623,7 @@ const CUT: usize = 60;
 const BOUND_TOLERANCE: f64 = 1e-6;
 
 /// Finds the slide of the joints of a row to one side, if its bound is below the load multiplier `alpha0` of the mechanism without sliding.
-fn sliding(row: &Row, coefficient: f64, sway: Sway, alpha0: f64) -> Option<Sliding> {
+fn find_slide(row: &Row, coefficient: f64, sway: Sway, alpha0: f64) -> Option<Sliding> {
     let bound_g = match friction::onset(row, coefficient, sway) {
         Ok(Some(onset)) => {
             let governs = onset.sliding_governs() && onset.acceleration_g < alpha0;
@@ -683,7 +683,7 @@ pub(super) fn mechanisms(input: &CheckInput<'_>) -> Result<BTreeMap<Sway, Mechan
             VirtualMechanism::of_onset(row, sway, &found, input)
         };
         let joints = row.as_ref().ok().or(cut.as_ref());
-        let slides = joints.and_then(|row| sliding(row, coefficient, sway, found.alpha0()));
+        let slides = joints.and_then(|row| find_slide(row, coefficient, sway, found.alpha0()));
         Ok((sway, Mechanism::new(found, slides, input)))
     };
     let checked = match input.settings.sides {

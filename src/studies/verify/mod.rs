@@ -41,7 +41,7 @@ pub use side::{
     ActivationCheck, DisplacementCheck, GoverningSide, Margin, Method, SideCheck, SimplifiedCheck,
     SlidingCheck, Verdict,
 };
-use side::{SideOutcome, alike};
+use side::{SideOutcome, equal_numbers};
 pub use spectrum::{FloorMode, FloorOrdinates, Ground, Spectrum};
 
 /// Friction coefficient that the Circolare gives for walls (C8.7.1.2.1.2).
@@ -234,7 +234,7 @@ pub fn verify(scenario: &Scenario) -> Result<Summary, VerifyError> {
     };
     let mechanisms = mechanism::mechanisms(&input)?;
     let mut states = BTreeMap::new();
-    for state in input.demand.states() {
+    for state in input.demand.limit_states() {
         let sld = states.get(&LimitState::Sld);
         let one = input.state(state, &mechanisms, sld)?;
         states.insert(state, one);
@@ -327,7 +327,10 @@ impl CheckInput<'_> {
 
     /// Returns the fractions of the ultimate displacement that the limit states allow.
     fn parts_of_d0(&self) -> impl Iterator<Item = f64> {
-        let rules = self.demand.states().filter_map(|state| self.rule(state));
+        let rules = self
+            .demand
+            .limit_states()
+            .filter_map(|state| self.rule(state));
         rules.map(|rule| rule.part_of_d0)
     }
 
@@ -357,7 +360,7 @@ impl CheckInput<'_> {
             };
             let displacement = match (&mechanism.curves, &rule) {
                 (Some(curves), Some(rule)) => {
-                    Some(self.by_displacement(curves, start_ag_g, &spectrum, rule)?)
+                    Some(self.check_displacement(curves, start_ag_g, &spectrum, rule)?)
                 }
                 _ => None,
             };
@@ -370,10 +373,10 @@ impl CheckInput<'_> {
                 sliding: None,
                 floor: self.floor(&spectrum, displacement.as_ref(), rule.as_ref()),
                 activation,
-                simplified: both_g.map(|(start_g, ag_g)| self.simplified(start_g, ag_g)),
+                simplified: both_g.map(|(start_g, ag_g)| self.check_simplified(start_g, ag_g)),
                 displacement,
             };
-            side.zeta_e = side.governing().map(|(_, margin)| margin.zeta_e);
+            side.zeta_e = side.governing_result().map(|(_, margin)| margin.zeta_e);
             Ok((*sway, side))
         });
         let sides = sides.collect::<Result<BTreeMap<Sway, SideCheck>, PeriodOutOfRange>>();
@@ -382,7 +385,7 @@ impl CheckInput<'_> {
             Some(rule) => histories::histories(self, (state, rule, &spectrum), mechanisms, &sides)?,
             None => None,
         };
-        let governing = governing(&sides);
+        let governing = find_governing_side(&sides);
         let slides = sides.values().any(|side| side.sliding.is_some());
         let outcome = governing.map(|(_, outcome)| outcome);
         Ok(StateCheck {
@@ -441,7 +444,7 @@ impl CheckInput<'_> {
     }
 
     /// Checks SLV by C8.7.1.2.1.7, from activation and demand as `a_g`, in g.
-    fn simplified(&self, activation_ag_g: f64, ag_g: f64) -> SimplifiedCheck {
+    fn check_simplified(&self, activation_ag_g: f64, ag_g: f64) -> SimplifiedCheck {
         let q = self.settings.behaviour_factor;
         SimplifiedCheck {
             activation_ag_g,
@@ -451,14 +454,14 @@ impl CheckInput<'_> {
     }
 
     /// Checks a limit state by C8.7.1.2.1.8, with the activation as `a_g`, in g.
-    fn by_displacement(
+    fn check_displacement(
         &self,
         curves: &CapacityCurves,
         start_ag_g: Option<f64>,
         spectrum: &Spectrum,
         rule: &StateRule,
     ) -> Result<DisplacementCheck, PeriodOutOfRange> {
-        let reached = |curve: &Capacity| self.reached(curve, spectrum, rule);
+        let reached = |curve: &Capacity| self.allowed_displacement(curve, spectrum, rule);
         let (capacity_m, acceleration_g, period_s, demand_m) = reached(&curves.centre)?;
         let by_displacement = Margin::new(capacity_m / demand_m, spectrum.ag_g());
         let later = start_ag_g.zip(by_displacement.ag_capacity_g);
@@ -502,7 +505,7 @@ impl CheckInput<'_> {
 
     /// Returns the allowed displacement on a curve, in metres; the divided acceleration there, in g; the period, in s; and the displacement
     /// demand, in metres.
-    fn reached(
+    fn allowed_displacement(
         &self,
         curve: &Capacity,
         spectrum: &Spectrum,
@@ -529,7 +532,7 @@ impl CheckInput<'_> {
     }
 
     /// Finds the point at which the elastic branch meets the divided curve, in metres and g; `None` if walls hold the structure.
-    fn yielding(&self, curves: &CapacityCurves) -> Option<(f64, f64)> {
+    fn find_yield_point(&self, curves: &CapacityCurves) -> Option<(f64, f64)> {
         let divided = self.settings.confidence_factor;
         let end_m = curves.centre.end().oscillator_displacement_m;
         let rigid_g = |d_m: f64| curves.centre.oscillator_acceleration_g(d_m / end_m) / divided;
@@ -543,7 +546,7 @@ impl CheckInput<'_> {
 }
 
 /// Returns the governing side with its outcome. `None` if a side cannot be checked, unless joints slide first to the other side.
-fn governing(sides: &BTreeMap<Sway, SideCheck>) -> Option<(GoverningSide, SideOutcome)> {
+fn find_governing_side(sides: &BTreeMap<Sway, SideCheck>) -> Option<(GoverningSide, SideOutcome)> {
     let checked = sides
         .iter()
         .map(|(sway, side)| Some((*sway, side.outcome()?)));
@@ -561,7 +564,7 @@ fn governing(sides: &BTreeMap<Sway, SideCheck>) -> Option<(GoverningSide, SideOu
     };
     let (sway, outcome) = checked.iter().copied().reduce(worse)?;
     let equals = |(_, one): &(Sway, SideOutcome)| {
-        one.method == outcome.method && alike(one.ratio, outcome.ratio)
+        one.method == outcome.method && equal_numbers(one.ratio, outcome.ratio)
     };
     let side = match sway {
         _ if checked.len() > 1 && checked.iter().all(equals) => GoverningSide::Either,

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use nalgebra::Vector2;
 
 use super::{Body, Mechanism, Summary};
-use crate::mechanics::turned;
+use crate::mechanics::quarter_turn;
 use crate::output::elevation::{BODIES, SheetTransform, View, draw_dimensions, room_px};
 use crate::output::{
     Anchor, CURVES, Chart, Drawing, Figure, Key, Mark, PartHeight, Scale, Scene, Shape, Sheet,
@@ -86,7 +86,7 @@ fn draw_mechanism(
         drawing.curve(&format!("delta {number}"), [at, end], arrow);
         if delta.norm() > 6.0 {
             let back = -delta.normalize() * 7.0;
-            let across = turned(back) * 0.45;
+            let across = quarter_turn(back) * 0.45;
             let barbs = [end, end + back + across, end + back - across];
             drawing.polygon("", barbs, color::BLUE, arrow);
         }

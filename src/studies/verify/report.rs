@@ -13,7 +13,7 @@ use super::histories::{FOR_THE_MEAN, SPECTRUM_MARGIN};
 use super::{
     ComparedPeak, Decision, FRICTION, FloorMode, FloorOrdinates, GoverningSide, HighestPoint,
     Histories, Mechanism, Method, PlacedHinge, SlidingCheck, Spectrum, StateCheck, Summary,
-    Verdict, alike, picture,
+    Verdict, equal_numbers, picture,
 };
 use crate::clock;
 use crate::dynamics::MODEL_LIMIT;
@@ -191,7 +191,7 @@ impl StateCheck {
     }
 
     /// Returns the comparison with the slide of joints, if it governs.
-    fn sliding(&self) -> Option<SlidingCheck> {
+    fn governing_slide(&self) -> Option<SlidingCheck> {
         let mut sides = self.sides.iter();
         let governs = |(sway, _): &(&Sway, _)| self.governs(sway, &Method::Sliding);
         sides.find(governs)?.1.sliding
@@ -219,7 +219,7 @@ struct Words<'a> {
 
 impl Words<'_> {
     /// Returns the side in a column of equal width.
-    fn to(&self, sway: &Sway) -> String {
+    fn padded_side(&self, sway: &Sway) -> String {
         let to = self.check.language.choose("to the", "verso");
         let width = match self.check.language {
             Language::English => 5,
@@ -253,13 +253,13 @@ impl Summary {
     }
 
     /// Returns the printed sides to which joints slide first.
-    pub(super) fn sliding(&self) -> Vec<(&Sway, &Mechanism)> {
+    pub(super) fn sliding_sides(&self) -> Vec<(&Sway, &Mechanism)> {
         let printed = self.mechanisms.iter().take(self.printed_sides());
         printed.filter(|(_, one)| one.sliding.is_some()).collect()
     }
 
     /// Returns the limit states with this verdict.
-    pub(super) fn with(&self, verdict: Verdict) -> Vec<(&LimitState, &StateCheck)> {
+    pub(super) fn states_with(&self, verdict: Verdict) -> Vec<(&LimitState, &StateCheck)> {
         let states = self.states.iter();
         states.filter(|(_, one)| one.verdict == verdict).collect()
     }
@@ -316,7 +316,7 @@ impl Notes<'_> {
     }
 
     fn slides(&self) -> bool {
-        !self.check.sliding().is_empty()
+        !self.check.sliding_sides().is_empty()
     }
 
     fn has_histories(&self) -> bool {
@@ -392,9 +392,10 @@ pub(super) fn are_mirrored(
 fn are_alike<T: Serialize>(a: &T, b: &T) -> bool {
     fn alike_values(a: &Value, b: &Value) -> bool {
         match (a, b) {
-            (Value::Number(a), Value::Number(b)) => {
-                a.as_f64().zip(b.as_f64()).is_some_and(|(a, b)| alike(a, b))
-            }
+            (Value::Number(a), Value::Number(b)) => a
+                .as_f64()
+                .zip(b.as_f64())
+                .is_some_and(|(a, b)| equal_numbers(a, b)),
             (Value::String(_), Value::String(_)) => true,
             (Value::Array(a), Value::Array(b)) => {
                 a.len() == b.len() && a.iter().zip(b).all(|(a, b)| alike_values(a, b))

@@ -187,7 +187,7 @@ impl SideCheck {
     }
 
     /// Returns the governing method and result; `None` if the side cannot be checked, or joints slide first.
-    pub fn governing(&self) -> Option<(Method, Margin)> {
+    pub fn governing_result(&self) -> Option<(Method, Margin)> {
         let (method, margin, _) = self.results().next()?;
         Some((method, margin))
     }
@@ -207,7 +207,7 @@ impl SideCheck {
                 ratio: sliding.bound_g / sliding.demand_g,
             });
         }
-        let (method, margin) = self.governing()?;
+        let (method, margin) = self.governing_result()?;
         Some(SideOutcome {
             method,
             verdict: match margin.passed {
@@ -238,7 +238,7 @@ impl SideOutcome {
             Verdict::Passed => 0,
         };
         let [own, others] = [self, other].map(|one| severity(one.verdict));
-        let is_smaller = self.ratio < other.ratio && !alike(self.ratio, other.ratio);
+        let is_smaller = self.ratio < other.ratio && !equal_numbers(self.ratio, other.ratio);
         own > others || (own == others && is_smaller)
     }
 }
@@ -271,6 +271,6 @@ named! {
 }
 
 /// Returns true if two numbers of mirrored sides differ by rounding errors only.
-pub(super) fn alike(a: f64, b: f64) -> bool {
+pub(super) fn equal_numbers(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-9 * (a.abs() + b.abs()).max(1e-6)
 }

@@ -110,7 +110,7 @@ impl Spectrum {
             peak_displacement_m: spectrum.peak_displacement_m(gravity_m_s2),
         };
         let height = code.height.as_ref();
-        let floor = height.and_then(|height| FloorSpectrum::new(spectrum, height.at(state)));
+        let floor = height.and_then(|height| FloorSpectrum::new(spectrum, height.modes_at(state)));
         let Some(floor) = floor else {
             return Some(Self::Ground(ground));
         };

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{damping_factor, displacement_m};
-use crate::argument::{ArgumentError, allow, short};
+use crate::argument::{ArgumentError, require, short};
 
 named! {
     /// Subsoil category (Tab. 3.2.II).
@@ -143,7 +143,7 @@ impl GroundSpectrum {
         let t_e_s = site.soil.t_e_s();
         let (soil, s_t) = (site.soil, site.topographic_factor);
         let allowed = "a number from 2.2 (NTC 2018, § 3.2.1) to 10";
-        allow((2.2..=10.0).contains(&f0), "f0", f0, allowed)?;
+        require((2.2..=10.0).contains(&f0), "f0", f0, allowed)?;
         let t_d_s = 4.0 * ag_g + 1.6;
         let allowed = format!(
             "above 0 and at most {} on soil {}, so that T_D = 4 a_g/g + 1.6 is at most T_E = {} s (NTC 2018, § 3.2.3.2)",
@@ -152,7 +152,7 @@ impl GroundSpectrum {
             short(t_e_s),
         );
         // False also for NaN.
-        allow(ag_g > 0.0 && t_d_s <= t_e_s, "ag_g", ag_g, allowed)?;
+        require(ag_g > 0.0 && t_d_s <= t_e_s, "ag_g", ag_g, allowed)?;
         let c_c = soil.period_coefficient(tc_star_s);
         let t_c_s = c_c * tc_star_s;
         let allowed = format!(
@@ -160,10 +160,10 @@ impl GroundSpectrum {
             short((t_d_s * 1e6).round() / 1e6)
         );
         let in_order = tc_star_s > 0.0 && t_c_s <= t_d_s;
-        allow(in_order, "tc_star_s", tc_star_s, allowed)?;
+        require(in_order, "tc_star_s", tc_star_s, allowed)?;
         let allowed = "a number from 1 to 2 (NTC 2018, Tab. 3.2.V has 1.0 to 1.4)";
         let fits = (1.0..=2.0).contains(&s_t);
-        allow(fits, "topographic_factor", s_t, allowed)?;
+        require(fits, "topographic_factor", s_t, allowed)?;
         let s_s = soil.amplification(f0 * ag_g);
         Ok(Self {
             soil,

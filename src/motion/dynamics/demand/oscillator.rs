@@ -30,7 +30,7 @@ pub fn peak_displacement(samples: &[(f64, f64)], period_s: f64, damping_percent:
         let mut ground = from.1;
         let mut piece = 0.0;
         while piece < pieces {
-            state = advance.of(state, ground, ground + slope);
+            state = advance.apply(state, ground, ground + slope);
             ground += slope;
             piece += 1.0;
             peak = peak.max(state[0].abs());
@@ -78,7 +78,7 @@ impl Advance {
         Self { own, forced }
     }
 
-    fn of(&self, state: [f64; 2], from: f64, to: f64) -> [f64; 2] {
+    fn apply(&self, state: [f64; 2], from: f64, to: f64) -> [f64; 2] {
         std::array::from_fn(|i| {
             self.own[i][0] * state[0]
                 + self.own[i][1] * state[1]

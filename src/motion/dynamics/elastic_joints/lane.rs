@@ -87,7 +87,7 @@ impl<'a> Lane<'a> {
         let start_s = input.ground.start_s();
         Self {
             until,
-            ground_m_s: velocity.at(start_s),
+            ground_m_s: velocity.velocity_at(start_s),
             velocity,
             feet: FeetApart::of(input.row, input.ground),
             feet_apart_m: Vector2::zeros(),
@@ -129,7 +129,7 @@ impl<'a> Lane<'a> {
             self.observer.time + step_s
         };
         if let Some(feet) = &mut self.feet {
-            let feet_apart_m = feet.at(self.observer.time);
+            let feet_apart_m = feet.advance_to(self.observer.time);
             let by_m = feet_apart_m - self.feet_apart_m;
             step.feet_apart_change_m = [Lanes([by_m.x]), Lanes([by_m.y])];
             self.feet_apart_m = feet_apart_m;
@@ -142,7 +142,7 @@ impl<'a> Lane<'a> {
     /// Returns a kick up to `to_s`, and the ground velocity at this time, which is constant once the ground is quiet.
     pub fn kick(&self, to_s: f64) -> (Step<Lanes<1>>, Vector2<f64>) {
         let ground_m_s = if self.is_shaken() {
-            self.velocity.at(to_s)
+            self.velocity.velocity_at(to_s)
         } else {
             self.ground_m_s
         };
@@ -264,7 +264,7 @@ impl<'a> Lane<'a> {
         let decayed = energy_j < DECAYED * self.monitor.largest_j;
         let may_end = self.is_calm() && (decayed || !settles);
         if may_end && barrier_j().is_some_and(|barrier_j| self.keeps_barrier(barrier_j)) {
-            self.observer.decide(rests);
+            self.observer.end_early(rests);
             return;
         }
         // With feet that move apart, the barrier is unknown. A row beyond its barrier falls to that side, with any damping.
@@ -282,7 +282,7 @@ impl<'a> Lane<'a> {
         let is_safe =
             |barrier_j: f64| energy_j < SAFE * barrier_j && gone_j < LARGEST_LOSS_RATIO * barrier_j;
         if ends && barrier_j().is_some_and(is_safe) {
-            self.observer.decide(rests);
+            self.observer.end_early(rests);
         }
     }
 

@@ -7,9 +7,9 @@ use std::sync::{Arc, OnceLock};
 use nalgebra::Vector3;
 
 use super::stepper::Group;
-use crate::argument::{ArgumentError, allow, short, within};
+use crate::argument::{ArgumentError, require, require_within, short};
 use crate::dynamics::model::{Case, Initial, Job, Jobs, Recorder, check, one_by_one};
-use crate::dynamics::row::observer::{LARGEST_ENERGY_ERROR, balanced};
+use crate::dynamics::row::observer::{LARGEST_ENERGY_ERROR, require_balance};
 use crate::dynamics::row::standing::RigidRow;
 use crate::dynamics::row::stepper;
 use crate::dynamics::until::EndCondition;
@@ -175,7 +175,7 @@ impl ElasticJoints {
     /// # Errors
     /// When the step is outside 1e-9 to 1.
     pub fn with_longest_step_s(mut self, step_s: f64) -> Result<Self, ArgumentError> {
-        self.given_step_s = Some(within("longest_step_s", step_s, Self::STEP_S)?);
+        self.given_step_s = Some(require_within("longest_step_s", step_s, Self::STEP_S)?);
         Ok(self)
     }
 
@@ -322,8 +322,8 @@ impl ElasticJoints {
     fn velocities(&self, initial: Initial) -> Result<Vec<Vector3<f64>>, ArgumentError> {
         let rotation_rad = initial.rotation_rad;
         let allowed = "0 with elastic joints, which have no hinges to rotate about: they start under the weight of the structure";
-        allow(rotation_rad == 0.0, "rotation_rad", rotation_rad, allowed)?;
-        let release = self.rigid.released(initial)?;
+        require(rotation_rad == 0.0, "rotation_rad", rotation_rad, allowed)?;
+        let release = self.rigid.release(initial)?;
         let placement = &self.rigid.standing.placement;
         Ok(placement.velocities(&release.rates_rad_s))
     }
@@ -343,8 +343,8 @@ impl ElasticJoints {
         let recorder = recorder.map(|recorder| recorder as _);
         let start = (&self.structure, &rest);
         let mut group = Group::<1>::new(self.row(), start, gravity_m_s2, &barrier_j);
-        group.begin(0, (input, &velocities), until, recorder);
-        self.checked_summary(stepper::run(group)?, &rest, gravity_m_s2)
+        group.begin_motion(0, (input, &velocities), until, recorder);
+        self.checked_summary(stepper::step_to_end(group)?, &rest, gravity_m_s2)
     }
 
     /// Computes jobs on cases under one gravity, several in parallel.
@@ -380,12 +380,12 @@ impl ElasticJoints {
                     if is_mirrored(job) {
                         summary = summary.map(|summary| summary.mirrored(Some(self.row())));
                     }
-                    jobs.ended(job, summary);
+                    jobs.receive_result(job, summary);
                     *running = None;
                 }
                 while may_begin
                     && running.is_none()
-                    && let Some(job) = jobs.next()
+                    && let Some(job) = jobs.next_job()
                 {
                     let (given, request) = &cases[job.case];
                     let ground = match is_mirrored(job) {
@@ -394,11 +394,11 @@ impl ElasticJoints {
                     };
                     match model_of(job).input(ground, request) {
                         Ok((input, velocities)) => {
-                            group.begin(lane, (input, &velocities), job.until, None);
+                            group.begin_motion(lane, (input, &velocities), job.until, None);
                             *running = Some(job);
                             group.continue_lane(lane);
                         }
-                        Err(error) => jobs.ended(job, Err(error)),
+                        Err(error) => jobs.receive_result(job, Err(error)),
                     }
                 }
             }
@@ -436,7 +436,7 @@ impl ElasticJoints {
             row.energy_error = defect_j / barrier_j.max(row.largest_kinetic_j);
         }
         let step_s = SHORTER * self.longest_step_s();
-        Ok(balanced(summary, "elastic_joints", step_s)?)
+        Ok(require_balance(summary, "elastic_joints", step_s)?)
     }
 }
 

@@ -180,7 +180,7 @@ impl<'a, const L: usize> ElasticMotion<'a, L> {
     }
 
     /// Starts the motion of a lane from rest.
-    pub fn start(&mut self, lane: usize, rest: &Equilibrium) {
+    pub fn start_from_rest(&mut self, lane: usize, rest: &Equilibrium) {
         let alone = ElasticMotion::at_rest(self.structure, self.gravity_m_s2, rest);
         if self.structure.has_settled() {
             self.datum.clone_from(&rest.moved);
@@ -274,7 +274,7 @@ impl<'a, const L: usize> ElasticMotion<'a, L> {
             body.place.moved_m = both!(i: moved[i] + body.velocity_m_s[i] * drift_s);
             let angle = body.rate_rad_s * drift_s;
             body.angle_rad += angle;
-            body.place.half_turn = turned(body.place.half_turn, angle * 0.5);
+            body.place.half_turn = turn_angle(body.place.half_turn, angle * 0.5);
         }
     }
 
@@ -396,12 +396,12 @@ impl<'a, const L: usize> ElasticMotion<'a, L> {
             observation.sway_kg_m += x * mass;
             let mut nearest = Lanes([f64::INFINITY; L]);
             for slide in supports {
-                let along = structure.joints[slide.joint].geometry.along;
+                let tangent = structure.joints[slide.joint].geometry.tangent;
                 let slid = self.memories[slide.joint].permanent_slip_m * slide.sense;
                 let of_support = self.support_displacement_m(usize::from(slide.joint > 0));
                 let beside = [
-                    x - datum[0] - of_support[0] - slid * along[0],
-                    y - datum[1] - of_support[1] - slid * along[1],
+                    x - datum[0] - of_support[0] - slid * tangent[0],
+                    y - datum[1] - of_support[1] - slid * tangent[1],
                 ];
                 nearest = nearest.min(beside[0] * beside[0] + beside[1] * beside[1]);
             }
@@ -516,7 +516,7 @@ impl<const L: usize> WithSimd for LeapfrogStep<'_, '_, L> {
 /// Updates the cosine minus one and the sine of an angle that increases by `by`. The truncation error is below the rounding error for increments
 /// below 0.01 rad; structures that have not fallen turn less in a step.
 #[inline(always)]
-fn turned<const L: usize>([cos, sin]: [Lanes<L>; 2], by: Lanes<L>) -> [Lanes<L>; 2] {
+fn turn_angle<const L: usize>([cos, sin]: [Lanes<L>; 2], by: Lanes<L>) -> [Lanes<L>; 2] {
     let one = Lanes([1.0; L]);
     let square = by * by;
     let step_sin = by * (one - square * (one * (1.0 / 6.0) - square * (1.0 / 120.0)));

@@ -57,7 +57,7 @@ impl<'a, const L: usize> Group<'a, L> {
             joint,
             sense,
             extends,
-            along_x: part * sense * row.joints[joint].along().x,
+            along_x: part * sense * row.joints[joint].direction().x,
         };
         let supports = match row.supports {
             Supports::Left => vec![support(0, 1.0, left, 1.0)],
@@ -76,14 +76,14 @@ impl<'a, const L: usize> Group<'a, L> {
     }
 
     /// Starts a motion in a lane, at rest or with velocities of the blocks.
-    pub fn begin(
+    pub fn begin_motion(
         &mut self,
         lane: usize,
         (input, velocities): (MotionInput<'a>, &[Vector3<f64>]),
         until: EndCondition,
         recorder: Option<&'a mut dyn Recorder>,
     ) {
-        self.motion.start(lane, self.rest);
+        self.motion.start_from_rest(lane, self.rest);
         self.motion.set_velocities(lane, velocities);
         let mut begun = Lane::new(input, until, recorder);
         let weighted = self
@@ -99,7 +99,7 @@ impl<'a, const L: usize> Group<'a, L> {
             begun.observer.least_sway_kg_m.max(SIDE_RATIO * moved_kg_m);
         self.lanes[lane] = Some(begun);
         let observation = self.motion.observe(&Step::none(), &self.supports);
-        self.note(lane, &observation);
+        self.record_lane(lane, &observation);
     }
 
     /// Returns whether motions may start: where all other lanes are between strides. Most lanes are then observed at the same steps.
@@ -133,7 +133,7 @@ impl<'a, const L: usize> Group<'a, L> {
         let observation = self.motion.observe(&half, &self.supports);
         for index in 0..L {
             if self.lanes[index].as_ref().is_some_and(Lane::is_due) {
-                self.note(index, &observation);
+                self.record_lane(index, &observation);
             }
         }
     }
@@ -150,7 +150,7 @@ impl<'a, const L: usize> Group<'a, L> {
     }
 
     /// Records the observed quantities of the motion of a lane.
-    fn note(&mut self, index: usize, observation: &Observation<Lanes<L>>) {
+    fn record_lane(&mut self, index: usize, observation: &Observation<Lanes<L>>) {
         let (motion, supports) = (&self.motion, &self.supports);
         let Some(lane) = &mut self.lanes[index] else {
             return;
@@ -215,7 +215,7 @@ impl<'a, const L: usize> Group<'a, L> {
         observer.observe(rotations.clone(), potential, kinetic, sway);
         let peak_rad = observer.largest_rotation_rad();
         lane.stillness
-            .note(time, [kinetic, potential], rotations, peak_rad);
+            .record_step(time, [kinetic, potential], rotations, peak_rad);
         let far = OVERTURNED_RATIO * self.row.size_m;
         observer.overturned |= of(observation.largest_rotation_rad) >= OVERTURNED_RAD
             || of(observation.largest_displacement_m2) >= far * far;
@@ -399,7 +399,7 @@ impl<'a> Stepper<'a> for Group<'a, 1> {
         // The face of the block, or of the first of two.
         let end = usize::from(geometry.bodies[0] >= blocks.len());
         let corner_m = self.row.joints[joint].corner_m(edge);
-        self.pose(geometry.bodies[end]).of(corner_m)
+        self.pose(geometry.bodies[end]).current_position(corner_m)
     }
 
     fn momentum(&self) -> Vector2<f64> {

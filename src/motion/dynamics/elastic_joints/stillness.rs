@@ -26,7 +26,7 @@ impl Stillness {
     }
 
     /// Records the state after a step. `peak_rad` is the largest rotation up to now.
-    pub fn note(
+    pub fn record_step(
         &mut self,
         time_s: f64,
         [kinetic_j, potential_j]: [f64; 2],

@@ -6,9 +6,9 @@ use serde::Serialize;
 
 use super::motion::motion;
 use super::settings::MANY_CASES_STEP_RATIO;
-use crate::argument::{ArgumentError, allow, within};
+use crate::argument::{ArgumentError, require, require_within};
 use crate::dynamics::model::{Recorder, check};
-use crate::dynamics::row::observer::balanced;
+use crate::dynamics::row::observer::require_balance;
 use crate::dynamics::row::standing::RigidRow;
 use crate::dynamics::{
     GroundMotion, Model, Repetition, Request, RowModelError, Settings, SimulationError, Summary,
@@ -62,16 +62,16 @@ impl RowOptions {
             ("friction_coefficient", friction, Self::FRICTION_COEFFICIENT),
         ] {
             if let Some(value) = value {
-                within(argument, value, range)?;
+                require_within(argument, value, range)?;
             }
         }
         if let Some(shortest_s) = self.shortest_step_s {
             let allowed = "left out where joints slip: then all steps are the longest";
-            allow(friction.is_none(), "shortest_step_s", shortest_s, allowed)?;
+            require(friction.is_none(), "shortest_step_s", shortest_s, allowed)?;
             let longest_s = self.longest_step_s.unwrap_or(f64::INFINITY);
             let allowed = format_args!("at least the shortest step, {shortest_s:?}");
             let fits = longest_s >= shortest_s;
-            allow(fits, "longest_step_s", longest_s, allowed)?;
+            require(fits, "longest_step_s", longest_s, allowed)?;
         }
         Ok(self)
     }
@@ -279,13 +279,13 @@ impl Model for FreeHinges {
             let parts = self.row().ties.len() + self.row().joints.len();
             settings.within(MOST_TIE_WORK / parts as f64, &remedy)?;
         }
-        let release = request.initial.map(|initial| self.rigid.released(initial));
+        let release = request.initial.map(|initial| self.rigid.release(initial));
         let input = self.rigid.input(ground, request.gravity_m_s2, settings);
         let release = release.transpose()?;
         let standing = &self.rigid.standing;
         let summary = motion(input, standing, release.as_ref(), recorder)?;
         let halvings = summary.row().map_or(0, |row| row.halvings);
         let step_s = SHORTER * (settings.longest_step_s * libm::pow(0.5, halvings.into()));
-        Ok(balanced(summary, "free_hinges", step_s)?)
+        Ok(require_balance(summary, "free_hinges", step_s)?)
     }
 }

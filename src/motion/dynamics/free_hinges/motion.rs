@@ -24,10 +24,10 @@ pub fn motion(
     let recorder = recorder.map(|recorder| recorder as _);
     let released = |recorder| LandingStepper::new(input, standing, release, recorder);
     let Some(coefficient) = input.settings.friction_coefficient else {
-        return stepper::run(released(recorder)?);
+        return stepper::step_to_end(released(recorder)?);
     };
     let placement = released(None)?.placement;
     let start = (standing, &placement, release.filter(|one| one.has_rate()));
     let stepper = SlidingStepper::new(start, input, coefficient, recorder);
-    stepper::run(stepper)
+    stepper::step_to_end(stepper)
 }

@@ -19,7 +19,7 @@ impl<'a> InitialPosition<'a> {
     pub fn new(row: &'a Row, placement: &Placement) -> Self {
         Self {
             row,
-            touching: touching(&placement.gaps_m).collect(),
+            touching: touching_corners(&placement.gaps_m).collect(),
             placement: placement.clone(),
         }
     }
@@ -31,7 +31,7 @@ impl<'a> InitialPosition<'a> {
 
     /// Returns whether a row with these gaps is in this position, by its contacts: three hinges determine the position.
     pub fn has_contacts(&self, gaps_m: &[[f64; 2]]) -> bool {
-        touching(gaps_m).eq(self.touching.iter().copied())
+        touching_corners(gaps_m).eq(self.touching.iter().copied())
     }
 
     /// Returns the rotations of the blocks relative to this position.
@@ -71,6 +71,6 @@ impl<'a> InitialPosition<'a> {
 }
 
 /// Returns the corners in contact, for given gaps of the joints.
-pub(super) fn touching(gaps_m: &[[f64; 2]]) -> impl Iterator<Item = Corners> {
+pub(super) fn touching_corners(gaps_m: &[[f64; 2]]) -> impl Iterator<Item = Corners> {
     gaps_m.iter().map(|gaps| gaps.map(|gap| gap == 0.0))
 }

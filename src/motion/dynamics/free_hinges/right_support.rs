@@ -48,7 +48,7 @@ impl<'a> RightSupport<'a> {
     pub fn prescribe_mean_velocity(&mut self, from_s: f64, lasts_s: f64) {
         if let Some(feet) = &self.feet {
             self.solution_m_s =
-                (feet.ahead(from_s + lasts_s) - self.joint_displacement_m) / lasts_s;
+                (feet.displacement_at(from_s + lasts_s) - self.joint_displacement_m) / lasts_s;
         }
     }
 
@@ -67,7 +67,7 @@ impl<'a> RightSupport<'a> {
     /// Moves the right support to its position at `time_s`.
     pub fn move_to(&mut self, time_s: f64) {
         if let Some(feet) = &mut self.feet {
-            self.displacement_m = feet.at(time_s);
+            self.displacement_m = feet.advance_to(time_s);
         }
     }
 }

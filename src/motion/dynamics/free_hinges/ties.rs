@@ -42,7 +42,7 @@ impl<'a> Ties<'a> {
         let ends = self.memories().zip(&self.lines);
         let ends = ends.filter(|((tie, _), _)| !tie.is_constant_force());
         let ends = ends.flat_map(|((tie, memory), line)| {
-            let force = line.along * memory.force_n.0[0];
+            let force = line.direction * memory.force_n.0[0];
             tie.ends.into_iter().zip([force, -force])
         });
         let ends = ends.filter(|(end, _)| end.block.is_none() && end.support(feet_m) == 1);

@@ -38,7 +38,9 @@ impl Intensity {
             ..Self::default()
         };
         for &(time_s, acceleration) in samples {
-            intensity.acceleration_m_s2.note(acceleration.abs(), time_s);
+            intensity
+                .acceleration_m_s2
+                .record_value(acceleration.abs(), time_s);
         }
         let mut state = [0.0; 3];
         for (pair, after) in samples.windows(2).zip(1..) {
@@ -80,8 +82,8 @@ impl Intensity {
         for after_s in turns.chain([line.duration_s]) {
             let [velocity, displacement, _] = line.advance(state, after_s);
             let time_s = line.start_s + after_s;
-            self.velocity_m_s.note(velocity.abs(), time_s);
-            self.displacement_m.note(displacement.abs(), time_s);
+            self.velocity_m_s.record_value(velocity.abs(), time_s);
+            self.displacement_m.record_value(displacement.abs(), time_s);
         }
     }
 }
@@ -145,7 +147,7 @@ fn roots([c, b, a]: [f64; 3]) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    fn close(value: f64, expected: f64) {
+    fn assert_close(value: f64, expected: f64) {
         assert!(
             (value - expected).abs() < 1e-12 * expected.abs().max(1.0),
             "{value} {expected}"
@@ -159,21 +161,21 @@ mod tests {
         let (a, base, start) = (-2.5, 0.8, 3.0);
         let triangle = [(start, 0.0), (start + base / 2.0, a), (start + base, 0.0)];
         let intensity = Intensity::of(&triangle, 9.81);
-        close(intensity.acceleration_m_s2.value, 2.5);
-        close(intensity.acceleration_m_s2.time_s, start + 0.4);
-        close(intensity.velocity_m_s.value, 2.5 * base / 2.0);
-        close(intensity.displacement_m.value, 2.5 * base * base / 4.0);
-        close(
+        assert_close(intensity.acceleration_m_s2.value, 2.5);
+        assert_close(intensity.acceleration_m_s2.time_s, start + 0.4);
+        assert_close(intensity.velocity_m_s.value, 2.5 * base / 2.0);
+        assert_close(intensity.displacement_m.value, 2.5 * base * base / 4.0);
+        assert_close(
             intensity.arias_m_s,
             PI / (2.0 * 9.81) * 2.5 * 2.5 * base / 3.0,
         );
         let early = 0.5 * base * 0.1_f64.cbrt();
-        close(intensity.significant_s[0], start + early);
-        close(intensity.significant_s[1], start + base - early);
-        close(intensity.significant_duration_s(), base - 2.0 * early);
+        assert_close(intensity.significant_s[0], start + early);
+        assert_close(intensity.significant_s[1], start + base - early);
+        assert_close(intensity.significant_duration_s(), base - 2.0 * early);
         assert_eq!(intensity.course[0], [0.0; 3]);
-        close(intensity.course[1][2], 0.5);
-        close(intensity.course[2][2], 1.0);
+        assert_close(intensity.course[1][2], 0.5);
+        assert_close(intensity.course[2][2], 1.0);
     }
 
     /// The acceleration 1 - 2 t falls through zero at 0.5 s, where the velocity peaks at 1/4; the velocity vanishes at
@@ -182,10 +184,10 @@ mod tests {
     fn peaks_between_samples_are_found() {
         let line = [(0.0, 1.0), (1.2, -1.4)];
         let intensity = Intensity::of(&line, 1.0);
-        close(intensity.velocity_m_s.value, 0.25);
-        close(intensity.velocity_m_s.time_s, 0.5);
-        close(intensity.displacement_m.value, 1.0 / 6.0);
-        close(intensity.displacement_m.time_s, 1.0);
+        assert_close(intensity.velocity_m_s.value, 0.25);
+        assert_close(intensity.velocity_m_s.time_s, 0.5);
+        assert_close(intensity.displacement_m.value, 1.0 / 6.0);
+        assert_close(intensity.displacement_m.time_s, 1.0);
     }
 
     /// A full sine of amplitude A and period T: velocity A T / pi, displacement A T^2 / (2 pi), squares A^2 T / 2; lines

@@ -6,7 +6,7 @@ use nalgebra::Vector2;
 
 use super::error::{GroundError, TIME_S};
 use super::piece::{Formula, Piece};
-use crate::argument::{ArgumentError, within};
+use crate::argument::{ArgumentError, require_within};
 use crate::bisection::{Width, bisect, middle};
 use crate::mechanics::{Row, Supports};
 
@@ -84,7 +84,7 @@ impl GroundMotion {
         let right = if delay_s >= 0.0 {
             self.delayed_by(delay_s)?
         } else {
-            within("-delay_s", -delay_s, TIME_S)?;
+            require_within("-delay_s", -delay_s, TIME_S)?;
             self.advanced_by(-delay_s)
         };
         Ok(self.with_right_foot(right))
@@ -142,7 +142,7 @@ impl GroundMotion {
     /// # Errors
     /// When the delay is out of range.
     pub fn delayed_by(&self, delay_s: f64) -> Result<Self, GroundError> {
-        within("delay_s", delay_s, TIME_S)?;
+        require_within("delay_s", delay_s, TIME_S)?;
         let right = self.right_foot().map(|right| right.delayed_by(delay_s));
         let mut delayed = self.shifted_by(delay_s, self.start_s());
         delayed.right = right.transpose()?.map(Arc::new);
@@ -190,7 +190,8 @@ impl GroundMotion {
         let pieces = self.pieces.iter();
         let moving = pieces.filter(move |piece| piece.start_s < until_s && !piece.stays_still());
         moving.flat_map(move |piece| {
-            [piece.start_s, piece.end_s.min(until_s)].map(|time_s| piece.at(time_s).0)
+            [piece.start_s, piece.end_s.min(until_s)]
+                .map(|time_s| piece.acceleration_and_rate(time_s).0)
         })
     }
 
@@ -235,7 +236,7 @@ impl GroundMotion {
             return Some(piece.start_s);
         }
         let (before_s, after_s) = bisect(piece.start_s, piece.end_s, Width::Rounding, |time_s| {
-            falls(piece.at(time_s).0)
+            falls(piece.acceleration_and_rate(time_s).0)
         });
         Some(middle(before_s, after_s))
     }
@@ -256,7 +257,7 @@ impl GroundMotion {
     /// # Errors
     /// When the factor is outside that range.
     pub fn scaled(&self, factor: f64) -> Result<Self, ArgumentError> {
-        within("factor", factor, -1e9..=1e9)?;
+        require_within("factor", factor, -1e9..=1e9)?;
         let pieces = self.pieces.iter().map(|piece| Piece {
             formula: piece.formula.scaled(factor),
             ..*piece
@@ -374,7 +375,11 @@ mod tests {
             let scaled = ground(1.0).scaled(1.7).unwrap();
             for (ours, direct) in scaled.pieces.iter().zip(ground(1.7).pieces) {
                 let time_s = ours.start_s + 0.01;
-                assert!((ours.at(time_s).0 - direct.at(time_s).0).norm() < 1e-14);
+                assert!(
+                    (ours.acceleration_and_rate(time_s).0 - direct.acceleration_and_rate(time_s).0)
+                        .norm()
+                        < 1e-14
+                );
                 assert!((ours.start_s, ours.end_s) == (direct.start_s, direct.end_s));
             }
         }

@@ -36,11 +36,11 @@ impl Formula {
     }
 
     /// Returns the acceleration and its rate of change.
-    pub fn at(&self, since_s: f64) -> (Vector2<f64>, Vector2<f64>) {
+    pub fn acceleration_and_rate(&self, since_s: f64) -> (Vector2<f64>, Vector2<f64>) {
         match *self {
             Self::Linear(at_origin, slope) => (at_origin + slope * since_s, slope),
             Self::Shaped(amplitude, shape) => {
-                let (value, rate) = shape.at(since_s);
+                let (value, rate) = shape.value_and_rate(since_s);
                 (amplitude * value, amplitude * rate)
             }
         }
@@ -78,13 +78,13 @@ impl Piece {
 
     /// Returns the acceleration in m/s2 and its rate of change in m/s3, horizontal and vertical (positive to the right and upwards), at a time in the
     /// piece. At its ends the values are limits from inside.
-    pub fn at(&self, time_s: f64) -> (Vector2<f64>, Vector2<f64>) {
-        self.formula.at(time_s - self.origin_s)
+    pub fn acceleration_and_rate(&self, time_s: f64) -> (Vector2<f64>, Vector2<f64>) {
+        self.formula.acceleration_and_rate(time_s - self.origin_s)
     }
 
-    /// Returns the horizontal acceleration in m/s2, as [`Piece::at`].
+    /// Returns the horizontal acceleration in m/s2, as [`Piece::acceleration_and_rate`].
     pub fn acceleration_m_s2(&self, time_s: f64) -> f64 {
-        self.at(time_s).0.x
+        self.acceleration_and_rate(time_s).0.x
     }
 
     /// Returns whether the piece is the last one, with zero acceleration from here on.
@@ -110,7 +110,7 @@ impl Piece {
         if self.stays_still() {
             [Vector2::zeros(); 2]
         } else {
-            [self.start_s, self.end_s].map(|time_s| self.at(time_s).0)
+            [self.start_s, self.end_s].map(|time_s| self.acceleration_and_rate(time_s).0)
         }
     }
 }

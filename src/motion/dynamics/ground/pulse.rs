@@ -9,7 +9,7 @@ use super::error::{ACCELERATION_M_S2, DURATION_S, GroundError, TIME_S};
 use super::motion::GroundMotion;
 use super::piece::Formula;
 use super::shape::{Gabor, Shape, Sine, WaveTrain};
-use crate::argument::within;
+use crate::argument::require_within;
 
 named! {
     /// Shape of a single pulse. Accelerations follow with the amplitude `a`, which is the peak acceleration,
@@ -148,14 +148,14 @@ impl PulseShape {
     /// # Errors
     /// When a number of the pulse is outside its range.
     pub fn inclined_m_s2(&self, amplitude_m_s2: Vector2<f64>) -> Result<GroundMotion, GroundError> {
-        within("duration_s", self.duration_s, DURATION_S)?;
-        within("start_s", self.start_s, TIME_S)?;
+        require_within("duration_s", self.duration_s, DURATION_S)?;
+        require_within("start_s", self.start_s, TIME_S)?;
         if self.pulse.is_wave_train() {
-            within("cycles", self.train.cycles, 1.0..=1e3)?;
-            within("phase_rad", self.train.phase_rad, -1e3..=1e3)?;
+            require_within("cycles", self.train.cycles, 1.0..=1e3)?;
+            require_within("phase_rad", self.train.phase_rad, -1e3..=1e3)?;
         }
-        within("amplitude_m_s2.x", amplitude_m_s2.x, ACCELERATION_M_S2)?;
-        within("amplitude_m_s2.y", amplitude_m_s2.y, ACCELERATION_M_S2)?;
+        require_within("amplitude_m_s2.x", amplitude_m_s2.x, ACCELERATION_M_S2)?;
+        require_within("amplitude_m_s2.y", amplitude_m_s2.y, ACCELERATION_M_S2)?;
         let pieces = self.pieces(amplitude_m_s2);
         Ok(GroundMotion::from_pieces(self.start_s, pieces))
     }
@@ -262,7 +262,7 @@ impl CutTrain {
         let mut ends_s = shape.extrema_s(length_s, period_s);
         ends_s.push(length_s);
         // The value at the start of the train does not exceed its strongest extremum or its end.
-        let values = ends_s.iter().map(|end| shape.at(*end).0.abs());
+        let values = ends_s.iter().map(|end| shape.value_and_rate(*end).0.abs());
         let peak = values.fold(0.0, f64::max);
         Self {
             shape,
@@ -312,8 +312,8 @@ mod tests {
                 let end = piece.end_s.min(piece.start_s + 10.0);
                 let at = |i: i32| piece.start_s + (end - piece.start_s) * f64::from(i) / 100.0;
                 for direction in [Vector2::x(), Vector2::y(), Vector2::new(-1.0, 0.35)] {
-                    let along = |i: i32| piece.at(at(i)).0.dot(&direction);
-                    let rises = (0..100).map(|i| along(i + 1) - along(i));
+                    let component = |i: i32| piece.acceleration_and_rate(at(i)).0.dot(&direction);
+                    let rises = (0..100).map(|i| component(i + 1) - component(i));
                     let (up, down) = rises.fold((0.0_f64, 0.0_f64), |(up, down), rise| {
                         (up.max(rise), down.min(rise))
                     });
@@ -321,9 +321,11 @@ mod tests {
                     assert!(up < 2e-13 || down > -2e-13, "{pulse:?} {train:?} {piece:?}");
                 }
                 let (middle, h) = (at(37), 1e-6);
-                let slope = (piece.at(middle + h).0 - piece.at(middle - h).0) / (2.0 * h);
+                let slope = (piece.acceleration_and_rate(middle + h).0
+                    - piece.acceleration_and_rate(middle - h).0)
+                    / (2.0 * h);
                 assert!(
-                    (slope - piece.at(middle).1).norm() < 1e-6,
+                    (slope - piece.acceleration_and_rate(middle).1).norm() < 1e-6,
                     "{pulse:?} {train:?}"
                 );
             }

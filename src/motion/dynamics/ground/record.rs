@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 use super::error::{ACCELERATION_M_S2, CLOCK_S, GroundError, TIME_S};
 use super::motion::GroundMotion;
 use super::piece::Formula;
-use crate::argument::within;
+use crate::argument::require_within;
 
 /// Smallest spacing of samples, in seconds.
 const MIN_STEP_S: f64 = 1e-8;
@@ -28,7 +28,7 @@ impl GroundMotion {
     /// # Errors
     /// When there are fewer than two samples, or a number is outside its range.
     pub fn from_samples(step_s: f64, horizontal_m_s2: &[f64]) -> Result<Self, GroundError> {
-        within("step_s", step_s, MIN_STEP_S..=1e9)?;
+        require_within("step_s", step_s, MIN_STEP_S..=1e9)?;
         let samples = horizontal_m_s2.iter().enumerate();
         let samples = samples.map(|(index, acceleration)| (index as f64 * step_s, *acceleration));
         let samples: Vec<_> = samples.collect();
@@ -50,7 +50,7 @@ impl GroundMotion {
         vertical: &[(f64, f64)],
         start_s: f64,
     ) -> Result<Self, GroundError> {
-        within("start_s", start_s, TIME_S)?;
+        require_within("start_s", start_s, TIME_S)?;
         // Of two empty components, the error names the first.
         if !horizontal.is_empty() || vertical.is_empty() {
             check("horizontal", horizontal)?;
@@ -62,7 +62,7 @@ impl GroundMotion {
             .into_iter()
             .filter_map(|samples| Some(samples.first()?.0))
             .fold(f64::INFINITY, f64::min);
-        within("start_s + first time", start_s + first_s, TIME_S)?;
+        require_within("start_s + first time", start_s + first_s, TIME_S)?;
         Ok(Self::polylines(horizontal, vertical, start_s))
     }
 
@@ -94,8 +94,12 @@ fn check(argument: &'static str, samples: &[(f64, f64)]) -> Result<(), GroundErr
     let mut before_s = f64::NEG_INFINITY;
     for (index, &(time_s, acceleration)) in samples.iter().enumerate() {
         let sample = format_args!("sample {index} of `{argument}`");
-        within("time_s", time_s, CLOCK_S)
-            .and(within("acceleration_m_s2", acceleration, ACCELERATION_M_S2))
+        require_within("time_s", time_s, CLOCK_S)
+            .and(require_within(
+                "acceleration_m_s2",
+                acceleration,
+                ACCELERATION_M_S2,
+            ))
             .map_err(|fault| GroundError(format!("{sample}: {fault}")))?;
         // Times computed as multiples of a step may be slightly less than a step apart.
         if time_s - before_s < 0.999 * MIN_STEP_S {
@@ -136,7 +140,7 @@ mod tests {
         assert_eq!(corners, [0.0, 0.75, 1.0, 1.25, 1.75, 3.25]);
         let at = |time: f64| {
             let piece = ground.pieces.iter().rfind(|p| p.start_s <= time).unwrap();
-            piece.at(time).0
+            piece.acceleration_and_rate(time).0
         };
         for (time, x, y) in [
             (0.7, 0.0, 0.0),

@@ -31,7 +31,7 @@ pub struct Sine {
 }
 
 impl Sine {
-    pub fn at(&self, since_s: f64) -> (f64, f64) {
+    pub fn value_and_rate(&self, since_s: f64) -> (f64, f64) {
         let (sin, cos) = libm::sincos(self.frequency_rad_s * since_s + self.phase_rad);
         let rate = self.amplitude * self.frequency_rad_s * cos;
         (self.amplitude * sin, rate)
@@ -90,12 +90,12 @@ pub enum Shape {
 
 impl Shape {
     /// Returns the value and its rate of change.
-    pub fn at(&self, since_s: f64) -> (f64, f64) {
+    pub fn value_and_rate(&self, since_s: f64) -> (f64, f64) {
         match *self {
-            Self::Sine(sine) => sine.at(since_s),
+            Self::Sine(sine) => sine.value_and_rate(since_s),
             Self::Beat(sines) => sines
                 .iter()
-                .map(|sine| sine.at(since_s))
+                .map(|sine| sine.value_and_rate(since_s))
                 .fold((0.0, 0.0), |sum, term| (sum.0 + term.0, sum.1 + term.1)),
             Self::Ricker(period_s) => {
                 let scale = PI / period_s;
@@ -152,7 +152,9 @@ impl Shape {
                 let panel = |middle_s: f64| {
                     let pair = |(node, weight): (f64, f64)| {
                         let offset_s = 0.5 * quarter_s * node;
-                        weight * (self.at(middle_s - offset_s).0 + self.at(middle_s + offset_s).0)
+                        weight
+                            * (self.value_and_rate(middle_s - offset_s).0
+                                + self.value_and_rate(middle_s + offset_s).0)
                     };
                     GAUSS_LEGENDRE_8.map(pair).iter().sum::<f64>()
                 };
@@ -168,7 +170,7 @@ impl Shape {
             Self::Beat(sines) => {
                 let bend = |sine: Sine| sine.amplitude.abs() * sine.frequency_rad_s.powi(2);
                 let steepest = sines.map(bend).into_iter().sum();
-                (Box::new(|since_s| self.at(since_s).1), steepest)
+                (Box::new(|since_s| self.value_and_rate(since_s).1), steepest)
             }
             Self::Gabor(gabor) => {
                 let bend = 2.0 / (gabor.train.cycles * gabor.train.cycles);

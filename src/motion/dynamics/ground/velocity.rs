@@ -39,7 +39,7 @@ impl<'a> GroundVelocity<'a> {
 
     /// Returns the velocity in m/s, horizontal and vertical (positive to the right and upwards), at a time not before the start. For feet that move
     /// differently it is that of the left foot.
-    pub fn at(&self, time_s: f64) -> Vector2<f64> {
+    pub fn velocity_at(&self, time_s: f64) -> Vector2<f64> {
         let last = self.last.get();
         let is_near = |index: &usize| {
             let starts = |at: usize| self.ground.pieces.get(at).map(|piece| piece.start_s);
@@ -56,7 +56,10 @@ impl<'a> GroundVelocity<'a> {
     /// between times and corners; it is exact for records and constant accelerations.
     pub fn displacements_m(&self, times_s: &[f64]) -> Vec<Vector2<f64>> {
         let mut path = Path::new(self.clone());
-        times_s.iter().map(|time_s| path.to(*time_s)).collect()
+        times_s
+            .iter()
+            .map(|time_s| path.advance_to(*time_s))
+            .collect()
     }
 }
 
@@ -68,7 +71,10 @@ impl GroundMotion {
             return vec![Vector2::zeros(); times_s.len()];
         };
         let mut feet = FeetApart::between([self, right]);
-        times_s.iter().map(|time_s| feet.at(*time_s)).collect()
+        times_s
+            .iter()
+            .map(|time_s| feet.advance_to(*time_s))
+            .collect()
     }
 }
 
@@ -93,14 +99,14 @@ impl<'a> Path<'a> {
     }
 
     /// Advances to a time not before the last one, and returns the position.
-    fn to(&mut self, time_s: f64) -> Vector2<f64> {
-        (self.piece, self.at_m) = self.ahead(time_s);
+    fn advance_to(&mut self, time_s: f64) -> Vector2<f64> {
+        (self.piece, self.at_m) = self.position_and_piece_at(time_s);
         self.time_s = self.time_s.max(time_s);
         self.at_m
     }
 
     /// Returns the position of the ground at a later time, and the piece of that time.
-    fn ahead(&self, time_s: f64) -> (usize, Vector2<f64>) {
+    fn position_and_piece_at(&self, time_s: f64) -> (usize, Vector2<f64>) {
         let pieces = &self.velocity.ground.pieces;
         let (mut index, mut from_s, mut at_m) = (self.piece, self.time_s, self.at_m);
         while from_s < time_s {
@@ -144,16 +150,19 @@ impl<'a> FeetApart<'a> {
     }
 
     /// Returns the displacement at a time not before the last one, to the right and upwards, in m.
-    pub(in crate::dynamics) fn at(&mut self, time_s: f64) -> Vector2<f64> {
+    pub(in crate::dynamics) fn advance_to(&mut self, time_s: f64) -> Vector2<f64> {
         let [left, right] = &mut self.paths;
         let time_s = time_s.min(self.end_s);
-        right.to(time_s) - left.to(time_s)
+        right.advance_to(time_s) - left.advance_to(time_s)
     }
 
     /// Returns the displacement at a later time, in m, without advancing.
-    pub(in crate::dynamics) fn ahead(&self, time_s: f64) -> Vector2<f64> {
+    pub(in crate::dynamics) fn displacement_at(&self, time_s: f64) -> Vector2<f64> {
         let time_s = time_s.min(self.end_s);
-        let [left_m, right_m] = self.paths.each_ref().map(|path| path.ahead(time_s).1);
+        let [left_m, right_m] = self
+            .paths
+            .each_ref()
+            .map(|path| path.position_and_piece_at(time_s).1);
         right_m - left_m
     }
 
@@ -162,7 +171,10 @@ impl<'a> FeetApart<'a> {
         if time_s >= self.end_s {
             return Vector2::zeros();
         }
-        let [left_m_s, right_m_s] = self.paths.each_ref().map(|path| path.velocity.at(time_s));
+        let [left_m_s, right_m_s] = self
+            .paths
+            .each_ref()
+            .map(|path| path.velocity.velocity_at(time_s));
         right_m_s - left_m_s
     }
 }
@@ -192,13 +204,13 @@ mod tests {
                     let h = (piece.end_s - piece.start_s) / f64::from(n);
                     for i in 0..n {
                         let time = piece.start_s + h * f64::from(i);
-                        let miss: Vector2<f64> = exact.at(time) - velocity;
+                        let miss: Vector2<f64> = exact.velocity_at(time) - velocity;
                         assert!(miss.norm() < 1e-10, "{pulse:?} {train:?} {time} {miss}");
-                        let at = |part: f64| piece.at(time + part * h).0;
+                        let at = |part: f64| piece.acceleration_and_rate(time + part * h).0;
                         velocity += (at(0.0) + at(0.5) * 4.0 + at(1.0)) * (h / 6.0);
                     }
                 }
-                assert!((exact.at(100.0) - velocity).norm() < 1e-10);
+                assert!((exact.velocity_at(100.0) - velocity).norm() < 1e-10);
             }
         }
     }
@@ -232,10 +244,10 @@ mod tests {
         let ground = GroundMotion::record(&samples, &[], 0.25).unwrap();
         let velocity = GroundVelocity::new(&ground);
         // -1/2 * 1/2 and -3/2 * 1/2.
-        assert!((velocity.at(1.25).x + 0.25).abs() < 1e-15);
-        assert!((velocity.at(9.0).x + 0.625).abs() < 1e-15);
+        assert!((velocity.velocity_at(1.25).x + 0.25).abs() < 1e-15);
+        assert!((velocity.velocity_at(9.0).x + 0.625).abs() < 1e-15);
         let cut = ground.cut_at(&[0.9, 1.4]);
-        let miss = GroundVelocity::new(&cut).at(1.6) - velocity.at(1.6);
+        let miss = GroundVelocity::new(&cut).velocity_at(1.6) - velocity.velocity_at(1.6);
         assert!(miss.norm() < 1e-15);
     }
 }

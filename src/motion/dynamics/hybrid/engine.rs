@@ -68,7 +68,7 @@ pub trait HybridSystem<const N: usize> {
 
     /// Returns the state within a step by interpolation. Near the end of the step it is as accurate as the end; elsewhere it serves to find
     /// events.
-    fn between(&self, step: &Step<N>, time_s: f64) -> State<N>;
+    fn interpolate(&self, step: &Step<N>, time_s: f64) -> State<N>;
 
     /// Returns the scales of the state's components in the future motion, to which tolerances refer.
     fn scale(&self, now: &SystemState<Self::Mode, N>) -> State<N>;
@@ -316,7 +316,7 @@ fn land<S: HybridSystem<N>, const N: usize>(
     let span_s = time_s - step.start_s;
     let mut landed = Step {
         end_s: time_s,
-        end: system.between(step, time_s),
+        end: system.interpolate(step, time_s),
         ..*step
     };
     let slope = |time_s: f64, state: &State<N>| system.slope(&from.at(time_s, state));
@@ -374,7 +374,7 @@ fn first_event<S: HybridSystem<N>, const N: usize>(
         };
         let start = point(step.start_s, &step.start);
         let end = point(step.end_s, &step.end);
-        let inside = |time_s: f64| point(time_s, &system.between(step, time_s));
+        let inside = |time_s: f64| point(time_s, &system.interpolate(step, time_s));
         if let Some(time_s) = first_crossing(start, end, HALVINGS, &inside)
             && first.is_none_or(|(_, earliest)| time_s < earliest)
         {

@@ -38,8 +38,8 @@ impl<'a, C: MechanismChain> FrictionCollector<'a, C> {
     }
 
     /// Adds the demand at an instant in motion.
-    pub(super) fn note(&mut self, time_s: f64, friction: f64, is_below_critical: bool) {
-        self.largest.note(friction, time_s);
+    pub(super) fn add_demand(&mut self, time_s: f64, friction: f64, is_below_critical: bool) {
+        self.largest.record_value(friction, time_s);
         if is_below_critical {
             self.before_critical = self.largest;
         }
@@ -60,7 +60,8 @@ impl<'a, C: MechanismChain> FrictionCollector<'a, C> {
     pub(super) fn end_rest(&mut self, rocking: &Rocking<'a, C>) {
         for (_, at) in &mut self.pushes {
             if let Some(now) = at.take() {
-                self.largest.note(rocking.demand(&now).friction, now.time_s);
+                self.largest
+                    .record_value(rocking.demand(&now).friction, now.time_s);
             }
         }
         self.before_critical = self.largest;

@@ -170,7 +170,7 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
     }
 
     /// Returns the mode of a structure released on one side.
-    pub fn released(&self, sway: Sway) -> Mode<'a, C::Mechanism> {
+    pub fn released_mode(&self, sway: Sway) -> Mode<'a, C::Mechanism> {
         let link = self.chain.link_from(sway, 0);
         let swing = |link| Swing {
             sway,
@@ -186,7 +186,7 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
 
     /// Returns the ground acceleration in the frame of a mechanism with this sway.
     fn ground_m_s2(&self, sway: Sway, now: &SystemState<'a, C::Mechanism>) -> Vector2<f64> {
-        let mut ground_m_s2 = self.piece(now.piece).at(now.time_s).0;
+        let mut ground_m_s2 = self.piece(now.piece).acceleration_and_rate(now.time_s).0;
         ground_m_s2.x *= sway.sign();
         ground_m_s2
     }
@@ -344,7 +344,7 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
         RockingState::new(rate, acceleration, work)
     }
 
-    fn between(&self, step: &Step<3>, time_s: f64) -> RockingState {
+    fn interpolate(&self, step: &Step<3>, time_s: f64) -> RockingState {
         let span = step.end_s - step.start_s;
         if span <= 0.0 {
             return step.start;
@@ -422,10 +422,10 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
         let (q, rate) = (now.state[0], now.state[1]);
         match (guard, now.mode) {
             (Guard::Uplift(sway), _) => {
-                let Some(uplift_g) = *self.uplift_g.to(sway) else {
+                let Some(uplift_g) = *self.uplift_g.get(sway) else {
                     return (1.0, 0.0);
                 };
-                let (acceleration, jerk) = piece.at(now.time_s);
+                let (acceleration, jerk) = piece.acceleration_and_rate(now.time_s);
                 // A vertical acceleration acts on masses, not on constant forces.
                 let first = self.chain.link_from(sway, 0);
                 let of_forces = first.map_or(0.0, |it| it.at_zero.s_f / it.at_zero.s_x);
@@ -466,7 +466,7 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
         let work = now.state[2];
         let still = RockingState::new(0.0, 0.0, work);
         match (guard, now.mode) {
-            (Guard::Uplift(sway), _) => (self.released(sway), still),
+            (Guard::Uplift(sway), _) => (self.released_mode(sway), still),
             (Guard::Critical | Guard::Limit, Phase::Rocking(swing)) => {
                 (Phase::Overturned(swing), now.state)
             }

@@ -72,9 +72,10 @@ impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
         self.next as f64 * self.output_step_s
     }
 
-    fn emit(&mut self, sample: &Sample) -> ControlFlow<()> {
+    fn emit_sample(&mut self, sample: &Sample) -> ControlFlow<()> {
         let moving = sample.state != State::Rest;
-        self.thrust.note(sample.time_s, moving, &sample.demand);
+        self.thrust
+            .add_sample(sample.time_s, moving, &sample.demand);
         self.note_return(sample);
         self.recorder.sample(sample)
     }
@@ -82,8 +83,8 @@ impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
     fn sample(&mut self, now: &StructureState<'a, C>, thrust_line: bool) -> Sample {
         let rocking = self.rocking;
         let mut sample = mem::take(&mut self.buffer);
-        let (ground_m_s2, _) = rocking.ground.pieces[now.piece].at(now.time_s);
-        sample.begin(now.time_s, ground_m_s2, self.phase);
+        let (ground_m_s2, _) = rocking.ground.pieces[now.piece].acceleration_and_rate(now.time_s);
+        sample.reset_to_rest(now.time_s, ground_m_s2, self.phase);
         let (rotations, rates) = posture(rocking, now.mode, &now.state);
         sample.state = state(now.mode);
         sample.rotations_rad.extend(rotations.as_ref());
@@ -126,7 +127,7 @@ impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
             return;
         };
         for time_s in instants(self.rocking, swing, step).chain([step.end_s]) {
-            let now = from.at(time_s, &self.rocking.between(step, time_s));
+            let now = from.at(time_s, &self.rocking.interpolate(step, time_s));
             let sample = self.sample(&now, false);
             self.thrust.note_demand(time_s, &sample.demand);
             self.note_return(&sample);
@@ -148,11 +149,11 @@ impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
         self.note_step(from, step);
         while self.next_s() < step.end_s {
             let time_s = self.next_s().max(step.start_s);
-            let state = self.rocking.between(step, time_s);
+            let state = self.rocking.interpolate(step, time_s);
             let sample = self.sample(&from.at(time_s, &state), true);
             self.next += 1;
             if let Some(last_sample) = self.last_sample.replace(sample) {
-                let flow = self.emit(&last_sample);
+                let flow = self.emit_sample(&last_sample);
                 self.buffer = last_sample;
                 flow?;
             }
@@ -168,9 +169,9 @@ impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
         if let Some(last_sample) = self.last_sample.take()
             && last_sample.time_s < now.time_s - 1e-9 * self.output_step_s
         {
-            self.emit(&last_sample)?;
+            self.emit_sample(&last_sample)?;
         }
-        self.emit(&last)
+        self.emit_sample(&last)
     }
 
     /// Computes the fall of an overturned mechanism if the recorder wants it. The hinges stay the same, also beyond the limit position, where the
@@ -204,10 +205,10 @@ impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
             let watch = |step: &Step<3>| {
                 while self.next_s() <= step.end_s {
                     let time_s = self.next_s();
-                    let state = rocking.between(step, time_s);
+                    let state = rocking.interpolate(step, time_s);
                     let sample = self.sample(&overturned.at(time_s, &state), true);
                     self.next += 1;
-                    ended = self.recorder.fall(&sample);
+                    ended = self.recorder.fall_sample(&sample);
                     if let Some(at) = fall::end_at(&sample) {
                         end = at;
                         ended = ControlFlow::Break(());
@@ -224,6 +225,6 @@ impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
             };
             now = now.at(end_s, &last);
         }
-        self.recorder.fell(end);
+        self.recorder.fall_end(end);
     }
 }

@@ -19,7 +19,7 @@ use crate::dynamics::{
     Details, Event, EventKind, GroundMotion, MechanismModel, Model, Outcome, Request,
     SimulationError, Summary,
 };
-use crate::mechanics::capacity::{displaced, moving_bodies, moving_forces};
+use crate::mechanics::capacity::{displaced_mechanism, moving_bodies, moving_forces};
 use crate::mechanics::column::RockingColumn;
 use crate::mechanics::equivalent::equivalent_towards;
 use crate::mechanics::{
@@ -91,8 +91,8 @@ macro_rules! models {
                 equivalent_towards(self, sway, gravity_m_s2)
             }
 
-            fn displaced(&self, sway: Sway, part: f64) -> Option<Displaced> {
-                displaced(self, sway, part)
+            fn displaced_mechanism(&self, sway: Sway, part: f64) -> Option<Displaced> {
+                displaced_mechanism(self, sway, part)
             }
 
             fn moving_bodies(&self, sway: Sway) -> Option<Vec<MovingBody>> {
@@ -124,7 +124,7 @@ fn history_of<C: MechanismChain + MechanismModel>(
     recorder: Option<&mut dyn Recorder>,
 ) -> Result<Summary, SimulationError> {
     let rocking = checked(chain, ground, request)?;
-    let mode = |initial: Initial| rocking.released(initial.sway);
+    let mode = |initial: Initial| rocking.released_mode(initial.sway);
     let mode = request.initial.map_or(Phase::Rest, mode);
     let start = |initial: Initial| RockingState::new(initial.rotation_rad, initial.rate_rad_s, 0.0);
     let state = request.initial.map_or_else(RockingState::zeros, start);
@@ -453,7 +453,7 @@ impl<'a, C: MechanismChain> SummaryCollector<'_, 'a, C> {
         };
         let is_below_critical = now.state[0] < swing.link.critical_rad;
         let demand = self.rocking.demand_at_sections(swing, now);
-        (self.friction).note(now.time_s, demand.friction, is_below_critical);
+        (self.friction).add_demand(now.time_s, demand.friction, is_below_critical);
         if follows && is_below_critical {
             self.excess_ratio = self.excess_ratio.max(demand.excess_ratio);
         }
@@ -490,9 +490,12 @@ impl<'a, C: MechanismChain> SummaryCollector<'_, 'a, C> {
             let bend = step.end_slope[1] - step.start_slope[1];
             let turn_s = falling_root(step.start_s, step.end_s, |time_s| {
                 let part = bend * (time_s - step.start_s) / (step.end_s - step.start_s);
-                (rocking.between(step, time_s)[1], step.start_slope[1] + part)
+                (
+                    rocking.interpolate(step, time_s)[1],
+                    step.start_slope[1] + part,
+                )
             });
-            let turned = from.at(turn_s, &rocking.between(step, turn_s));
+            let turned = from.at(turn_s, &rocking.interpolate(step, turn_s));
             if is_strong {
                 self.note_demand(&turned, follows);
             }
@@ -501,15 +504,15 @@ impl<'a, C: MechanismChain> SummaryCollector<'_, 'a, C> {
         }
         if step.start[0] < link.critical_rad && step.end[0] >= link.critical_rad {
             let passage_s = falling_root(step.start_s, step.end_s, |time_s| {
-                let state = rocking.between(step, time_s);
+                let state = rocking.interpolate(step, time_s);
                 (link.critical_rad - state[0], -state[1])
             });
-            self.note_peak(mode, &rocking.between(step, passage_s));
+            self.note_peak(mode, &rocking.interpolate(step, passage_s));
             self.last_passage = Some((passage_s, self.peaks.clone()));
         }
         if is_strong {
             for time_s in instants(rocking, swing, step) {
-                self.note_demand(&from.at(time_s, &rocking.between(step, time_s)), false);
+                self.note_demand(&from.at(time_s, &rocking.interpolate(step, time_s)), false);
             }
             self.note_demand(&from.at(step.end_s, &step.end), follows);
         }

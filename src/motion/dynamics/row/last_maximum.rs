@@ -19,7 +19,7 @@ impl LastMaximum {
 
     /// Updates the maximum by a height at a time. A rise by `least` above the lowest height since the maximum is a return; `returns` is true if the row
     /// returns by another criterion.
-    pub fn note(&mut self, (height, time): (f64, f64), least: f64, returns: bool) {
+    pub fn record_height(&mut self, (height, time): (f64, f64), least: f64, returns: bool) {
         self.lowest = self.lowest.min(height);
         let rises = height >= self.lowest + least || height >= self.highest;
         if rises || returns {

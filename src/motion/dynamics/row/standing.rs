@@ -22,7 +22,7 @@ pub struct RigidRow {
     /// Push of the first motion to either side with slip, in multiples of gravity; `None` without friction coefficient.
     with_friction_g: Option<Sides<Option<f64>>>,
     /// First mechanism, if it has four links; `None` for other mechanisms and for stacks, which turn about an edge of their base.
-    first: Option<FourLinks>,
+    first_mechanism: Option<FourLinks>,
     /// Side of a wall behind a stack, which carries every push towards it.
     wall_behind: Option<Sway>,
 }
@@ -40,7 +40,7 @@ impl RigidRow {
         let four_links =
             || FourLinks::of_row(&row.clone().without_ties(), ImpactModel::MaxRestitution).ok();
         Ok(Self {
-            first: (row.supports == Supports::Both).then(four_links).flatten(),
+            first_mechanism: (row.supports == Supports::Both).then(four_links).flatten(),
             standing: RowState::undeformed(&row),
             row,
             incipient_g,
@@ -71,7 +71,7 @@ impl RigidRow {
 
     /// Returns the push of the first motion to a side, in multiples of gravity; `None` if no push moves the row.
     pub fn incipient_acceleration_g(&self, sway: Sway) -> Option<f64> {
-        let start_g = *self.with_friction_g.unwrap_or(self.incipient_g).to(sway);
+        let start_g = *self.with_friction_g.unwrap_or(self.incipient_g).get(sway);
         start_g.filter(|_| self.wall_behind != Some(sway))
     }
 
@@ -115,7 +115,7 @@ impl RigidRow {
             with_friction_g: None,
             standing: follower.stance.clone(),
             // The mechanism of the undeformed row gives the scale of energies.
-            first: self.first,
+            first_mechanism: self.first_mechanism,
             row: self.row,
             wall_behind: self.wall_behind,
         })
@@ -156,7 +156,11 @@ impl RigidRow {
     }
 
     fn undeformed_barrier_j(&self, gravity_m_s2: f64) -> Option<f64> {
-        match (&self.first, &self.row.blocks[..], &self.row.joints[..]) {
+        match (
+            &self.first_mechanism,
+            &self.row.blocks[..],
+            &self.row.joints[..],
+        ) {
             (Some(row), ..) => {
                 let links = Sway::ALL.iter().filter_map(|sway| row.link_from(*sway, 0));
                 let barrier = links.map(|link| link.barrier).reduce(f64::min)?;
@@ -179,11 +183,11 @@ impl RigidRow {
     ///
     /// # Errors
     /// If the rotation is too large, or the row does not start with a mechanism of one degree of freedom.
-    pub fn released(&self, initial: Initial) -> Result<Release, ArgumentError> {
+    pub fn release(&self, initial: Initial) -> Result<Release, ArgumentError> {
         let blocks = self.row.blocks.len();
         // The mechanism is described in the frame in which it sways right; a sway to the left is reflected.
         let side = initial.sway.sign();
-        let row = match &self.first {
+        let row = match &self.first_mechanism {
             Some(row) if !self.is_on_hinges() => row,
             None if self.row.supports == Supports::Left => {
                 return Ok(Release {

@@ -45,7 +45,7 @@ pub trait Stepper<'a>: Sized {
         self.observer().overturned_s()
     }
     /// Completes the summaries at the end of the motion.
-    fn complete(&mut self) {}
+    fn complete_summaries(&mut self) {}
 
     /// Returns the side of the centre of gravity; in its undeformed position, the direction of its velocity.
     fn heading(&self) -> Sway {
@@ -54,7 +54,7 @@ pub trait Stepper<'a>: Sized {
     }
 
     /// Returns the state of a row in motion.
-    fn moving(&self) -> State {
+    fn moving_state(&self) -> State {
         match self.overturned_s() {
             Some(_) => State::Overturned(self.heading()),
             None => State::Rocking(self.heading()),
@@ -148,7 +148,11 @@ pub trait Stepper<'a>: Sized {
         let observer = self.observer();
         let (rotations_rad, rates_rad_s) = self.rotations_and_rates().unzip();
         let joints = 0..observer.input.row.joints.len();
-        let state = if moves { self.moving() } else { State::Rest };
+        let state = if moves {
+            self.moving_state()
+        } else {
+            State::Rest
+        };
         Event {
             rotations_rad,
             rates_rad_s,
@@ -192,7 +196,7 @@ pub trait Stepper<'a>: Sized {
             }
         }
         if !self.stands(&sample) {
-            sample.state = self.moving();
+            sample.state = self.moving_state();
         }
         self.observer_mut().record(sample, kinetic);
         Ok(())
@@ -203,7 +207,7 @@ pub trait Stepper<'a>: Sized {
 ///
 /// # Errors
 /// If a step fails.
-pub fn run<'a, S>(mut stepper: S) -> Result<Summary, RowMotionError>
+pub fn step_to_end<'a, S>(mut stepper: S) -> Result<Summary, RowMotionError>
 where
     S: Stepper<'a>,
 {
@@ -247,7 +251,7 @@ where
     if samples_are_made && sampled_s != Some(observer.time) && !observer.stopped {
         stepper.sample()?;
     }
-    stepper.complete();
+    stepper.complete_summaries();
     let observer = stepper.observer_mut();
     observer.row_summary.longest_step = longest_step;
     let summary = observer.end(outcome, outcome_time_s);
@@ -266,14 +270,18 @@ fn follow_fall<'a, S: Stepper<'a>>(stepper: &mut S) {
     }
     observer.is_falling = true;
     let mut marks = Marks::of_fall(observer.input.settings, observer.time);
-    let end = fall(stepper, &mut marks).unwrap_or_else(|error| FallEnd::Model(error.to_string()));
+    let end =
+        step_fall(stepper, &mut marks).unwrap_or_else(|error| FallEnd::Model(error.to_string()));
     if let Some(recorder) = &mut stepper.observer_mut().recorder {
-        recorder.fell(end);
+        recorder.fall_end(end);
     }
 }
 
 /// Steps a falling row and returns the reason for the end.
-fn fall<'a, S: Stepper<'a>>(stepper: &mut S, marks: &mut Marks) -> Result<FallEnd, RowMotionError> {
+fn step_fall<'a, S: Stepper<'a>>(
+    stepper: &mut S,
+    marks: &mut Marks,
+) -> Result<FallEnd, RowMotionError> {
     for _ in 0..fall::MOST_STEPS {
         let observer = stepper.observer();
         if let Some(end) = fall::end_at(&observer.sample) {

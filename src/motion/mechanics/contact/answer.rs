@@ -3,7 +3,7 @@
 use nalgebra::{Matrix2, Vector2};
 
 use super::factor::{Body, Factor, Pin};
-use crate::mechanics::geometry::field::turned;
+use crate::mechanics::geometry::field::quarter_turn;
 use crate::mechanics::joints::Closure;
 use crate::mechanics::{Edge, Momentum, Supports, Twist};
 
@@ -21,7 +21,7 @@ impl BodyVelocity {
         Self {
             centre: body.centre,
             velocity: momentum.linear * body.inverse_mass,
-            rate: momentum.about(body.centre) * body.inverse_inertia,
+            rate: momentum.moment_about(body.centre) * body.inverse_inertia,
         }
     }
 
@@ -34,14 +34,14 @@ impl BodyVelocity {
         }
     }
 
-    fn at(&self, point: Vector2<f64>) -> Vector2<f64> {
+    fn velocity_at(&self, point: Vector2<f64>) -> Vector2<f64> {
         let arm = point - self.centre;
-        self.velocity + turned(arm) * self.rate
+        self.velocity + quarter_turn(arm) * self.rate
     }
 
     pub fn twist(&self) -> Twist {
         Twist {
-            at_center: self.at(Vector2::zeros()),
+            at_center: self.velocity_at(Vector2::zeros()),
             rate: self.rate,
         }
     }
@@ -102,7 +102,7 @@ impl PinSolution {
     /// Solves for the load, with an optional impulse at one corner.
     pub fn take_load(&mut self, factor: &Factor, press: Option<CornerImpulse>) {
         self.free_motions(factor);
-        self.complete(factor, press, None, true);
+        self.add_body_impulses(factor, press, None, true);
     }
 
     /// Solves for a unit impulse at one corner, without the load.
@@ -111,7 +111,7 @@ impl PinSolution {
         let still = |body: &Body| BodyVelocity::with(body, &Momentum::ZERO);
         self.motions.extend(factor.bodies.iter().map(still));
         let impulse = 1.0;
-        self.complete(
+        self.add_body_impulses(
             factor,
             Some(CornerImpulse { pin, edge, impulse }),
             None,
@@ -122,7 +122,7 @@ impl PinSolution {
     /// Solves for the load and the closure error of an arch.
     pub(crate) fn take_closure(&mut self, factor: &Factor, closure: &Closure) {
         self.free_motions(factor);
-        self.complete(factor, None, Some(closure), true);
+        self.add_body_impulses(factor, None, Some(closure), true);
     }
 
     /// Computes the velocities of the bodies without impulses between them.
@@ -143,7 +143,7 @@ impl PinSolution {
     }
 
     /// Adds impulses between the bodies to velocities without them, and computes gap rates and corner impulses.
-    fn complete(
+    fn add_body_impulses(
         &mut self,
         factor: &Factor,
         press: Option<CornerImpulse>,
@@ -215,7 +215,8 @@ impl PinSolution {
                 [true, _] => [0.0, opening],
                 [_, true] => [-opening, 0.0],
                 _ => {
-                    let gap = right.at(frame.intrados_m) - left.at(frame.intrados_m);
+                    let gap =
+                        right.velocity_at(frame.intrados_m) - left.velocity_at(frame.intrados_m);
                     let intrados = frame.normal.dot(&gap);
                     [intrados, intrados + opening]
                 }
@@ -231,14 +232,14 @@ impl PinSolution {
             if joints.is_empty() {
                 continue;
             }
-            let start = self.start(factor, body, press, loaded);
+            let start = self.starting_impulse(factor, body, press, loaded);
             let twist = self.motions[body].twist();
             for joint in joints {
-                let resultant = start - row.change(&twist, joint, loaded);
+                let resultant = start - row.momentum_change(&twist, joint, loaded);
                 let frame = &row.frames[joint];
                 let normal = frame.normal.dot(&resultant.linear);
                 let extrados =
-                    row.handedness * resultant.about(frame.intrados_m) / frame.thickness_m;
+                    row.handedness * resultant.moment_about(frame.intrados_m) / frame.thickness_m;
                 self.corners[joint] = [normal - extrados, extrados];
             }
         }
@@ -253,7 +254,7 @@ impl PinSolution {
 
     /// Returns the resultant impulse at a joint of a body plus the change of momentum before that joint. This sum is constant along the body. A hinge
     /// or the free end gives its value.
-    fn start(
+    fn starting_impulse(
         &self,
         factor: &Factor,
         body: usize,
@@ -264,7 +265,7 @@ impl PinSolution {
         let twist = self.motions[body].twist();
         let index = body.saturating_sub(1);
         let Some(pin) = factor.pins.get(index) else {
-            return row.change(&twist, row.own.len(), loaded);
+            return row.momentum_change(&twist, row.own.len(), loaded);
         };
         let impulse = pin.impulse(&self.pins[index]);
         let mut resultant = Momentum::applied_at(pin.point, impulse);
@@ -273,19 +274,19 @@ impl PinSolution {
             let corner = frame.corner_m(Edge::ALL[press.edge]);
             resultant = resultant + Momentum::applied_at(corner, frame.normal * press.impulse);
         }
-        resultant + row.change(&twist, pin.joint, loaded)
+        resultant + row.momentum_change(&twist, pin.joint, loaded)
     }
 
     /// Writes the impulses under the load on the block after each joint: along the joint towards the extrados, and normal to it.
     pub(crate) fn joint_impulses(&self, factor: &Factor, into: &mut [[f64; 2]]) {
         let row = &factor.row;
         for body in 0..factor.bodies.len() {
-            let start = self.start(factor, body, None, true);
+            let start = self.starting_impulse(factor, body, None, true);
             let twist = self.motions[body].twist();
             for joint in factor.shut_joints(body) {
-                let linear = (start - row.change(&twist, joint, true)).linear;
+                let linear = (start - row.momentum_change(&twist, joint, true)).linear;
                 let frame = &row.frames[joint];
-                into[joint] = [frame.along.dot(&linear), frame.normal.dot(&linear)];
+                into[joint] = [frame.tangent.dot(&linear), frame.normal.dot(&linear)];
             }
         }
         for (pin, impulse) in factor.pins.iter().zip(&self.pins) {

@@ -32,20 +32,23 @@ impl ClosureSolver {
     /// Removes the closure error by displacements at the open joints, without velocities. Each step is the displacement of least kinetic norm, up to
     /// the first closing corner; that corner stays closed in the next step. The steps stop if a step without a closing corner does not halve the
     /// error.
-    pub fn close(&mut self, placement: &mut Placement) {
+    pub fn remove_closure_error(&mut self, placement: &mut Placement) {
         while let Some(closure) = placement.closure {
             let error_m = closure.error_m.norm();
             if error_m <= CLOSURE_RATIO * self.thinnest_m {
                 return;
             }
-            if !self.program.close(placement, &closure, &self.none) {
+            if !self
+                .program
+                .compute_closing(placement, &closure, &self.none)
+            {
                 return;
             }
             let first_shut = self.program.first_shut(placement, 1.0);
             (self.program).open_until(placement, first_shut, &mut self.change);
             self.backup.copy_from(placement);
             let change = &self.change;
-            placement.open(|joint| change[joint]);
+            placement.change_gaps(|joint| change[joint]);
             if first_shut.1.is_none() && placement.closure_error() > 0.5 * error_m {
                 placement.copy_from(&self.backup);
                 return;

@@ -1,7 +1,7 @@
 //! Active-set search by the dual method of Goldfarb and Idnani, one corner at a time.
 
 use super::answer::CornerImpulse;
-use super::{ContactError, ContactProgram, DEPENDENCE, Effort, RATE_TOLERANCE, exceeds};
+use super::{ContactError, ContactProgram, DEPENDENCE, Effort, RATE_TOLERANCE, pivot_exceeds};
 use crate::mechanics::Corners;
 
 /// Loosest tolerance of closing rates; beyond it a program counts as unsolved.
@@ -113,7 +113,7 @@ impl ContactProgram {
             let (partial, blocking) = self.first_to_pull();
             if full <= partial && full < f64::INFINITY {
                 self.active[joint][edge] = true;
-                if exceeds(self.factor.update(&self.active), DEPENDENCE) {
+                if pivot_exceeds(self.factor.update(&self.active), DEPENDENCE) {
                     self.answer.take_load(&self.factor, None);
                     *iterations += 1;
                     return true;

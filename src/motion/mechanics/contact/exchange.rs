@@ -1,6 +1,6 @@
 //! Active-set search by exchanges of many corners at once.
 
-use super::{ContactProgram, DEPENDENCE, exceeds, higher};
+use super::{ContactProgram, DEPENDENCE, higher_number, pivot_exceeds};
 use crate::mechanics::Corners;
 
 /// Number of exchanges without progress before only the worst corners are exchanged; after as many again the dual method takes over.
@@ -68,7 +68,7 @@ impl ContactProgram {
                 self.extend_runs(touching);
             }
             self.flip_wrong();
-            if !exceeds(self.factor.update(&self.active), DEPENDENCE) {
+            if !pivot_exceeds(self.factor.update(&self.active), DEPENDENCE) {
                 self.active.copy_from_slice(&self.earlier);
                 self.factor.update(&self.active);
                 if worst_only {
@@ -158,8 +158,8 @@ impl ContactProgram {
         // Two independent maxima are faster than one.
         let corners = self.answer.corners.iter();
         let [intrados, extrados] = corners.fold([0.0_f64; 2], |most, corner| {
-            [0, 1].map(|edge| higher(most[edge], corner[edge].abs()))
+            [0, 1].map(|edge| higher_number(most[edge], corner[edge].abs()))
         });
-        -(FORCE_TOLERANCE * higher(intrados, extrados)).max(self.force_floor)
+        -(FORCE_TOLERANCE * higher_number(intrados, extrados)).max(self.force_floor)
     }
 }

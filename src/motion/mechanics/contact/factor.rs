@@ -83,8 +83,8 @@ impl Factor {
     }
 
     /// Sets the positions of the blocks.
-    pub fn place(&mut self, placement: &Placement) {
-        self.row.place(placement);
+    pub fn set_positions(&mut self, placement: &Placement) {
+        self.row.set_positions(placement);
         self.factored = 0;
     }
 
@@ -111,7 +111,7 @@ impl Factor {
                 [false, true] => frame.corner_m(Edge::Extrados),
                 _ => frame.intrados_m,
             };
-            let axes = [frame.along, frame.normal];
+            let axes = [frame.tangent, frame.normal];
             self.bodies.push(match first {
                 None => Body::HELD,
                 Some(first) => self.body(first, joint),
@@ -199,20 +199,20 @@ impl Factor {
     }
 
     /// Returns the open joints at the two ends of a body; `None` at a support or a free end.
-    fn ends(&self, body: usize) -> [Option<usize>; 2] {
+    fn open_ends(&self, body: usize) -> [Option<usize>; 2] {
         let pin = |pin: usize| Some(self.pins.get(pin)?.joint);
         [body.checked_sub(1).and_then(pin), pin(body)]
     }
 
     /// Returns the closed joints inside a body.
     pub(crate) fn shut_joints(&self, body: usize) -> Range<usize> {
-        let [first, last] = self.ends(body);
+        let [first, last] = self.open_ends(body);
         first.map_or(0, |joint| joint + 1)..last.unwrap_or(self.active.len())
     }
 
     /// Returns the blocks of a body.
     pub fn blocks(&self, body: usize) -> Range<usize> {
-        let [first, last] = self.ends(body);
+        let [first, last] = self.open_ends(body);
         first.unwrap_or(0)..last.unwrap_or(self.row.own.len())
     }
 }

@@ -142,14 +142,14 @@ impl ContactProgram {
             earlier: vec![[true; 2]; joints],
             jammed: None,
         };
-        program.place(&Placement::new(row));
+        program.set_positions(&Placement::new(row));
         program.reset();
         program
     }
 
     /// Sets the positions of the blocks.
-    pub fn place(&mut self, placement: &Placement) {
-        self.factor.place(placement);
+    pub fn set_positions(&mut self, placement: &Placement) {
+        self.factor.set_positions(placement);
     }
 
     /// Resets the active set to the initial one.
@@ -210,7 +210,7 @@ impl ContactProgram {
             }
         }
         let mut effort = Effort::default();
-        if !exceeds(self.factor.update(&self.active), DEPENDENCE * DEPENDENCE) {
+        if !pivot_exceeds(self.factor.update(&self.active), DEPENDENCE * DEPENDENCE) {
             self.active.fill([false; 2]);
             self.factor.update(&self.active);
         }
@@ -240,7 +240,7 @@ impl ContactProgram {
         let velocities = self.velocities.iter();
         let speeds = velocities.zip(&placement.centres_m).map(|(twist, centre)| {
             let turning = twist.rate.abs() * row.size_m;
-            twist.at(*centre).norm().max(turning)
+            twist.velocity_at(*centre).norm().max(turning)
         });
         Ok(speeds.fold(0.0, f64::max))
     }
@@ -283,13 +283,18 @@ impl ContactProgram {
 
     /// Computes the displacement of least kinetic norm that removes the closure error of an arch, without opening or closing joints.
     /// [`ContactProgram::open_joints`] then returns the changes of the gaps. Returns false if the open joints allow no such displacement.
-    pub fn close(&mut self, placement: &Placement, closure: &Closure, load: &Load) -> bool {
-        self.place(placement);
+    pub fn compute_closing(
+        &mut self,
+        placement: &Placement,
+        closure: &Closure,
+        load: &Load,
+    ) -> bool {
+        self.set_positions(placement);
         self.set_up(load);
         for (active, gaps) in self.active.iter_mut().zip(&placement.gaps_m) {
             *active = gaps.map(|gap| gap == 0.0);
         }
-        let independent = exceeds(self.factor.update(&self.active), DEPENDENCE * DEPENDENCE);
+        let independent = pivot_exceeds(self.factor.update(&self.active), DEPENDENCE * DEPENDENCE);
         let closes = independent && !self.factor.pins.is_empty();
         if closes {
             self.answer.take_closure(&self.factor, closure);
@@ -299,7 +304,7 @@ impl ContactProgram {
 }
 
 /// Returns whether a pivot exceeds a limit; false for NaN.
-fn exceeds(pivot: f64, least: f64) -> bool {
+fn pivot_exceeds(pivot: f64, least: f64) -> bool {
     pivot > least
 }
 
@@ -309,7 +314,7 @@ pub(super) fn lower(one: f64, other: f64) -> f64 {
 }
 
 /// Returns the higher of two numbers; the first one if either is NaN.
-fn higher(one: f64, other: f64) -> f64 {
+fn higher_number(one: f64, other: f64) -> f64 {
     if other > one { other } else { one }
 }
 
@@ -379,7 +384,7 @@ mod tests {
                     program.set_velocities();
                     for (block, twist) in program.velocities.iter().enumerate() {
                         let centre = program.factor.row.own[block].centroid();
-                        let off_m_s = (*twist - solution[block]).at(centre).norm();
+                        let off_m_s = (*twist - solution[block]).velocity_at(centre).norm();
                         assert!(off_m_s < 1e-8 * largest_rate, "{blocks}: {off_m_s:e}");
                     }
                 }

@@ -1,7 +1,7 @@
 //! A row in its present position with its load, as cumulative sums over the blocks from the left. The sum over any run of blocks is a difference of
 //! two.
 
-use super::{Load, higher};
+use super::{Load, higher_number};
 use crate::mechanics::joints::Frame;
 use crate::mechanics::{Block, MassMoments, Momentum, Placement, Row, Supports, Twist};
 
@@ -37,7 +37,7 @@ impl Placed {
     }
 
     /// Sets the positions of the blocks.
-    pub fn place(&mut self, placement: &Placement) {
+    pub fn set_positions(&mut self, placement: &Placement) {
         self.frames.clear();
         self.frames.extend_from_slice(&placement.frames);
         let mut moments = MassMoments::default();
@@ -60,7 +60,7 @@ impl Placed {
             let added = motion.momentum(&self.own[block]);
             let (x, y) = (added.linear.x.abs(), added.linear.y.abs());
             total += x + y;
-            largest = higher(largest, (x + y) / self.own[block].mass);
+            largest = higher_number(largest, (x + y) / self.own[block].mass);
             momentum = momentum + added;
             self.momenta[block + 1] = momentum;
         }
@@ -73,7 +73,7 @@ impl Placed {
     }
 
     /// Returns the change of momentum of all blocks before a joint if they move together with this velocity.
-    pub fn change(&self, twist: &Twist, joint: usize, loaded: bool) -> Momentum {
+    pub fn momentum_change(&self, twist: &Twist, joint: usize, loaded: bool) -> Momentum {
         let change = twist.momentum(&self.moments[joint]);
         if loaded {
             change - self.momenta[joint]

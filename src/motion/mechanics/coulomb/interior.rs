@@ -67,7 +67,7 @@ impl Pairs {
 
     /// Returns the Newton equations for the three impulses of the joint, to be added to its compliance: matrix, right-hand side, and the data to
     /// recover the eliminated unknowns.
-    fn eliminated(
+    fn newton_equations(
         &self,
         errors: &[f64; 5],
         target: f64,
@@ -247,13 +247,13 @@ impl SlipProgram {
         let coefficient = self.coefficient;
         let joints = pairs.iter().zip(errors);
         let eliminated =
-            joints.map(|(pairs, errors)| pairs.eliminated(errors, target, coefficient));
+            joints.map(|(pairs, errors)| pairs.newton_equations(errors, target, coefficient));
         let eliminated: Vec<_> = eliminated.collect();
         self.sweep(|program, joint| {
             let (matrix, right, _) = &eliminated[joint];
             let mut matrix = program.own[joint] + matrix;
             for row in 0..3 {
-                matrix[(row, row)] += program.proximal(joint, row);
+                matrix[(row, row)] += program.proximal_term(joint, row);
             }
             Balance {
                 matrix,
@@ -265,7 +265,8 @@ impl SlipProgram {
         let changes = (0..pairs.len()).map(|joint| {
             let change = &self.target[joint];
             // Computed from the changes: a difference of two rates would have too large rounding errors near convergence.
-            let slip = self.response(joint, &self.target).z + self.proximal(joint, 2) * change.z;
+            let slip =
+                self.response(joint, &self.target).z + self.proximal_term(joint, 2) * change.z;
             let rest = &eliminated[joint].2;
             pairs[joint].changes(rest, &errors[joint], target, coefficient, (change, slip))
         });
@@ -362,7 +363,7 @@ mod tests {
                 })
                 .collect();
             let mut program = SlipProgram::new(&row, 0.5 + 0.2 * random());
-            program.place(&faces, &contacts, &positions);
+            program.set_positions(&faces, &contacts, &positions);
             let motions: Vec<Vector3<f64>> = positions
                 .iter()
                 .map(|_| Vector3::new(random(), random() - 0.5, 0.2 * random()))

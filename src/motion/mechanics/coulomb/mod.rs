@@ -175,7 +175,7 @@ impl SlipProgram {
     }
 
     /// Starts the next solution with given contacts at the ends of every joint.
-    pub fn touch(&mut self, touching: &[[bool; 2]]) {
+    pub fn set_contacts(&mut self, touching: &[[bool; 2]]) {
         for (mode, pressed) in self.modes.iter_mut().zip(touching) {
             mode.pressed = *pressed;
             *mode = mode.settled();
@@ -201,7 +201,12 @@ impl SlipProgram {
     }
 
     /// Sets the positions of the joints, and computes gradients and compliances.
-    pub fn place(&mut self, faces: &[Faces], contacts: &[FaceContact], positions: &[Position]) {
+    pub fn set_positions(
+        &mut self,
+        faces: &[Faces],
+        contacts: &[FaceContact],
+        positions: &[Position],
+    ) {
         let blocks = positions.len();
         let centre = |block: Option<usize>| {
             let position = block.and_then(|block| positions.get(block));
@@ -272,7 +277,7 @@ impl SlipProgram {
         self.modes_before.copy_from_slice(&self.modes);
         let mut solution = Solution::default();
         if !self.newton(PASSES, false, tolerance, &mut solution.passes) {
-            solution.bound_error = self.bounded(tolerance, &mut solution.passes);
+            solution.bound_error = self.solve_bounded(tolerance, &mut solution.passes);
         }
         solution.changed = self.modes != self.modes_before;
         let proximal_rates = (0..self.own.len()).map(|joint| self.proximal_rates(joint).amax());
@@ -377,7 +382,7 @@ impl SlipProgram {
             for row in 0..3 {
                 match program.equations[joint][row] {
                     Equation::ZeroRate => {
-                        let proximal = program.proximal(joint, row);
+                        let proximal = program.proximal_term(joint, row);
                         balance.matrix[(row, row)] += proximal;
                         balance.right[row] += proximal * program.before[joint][row];
                         continue;
@@ -428,7 +433,7 @@ impl SlipProgram {
     }
 
     /// Returns the proximal term that is added to the compliance of one coordinate of a joint.
-    fn proximal(&self, joint: usize, row: usize) -> f64 {
+    fn proximal_term(&self, joint: usize, row: usize) -> f64 {
         PROXIMAL * self.own[joint][(row, row)]
     }
 
@@ -469,7 +474,7 @@ impl SlipProgram {
     }
 
     /// Solves problems with fixed bounds, until the modes converge or the bounds agree with the impulses. Returns the relative error of the bounds.
-    fn bounded(&mut self, tolerance: f64, count: &mut usize) -> f64 {
+    fn solve_bounded(&mut self, tolerance: f64, count: &mut usize) -> f64 {
         self.impulses.copy_from_slice(&self.before);
         for (bound, impulse) in self.bounds.iter_mut().zip(&self.impulses) {
             *bound = self.coefficient * (impulse.x.max(0.0) + impulse.y.max(0.0));
@@ -495,7 +500,7 @@ impl SlipProgram {
             }
         }
         let impulses = self.kept.clone();
-        if self.interior(tolerance, count) || self.pivoted(tolerance, count) {
+        if self.interior(tolerance, count) || self.solve_by_pivoting(tolerance, count) {
             return 0.0;
         }
         self.impulses.copy_from_slice(&impulses);

@@ -10,7 +10,7 @@ const COMPLEMENTED: usize = 80;
 
 impl SlipProgram {
     /// Finds modes and impulses by Lemke's method. Returns false if the row has too many joints, or if the method fails.
-    pub(super) fn pivoted(&mut self, tolerance: f64, passes: &mut usize) -> bool {
+    pub(super) fn solve_by_pivoting(&mut self, tolerance: f64, passes: &mut usize) -> bool {
         if self.modes.len() > COMPLEMENTED || !self.complement() {
             return false;
         }

@@ -74,7 +74,7 @@ impl Section {
     }
 
     /// Returns the edge forces of a joint with tensile strength, per stiffness.
-    pub(super) fn bonded<R: Real>(&self, p: [R; 2]) -> [R; 2] {
+    pub(super) fn bonded_forces<R: Real>(&self, p: [R; 2]) -> [R; 2] {
         let [mean, half] = [(p[0] + p[1]) * 0.5, (p[1] - p[0]) * self.second_moment()];
         [mean * 0.5 - half, mean * 0.5 + half]
     }
@@ -218,8 +218,8 @@ impl ContactLaw {
                 };
                 (elastic, total, zero)
             }
-            Section::Cells(nodes) => in_cells(nodes, limit, p, damping_m, fibres),
-            Section::Points(points) => at_points(points, limit, p, damping_m, fibres),
+            Section::Cells(nodes) => sum_in_cells(nodes, limit, p, damping_m, fibres),
+            Section::Points(points) => sum_at_points(points, limit, p, damping_m, fibres),
         };
         let k = joint.normal_n_m * (1.0 / 6.0);
         let mut damped_j = zero;
@@ -321,7 +321,7 @@ fn fibre<R: Real>(
 }
 
 #[inline(always)]
-fn at_points<R: Real>(
+fn sum_at_points<R: Real>(
     points: &[[f64; 2]],
     limit: Option<f64>,
     p: [R; 2],
@@ -348,7 +348,7 @@ fn at_points<R: Real>(
 }
 
 #[inline(always)]
-fn in_cells<R: Real>(
+fn sum_in_cells<R: Real>(
     nodes: &[f64],
     limit: Option<f64>,
     p: [R; 2],

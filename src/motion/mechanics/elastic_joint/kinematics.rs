@@ -44,12 +44,12 @@ pub struct JointGeometry {
     /// Vectors from the centres of the bodies to the middle of the joint, in m.
     pub arms_m: [[f64; 2]; 2],
     /// Unit vector along the joint, from edge 0 (intrados) to edge 1 (extrados).
-    pub along: [f64; 2],
-    /// 1 if the second body is left of the vector `along`, -1 if it is right.
+    pub tangent: [f64; 2],
+    /// 1 if the second body is left of the vector `tangent`, -1 if it is right.
     pub handedness: f64,
     /// Length of the joint, in m.
     pub length_m: f64,
-    /// Components along and across the joint (a quarter turn anticlockwise from `along`), in m: of the arm of the first body, of twice the difference
+    /// Components along and across the joint (a quarter turn anticlockwise from `tangent`), in m: of the arm of the first body, of twice the difference
     /// of both arms, and of their sum.
     first_m: [f64; 2],
     twice_between_m: [f64; 2],
@@ -68,7 +68,7 @@ pub struct Gap<R> {
     /// Displacement of the second body relative to the first one, in m.
     apart_m: [R; 2],
     /// Unit vector in the mean direction of the faces.
-    along: [R; 2],
+    tangent: [R; 2],
     /// Cosine and sine of half the angle between the faces.
     half: [R; 2],
 }
@@ -82,28 +82,28 @@ pub struct Action<R> {
     pub moments_n_m: [R; 2],
 }
 
-remembered!(Gap { slip_m, rise_m; penetrations_m, apart_m, along, half });
+remembered!(Gap { slip_m, rise_m; penetrations_m, apart_m, tangent, half });
 
 impl JointGeometry {
     /// Returns a joint between the bodies with these indices.
     ///
     /// - `arms_m`: vectors from the centres of the bodies to the middle of the joint, in m.
-    /// - `along`: unit vector along the joint, from edge 0 (intrados) to edge 1 (extrados).
+    /// - `tangent`: unit vector along the joint, from edge 0 (intrados) to edge 1 (extrados).
     /// - `handedness`: 1 if the second body is left of that vector, -1 if it is right.
     /// - `length_m`: length of the joint, in m.
     pub fn new(
         bodies: [usize; 2],
         arms_m: [[f64; 2]; 2],
-        along: [f64; 2],
+        tangent: [f64; 2],
         handedness: f64,
         length_m: f64,
     ) -> Self {
-        let [ex, ey] = along;
+        let [ex, ey] = tangent;
         let [first_m, second_m] = arms_m.map(|[x, y]| [ex * x + ey * y, ex * y - ey * x]);
         Self {
             bodies,
             arms_m,
-            along,
+            tangent,
             handedness,
             length_m,
             first_m,
@@ -132,14 +132,14 @@ impl JointGeometry {
         let mean_sin = (sin_a + sin_b) + (forth + back);
         let half_cos = both_cos + (cosines + sines);
         let half_sin = (sin_b - sin_a) + (forth - back);
-        let [ex, ey] = self.along;
-        let along = [mean_cos * ex - mean_sin * ey, mean_sin * ex + mean_cos * ey];
+        let [ex, ey] = self.tangent;
+        let tangent = [mean_cos * ex - mean_sin * ey, mean_sin * ex + mean_cos * ey];
         // `cos d - cos m` is twice the product of the sines.
         let (twice, sum) = (self.twice_between_m, self.sum_m);
         let slip = sines * twice[0] - half_sin * sum[1] - mean_sin * (0.5 * twice[1]);
         let rise = sines * twice[1] + half_sin * sum[0] + mean_sin * (0.5 * twice[0]);
-        let slip_m = dot(along, apart) + slip;
-        let rise_m = cross(along, apart) + rise;
+        let slip_m = dot(tangent, apart) + slip;
+        let rise_m = cross(tangent, apart) + rise;
         let tilt = half_sin * self.length_m;
         let q = self.handedness;
         Gap {
@@ -147,7 +147,7 @@ impl JointGeometry {
             slip_m,
             rise_m,
             apart_m: apart,
-            along,
+            tangent,
             half: [half_cos, half_sin],
         }
     }
@@ -160,7 +160,7 @@ impl JointGeometry {
     pub fn action<R: Real>(&self, gap: &Gap<R>, edges_n: [R; 2], shear_n: R) -> Action<R> {
         let q = self.handedness;
         let across_n = (edges_n[0] + edges_n[1]) * q;
-        let [ex, ey] = gap.along;
+        let [ex, ey] = gap.tangent;
         let force_n = [
             -(ey * across_n + ex * shear_n),
             ex * across_n - ey * shear_n,

@@ -126,9 +126,9 @@ impl ElasticStructure {
     pub fn rest(&self, load_m_s2: [f64; 2]) -> Result<Equilibrium, RestError> {
         if self.has_settled() {
             let built = self.clone().on_supports([[0.0; 3]; 2]);
-            return self.settled(load_m_s2, built.rest(load_m_s2)?);
+            return self.find_settled_equilibrium(load_m_s2, built.rest(load_m_s2)?);
         }
-        if let Some(rest) = self.balanced(load_m_s2) {
+        if let Some(rest) = self.find_equilibrium(load_m_s2) {
             return match rest.broken_tie() {
                 Some(tie) => Err(RestError::Tie(tie)),
                 None => Ok(rest),
@@ -145,13 +145,18 @@ impl ElasticStructure {
             (true, stiffer, RestError::Stiffness),
         ];
         let mut causes = easier.into_iter();
-        let cause = causes.find(|(may, other, _)| *may && other.balanced(load_m_s2).is_some());
+        let cause =
+            causes.find(|(may, other, _)| *may && other.find_equilibrium(load_m_s2).is_some());
         Err(cause.map_or(RestError::NotFound, |(.., error)| error))
     }
 
     /// Finds the equilibrium after a slow movement of the supports, from the equilibrium `built` before it. The movement is divided into steps; each
     /// starts from a linear extrapolation of the last two equilibria. Slip accumulates over the whole movement. The plastic elongation of ties remains.
-    fn settled(&self, load_m_s2: [f64; 2], built: Equilibrium) -> Result<Equilibrium, RestError> {
+    fn find_settled_equilibrium(
+        &self,
+        load_m_s2: [f64; 2],
+        built: Equilibrium,
+    ) -> Result<Equilibrium, RestError> {
         let self_weight_displacements = built.self_weight_displacements.clone();
         let length_m = Search::new(self, load_m_s2).length_m;
         let far = |moved: &[f64; 3]| libm::hypot(moved[0], moved[1]).max(length_m * moved[2].abs());
@@ -188,7 +193,7 @@ impl ElasticStructure {
                 moved.map(by).fold(0.0, f64::max) < most_m
             };
             let search = Search::new(&on_way, load_m_s2).with_ties(&here.ties);
-            let found = search.from(expected, here.steps).filter(near);
+            let found = search.solve_from(expected, here.steps).filter(near);
             let Some(found) = found else {
                 stride *= 0.5;
                 if stride < SHORTEST_SETTLING * longest {
@@ -210,9 +215,9 @@ impl ElasticStructure {
     }
 
     /// Finds the equilibrium on supports that stay in place; `None` if the search does not converge.
-    fn balanced(&self, load_m_s2: [f64; 2]) -> Option<Equilibrium> {
-        let bonded = Search::new(self, load_m_s2).bonded()?;
-        if let Some(rest) = Search::new(self, load_m_s2).from(bonded.clone(), 0) {
+    fn find_equilibrium(&self, load_m_s2: [f64; 2]) -> Option<Equilibrium> {
+        let bonded = Search::new(self, load_m_s2).bonded_displacements()?;
+        if let Some(rest) = Search::new(self, load_m_s2).solve_from(bonded.clone(), 0) {
             return Some(rest);
         }
         FIRST_STIFFNESS.into_iter().find_map(|first| {
@@ -222,7 +227,7 @@ impl ElasticStructure {
             let mut steps = 0;
             loop {
                 let softer = self.stiffness_times(stiffness);
-                let rest = Search::new(&softer, load_m_s2).from(moved, steps)?;
+                let rest = Search::new(&softer, load_m_s2).solve_from(moved, steps)?;
                 if stiffness == 1.0 {
                     return Some(rest);
                 }
@@ -261,7 +266,7 @@ impl ElasticStructure {
             if step > 0 {
                 softer = softer.stiffness_times(1.0 / RAISED);
             }
-            let summit_j = softer.summit_j(&softer.balanced(load_m_s2)?, gravity_m_s2)?;
+            let summit_j = softer.summit_j(&softer.find_equilibrium(load_m_s2)?, gravity_m_s2)?;
             Some(summit_j - rest_j).filter(|barrier_j| *barrier_j > 0.0)
         })
     }
@@ -291,7 +296,7 @@ impl ElasticStructure {
         };
         let mut before: Option<PushedEquilibrium> = None;
         for _ in 0..MOST_STRIDES {
-            let there = search.pushed(before.as_ref(), &here, sense * stride_m);
+            let there = search.find_pushed(before.as_ref(), &here, sense * stride_m);
             let Some((there, steps)) = there else {
                 stride_m *= 0.5;
                 if stride_m < SHORTEST_STRIDE * first_m {
@@ -303,7 +308,7 @@ impl ElasticStructure {
             let (from, to) = (sense * here.push_m_s2, sense * there.push_m_s2);
             let part = if to > 0.0 { 1.0 } else { from / (from - to) };
             work_j += 0.5 * (from + to.max(0.0)) * part * stride_m * mass_kg;
-            let shape = search.at_rest(there.moved.clone(), 0.0, 0);
+            let shape = search.equilibrium_at(there.moved.clone(), 0.0, 0);
             if shape.fibres.iter().any(|fibre| fibre.crushed_m.0[0] > 0.0) {
                 return None;
             }
@@ -396,7 +401,7 @@ impl<'a> Search<'a> {
     }
 
     /// Computes the unbalanced forces (moments over the length). Fills the matrix, if given, with minus their derivatives by the coordinates.
-    fn unbalanced(
+    fn compute_unbalanced_forces(
         &self,
         moved: &[[f64; 3]],
         bonded: bool,
@@ -411,7 +416,7 @@ impl<'a> Search<'a> {
         }
         let units = [1.0, 1.0, self.length_m];
         let Some(matrix) = matrix else {
-            let place = |body: usize, _| self.place(moved, body);
+            let place = |body: usize, _| self.body_position(moved, body);
             self.act(bonded, place, |row, _, force: SingleLane| {
                 forces[row] += force.0[0] / units[row % 3];
             });
@@ -458,7 +463,7 @@ impl<'a> Search<'a> {
             let section = &self.structure.law.section;
             let action = if bonded {
                 let gap = joint.geometry.gap(&first, &second);
-                let edges = section.bonded(gap.penetrations_m);
+                let edges = section.bonded_forces(gap.penetrations_m);
                 let edges_n = edges.map(|edge| edge * joint.normal_n_m);
                 let shear_n = gap.slip_m * joint.shear_n_m;
                 joint.geometry.action(&gap, edges_n, shear_n)
@@ -484,7 +489,7 @@ impl<'a> Search<'a> {
     }
 
     /// Returns the position of a body or a support.
-    fn place(&self, moved: &[[f64; 3]], body: usize) -> BodyPosition<SingleLane> {
+    fn body_position(&self, moved: &[[f64; 3]], body: usize) -> BodyPosition<SingleLane> {
         BodyPosition::at(moved.get(body).unwrap_or(self.structure.support(body)))
     }
 
@@ -512,12 +517,12 @@ impl<'a> Search<'a> {
     }
 
     /// Computes the displacements with joints of unlimited tensile strength, in one linear step.
-    fn bonded(&self) -> Option<Vec<[f64; 3]>> {
+    fn bonded_displacements(&self) -> Option<Vec<[f64; 3]>> {
         let bodies = self.structure.bodies.len();
         let moved = vec![[0.0; 3]; bodies];
         let mut matrix = Banded::new(3 * bodies, self.width);
         let mut forces = vec![0.0; 3 * bodies];
-        self.unbalanced(&moved, true, Some(&mut matrix), &mut forces);
+        self.compute_unbalanced_forces(&moved, true, Some(&mut matrix), &mut forces);
         let found = matrix.solve([&mut forces]);
         found.then(|| self.stepped(&moved, &forces, 1.0))
     }
@@ -530,31 +535,31 @@ impl<'a> Search<'a> {
     }
 
     /// Runs Newton's method from given displacements; `None` if it does not converge.
-    fn from(&self, mut moved: Vec<[f64; 3]>, steps_before: usize) -> Option<Equilibrium> {
+    fn solve_from(&self, mut moved: Vec<[f64; 3]>, steps_before: usize) -> Option<Equilibrium> {
         let size = 3 * moved.len();
         let mut matrix = Banded::new(size, self.width);
         let (mut forces, mut trial) = (vec![0.0; size], vec![0.0; size]);
-        self.unbalanced(&moved, false, None, &mut forces);
+        self.compute_unbalanced_forces(&moved, false, None, &mut forces);
         let mut norm = self.norm(&forces);
         let mut steps = 0;
         while norm > ROUNDING && steps < MOST_STEPS {
             steps += 1;
             matrix.clear();
-            self.unbalanced(&moved, false, Some(&mut matrix), &mut forces);
+            self.compute_unbalanced_forces(&moved, false, Some(&mut matrix), &mut forces);
             if !matrix.solve([&mut forces]) {
                 break;
             }
             let mut parts = (0..12).map(|halvings| 0.5_f64.powi(halvings));
             let shortened = parts.find_map(|part| {
                 let there = self.stepped(&moved, &forces, part);
-                self.unbalanced(&there, false, None, &mut trial);
+                self.compute_unbalanced_forces(&there, false, None, &mut trial);
                 let other = self.norm(&trial);
                 (other < norm * (1.0 - 1e-4 * part)).then_some((there, other))
             });
             let Some(better) = shortened else { break };
             (moved, norm) = better;
         }
-        (norm < BALANCED).then(|| self.at_rest(moved, norm, steps_before + steps))
+        (norm < BALANCED).then(|| self.equilibrium_at(moved, norm, steps_before + steps))
     }
 
     /// Returns the displacement of the centre of gravity to the right.
@@ -566,7 +571,7 @@ impl<'a> Search<'a> {
 
     /// Finds the equilibrium with the centre of gravity `stride_m` farther to the right, from an extrapolation of the last two. Returns also the
     /// number of Newton steps; `None` if it does not converge.
-    fn pushed(
+    fn find_pushed(
         &self,
         before: Option<&PushedEquilibrium>,
         here: &PushedEquilibrium,
@@ -588,7 +593,7 @@ impl<'a> Search<'a> {
         let (mut norm, mut missing) = (f64::INFINITY, missing_m(&moved));
         for steps in 0..MOST_STEPS {
             matrix.clear();
-            self.unbalanced(&moved, false, Some(&mut matrix), &mut forces);
+            self.compute_unbalanced_forces(&moved, false, Some(&mut matrix), &mut forces);
             self.push(push_m_s2, &mut forces);
             if steps == 0 {
                 norm = self.norm(&forces);
@@ -617,7 +622,7 @@ impl<'a> Search<'a> {
             let better = parts.find_map(|part| {
                 let there = self.stepped(&moved, &step, part);
                 let push_m_s2 = push_m_s2 + part * more_m_s2;
-                self.unbalanced(&there, false, None, &mut forces);
+                self.compute_unbalanced_forces(&there, false, None, &mut forces);
                 self.push(push_m_s2, &mut forces);
                 let other = self.norm(&forces);
                 let closer = other < norm || other < BALANCED_ON_WAY;
@@ -648,12 +653,12 @@ impl<'a> Search<'a> {
         lifted.sum::<f64>() + elastic.sum::<f64>()
     }
 
-    fn at_rest(&self, moved: Vec<[f64; 3]>, unbalanced: f64, steps: usize) -> Equilibrium {
+    fn equilibrium_at(&self, moved: Vec<[f64; 3]>, unbalanced: f64, steps: usize) -> Equilibrium {
         let joints = &self.structure.joints;
         let each = self.structure.fibres();
         let mut memories = vec![Memory::none(); joints.len()];
         let mut fibres = vec![Fibre::none(); joints.len() * each];
-        let place = |body: usize| self.place(&moved, body);
+        let place = |body: usize| self.body_position(&moved, body);
         let ties = self.structure.ties.iter().zip(&self.yielded_m);
         let ties = ties.map(|(bound, yielded_m)| {
             let [first, second] = bound.bodies.map(place);

@@ -9,7 +9,7 @@ use super::contact::{
 };
 use super::kinematics::{Action, BodyPosition, JointGeometry};
 use super::tie::BoundTie;
-use crate::argument::{ArgumentError, allow, within};
+use crate::argument::{ArgumentError, require, require_within};
 use crate::mechanics::tie::square_frequency;
 use crate::mechanics::{Block, Joint, Lanes, Real, Row, Supports, Sway};
 
@@ -99,26 +99,26 @@ impl ElasticProperties {
     fn check(&self) -> Result<(), ArgumentError> {
         if let Stiffness::Materials(materials) = self.stiffness {
             let modulus_pa = materials.stone_modulus_pa;
-            within("stone_modulus_pa", modulus_pa, Self::MODULUS_PA)?;
+            require_within("stone_modulus_pa", modulus_pa, Self::MODULUS_PA)?;
             if let Some([modulus_pa, thickness_m]) = materials.mortar {
-                within("mortar_modulus_pa", modulus_pa, Self::MODULUS_PA)?;
-                within("mortar_thickness_m", thickness_m, Self::MORTAR_M)?;
+                require_within("mortar_modulus_pa", modulus_pa, Self::MODULUS_PA)?;
+                require_within("mortar_thickness_m", thickness_m, Self::MORTAR_M)?;
             }
-            within("shear_ratio", materials.shear_ratio, Self::SHEAR_RATIO)?;
+            require_within("shear_ratio", materials.shear_ratio, Self::SHEAR_RATIO)?;
         }
-        within("depth_m", self.depth_m, 1e-6..=1e6)?;
+        require_within("depth_m", self.depth_m, 1e-6..=1e6)?;
         if let Some(coefficient) = self.friction_coefficient {
             let range = Self::FRICTION_COEFFICIENT;
-            within("friction_coefficient", coefficient, range)?;
+            require_within("friction_coefficient", coefficient, range)?;
         }
-        within("damping_time_s", self.damping_time_s, Self::DAMPING_TIME_S)?;
+        require_within("damping_time_s", self.damping_time_s, Self::DAMPING_TIME_S)?;
         if let Some(strength_pa) = self.compressive_strength_pa {
-            within("compressive_strength_pa", strength_pa, Self::STRENGTH_PA)?;
+            require_within("compressive_strength_pa", strength_pa, Self::STRENGTH_PA)?;
         }
         if let Contact::Points(count) = self.contact {
             let is_allowed = Self::CONTACT_POINTS.contains(&count);
             let allowed = "2 to 100: one point does not hold a block";
-            allow(is_allowed, "contact_points", count as f64, allowed)?;
+            require(is_allowed, "contact_points", count as f64, allowed)?;
         }
         Ok(())
     }
@@ -164,9 +164,9 @@ impl ElasticProperties {
 fn check_stiffness(stiffness: JointStiffness) -> Result<(), ArgumentError> {
     let range = ElasticProperties::NORMAL_STIFFNESS_PA_M;
     let normal_pa_m = stiffness.normal_pa_m;
-    within("normal_stiffness_pa_m", normal_pa_m, range)?;
+    require_within("normal_stiffness_pa_m", normal_pa_m, range)?;
     let shear_ratio = stiffness.shear_pa_m / normal_pa_m;
-    within("shear_ratio", shear_ratio, ElasticProperties::SHEAR_RATIO).map(|_| ())
+    require_within("shear_ratio", shear_ratio, ElasticProperties::SHEAR_RATIO).map(|_| ())
 }
 
 /// Rigid bodies with elastic joints between them. In a joint, the index after the last body is the left (or only) support; larger indices are the
@@ -206,17 +206,17 @@ impl ElasticStructure {
             let right = if index < ground { index } else { ground + 1 };
             let pair = [index.checked_sub(1).unwrap_or(ground), right];
             let middle_m = joint.middle_m();
-            let along = joint.along();
+            let tangent = joint.direction();
             let centres = pair.map(|body| blocks.get(body).map(|block| block.centre_m));
             // The centre of a support is the middle of its joint.
             let arms_m = centres.map(|centre| middle_m - centre.unwrap_or(middle_m));
             let across_m = |centre: Option<Vector2<f64>>| {
-                centre.map_or(0.0, |centre| along.perp(&(centre - middle_m)).abs())
+                centre.map_or(0.0, |centre| tangent.perp(&(centre - middle_m)).abs())
             };
             let length_m = joint.thickness_m();
             let arms_m = arms_m.map(|arm| [arm.x, arm.y]);
-            let along = [along.x, along.y];
-            let geometry = JointGeometry::new(pair, arms_m, along, row.handedness, length_m);
+            let tangent = [tangent.x, tangent.y];
+            let geometry = JointGeometry::new(pair, arms_m, tangent, row.handedness, length_m);
             properties.joint(geometry, centres.map(across_m).iter().sum())
         };
         debug_assert!(row.supports == Supports::Both || row.joints.len() == ground);
@@ -450,8 +450,8 @@ impl ElasticStructure {
         let squares = self.joints.iter().map(|joint| {
             let mut flexibility = Matrix3::zeros();
             let geometry = &joint.geometry;
-            let along = Vector2::from(geometry.along);
-            let normal = Vector2::new(-along.y, along.x) * geometry.handedness;
+            let tangent = Vector2::from(geometry.tangent);
+            let normal = Vector2::new(-tangent.y, tangent.x) * geometry.handedness;
             for (body, arm_m) in geometry.bodies.into_iter().zip(geometry.arms_m) {
                 let Some(of_body) = self.bodies.get(body) else {
                     continue;
@@ -459,9 +459,9 @@ impl ElasticStructure {
                 let part = joint.normal_n_m / held_n_m[body];
                 let arm = Vector2::from(arm_m);
                 // Gap, slip and angle due to the motion of the body; signs cancel in the squares.
-                let by_x = Vector3::new(normal.x, along.x, 0.0);
-                let by_y = Vector3::new(normal.y, along.y, 0.0);
-                let by_turn = Vector3::new(arm.perp(&normal), arm.perp(&along), 1.0);
+                let by_x = Vector3::new(normal.x, tangent.x, 0.0);
+                let by_y = Vector3::new(normal.y, tangent.y, 0.0);
+                let by_turn = Vector3::new(arm.perp(&normal), arm.perp(&tangent), 1.0);
                 let mass = part * of_body.mass_kg;
                 flexibility += (by_x * by_x.transpose() + by_y * by_y.transpose()) / mass;
                 flexibility += by_turn * by_turn.transpose() / (part * of_body.inertia_kg_m2);

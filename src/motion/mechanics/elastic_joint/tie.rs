@@ -64,7 +64,7 @@ impl BoundTie {
         span: &TieSpan<R>,
         force_n: R,
     ) -> Action<R> {
-        let pull = both!(i: span.along[i] * -force_n);
+        let pull = both!(i: span.direction[i] * -force_n);
         let swings = both!(end: places[end].swing(self.arms_m[end]));
         let first = both!(i: swings[0][i] + R::of(self.arms_m[0][i]));
         let second = both!(i: swings[1][i] + R::of(self.arms_m[1][i]));

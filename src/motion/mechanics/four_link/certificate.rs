@@ -36,7 +36,7 @@ impl Projection {
     /// omitted.
     ///
     /// In a continuous ring whole zones open, where the impulse line follows an edge.
-    pub fn opened(&self) -> impl Iterator<Item = (usize, Edge, f64)> {
+    pub fn opening_joints(&self) -> impl Iterator<Item = (usize, Edge, f64)> {
         let rates = self.joints.iter().flat_map(|joint| joint.opening_rates);
         let threshold = MIN_OPENING * rates.fold(MIN_OPENING, f64::max);
         let joints = self.joints.iter().enumerate();
@@ -133,7 +133,10 @@ pub fn project(
     let count = joints_rad.len();
     let mut entries = Vec::new();
     for (joint, angle) in joints_rad.iter().enumerate() {
-        let (outward, onward) = (profile.outward(*angle), profile.onward(*angle));
+        let (outward, onward) = (
+            profile.outward_direction(*angle),
+            profile.onward_normal(*angle),
+        );
         let middle = profile.middle(*angle);
         let edges = [Edge::Intrados, Edge::Extrados].map(|edge| profile.point(*angle, edge));
         let neighbours = [(joint.checked_sub(1), -1.0), (Some(joint), 1.0)];
@@ -143,9 +146,12 @@ pub fn project(
             };
             for (axis, twist) in twists.iter().enumerate() {
                 let velocities = [
-                    (joint, twist.at(middle).dot(&outward)),
-                    (count + 2 * joint, -twist.at(edges[0]).dot(&onward)),
-                    (count + 2 * joint + 1, -twist.at(edges[1]).dot(&onward)),
+                    (joint, twist.velocity_at(middle).dot(&outward)),
+                    (count + 2 * joint, -twist.velocity_at(edges[0]).dot(&onward)),
+                    (
+                        count + 2 * joint + 1,
+                        -twist.velocity_at(edges[1]).dot(&onward),
+                    ),
                 ];
                 let entry = |(row, velocity)| (row, 3 * body + axis, side * velocity);
                 entries.extend(velocities.map(entry));

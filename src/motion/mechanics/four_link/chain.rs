@@ -39,7 +39,8 @@ impl ArchLink {
         let linkage = Linkage::new(profile, &impact.mechanism);
         let limit_rad = linkage.limit_rad();
         let critical_rad = critical_rad(&linkage, limit_rad);
-        let (rate_ratio, restitution) = law.measured(impact.rate_ratio, impact.restitution);
+        let (rate_ratio, restitution) =
+            law.rate_and_restitution(impact.rate_ratio, impact.restitution);
         Self {
             mechanism: impact.mechanism,
             link: Link::new(linkage, critical_rad, limit_rad, rate_ratio, restitution),
@@ -163,7 +164,7 @@ mod tests {
         let ring = Ring::new(thickness_ratio, embrace_deg.to_radians()).unwrap();
         let onset = incipient(&ring, sites).unwrap();
         Chain::new(
-            [ring.shared(), ring.shared()],
+            [ring.to_shared(), ring.to_shared()],
             sites,
             onset,
             ImpactModel::MaxRestitution.into(),

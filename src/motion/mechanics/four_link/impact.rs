@@ -6,7 +6,7 @@
 use super::impulse_line::ImpulseLine;
 use super::mechanism::{EDGES, FourLink, HingeSites};
 use super::search::{Lattice, Objective, Quadruple, best_mechanism};
-use crate::argument::{ArgumentError, within};
+use crate::argument::{ArgumentError, require_within};
 use crate::mechanics::geometry::field::Side;
 use crate::mechanics::{Field, Profile, Twist};
 
@@ -50,7 +50,7 @@ impl ImpactModel {
     /// Checks a prescribed restitution coefficient.
     pub(crate) fn check(self) -> Result<(), ArgumentError> {
         if let Self::Prescribed { restitution } = self {
-            within("restitution", restitution, 0.0..=1.0)?;
+            require_within("restitution", restitution, 0.0..=1.0)?;
         }
         Ok(())
     }
@@ -85,11 +85,11 @@ impl ImpactLaw {
     /// Checks a prescribed restitution coefficient and the factor.
     pub(crate) fn check(self) -> Result<(), ArgumentError> {
         self.model.check()?;
-        within("restitution_factor", self.restitution_factor, 0.0..=100.0).map(|_| ())
+        require_within("restitution_factor", self.restitution_factor, 0.0..=100.0).map(|_| ())
     }
 
     /// Returns rate and restitution coefficient of an impact by this law, from those of its model.
-    pub(crate) fn measured(self, rate_ratio: f64, restitution: f64) -> (f64, f64) {
+    pub(crate) fn rate_and_restitution(self, rate_ratio: f64, restitution: f64) -> (f64, f64) {
         if self.is_theory() || restitution <= 0.0 {
             return (rate_ratio, restitution);
         }
@@ -188,7 +188,9 @@ pub fn projection(mechanism: &FourLink, before: &Field, profile: &dyn Profile) -
 fn most_energetic(before: &Field, profile: &dyn Profile, sites: HingeSites) -> Option<FourLink> {
     let lattice = Lattice::new(profile, sites);
     let table = ProductTable::new(&lattice, before, profile);
-    let score = |rotations: &[f64; 4], quadruple: &Quadruple| table.retained(rotations, quadruple);
+    let score = |rotations: &[f64; 4], quadruple: &Quadruple| {
+        table.twice_retained_energy(rotations, quadruple)
+    };
     let objective = RetainedEnergy { before, profile };
     best_mechanism(profile, sites, &lattice, &score, &objective).map(|(_, mechanism)| mechanism)
 }
@@ -201,7 +203,7 @@ struct RetainedEnergy<'a> {
 
 impl RetainedEnergy<'_> {
     /// Returns the retained energy and the rate of the mechanism.
-    fn retained(&self, mechanism: &FourLink) -> (f64, f64) {
+    fn energy_and_rate(&self, mechanism: &FourLink) -> (f64, f64) {
         let field = mechanism.field();
         let shared = field.product(self.before, self.profile);
         let rate = shared / field.product(&field, self.profile);
@@ -219,13 +221,15 @@ impl Objective for RetainedEnergy<'_> {
     /// derivative is `2 s` times that of the power of the load `before - s u'`: the moments of the impulse line. At a hinge the new field counts with
     /// the mean of both sides.
     fn evaluate(&self, mechanism: &FourLink, above: [bool; 4]) -> (f64, [f64; 4]) {
-        let (value, rate) = self.retained(mechanism);
+        let (value, rate) = self.energy_and_rate(mechanism);
         let after = mechanism.field().scaled(rate);
         let angles = mechanism.hinges_rad;
         let local: [Twist; 4] = std::array::from_fn(|i| {
             let side = if above[i] { Side::After } else { Side::Before };
-            let mean = (after.at(angles[i], Side::Before) + after.at(angles[i], Side::After)) * 0.5;
-            self.before.at(angles[i], side) - mean
+            let mean = (after.twist_at(angles[i], Side::Before)
+                + after.twist_at(angles[i], Side::After))
+                * 0.5;
+            self.before.twist_at(angles[i], side) - mean
         });
         let line = ImpulseLine::new(self.profile, mechanism, self.before, &after);
         let gradient = line.resultants.power_gradient(mechanism, local);
@@ -255,7 +259,7 @@ impl ProductTable {
         let rotations: Vec<_> = rotations.collect();
         let shares = rotations
             .iter()
-            .map(|(point, _, momentum)| momentum.about(*point));
+            .map(|(point, _, momentum)| momentum.moment_about(*point));
         let with_before = shares.collect();
         let size = rotations.len();
         let mut mutual = vec![0.0; size * size];
@@ -274,7 +278,7 @@ impl ProductTable {
     }
 
     /// Returns twice the kinetic energy that the mechanism keeps.
-    fn retained(&self, rotations: &[f64; 4], quadruple: &Quadruple) -> f64 {
+    fn twice_retained_energy(&self, rotations: &[f64; 4], quadruple: &Quadruple) -> f64 {
         let size = self.with_before.len();
         let index: [usize; 4] = std::array::from_fn(|i| 2 * quadruple[i] + EDGES[i] as usize);
         let (mut shared, mut own) = (0.0, 0.0);

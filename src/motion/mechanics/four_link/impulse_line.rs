@@ -41,7 +41,7 @@ impl ImpulseLine {
     pub fn hinge_impulses(&self) -> [Vector2<f64>; 4] {
         let sides = [1.0, 1.0, -1.0, -1.0];
         let hinges = self.mechanism.hinges_rad;
-        std::array::from_fn(|i| self.resultants.at(hinges[i]).linear * sides[i])
+        std::array::from_fn(|i| self.resultants.resultant_at(hinges[i]).linear * sides[i])
     }
 
     /// Returns [`Self::hinge_impulses`] at the hinges from left to right, in the frame of the ground, when the new mechanism sways to the given side.
@@ -58,7 +58,7 @@ impl ImpulseLine {
 
     /// Returns the resultant at a section, by its angle from the left springing, when the new mechanism sways to the given side.
     pub fn section_from_left(&self, angle_rad: f64, sway: Sway) -> SectionResultant {
-        let angle_rad = sway.from_left(&*self.resultants.profile, angle_rad);
+        let angle_rad = sway.convert_section(&*self.resultants.profile, angle_rad);
         let mut section = self.resultants.section(angle_rad);
         // A reflection exchanges the parts before and after the section.
         section.tangential *= sway.sign();
@@ -73,7 +73,8 @@ impl ImpulseLine {
             &mut extremes.normal,
             &mut extremes.friction_ratio,
         ] {
-            extremum.angle_rad = sway.from_left(&*self.resultants.profile, extremum.angle_rad);
+            extremum.angle_rad =
+                sway.convert_section(&*self.resultants.profile, extremum.angle_rad);
         }
         extremes
     }

@@ -51,7 +51,7 @@ impl JointedProfile {
         (section.round().max(0.0) as usize).min(self.joints.len() - 1)
     }
 
-    fn at(&self, section: f64) -> &Joint {
+    fn joint_at(&self, section: f64) -> &Joint {
         &self.joints[self.index(section)]
     }
 }
@@ -62,15 +62,15 @@ impl Profile for JointedProfile {
     }
 
     fn point(&self, section: f64, edge: Edge) -> Vector2<f64> {
-        self.at(section).corner_m(edge)
+        self.joint_at(section).corner_m(edge)
     }
 
-    fn outward(&self, section: f64) -> Vector2<f64> {
-        self.at(section).along()
+    fn outward_direction(&self, section: f64) -> Vector2<f64> {
+        self.joint_at(section).direction()
     }
 
     fn thickness(&self, section: f64) -> f64 {
-        self.at(section).thickness_m()
+        self.joint_at(section).thickness_m()
     }
 
     fn moments_to(&self, section: f64) -> MassMoments {
@@ -89,7 +89,7 @@ impl Profile for JointedProfile {
         self.outlines.get(self.index(from)..self.index(to))
     }
 
-    fn shared(&self) -> Arc<dyn Profile> {
+    fn to_shared(&self) -> Arc<dyn Profile> {
         Arc::new(self.clone())
     }
 }

@@ -9,7 +9,7 @@ use super::search::{Lattice, Objective, Quadruple, best_mechanism};
 use super::self_weight::carries_its_weight;
 use crate::argument::ArgumentError;
 use crate::bisection::{Width, try_bisect};
-use crate::mechanics::geometry::field::{Side, turned};
+use crate::mechanics::geometry::field::{Side, quarter_turn};
 use crate::mechanics::{Edge, Field, Profile, Ring, Twist};
 
 /// Onset of rocking under a push to the right.
@@ -114,7 +114,7 @@ fn least_acceleration(profile: &dyn Profile, sites: HingeSites) -> Option<(f64, 
     let moments = lattice.sections_rad.iter().map(|angle| {
         let part = profile.moments_to(*angle);
         let arm = |edge| part.first - profile.point(*angle, edge) * part.mass;
-        [Edge::Intrados, Edge::Extrados].map(|edge| turned(arm(edge)))
+        [Edge::Intrados, Edge::Extrados].map(|edge| quarter_turn(arm(edge)))
     });
     let moments: Vec<[Vector2<f64>; 2]> = moments.collect();
     let score = |rotations: &[f64; 4], quadruple: &Quadruple| {
@@ -144,7 +144,7 @@ impl Objective for LeastAcceleration<'_> {
         let sway = mechanism.field().product(&push_only(), self.profile);
         let acceleration_g = acceleration_g(mechanism, self.profile);
         let load = push(acceleration_g);
-        let local = [load.at(0.0, Side::After); 4];
+        let local = [load.twist_at(0.0, Side::After); 4];
         let line = ResultantLine::through_hinges(self.profile, mechanism, load);
         let gradient = line.power_gradient(mechanism, local);
         let moves = acceleration_g > 0.0;

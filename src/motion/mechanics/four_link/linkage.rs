@@ -13,7 +13,7 @@ use nalgebra::Vector2;
 use super::mechanism::FourLink;
 use super::thrust::{Load, Part, Section, ThrustLine, demand_at_sections};
 use crate::mechanics::chain::{Coefficients, MechanismState};
-use crate::mechanics::geometry::field::turned;
+use crate::mechanics::geometry::field::quarter_turn;
 use crate::mechanics::geometry::pose::product;
 use crate::mechanics::{Demand, MassMoments, Mechanism, Momentum, Pose, Profile};
 
@@ -101,7 +101,7 @@ impl Linkage {
         let [point_a, point_b, point_c, point_d] = mechanism.points;
         let [left, middle, right] = Self::sectors(&mechanism.before);
         Self {
-            profile: profile.shared(),
+            profile: profile.to_shared(),
             mechanism: *mechanism,
             left: Body::new(&left, point_a, point_b - point_a).loaded(middle.mass),
             middle: Body::new(&middle, point_b, point_c - point_b),
@@ -129,7 +129,7 @@ impl Linkage {
         // Dot and cross product of the line and the middle bar.
         let along = 0.5 * (square + middle_square - right_square);
         let cross = (middle_square * square - along * along).sqrt();
-        let middle = (line * along + turned(line) * cross) * square.recip();
+        let middle = (line * along + quarter_turn(line) * cross) * square.recip();
         Bars {
             left,
             middle,
@@ -192,7 +192,7 @@ impl Linkage {
         let turn_middle = turn_between(self.middle.bar, bars.middle);
         let turn_right = turn_between(self.right.bar, bars.right);
         let force = motion.body_force_g;
-        let at_b = turned(bars.left) * left_spin.0 - bars.left * left_spin.1;
+        let at_b = quarter_turn(bars.left) * left_spin.0 - bars.left * left_spin.1;
         let [point_a, point_b, _, point_d] = self.mechanism.points;
         let left = Load::of_body(point_a, rotate_back(turn_left, force), left_spin);
         let middle = Load::of_body(point_b, rotate_back(turn_middle, force - at_b), middle_spin);
@@ -203,8 +203,8 @@ impl Linkage {
         let on_left = left.resultant(&sectors[0]);
         let on_middle = middle.resultant(&sectors[1]);
         let on_right = right.resultant(&sectors[2]);
-        let force_c = (bars.right * on_middle.about(point_b)
-            + bars.middle * on_right.about(point_d))
+        let force_c = (bars.right * on_middle.moment_about(point_b)
+            + bars.middle * on_right.moment_about(point_d))
             * bars.per_cross;
         let force_b = force_c - product(turn_middle, on_middle.linear);
         let force_a = force_b - product(turn_left, on_left.linear);
@@ -258,7 +258,7 @@ impl Mechanism for Linkage {
         let (middle_rate, right_rate) = Self::rates(&bars);
         let (middle_slope, right_slope) = Self::slopes(&bars, middle_rate, right_rate);
         let first = self.middle.first(bars.middle);
-        let path = turned(
+        let path = quarter_turn(
             first * middle_rate + self.right.first(bars.right) * right_rate
                 - self.left.first(bars.left),
         );
@@ -303,7 +303,7 @@ impl Mechanism for Linkage {
     }
 
     /// Writes poses and hinges, in mean radii from the centre of the ring.
-    fn place(&self, q_rad: f64, poses: &mut Vec<Pose>, hinges: &mut Vec<Vector2<f64>>) {
+    fn write_poses(&self, q_rad: f64, poses: &mut Vec<Pose>, hinges: &mut Vec<Vector2<f64>>) {
         let bars = self.bars(q_rad);
         let [point_a, point_b, _, point_d] = self.mechanism.points;
         let at_b = point_a + bars.left;

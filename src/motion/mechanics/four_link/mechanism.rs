@@ -79,7 +79,7 @@ impl FourLink {
         std::array::from_fn(|i| match sway {
             Sway::Right => (self.hinges_rad[i], EDGES[i]),
             Sway::Left => (
-                sway.from_left(profile, self.hinges_rad[3 - i]),
+                sway.convert_section(profile, self.hinges_rad[3 - i]),
                 EDGES[3 - i],
             ),
         })
@@ -141,13 +141,13 @@ mod tests {
         let (_, mechanism) = semicircle();
         let field = mechanism.field();
         for (angle, point) in mechanism.hinges_rad.into_iter().zip(mechanism.points) {
-            let jump =
-                field.at(angle, Side::After).at(point) - field.at(angle, Side::Before).at(point);
+            let jump = field.twist_at(angle, Side::After).velocity_at(point)
+                - field.twist_at(angle, Side::Before).velocity_at(point);
             assert!(jump.norm() < 1e-15);
         }
-        let after = field.at(3.2, Side::After);
+        let after = field.twist_at(3.2, Side::After);
         assert!(after.rate.abs() < 1e-15 && after.at_center.norm() < 1e-15);
-        assert!((field.at(1.0, Side::After).rate + 1.0).abs() < 1e-15);
+        assert!((field.twist_at(1.0, Side::After).rate + 1.0).abs() < 1e-15);
     }
 
     #[test]
@@ -159,7 +159,7 @@ mod tests {
         let (ab, cd) = (b - a, d - c);
         let center = a + ab * ((c - a).perp(&cd) / ab.perp(&cd));
         let field = mechanism.field();
-        let rate = |angle: f64| field.at(angle.to_radians(), Side::After).rate;
+        let rate = |angle: f64| field.twist_at(angle.to_radians(), Side::After).rate;
         let k31 = (b.x - a.x) / (b.x - center.x);
         let k32 = (c.x - d.x) / (c.x - center.x);
         assert!((rate(100.0) / rate(50.0) - k31).abs() < 1e-12);
@@ -172,7 +172,8 @@ mod tests {
         let field = mechanism.field();
         for (angle, edge) in mechanism.hinges_rad.into_iter().zip(EDGES) {
             let far = ring.point(angle, edge.opposite());
-            let gap = field.at(angle, Side::After).at(far) - field.at(angle, Side::Before).at(far);
+            let gap = field.twist_at(angle, Side::After).velocity_at(far)
+                - field.twist_at(angle, Side::Before).velocity_at(far);
             assert!(gap.dot(&ring.tangent(angle)) > 0.0);
         }
     }

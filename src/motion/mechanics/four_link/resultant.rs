@@ -41,13 +41,13 @@ pub struct SectionResultant {
 impl SectionResultant {
     /// Returns components and position, at a section, of a force with its moment about the centre of the ring.
     pub fn new(profile: &dyn Profile, angle_rad: f64, resultant: &Momentum) -> Self {
-        let normal = resultant.linear.dot(&profile.onward(angle_rad));
+        let normal = resultant.linear.dot(&profile.onward_normal(angle_rad));
         // A force N at distance e outwards from the axis has the moment -e N about its point there.
-        let moment = -resultant.about(profile.middle(angle_rad));
+        let moment = -resultant.moment_about(profile.middle(angle_rad));
         let thickness = profile.thickness(angle_rad);
         Self {
             normal,
-            tangential: resultant.linear.dot(&profile.outward(angle_rad)),
+            tangential: resultant.linear.dot(&profile.outward_direction(angle_rad)),
             moment,
             eccentricity_ratio: moment / (normal * thickness),
             thickness,
@@ -97,39 +97,39 @@ impl ResultantLine {
         let moments = Vector3::from_fn(|row, _| {
             let hinge = hinges[row];
             load.momentum_to(profile, mechanism.hinges_rad[hinge])
-                .about(points[hinge])
+                .moment_about(points[hinge])
         });
         let start = matrix.lu().solve(&moments);
         let start = start.expect("three hinges of an admissible mechanism are not on one line");
         let (linear, angular) = (start.xy(), start.z);
         Self {
-            profile: profile.shared(),
+            profile: profile.to_shared(),
             load,
             start: Momentum { linear, angular },
         }
     }
 
     /// Returns the force (impulse) at a section, with its moment about the centre of the ring.
-    pub fn at(&self, angle_rad: f64) -> Momentum {
+    pub fn resultant_at(&self, angle_rad: f64) -> Momentum {
         self.start + self.load.momentum_to(&*self.profile, angle_rad)
     }
 
     /// Returns components and position of the resultant at a section.
     pub fn section(&self, angle_rad: f64) -> SectionResultant {
-        SectionResultant::new(&*self.profile, angle_rad, &self.at(angle_rad))
+        SectionResultant::new(&*self.profile, angle_rad, &self.resultant_at(angle_rad))
     }
 
     /// Returns the extremes over all sections where hinges may form anywhere, or over the joints of voussoirs, which are rigid: there the line may
     /// leave the ring between joints.
     pub fn extremes(&self, sites: HingeSites) -> Extremes {
-        let mut normal = self.largest(sites, &|section| -section.normal);
+        let mut normal = self.find_largest(sites, &|section| -section.normal);
         normal.value = -normal.value;
         let of_pressed = |of: &dyn Fn(&SectionResultant) -> f64| match normal {
             Extremum { value, angle_rad } if value <= 0.0 => Extremum {
                 value: f64::INFINITY,
                 angle_rad,
             },
-            _ => self.largest(sites, of),
+            _ => self.find_largest(sites, of),
         };
         Extremes {
             eccentricity_ratio: of_pressed(&|section| section.eccentricity_ratio.abs()),
@@ -139,7 +139,7 @@ impl ResultantLine {
     }
 
     /// Returns the largest value of a quantity. The quantity is smooth where the load is rigid: it is sampled, then every maximum is refined.
-    fn largest(&self, sites: HingeSites, of: &dyn Fn(&SectionResultant) -> f64) -> Extremum {
+    fn find_largest(&self, sites: HingeSites, of: &dyn Fn(&SectionResultant) -> f64) -> Extremum {
         let at = |angle_rad: f64| Extremum {
             value: of(&self.section(angle_rad)),
             angle_rad,
@@ -174,7 +174,8 @@ impl ResultantLine {
         let angle_rad = mechanism.hinges_rad[hinge];
         let slice = local.momentum(&self.profile.slice(angle_rad));
         let along_edge = self.profile.edge_slope(angle_rad, EDGES[hinge]);
-        slice.about(mechanism.points[hinge]) - along_edge.perp(&self.at(angle_rad).linear)
+        slice.moment_about(mechanism.points[hinge])
+            - along_edge.perp(&self.resultant_at(angle_rad).linear)
     }
 
     /// Returns the derivatives of the power of the load on `mechanism` (at `q' = 1`) by the sections of its hinges. The rotations change so that the

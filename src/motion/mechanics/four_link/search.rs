@@ -257,7 +257,7 @@ impl Cell {
     }
 
     /// Returns whether an end of the cell stops a hinge at `angle` that moves along `slope`.
-    fn stops(&self, angle: f64, slope: f64) -> bool {
+    fn stops_hinge(&self, angle: f64, slope: f64) -> bool {
         (angle <= self.low && slope < 0.0) || (angle >= self.high && slope > 0.0)
     }
 }
@@ -368,7 +368,7 @@ impl<O: Objective> Ascent<'_, O> {
         for i in 0..4 {
             let cell = self.cells[i];
             let next = match gradient[i] {
-                _ if !cell.stops(angles[i], gradient[i]) => continue,
+                _ if !cell.stops_hinge(angles[i], gradient[i]) => continue,
                 slope if slope < 0.0 && cell.index > 0 => cell.index - 1,
                 slope if slope > 0.0 && cell.index + 2 < ends.len() => cell.index + 1,
                 _ => continue,

@@ -68,7 +68,7 @@ impl SymmetricLines {
     }
 
     /// Returns the `k` for which the thrust line with thrust `h` meets an edge at a section.
-    fn touching(&self, edge: Edge, h: f64, angle_rad: f64) -> Bound {
+    fn touching_k(&self, edge: Edge, h: f64, angle_rad: f64) -> Bound {
         let (sin, cos) = libm::sincos(angle_rad);
         // This form of 1 - cos phi avoids cancellation in shallow rings.
         let drop = 2.0 * libm::sin(0.5 * angle_rad).powi(2);
@@ -80,30 +80,30 @@ impl SymmetricLines {
     }
 
     /// Returns the smallest `k` of a thrust line with thrust `h` that is nowhere below the intrados.
-    fn least(&self, h: f64) -> Bound {
+    fn least_k(&self, h: f64) -> Bound {
         let inside = match self.sites {
             HingeSites::Anywhere => Some(self.haunch_rad(h)),
             HingeSites::Voussoirs(_) => None,
         };
         let sections = self.sections_rad.iter().copied().chain(inside);
-        let bounds = sections.map(|angle| self.touching(Edge::Intrados, h, angle));
+        let bounds = sections.map(|angle| self.touching_k(Edge::Intrados, h, angle));
         let least = bounds.max_by(|a, b| a.value.total_cmp(&b.value));
         least.expect("a ring has a springing")
     }
 
     /// Returns the largest `k` of a thrust line with thrust `h` that is nowhere above the extrados.
     ///
-    /// From crown to springing [`Self::touching`] may first increase, and then decreases (see [`Self::haunch_rad`]): its minimum is at one of the
+    /// From crown to springing [`Self::touching_k`] may first increase, and then decreases (see [`Self::haunch_rad`]): its minimum is at one of the
     /// two.
-    fn largest(&self, h: f64) -> Bound {
+    fn largest_k(&self, h: f64) -> Bound {
         let sections = self.sections_rad.iter();
-        let bounds = sections.map(|angle| self.touching(Edge::Extrados, h, *angle));
+        let bounds = sections.map(|angle| self.touching_k(Edge::Extrados, h, *angle));
         let largest = bounds.min_by(|a, b| a.value.total_cmp(&b.value));
         largest.expect("a ring has a springing")
     }
 
     /// Returns the section of a continuous ring at which a thrust line with thrust `h` above the intrados touches the intrados: where
-    /// [`Self::touching`] is largest.
+    /// [`Self::touching_k`] is largest.
     ///
     /// Its slope is zero where `tan phi / phi = r / (r (h - 1) + c)`. The left-hand side increases from 1 to infinity between crown and 90 degrees.
     /// The slope therefore changes its sign at most once, from positive to negative.
@@ -113,14 +113,14 @@ impl SymmetricLines {
             let (sin, cos) = libm::sincos(angle);
             radius * angle * cos > (radius * (h - 1.0) + self.slice_radius) * sin
         };
-        last(0.0, 0.5 * self.ring.embrace_rad, rises)
+        find_last(0.0, 0.5 * self.ring.embrace_rad, rises)
     }
 
     /// Returns the largest interval of `k` over all thrusts: positive if the ring is stable. `None` if it is unbounded, because a straight line fits
     /// into the ring.
     fn largest_margin(&self) -> Option<f64> {
         let (first, springing) = (self.sections_rad[0], 0.5 * self.ring.embrace_rad);
-        let slope = |edge: Edge, angle: f64| self.touching(edge, 0.0, angle).slope;
+        let slope = |edge: Edge, angle: f64| self.touching_k(edge, 0.0, angle).slope;
         if slope(Edge::Extrados, springing) >= slope(Edge::Intrados, first) {
             return None;
         }
@@ -128,13 +128,13 @@ impl SymmetricLines {
         // after the last change on either side it falls. Two sections change places at h = (phi sin phi - psi
         // sin psi) / (cos psi - cos phi) - c/r, where the quotient lies between 0 and 2 by Cauchy's mean value
         // theorem: the best thrust is in (0, 2).
-        let rises = |h: f64| self.largest(h).slope > self.least(h).slope;
-        let h = last(0.0, 2.0, rises);
-        Some(self.largest(h).value - self.least(h).value)
+        let rises = |h: f64| self.largest_k(h).slope > self.least_k(h).slope;
+        let h = find_last(0.0, 2.0, rises);
+        Some(self.largest_k(h).value - self.least_k(h).value)
     }
 }
 
 /// Returns the last number, within rounding error, at which a condition holds that also holds for all smaller numbers.
-fn last(low: f64, high: f64, holds: impl Fn(f64) -> bool) -> f64 {
+fn find_last(low: f64, high: f64, holds: impl Fn(f64) -> bool) -> f64 {
     bisect(low, high, Width::Rounding, |at| !holds(at)).0
 }

@@ -18,7 +18,7 @@ use super::mechanism::HingeSites;
 use super::resultant::{Extremum, SectionResultant, find_maximum};
 use crate::bisection::{Width, bisect};
 use crate::mechanics::chain::LEAST_LOAD;
-use crate::mechanics::geometry::field::turned;
+use crate::mechanics::geometry::field::quarter_turn;
 use crate::mechanics::{Demand, MassMoments, Momentum, Profile, Twist};
 
 /// Samples of a continuous ring per right angle; between two of them the line has at most one maximum.
@@ -94,7 +94,7 @@ impl Section {
         let of = |place: f64| Self {
             place,
             before: profile.moments_to(place),
-            onward: profile.onward(place),
+            onward: profile.onward_normal(place),
             middle: profile.middle(place),
             thickness: profile.thickness(place),
         };
@@ -119,7 +119,7 @@ pub(crate) fn demand_at_sections(parts: &[Part], sections: &[Section]) -> Demand
         let resultant = part.start + part.load.resultant(&section.before);
         let normal = resultant.linear.dot(&section.onward);
         // As in `SectionResultant`; the sign does not matter.
-        let moment = resultant.about(section.middle);
+        let moment = resultant.moment_about(section.middle);
         largest = largest.max(excess_ratio(normal, moment, section.thickness, least));
         if normal >= least {
             // The components along the section and along the axis are perpendicular.
@@ -160,7 +160,7 @@ impl Load {
     ) -> Self {
         Self {
             turning: Twist {
-                at_center: at_pole + turned(pole) * acceleration - pole * squared_rate,
+                at_center: at_pole + quarter_turn(pole) * acceleration - pole * squared_rate,
                 rate: -acceleration,
             },
             centrifugal: squared_rate,
@@ -207,7 +207,7 @@ impl Part {
     }
 
     /// Returns the resultant at a section.
-    pub fn at(&self, profile: &dyn Profile, angle_rad: f64) -> Momentum {
+    pub fn resultant_at(&self, profile: &dyn Profile, angle_rad: f64) -> Momentum {
         self.start + self.load.resultant(&profile.moments_to(angle_rad))
     }
 }
@@ -226,7 +226,7 @@ impl ThrustLine {
     /// Returns the line over consecutive parts, from the left springing to the right one.
     pub(crate) fn new(profile: &dyn Profile, parts: Vec<Part>) -> Self {
         Self {
-            profile: profile.shared(),
+            profile: profile.to_shared(),
             parts,
         }
     }
@@ -243,8 +243,8 @@ impl ThrustLine {
         profile: &dyn Profile,
         body_force_g: Vector2<f64>,
     ) -> Self {
-        let right = to_right.thrust_line.at(0.0);
-        let mut left = to_left.thrust_line.at(profile.end());
+        let right = to_right.thrust_line.resultant_at(0.0);
+        let mut left = to_left.thrust_line.resultant_at(profile.end());
         // A reflection exchanges the parts before and after the section, which changes the sign.
         left.linear.y = -left.linear.y;
         let both_g = to_right.acceleration_g + to_left.acceleration_g;
@@ -257,14 +257,14 @@ impl ThrustLine {
     }
 
     /// Returns the resultant at a section; at the end of a part, that of the part before.
-    pub fn at(&self, angle_rad: f64) -> Momentum {
+    pub fn resultant_at(&self, angle_rad: f64) -> Momentum {
         let index = self.parts.partition_point(|part| part.end_rad < angle_rad);
-        self.parts[index.min(self.parts.len() - 1)].at(&*self.profile, angle_rad)
+        self.parts[index.min(self.parts.len() - 1)].resultant_at(&*self.profile, angle_rad)
     }
 
     /// Components and position at a section.
     pub fn section(&self, angle_rad: f64) -> SectionResultant {
-        SectionResultant::new(&*self.profile, angle_rad, &self.at(angle_rad))
+        SectionResultant::new(&*self.profile, angle_rad, &self.resultant_at(angle_rad))
     }
 
     /// Returns the crossings of the line with these sections, outwards from the axis over the thickness: -0.5 to 0.5 inside the ring. `None` for a
@@ -291,12 +291,12 @@ impl ThrustLine {
                 let mut demand = Demand::default();
                 for (start, part) in starts.zip(&self.parts) {
                     let at = |angle_rad: f64| {
-                        let resultant = part.at(&*self.profile, angle_rad);
+                        let resultant = part.resultant_at(&*self.profile, angle_rad);
                         let section = SectionResultant::new(&*self.profile, angle_rad, &resultant);
                         Demand::of_section(&section, weight)
                     };
                     if start < part.end_rad {
-                        demand = largest(demand, start, part.end_rad, &at);
+                        demand = find_largest_demand(demand, start, part.end_rad, &at);
                     }
                 }
                 demand
@@ -306,7 +306,12 @@ impl ThrustLine {
 }
 
 /// Returns the largest of `known` and of the demands at all sections of a rigid part, over which they are smooth except for a few kinks.
-fn largest(known: Demand, start_rad: f64, end_rad: f64, at: &impl Fn(f64) -> Demand) -> Demand {
+fn find_largest_demand(
+    known: Demand,
+    start_rad: f64,
+    end_rad: f64,
+    at: &impl Fn(f64) -> Demand,
+) -> Demand {
     let intervals = (SAMPLES * (end_rad - start_rad) / FRAC_PI_2)
         .ceil()
         .max(4.0);

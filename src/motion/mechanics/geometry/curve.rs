@@ -11,7 +11,7 @@ use std::f64::consts::PI;
 
 use nalgebra::Vector2;
 
-use super::rigid::{MassMoments, mirrored, turned};
+use super::rigid::{MassMoments, mirrored, quarter_turn};
 use crate::bisection::{Width, bisect, middle};
 
 /// Parts into which a curve is cut for quadrature.
@@ -61,7 +61,7 @@ impl Curve {
     }
 
     /// Returns the point at a parameter from 0 to 1, and its derivative by the parameter.
-    pub fn at(&self, part: f64) -> (Vector2<f64>, Vector2<f64>) {
+    pub fn point_and_derivative(&self, part: f64) -> (Vector2<f64>, Vector2<f64>) {
         match *self {
             Self::Line { from, to } => (from + (to - from) * part, to - from),
             Self::Arc {
@@ -71,7 +71,7 @@ impl Curve {
             } => {
                 let (sin, cos) = libm::sincos(from_rad + (to_rad - from_rad) * part);
                 let arm = Vector2::new(cos, sin) * radius;
-                (centre + arm, turned(arm) * (to_rad - from_rad))
+                (centre + arm, quarter_turn(arm) * (to_rad - from_rad))
             }
             Self::Ellipse {
                 semi_axes,
@@ -87,7 +87,7 @@ impl Curve {
                 let parallel = speed + offset * semi_axes.x * semi_axes.y / (speed * speed);
                 (
                     on_ellipse + normal * offset,
-                    turned(normal) * (parallel * (to_rad - from_rad)),
+                    quarter_turn(normal) * (parallel * (to_rad - from_rad)),
                 )
             }
         }
@@ -95,7 +95,7 @@ impl Curve {
 
     /// Returns the point at a parameter from 0 to 1.
     pub fn point(&self, part: f64) -> Vector2<f64> {
-        self.at(part).0
+        self.point_and_derivative(part).0
     }
 
     /// Returns the piece between two parameters; reversed if the first one is larger.
@@ -141,7 +141,7 @@ impl Curve {
             let middle = half * f64::from(2 * panel + 1);
             let node = |(node, weight): (f64, f64)| {
                 let at = |part| {
-                    let (point, derivative) = self.at(part);
+                    let (point, derivative) = self.point_and_derivative(part);
                     of(point, derivative)
                 };
                 (at(middle - half * node) + at(middle + half * node)) * (weight * half)
@@ -181,7 +181,7 @@ impl Curve {
 
     /// Returns the moments, about a pole, of the area swept by the line from the pole to the point on the curve; positive if the line rotates
     /// anticlockwise.
-    pub(crate) fn swept(&self, pole: Vector2<f64>) -> MassMoments {
+    pub(crate) fn swept_moments(&self, pole: Vector2<f64>) -> MassMoments {
         if let Self::Line { from, to } = self {
             // A triangle.
             let (a, b) = (from - pole, to - pole);
@@ -217,9 +217,9 @@ pub(crate) fn sides(corners: &[Vector2<f64>]) -> impl Iterator<Item = [Vector2<f
 
 /// Returns the distance of a point from a side.
 pub(crate) fn distance([from, to]: [Vector2<f64>; 2], point: Vector2<f64>) -> f64 {
-    let (along, arm) = (to - from, point - from);
-    let part = (arm.dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
-    (arm - along * part).norm()
+    let (direction, arm) = (to - from, point - from);
+    let part = (arm.dot(&direction) / direction.norm_squared()).clamp(0.0, 1.0);
+    (arm - direction * part).norm()
 }
 
 #[cfg(test)]
@@ -241,7 +241,7 @@ mod tests {
     }
 
     fn moments(outline: &[Curve], pole: Vector2<f64>) -> MassMoments {
-        let swept = outline.iter().map(|curve| curve.swept(pole));
+        let swept = outline.iter().map(|curve| curve.swept_moments(pole));
         swept.reduce(|sum, next| sum + next).unwrap()
     }
 
@@ -290,7 +290,7 @@ mod tests {
             offset,
             angles_rad: [0.0, FRAC_PI_2],
         };
-        let quarter = ellipse(0.0).swept(Vector2::zeros());
+        let quarter = ellipse(0.0).swept_moments(Vector2::zeros());
         assert!((quarter.mass - 1.5 * PI).abs() < 1e-13);
         // First moments a^2 b / 3 and a b^2 / 3, polar pi a b (a^2 + b^2) / 16.
         assert!((quarter.first - Vector2::new(6.0, 4.0)).norm() < 1e-13);
@@ -316,7 +316,7 @@ mod tests {
             for curve in [round, ellipse(Vector2::new(3.0, 1.0)), circle] {
                 let h = 1e-5;
                 let slope = (curve.point(part + h) - curve.point(part - h)) / (2.0 * h);
-                assert!((slope - curve.at(part).1).norm() < 1e-8);
+                assert!((slope - curve.point_and_derivative(part).1).norm() < 1e-8);
                 let mirrored = curve.mirrored().point(1.0 - part);
                 let point = curve.point(part);
                 assert!((mirrored - Vector2::new(-point.x, point.y)).norm() < 1e-14);

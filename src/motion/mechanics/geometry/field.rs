@@ -9,7 +9,7 @@ use std::iter::zip;
 use std::mem;
 use std::ops::Add;
 
-pub use super::rigid::{Momentum, Twist, turned};
+pub use super::rigid::{Momentum, Twist, quarter_turn};
 
 /// The side of a section from which a field is taken, if it jumps there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,7 +63,7 @@ impl Field {
     }
 
     /// Returns the motion at a section.
-    pub fn at(&self, angle_rad: f64, side: Side) -> Twist {
+    pub fn twist_at(&self, angle_rad: f64, side: Side) -> Twist {
         let index = self.cuts_rad.partition_point(|cut| match side {
             Side::Before => *cut < angle_rad,
             Side::After => *cut <= angle_rad,
@@ -99,7 +99,7 @@ impl Field {
         cuts.sort_by(|a, b| a.0.total_cmp(b.0));
         cuts.dedup_by_key(|cut| *cut.0);
         let (cuts_rad, before): (Vec<f64>, Vec<MassMoments>) = cuts.into_iter().unzip();
-        let after = |cut: f64| self.at(cut, Side::After) - other.at(cut, Side::After);
+        let after = |cut: f64| self.twist_at(cut, Side::After) - other.twist_at(cut, Side::After);
         let starts = std::iter::once(f64::NEG_INFINITY).chain(cuts_rad.iter().copied());
         let twists = starts.map(after).collect();
         Self {
@@ -197,12 +197,12 @@ mod tests {
             let angle = ring.embrace_rad * (f64::from(i) + 0.5) / f64::from(n);
             for j in 0..m {
                 let r = 0.9 + 0.2 * (f64::from(j) + 0.5) / f64::from(m);
-                let point = ring.radial(angle) * r;
+                let point = ring.radial_direction(angle) * r;
                 let mass = r * ring.embrace_rad / f64::from(n) * 0.2 / f64::from(m);
                 sum += mass
-                    * u.at(angle, Side::Before)
-                        .at(point)
-                        .dot(&w.at(angle, Side::Before).at(point));
+                    * u.twist_at(angle, Side::Before)
+                        .velocity_at(point)
+                        .dot(&w.twist_at(angle, Side::Before).velocity_at(point));
             }
         }
         // The mesh has its lines on the cuts; the midpoint rule errs by (0.001)^2 and (0.005)^2 / 24.

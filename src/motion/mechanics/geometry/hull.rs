@@ -2,16 +2,16 @@
 
 use nalgebra::Vector2;
 
-use super::field::turned;
+use super::field::quarter_turn;
 
 /// Returns whether the convex hulls of two sets of points are further apart than a length. A line between two polygons can be turned until it is
 /// parallel to an edge of one of them, so the edges of both are tried.
 pub fn are_apart(sets: [&[Vector2<f64>]; 2], length: f64) -> bool {
     let edges = sets.into_iter().flat_map(edges);
-    edges.map(turned).any(|normal| {
+    edges.map(quarter_turn).any(|normal| {
         let [one, other] = sets.map(|points| {
-            let along = points.iter().map(|point| point.dot(&normal));
-            along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| {
+            let distances = points.iter().map(|point| point.dot(&normal));
+            distances.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| {
                 [low.min(at), high.max(at)]
             })
         });

@@ -36,7 +36,7 @@ impl Pose {
         // Adding zero makes a negative zero positive.
         let turned = Self::new(rotation_rad + 0.0, Vector2::zeros());
         Self {
-            translation: moved - turned.turned(pole),
+            translation: moved - turned.current_direction(pole),
             ..turned
         }
     }
@@ -47,12 +47,12 @@ impl Pose {
     }
 
     /// Returns the present position of a point of the undeformed body.
-    pub fn of(&self, point: Vector2<f64>) -> Vector2<f64> {
-        self.turned(point) + self.translation
+    pub fn current_position(&self, point: Vector2<f64>) -> Vector2<f64> {
+        self.current_direction(point) + self.translation
     }
 
     /// Returns the present direction of a vector of the undeformed body.
-    pub fn turned(&self, vector: Vector2<f64>) -> Vector2<f64> {
+    pub fn current_direction(&self, vector: Vector2<f64>) -> Vector2<f64> {
         product(self.turn, vector)
     }
 
@@ -101,9 +101,11 @@ pub struct BodyPoint {
 impl BodyPoint {
     /// Returns the current position of the point, with its displacement multiplied by `exaggeration`. At any exaggeration, coincident points
     /// stay coincident and closed joints stay closed; in return, bodies grow with the square of their rotation.
-    pub fn moved(&self, poses: &[Pose], exaggeration: f64) -> Vector2<f64> {
+    pub fn current_position(&self, poses: &[Pose], exaggeration: f64) -> Vector2<f64> {
         let (pose, at_m) = (self.body.and_then(|body| poses.get(body)), self.at_m);
-        pose.map_or(at_m, |pose| at_m + (pose.of(at_m) - at_m) * exaggeration)
+        pose.map_or(at_m, |pose| {
+            at_m + (pose.current_position(at_m) - at_m) * exaggeration
+        })
     }
 }
 
@@ -117,9 +119,9 @@ mod tests {
     fn a_body_turned_about_a_pole_takes_the_pole_along() {
         let (pole, moved) = (Vector2::new(0.7, 0.2), Vector2::new(0.9, -0.1));
         let pose = Pose::about(pole, moved, 0.4);
-        assert!((pose.of(pole) - moved).norm() < 1e-15);
+        assert!((pose.current_position(pole) - moved).norm() < 1e-15);
         let arm = Vector2::new(0.3, 0.1);
-        let turned = pose.of(pole + arm) - moved;
+        let turned = pose.current_position(pole + arm) - moved;
         assert!((turned - Rotation2::new(0.4) * arm).norm() < 1e-15);
     }
 
@@ -128,6 +130,11 @@ mod tests {
         let mirror = |v: Vector2<f64>| Vector2::new(-v.x, v.y);
         let pose = Pose::about(Vector2::new(0.7, 0.2), Vector2::new(0.9, -0.1), 0.4);
         let point = Vector2::new(-0.3, 0.8);
-        assert!((pose.mirrored().of(mirror(point)) - mirror(pose.of(point))).norm() < 1e-15);
+        assert!(
+            (pose.mirrored().current_position(mirror(point))
+                - mirror(pose.current_position(point)))
+            .norm()
+                < 1e-15
+        );
     }
 }

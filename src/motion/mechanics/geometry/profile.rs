@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use nalgebra::Vector2;
 
-use super::rigid::{MassMoments, turned};
+use super::rigid::{MassMoments, quarter_turn};
 use crate::mechanics::{Edge, Ring};
 
 /// Sections with two edges each, and the mass before each of them.
@@ -27,11 +27,11 @@ pub trait Profile: Debug + Send + Sync {
     }
 
     /// Returns the unit vector from the intrados to the extrados.
-    fn outward(&self, section: f64) -> Vector2<f64>;
+    fn outward_direction(&self, section: f64) -> Vector2<f64>;
 
     /// Returns the unit normal of a section towards the right support.
-    fn onward(&self, section: f64) -> Vector2<f64> {
-        -turned(self.outward(section))
+    fn onward_normal(&self, section: f64) -> Vector2<f64> {
+        -quarter_turn(self.outward_direction(section))
     }
 
     /// Returns the distance of the edges at a section.
@@ -69,7 +69,7 @@ pub trait Profile: Debug + Send + Sync {
     }
 
     /// Returns this profile with shared ownership.
-    fn shared(&self) -> Arc<dyn Profile>;
+    fn to_shared(&self) -> Arc<dyn Profile>;
 }
 
 impl Profile for Ring {
@@ -82,14 +82,14 @@ impl Profile for Ring {
     }
 
     fn middle(&self, section: f64) -> Vector2<f64> {
-        self.radial(section)
+        self.radial_direction(section)
     }
 
-    fn outward(&self, section: f64) -> Vector2<f64> {
-        self.radial(section)
+    fn outward_direction(&self, section: f64) -> Vector2<f64> {
+        self.radial_direction(section)
     }
 
-    fn onward(&self, section: f64) -> Vector2<f64> {
+    fn onward_normal(&self, section: f64) -> Vector2<f64> {
         self.tangent(section)
     }
 
@@ -113,7 +113,7 @@ impl Profile for Ring {
         Self::sections(self, parts)
     }
 
-    fn shared(&self) -> Arc<dyn Profile> {
+    fn to_shared(&self) -> Arc<dyn Profile> {
         Arc::new(*self)
     }
 }

@@ -30,7 +30,7 @@ macro_rules! linear {
 pub(crate) use linear;
 
 /// Returns `k x v`: `v` turned by a right angle anticlockwise.
-pub fn turned(v: Vector2<f64>) -> Vector2<f64> {
+pub fn quarter_turn(v: Vector2<f64>) -> Vector2<f64> {
     Vector2::new(-v.y, v.x)
 }
 
@@ -59,7 +59,7 @@ impl Twist {
     /// Returns a rotation at `rate` about `pole`.
     pub fn rotation(pole: Vector2<f64>, rate: f64) -> Self {
         Self {
-            at_center: -turned(pole) * rate,
+            at_center: -quarter_turn(pole) * rate,
             rate,
         }
     }
@@ -73,14 +73,14 @@ impl Twist {
     }
 
     /// Returns the velocity at `point`.
-    pub fn at(&self, point: Vector2<f64>) -> Vector2<f64> {
-        self.at_center + turned(point) * self.rate
+    pub fn velocity_at(&self, point: Vector2<f64>) -> Vector2<f64> {
+        self.at_center + quarter_turn(point) * self.rate
     }
 
     /// Returns the momentum of a body of the given moments that moves with this twist.
     pub fn momentum(&self, body: &MassMoments) -> Momentum {
         Momentum {
-            linear: self.at_center * body.mass + turned(body.first) * self.rate,
+            linear: self.at_center * body.mass + quarter_turn(body.first) * self.rate,
             angular: body.first.perp(&self.at_center) + body.polar * self.rate,
         }
     }
@@ -127,7 +127,7 @@ impl Momentum {
     }
 
     /// Returns the angular momentum (moment) about `pole`.
-    pub fn about(&self, pole: Vector2<f64>) -> f64 {
+    pub fn moment_about(&self, pole: Vector2<f64>) -> f64 {
         self.angular - pole.perp(&self.linear)
     }
 }

@@ -9,8 +9,8 @@ use std::f64::consts::PI;
 use nalgebra::Vector2;
 
 pub use super::rigid::MassMoments;
-use super::rigid::turned;
-use crate::argument::{ArgumentError, allow};
+use super::rigid::quarter_turn;
+use crate::argument::{ArgumentError, require};
 
 named! {
     /// Edge of the ring on which a hinge sits.
@@ -68,11 +68,11 @@ impl Ring {
         let has_hole = thickness_ratio > 0.0 && thickness_ratio < 2.0;
         let is_arch = embrace_rad > 0.0 && embrace_rad <= PI;
         let mut ring = Self {
-            thickness_ratio: allow(has_hole, "thickness_ratio", thickness_ratio, "in (0, 2)")?,
-            embrace_rad: allow(is_arch, "embrace_rad", embrace_rad, "in (0, pi]")?,
+            thickness_ratio: require(has_hole, "thickness_ratio", thickness_ratio, "in (0, 2)")?,
+            embrace_rad: require(is_arch, "embrace_rad", embrace_rad, "in (0, pi]")?,
             left: Vector2::zeros(),
         };
-        ring.left = ring.radial(0.0);
+        ring.left = ring.radial_direction(0.0);
         Ok(ring)
     }
 
@@ -85,19 +85,19 @@ impl Ring {
     }
 
     /// Returns the unit vector from the centre through the section at `angle_rad`.
-    pub fn radial(&self, angle_rad: f64) -> Vector2<f64> {
+    pub fn radial_direction(&self, angle_rad: f64) -> Vector2<f64> {
         let (sin, cos) = libm::sincos(angle_rad - 0.5 * self.embrace_rad);
         Vector2::new(sin, cos)
     }
 
     /// Returns the unit vector along the axis at `angle_rad`, towards the right springing.
     pub fn tangent(&self, angle_rad: f64) -> Vector2<f64> {
-        -turned(self.radial(angle_rad))
+        -quarter_turn(self.radial_direction(angle_rad))
     }
 
     /// Returns the point of the section at `angle_rad` on `edge`.
     pub fn point(&self, angle_rad: f64, edge: Edge) -> Vector2<f64> {
-        self.radial(angle_rad) * self.radius(edge)
+        self.radial_direction(angle_rad) * self.radius(edge)
     }
 
     /// Returns the corners of the sector between two sections, from the first section outwards; its arcs as straight lines of 3 degrees at most.
@@ -124,7 +124,7 @@ impl Ring {
     /// Annular sector: with `c = t (1 + t^2/12)` the first moment is `c` times the integral of the
     /// radial unit vector, the mass is `t` and the polar moment `t (1 + t^2/4)` per radian.
     pub fn moments_to(&self, angle_rad: f64) -> MassMoments {
-        let (start, end) = (self.left, self.radial(angle_rad));
+        let (start, end) = (self.left, self.radial_direction(angle_rad));
         MassMoments {
             mass: self.thickness_ratio * angle_rad,
             first: Vector2::new(start.y - end.y, end.x - start.x) * self.first_moment_per_rad(),
@@ -141,7 +141,7 @@ impl Ring {
     pub fn slice(&self, angle_rad: f64) -> MassMoments {
         MassMoments {
             mass: self.thickness_ratio,
-            first: self.radial(angle_rad) * self.first_moment_per_rad(),
+            first: self.radial_direction(angle_rad) * self.first_moment_per_rad(),
             polar: self.polar_moment_per_rad(),
         }
     }
@@ -178,7 +178,7 @@ mod tests {
                 sum = sum
                     + MassMoments {
                         mass,
-                        first: ring.radial(angle) * (r * mass),
+                        first: ring.radial_direction(angle) * (r * mass),
                         polar: r * r * mass,
                     };
             }

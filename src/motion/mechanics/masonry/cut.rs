@@ -95,7 +95,7 @@ impl CutArch {
 
 /// Returns the parameter (0 to 1) of the highest point of a piece of an extrados: one of its ends, or where its slope is zero.
 pub(super) fn top(piece: &Curve) -> f64 {
-    let falls = |part: f64| piece.at(part).1.y <= 0.0;
+    let falls = |part: f64| piece.point_and_derivative(part).1.y <= 0.0;
     match (falls(0.0), falls(1.0)) {
         (true, _) => 0.0,
         (false, false) => 1.0,

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::Material;
 use super::cut::{CutArch, top};
-use crate::argument::{ArgumentError, within};
+use crate::argument::{ArgumentError, require_within};
 use crate::mechanics::arch::MAGNITUDE;
 use crate::mechanics::{Block, Curve};
 
@@ -40,11 +40,11 @@ impl Fill {
         arch: &CutArch,
         material: Material,
     ) -> Result<(), ArgumentError> {
-        within("density_kg_m3", self.density_kg_m3, MAGNITUDE)?;
+        require_within("density_kg_m3", self.density_kg_m3, MAGNITUDE)?;
         let level_m = self.level_m(arch)?;
         for (voussoir, extra) in extra.iter_mut().enumerate() {
             let pieces = arch.extrados_of(voussoir).into_iter();
-            let pieces = pieces.flat_map(|piece| below(&piece, level_m));
+            let pieces = pieces.flat_map(|piece| parts_below(&piece, level_m));
             let columns = pieces.map(|piece| {
                 let (from, to) = (piece.point(0.0), piece.point(1.0));
                 let corners = [to.x, from.x].map(|x| Vector2::new(x, level_m));
@@ -66,11 +66,11 @@ impl Fill {
     fn level_m(&self, arch: &CutArch) -> Result<f64, ArgumentError> {
         match self.level {
             FillLevel::AboveSpringing(height_m) => {
-                within("height_m", height_m, MAGNITUDE)?;
+                require_within("height_m", height_m, MAGNITUDE)?;
                 Ok(arch.joints()[0].extrados_m.y + height_m)
             }
             FillLevel::AboveCrown(height_m) => {
-                within("above_crown_m", height_m, 0.0..=1e6)?;
+                require_within("above_crown_m", height_m, 0.0..=1e6)?;
                 Ok(arch.crown_m() + height_m)
             }
         }
@@ -91,7 +91,7 @@ impl Fill {
         };
         let columns = (0..arch.voussoirs()).flat_map(|voussoir| {
             let pieces = arch.extrados_of(voussoir).into_iter();
-            let below = pieces.flat_map(|piece| below(&piece, level_m));
+            let below = pieces.flat_map(|piece| parts_below(&piece, level_m));
             below.map(move |piece| (voussoir, outline(&piece)))
         });
         Ok(columns.collect())
@@ -105,7 +105,7 @@ pub type FillColumn = (usize, Vec<Vector2<f64>>);
 const DRAWN_POINTS: u32 = 4;
 
 /// Returns the parts of a piece of the extrados that lie below a level.
-fn below(piece: &Curve, level_m: f64) -> Vec<Curve> {
+fn parts_below(piece: &Curve, level_m: f64) -> Vec<Curve> {
     let top = top(piece);
     let under = |part: f64| piece.point(part).y < level_m;
     // The piece rises up to its top and falls from there.

@@ -5,7 +5,7 @@ use serde::{Serialize, Serializer};
 use thiserror::Error;
 
 use super::cut::{CutArch, EdgePosition};
-use crate::argument::{ArgumentError, allow, within};
+use crate::argument::{ArgumentError, require, require_within};
 use crate::mechanics::arch::MAGNITUDE;
 use crate::mechanics::geometry::curve::{distance, sides};
 use crate::mechanics::{Block, Curve, Joint, RowError, Supports};
@@ -60,15 +60,15 @@ impl GivenBlocks {
     /// # Errors
     /// When a number is out of range, or there are fewer joints than two.
     pub fn check(&self) -> Result<(), ArgumentError> {
-        within("depth_m", self.depth_m, MAGNITUDE)?;
+        require_within("depth_m", self.depth_m, MAGNITUDE)?;
         for density_kg_m3 in &self.density_kg_m3 {
-            within("density_kg_m3", *density_kg_m3, MAGNITUDE)?;
+            require_within("density_kg_m3", *density_kg_m3, MAGNITUDE)?;
         }
         let blocks = self.joints.len().saturating_sub(1);
         let densities = self.density_kg_m3.len();
         let fits = blocks > 0 && (densities == 1 || densities == blocks);
         let allowed = format_args!("one number, or one for each of the {blocks} blocks");
-        allow(fits, "density_kg_m3", densities as f64, allowed).map(|_| ())
+        require(fits, "density_kg_m3", densities as f64, allowed).map(|_| ())
     }
 
     /// Checks that the joints of an arch are listed from left to right, with the intrados corner below the extrados corner. Otherwise the results
@@ -127,7 +127,7 @@ impl GivenBlocks {
             ));
         }
         let mut corners_m = before.outline_m(after).into_iter();
-        if let Some(corner_m) = corners_m.find(|corner_m| !is_on(corners, *corner_m)) {
+        if let Some(corner_m) = corners_m.find(|corner_m| !is_on_outline(corners, *corner_m)) {
             return refused(format!(
                 "the outline of block {number} does not pass through the corner ({:?}, {:?}) of its joint",
                 corner_m.x, corner_m.y
@@ -182,7 +182,7 @@ impl GivenBlocks {
     }
 
     /// Returns whether the left and the right support are ground that extends beyond the joint: the joint is level, and no corner is lower.
-    pub(super) fn on_ground(&self) -> [bool; 2] {
+    pub(super) fn ground_supports(&self) -> [bool; 2] {
         let corners = self.outlines_m().into_iter().flatten();
         let lowest_m = corners.map(|corner| corner.y).fold(f64::INFINITY, f64::min);
         let least_m = LEVEL_RATIO * self.size_m();
@@ -217,7 +217,7 @@ impl GivenBlocks {
     }
 }
 
-fn is_on(corners: &[Vector2<f64>], point: Vector2<f64>) -> bool {
+fn is_on_outline(corners: &[Vector2<f64>], point: Vector2<f64>) -> bool {
     sides(corners).any(|side| distance(side, point) <= 1e-6 * (side[1] - side[0]).norm())
 }
 

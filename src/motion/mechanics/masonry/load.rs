@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 
 use super::Pier;
 use super::cut::CutArch;
-use crate::argument::{ArgumentError, allow};
+use crate::argument::{ArgumentError, require};
 use crate::mechanics::{Block, MassMoments, PlacedLoad, Row, Sway};
 
 impl PlacedLoad {
@@ -66,7 +66,7 @@ impl PlacedLoad {
             true => format!("from {from_m:.6} to {to_m:.6}, so that it stands on the extrados"),
             false => "on the extrados, which is no upper side here: give the load as a part of a block, by its density or outline".to_owned(),
         };
-        allow(all_stands, "x_m", self.x_m, allowed).map(|_| ())
+        require(all_stands, "x_m", self.x_m, allowed).map(|_| ())
     }
 
     /// Returns the block of the pier that carries this load (at a joint, the lower one), and its point in metres.
@@ -79,7 +79,7 @@ impl PlacedLoad {
         let height_m = self.height_m.unwrap_or(pier.height_m);
         let allowed = format_args!("from 0 to the height of the pier, {:?} m", pier.height_m);
         let fits = (0.0..=pier.height_m).contains(&height_m);
-        allow(fits, "height_m", height_m, allowed)?;
+        require(fits, "height_m", height_m, allowed)?;
         let courses = height_m / pier.height_m * pier.blocks as f64;
         let course = ((courses * (1.0 - 1e-9)).ceil() as usize).saturating_sub(1);
         let (block, foot) = match side {

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::cut::{CutArch, EdgePosition};
 use super::{Dimensions, Material};
-use crate::argument::{ArgumentError, above, allow};
+use crate::argument::{ArgumentError, require, require_above};
 use crate::mechanics::{Arch, Curve};
 
 /// Cuts the area within half a thickness of a middle line, from left to right, at given lengths along this line.
@@ -75,18 +75,18 @@ impl CircularArch {
     pub fn new(arch: Arch, joints_deg: Option<Vec<f64>>) -> Result<Self, ArgumentError> {
         let allowed = "given, or else `joints_deg`, for a row of blocks";
         let is_given_once = joints_deg.is_some() != arch.voussoirs.is_some();
-        allow(is_given_once, "voussoirs", 0.0, allowed)?;
+        require(is_given_once, "voussoirs", 0.0, allowed)?;
         if let Some(joints_deg) = &joints_deg {
             let (name, embrace_deg) = ("joints_deg", arch.embrace_deg);
             let count = joints_deg.len();
-            allow(count >= 2, name, f64::NAN, "at least the two springings")?;
+            require(count >= 2, name, f64::NAN, "at least the two springings")?;
             let (first, last) = (joints_deg[0], joints_deg[count - 1]);
-            allow(first == 0.0, name, first, "0 first, the left springing")?;
+            require(first == 0.0, name, first, "0 first, the left springing")?;
             let right = format_args!("{embrace_deg:?} last, the right springing");
-            allow(last == embrace_deg, name, last, right)?;
+            require(last == embrace_deg, name, last, right)?;
             for pair in joints_deg.windows(2) {
                 let above = format_args!("above the one before, {:?}", pair[0]);
-                allow(pair[0] < pair[1], name, pair[1], above)?;
+                require(pair[0] < pair[1], name, pair[1], above)?;
             }
         }
         Ok(Self { arch, joints_deg })
@@ -155,7 +155,7 @@ impl BasketArch {
     pub(super) fn cut(&self) -> Result<CutArch, ArgumentError> {
         let dimensions = &self.dimensions;
         dimensions.check()?;
-        above("crown_deg", self.crown_deg, 0.0, 179.0)?;
+        require_above("crown_deg", self.crown_deg, 0.0, 179.0)?;
         let half_rad = 0.5 * self.crown_deg.to_radians();
         let (half_m, rise_m) = (0.5 * dimensions.span_m, dimensions.rise_m);
         let aside_m = (half_m - rise_m) / (1.0 - libm::tan(0.5 * half_rad));
@@ -165,7 +165,7 @@ impl BasketArch {
             half_m * libm::tan(0.5 * half_rad),
             self.crown_deg
         );
-        allow(aside_m >= 0.0 && outer_m > 0.0, "rise_m", rise_m, allowed)?;
+        require(aside_m >= 0.0 && outer_m > 0.0, "rise_m", rise_m, allowed)?;
         dimensions.check_curvature(outer_m)?;
         let crown = Curve::Arc {
             centre: Vector2::new(0.0, -aside_m / libm::tan(half_rad)),

@@ -21,7 +21,7 @@ use super::blocks::MAX_BLOCKS;
 pub use super::load::PlacedLoad;
 use super::stability::collapse_mechanism;
 use super::tie::TieError;
-use crate::argument::{ArgumentError, allow, counted, within};
+use crate::argument::{ArgumentError, require, require_count, require_within};
 use crate::mechanics::contact::ContactError;
 use crate::mechanics::{Joint, Row, RowError, Supports, Sway, Tie};
 use cut::CutArch;
@@ -55,8 +55,8 @@ impl Default for Material {
 
 impl Material {
     fn check(&self) -> Result<(), ArgumentError> {
-        within("depth_m", self.depth_m, MAGNITUDE)?;
-        within("density_kg_m3", self.density_kg_m3, MAGNITUDE)?;
+        require_within("depth_m", self.depth_m, MAGNITUDE)?;
+        require_within("density_kg_m3", self.density_kg_m3, MAGNITUDE)?;
         Ok(())
     }
 }
@@ -79,11 +79,11 @@ pub struct Dimensions {
 
 impl Dimensions {
     fn check(&self) -> Result<(), ArgumentError> {
-        within("span_m", self.span_m, MAGNITUDE)?;
-        within("rise_m", self.rise_m, MAGNITUDE)?;
-        within("thickness_m", self.thickness_m, 1e-6..=1e6)?;
+        require_within("span_m", self.span_m, MAGNITUDE)?;
+        require_within("rise_m", self.rise_m, MAGNITUDE)?;
+        require_within("thickness_m", self.thickness_m, 1e-6..=1e6)?;
         self.material.check()?;
-        counted("voussoirs", self.voussoirs, VOUSSOIRS).map(|_| ())
+        require_count("voussoirs", self.voussoirs, VOUSSOIRS).map(|_| ())
     }
 
     /// Checks that the intrados does not turn back on itself where the curvature of the middle line is largest.
@@ -91,7 +91,7 @@ impl Dimensions {
         let fits = 0.5 * self.thickness_m < least_radius_m;
         let most_m = 2.0 * least_radius_m;
         let allowed = format_args!("below {most_m:.6}, twice the least radius of the middle line");
-        allow(fits, "thickness_m", self.thickness_m, allowed).map(|_| ())
+        require(fits, "thickness_m", self.thickness_m, allowed).map(|_| ())
     }
 }
 
@@ -316,7 +316,7 @@ impl Masonry {
         let first = piers.left.map_or(0, |pier| pier.blocks);
         let on_ground = given.map_or_else(
             || [piers.left, piers.right].map(|pier| pier.is_some_and(|pier| !pier.pedestal)),
-            GivenBlocks::on_ground,
+            GivenBlocks::ground_supports,
         );
         let mut row = Row::new(courses.blocks, courses.joints, supports, shape.size_m())?
             .with_outlines_m(courses.outlines_m)

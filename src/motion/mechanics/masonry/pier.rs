@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use serde::Serialize;
 
 use super::{MasonryError, Material};
-use crate::argument::{ArgumentError, allow, counted, within};
+use crate::argument::{ArgumentError, require, require_count, require_within};
 use crate::mechanics::arch::MAGNITUDE;
 use crate::mechanics::blocks::MAX_BLOCKS;
 use crate::mechanics::{Block, Joint, RowError, Sway};
@@ -81,17 +81,17 @@ impl Courses {
 
 impl Pier {
     fn check(&self, springing: &Joint) -> Result<(), ArgumentError> {
-        within("height_m", self.height_m, MAGNITUDE)?;
-        within("width_m", self.width_m, MAGNITUDE)?;
+        require_within("height_m", self.height_m, MAGNITUDE)?;
+        require_within("width_m", self.width_m, MAGNITUDE)?;
         if let Some(density_kg_m3) = self.density_kg_m3 {
-            within("density_kg_m3", density_kg_m3, MAGNITUDE)?;
+            require_within("density_kg_m3", density_kg_m3, MAGNITUDE)?;
         }
-        counted("blocks", self.blocks, 1..=MAX_BLOCKS)?;
+        require_count("blocks", self.blocks, 1..=MAX_BLOCKS)?;
         let springing_m = (springing.extrados_m.x - springing.intrados_m.x).abs();
         let fits = self.width_m >= springing_m * (1.0 - 1e-12);
         let allowed =
             format_args!("at least {springing_m:.6}, the width of the springing that it carries");
-        allow(fits, "width_m", self.width_m, allowed).map(|_| ())
+        require(fits, "width_m", self.width_m, allowed).map(|_| ())
     }
 
     /// Returns its blocks and all joints except the springing: upwards on the left, downwards on the right.

@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 use super::Dimensions;
 use super::cut::{CutArch, EdgePosition};
 use super::middle_line::part;
-use crate::argument::{ArgumentError, allow};
+use crate::argument::{ArgumentError, require};
 use crate::mechanics::Curve;
 
 /// Cuts a pointed arch. Its joints point at the centres and divide the intrados into equal lengths. An even number of voussoirs has a vertical joint
@@ -22,13 +22,13 @@ pub(super) fn cut_pointed(dimensions: &Dimensions) -> Result<CutArch, ArgumentEr
     let allowed = format_args!(
         "at least half the span, {least_m:?}; lower arches are segments of a circle, elliptic or of three centres"
     );
-    allow(rise_m >= least_m, "rise_m", rise_m, allowed)?;
+    require(rise_m >= least_m, "rise_m", rise_m, allowed)?;
     let radius_m = rise_m * rise_m / span_m + 0.25 * span_m;
     // The centre of the left arc is right of the middle.
     let centre = Vector2::new(radius_m - 0.5 * span_m, 0.0);
     let inner_m = radius_m - 0.5 * thickness_m;
     let allowed = format_args!("below the span of {span_m:?}");
-    allow(inner_m > centre.x, "thickness_m", thickness_m, allowed)?;
+    require(inner_m > centre.x, "thickness_m", thickness_m, allowed)?;
     let arc = |radius: f64| Curve::Arc {
         centre,
         radius,

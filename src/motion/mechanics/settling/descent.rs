@@ -126,7 +126,7 @@ impl<'a> Descent<'a> {
         let forces = stance.forces_n().map(|force_n| force_n / gravity_m_s2);
         self.ties_kg = forces.collect();
         self.program.reset();
-        self.program.place(&stance.placement);
+        self.program.set_positions(&stance.placement);
         let mut lines = self.move_supports(stance, from, to, force_g)?;
         self.load.jumps.fill(Twist::ZERO);
         let start_m = stance.placement.centres_m.to_vec();
@@ -207,7 +207,7 @@ impl<'a> Descent<'a> {
             if here == to.supports {
                 break;
             }
-            let moved = [0, 1].map(|side| between(&here[side], &to.supports[side]));
+            let moved = [0, 1].map(|side| twist_between(&here[side], &to.supports[side]));
             let jumps = &mut self.load.jumps;
             jumps.fill(Twist::ZERO);
             jumps[0] = moved[0];
@@ -216,7 +216,9 @@ impl<'a> Descent<'a> {
             let (part, shut) = self.program.first_shut(&stance.placement, 1.0);
             here = match shut {
                 None => to.supports,
-                Some(_) => [0, 1].map(|side| partway(&here[side], &to.supports[side], part)),
+                Some(_) => {
+                    [0, 1].map(|side| interpolate_pose(&here[side], &to.supports[side], part))
+                }
             };
             stance.placement.move_supports(here);
             lines = self.move_blocks(stance, (part, shut));
@@ -383,7 +385,10 @@ impl<'a> Descent<'a> {
         let product = |one: &[Twist], other: &[Twist]| -> f64 {
             let pairs = one.iter().zip(other).zip(row.blocks.iter().zip(centres_m));
             let each = pairs.map(|((one, other), (block, centre_m))| {
-                block.mass_kg * one.at(*centre_m).dot(&other.at(*centre_m))
+                block.mass_kg
+                    * one
+                        .velocity_at(*centre_m)
+                        .dot(&other.velocity_at(*centre_m))
                     + block.inertia_kg_m2 * one.rate * other.rate
             });
             each.sum()
@@ -492,27 +497,27 @@ impl<'a> Descent<'a> {
         let placement = &mut stance.placement;
         let mut change = vec![[0.0; 2]; placement.gaps_m.len()];
         (self.program).open_until(placement, first_shut, &mut change);
-        placement.open(|joint| change[joint]);
-        self.closure_solver.close(placement);
-        self.program.place(placement);
+        placement.change_gaps(|joint| change[joint]);
+        self.closure_solver.remove_closure_error(placement);
+        self.program.set_positions(placement);
         stance.stretch_ties(self.row)
     }
 }
 
 /// Interpolates linearly between two neighbouring poses.
-fn partway(from: &Pose, to: &Pose, part: f64) -> Pose {
+fn interpolate_pose(from: &Pose, to: &Pose, part: f64) -> Pose {
     let between = |from: f64, to: f64| from + part * (to - from);
     let translation = from.translation + (to.translation - from.translation) * part;
     Pose::new(between(from.rotation_rad(), to.rotation_rad()), translation)
 }
 
 /// Constant velocity that moves a body from one pose to a neighbouring one in a unit of time.
-fn between(from: &Pose, to: &Pose) -> Twist {
+fn twist_between(from: &Pose, to: &Pose) -> Twist {
     let rate = to.rotation_rad() - from.rotation_rad();
     Twist {
         at_center: to.translation
             - from.translation
-            - Twist::rotation(Vector2::zeros(), rate).at(from.translation),
+            - Twist::rotation(Vector2::zeros(), rate).velocity_at(from.translation),
         rate,
     }
 }
@@ -526,7 +531,7 @@ mod tests {
     use crate::mechanics::tie::{Anchor, Tie};
 
     /// A row of 8 blocks with ties of the given joints and stiffnesses, each to the opposite joint.
-    fn tied(ties: &[(usize, f64)]) -> Row {
+    fn row_with_ties(ties: &[(usize, f64)]) -> Row {
         let ring = Ring::new(0.15, PI).unwrap();
         let row = Row::arch(&ring, 8, 1.0, 1.0, 1000.0).unwrap();
         let across = |(joint, stiffness_n_m): &(usize, f64)| Tie {
@@ -555,7 +560,7 @@ mod tests {
         }
     }
 
-    fn undeformed(row: &Row) -> (RowState, Vec<TieLine>) {
+    fn undeformed_state(row: &Row) -> (RowState, Vec<TieLine>) {
         let stance = RowState::undeformed(row);
         let lines = stance.lines(row).collect();
         (stance, lines)
@@ -564,8 +569,8 @@ mod tests {
     /// Two ties that one mechanism stretches: the force of each is that at the end of the step.
     #[test]
     fn ties_that_depend_on_each_other_are_balanced_together() {
-        let row = tied(&[(2, 1e6), (1, 6e5)]);
-        let (stance, length) = (undeformed(&row), 0.01);
+        let row = row_with_ties(&[(2, 1e6), (1, 6e5)]);
+        let (stance, length) = (undeformed_state(&row), 0.01);
         let mut descent = Descent::new(&row);
         let push_g = Vector2::new(0.6, -1.0);
         let mut step = step(&row, &stance, push_g, length);
@@ -587,8 +592,8 @@ mod tests {
     #[test]
     fn many_ties_depend_on_each_other_through_few_motions() {
         let ties: Vec<(usize, f64)> = (0..200).map(|tie| (tie % 4, 1e4)).collect();
-        let row = tied(&ties);
-        let stance = undeformed(&row);
+        let row = row_with_ties(&ties);
+        let stance = undeformed_state(&row);
         let mut descent = Descent::new(&row);
         let force_g = Vector2::new(2.0, -1.0);
         let mut step = step(&row, &stance, force_g, 0.01);
@@ -615,9 +620,9 @@ mod tests {
     #[test]
     fn very_stiff_ties_are_balanced() {
         let pulls_kg = |ties: &[(usize, f64)], length: f64| {
-            let row = tied(ties);
+            let row = row_with_ties(ties);
             let mut descent = Descent::new(&row);
-            let stance = undeformed(&row);
+            let stance = undeformed_state(&row);
             let mut step = step(&row, &stance, Vector2::new(0.6, -1.0), length);
             descent.balance_ties(&mut step)?;
             Ok::<f64, SettlingError>(descent.ties_kg.iter().sum())
@@ -625,7 +630,7 @@ mod tests {
         for length in [1e-3, 1.0, 1e3] {
             let one_kg = pulls_kg(&[(2, 3e10)], length).unwrap();
             let two_kg = pulls_kg(&[(2, 1e10), (2, 2e10)], length).unwrap();
-            let mass_kg = tied(&[]).mass_kg();
+            let mass_kg = row_with_ties(&[]).mass_kg();
             assert!(one_kg > 0.01 * mass_kg, "{one_kg}");
             assert!(
                 (one_kg - two_kg).abs() < 1e-9 * mass_kg,

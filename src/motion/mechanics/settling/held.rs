@@ -111,7 +111,7 @@ impl<'a> Held<'a> {
     ///
     /// # Panics
     /// Never: the bodies meet at all displacements of the mechanism.
-    pub fn displaced(&self, part: f64) -> Displaced {
+    pub fn displaced_mechanism(&self, part: f64) -> Displaced {
         let q_rad = part * self.end_rad;
         let poses = self.poses(q_rad).expect("its bodies meet on its way");
         let push_g = self
@@ -121,7 +121,7 @@ impl<'a> Held<'a> {
             supports: [Pose::UNDEFORMED; 2],
             force_g: Vector2::new(self.sway.sign() * push_g, -1.0),
         };
-        let before = self.before(q_rad);
+        let before = self.tie_states_before(q_rad);
         let state = self.pins.state_at(self.row, &condition, &poses, before);
         let hinges_m = self.pins.positions_m(&poses);
         let poses = poses[1..=self.bodies()].to_vec();
@@ -193,11 +193,12 @@ impl<'a> Held<'a> {
     /// Returns the states, forces and lines of the ties at a rotation of the first body.
     fn pulls(&self, q_rad: f64, poses: &[Pose]) -> TieLoads {
         let built = [Pose::UNDEFORMED; 2];
-        self.pins.pulls(self.row, &built, poses, self.before(q_rad))
+        self.pins
+            .pulls(self.row, &built, poses, self.tie_states_before(q_rad))
     }
 
     /// Returns the states of the ties at the last step before a rotation of the first body.
-    fn before(&self, q_rad: f64) -> &[TieMemory<Lanes<1>>] {
+    fn tie_states_before(&self, q_rad: f64) -> &[TieMemory<Lanes<1>>] {
         let step = (q_rad / STEP_RAD).max(0.0) as usize;
         &self.ties[step.min(self.ties.len() - 1)]
     }
@@ -214,14 +215,14 @@ impl<'a> Held<'a> {
         if row.supports == Supports::Left {
             let blocks = row.blocks.len();
             let [held, pushed] = [held, pushed].map(|loads| loads[blocks] - loads[joint(0)]);
-            return Some(-held.about(pins_m[0]) / pushed.about(pins_m[0]));
+            return Some(-held.moment_about(pins_m[0]) / pushed.moment_about(pins_m[0]));
         }
         // Unknowns: the force in the first pin, and the push.
         let mut equations = Matrix3::zeros();
         let mut right = Vector3::zeros();
         for other in 1..=3 {
             let between = [&held, &pushed].map(|loads| loads[joint(other)] - loads[joint(0)]);
-            let [held, pushed] = between.map(|load| load.about(pins_m[other]));
+            let [held, pushed] = between.map(|load| load.moment_about(pins_m[other]));
             let arm = pins_m[0] - pins_m[other];
             let row = Vector3::new(-arm.y, arm.x, pushed);
             equations.set_row(other - 1, &row.transpose());

@@ -185,7 +185,7 @@ pub enum SettlingError {
 
 impl SettlingError {
     /// Returns the position along the path at which the row was lost; `None` if unknown.
-    pub const fn at(&self) -> Option<f64> {
+    pub const fn path_position(&self) -> Option<f64> {
         match self {
             Self::NoEquilibrium(at) | Self::Parted { at, .. } => Some(*at),
             Self::OneSupport
@@ -285,7 +285,7 @@ impl<'a> Follower<'a> {
             supports: movements(at).poses(row),
             force_g,
         };
-        self.follow(&path, [from, to], (to - from) / extent)
+        self.follow_path(&path, [from, to], (to - from) / extent)
     }
 
     /// Moves the undeformed row as one rigid body with its supports, until gravity opens joints of the rotated row.
@@ -299,7 +299,7 @@ impl<'a> Follower<'a> {
             let [pose, _] = movements(part).poses(row);
             let mut stance = RowState::undeformed(row);
             stance.placement.move_supports([pose; 2]);
-            stance.placement.open(|_| [0.0; 2]);
+            stance.placement.change_gaps(|_| [0.0; 2]);
             stance
         };
         let falls = |part: f64| Ok(collapse_mechanism_at(row, &there(part))?.is_some());
@@ -351,14 +351,14 @@ impl<'a> Follower<'a> {
             force_g: condition.force_g + Vector2::new(sway.sign() * push_g, 0.0),
             ..condition
         };
-        let falls_g = pushed.follow(&path, [from_g, LARGEST_PUSH_G], 1.0)?;
+        let falls_g = pushed.follow_path(&path, [from_g, LARGEST_PUSH_G], 1.0)?;
         // Two computations of the same push differ by rounding errors.
         Ok(falls_g.map(|capacity_g| capacity_g.max(first_g)))
     }
 
     /// Follows the equilibrium along a path from one parameter to another. The parameter changes by `unit` while a support moves by the size of the
     /// row or turns by a radian, or while a push grows by gravity. Returns the parameter at which the row falls; `None` if it reaches the end.
-    fn follow(
+    fn follow_path(
         &mut self,
         path: &impl Fn(f64) -> Condition,
         [from, to]: [f64; 2],
@@ -453,7 +453,7 @@ impl<'a> Follower<'a> {
 
     /// Returns other hinges, and their state, that carry a loading beyond the present one. Inadmissible joints become hinges and closing hinges
     /// leave, as is possible only with ties; `None` without ties, or if no such hinges are found.
-    fn exchanged(&self, condition: &Condition) -> Option<(Pins, HingeState)> {
+    fn find_other_hinges(&self, condition: &Condition) -> Option<(Pins, HingeState)> {
         if self.row.ties.is_empty() {
             return None;
         }
@@ -490,7 +490,7 @@ impl<'a> Follower<'a> {
                 after: after.map(|hinges| hinges.hinges.to_vec()),
                 causes: causes.clone(),
             };
-            if let Some((hinges, state)) = self.exchanged(&condition) {
+            if let Some((hinges, state)) = self.find_other_hinges(&condition) {
                 self.snaps.push(snap(Some(&hinges)));
                 self.hinges = Some(hinges);
                 self.set_state(&condition, state);

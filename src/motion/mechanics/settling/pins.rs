@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Condition;
 use crate::mechanics::chain::LEAST_LOAD;
-use crate::mechanics::geometry::field::turned;
+use crate::mechanics::geometry::field::quarter_turn;
 use crate::mechanics::row_state::lines;
 use crate::mechanics::tie::sum_pulls;
 use crate::mechanics::{
@@ -170,8 +170,14 @@ impl Pins {
         let placement = &stance.placement;
         let last = &placement.support_poses[1];
         let pins = self.hinges.iter().zip(&self.pins_m);
-        pins.map(|(hinge, pin_m)| placement.poses.get(hinge.joint).unwrap_or(last).of(*pin_m))
-            .collect()
+        pins.map(|(hinge, pin_m)| {
+            placement
+                .poses
+                .get(hinge.joint)
+                .unwrap_or(last)
+                .current_position(*pin_m)
+        })
+        .collect()
     }
 
     /// Returns positions and forces of a row on these hinges that comes from the state `before`. `None` if the pins cannot meet, the equilibrium
@@ -186,7 +192,8 @@ impl Pins {
     /// Returns the positions of the pins, in metres, for given poses of the parts before, between and after the pins.
     pub(super) fn positions_m(&self, poses: &[Pose]) -> Vec<Vector2<f64>> {
         let pins = self.pins_m.iter().zip(&poses[1..]);
-        pins.map(|(pin_m, pose)| pose.of(*pin_m)).collect()
+        pins.map(|(pin_m, pose)| pose.current_position(*pin_m))
+            .collect()
     }
 
     /// Returns the number of hinges before each block.
@@ -230,7 +237,7 @@ impl Pins {
                 let others = [joints.len() / 2, joints.len() - 1];
                 let arms = others.map(|other| pins_m[0] - pins_m[other]);
                 let equations = Matrix2::new(-arms[0].y, arms[0].x, -arms[1].y, arms[1].x);
-                let moments = others.map(|other| -between(other).about(pins_m[other]));
+                let moments = others.map(|other| -between(other).moment_about(pins_m[other]));
                 let first = equations.lu().solve(&Vector2::from(moments))?;
                 Momentum::applied_at(pins_m[0], first) - loads[joints[0]]
             }
@@ -242,22 +249,22 @@ impl Pins {
             // The faces of a closed joint, and the corner of a hinge, move with the block after the joint.
             let pose = poses[self.part_of(index)];
             let hinge = self.hinges.iter().position(|hinge| hinge.joint == index);
-            let mut along = pose.turned(joint.along());
+            let mut tangent = pose.current_direction(joint.direction());
             if let Some(index) = hinge {
                 // Direction of the joint: mean of the directions of its two faces.
-                along =
-                    Pose::new(-0.5 * hinge_rotations_rad[index], Vector2::zeros()).turned(along);
+                tangent = Pose::new(-0.5 * hinge_rotations_rad[index], Vector2::zeros())
+                    .current_direction(tangent);
             }
-            let normal = turned(along) * row.handedness;
+            let normal = quarter_turn(tangent) * row.handedness;
             let pressed = force.linear.dot(&normal);
             if pressed >= LEAST_LOAD {
-                friction = friction.max((force.linear.dot(&along) / pressed).abs());
+                friction = friction.max((force.linear.dot(&tangent) / pressed).abs());
             }
             corners.push(match hinge.map(|index| self.hinges[index].edge) {
                 Some(Edge::Intrados) => [pressed, 0.0],
                 Some(Edge::Extrados) => [0.0, pressed],
                 None => {
-                    let about = force.about(pose.of(joint.intrados_m));
+                    let about = force.moment_about(pose.current_position(joint.intrados_m));
                     let outer = row.handedness * about / joint.thickness_m();
                     [pressed - outer, outer]
                 }
@@ -305,7 +312,7 @@ impl Pins {
     ) -> Vec<Momentum> {
         let weight = 1.0 / row.mass_kg();
         let own = row.blocks.iter().enumerate().map(|(block, body)| {
-            let centre = poses[self.part_of(block)].of(body.centre_m);
+            let centre = poses[self.part_of(block)].current_position(body.centre_m);
             Momentum::applied_at(centre, force_g * (body.mass_kg * weight))
         });
         let per_weight = weight / row.gravity_m_s2;
@@ -334,7 +341,10 @@ pub(super) fn two_bodies(
     supports: &[Pose; 2],
     side: f64,
 ) -> Option<Vec<Pose>> {
-    let ends = [supports[0].of(left), supports[1].of(right)];
+    let ends = [
+        supports[0].current_position(left),
+        supports[1].current_position(right),
+    ];
     let (first, second) = (middle - left, right - middle);
     let apart = ends[1] - ends[0];
     let distance = apart.norm();
@@ -346,7 +356,7 @@ pub(super) fn two_bodies(
         return None;
     }
     let axis = apart / distance;
-    let pin = ends[0] + axis * along + turned(axis) * (side * height_squared.sqrt());
+    let pin = ends[0] + axis * along + quarter_turn(axis) * (side * height_squared.sqrt());
     let body = |from: Vector2<f64>, to: Vector2<f64>, end: Vector2<f64>, arm: Vector2<f64>| {
         let now = to - from;
         Pose::about(end, from, libm::atan2(arm.perp(&now), arm.dot(&now)))
@@ -410,7 +420,7 @@ impl Bar {
 struct PairDerivatives {
     force: Vector2<f64>,
     moments: Vector2<f64>,
-    along: Vector2<f64>,
+    direction: Vector2<f64>,
     places: Matrix2<f64>,
     /// Second derivatives by positions (rows) and rotations (columns).
     mixed: Matrix2<f64>,
@@ -422,7 +432,7 @@ impl PairDerivatives {
     fn new(bars: &[Bar], poses: [&Pose; 2], pins_m: [Vector2<f64>; 2]) -> Self {
         let mut all = Self::default();
         for bar in bars {
-            let ends_m = [0, 1].map(|end| poses[end].of(bar.ends_m[end]));
+            let ends_m = [0, 1].map(|end| poses[end].current_position(bar.ends_m[end]));
             let by_m = (ends_m[1] - bar.ends_m[1]) - (ends_m[0] - bar.ends_m[0]);
             let now_m = bar.apart_m + by_m;
             let length_m = now_m.norm();
@@ -439,17 +449,17 @@ impl PairDerivatives {
                 (bar.most, 0.0)
             };
             let per_length = 1.0 / length_m;
-            let along = now_m * per_length;
+            let direction = now_m * per_length;
             let arms_m = [ends_m[0] - pins_m[0], ends_m[1] - pins_m[1]];
-            let turns = Vector2::new(arms_m[0].perp(&along), arms_m[1].perp(&along));
-            let across = Vector2::new(arms_m[0].dot(&along), arms_m[1].dot(&along));
-            all.force += along * force;
+            let turns = Vector2::new(arms_m[0].perp(&direction), arms_m[1].perp(&direction));
+            let across = Vector2::new(arms_m[0].dot(&direction), arms_m[1].dot(&direction));
+            all.force += direction * force;
             all.moments += turns * force;
-            all.along += across * force;
+            all.direction += across * force;
             // Material stiffness along the tie, geometric stiffness across it.
             for (way, turns, stiffness_m) in [
-                (along, turns, stiffness_m),
-                (turned(along), across, force * per_length),
+                (direction, turns, stiffness_m),
+                (quarter_turn(direction), across, force * per_length),
             ] {
                 let (push, turning) = (way * stiffness_m, turns * stiffness_m);
                 all.places += push * way.transpose();
@@ -526,11 +536,11 @@ impl<'a> Chain<'a> {
 
     /// Returns the poses of the bodies.
     fn poses(&self) -> Vec<Pose> {
-        let mut at = self.condition.supports[0].of(self.pins.pins_m[0]);
+        let mut at = self.condition.supports[0].current_position(self.pins.pins_m[0]);
         let bodies = self.rotations_rad.iter().enumerate();
         let poses = bodies.map(|(body, rotation_rad)| {
             let pose = Pose::about(self.pins.pins_m[body], at, *rotation_rad);
-            at = pose.of(self.pins.pins_m[body + 1]);
+            at = pose.current_position(self.pins.pins_m[body + 1]);
             pose
         });
         poses.collect()
@@ -544,19 +554,20 @@ impl<'a> Chain<'a> {
         let mut curvature = DMatrix::zeros(count, count);
         let mut reach = DMatrix::zeros(2, count);
         for (body, pose) in poses.iter().enumerate() {
-            let [arm, moment] = [&self.arms_m, &self.moments_m].map(|of| pose.turned(of[body]));
+            let [arm, moment] =
+                [&self.arms_m, &self.moments_m].map(|of| pose.current_direction(of[body]));
             let force = self.condition.force_g;
-            slopes[body] -= force.dot(&turned(moment));
+            slopes[body] -= force.dot(&quarter_turn(moment));
             curvature[(body, body)] += force.dot(&moment);
-            reach.set_column(body, &turned(arm));
+            reach.set_column(body, &quarter_turn(arm));
         }
         self.add_ties(&poses, &mut slopes, &mut curvature);
         let last = self.pins.pins_m.len() - 1;
-        let there = poses[count - 1].of(self.pins.pins_m[last]);
+        let there = poses[count - 1].current_position(self.pins.pins_m[last]);
         Residuals {
             slopes,
             curvature,
-            gap_m: there - self.condition.supports[1].of(self.pins.pins_m[last]),
+            gap_m: there - self.condition.supports[1].current_position(self.pins.pins_m[last]),
             reach,
         }
     }
@@ -582,7 +593,7 @@ impl<'a> Chain<'a> {
                 let on_body = Vector3::new(all.force.x, all.force.y, all.moments[one]);
                 let mut forces = forces.fixed_rows_mut::<3>(3 * first);
                 forces += on_body * ENDS[one];
-                stiffnesses[(3 * first + 2, 3 * first + 2)] -= ENDS[one] * all.along[one];
+                stiffnesses[(3 * first + 2, 3 * first + 2)] -= ENDS[one] * all.direction[one];
                 for (other, second) in body.iter().enumerate() {
                     let Some(second) = second else { continue };
                     let mut between = all.places.to_homogeneous();
@@ -597,11 +608,11 @@ impl<'a> Chain<'a> {
         // The rotation of a body moves the pins of all bodies after it.
         let mut by_rotations = DMatrix::zeros(3 * count, count);
         for (body, pose) in poses.iter().enumerate() {
-            let arm_m = pose.turned(self.arms_m[body]);
+            let arm_m = pose.current_direction(self.arms_m[body]);
             by_rotations[(3 * body + 2, body)] = 1.0;
             for after in body + 1..count {
                 let mut moves = by_rotations.fixed_view_mut::<2, 1>(3 * after, body);
-                moves.copy_from(&turned(arm_m));
+                moves.copy_from(&quarter_turn(arm_m));
                 curvature[(body, body)] -= forces.fixed_rows::<2>(3 * after).dot(&arm_m);
             }
         }

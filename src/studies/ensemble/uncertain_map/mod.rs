@@ -107,7 +107,7 @@ impl<'a> CellsOfSamples<'a> {
     }
 
     /// Returns the map of a sample, counted from 1; 0 is the scenario itself. The map is computed at first use.
-    fn of_sample(&self, sample: usize) -> Arc<OnceLock<OfSample<'a>>> {
+    fn map_of_sample(&self, sample: usize) -> Arc<OnceLock<OfSample<'a>>> {
         let found = {
             // The cache is valid even after a panic of another thread.
             let mut cache = self.cache.lock().unwrap_or_else(PoisonError::into_inner);
@@ -121,14 +121,14 @@ impl<'a> CellsOfSamples<'a> {
         };
         found.get_or_init(|| {
             let scenario = self.samples.scenario_of(sample)?;
-            let map = OverturningMap::of_sample(self.samples.scenario, scenario);
+            let map = OverturningMap::with_sample(self.samples.scenario, scenario);
             Ok(map.expect("the scenario has a map"))
         });
         found
     }
 
     /// Returns the number of the sample and the index of the cell within its map.
-    fn place(&self, index: usize) -> [usize; 2] {
+    fn sample_and_cell(&self, index: usize) -> [usize; 2] {
         let cells = self.map.count();
         [index / cells, index % cells]
     }
@@ -151,17 +151,20 @@ impl Study for CellsOfSamples<'_> {
 
     /// Returns the family of cells of one sample with one structure.
     fn family(&self, index: usize) -> Option<usize> {
-        let [sample, cell] = self.place(index);
+        let [sample, cell] = self.sample_and_cell(index);
         let family = self.map.family(cell)?;
         Some(sample * self.map.count() + family)
     }
 
     fn rows(&self, indices: &[usize]) -> Vec<CellRow> {
-        let Some([sample, _]) = indices.first().map(|index| self.place(*index)) else {
+        let Some([sample, _]) = indices.first().map(|index| self.sample_and_cell(*index)) else {
             return Vec::new();
         };
-        let map = self.of_sample(sample);
-        let cells: Vec<usize> = indices.iter().map(|index| self.place(*index)[1]).collect();
+        let map = self.map_of_sample(sample);
+        let cells: Vec<usize> = indices
+            .iter()
+            .map(|index| self.sample_and_cell(*index)[1])
+            .collect();
         match map.get().expect("it was made") {
             Ok(map) => {
                 let rows = map.rows(&cells).into_iter();

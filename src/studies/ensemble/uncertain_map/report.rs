@@ -9,7 +9,7 @@ use super::{CellCounts, CellRow, CellsOfSamples, Crossing, LEVELS, Samples, outc
 use crate::output::{Key, Mark, OutputError, Stroke, Table, color, column, each, list};
 use crate::scenario::Varied;
 use crate::studies::Study as _;
-use crate::studies::ending::columns::{OUTCOMES, yes};
+use crate::studies::ending::columns::{OUTCOMES, yes_or_no};
 use crate::studies::ensemble::influence::{InfluencedAnswer, percent};
 use crate::studies::ensemble::report::{Band, SampleSummary};
 use crate::studies::ensemble::samples::ReasonCounts;
@@ -19,7 +19,7 @@ use crate::studies::outcome_colors::OutcomeColor;
 use crate::studies::quotable::SurvivorFriction;
 use crate::studies::report::{Report, Warnings};
 use crate::studies::statistics::{Share, band, quantile};
-use crate::studies::{ModelCheck, Results, Style, rounded};
+use crate::studies::{ModelCheck, Results, Style, format_edge};
 
 /// Names of the files, the seal last.
 pub const FILES: [&str; 6] = [
@@ -145,7 +145,7 @@ pub(super) fn report(
             overturned: share.count,
             survived_in_doubt: survived_in_doubt(&counts, own),
         }),
-        crossings: at_columns(&crossings),
+        crossings: select_columns(&crossings),
         histories_without_outcome: reasons,
         first_without_outcome: without.clone().next().map(|why| why.reason().to_owned()),
         part_that_overturns: each(band(parts.collect(), quantile)).into(),
@@ -190,7 +190,7 @@ fn survived_in_doubt(counts: &[CellCounts], own: &[CellRow]) -> usize {
 }
 
 /// Returns the crossings at the ends and in the middle of the map.
-fn at_columns(crossings: &[Crossing]) -> Vec<Crossing> {
+fn select_columns(crossings: &[Crossing]) -> Vec<Crossing> {
     let last = crossings.len() - 1;
     let mut chosen = vec![0, last / 2, last];
     chosen.dedup();
@@ -220,7 +220,7 @@ impl Crossing {
     fn in_words(&self) -> String {
         let level = |(level, (y, above)): (f64, (&Option<f64>, &Option<f64>))| {
             let percent = percent(level);
-            match (y.map(rounded), above.map(rounded)) {
+            match (y.map(format_edge), above.map(format_edge)) {
                 (Some(y), None) => format!("{percent} at or below {y}"),
                 (Some(y), Some(above)) => format!("{percent} between {above} and {y}"),
                 (None, _) => format!("{percent} nowhere"),
@@ -280,7 +280,7 @@ fn crossing_table(
         ),
         list(
             levels.map(|level| format!("at_most_{level}")),
-            |crossing: &Crossing| crossing.at_most.map(yes),
+            |crossing: &Crossing| crossing.at_most.map(yes_or_no),
         ),
     ];
     Table::new(columns, crossings)

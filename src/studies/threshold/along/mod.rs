@@ -101,7 +101,7 @@ impl AlongOptions {
     pub(in crate::studies) fn varied(&self) -> Varied<'_> {
         let KeyRange { key, from, to, .. } = &self.along;
         Varied {
-            along: Some((key, [*from, *to])),
+            key_range: Some((key, [*from, *to])),
             factor: self.factors.to,
             ..Varied::default()
         }

@@ -7,7 +7,7 @@
 use crate::GroundMotion;
 use crate::scenario::{Ground, Scenario};
 use crate::studies::threshold::factors::{Factors, SearchedFactors, onset_factor};
-use crate::studies::threshold::first_edge::lowest;
+use crate::studies::threshold::first_edge::find_lowest_strength;
 
 /// Ratio of successive factors under motions with lobes to both sides; a narrower range may be missed. The narrowest known ranges, under Ricker,
 /// Gabor and windowed pulses, were about 1.5 % wide.
@@ -45,10 +45,10 @@ pub(super) fn least_without_impact(
     let stride = if one_sided { ONE_SIDED_STRIDE } else { STRIDE };
     let moving = (scenario.ground_motion(), &request);
     let onset = onset_factor(&*model, scenario.simulation.direction, moving);
-    let SearchedFactors { from, to: last, .. } = factors.searched(onset)?;
+    let SearchedFactors { from, to: last, .. } = factors.factors_to_search(onset)?;
     let ascending = std::iter::successors(Some(from), |factor| {
         (*factor < last).then(|| (factor * stride).min(last))
     });
     let histories = ascending.map(|factor| (factor, overturns(factor)));
-    lowest(histories, RESOLUTION, overturns)
+    find_lowest_strength(histories, RESOLUTION, overturns)
 }

@@ -14,7 +14,7 @@ use crate::studies::quotable::{
 };
 use crate::studies::report::{Report, Warnings};
 use crate::studies::threshold::report::lower_in_words;
-use crate::studies::threshold::{Factors, rounded, rounded_down, rounded_edge};
+use crate::studies::threshold::{Factors, format_edge, rounded_down, rounded_edge};
 use crate::studies::{
     CaseSummary, ModelCheck, NoAnswer, Remark, Remarks, Results, Style, no_verdict,
 };
@@ -76,7 +76,7 @@ impl Along<'_> {
                 friction,
                 limits,
             ),
-            to_quote: quotable::in_words(&[answer]),
+            to_quote: quotable::quote_answers(&[answer]),
             values_without_verdict,
             along,
             factors,
@@ -142,7 +142,7 @@ impl Along<'_> {
                 };
                 let parts = [
                     ("survives up to", safe),
-                    ("UNCERTAIN from", edge.uncertain_from.map(rounded)),
+                    ("UNCERTAIN from", edge.uncertain_from.map(format_edge)),
                     (overturns, first),
                 ];
                 let parts = parts.into_iter();
@@ -292,7 +292,7 @@ impl Summary {
         };
         let no_impact = || {
             let ends = ends(|point| point.no_impact_g);
-            let in_g = ends.map(|end| Some(rounded(end?.0)));
+            let in_g = ends.map(|end| Some(format_edge(end?.0)));
             let words = range("without impact overturns from", ends, in_g);
             words.unwrap_or_else(|| "no factor overturns it without impact".to_owned())
         };

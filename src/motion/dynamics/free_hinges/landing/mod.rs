@@ -20,7 +20,7 @@ use std::ops::Range;
 use nalgebra::Vector2;
 
 use self::observation::{kinetic, momentum};
-use super::rest::{InitialPosition, touching};
+use super::rest::{InitialPosition, touching_corners};
 use super::right_support::RightSupport;
 use super::ties::Ties;
 use crate::dynamics::recorder::Recorder;
@@ -28,7 +28,7 @@ use crate::dynamics::row::standing::Release;
 use crate::dynamics::{GroundVelocity, MotionInput, MotionObserver, RowMotionError, Stepper as _};
 use crate::mechanics::contact::closing::ClosureSolver;
 use crate::mechanics::contact::{ContactProgram, Load};
-use crate::mechanics::geometry::field::turned;
+use crate::mechanics::geometry::field::quarter_turn;
 use crate::mechanics::{Corners, Edge, Placement, Pose, Row, RowState, Supports, Twist};
 
 /// Largest closure error of an arch, over the thickness of the thinnest joint; a larger one is an error.
@@ -55,7 +55,7 @@ struct Piece {
 impl Piece {
     fn twist(&self, kick: Vector2<f64>) -> Twist {
         Twist {
-            at_center: self.velocity + kick - turned(self.centre) * self.rate,
+            at_center: self.velocity + kick - quarter_turn(self.centre) * self.rate,
             rate: self.rate,
         }
     }
@@ -63,7 +63,7 @@ impl Piece {
     /// Returns the deviation of the arc of a point from its tangent in a step, over the step length.
     fn arc_deviation(&self, point: Vector2<f64>, step_s: f64) -> Vector2<f64> {
         let (arm, turn) = (point - self.centre, step_s * self.rate);
-        arm * (-0.5 * turn * self.rate) - turned(arm) * (turn * turn * self.rate / 6.0)
+        arm * (-0.5 * turn * self.rate) - quarter_turn(arm) * (turn * turn * self.rate / 6.0)
     }
 }
 
@@ -143,7 +143,7 @@ impl<'a> LandingStepper<'a> {
         let (blocks, joints) = (row.blocks.len(), row.joints.len());
         let rest = InitialPosition::new(row, &standing.placement);
         let mut program = ContactProgram::new(row);
-        program.place(&standing.placement);
+        program.set_positions(&standing.placement);
         if rest.is_on_hinges() {
             program.start_from(&rest.touching);
         }
@@ -209,8 +209,9 @@ impl<'a> LandingStepper<'a> {
                  with which it stays closed; a smaller `rotation_rad` in [initial] may do"
             )));
         }
-        self.closure_solver.close(&mut self.placement);
-        let mut active: Vec<Corners> = touching(&self.placement.gaps_m).collect();
+        self.closure_solver
+            .remove_closure_error(&mut self.placement);
+        let mut active: Vec<Corners> = touching_corners(&self.placement.gaps_m).collect();
         if release.has_rate() {
             self.set_motions(&release.rates_rad_s, &mut active);
         }
@@ -220,7 +221,7 @@ impl<'a> LandingStepper<'a> {
         if self.row.supports == Supports::Left || open >= 3 {
             self.program.start_from(&active);
         }
-        self.program.place(&self.placement);
+        self.program.set_positions(&self.placement);
         self.update_piece_centres();
         let poses = &self.placement.poses;
         self.ties.stretch(|block| poses[block]);
@@ -230,7 +231,7 @@ impl<'a> LandingStepper<'a> {
         self.stands = open == 0;
         let rotations = self.placement.poses.iter().map(Pose::rotation_rad);
         self.observer
-            .released(rotations, [energy, kinetic], sway, open > 0);
+            .record_release(rotations, [energy, kinetic], sway, open > 0);
         Ok(())
     }
 
@@ -244,7 +245,7 @@ impl<'a> LandingStepper<'a> {
             mass: block.mass_kg,
             inertia: block.inertia_kg_m2,
             centre: *centre,
-            velocity: motion.at(*centre),
+            velocity: motion.velocity_at(*centre),
             rate: motion.rate,
         });
         self.pieces = pieces.collect();
@@ -296,7 +297,7 @@ impl<'a> LandingStepper<'a> {
 
     /// Returns the change of velocity by gravity and ground over an interval, and the part of the ground alone.
     fn impulse(&self, from_s: f64, to_s: f64) -> (Vector2<f64>, Vector2<f64>) {
-        let ground = self.velocity.at(to_s) - self.velocity.at(from_s);
+        let ground = self.velocity.velocity_at(to_s) - self.velocity.velocity_at(from_s);
         let fall = Vector2::new(0.0, self.gravity * (to_s - from_s));
         (-ground - fall, ground)
     }
@@ -316,12 +317,12 @@ impl<'a> LandingStepper<'a> {
     }
 
     /// Returns the interval of the kick of a step.
-    fn kicked(&self, step: f64) -> (f64, f64) {
+    fn kick_interval(&self, step: f64) -> (f64, f64) {
         (self.kicked_s, self.observer.time + 0.5 * step)
     }
 
     fn solve_step(&mut self, step: f64) -> Result<(), RowMotionError> {
-        let (from_s, to_s) = self.kicked(step);
+        let (from_s, to_s) = self.kick_interval(step);
         self.kick(self.impulse(from_s, to_s).0, to_s - from_s);
         self.right.prescribe_mean_velocity(self.observer.time, step);
         self.set_relative_velocities(step);
@@ -395,8 +396,8 @@ impl<'a> LandingStepper<'a> {
             return 0.0;
         };
         self.program.joint_impulses(&mut self.shares);
-        let [along, normal] = self.shares[self.shares.len() - 1];
-        let by_row = frame.along * along + frame.normal * normal;
+        let [tangent, normal] = self.shares[self.shares.len() - 1];
+        let by_row = frame.tangent * tangent + frame.normal * normal;
         let impulse = by_row + self.ties.right_support_force_n() * lasts_s;
         -impulse.dot(&self.right.mean_m_s())
     }
@@ -442,7 +443,7 @@ impl<'a> LandingStepper<'a> {
                     mass: sum.mass,
                     inertia: sum.central_polar(),
                     centre,
-                    velocity: twist.at(centre),
+                    velocity: twist.velocity_at(centre),
                     rate: twist.rate,
                 });
                 first = joint;
@@ -453,7 +454,7 @@ impl<'a> LandingStepper<'a> {
     /// Records the work of the ground and the forces of a solved step, and computes its pieces.
     fn record_step(&mut self, step: &Step) {
         let before = self.momentum();
-        let (from_s, to_s) = self.kicked(step.expected_s);
+        let (from_s, to_s) = self.kick_interval(step.expected_s);
         self.form_pieces();
         let mean = (before + momentum(&self.next_pieces)) * 0.5;
         self.observer.row_summary.ground_j -= self.impulse(from_s, to_s).1.dot(&mean);
@@ -472,7 +473,7 @@ impl<'a> LandingStepper<'a> {
     /// # Errors
     /// If the closure error of the arch is too large.
     fn drift(&mut self, step: &Step) -> Result<(), RowMotionError> {
-        self.kicked_s = self.kicked(step.expected_s).1;
+        self.kicked_s = self.kick_interval(step.expected_s).1;
         for (change, rates) in self.change.iter_mut().zip(&self.landing) {
             *change = rates.map(|rate| rate * step.length_s);
         }
@@ -484,10 +485,11 @@ impl<'a> LandingStepper<'a> {
         self.open_gaps(self.observer.time + step.length_s);
         self.adopt_pieces();
         self.observer.time += step.length_s;
-        self.closure_solver.close(&mut self.placement);
+        self.closure_solver
+            .remove_closure_error(&mut self.placement);
         let poses = &self.placement.poses;
         self.ties.stretch(|block| poses[block]);
-        self.program.place(&self.placement);
+        self.program.set_positions(&self.placement);
         let error_m = self.placement.closure_error();
         let row_summary = &mut self.observer.row_summary;
         row_summary.closure_error_m = row_summary.closure_error_m.max(error_m);
@@ -508,7 +510,7 @@ impl<'a> LandingStepper<'a> {
     fn open_gaps(&mut self, time_s: f64) {
         let change = &self.change;
         if !self.right.moves() {
-            self.placement.open(|joint| change[joint]);
+            self.placement.change_gaps(|joint| change[joint]);
             return;
         }
         let was_open = self.placement.open_corners() > 0;
@@ -517,7 +519,7 @@ impl<'a> LandingStepper<'a> {
         let poses = self.right.poses(stood);
         self.placement.move_supports(poses);
         self.ties.supports = poses;
-        self.placement.open(|joint| change[joint]);
+        self.placement.change_gaps(|joint| change[joint]);
         if was_open || self.placement.open_corners() > 0 {
             self.right.joint_displacement_m = self.right.displacement_m;
         }
@@ -599,7 +601,7 @@ impl<'a> LandingStepper<'a> {
                 break;
             }
         }
-        self.program.place(&self.placement);
+        self.program.set_positions(&self.placement);
         self.update_piece_centres();
     }
 
@@ -645,7 +647,7 @@ mod tests {
         let goal: Vec<f64> = (0..blocks.len())
             .flat_map(|b| {
                 let free = stepper.load.free[b];
-                let v = free.at(centres[b]);
+                let v = free.velocity_at(centres[b]);
                 [v.x, v.y, free.rate * gyration(b)].map(|x| -x * root(b) / scale)
             })
             .collect();
@@ -662,7 +664,7 @@ mod tests {
         let mut gate = joints;
         for (joint, frame) in stepper.placement.frames.iter().enumerate() {
             let jump = stepper.load.jumps[joint];
-            let mut kinds = vec![(joint, frame.intrados_m, frame.along, 1.0)];
+            let mut kinds = vec![(joint, frame.intrados_m, frame.tangent, 1.0)];
             for (edge, touching) in [Edge::Intrados, Edge::Extrados]
                 .into_iter()
                 .zip(stepper.load.touching[joint])
@@ -673,7 +675,7 @@ mod tests {
                 }
             }
             for (row, point, direction, sense) in kinds {
-                right[row] = sense * direction.dot(&jump.at(point)) / scale;
+                right[row] = sense * direction.dot(&jump.velocity_at(point)) / scale;
                 for (block, sign) in [(joint.checked_sub(1), -sense), (Some(joint), sense)] {
                     if let Some(b) = block.filter(|b| *b < blocks.len()) {
                         let turn = (point - centres[b]).perp(&direction) / gyration(b);
@@ -709,7 +711,7 @@ mod tests {
             let [vx, vy, vr] = [0, 1, 2].map(|axis| x[3 * b + axis] * scale / root(b));
             let rate = vr / gyration(b);
             Twist {
-                at_center: Vector2::new(vx, vy) - turned(centres[b]) * rate,
+                at_center: Vector2::new(vx, vy) - quarter_turn(centres[b]) * rate,
                 rate,
             }
         });
@@ -754,8 +756,9 @@ mod tests {
                     .enumerate()
                 {
                     let centre = stepper.placement.centres_m[block];
-                    fastest = fastest.max(ours.at(centre).norm());
-                    worst = worst.max((ours.at(centre) - reference.at(centre)).norm());
+                    fastest = fastest.max(ours.velocity_at(centre).norm());
+                    worst = worst
+                        .max((ours.velocity_at(centre) - reference.velocity_at(centre)).norm());
                 }
                 stepper.step(60.0).unwrap();
             }

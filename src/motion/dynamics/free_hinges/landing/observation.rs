@@ -214,7 +214,7 @@ impl<'a> Stepper<'a> for LandingStepper<'a> {
         let before = self.momentum();
         let ground = self.half_kick();
         std::mem::swap(&mut self.program, &mut self.auxiliary);
-        self.program.place(&self.placement);
+        self.program.set_positions(&self.placement);
         self.program.start_from(&self.auxiliary.active);
         let solved = self.solve();
         let kinetic_j = self.kinetic_of_solution();

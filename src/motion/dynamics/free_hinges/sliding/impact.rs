@@ -72,7 +72,7 @@ impl SlidingStepper<'_> {
     }
 
     /// Returns the joints that open in an impact: they close in the impact or were closed before, and are open afterwards.
-    fn opened(shut: &[Hinge], before: &[Mode], after: &[Mode]) -> Vec<Hinge> {
+    fn find_opening_joints(shut: &[Hinge], before: &[Mode], after: &[Mode]) -> Vec<Hinge> {
         let mut opened = Vec::new();
         for (joint, (before, after)) in before.iter().zip(after).enumerate() {
             let shuts = shut
@@ -144,7 +144,8 @@ impl SlidingStepper<'_> {
         } else {
             &self.modes_before
         };
-        self.observer.opened = Self::opened(&landing.shut, &landing.modes_before, after);
+        self.observer.opened =
+            Self::find_opening_joints(&landing.shut, &landing.modes_before, after);
         self.observer.shut = landing.shut;
         let sticks = |mode: &Mode| mode.tangential == TangentialMode::Stick;
         let moves = !(self.has_initial_contacts() && self.program.modes.iter().all(sticks));

@@ -15,7 +15,7 @@ use std::mem;
 use nalgebra::{Vector2, Vector3};
 
 use self::impact::{Dissipation, Landing};
-use super::rest::{InitialPosition, touching};
+use super::rest::{InitialPosition, touching_corners};
 use super::right_support::RightSupport;
 use super::ties::Ties;
 use crate::dynamics::recorder::Recorder;
@@ -112,8 +112,8 @@ impl<'a> SlidingStepper<'a> {
         let (positions, contacts) = contacts_at(placement);
         let (_, stood) = contacts_at(&rest.placement);
         let mut program = SlipProgram::new(row, coefficient);
-        program.touch(&match with_rates {
-            Some(_) => touching(&placement.gaps_m).collect::<Vec<Corners>>(),
+        program.set_contacts(&match with_rates {
+            Some(_) => touching_corners(&placement.gaps_m).collect::<Vec<Corners>>(),
             None => rest.touching.clone(),
         });
         let ties = Ties::new(row, standing);
@@ -132,7 +132,7 @@ impl<'a> SlidingStepper<'a> {
             let rotations = rest.relative_rotations_rad(rotations);
             let sway = rest.mass_displacement_kg_m(&placement.centres_m).x;
             let energies = [start_energy, kinetic_j(row, &velocities)];
-            observer.released(rotations, energies, sway, true);
+            observer.record_release(rotations, energies, sway, true);
         }
         Self {
             row,
@@ -169,7 +169,7 @@ impl<'a> SlidingStepper<'a> {
 
     /// Returns the change of velocity by gravity and ground from the last kick to a time, and the part of the ground alone.
     fn kick(&self, to_s: f64) -> (Vector2<f64>, Vector2<f64>) {
-        let ground = self.velocity.at(to_s) - self.velocity.at(self.kicked_s);
+        let ground = self.velocity.velocity_at(to_s) - self.velocity.velocity_at(self.kicked_s);
         let fall = Vector2::new(0.0, self.gravity * (to_s - self.kicked_s));
         (-ground - fall, ground)
     }
@@ -225,7 +225,7 @@ impl<'a> SlidingStepper<'a> {
     /// Returns the rates of the coordinates of a joint due to a velocity of the right support.
     fn right_support_rates(&self, joint: usize, velocity_m_s: Vector2<f64>) -> Vector3<f64> {
         if self.right.moves() && joint + 1 == self.faces.len() {
-            self.contacts[joint].carried(&self.faces[joint], velocity_m_s)
+            self.contacts[joint].rates_of_translation(&self.faces[joint], velocity_m_s)
         } else {
             Vector3::zeros()
         }
@@ -255,7 +255,7 @@ impl<'a> SlidingStepper<'a> {
     /// Solves for the velocities after the kick of a step; the kick lasts up to `to_s`.
     fn solve(&mut self, step: f64, to_s: f64, kick: Vector2<f64>) -> Result<(), RowMotionError> {
         self.program
-            .place(&self.faces, &self.contacts, &self.positions);
+            .set_positions(&self.faces, &self.contacts, &self.positions);
         self.modes_before.copy_from_slice(&self.program.modes);
         for joint in 0..self.faces.len() {
             self.rates_before[joint] = self.program.joint_rate(joint);
@@ -364,8 +364,8 @@ impl<'a> SlidingStepper<'a> {
     fn support_slips_m(&self) -> [Vector2<f64>; 2] {
         let slide = |joint: usize, sign: f64| {
             let support = self.rest.placement.support_poses[usize::from(joint > 0)];
-            let along = support.turned(self.row.joints[joint].along());
-            along * (sign * self.contacts[joint].coordinates_m.z)
+            let tangent = support.current_direction(self.row.joints[joint].direction());
+            tangent * (sign * self.contacts[joint].coordinates_m.z)
         };
         // At the right support the block is on the left of the joint.
         match self.row.supports {
@@ -406,7 +406,7 @@ impl<'a> SlidingStepper<'a> {
         apart[last] += self.right_support_rates(last, self.right.solution_m_s);
         mem::swap(&mut self.program, &mut self.auxiliary);
         self.program
-            .place(&self.faces, &self.contacts, &self.positions);
+            .set_positions(&self.faces, &self.contacts, &self.positions);
         self.program.start_from(&self.auxiliary, 0.5);
         self.load(kick, self.observer.time);
         let tolerance = RATE_TOLERANCE * self.gravity * self.last_step;
@@ -495,7 +495,7 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
         &mut self.observer
     }
 
-    fn complete(&mut self) {
+    fn complete_summaries(&mut self) {
         self.end_landing(Dissipation::default(), true);
         let offsets_m = self.stick_offsets_m.clone();
         self.sliding().offsets_m = offsets_m;

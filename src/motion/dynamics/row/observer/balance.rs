@@ -49,7 +49,7 @@ impl MotionObserver<'_> {
 ///
 /// # Errors
 /// If the energy balance is wrong. The error names the model's table and proposes a step, in seconds.
-pub fn balanced(
+pub fn require_balance(
     summary: Summary,
     table: &'static str,
     longest_step_s: f64,

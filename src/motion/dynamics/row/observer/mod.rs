@@ -8,7 +8,7 @@ mod outcome;
 
 use std::mem;
 
-pub use self::balance::{LARGEST_ENERGY_ERROR, balanced};
+pub use self::balance::{LARGEST_ENERGY_ERROR, require_balance};
 use self::before_fall::PartialResults;
 use self::half_cycles::CurrentHalfCycle;
 use self::outcome::RecentEnergy;
@@ -185,7 +185,7 @@ impl<'a> MotionObserver<'a> {
             return;
         }
         let moves = self.quiet_since_s == self.time;
-        (self.friction).note(demand, [self.time, lasts_s], moves);
+        (self.friction).add_step(demand, [self.time, lasts_s], moves);
     }
 
     /// Returns whether there is a recorder that needs friction demands.
@@ -206,7 +206,7 @@ impl<'a> MotionObserver<'a> {
     }
 
     /// Records a release, with rotations of the blocks, potential and kinetic energy, and displacement of the centre of gravity times the mass.
-    pub fn released(
+    pub fn record_release(
         &mut self,
         rotations_rad: impl Iterator<Item = f64>,
         [potential, kinetic]: [f64; 2],
@@ -251,7 +251,7 @@ impl<'a> MotionObserver<'a> {
         row_summary.largest_potential_j = row_summary.largest_potential_j.max(potential);
         row_summary.largest_kinetic_j = row_summary.largest_kinetic_j.max(kinetic);
         let period_s = (self.input.row.size_m / self.input.gravity_m_s2).sqrt();
-        self.recent.note(kinetic, self.time, period_s);
+        self.recent.record_energy(kinetic, self.time, period_s);
         self.note_half_cycle(largest);
         if self.highest_s == self.time && self.overturned_below_j > f64::NEG_INFINITY {
             self.save_results_before_fall();
@@ -268,7 +268,7 @@ impl<'a> MotionObserver<'a> {
                 .cycle
                 .current
                 .is_some_and(|cycle| cycle.start_s == self.time);
-            last_maximum.note((height, self.time), least, begins && height >= -least);
+            last_maximum.record_height((height, self.time), least, begins && height >= -least);
         } else if self.kinetic < least {
             last_maximum.time = self.time;
         }
@@ -286,7 +286,10 @@ impl<'a> MotionObserver<'a> {
         let ties = ties.filter(|(tie, _)| !tie.is_constant_force());
         for (index, (tie, memory)) in ties.enumerate() {
             if let Some(known) = self.row_summary.ties.get_mut(index) {
-                let kinds = known.note(tie, &memory, self.time).into_iter().flatten();
+                let kinds = known
+                    .record_state(tie, &memory, self.time)
+                    .into_iter()
+                    .flatten();
                 happened.extend(kinds.map(|kind| (index, kind)));
             } else {
                 let at_rest = TieSummary::at_rest(tie, &memory, self.time);
@@ -331,8 +334,9 @@ impl<'a> MotionObserver<'a> {
     pub(super) fn blank_sample(&mut self) -> (Sample, bool) {
         let mut sample = mem::take(&mut self.sample);
         let ground = self.input.ground;
-        let (ground_m_s2, _) = ground.pieces[ground.piece_at(self.time)].at(self.time);
-        sample.begin(self.time, ground_m_s2, self.events.phase);
+        let (ground_m_s2, _) =
+            ground.pieces[ground.piece_at(self.time)].acceleration_and_rate(self.time);
+        sample.reset_to_rest(self.time, ground_m_s2, self.events.phase);
         let recorder = self.recorder.as_ref();
         let thrust_line = recorder.is_some_and(|recorder| recorder.wants_thrust_line());
         (sample, thrust_line)
@@ -350,12 +354,12 @@ impl<'a> MotionObserver<'a> {
         sample.energy_ratio = self.input.barrier_j.map(ratio);
         if self.is_falling {
             if let Some(recorder) = &mut self.recorder {
-                self.stopped = recorder.fall(sample).is_break();
+                self.stopped = recorder.fall_sample(sample).is_break();
             }
             return;
         }
         let moves = sample.state != State::Rest;
-        self.thrust.note(sample.time_s, moves, &sample.demand);
+        self.thrust.add_sample(sample.time_s, moves, &sample.demand);
         if let Some(recorder) = &mut self.recorder {
             self.stopped |= recorder.sample(sample).is_break();
         }

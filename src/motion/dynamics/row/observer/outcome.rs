@@ -32,7 +32,7 @@ impl RecentEnergy {
     }
 
     /// Notes the kinetic energy at a time. `scale_s` is the square root of size over gravity.
-    pub(super) fn note(&mut self, kinetic_j: f64, time_s: f64, scale_s: f64) {
+    pub(super) fn record_energy(&mut self, kinetic_j: f64, time_s: f64, scale_s: f64) {
         if time_s - self.from_s > RECENT_RATIO * scale_s {
             *self = Self {
                 largest_j: [self.largest_j[1], 0.0],
@@ -146,7 +146,7 @@ impl MotionObserver<'_> {
     }
 
     /// Ends the motion early: the row cannot overturn. `rests` is true if it is predicted to come to rest.
-    pub const fn decide(&mut self, rests: bool) {
+    pub const fn end_early(&mut self, rests: bool) {
         self.is_safe = true;
         self.counts_as_rest = rests;
     }
