@@ -271,7 +271,11 @@ impl History {
             ),
             "thrust_excess_ratio" => array(py, demand(|one| one.excess_ratio), &[count]),
             "friction_demand" => array(py, demand(|one| one.friction), &[count]),
-            "phase" => array(py, self.take_indices(|all| mem::take(&mut all.phase)), &[count]),
+            "phase" => array(
+                py,
+                self.take_indices(|all| mem::take(&mut all.phase)),
+                &[count],
+            ),
             "open_hinges" => {
                 let open = self.take_indices(|all| {
                     let ends = all.first_hinge.iter().skip(1).copied();

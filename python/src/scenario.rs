@@ -301,7 +301,11 @@ impl Ground {
         match &*latest {
             Some((of, motion)) if *of == gravity_m_s2 => Ok(Arc::clone(motion)),
             _ => {
-                let motion = Arc::new(self.inner.ground_motion(gravity_m_s2).map_err(refused_value)?);
+                let motion = Arc::new(
+                    self.inner
+                        .ground_motion(gravity_m_s2)
+                        .map_err(refused_value)?,
+                );
                 *latest = Some((gravity_m_s2, Arc::clone(&motion)));
                 Ok(motion)
             }

@@ -104,7 +104,10 @@ pub fn study<'py>(
 ) -> PyResult<(Files<'py>, String, TextColumns)> {
     let (kind, runner) = (kind_of(kind)?, runner(threads));
     let factors = factors.map(|(from, to, stride)| Factors::new(from, to, stride));
-    let factors = factors.transpose().map_err(refused_value)?.unwrap_or_default();
+    let factors = factors
+        .transpose()
+        .map_err(refused_value)?
+        .unwrap_or_default();
     let along = along.map(|(along, no_impact)| {
         Ok::<_, &str>(AlongOptions {
             along: along.parse()?,
