@@ -3,7 +3,7 @@
 mod report;
 
 use self::report::{Certificate, ModelComparison, chain_of_four_links};
-pub use self::report::{Summary, chain};
+pub use self::report::{ImpactSummary, chain};
 use super::results::{PrintedResult, StudyError};
 use crate::mechanics::Profile;
 use crate::mechanics::four_link::{
@@ -118,7 +118,7 @@ pub fn chain_result(
         )));
     }
     let impacts = |side| chain(model, side, count);
-    let summary = Summary::new(scenario, model, (&[first], count), impacts);
+    let summary = ImpactSummary::new(scenario, model, (&[first], count), impacts);
     Ok(PrintedResult::of(&summary)?)
 }
 
@@ -138,7 +138,7 @@ pub fn four_links_result(
         false => Sway::ALL,
     };
     let impacts = |first| chain_of_four_links(&LinkImpact { first, ..*impact }, count);
-    let mut summary = Summary::new(scenario, model, (sides, count), impacts);
+    let mut summary = ImpactSummary::new(scenario, model, (sides, count), impacts);
     summary.chosen = Some(format!(
         "impact {}{}",
         impact.index,

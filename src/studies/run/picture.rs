@@ -10,7 +10,7 @@ use crate::output::{
     CURVES, Envelope, Figure, Key, Mark, Panels, Scale, Shape, Sign, StateHistory, Stroke, Subject,
     color,
 };
-use crate::{Event, Model, Outcome, Sample, State, Summary as History, Sway};
+use crate::{Event, Model, Outcome, Sample, State, Summary, Sway};
 
 /// Upper limit of the drawn excess of the thrust line, in thicknesses. The values of a falling structure would hide all others.
 pub(super) const LARGEST_EXCESS: f64 = 1.0;
@@ -160,7 +160,7 @@ impl Timeline {
         &self,
         figure: Figure,
         subject: &Subject<'_>,
-        history: &History,
+        history: &Summary,
         points: &ObservedPoints,
     ) -> String {
         let span_s = [subject.ground.start_s(), self.end_s];
@@ -297,7 +297,7 @@ impl Timeline {
 }
 
 /// Returns the states of a row: its half cycles, and the end.
-fn row_states(history: &History, half_cycles: &[HalfCycle]) -> StateHistory {
+fn row_states(history: &Summary, half_cycles: &[HalfCycle]) -> StateHistory {
     let end = match history.outcome {
         Outcome::Rest => Some(State::Rest),
         Outcome::Overturned(sway) => Some(State::Overturned(sway)),
