@@ -572,7 +572,7 @@ impl History {
     /// `warnings` of `summary.json`.
     fn warnings(&self, py: Python<'_>) -> Vec<String> {
         py.detach(|| {
-            run::Summary::of(&self.run_alone(&self.shaken_scenario()))
+            run::RunSummary::of(&self.run_alone(&self.shaken_scenario()))
                 .warnings
                 .all()
                 .to_vec()
@@ -613,7 +613,7 @@ impl History {
     fn report(&self, py: Python<'_>) -> PyResult<String> {
         let scenario = self.shaken_scenario();
         let mirrored = self.mirrored(py)?;
-        let summary = run::Summary::of(&self.run_with_repetitions(py, &scenario)?);
+        let summary = run::RunSummary::of(&self.run_with_repetitions(py, &scenario)?);
         let verdict = summary.verdict_line();
         let own = self.page(py, &scenario, &verdict)?;
         let computed = mirrored.filter(|mirrored| mirrored.failed.is_none());

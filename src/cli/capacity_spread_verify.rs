@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use archrock::Sway;
-use archrock::studies::{CAPACITY, Direction, Options, SPREAD, StudyKind, Style, VERIFY};
+use archrock::studies::{CAPACITY, Options, SPREAD, SpringingDirection, StudyKind, Style, VERIFY};
 use nalgebra::Vector2;
 
 use super::execution::Execution;
@@ -73,10 +73,10 @@ pub fn capacity(arguments: &CapacityArguments) -> Result<(), Failure> {
 
 pub fn spread(arguments: &SpreadArguments) -> Result<(), Failure> {
     let angles_deg = match &arguments.angles_deg[..] {
-        [] => &Direction::DEFAULT_DEG[..],
+        [] => &SpringingDirection::DEFAULT_DEG[..],
         given => given,
     };
-    let direction = |angle_deg: &f64| Direction {
+    let direction = |angle_deg: &f64| SpringingDirection {
         springing: arguments.springing,
         angle_deg: *angle_deg,
     };

@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 
 use crate::mechanics::masonry::FillColumn;
 use crate::mechanics::{Anchor, BodyPoint, Edge, Parts, PlacedLoad, Tie};
-use crate::mechanics::{Outline, Section};
+use crate::mechanics::{Outline, StructureSection};
 use crate::scenario::{Dimension, Structure, forces_in_words, load_in_words};
 use crate::{Hinge, OpenHinge, Pose, Row, Sample, Sway};
 
@@ -16,7 +16,7 @@ pub struct Scene {
     /// True if the blocks between two hinges form one body and those outside the hinges do not move.
     linked: bool,
     /// Sections at which the position of the thrust line is known.
-    pub sections: Vec<Section>,
+    pub sections: Vec<StructureSection>,
     /// Poses of the left and the right support of an arch.
     pub supports: [Pose; 2],
     /// Poses and hinges of the structure at rest; empty if it is undeformed.

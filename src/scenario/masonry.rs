@@ -26,7 +26,7 @@ use crate::mechanics::masonry::{
 };
 use crate::mechanics::stability::collapse_mechanism;
 use crate::mechanics::{DENSITY_KG_M3, DEPTH_M, MAX_BLOCKS};
-use crate::mechanics::{Joint, MeasuredAt, PlacedLoad, RowError, Shape, Supports};
+use crate::mechanics::{Joint, MasonryShape, MeasuredAt, PlacedLoad, RowError, Supports};
 
 const PIER_BLOCKS: Count = Count(1..=MAX_BLOCKS, "a pier of one piece");
 
@@ -34,7 +34,7 @@ const PIER_BLOCKS: Count = Count(1..=MAX_BLOCKS, "a pier of one piece");
 pub(super) const SHAPES: [&str; 4] = ["pointed_arch", "elliptic_arch", "basket_arch", "blocks"];
 
 /// Reads the shapes that have separate tables, and returns the first given one.
-pub(super) fn read_shapes(table: &mut Table<'_>) -> Option<Shape> {
+pub(super) fn read_shapes(table: &mut Table<'_>) -> Option<MasonryShape> {
     let pointed = table.table("pointed_arch", |table| read_dimensions(table, true));
     let elliptic = table.table("elliptic_arch", |table| read_dimensions(table, false));
     let basket = table.table("basket_arch", |table| {
@@ -44,10 +44,10 @@ pub(super) fn read_shapes(table: &mut Table<'_>) -> Option<Shape> {
         })
     });
     let blocks = table.table("blocks", read_blocks);
-    let pointed = pointed.map(Shape::PointedArch);
-    let elliptic = elliptic.map(Shape::EllipticArch);
-    let basket = basket.map(Shape::BasketArch);
-    let blocks = blocks.map(Shape::Blocks);
+    let pointed = pointed.map(MasonryShape::PointedArch);
+    let elliptic = elliptic.map(MasonryShape::EllipticArch);
+    let basket = basket.map(MasonryShape::BasketArch);
+    let blocks = blocks.map(MasonryShape::Blocks);
     pointed.or(elliptic).or(basket).or(blocks)
 }
 
@@ -127,7 +127,7 @@ fn read_blocks(table: &mut Table<'_>) -> ReadResult<GivenBlocks> {
         table.note_file(file);
     }
     // If the blocks do not form a row, the error names the line of the joint.
-    let shape = Shape::Blocks(given.clone());
+    let shape = MasonryShape::Blocks(given.clone());
     let wrong = match Masonry::new(shape, Piers::default(), None, Vec::new()) {
         Ok(_) => return Ok(given),
         Err(MasonryError::Row(error)) => {
@@ -252,7 +252,7 @@ impl Additions {
     pub fn build_masonry(
         self,
         table: &mut Table<'_>,
-        shape: Shape,
+        shape: MasonryShape,
         (gravity_m_s2, unproved): (f64, bool),
     ) -> ReadResult<Masonry> {
         let key = shape.name();

@@ -14,7 +14,7 @@ use super::limit;
 use super::map::OverturningMap;
 use super::part::{self, PartFile};
 use super::run::{self, RunOptions, Sinks};
-use super::spread::{self, Direction};
+use super::spread::{self, SpringingDirection};
 use super::suite::{Heading, RecordSuite};
 use super::threshold::along::{Along, AlongOptions};
 use super::threshold::{self, Factors};
@@ -34,7 +34,7 @@ pub struct Options {
     pub point_m: Option<Vector2<f64>>,
     /// The movements of a springing that `spread` follows.
     #[serde(skip_serializing)]
-    pub directions: Vec<Direction>,
+    pub directions: Vec<SpringingDirection>,
     /// The files and pictures of a run.
     #[serde(skip)]
     pub run: RunOptions,

@@ -46,7 +46,7 @@ pub mod suite;
 pub mod threshold;
 pub mod verify;
 
-pub use capacity::{CapacityCurveError, Summary as CapacitySummary, capacity};
+pub use capacity::{CapacityCurveError, CapacitySummary, capacity};
 pub use catalogue::{
     CAPACITY, Computation, LIMIT, MAP, Merged, Options, RUN, SPREAD, SUITE, StudyKind, THRESHOLD,
     THRESHOLD_ALONG, UNCERTAIN, UNCERTAIN_MAP, UNCERTAIN_SUITE, UNCERTAIN_THRESHOLD, VERIFY, Work,
@@ -57,15 +57,15 @@ use ending::NoAnswer;
 pub use ending::{Ending, NoHistory, Steps, Verdict, outcome_name};
 pub use error::StudyError;
 pub use impact::{
-    ImpactOptions, LinkImpact, Summary as ImpactSummary, chain as impact_chain, chain_result,
+    ImpactOptions, ImpactSummary, LinkImpact, chain as impact_chain, chain_result,
     four_links_result,
 };
-pub use limit::{Summary as LimitSummary, limit};
+pub use limit::{LimitSummary, limit};
 pub use page::page_of as study_page_of;
 pub use part::{
     Header, PartError, PartErrorKind, PartFile, Shard, merge as merge_parts, read_header, rows_in,
 };
-pub use peaks::{FILES as PEAKS_FILES, Summary as PeaksSummary, results as peak_results};
+pub use peaks::{FILES as PEAKS_FILES, PeaksSummary, results as peak_results};
 pub use pictures::{impact as draw_impact, limit as draw_limit};
 pub use quotable::{ModelAnswer, quote_answers as quoted_in_words};
 pub use record::record;
@@ -74,7 +74,7 @@ pub use report::{Report, Statement, Warnings};
 pub use results::{Results, Style, words_of_json};
 use runner::Watch;
 pub use runner::{Counted, Progress, Runner, RunnerError, SearchStep, Task};
-pub use spread::{Direction, Summary as SpreadSummary, spread};
+pub use spread::{SpreadSummary, SpringingDirection, spread};
 pub use statistics::Share;
 pub use study::Study;
 use threshold::{format_edge, rounded_down};

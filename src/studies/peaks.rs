@@ -65,14 +65,14 @@ pub const FILES: [&str; 4] = ["peaks.html", "peaks.svg", "peaks.csv", "peaks.jso
 /// Comparison of models of motion by the distributions of their largest rotations in the same cases.
 #[derive(Serialize, Deserialize, Template)]
 #[template(source = "", ext = "txt")]
-pub struct Summary {
+pub struct PeaksSummary {
     /// The distribution of each model.
     models: Vec<ModelSummary>,
     /// The distances between the distributions of any two models.
     pairs: Vec<Distance>,
 }
 
-impl Report for Summary {
+impl Report for PeaksSummary {
     fn verdict(&self) -> String {
         let distances = self.pairs.iter().map(Distance::in_words);
         distances.collect::<Vec<_>>().join("\n")
@@ -148,7 +148,7 @@ pub fn results(all: &[(&Scenario, &Results)], figure: Figure) -> Result<Results,
         let others = models[index + 1..].iter();
         others.filter_map(|other| distance(*one, *other))
     });
-    let report = Summary {
+    let report = PeaksSummary {
         models: models.iter().map(ModelSummary::of).collect(),
         pairs: pairs.collect(),
     };

@@ -11,7 +11,7 @@ use crate::scenario::{Baseline, RecordedQuantity, Series, Unit, shown};
 /// Report on a record. Velocity and displacement are integrated from zero.
 #[derive(Serialize, Deserialize, Template)]
 #[template(path = "studies/record.txt")]
-pub struct Summary {
+pub struct RecordSummary {
     /// Name of the file.
     file: String,
     /// Format, quantity and unit, in words.
@@ -76,7 +76,7 @@ pub fn record(
     let [significant_from_s, significant_to_s] = intensity.significant_s;
     let sampling = series.sampling();
     let (channel, channel_name) = series.channel.clone().unzip();
-    PrintedResult::of(&Summary {
+    PrintedResult::of(&RecordSummary {
         file: shown(&series.file),
         format: format(series),
         sampling: sampling.to_string(),

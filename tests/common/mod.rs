@@ -12,8 +12,8 @@ pub mod schema;
 use archrock::dynamics::Pulse;
 use archrock::mechanics::four_link::HingeSites;
 use archrock::mechanics::masonry::{
-    BasketArch, CircularArch, Dimensions, Fill, FillLevel, Masonry, Material, Pier, Piers,
-    PlacedLoad, Shape,
+    BasketArch, CircularArch, Dimensions, Fill, FillLevel, Masonry, MasonryShape, Material, Pier,
+    Piers, PlacedLoad,
 };
 use archrock::mechanics::settling::Follower;
 use archrock::mechanics::stability::collapse_mechanism;
@@ -384,9 +384,9 @@ pub fn random_masonry(random: &mut Random) -> Option<Masonry> {
         material: Material::default(),
     };
     let shape = match random.pick(4) {
-        0 => Shape::PointedArch(dimensions(random.within(5.0, 9.0))),
-        1 => Shape::EllipticArch(dimensions(random.within(3.0, 7.0))),
-        2 => Shape::BasketArch(BasketArch {
+        0 => MasonryShape::PointedArch(dimensions(random.within(5.0, 9.0))),
+        1 => MasonryShape::EllipticArch(dimensions(random.within(3.0, 7.0))),
+        2 => MasonryShape::BasketArch(BasketArch {
             dimensions: dimensions(random.within(3.2, 5.0)),
             crown_deg: random.within(40.0, 75.0),
         }),
@@ -400,7 +400,7 @@ pub fn random_masonry(random: &mut Random) -> Option<Masonry> {
             let mut joints_deg = vec![0.0];
             joints_deg.extend(inner);
             joints_deg.push(embrace_deg);
-            Shape::Circular(CircularArch::new(arch, Some(joints_deg)).ok()?)
+            MasonryShape::Circular(CircularArch::new(arch, Some(joints_deg)).ok()?)
         }
     };
     let pier = |random: &mut Random| {

@@ -3,7 +3,9 @@
 use crate::common::{Random, random_masonry};
 use archrock::dynamics::FreeHinges;
 use archrock::mechanics::four_link::{closing_field, project};
-use archrock::mechanics::masonry::{Dimensions, Masonry, Material, Piers, PlacedLoad, Shape};
+use archrock::mechanics::masonry::{
+    Dimensions, Masonry, MasonryShape, Material, Piers, PlacedLoad,
+};
 use archrock::mechanics::stability::{collapse_mechanism, onset};
 use archrock::mechanics::{Block, Row, Supports};
 use archrock::mechanics::{Hinge, Mechanism as _, MechanismChain as _, Ring};
@@ -255,7 +257,7 @@ fn the_certificate_bounds_the_impact_of_a_row() {
         material: Material::default(),
     };
     let load = PlacedLoad::mass(2500.0, 1.5);
-    let shape = Shape::PointedArch(dimensions);
+    let shape = MasonryShape::PointedArch(dimensions);
     let masonry = Masonry::new(shape, Piers::default(), None, vec![load]).unwrap();
     let model = rocking(&masonry.row);
     for first in SIDES {

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use archrock::mechanics::masonry::{
     BasketArch, CircularArch, Dimensions, Fill, FillLevel, GivenBlocks, Masonry, MasonryError,
-    Material, Pier, Piers, PlacedLoad, Shape,
+    MasonryShape, Material, Pier, Piers, PlacedLoad,
 };
 use archrock::mechanics::stability::onset;
 use archrock::mechanics::{Joint, Row, Supports};
@@ -26,14 +26,14 @@ fn dimensions(rise_m: f64, voussoirs: usize) -> Dimensions {
     }
 }
 
-fn alone(shape: Shape) -> Masonry {
+fn alone(shape: MasonryShape) -> Masonry {
     Masonry::new(shape, Piers::default(), None, Vec::new()).unwrap()
 }
 
-fn circular(voussoirs: usize) -> Shape {
+fn circular(voussoirs: usize) -> MasonryShape {
     let arch = Arch::new(5.0, 0.15, 180.0).unwrap();
     let arch = arch.with_voussoirs(voussoirs).unwrap();
-    Shape::Circular(CircularArch::new(arch, None).unwrap())
+    MasonryShape::Circular(CircularArch::new(arch, None).unwrap())
 }
 
 fn acceleration_g(row: &Row, sway: Sway) -> f64 {
@@ -62,9 +62,9 @@ fn shapes_with_a_rise_of_half_the_span_are_a_semicircle() {
         let dimensions = dimensions(5.0, voussoirs);
         for shape in [
             circular(voussoirs),
-            Shape::PointedArch(dimensions),
-            Shape::EllipticArch(dimensions),
-            Shape::BasketArch(BasketArch {
+            MasonryShape::PointedArch(dimensions),
+            MasonryShape::EllipticArch(dimensions),
+            MasonryShape::BasketArch(BasketArch {
                 dimensions,
                 crown_deg: 60.0,
             }),
@@ -83,14 +83,14 @@ fn masses_are_those_of_the_middle_line() {
         (0..n).map(|i| (at(i + 1) - at(i)).norm()).sum::<f64>()
     };
     let ellipse = |u: f64| Vector2::new(5.0 * (PI * u).cos(), 3.0 * (PI * u).sin());
-    let elliptic = alone(Shape::EllipticArch(dimensions(3.0, 9)));
+    let elliptic = alone(MasonryShape::EllipticArch(dimensions(3.0, 9)));
     let mass_kg = 2000.0 * 0.75 * middle(&ellipse);
     assert!((elliptic.row.mass_kg() / mass_kg - 1.0).abs() < 1e-9);
 
     // Three arcs of 60 degrees: e = 2/(1 - tan 15), outer radius 5 - e, crown radius outer + 2 e.
     let aside = 2.0 / (1.0 - 15_f64.to_radians().tan());
     let length = PI / 3.0 * (2.0 * (5.0 - aside) + (5.0 - aside + 2.0 * aside));
-    let basket = alone(Shape::BasketArch(BasketArch {
+    let basket = alone(MasonryShape::BasketArch(BasketArch {
         dimensions: dimensions(3.0, 9),
         crown_deg: 60.0,
     }));
@@ -106,7 +106,7 @@ fn masses_are_those_of_the_middle_line() {
 fn an_equilateral_arch() {
     let rise_m = 10.0 * 0.75_f64.sqrt();
     for voussoirs in [12, 13] {
-        let arch = alone(Shape::PointedArch(dimensions(rise_m, voussoirs)));
+        let arch = alone(MasonryShape::PointedArch(dimensions(rise_m, voussoirs)));
         // Half of the area between the arcs of radius 10.375 and 9.625 about (5, 0), left of the middle.
         let under = |radius: f64| {
             let primitive = |x: f64| {
@@ -751,7 +751,12 @@ fn invalid_blocks_are_refused_by_the_type() {
             joints: joints.iter().copied().map(joint).collect(),
             outlines,
         };
-        Masonry::new(Shape::Blocks(given), Piers::default(), None, Vec::new())
+        Masonry::new(
+            MasonryShape::Blocks(given),
+            Piers::default(),
+            None,
+            Vec::new(),
+        )
     };
     let joints = [0.0, 1.0, 2.0];
     let square = [[1.0, 0.0], [1.0, 1.0], [2.0, 1.0], [2.0, 0.0]];

@@ -9,7 +9,7 @@ use archrock::mechanics::elastic_joint::{ElasticProperties, ElasticStructure, Re
 use archrock::mechanics::settling::{Follower, Movement, Movements, SettlingError};
 use archrock::mechanics::{Anchor, Tie};
 use archrock::mechanics::{Edge, Ring};
-use archrock::studies::{Direction, spread};
+use archrock::studies::{SpringingDirection, spread};
 use archrock_motion::internals::contact::ContactError;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
@@ -741,7 +741,7 @@ fn commands_report_an_arch_held_by_its_tie() {
     }
 
     let angles_deg = [90.0, 0.0];
-    let directions = angles_deg.map(|angle_deg| Direction {
+    let directions = angles_deg.map(|angle_deg| SpringingDirection {
         springing: Sway::Right,
         angle_deg,
     });
@@ -1319,7 +1319,7 @@ fn an_arch_without_thrust_has_the_capacity_of_its_first_motion() {
 fn pins_may_change_sides() {
     let text = "[arch]\nmean_radius_m = 4.0\nthickness_ratio = 0.18\nembrace_deg = 100.0\nvoussoirs = 20\n";
     let scenario = parsed(text);
-    let down = Direction {
+    let down = SpringingDirection {
         springing: Sway::Right,
         angle_deg: 90.0,
     };

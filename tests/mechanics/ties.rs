@@ -13,7 +13,7 @@ use archrock::mechanics::stability::{StabilityError, limit_with_yielding_ties, o
 use archrock::mechanics::{Anchor, Tie, TieError};
 use archrock::mechanics::{Row, Supports};
 use archrock::studies::limit;
-use archrock::studies::verify::{Page, verify};
+use archrock::studies::verify::{VerifyPage, verify};
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
     DefaultSettings, DefaultSolver, IPSolver as _, NonnegativeConeT, SolverStatus,
@@ -476,7 +476,7 @@ fn a_tied_column_turns_about_its_toe() {
         ((rise + held) / sway - 0.339_366_718).abs() < 5e-10,
         "{right}"
     );
-    let reported = Page::new(&scenario, &check, None).html();
+    let reported = VerifyPage::new(&scenario, &check, None).html();
     for words in ["F (kN)", "5.000", "0.33937"] {
         assert!(reported.contains(words), "{words}");
     }

@@ -8,7 +8,7 @@ use archrock_motion::internals::hybrid::engine::{
 };
 use archrock_motion::internals::hybrid::integrator;
 use archrock_motion::internals::hybrid::integrator::{
-    IntegrationTask, IntegratorError, State, Step,
+    IntegrationTask, IntegratorError, IntegratorStep, State,
 };
 
 fn task<const N: usize>(
@@ -33,7 +33,7 @@ fn task<const N: usize>(
 fn integrate<const N: usize>(
     task: &IntegrationTask<N>,
     slope: impl Fn(f64, &State<N>) -> State<N>,
-    watch: impl FnMut(&Step<N>) -> ControlFlow<()>,
+    watch: impl FnMut(&IntegratorStep<N>) -> ControlFlow<()>,
     cost: &mut Cost,
 ) -> Result<State<N>, IntegratorError> {
     let start_slope = slope(task.start_s, &task.start);
@@ -59,7 +59,7 @@ fn a_slope_that_depends_on_time() {
     for tolerance in [1e-6, 1e-9, 1e-12] {
         let task = task(0.0, 3.0, State::<1>::new(1.0), tolerance);
         let mut steps = Vec::new();
-        let watch = |step: &Step<1>| {
+        let watch = |step: &IntegratorStep<1>| {
             steps.push(*step);
             ControlFlow::Continue(())
         };
@@ -107,7 +107,7 @@ fn the_last_state_is_that_of_the_end_and_not_an_extrapolation() {
     for end_s in [0.3, 1.0 / 3.0, 7.123_456_789] {
         let task = task(0.0, end_s, State::<1>::new(0.0), 1e-9);
         let mut last_s = 0.0;
-        let watch = |step: &Step<1>| {
+        let watch = |step: &IntegratorStep<1>| {
             last_s = step.end_s;
             ControlFlow::Continue(())
         };
@@ -139,7 +139,7 @@ fn a_late_start_changes_nothing() {
 fn an_observer_stops_the_integration_at_its_step() {
     let task = task(0.0, 3.0, State::<1>::new(1.0), 1e-9);
     let mut seen = None;
-    let watch = |step: &Step<1>| {
+    let watch = |step: &IntegratorStep<1>| {
         seen = Some(*step);
         if step.end_s > 1.0 {
             ControlFlow::Break(())
@@ -216,7 +216,7 @@ impl HybridSystem<2> for Ball {
         State::<2>::new(now.state[1], wind - self.gravity)
     }
 
-    fn interpolate(&self, step: &Step<2>, time_s: f64) -> State<2> {
+    fn interpolate(&self, step: &IntegratorStep<2>, time_s: f64) -> State<2> {
         let since = time_s - step.start_s;
         let acceleration = step.start_slope[1];
         State::<2>::new(
@@ -260,7 +260,7 @@ impl HybridSystem<2> for Ball {
 #[derive(Default)]
 struct Log {
     bounces: Vec<(f64, State<2>, State<2>)>,
-    steps: Vec<Step<2>>,
+    steps: Vec<IntegratorStep<2>>,
     most_bounces: Option<usize>,
     most_steps: Option<usize>,
 }
@@ -274,7 +274,7 @@ fn until(count: usize, most: Option<usize>) -> ControlFlow<()> {
 }
 
 impl Observer<Ball, 2> for Log {
-    fn step(&mut self, _: &SystemState<bool, 2>, step: &Step<2>) -> ControlFlow<()> {
+    fn step(&mut self, _: &SystemState<bool, 2>, step: &IntegratorStep<2>) -> ControlFlow<()> {
         self.steps.push(*step);
         until(self.steps.len(), self.most_steps)
     }

@@ -12,7 +12,8 @@ use archrock::dynamics::{
 };
 use archrock::mechanics::friction::{FrictionError, least_coefficient, onset};
 use archrock::mechanics::masonry::{
-    BasketArch, Dimensions, Fill, FillLevel, GivenBlocks, Masonry, Material, Pier, Piers, Shape,
+    BasketArch, Dimensions, Fill, FillLevel, GivenBlocks, Masonry, MasonryShape, Material, Pier,
+    Piers,
 };
 use archrock::mechanics::{Column, Edge, Hinge, Joint, Ring, Row, Supports, Sway, stability};
 use archrock_motion::internals::complementarity;
@@ -484,7 +485,7 @@ fn a_pointed_arch_that_slips_on_its_piers_comes_to_rest() {
             left: pier,
             right: pier,
         };
-        let shape = Shape::PointedArch(dimensions);
+        let shape = MasonryShape::PointedArch(dimensions);
         let masonry = Masonry::new(shape, piers, None, Vec::new()).unwrap();
         assert_eq!(masonry.row.supports_extend, [!pedestal; 2]);
         let ground = Pulse::OneSine
@@ -543,8 +544,13 @@ fn the_lowest_level_faces_stand_on_unlimited_ground() {
             joints: joints.iter().copied().map(joint).collect(),
             outlines: Vec::new(),
         };
-        let masonry =
-            Masonry::new(Shape::Blocks(given), Piers::default(), None, Vec::new()).unwrap();
+        let masonry = Masonry::new(
+            MasonryShape::Blocks(given),
+            Piers::default(),
+            None,
+            Vec::new(),
+        )
+        .unwrap();
         masonry.row.supports_extend
     };
     let frame = |left: f64, right: f64| {
@@ -901,12 +907,12 @@ fn long_arches_under_heavy_fill_near_their_least_friction_are_solved() {
         material: Material::default(),
     };
     let basket = |dimensions| {
-        Shape::BasketArch(BasketArch {
+        MasonryShape::BasketArch(BasketArch {
             dimensions,
             crown_deg: BasketArch::CROWN_DEG,
         })
     };
-    let elliptic = |dimensions| Shape::EllipticArch(dimensions);
+    let elliptic = |dimensions| MasonryShape::EllipticArch(dimensions);
     let (low, high) = (FillLevel::AboveSpringing(0.1), FillLevel::AboveCrown(4.0));
     for (shape, level, density_kg_m3, excess, amplitude_g, duration_s, end_s) in [
         (

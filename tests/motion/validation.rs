@@ -10,7 +10,7 @@ use archrock::mechanics::Ring;
 use archrock::mechanics::Row;
 use archrock::mechanics::four_link::{HingeSites, least_thickness_ratio};
 use archrock::mechanics::friction::{least_coefficient, stands};
-use archrock::mechanics::masonry::{Dimensions, Masonry, Material, Piers, Shape};
+use archrock::mechanics::masonry::{Dimensions, Masonry, MasonryShape, Material, Piers};
 use archrock::mechanics::stability::{collapse_mechanism, onset};
 use archrock::{Arch, EndCondition, Outcome, Sway};
 use std::f64::consts::PI;
@@ -115,9 +115,9 @@ fn least_thickness_of_pointed_and_elliptic_arches() {
                 material: Material::default(),
             };
             let shape = if rise > 1.0 {
-                Shape::PointedArch(dimensions)
+                MasonryShape::PointedArch(dimensions)
             } else {
-                Shape::EllipticArch(dimensions)
+                MasonryShape::EllipticArch(dimensions)
             };
             let masonry = Masonry::new(shape, Piers::default(), None, Vec::new());
             masonry.is_ok_and(|masonry| masonry.stands().unwrap())

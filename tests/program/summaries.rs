@@ -1,6 +1,6 @@
 //! The reference of summaries in docs/json.md follows from the types that are written as JSON, and from their doc comments.
 //!
-//! Every `Summary` of a study has a table there, and so have events, which Python gives. `ARCHROCK_GOLDEN=write cargo test summaries` writes them anew.
+//! The summary of every study has a table there, and so have events, which Python gives. `ARCHROCK_GOLDEN=write cargo test summaries` writes them anew.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -298,8 +298,13 @@ fn summaries_are_described_by_their_types() {
     written(&source(), &mut found);
     let mut text = String::new();
     let studies = source().join("studies");
-    let studies_summary = |one: &&Written| one.name == "Summary" && one.file.starts_with(&studies);
-    let summaries = found.iter().filter(studies_summary);
+    // `MapSummary` of the study `map`, `UncertainRunSummary` of `ensemble/uncertain_run`.
+    let is_of_study = |one: &&Written| {
+        let file = one.file.strip_prefix(&studies);
+        let name = file.map(|file| title_of(file).rsplit('/').next().unwrap().replace('_', ""));
+        name.is_ok_and(|study| one.name.to_lowercase() == study + "summary")
+    };
+    let summaries = found.iter().filter(is_of_study);
     // Python has the events of a history too.
     let events = found.iter().filter(|one| one.name == "Event");
     for one in summaries.chain(events) {

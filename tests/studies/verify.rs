@@ -8,8 +8,8 @@ use crate::common::prose::{golden, shows};
 use crate::common::{ARCH, COLUMN};
 use archrock::scenario::LimitState;
 use archrock::studies::verify::{
-    DisplacementCheck, GoverningSide, Mechanism, Method, Page, SideCheck, StateCheck, Summary,
-    Verdict, VerifyError, page_of, verify, words,
+    CheckVerdict, CheckedMechanism, DisplacementCheck, GoverningSide, Method, SideCheck,
+    StateCheck, VerifyError, VerifyPage, VerifySummary, page_of, verify, words,
 };
 use archrock::studies::words_of_json;
 use archrock::{Scenario, Sway};
@@ -28,34 +28,34 @@ fn on_piers() -> String {
     std::fs::read_to_string(scenarios().join("pointed-arch-on-piers.toml")).unwrap()
 }
 
-fn check(text: &str) -> Summary {
+fn check(text: &str) -> VerifySummary {
     let check = verify(&parsed(text)).unwrap_or_else(|error| panic!("{error}"));
     has_the_words_of_its_json(&check);
     check
 }
 
 #[track_caller]
-fn has_the_words_of_its_json(check: &Summary) {
+fn has_the_words_of_its_json(check: &VerifySummary) {
     let json = serde_json::to_string(check).unwrap();
-    let again = words_of_json::<Summary>(&serde_json::from_str(&json).unwrap()).unwrap();
+    let again = words_of_json::<VerifySummary>(&serde_json::from_str(&json).unwrap()).unwrap();
     assert_eq!(again, words(check).trim_end());
-    let read: Summary = serde_json::from_str(&json).unwrap();
+    let read: VerifySummary = serde_json::from_str(&json).unwrap();
     for (state, one) in &check.states {
         assert_eq!(read.states[state].demand, one.demand);
     }
 }
 
-fn side(check: &Summary, state: LimitState, sway: Sway) -> &SideCheck {
+fn side(check: &VerifySummary, state: LimitState, sway: Sway) -> &SideCheck {
     &check.states[&state].sides[&sway]
 }
 
 /// The governing side, method and result of a state.
-fn governing(check: &Summary, state: LimitState) -> Option<(GoverningSide, Method, f64)> {
+fn governing(check: &VerifySummary, state: LimitState) -> Option<(GoverningSide, Method, f64)> {
     let one: &StateCheck = &check.states[&state];
     Some((one.side?, one.method?, one.zeta_e?))
 }
 
-fn displacement(check: &Summary, state: LimitState, sway: Sway) -> DisplacementCheck {
+fn displacement(check: &VerifySummary, state: LimitState, sway: Sway) -> DisplacementCheck {
     side(check, state, sway).displacement.unwrap()
 }
 
@@ -226,7 +226,7 @@ fn c8_7_1_6_to_9_a_column_that_is_free_to_vibrate() {
     let circular = free.t0_s.unwrap() / (2.0 * std::f64::consts::PI);
     assert!((d_y_m / (circular * circular * 9.81) / a_y_g - 1.0).abs() < 1e-9);
     let held = check(&text);
-    let slv = |check: &Summary| {
+    let slv = |check: &VerifySummary| {
         displacement(check, LimitState::Slv, Sway::Left)
             .margin
             .zeta_e
@@ -235,7 +235,7 @@ fn c8_7_1_6_to_9_a_column_that_is_free_to_vibrate() {
     let known = check(&format!(
         "{text}[verify]\nfree_standing = {{ t0_s = 0.14318 }}\n"
     ));
-    let ag_g = |check: &Summary| {
+    let ag_g = |check: &VerifySummary| {
         side(check, LimitState::Sld, Sway::Left)
             .activation
             .unwrap()
@@ -523,7 +523,7 @@ fn c8_7_1_2_1_3_a_stack_on_one_support_is_a_block_about_its_toe() {
     }
     let [own, block] = [&drums, &column].map(|check| &check.mechanisms[&Sway::Right]);
     assert_eq!(own.bodies.len(), 1);
-    let delta = |one: &Mechanism| Vector2::new(one.bodies[0].delta_x, one.bodies[0].delta_y);
+    let delta = |one: &CheckedMechanism| Vector2::new(one.bodies[0].delta_x, one.bodies[0].delta_y);
     assert!((delta(own) - delta(block)).norm() < 1e-9);
     let crowns = [own, block].map(|one| {
         let way = one.curves.as_ref().unwrap();
@@ -595,7 +595,7 @@ fn slv(ag_g: f64) -> String {
 
 /// Asserts that joints slide first to a side: at this acceleration at most, with no other result.
 #[track_caller]
-fn slides(check: &Summary, sway: Sway, known_g: f64, within_g: f64) {
+fn slides(check: &VerifySummary, sway: Sway, known_g: f64, within_g: f64) {
     let sliding = check.mechanisms[&sway].sliding.unwrap();
     assert!((sliding.bound_g - known_g).abs() < within_g, "{sliding:?}");
     assert!(sliding.bound_g < check.mechanisms[&sway].alpha0);
@@ -612,12 +612,12 @@ fn slides(check: &Summary, sway: Sway, known_g: f64, within_g: f64) {
         let compared = own.sliding.unwrap();
         assert_eq!(compared.bound_g, sliding.bound_g);
         let verdict = match compared.demand_g > sliding.bound_g {
-            true => Verdict::NotPassed,
-            false => Verdict::NoAnswer,
+            true => CheckVerdict::NotPassed,
+            false => CheckVerdict::NoAnswer,
         };
         assert_eq!((compared.verdict, own.verdict()), (verdict, verdict));
         assert_eq!((one.zeta_e, &one.histories), (None, &None));
-        assert_ne!(check.verdict[state], Verdict::Passed);
+        assert_ne!(check.verdict[state], CheckVerdict::Passed);
     }
 }
 
@@ -689,7 +689,9 @@ fn c8_7_1_1_the_friction_of_the_scenario_counts() {
     }
     let verdicts = sloping.verdict.values();
     assert_eq!(
-        verdicts.filter(|one| **one == Verdict::NotPassed).count(),
+        verdicts
+            .filter(|one| **one == CheckVerdict::NotPassed)
+            .count(),
         3
     );
     assert!(words(&sloping).contains("joints slide under the weight of the structure"));
@@ -705,10 +707,10 @@ fn c8_7_1_1_the_demand_is_compared_with_the_bound_of_sliding() {
         .bound_g;
     // S = 1.2 for these accelerations.
     for (part, verdict) in [
-        (0.01, Verdict::NoAnswer),
-        (0.999, Verdict::NoAnswer),
-        (1.001, Verdict::NotPassed),
-        (1.9, Verdict::NotPassed),
+        (0.01, CheckVerdict::NoAnswer),
+        (0.999, CheckVerdict::NoAnswer),
+        (1.001, CheckVerdict::NotPassed),
+        (1.9, CheckVerdict::NotPassed),
     ] {
         let check = check(&format!("{SLIPS}{}", slv(part * bound_g / 1.2)));
         assert_eq!(check.verdict[&LimitState::Slv], verdict, "{part}");
@@ -717,7 +719,7 @@ fn c8_7_1_1_the_demand_is_compared_with_the_bound_of_sliding() {
         let said = words(&check);
         assert_eq!(
             said.contains("no answer: 0.1204 g is an upper bound"),
-            verdict == Verdict::NoAnswer,
+            verdict == CheckVerdict::NoAnswer,
             "{said}"
         );
         assert!(
@@ -757,9 +759,12 @@ fn c8_7_1_1_joints_slide_to_one_side_only() {
     assert!((left.mechanisms[&Sway::Left].d0_m.unwrap() - 0.3).abs() < 1e-9);
     let passes = checked(0.25 * alone * 0.9, "");
     slides(&passes, Sway::Right, 0.577, 1e-7);
-    assert_eq!(side(&passes, of_slv, Sway::Left).verdict(), Verdict::Passed);
+    assert_eq!(
+        side(&passes, of_slv, Sway::Left).verdict(),
+        CheckVerdict::Passed
+    );
     assert!(side(&passes, of_slv, Sway::Left).zeta_e.unwrap() > 1.0);
-    assert_eq!(passes.verdict[&of_slv], Verdict::NoAnswer);
+    assert_eq!(passes.verdict[&of_slv], CheckVerdict::NoAnswer);
     assert_eq!(passes.states[&of_slv].side, Some(GoverningSide::Right));
     let said = words(&passes);
     assert!(
@@ -771,31 +776,31 @@ fn c8_7_1_1_joints_slide_to_one_side_only() {
     slides(&fails, Sway::Right, 0.577, 1e-7);
     assert_eq!(
         side(&fails, of_slv, Sway::Right).verdict(),
-        Verdict::NoAnswer
+        CheckVerdict::NoAnswer
     );
     assert_eq!(side(&fails, of_slv, Sway::Left).zeta_e, Some(alone));
-    assert_eq!(fails.verdict[&of_slv], Verdict::NotPassed);
+    assert_eq!(fails.verdict[&of_slv], CheckVerdict::NotPassed);
     assert_eq!(fails.states[&of_slv].method, Some(Method::Displacement));
     assert_eq!(fails.states[&of_slv].side, Some(GoverningSide::Left));
     assert_eq!(fails.states[&of_slv].zeta_e, None);
     assert!(!fails.is_symmetric);
 
     let right = checked(0.25, "[verify]\nsides = 'right'\n");
-    assert_eq!(right.verdict[&of_slv], Verdict::NoAnswer);
+    assert_eq!(right.verdict[&of_slv], CheckVerdict::NoAnswer);
     slides(&right, Sway::Right, 0.577, 1e-7);
     // Both fail: the bound is a smaller part of its demand than the displacement.
     let high = checked(
         0.25,
         "[demand.height]\nmodes = [{ gamma = 4, psi = 1, slv = { t_s = 0.4, damping_percent = 5 } }]\n",
     );
-    assert_eq!(high.verdict[&of_slv], Verdict::NotPassed);
+    assert_eq!(high.verdict[&of_slv], CheckVerdict::NotPassed);
     assert_eq!(
         side(&high, of_slv, Sway::Right).verdict(),
-        Verdict::NotPassed
+        CheckVerdict::NotPassed
     );
     assert_eq!(
         side(&high, of_slv, Sway::Left).verdict(),
-        Verdict::NotPassed
+        CheckVerdict::NotPassed
     );
 }
 
@@ -1014,8 +1019,8 @@ fn verify_prints_and_writes_the_check() {
 }
 
 /// Returns the page of a check, after it has been made again from its JSON alone.
-fn page(scenario: &Scenario, check: &Summary) -> String {
-    let page = Page::new(scenario, check, Some("2025-01-31".to_owned()));
+fn page(scenario: &Scenario, check: &VerifySummary) -> String {
+    let page = VerifyPage::new(scenario, check, Some("2025-01-31".to_owned()));
     let json = serde_json::to_string(&page).unwrap();
     assert_eq!(page_of(&json).unwrap(), page.html());
     page.html()
@@ -1035,7 +1040,7 @@ fn the_page_is_rendered_again_from_its_json() {
         let scenario = parsed(&text);
         let html = page(&scenario, &verify(&scenario).unwrap());
         assert!(html.contains(", 2025-01-31</td>"), "{text}");
-        let dated = Page::new(&scenario, &verify(&scenario).unwrap(), None);
+        let dated = VerifyPage::new(&scenario, &verify(&scenario).unwrap(), None);
         assert_eq!(dated.html(), html.replace(", 2025-01-31</td>", "</td>"));
     }
 }

@@ -11,7 +11,7 @@ use crate::common::prose::{shows, skeleton};
 use archrock::mechanics::{Edge, Hinge};
 use archrock::scenario::LimitState;
 use archrock::studies::verify::{
-    ComparedPeak, Histories, RecordPeaks, Summary, VerifyError, verify, words,
+    ComparedPeak, Histories, RecordPeaks, VerifyError, VerifySummary, verify, words,
 };
 use archrock::{Request, Scenario, State, Sway};
 use nalgebra::{Rotation2, Vector2};
@@ -39,7 +39,7 @@ fn read(folder: &Path) -> Scenario {
     Scenario::read(&folder.join("a.toml")).unwrap_or_else(|errors| panic!("{errors}"))
 }
 
-fn check(folder: &Path) -> Summary {
+fn check(folder: &Path) -> VerifySummary {
     verify(&read(folder)).unwrap_or_else(|error| panic!("{error}"))
 }
 

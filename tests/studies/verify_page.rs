@@ -10,7 +10,7 @@ use crate::common::program::{printed as print_of, scenarios};
 use crate::common::prose::golden;
 use crate::common::{ARCH, COLUMN};
 use archrock::Scenario;
-use archrock::studies::verify::{Page, verify, words};
+use archrock::studies::verify::{VerifyPage, verify, words};
 use nalgebra::Vector2;
 use serde_json::Value;
 
@@ -68,7 +68,7 @@ fn by_points(folder: &Path) -> String {
 
 fn html_of(scenario: &Scenario) -> String {
     let check = verify(scenario).unwrap_or_else(|error| panic!("{error}"));
-    Page::new(scenario, &check, Some("2025-01-31".to_owned())).html()
+    VerifyPage::new(scenario, &check, Some("2025-01-31".to_owned())).html()
 }
 
 /// The text of a part of a page.

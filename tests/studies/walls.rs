@@ -10,7 +10,7 @@ use crate::common::results::{Table, json};
 use archrock::output::Scene;
 use archrock::scenario::CheckedSides;
 use archrock::studies::capacity;
-use archrock::studies::verify::{Summary, verify, words};
+use archrock::studies::verify::{VerifySummary, verify, words};
 use archrock::{Scenario, Sway};
 use serde_json::Value;
 
@@ -91,7 +91,7 @@ fn verify_checks_the_side_away_from_the_wall() {
         words.contains("To the right, away from the wall behind it, the structure"),
         "{words}"
     );
-    let why = |check: &Summary| {
+    let why = |check: &VerifySummary| {
         check
             .decisions
             .iter()

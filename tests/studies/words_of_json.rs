@@ -105,7 +105,7 @@ fn studies_have_the_words_of_their_json() {
         (
             (
                 "threshold.json",
-                words_of_json::<threshold::Summary> as WordsOf,
+                words_of_json::<threshold::ThresholdSummary> as WordsOf,
             ),
             "semicircle-pulse.toml",
             "threshold",
@@ -114,7 +114,7 @@ fn studies_have_the_words_of_their_json() {
         (
             (
                 "threshold.json",
-                words_of_json::<threshold::Summary> as WordsOf,
+                words_of_json::<threshold::ThresholdSummary> as WordsOf,
             ),
             "column-pulse.toml",
             "threshold",
@@ -123,7 +123,7 @@ fn studies_have_the_words_of_their_json() {
         (
             (
                 "threshold.json",
-                words_of_json::<threshold::Summary> as WordsOf,
+                words_of_json::<threshold::ThresholdSummary> as WordsOf,
             ),
             "semicircle-pulse.toml",
             "threshold",
@@ -143,7 +143,10 @@ fn studies_have_the_words_of_their_json() {
             &[&few[..], &along].concat(),
         ),
         (
-            ("fragility.json", words_of_json::<suite::Summary> as WordsOf),
+            (
+                "fragility.json",
+                words_of_json::<suite::SuiteSummary> as WordsOf,
+            ),
             "column-suite.toml",
             "suite",
             &suite,
@@ -155,7 +158,10 @@ fn studies_have_the_words_of_their_json() {
             &[],
         ),
         (
-            ("verify.json", words_of_json::<verify::Summary> as WordsOf),
+            (
+                "verify.json",
+                words_of_json::<verify::VerifySummary> as WordsOf,
+            ),
             "semicircle-verify.toml",
             "verify",
             &[],

@@ -24,7 +24,7 @@ pub use self::elastic_joints::ElasticJoints;
 pub use self::fall::FallEnd;
 pub use self::free_hinges::{DOUBTFUL_ENERGY_ERROR, FreeHinges, RowOptions};
 pub use self::ground::{
-    GroundError, GroundMotion, GroundVelocity, Intensity, Piece, Pulse, PulseShape, WaveTrain,
+    GroundError, GroundMotion, GroundPiece, GroundVelocity, Intensity, Pulse, PulseShape, WaveTrain,
 };
 pub use self::history::{
     Cost, Details, ElasticSummary, Event, EventKind, HalfCycle, Impact, JointPressure,

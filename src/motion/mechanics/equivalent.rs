@@ -22,7 +22,7 @@ use serde::{Deserialize, Serialize};
 
 /// Free-standing block.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Block {
+pub struct HousnerBlock {
     /// Frequency parameter `p = sqrt(3 g / (4 R))`, in rad/s.
     #[serde(rename = "p_rad_s")]
     pub frequency_rad_s: f64,
@@ -36,9 +36,9 @@ pub struct Equivalent {
     /// Slenderness `alpha = atan(A_L)` of both blocks, in radians.
     pub slenderness_rad: f64,
     /// Block with the same growth rate of disturbances at rest; `None` if disturbances of the structure do not grow there.
-    pub at_rest: Option<Block>,
+    pub at_rest: Option<HousnerBlock>,
     /// Block with the same growth rate of disturbances at the unstable equilibrium; `None` if they do not grow.
-    pub at_critical: Option<Block>,
+    pub at_critical: Option<HousnerBlock>,
 }
 
 /// Returns the blocks equivalent to the first mechanism of `structure` to a side under gravity. `None` without such a mechanism.
@@ -51,7 +51,7 @@ pub fn equivalent_towards<C: MechanismChain>(
     let slenderness_rad = libm::atan(structure.incipient_towards_g(sway));
     let block = |squared: f64| {
         let per_s2 = squared * gravity_m_s2 / structure.length_m();
-        (per_s2 > 0.0).then(|| Block {
+        (per_s2 > 0.0).then(|| HousnerBlock {
             frequency_rad_s: per_s2.sqrt(),
             half_diagonal_m: 0.75 * gravity_m_s2 / per_s2,
         })

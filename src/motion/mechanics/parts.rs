@@ -40,7 +40,7 @@ pub enum Outline {
 
 /// Undeformed section at which the position of the thrust line is known, in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Section {
+pub struct StructureSection {
     /// Midpoint of the section, in metres.
     pub middle_m: Vector2<f64>,
     /// Vector from its intrados end to its extrados end; in a column, from left to right.
@@ -58,7 +58,7 @@ pub trait Parts {
     fn outline(&self) -> Outline;
 
     /// Returns the sections at which the position of the thrust line is known, from left to right, or upwards.
-    fn sections(&self) -> Vec<Section>;
+    fn sections(&self) -> Vec<StructureSection>;
 
     /// Returns the parts in words.
     fn parts_in_words(&self) -> String;
@@ -95,10 +95,10 @@ impl Parts for Arch {
         }
     }
 
-    fn sections(&self) -> Vec<Section> {
+    fn sections(&self) -> Vec<StructureSection> {
         let (ring, mean_radius_m) = (self.ring(), self.mean_radius_m);
         let sections = self.thrust_sections_rad().into_iter();
-        let sections = sections.map(|angle_rad| Section {
+        let sections = sections.map(|angle_rad| StructureSection {
             middle_m: ring.radial_direction(angle_rad) * mean_radius_m,
             across_m: ring.radial_direction(angle_rad) * (ring.thickness_ratio * mean_radius_m),
             angle_rad: Some(angle_rad),
@@ -155,12 +155,12 @@ impl Parts for Column {
         Outline::Block(corners.map(|(x, y)| Vector2::new(x, y)).to_vec())
     }
 
-    fn sections(&self) -> Vec<Section> {
+    fn sections(&self) -> Vec<StructureSection> {
         if let Some(row) = self.tied_row() {
             return row.sections();
         }
         let sections = self.thrust_sections_m().into_iter();
-        let sections = sections.map(|height_m| Section {
+        let sections = sections.map(|height_m| StructureSection {
             middle_m: Vector2::new(0.0, height_m),
             across_m: Vector2::new(self.width_m, 0.0),
             angle_rad: None,
@@ -204,8 +204,8 @@ impl Parts for Row {
         Outline::Row(self.outlines_m.to_vec())
     }
 
-    fn sections(&self) -> Vec<Section> {
-        let sections = self.joints.iter().map(|joint| Section {
+    fn sections(&self) -> Vec<StructureSection> {
+        let sections = self.joints.iter().map(|joint| StructureSection {
             middle_m: joint.middle_m(),
             across_m: joint.extrados_m - joint.intrados_m,
             angle_rad: None,

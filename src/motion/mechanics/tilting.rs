@@ -17,7 +17,7 @@ use super::back_wall::rate_passed;
 use super::chain::{Coefficients, MechanismState};
 use super::geometry::pose::{product, unit};
 use super::geometry::rigid::mirrored;
-use crate::mechanics::four_link::thrust::Load;
+use crate::mechanics::four_link::thrust::PartLoad;
 use crate::mechanics::{MassMoments, Mechanism, Momentum, PlacedLoad, Pose, Sway};
 
 /// Load of a block, in the frame in which it sways right.
@@ -192,7 +192,7 @@ impl Tilting {
         wall: Option<Sway>,
     ) -> Vec<Option<f64>> {
         let onto_base = self.pressing_forces(body_force_g, wall);
-        self.crossings(&Load::uniform(onto_base(body_force_g)), onto_base)
+        self.crossings(&PartLoad::uniform(onto_base(body_force_g)), onto_base)
     }
 
     /// Returns a function of the forces at rest that returns their parts which press on the base. A wall on the side `wall` carries the horizontal
@@ -222,7 +222,7 @@ impl Tilting {
         let turn = unit(motion.q_rad);
         let body_force_g = product(turn, motion.body_force_g);
         let turning = (-motion.acceleration, motion.rate * motion.rate);
-        let load = Load::of_body(self.toe(), body_force_g, turning);
+        let load = PartLoad::of_body(self.toe(), body_force_g, turning);
         self.crossings(&load, |force| product(turn, force))
     }
 
@@ -232,7 +232,7 @@ impl Tilting {
     /// If nothing is above a section, its value is the limit for a thin slice, which includes the inertia of the slice's rotation.
     fn crossings(
         &self,
-        load: &Load,
+        load: &PartLoad,
         force: impl Fn(Vector2<f64>) -> Vector2<f64>,
     ) -> Vec<Option<f64>> {
         let (width, height) = (2.0 * self.sin, 2.0 * self.cos);

@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 
 use super::Structure;
 use crate::mechanics::masonry::{CircularArch, Pier, Piers};
-use crate::mechanics::{MeasuredAt, Shape};
+use crate::mechanics::{MasonryShape, MeasuredAt};
 use crate::scenario::Language;
 use crate::{Arch, Column, Masonry, Row, Sway};
 
@@ -124,7 +124,7 @@ impl Structure {
 /// Returns the circular arch of masonry, which may have piers, fill and loads; `None` for other shapes.
 pub(super) fn circular_arch(masonry: &Masonry) -> Option<&Arch> {
     match &masonry.shape {
-        Shape::Circular(circular) => Some(&circular.arch),
+        MasonryShape::Circular(circular) => Some(&circular.arch),
         _ => None,
     }
 }
@@ -185,13 +185,15 @@ fn masonry_dimensions(masonry: &Masonry) -> Vec<Dimension> {
         Some(MeasuredAt::Mean) | None => joint.middle_m(),
     });
     let rise_m = match &masonry.shape {
-        Shape::PointedArch(dimensions) | Shape::EllipticArch(dimensions) => dimensions.rise_m,
-        Shape::BasketArch(arch) => arch.dimensions.rise_m,
-        Shape::Circular(CircularArch { arch, .. }) => {
+        MasonryShape::PointedArch(dimensions) | MasonryShape::EllipticArch(dimensions) => {
+            dimensions.rise_m
+        }
+        MasonryShape::BasketArch(arch) => arch.dimensions.rise_m,
+        MasonryShape::Circular(CircularArch { arch, .. }) => {
             arch.span_and_rise_m(line.unwrap_or(MeasuredAt::Mean))[1]
         }
         // Blocks have no springings.
-        Shape::Blocks(_) => 0.0,
+        MasonryShape::Blocks(_) => 0.0,
     };
     let mut dimensions = Vec::from(span_and_rise(ends, ends[0].y + rise_m, line));
     let Piers { left: one, right } = masonry.piers;

@@ -21,7 +21,7 @@ use crate::argument::rounded_up;
 use crate::mechanics::four_link::least_thickness_ratio;
 use crate::mechanics::masonry::{CircularArch, LoadOutlines};
 use crate::mechanics::{DENSITY_KG_M3, DEPTH_M, MAX_BLOCKS};
-use crate::mechanics::{LimitError, Parts, PlacedLoad, RowError, Shape, Supports, Tie};
+use crate::mechanics::{LimitError, MasonryShape, Parts, PlacedLoad, RowError, Supports, Tie};
 use crate::{
     Arch, BackWall, Column, FourLinkError, FourLinks, FreeHinges, ImpactLaw, ImpactModel, Masonry,
     MechanismModel, RockingColumn, Row, RowModelError, RowOptions, Sway,
@@ -279,7 +279,7 @@ fn four_link_row<L: Into<ImpactLaw>>(
 enum StructureTable {
     Arch(Arch),
     Column(Column, Option<BackWall>),
-    Shape(Shape),
+    Shape(MasonryShape),
 }
 
 /// Reads `[arch]`. With `alone` the arch has no piers, fill, loads or ties; with equal voussoirs or none it must then start as four links. With
@@ -319,7 +319,7 @@ fn read_arch(
             let wrong = format!("does not fit: {:?} must be {}", error.value, error.allowed);
             table.wrong(error.argument, wrong)
         });
-        return Ok(StructureTable::Shape(Shape::Circular(arch?)));
+        return Ok(StructureTable::Shape(MasonryShape::Circular(arch?)));
     }
     if unproved {
         return Ok(StructureTable::Arch(arch));

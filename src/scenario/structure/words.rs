@@ -3,7 +3,7 @@
 use super::Structure;
 use super::dimensions::{circular_arch, metres};
 use crate::mechanics::masonry::FillLevel;
-use crate::mechanics::{MeasuredAt, PlacedLoad, Shape, Tie};
+use crate::mechanics::{MasonryShape, MeasuredAt, PlacedLoad, Tie};
 use crate::{Arch, Column, Masonry};
 
 impl Structure {
@@ -49,7 +49,7 @@ impl Structure {
         }
         let words = match self {
             Self::Column(_) => "y = 0 at the base, x = 0 in its middle",
-            Self::Masonry(masonry) if matches!(masonry.shape, Shape::Blocks(_)) => {
+            Self::Masonry(masonry) if matches!(masonry.shape, MasonryShape::Blocks(_)) => {
                 "x and y as in the file of the joints"
             }
             _ => "y = 0 at the springings, x = 0 in the middle of the span",
@@ -130,11 +130,11 @@ pub fn load_in_words(load: &PlacedLoad) -> String {
 
 fn masonry_words(masonry: &Masonry) -> Vec<String> {
     let name = match masonry.shape {
-        Shape::Circular(_) => "circular arch",
-        Shape::PointedArch(_) => "pointed arch",
-        Shape::EllipticArch(_) => "elliptic arch",
-        Shape::BasketArch(_) => "basket-handle arch",
-        Shape::Blocks(_) => "blocks",
+        MasonryShape::Circular(_) => "circular arch",
+        MasonryShape::PointedArch(_) => "pointed arch",
+        MasonryShape::EllipticArch(_) => "elliptic arch",
+        MasonryShape::BasketArch(_) => "basket-handle arch",
+        MasonryShape::Blocks(_) => "blocks",
     };
     let thick = masonry.springings().map(|[left, _]| {
         let thick_m = (left.extrados_m - left.intrados_m).norm();

@@ -15,7 +15,7 @@ use super::prelude::*;
 use super::structure::bounds_m;
 use super::{MotionModel, Quantity, Scenario, Structure};
 use crate::Model;
-use crate::mechanics::Shape;
+use crate::mechanics::MasonryShape;
 
 /// Gravity on Earth, from the equator to the poles, and the rounded one of many papers, in m/s2.
 const GRAVITY_M_S2: RangeInclusive<f64> = 9.75..=10.0;
@@ -253,7 +253,7 @@ impl Numbers {
                 "arch.thickness_m",
                 arch.mean_radius_m * arch.thickness_ratio,
             ),
-            Structure::Masonry(masonry) if matches!(masonry.shape, Shape::Blocks(_)) => {
+            Structure::Masonry(masonry) if matches!(masonry.shape, MasonryShape::Blocks(_)) => {
                 let [low_m, high_m] = bounds_m(&masonry.row);
                 ("blocks.joints", (high_m - low_m).max())
             }

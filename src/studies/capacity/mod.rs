@@ -5,7 +5,7 @@ mod report;
 use nalgebra::Vector2;
 use thiserror::Error;
 
-pub use self::report::{FILES, Summary, report};
+pub use self::report::{CapacitySummary, FILES, report};
 use crate::mechanics::settling::{Held, HeldError};
 use crate::mechanics::{BodyPoint, Capacity, CapacityError, Control, Parts, RowError, Sides};
 use crate::{FourLinkError, Hinge, MechanismModel, Row, Scenario, Structure, Sway};

@@ -29,7 +29,7 @@ pub const FILES: [&str; 4] = [
 /// Summary of the capacity curves of a structure.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Template)]
 #[template(path = "studies/capacity/words.txt")]
-pub struct Summary {
+pub struct CapacitySummary {
     /// The curves to the right and to the left, without their points; null to the side of a wall behind a column, towards which it cannot move.
     pub capacity: Sides<Option<CapacitySide>>,
     /// Parts of the structure whose centres carry the masses, in words.
@@ -72,7 +72,7 @@ pub struct Oscillator {
     pub secant_period_s_at_part_of_ultimate: Named<Option<f64>>,
 }
 
-impl Summary {
+impl CapacitySummary {
     /// Returns the curves of the sides to which the structure moves.
     fn sides(&self) -> Vec<(Sway, &CapacitySide)> {
         let sides = self.capacity.iter();
@@ -115,7 +115,7 @@ pub fn report(
         Ok(Some(row)) => row.parts_in_words(),
         _ => scenario.structure.as_parts().parts_in_words(),
     };
-    let summary = Summary {
+    let summary = CapacitySummary {
         capacity: sides.map(|side| {
             let side = side.as_ref();
             side.map(|side| CapacitySide::of(side, scenario.gravity_m_s2()))
@@ -155,7 +155,7 @@ pub fn report(
     Ok(results.in_order(&FILES))
 }
 
-impl Report for Summary {
+impl Report for CapacitySummary {
     const IS_TABLE: bool = true;
 
     fn verdict(&self) -> String {

@@ -16,10 +16,10 @@ pub(super) mod uncertain_threshold;
 
 pub use self::samples::{SampleRow, Samples};
 pub use self::sensitivity::{sensitivities, total_indices};
-pub use self::uncertain_map::{CellsOfSamples, Summary as UncertainMapSummary};
-pub use self::uncertain_run::{Histories, HistoryAnswer, Summary as UncertainRunSummary};
-pub use self::uncertain_suite::Summary as UncertainSuiteSummary;
-pub use self::uncertain_threshold::Summary as UncertainThresholdSummary;
+pub use self::uncertain_map::{CellsOfSamples, UncertainMapSummary};
+pub use self::uncertain_run::{Histories, HistoryAnswer, UncertainRunSummary};
+pub use self::uncertain_suite::UncertainSuiteSummary;
+pub use self::uncertain_threshold::UncertainThresholdSummary;
 pub use super::ending::NoAnswer;
 use crate::scenario::{Scenario, Uncertain};
 

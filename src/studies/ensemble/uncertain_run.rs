@@ -160,7 +160,7 @@ impl Study for Histories<'_> {
         let study = ("run FILE", "surviving samples");
         let friction = SurvivorFriction::of(demands, samples.scenario, study);
         let limits = (CHECKED, samples.no_verdict());
-        let report = Summary {
+        let report = UncertainRunSummary {
             all: SampleSummary::new(
                 (samples, &Varied::default()),
                 model,
@@ -411,7 +411,7 @@ fn page_answer(HistoryAnswer { ending, .. }: &HistoryAnswer) -> PageAnswer {
 /// Report on the histories of samples.
 #[derive(Serialize, Deserialize, Template)]
 #[template(path = "studies/ensemble/uncertain_run.txt")]
-pub struct Summary {
+pub struct UncertainRunSummary {
     #[serde(flatten)]
     all: SampleSummary,
     /// The history of the scenario itself; null if it has no answer.
@@ -458,7 +458,7 @@ impl OwnHistory {
     }
 }
 
-impl Report for Summary {
+impl Report for UncertainRunSummary {
     fn verdict(&self) -> String {
         let share = self.outcomes.get(OVERTURNED);
         let share = share.map_or(String::new(), Share::in_words);
@@ -471,7 +471,7 @@ impl Report for Summary {
     }
 }
 
-impl Summary {
+impl UncertainRunSummary {
     /// Returns the outcomes of samples, in words, with their shares.
     fn outcomes(&self) -> impl Iterator<Item = (String, &Share)> {
         let known = OUTCOMES

@@ -237,7 +237,7 @@ impl Study for Capacities<'_> {
         let demand = friction.friction_demand;
         let quoted =
             self.quotable_answer(samples, &fragility.both, excess.reduce(f64::max), demand);
-        let report = Summary {
+        let report = UncertainSuiteSummary {
             all: SampleSummary::new(
                 (samples, &Varied::default()),
                 model,
@@ -291,7 +291,7 @@ impl Study for Capacities<'_> {
 /// Report on the intensities that overturn samples.
 #[derive(Serialize, Deserialize, Template)]
 #[template(path = "studies/ensemble/uncertain_suite.txt")]
-pub struct Summary {
+pub struct UncertainSuiteSummary {
     #[serde(flatten)]
     all: SampleSummary,
     /// The measure of the intensities.
@@ -314,7 +314,7 @@ pub struct Summary {
     at_lowest_level: usize,
 }
 
-impl Report for Summary {
+impl Report for UncertainSuiteSummary {
     fn verdict(&self) -> String {
         let (unit, name) = (self.intensity.unit(), self.intensity.name());
         let at = |which, before: &str| {

@@ -175,7 +175,7 @@ impl Study for FirstEdges<'_> {
         let quoted = lower_limit.quotable_answer(samples.scenario, excess);
         let condition = SlipWords::of(samples.scenario).condition(friction.friction_demand, &study);
         let quoted = quoted.with_friction(condition);
-        let report = Summary {
+        let report = UncertainThresholdSummary {
             all: SampleSummary::new(
                 (samples, &self.factors.varied()),
                 model,
@@ -289,7 +289,7 @@ impl LowerLimit {
 /// Report on the first edges of samples.
 #[derive(Serialize, Deserialize, Template)]
 #[template(path = "studies/ensemble/uncertain_threshold.txt")]
-pub struct Summary {
+pub struct UncertainThresholdSummary {
     #[serde(flatten)]
     all: SampleSummary,
     /// The answer that may be quoted, in words.
@@ -344,7 +344,7 @@ fn share_up_to(samples: &Samples<'_, FirstEdge>, factor: f64) -> Option<Share> {
     known.then(|| samples.share(|edge| edge.overturns_up_to(factor).unwrap_or(0.0)))?
 }
 
-impl Report for Summary {
+impl Report for UncertainThresholdSummary {
     fn verdict(&self) -> String {
         self.all.verdict(|| {
             let Band {
@@ -368,7 +368,7 @@ impl Report for Summary {
     }
 }
 
-impl Summary {
+impl UncertainThresholdSummary {
     /// Returns the factor up to which the scenario itself certainly survives, in words.
     fn own_safe(&self) -> String {
         match self.all.own_without_answer {

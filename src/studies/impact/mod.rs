@@ -3,7 +3,7 @@
 mod report;
 
 use self::report::{Certificate, ModelComparison, chain_of_four_links};
-pub use self::report::{Summary, chain};
+pub use self::report::{ImpactSummary, chain};
 use super::StudyError;
 use super::results::PrintedResult;
 use crate::mechanics::Profile;
@@ -119,7 +119,7 @@ pub fn chain_result(
         )));
     }
     let impacts = |side| chain(model, side, count);
-    let summary = Summary::new(scenario, model, (&[first], count), impacts);
+    let summary = ImpactSummary::new(scenario, model, (&[first], count), impacts);
     Ok(PrintedResult::of(&summary)?)
 }
 
@@ -139,7 +139,7 @@ pub fn four_links_result(
         false => Sway::ALL,
     };
     let impacts = |first| chain_of_four_links(&LinkImpact { first, ..*impact }, count);
-    let mut summary = Summary::new(scenario, model, (sides, count), impacts);
+    let mut summary = ImpactSummary::new(scenario, model, (sides, count), impacts);
     summary.chosen = Some(format!(
         "impact {}{}",
         impact.index,

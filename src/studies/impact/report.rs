@@ -21,7 +21,7 @@ use crate::{Hinge, ImpactModel, MechanismModel, Scenario, Sway};
 /// Impacts of the structure of a scenario.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Template)]
 #[template(path = "studies/impact/words.txt")]
-pub struct Summary {
+pub struct ImpactSummary {
     /// Impacts after a first sway to the right; of a symmetric structure, after a first sway to the chosen side.
     pub impacts: Vec<ChainImpact>,
     /// Impacts after a first sway to the left; absent unless the structure is an arch of four links that is not symmetric.
@@ -404,7 +404,7 @@ impl Zone {
     }
 }
 
-impl Report for Summary {
+impl Report for ImpactSummary {
     const IS_TABLE: bool = true;
 
     fn verdict(&self) -> String {
@@ -423,7 +423,7 @@ impl Report for Summary {
     }
 }
 
-impl Summary {
+impl ImpactSummary {
     pub(super) fn new(
         scenario: &Scenario,
         model: &dyn MechanismModel,

@@ -6,8 +6,8 @@ mod report;
 pub(super) use self::page::{FILES, results};
 use self::report::open_joints;
 pub use self::report::{
-    FourLinkSide, FourLinks, Friction, FrictionLimit, FrictionSide, Summary, TieLimits, Ties,
-    YieldingTies,
+    FourLinkAnswer, FourLinkSide, Friction, FrictionLimit, FrictionSide, LimitSummary, TieLimits,
+    Ties, YieldingTies,
 };
 use super::StudyError;
 use super::report::Warnings;
@@ -40,7 +40,7 @@ impl From<FrictionError> for StudyError {
     }
 }
 
-fn summary(scenario: &Scenario) -> Result<Summary, StudyError> {
+fn summary(scenario: &Scenario) -> Result<LimitSummary, StudyError> {
     let row = || {
         let row = scenario.structure.row().map_err(RowModelError::from);
         row.map_err(StudyError::scenario)
@@ -54,9 +54,9 @@ fn summary(scenario: &Scenario) -> Result<Summary, StudyError> {
         None => {
             let model = scenario.mechanisms_without_impacts();
             let model = model.map_err(StudyError::scenario)?;
-            Summary {
+            LimitSummary {
                 wall_behind: scenario.structure.wall_behind(),
-                ..Summary::of_mechanism(&*model, scenario.gravity_m_s2())
+                ..LimitSummary::of_mechanism(&*model, scenario.gravity_m_s2())
             }
         }
     };
@@ -80,7 +80,7 @@ fn summary(scenario: &Scenario) -> Result<Summary, StudyError> {
 /// Returns the coefficients of friction with which no joint of a row slides before it starts. `demand` computes that for a push. A coefficient that
 /// is not found is no error.
 fn friction_demand(
-    summary: &Summary,
+    summary: &LimitSummary,
     demand: impl Fn(f64, Sway) -> Result<Option<f64>, FrictionError>,
 ) -> Sides<Option<f64>> {
     let starts_g = &summary.incipient_acceleration_g;
@@ -88,7 +88,7 @@ fn friction_demand(
 }
 
 /// Computes the onset of an undeformed row by the static theorem of limit analysis.
-fn compute_row(scenario: &Scenario, row: &Row) -> Result<Summary, StabilityError> {
+fn compute_row(scenario: &Scenario, row: &Row) -> Result<LimitSummary, StabilityError> {
     let gravity_m_s2 = scenario.gravity_m_s2();
     let wall_behind = scenario.structure.wall_behind();
     let onsets = Sides::try_of(|sway| match wall_behind == Some(sway) {
@@ -97,10 +97,10 @@ fn compute_row(scenario: &Scenario, row: &Row) -> Result<Summary, StabilityError
     })?;
     let starts_g = onsets.map(|onset| onset.as_ref().map(|onset| onset.acceleration_g));
     let mechanism = onsets.map(|onset| open_joints(row, onset.as_ref()));
-    let mut summary = Summary {
+    let mut summary = LimitSummary {
         wall_behind,
         no_push_because: is_straight(row).then(|| STRAIGHT.to_owned()),
-        ..Summary::new(starts_g, mechanism, gravity_m_s2)
+        ..LimitSummary::new(starts_g, mechanism, gravity_m_s2)
     };
     if !row.bars().is_empty() {
         summary.ties = Some(ties(row)?);
@@ -111,7 +111,7 @@ fn compute_row(scenario: &Scenario, row: &Row) -> Result<Summary, StabilityError
     }
     summary.four_links = Some(match scenario.mechanisms() {
         // Limit analysis of the row does not need four links.
-        Err(error) => FourLinks::None {
+        Err(error) => FourLinkAnswer::None {
             none_because: match error {
                 FourLinkError::Ties => "four links take no ties, so there is no unstable equilibrium and no equivalent block".to_owned(),
                 FourLinkError::Limit(error) => error.to_string(),
@@ -120,7 +120,7 @@ fn compute_row(scenario: &Scenario, row: &Row) -> Result<Summary, StabilityError
         },
         Ok(model) => {
             summary.bodies = model.bodies();
-            FourLinks::Sides(Sides::of(|sway| FourLinkSide {
+            FourLinkAnswer::Sides(Sides::of(|sway| FourLinkSide {
                 hinges: model.hinges_after(0, sway),
                 unstable_equilibrium_rad: model.critical_rotations_rad(sway),
                 equivalent_block: model.equivalent(sway, gravity_m_s2),
@@ -191,7 +191,7 @@ fn compute_moved_row(
     row: &Row,
     movements: &Movements,
     coefficient: Option<f64>,
-) -> Result<Summary, StudyError> {
+) -> Result<LimitSummary, StudyError> {
     let mut follower = Follower::new(row).map_err(StudyError::scenario)?;
     // The reader of the scenario has checked that the row can follow these movements.
     let moved = follower.move_supports(|part| *movements * part, 0.0, 1.0);
@@ -204,7 +204,7 @@ fn compute_moved_row(
         Some(start_g) => follower.capacity_g(sway, start_g),
         None => Ok(None),
     });
-    let mut summary = Summary::new(starts_g, mechanism, scenario.gravity_m_s2());
+    let mut summary = LimitSummary::new(starts_g, mechanism, scenario.gravity_m_s2());
     summary.warnings = Warnings::new(scenario.unlikely_in(&Varied::default()), []);
     summary.capacity_g = Some(capacity.map(|found| found.as_ref().ok().copied().flatten()));
     summary.capacity_not_found =

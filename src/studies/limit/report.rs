@@ -18,7 +18,7 @@ use crate::{Hinge, MechanismModel, Row, Sway};
 /// The onset of motion of a structure, to either side.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, Template)]
 #[template(path = "studies/limit/words/words.txt")]
-pub struct Summary {
+pub struct LimitSummary {
     /// Ground acceleration that starts the structure, in units of gravity: `A_L`, or the first motion with moved springings. Null if no push
     /// starts the structure.
     pub incipient_acceleration_g: Sides<Option<f64>>,
@@ -59,7 +59,7 @@ pub struct Summary {
     pub ties: Option<Ties>,
     /// The first mechanism of a row as four links; absent unless the structure is an arch of blocks.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub four_links: Option<FourLinks>,
+    pub four_links: Option<FourLinkAnswer>,
     /// The onset of motion with slipping joints; absent unless joints may slip.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub friction: Option<Friction>,
@@ -131,7 +131,7 @@ pub struct YieldingTies {
 /// The first mechanism of a row as four links.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
-pub enum FourLinks {
+pub enum FourLinkAnswer {
     /// The row does not move as four links.
     None {
         /// The reason.
@@ -192,7 +192,7 @@ pub struct FrictionSide {
     pub mechanism: Option<Vec<YieldingJoint>>,
 }
 
-impl Report for Summary {
+impl Report for LimitSummary {
     const IS_TABLE: bool = true;
 
     fn verdict(&self) -> String {
@@ -210,7 +210,7 @@ impl Report for Summary {
     }
 }
 
-impl Summary {
+impl LimitSummary {
     /// Makes a summary of the push that starts the structure and its mechanism.
     pub(super) fn new(
         incipient_acceleration_g: Sides<Option<f64>>,

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 
 pub use self::page::page_of;
 pub use self::picture::draw;
-pub use self::report::Summary as MapSummary;
+pub use self::report::MapSummary;
 use super::ending::{Ending, NoHistory, Verdict, answer_valid_cases};
 use super::{Results, Study, Style};
 use crate::dynamics::repeatability::{CheckedHistory, required_friction};

@@ -22,7 +22,7 @@ const SCRIPT: &str = include_str!("page/page.js");
 /// The page: a picture for the screen, and all other data, as JSON inside it. Encoded numbers are in base 64.
 #[derive(Serialize, Deserialize, Template)]
 #[template(path = "studies/map/page/page.html")]
-struct Page {
+struct MapPage {
     #[serde(skip)]
     picture: String,
     title: String,
@@ -77,9 +77,9 @@ struct PageColumn {
 /// # Errors
 /// When the JSON is not that of a page.
 pub fn page_of(picture: &str, data: &str) -> serde_json::Result<String> {
-    let page = serde_json::from_str::<Page>(data)?;
+    let page = serde_json::from_str::<MapPage>(data)?;
     let picture = picture.to_owned();
-    Ok(render(&Page { picture, ..page }))
+    Ok(render(&MapPage { picture, ..page }))
 }
 
 /// Name and numbers of a column; `None` for a cell without a value.
@@ -125,7 +125,7 @@ impl ColoredCells {
             (0..cells.len()).filter(|index| cells[*index]).collect()
         };
         let labels = self.palette.iter().map(|color| color.label.to_owned());
-        render(&Page {
+        render(&MapPage {
             title: title.to_owned(),
             scenario: map.scenario.to_toml(),
             axes: [axis(0), axis(1)],

@@ -20,7 +20,7 @@ const SUMMARY: &str = "map.json";
 /// Report on a map.
 #[derive(Serialize, Deserialize, Template)]
 #[template(path = "studies/map/words.txt")]
-pub struct Summary {
+pub struct MapSummary {
     #[serde(flatten)]
     all: CaseSummary,
     /// Number of cells with each outcome.
@@ -53,7 +53,7 @@ impl OverturningMap<'_> {
         let demands = survivors.map(|ending| ending.friction_demand);
         let friction = SurvivorFriction::of(demands, scenario, ("map FILE", "surviving cells"));
         let doubtful = cells.iter().filter(|cell| cell.is_doubtful());
-        let report = Summary {
+        let report = MapSummary {
             outcomes: OutcomeCounts::of(cells.iter().map(|cell| &cell.result)),
             mirrored: cells.iter().filter(|cell| cell.is_mirrored()).count(),
             for_looking,
@@ -85,7 +85,7 @@ impl OverturningMap<'_> {
     }
 }
 
-impl Report for Summary {
+impl Report for MapSummary {
     fn verdict(&self) -> String {
         format!("{} cells: {}", self.all.cases, self.outcomes)
     }

@@ -2,7 +2,7 @@
 
 use askama::Template;
 
-use super::summary::{FourLinkQuality, Summary, Thrust};
+use super::summary::{FourLinkQuality, RunSummary, Thrust};
 use crate::Verdict;
 use crate::dynamics::{EXCESS_LEVELS, OutcomeKind};
 use crate::output::filters;
@@ -32,7 +32,7 @@ pub(super) fn largest_coefficient(friction: &f64) -> String {
 #[template(path = "studies/run/words/caveat.txt")]
 pub(super) enum Caveat<'a> {
     /// The run ends too early for a verdict.
-    NoVerdict(&'a Summary),
+    NoVerdict(&'a RunSummary),
     /// A motion without slip needs more friction than stone may have.
     Friction(String),
     /// The thrust line leaves the arch, which four links cannot follow.
@@ -52,7 +52,7 @@ pub(super) enum Caveat<'a> {
     Unknown(Vec<&'a str>),
 }
 
-impl Summary {
+impl RunSummary {
     /// Returns the limits of the history, as warnings.
     pub(super) fn caveats(&self) -> Vec<String> {
         let excess = self.limits(false).filter(|limits| match limits {

@@ -2,7 +2,7 @@
 
 use askama::Template;
 
-use super::summary::{FourLinkQuality, Summary};
+use super::summary::{FourLinkQuality, RunSummary};
 use super::{ModelResults, REPORT, Run};
 use crate::Verdict;
 use crate::dynamics::OutcomeKind;
@@ -16,12 +16,12 @@ use crate::studies::page::{CaseScenario, Page, PageCases, input_in_words, kind_o
 #[derive(Template)]
 #[template(path = "studies/run/words/outcome.txt")]
 struct OutcomeCell<'a> {
-    summary: &'a Summary,
+    summary: &'a RunSummary,
 }
 
-impl Comparison<Summary> {
+impl Comparison<RunSummary> {
     /// Returns the rows of the table, and the widths of its first two columns.
-    pub(super) fn table(&self) -> (Vec<(&Summary, String)>, [usize; 2]) {
+    pub(super) fn table(&self) -> (Vec<(&RunSummary, String)>, [usize; 2]) {
         let rows = self
             .models()
             .map(|summary| (summary, OutcomeCell { summary }.to_string()));
@@ -35,13 +35,13 @@ impl Comparison<Summary> {
     }
 
     /// Returns pairs of the most reliable model and another one. Pairs without a verdict, and pairs in which nothing moves, are left out.
-    pub(super) fn pairs(&self) -> Vec<[&Summary; 2]> {
+    pub(super) fn pairs(&self) -> Vec<[&RunSummary; 2]> {
         let best = self.models().max_by_key(|one| one.model.rank());
         let pairs = best.into_iter().flat_map(|best| {
             let others = self.models().filter(move |other| other.model != best.model);
             others.map(move |other| [best, other])
         });
-        let differs = |[best, other]: &[&Summary; 2]| {
+        let differs = |[best, other]: &[&RunSummary; 2]| {
             let are_known = [best, other]
                 .iter()
                 .all(|one| one.verdict != Verdict::Incomplete);
@@ -76,7 +76,7 @@ pub(super) fn with_page(results: Results, runs: &[Run<'_>], all: &[ModelResults]
     results.with_page(REPORT, page, &cases, (&draw, &[]))
 }
 
-impl Summary {
+impl RunSummary {
     /// Returns the name of its model in sentences.
     pub(super) fn label(&self) -> &'static str {
         self.model.label

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use askama::Template;
 
-use super::summary::{ComputedRun, MirroredSummary, OutcomeSummary, Summary, VariedRun};
+use super::summary::{ComputedRun, MirroredSummary, OutcomeSummary, RunSummary, VariedRun};
 use super::{Drawings, NotableImpacts, REPORT, Run, StudyError, repeat};
 use crate::dynamics::repeatability::Repetitions;
 use crate::dynamics::{Direction, Directions, OutcomeKind, VariationResult, Variations};
@@ -13,11 +13,11 @@ use crate::output::filters;
 use crate::scenario::Scenario;
 use crate::studies::quotable::directions_in_words;
 use crate::work::Pending;
-use crate::{Model, Request, SimulationError, Summary as History, Verdict};
+use crate::{Model, Request, SimulationError, Summary, Verdict};
 
 impl MirroredSummary {
     /// Returns the result of a history, from the summary of the scenario in this direction alone.
-    pub fn of(summary: &Summary) -> Self {
+    pub fn of(summary: &RunSummary) -> Self {
         let mechanisms = summary.mechanisms.as_ref();
         let row = summary.row.as_ref();
         let repeated = summary.repeatability.as_ref();
@@ -60,7 +60,7 @@ impl MirroredSummary {
         Some(match history {
             Ok(history) => {
                 let repeated = repeats.then(|| repeat(&turned, model, &history)).flatten();
-                Self::of(&Summary::of(&ComputedRun {
+                Self::of(&RunSummary::of(&ComputedRun {
                     scenario: &turned,
                     model,
                     history: &history,
@@ -95,7 +95,7 @@ pub(super) struct DirectionEnd {
 }
 
 /// A history, and its drawings if a page is made.
-type DrawnHistory = (Result<History, SimulationError>, Option<Box<Drawings>>);
+type DrawnHistory = (Result<Summary, SimulationError>, Option<Box<Drawings>>);
 
 /// A run under the mirrored ground motion, computed in parallel with the motion as given. It makes no tables.
 pub(super) struct MirroredRun<'a> {
@@ -117,8 +117,8 @@ pub(super) struct FinishedMirrored {
 
 /// A history for its page.
 pub(super) struct MirroredPage {
-    pub history: History,
-    pub summary: Summary,
+    pub history: Summary,
+    pub summary: RunSummary,
     pub drawings: Box<Drawings>,
 }
 
@@ -169,7 +169,7 @@ impl<'a> MirroredRun<'a> {
         let notable = drawings
             .as_mut()
             .map(|drawings| mem::take(&mut drawings.notable));
-        let mut summary = Summary::of(&ComputedRun {
+        let mut summary = RunSummary::of(&ComputedRun {
             scenario: self.scenario,
             model: self.model,
             history: &history,
@@ -199,8 +199,8 @@ pub(super) struct MirroredWords<'a> {
     mirrored: &'a MirroredSummary,
 }
 
-impl Summary {
-    /// Returns the verdict of the motion itself, with its repetitions; [`Summary::verdict`] is the worse one of both directions.
+impl RunSummary {
+    /// Returns the verdict of the motion itself, with its repetitions; [`RunSummary::verdict`] is the worse one of both directions.
     pub fn own_verdict(&self) -> Verdict {
         let repeated = self.repeatability.as_ref();
         let count = repeated.map(|all| &all.repeatability.count);

@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
-use crate::Summary as History;
+use crate::Summary;
 use crate::dynamics::NO_RISE;
 use crate::scenario::Scenario;
 
@@ -28,7 +28,7 @@ pub struct FeetApart {
 
 impl FeetApart {
     /// Computes the displacements in a run; `None` if both feet move together.
-    pub(super) fn of(scenario: &Scenario, history: &History) -> Option<Self> {
+    pub(super) fn of(scenario: &Scenario, history: &Summary) -> Option<Self> {
         let ground = scenario.ground_motion();
         ground.right_foot()?;
         let (start_s, lasts_s) = (ground.start_s(), history.end_s - ground.start_s());

@@ -3,11 +3,11 @@
 use serde::{Deserialize, Serialize};
 
 use super::tables::energy_loss_j;
-use crate::{Event, Hinge, Summary as History};
+use crate::{Event, Hinge, Summary};
 
 /// An impact that is described.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct ImpactSummary {
+pub struct NotableImpact {
     /// Time in seconds.
     pub time_s: f64,
     /// Kinetic energy after the impact over that before it; 0 if no mechanism can follow.
@@ -22,7 +22,7 @@ pub struct ImpactSummary {
 
 /// Impacts that may be described: the first impact, and each impact that takes more energy than all before. Each with this energy, in J.
 #[derive(Clone, Debug, Default)]
-pub struct NotableImpacts(Vec<(f64, ImpactSummary)>);
+pub struct NotableImpacts(Vec<(f64, NotableImpact)>);
 
 impl<'a> FromIterator<&'a Event> for NotableImpacts {
     fn from_iter<I: IntoIterator<Item = &'a Event>>(events: I) -> Self {
@@ -44,7 +44,7 @@ impl NotableImpacts {
             .last()
             .is_none_or(|(hardest_j, _)| loss_j > *hardest_j)
         {
-            let notable = ImpactSummary {
+            let notable = NotableImpact {
                 time_s: event.time_s,
                 restitution: impact.restitution,
                 closed_joints: joints(&impact.closed),
@@ -55,7 +55,7 @@ impl NotableImpacts {
     }
 
     /// Returns the first impact, and the impact of a row that takes the most energy, if this is another one.
-    pub(super) fn first_and_hardest(&self, history: &History) -> [Option<ImpactSummary>; 2] {
+    pub(super) fn first_and_hardest(&self, history: &Summary) -> [Option<NotableImpact>; 2] {
         let mut impacts = self.0.iter().map(|(_, impact)| impact).cloned();
         let first = impacts.next();
         [

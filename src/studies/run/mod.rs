@@ -46,11 +46,11 @@ pub use self::report::{Report, ReportPage, page_of};
 pub use self::scales::Scales;
 use self::snapshots::Snapshots;
 pub use self::summary::{
-    ComputedRun, MirroredSummary, OutcomeSummary, Summary, VariedRun, summary,
+    ComputedRun, MirroredSummary, OutcomeSummary, RunSummary, VariedRun, summary,
 };
 use self::words::records_in_words;
 pub use self::words::words_of;
-use self::words::{Files, Printed, Words};
+use self::words::{Printed, Words, WrittenFiles};
 use super::comparison::Comparison;
 use super::quotable::{self, ModelAnswer};
 use super::report::Statement;
@@ -62,7 +62,7 @@ use crate::output::{
     Figure, Folder, NewFile, OutputError, Panel, Scene, Subject, pretty, render, summary_of,
 };
 use crate::scenario::{ModelKind, Scenario};
-use crate::{Event, Model, OpenHinge, Pose, Recorder, Sample, Summary as History, Sway};
+use crate::{Event, Model, OpenHinge, Pose, Recorder, Sample, Summary, Sway};
 
 const ROTATIONS: &str = "rotations.csv";
 const REPORT: &str = "report.html";
@@ -127,11 +127,11 @@ pub struct Sinks<'w> {
 
 /// The results of one model of motion.
 struct ModelResults {
-    summary: Summary,
+    summary: RunSummary,
     answer: ModelAnswer,
     curves: Curves,
     /// The files in its folder, if there is one.
-    files: Option<Files>,
+    files: Option<WrittenFiles>,
     /// Its files if they stay in memory.
     in_memory: Vec<(&'static str, Vec<u8>)>,
 }
@@ -266,7 +266,7 @@ fn statement(all: &[ModelResults], quote: Option<&str>, details: String) -> Stat
 }
 
 /// Repeats a history of a scenario as a run does, which gives its verdict; `None` if the model has no repetitions.
-pub fn repeat(scenario: &Scenario, model: &dyn Model, history: &History) -> Option<Repeatability> {
+pub fn repeat(scenario: &Scenario, model: &dyn Model, history: &Summary) -> Option<Repeatability> {
     model.row()?;
     let (ground, request) = (scenario.ground_motion(), scenario.request());
     Some(Repetitions::start(model, ground, &request).compare(history))
@@ -392,7 +392,7 @@ impl<'a> Run<'a> {
         let mirrored = mirrored.map(MirroredRun::finish);
         let turned = mirrored.as_ref().map_or(&[][..], |run| &run.varied);
         let varied = directions::pair_results(variations.wait(), turned);
-        let mut summary = Summary::of(&ComputedRun {
+        let mut summary = RunSummary::of(&ComputedRun {
             scenario,
             model,
             history: &history,
@@ -412,7 +412,7 @@ impl<'a> Run<'a> {
         let named = sinks.folder.as_ref().map(|folder| {
             let film_pictures = drawings.add_film(self, folder)?;
             write(folder, &names, mem::take(&mut files.on_disk), &texts)?;
-            Ok::<_, OutputError>(Files {
+            Ok::<_, OutputError>(WrittenFiles {
                 folder: folder.path().to_owned(),
                 names,
                 rows,
@@ -446,7 +446,12 @@ impl<'a> Run<'a> {
     }
 
     /// Adds what a summary has of this computation and of the other models and samples.
-    fn add_study_words(&self, summary: &mut Summary, history: &History, samples: Option<&Results>) {
+    fn add_study_words(
+        &self,
+        summary: &mut RunSummary,
+        history: &Summary,
+        samples: Option<&Results>,
+    ) {
         // [`summary`] omits the computing time, so that equal histories have equal summaries.
         let longest_step = history.row().and_then(|row| row.longest_step);
         summary.longest_step_us = longest_step.map(|step| (step.as_secs_f64() * 1e6).round());
@@ -561,9 +566,9 @@ impl Drawings {
     fn page(
         &self,
         scenario: &Scenario,
-        history: &History,
+        history: &Summary,
         opening: [&str; 2],
-        summary: &Summary,
+        summary: &RunSummary,
     ) -> Option<ReportPage> {
         let points = Some(&self.points);
         let words = render(&Words { summary });
@@ -577,9 +582,9 @@ impl Drawings {
         &self,
         run: &Run<'_>,
         files: &[&str],
-        history: &History,
+        history: &Summary,
         (uncertainty, other): (&str, Option<MirroredPage>),
-        summary: &Summary,
+        summary: &RunSummary,
     ) -> BTreeMap<&'static str, String> {
         let (figure, title) = (run.figure, title(run.scenario));
         let subject = run.subject(title);

@@ -8,7 +8,7 @@ use crate::output::{
     COLUMNS, CURVES, Envelope, Figure, HistoryPanels, Key, Mark, Panel, Scale, Shape, Sign,
     StateHistory, Stroke, Subject, color, scale_around,
 };
-use crate::{Event, Model, Outcome, Sample, State, Summary as History, Sway};
+use crate::{Event, Model, Outcome, Sample, State, Summary, Sway};
 
 /// Upper limit of the drawn excess of the thrust line, in thicknesses. The values of a falling structure would hide all others.
 pub(super) const LARGEST_EXCESS: f64 = 1.0;
@@ -159,7 +159,7 @@ impl Timeline {
         figure: Figure,
         chosen: &[Panel],
         subject: &Subject<'_>,
-        history: &History,
+        history: &Summary,
         points: &ObservedPoints,
     ) -> String {
         let span_s = [subject.ground.start_s(), self.end_s];
@@ -303,7 +303,7 @@ impl Timeline {
 }
 
 /// Returns the states of a row: its half cycles, and the end.
-fn row_states(history: &History, half_cycles: &[HalfCycle]) -> StateHistory {
+fn row_states(history: &Summary, half_cycles: &[HalfCycle]) -> StateHistory {
     let end = match history.outcome {
         Outcome::Rest => Some(State::Rest),
         Outcome::Overturned(sway) => Some(State::Overturned(sway)),

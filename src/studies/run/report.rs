@@ -26,9 +26,7 @@ use crate::output::page::{
 use crate::output::scene::FARTHEST;
 use crate::output::{Envelope, Piece, Scene, filters, render};
 use crate::scenario::{DimensionSide, Language, Unlikely, Varied};
-use crate::{
-    GroundMotion, Hinge, Model, OpenHinge, Pose, Sample, Scenario, State, Summary as History, Sway,
-};
+use crate::{GroundMotion, Hinge, Model, OpenHinge, Pose, Sample, Scenario, State, Summary, Sway};
 
 /// Largest size of the frames of a page, in bytes.
 const FRAME_BYTES: usize = 280_000;
@@ -67,7 +65,7 @@ pub struct Report {
 /// The page: its words, and all data that it draws. Encoded numbers are in base 64.
 #[derive(Debug, Serialize, Deserialize, Template)]
 #[template(path = "studies/run/report/page.html")]
-struct Page {
+struct PageContents {
     /// Direction of the ground motion.
     direction: Direction,
     /// The history in the other direction, which is not worse; absent without a second direction.
@@ -108,7 +106,7 @@ struct Page {
 
 /// A page of a run, in one or both directions of its ground motion.
 #[derive(Debug)]
-pub struct ReportPage(Page);
+pub struct ReportPage(PageContents);
 
 impl ReportPage {
     /// Returns a page that opens with this one, and has the history of the other direction beside it.
@@ -181,7 +179,7 @@ struct Curves {
 /// # Errors
 /// When the JSON is not that of a page.
 pub fn page_of(data: &str) -> serde_json::Result<String> {
-    serde_json::from_str::<Page>(data).map(|page| render(&page))
+    serde_json::from_str::<PageContents>(data).map(|page| render(&page))
 }
 
 impl Report {
@@ -234,7 +232,7 @@ impl Report {
     pub fn page(
         &self,
         scenario: &Scenario,
-        history: &History,
+        history: &Summary,
         points: Option<&ObservedPoints>,
         [uncertainty, verdict]: [&str; 2],
         words: &str,
@@ -271,7 +269,7 @@ impl Report {
         let fall_end = self.fall_end.as_ref();
         let fall_end = fall_end.filter(|end| falls || **end != FallEnd::Turned);
         let (structure, shaken) = (scenario.structure.describe(), ground_in_words(scenario));
-        ReportPage(Page {
+        ReportPage(PageContents {
             direction: scenario.simulation.direction.first(),
             other: None,
             title: title(scenario).to_owned(),
@@ -319,7 +317,7 @@ impl Report {
         Some((body, x_m, y_m, extrados.at_m.x, extrados.at_m.y))
     }
 
-    fn energy_label(&self, history: &History) -> String {
+    fn energy_label(&self, history: &Summary) -> String {
         let mechanism = match history.row() {
             None => "the mechanism that moves",
             Some(_) => "the first mechanism",
@@ -451,7 +449,7 @@ fn standing_rad(sample: &Sample) -> Vec<f64> {
 }
 
 /// Returns the time at which the page opens: that of overturning, or of the largest rotation.
-fn opening_time_s(frames: &[&Sample], history: &History) -> f64 {
+fn opening_time_s(frames: &[&Sample], history: &Summary) -> f64 {
     if let Some(overturned_s) = history.overturned_s() {
         return overturned_s;
     }

@@ -5,7 +5,7 @@ use serde_json::Value;
 
 use super::Scales;
 use super::feet::FeetApart;
-use super::impacts::{ImpactSummary, NotableImpacts};
+use super::impacts::{NotableImpact, NotableImpacts};
 use crate::dynamics::repeatability::key;
 use crate::dynamics::{
     Directions, EXCESS_LEVELS, ElasticSummary, HalfCycle, MODEL_LIMIT, OutcomeCount, OutcomeKind,
@@ -17,7 +17,7 @@ use crate::output::{Named, OutputError, summary_of};
 use crate::scenario::{ELASTIC_JOINTS, Ground, ModelKind, Scenario, Varied};
 use crate::studies::quotable::{self, ModelAnswer, QUOTED_PEAK, SlipWords, restitution_in_words};
 use crate::studies::report::Warnings;
-use crate::{MechanismModel, Model, Outcome, Summary as History, Sway, Verdict};
+use crate::{MechanismModel, Model, Outcome, Summary, Sway, Verdict};
 
 /// A computed motion, with its repetitions and variations.
 pub struct ComputedRun<'a> {
@@ -26,7 +26,7 @@ pub struct ComputedRun<'a> {
     /// The model of motion.
     pub model: &'a dyn Model,
     /// The history.
-    pub history: &'a History,
+    pub history: &'a Summary,
     /// The impacts that may be described.
     pub impacts: NotableImpacts,
     /// The comparison with its repetitions; `None` if the history was not repeated.
@@ -43,7 +43,7 @@ pub type VariedRun = (VariationResult, Option<VariationResult>);
 /// The summary of a run: `summary.json`. Largest rotations of the bodies have keys such as `peak_rotation_left_rad`, `peak_rotation_1_rad` for
 /// the first block of a row, or `peak_rotation_rad` for a column.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Summary {
+pub struct RunSummary {
     /// The name of the program.
     pub program: String,
     /// Version of the program.
@@ -72,10 +72,10 @@ pub struct Summary {
     pub impacts: Option<usize>,
     /// First impact before overturning; absent without impact.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub first_impact: Option<ImpactSummary>,
+    pub first_impact: Option<NotableImpact>,
     /// Impact of a row that took the most energy before overturning; absent if this is the first one.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub hardest_impact: Option<ImpactSummary>,
+    pub hardest_impact: Option<NotableImpact>,
     /// Largest rotations of the bodies, in radians.
     #[serde(flatten, deserialize_with = "peak_rotations")]
     pub peak_rotations_rad: Named<f64>,
@@ -241,7 +241,7 @@ named! {
 }
 
 impl FourLinkQuality {
-    fn of(history: &History, thrust: &ThrustRecord) -> Self {
+    fn of(history: &Summary, thrust: &ThrustRecord) -> Self {
         let up_to_peak = history.thrust_excess_ratio();
         let overturns = matches!(history.outcome, Outcome::Overturned(_));
         let is_large = history
@@ -379,7 +379,7 @@ pub struct PointPeaks {
 
 impl OutcomeSummary {
     /// Returns the outcome of a history.
-    pub fn of(history: &History) -> Self {
+    pub fn of(history: &Summary) -> Self {
         Self {
             outcome: history.outcome.kind(),
             outcome_time_s: history.outcome_time_s,
@@ -402,7 +402,7 @@ fn peak_rotations<'de, D: Deserializer<'de>>(keys: D) -> Result<Named<f64>, D::E
     Ok(Named(peaks.collect()))
 }
 
-impl Summary {
+impl RunSummary {
     /// Makes the summary of a history.
     pub fn of(computed: &ComputedRun<'_>) -> Self {
         let (scenario, model, history) = (computed.scenario, computed.model, computed.history);
@@ -533,7 +533,7 @@ fn only_direction(scenario: &Scenario, model: &dyn Model) -> Option<Directions> 
 }
 
 impl GroundSummary {
-    fn of(scenario: &Scenario, history: &History) -> Self {
+    fn of(scenario: &Scenario, history: &Summary) -> Self {
         let (ground, gravity_m_s2) = (scenario.ground_motion(), scenario.gravity_m_s2());
         let peaks_m_s2 = ground.peaks_m_s2(history.end_s);
         let [right, left] = ground.pushes_m_s2(history.end_s);
@@ -548,7 +548,7 @@ impl GroundSummary {
 }
 
 impl MechanismResults {
-    fn of(scenario: &Scenario, model: &dyn MechanismModel, history: &History) -> Self {
+    fn of(scenario: &Scenario, model: &dyn MechanismModel, history: &Summary) -> Self {
         let pushes_m_s2 = scenario.ground_motion().pushes_m_s2(history.end_s);
         let dimensionless = |scales: Scales| Dimensionless {
             p_rad_s: scales.frequency_rad_s,
@@ -592,7 +592,7 @@ pub(super) const STRAIGHT_RAD: f64 = 5e-7;
 const LEAST_SLIP_RATIO: f64 = 1e-6;
 
 impl RowResults {
-    fn of(scenario: &Scenario, model: &dyn Model, history: &History) -> Option<Self> {
+    fn of(scenario: &Scenario, model: &dyn Model, history: &Summary) -> Option<Self> {
         let (blocks, row) = (model.row()?, history.row()?);
         let largest_m = row
             .sliding
@@ -694,7 +694,7 @@ impl RepeatabilitySummary {
 }
 
 /// Returns the peak of the first half cycle that rocks, in radians.
-fn first_peak_rad(history: &History) -> Option<f64> {
+fn first_peak_rad(history: &Summary) -> Option<f64> {
     let mut cycles = history.half_cycles().into_iter();
     let first = cycles.find(|cycle| cycle.peak_rad > STRAIGHT_RAD);
     first.map(|cycle| cycle.peak_rad)
@@ -750,5 +750,5 @@ impl VariationOutcome {
 /// # Errors
 /// When a value is not finite.
 pub fn summary(computed: &ComputedRun<'_>) -> Result<Value, OutputError> {
-    summary_of(&Summary::of(computed))
+    summary_of(&RunSummary::of(computed))
 }

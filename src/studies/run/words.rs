@@ -1,4 +1,4 @@
-//! The words of a run: templates that read its [`Summary`] alone.
+//! The words of a run: templates that read its [`RunSummary`] alone.
 
 use std::path::PathBuf;
 
@@ -8,10 +8,10 @@ use serde::Deserialize as _;
 use serde_json::Value;
 
 use super::caveats::{Caveat, coefficient, largest_coefficient};
-use super::impacts::ImpactSummary;
+use super::impacts::NotableImpact;
 use super::points::format_point;
 use super::summary::{
-    FourLinkQuality, FrictionDemand, PointPeaks, STRAIGHT_RAD, Summary, VariationOutcome,
+    FourLinkQuality, FrictionDemand, PointPeaks, RunSummary, STRAIGHT_RAD, VariationOutcome,
 };
 use super::{FILM, OVERLAY, ROTATIONS};
 use crate::dynamics::repeatability::{
@@ -41,29 +41,29 @@ pub(super) fn records_in_words(scenario: &Scenario) -> String {
 #[derive(Template)]
 #[template(path = "studies/run/words/verdict.txt")]
 pub(super) struct VerdictLine<'a> {
-    pub summary: &'a Summary,
+    pub summary: &'a RunSummary,
 }
 
 /// The lines after the verdict.
 #[derive(Template)]
 #[template(path = "studies/run/words/words.txt")]
 pub(super) struct Words<'a> {
-    pub summary: &'a Summary,
+    pub summary: &'a RunSummary,
 }
 
 /// The printed words of runs of one structure, each with its files, and of their comparison.
 #[derive(Template)]
 #[template(path = "studies/run/words/printed.txt")]
 pub(super) struct Printed<'a> {
-    pub comparison: Option<&'a Comparison<Summary>>,
+    pub comparison: Option<&'a Comparison<RunSummary>>,
     /// The answer of the comparison; `None` on a page, which begins with it.
     pub quote: Option<&'a str>,
-    pub runs: Vec<(&'a Summary, Option<&'a Files>)>,
+    pub runs: Vec<(&'a RunSummary, Option<&'a WrittenFiles>)>,
 }
 
 /// The files of a run in a folder.
 #[derive(Debug)]
-pub(super) struct Files {
+pub(super) struct WrittenFiles {
     pub folder: PathBuf,
     pub names: Vec<&'static str>,
     /// Number of rows of the rotations.
@@ -78,13 +78,13 @@ pub(super) struct Files {
 /// # Errors
 /// When the JSON is not a summary of a run.
 pub fn words_of(json: &Value) -> serde_json::Result<String> {
-    let comparison: Option<Comparison<Summary>> = match json.get("program") {
+    let comparison: Option<Comparison<RunSummary>> = match json.get("program") {
         Some(_) => None,
         None => Some(Comparison::deserialize(json)?),
     };
     let runs = match &comparison {
         Some(comparison) => comparison.models().cloned().collect(),
-        None => vec![Summary::deserialize(json)?],
+        None => vec![RunSummary::deserialize(json)?],
     };
     Ok(super::super::results::words_of(&Printed {
         comparison: comparison.as_ref(),
@@ -110,7 +110,7 @@ struct Slip {
 /// Half cycles of a motion, each with its counterparts in the repetitions.
 type RepeatedHalfCycles<'s> = Vec<(&'s HalfCycle, &'s RepeatedHalfCycle)>;
 
-impl Summary {
+impl RunSummary {
     /// Returns the verdict in words, as a run prints it.
     pub fn verdict_line(&self) -> String {
         render(&VerdictLine { summary: self })
@@ -292,7 +292,7 @@ fn times(push_g: &f64, starts_g: &f64) -> String {
     }
 }
 
-impl ImpactSummary {
+impl NotableImpact {
     /// Returns the joints that closed and opened, each with the verb.
     fn moved_joints(&self) -> [(&[usize], &'static str); 2] {
         [

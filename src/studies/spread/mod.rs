@@ -32,14 +32,14 @@ const LONGEST_RATIO: f64 = 1.0;
 
 /// Direction in which a springing moves.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Direction {
+pub struct SpringingDirection {
     /// The springing that moves; the other one is fixed.
     pub springing: Sway,
     /// Angle in degrees: outwards (0), down (90), inwards (180), up (-90).
     pub angle_deg: f64,
 }
 
-impl Direction {
+impl SpringingDirection {
     /// Default directions: outwards, inwards and down.
     pub const DEFAULT_DEG: [f64; 3] = [0.0, 180.0, 90.0];
 
@@ -144,7 +144,7 @@ pub struct MissingPush {
 pub struct SpreadPath {
     /// The direction of the movement.
     #[serde(flatten)]
-    pub direction: Direction,
+    pub direction: SpringingDirection,
     /// Movement from the initial position at which the arch collapses, in metres; `None` if it exceeds the clear span or is unknown.
     pub falls_at_m: Option<f64>,
     /// Movement at which the arch collapses, over the clear span; `None` as `falls_at_m`.
@@ -162,7 +162,7 @@ pub struct SpreadPath {
 /// An arch on springings that move.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Template)]
 #[template(path = "studies/spread/words.txt")]
-pub struct Summary {
+pub struct SpreadSummary {
     /// Distance between the springings at the intrados, in metres.
     pub clear_span_m: f64,
     /// Weight of the arch, in N.
@@ -186,7 +186,10 @@ pub struct Summary {
 /// # Errors
 /// When the structure is not a row of blocks between two supports, or cannot stand. If a movement cannot be computed further, its path ends
 /// there.
-pub fn spread(scenario: &Scenario, directions: &[Direction]) -> Result<Summary, StudyError> {
+pub fn spread(
+    scenario: &Scenario,
+    directions: &[SpringingDirection],
+) -> Result<SpreadSummary, StudyError> {
     let row = scenario.structure.row().map_err(StudyError::scenario)?;
     let weight_n = row.mass_kg() * scenario.gravity_m_s2();
     let joints = &row.joints;
@@ -194,10 +197,10 @@ pub fn spread(scenario: &Scenario, directions: &[Direction]) -> Result<Summary, 
     let clear_span_m = across.norm();
     let settled = scenario.motion.supports().unwrap_or_default();
     let sizes = [clear_span_m, weight_n];
-    let compute = |direction: &Direction| path(&row, settled, *direction, sizes);
+    let compute = |direction: &SpringingDirection| path(&row, settled, *direction, sizes);
     let paths = in_parallel(directions, compute).into_iter();
     let paths = paths.collect::<Result<_, _>>();
-    Ok(Summary {
+    Ok(SpreadSummary {
         paths: paths.map_err(StudyError::scenario)?,
         clear_span_m,
         weight_n,
@@ -212,7 +215,7 @@ pub fn spread(scenario: &Scenario, directions: &[Direction]) -> Result<Summary, 
 fn path(
     row: &Row,
     settled: Movements,
-    direction: Direction,
+    direction: SpringingDirection,
     [clear_span_m, weight_n]: [f64; 2],
 ) -> Result<SpreadPath, SettlingError> {
     let longest_m = LONGEST_RATIO * clear_span_m;
@@ -321,7 +324,7 @@ fn stage(follower: &Follower<'_>, movement_m: f64, weight_n: f64) -> Stage {
     }
 }
 
-impl Summary {
+impl SpreadSummary {
     /// Returns whether the movement is further to that of `[supports]`.
     fn is_further(&self) -> bool {
         !self.scenario["supports"].is_null()
@@ -353,7 +356,7 @@ impl Summary {
     }
 }
 
-impl Report for Summary {
+impl Report for SpreadSummary {
     const IS_TABLE: bool = true;
 
     fn verdict(&self) -> String {
@@ -394,7 +397,7 @@ impl Stage {
 impl SpreadPath {
     /// Returns the moving support, whose name is `support`, and its direction.
     fn movement_in_words(&self, support: &str) -> String {
-        let Direction { springing, .. } = self.direction;
+        let SpringingDirection { springing, .. } = self.direction;
         format!("{} {support} {}", springing.name(), self.direction.label())
     }
 

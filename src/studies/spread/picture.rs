@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::{Push, SpreadPath, Stage, Summary};
+use super::{Push, SpreadPath, SpreadSummary, Stage};
 use crate::Row;
 use crate::mechanics::BodyPoint;
 use crate::output::elevation::{HINGE, HINGE_PX, STONE, SheetTransform, View};
@@ -24,7 +24,7 @@ const FIRST_MOTION_PX: f64 = 1.0;
 pub(super) fn draw(
     figure: Figure,
     title: &str,
-    spread: &Summary,
+    spread: &SpreadSummary,
     (row, scene): (&Row, &Scene),
     spots: &[Spot],
 ) -> String {
@@ -34,9 +34,9 @@ pub(super) fn draw(
     let columns = figure.columns(spread.paths.len().clamp(1, COLUMNS), LEAST_PX);
     let cell_px = figure.width_px / columns as f64;
     for paths in spread.paths.chunks(columns) {
-        let cells: Vec<Cell<'_>> = paths
+        let cells: Vec<DeformedArch<'_>> = paths
             .iter()
-            .filter_map(|path| Cell::new((row, scene), (spread, path), cell_px))
+            .filter_map(|path| DeformedArch::new((row, scene), (spread, path), cell_px))
             .collect();
         let heights_px = cells.iter().map(|cell| cell.height_px);
         let height_px = heights_px.fold(0.0, f64::max);
@@ -60,7 +60,7 @@ pub(super) fn draw(
 }
 
 /// Draws the smaller push of both sides against the movement: capacity and first motion.
-fn draw_pushes(figure: Figure, spread: &Summary, spots: &[Spot]) -> Chart {
+fn draw_pushes(figure: Figure, spread: &SpreadSummary, spots: &[Spot]) -> Chart {
     let thin = |color| Stroke::new(color, FIRST_MOTION_PX, "3 3");
     let (mut marks, mut keys) = (Vec::new(), Vec::new());
     for (path, stroke) in spread.paths.iter().zip(CURVES.into_iter().cycle()) {
@@ -91,7 +91,7 @@ fn draw_pushes(figure: Figure, spread: &Summary, spots: &[Spot]) -> Chart {
 }
 
 /// The arch at the end of a path.
-struct Cell<'a> {
+struct DeformedArch<'a> {
     row: &'a Row,
     scene: &'a Scene,
     path: &'a SpreadPath,
@@ -103,10 +103,10 @@ struct Cell<'a> {
     height_px: f64,
 }
 
-impl<'a> Cell<'a> {
+impl<'a> DeformedArch<'a> {
     fn new(
         (row, scene): (&'a Row, &'a Scene),
-        (spread, path): (&Summary, &'a SpreadPath),
+        (spread, path): (&SpreadSummary, &'a SpreadPath),
         width_px: f64,
     ) -> Option<Self> {
         let stage = path.stages.last()?;

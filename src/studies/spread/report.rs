@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use super::picture::draw;
-use super::{Push, SpreadPath, Stage, Summary};
+use super::{Push, SpreadPath, SpreadSummary, Stage};
 use crate::argument::plain;
 use crate::mechanics::{Movements, Sides};
 use crate::output::page::SpotKind;
@@ -21,7 +21,7 @@ pub const FILES: [&str; 4] = ["spread.html", "spread.svg", "spread.csv", "spread
 /// When a value is not finite, or the structure is not a row of blocks.
 pub fn report(
     scenario: &Scenario,
-    spread: &Summary,
+    spread: &SpreadSummary,
     figure: Figure,
 ) -> Result<Results, StudyError> {
     let row = scenario.structure.row().map_err(StudyError::scenario)?;
@@ -79,13 +79,13 @@ fn values_of(movements: Movements) -> Vec<(String, f64)> {
 }
 
 /// Returns all stages of all paths.
-fn rows(spread: &Summary) -> impl Iterator<Item = (&SpreadPath, &Stage)> {
+fn rows(spread: &SpreadSummary) -> impl Iterator<Item = (&SpreadPath, &Stage)> {
     let paths = spread.paths.iter();
     paths.flat_map(|path| path.stages.iter().map(move |stage| (path, stage)))
 }
 
 /// Makes the table of all stages of all paths.
-fn table(spread: &Summary) -> Result<Table, OutputError> {
+fn table(spread: &SpreadSummary) -> Result<Table, OutputError> {
     type Row<'a> = (&'a SpreadPath, &'a Stage);
     let rows: Vec<Row<'_>> = rows(spread).collect();
     // Arches with ties may have more than three hinges.

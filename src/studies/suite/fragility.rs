@@ -81,7 +81,7 @@ pub struct Fragility {
     pub log_likelihood: f64,
     /// Number of records.
     records: usize,
-    line: Line,
+    line: FittedLine,
     /// Covariance of level and slope of the line under the assumption that all cases are independent.
     covariance: Matrix2<f64>,
     /// Covariance of level and slope, allowing for dependence within records.
@@ -350,13 +350,13 @@ fn demand_overlap_and_growth(levels: &[Fraction]) -> Result<(), NoFit> {
 
 /// The linear predictor `eta = level + slope (ln x - pivot)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Line {
+struct FittedLine {
     pivot: f64,
     /// Level and slope.
     coefficients: Vector2<f64>,
 }
 
-impl Line {
+impl FittedLine {
     fn value_at(&self, log: f64) -> f64 {
         self.coefficients.x + self.coefficients.y * (log - self.pivot)
     }
@@ -365,7 +365,7 @@ impl Line {
 /// The likelihood of a line. The pivot is the mean of the logarithms weighted by their information. The information about level and slope is
 /// then a diagonal matrix, and narrow ranges lose no digits.
 struct Likelihood {
-    line: Line,
+    line: FittedLine,
     logarithm: f64,
     /// Derivatives of the log-likelihood by level and slope.
     score: Vector2<f64>,
@@ -383,7 +383,7 @@ const HALVINGS: usize = 60;
 const SHORT: f64 = 1e-20;
 
 impl Likelihood {
-    fn at(levels: &[Fraction], mut line: Line) -> Self {
+    fn at(levels: &[Fraction], mut line: FittedLine) -> Self {
         let terms = levels.iter();
         let terms = terms.map(|level| level.log_probability(line.value_at(level.log())));
         let terms: Vec<LogProbability> = terms.collect();
@@ -412,7 +412,7 @@ impl Likelihood {
     /// Finds the maximum of the likelihood by Newton's method with step halving, starting from a probability of one half everywhere. `None` if
     /// the search does not converge.
     fn largest(levels: &[Fraction]) -> Option<Self> {
-        let equal_chances = Line {
+        let equal_chances = FittedLine {
             pivot: levels[0].log(),
             coefficients: Vector2::zeros(),
         };
@@ -448,7 +448,7 @@ fn standard_error(covariance: &Matrix2<f64>, gradient: &Vector2<f64>) -> f64 {
 /// Computes the covariance of level and slope with any dependence within records, from the covariance without dependence: the sandwich `C M C G
 /// / (G - 1)`, where `M` sums the squares of the scores of `G` records. `None` with one record.
 fn clustered_covariance(
-    line: &Line,
+    line: &FittedLine,
     covariance: &Matrix2<f64>,
     observations: &[Observation],
 ) -> Option<Matrix2<f64>> {

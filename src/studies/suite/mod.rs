@@ -17,7 +17,7 @@ use self::fragility::group_by_intensity;
 pub use self::fragility::{Errors, Fraction, Fragility, NoFit, Observation, fit, fractions};
 pub use self::heading::Heading;
 pub(super) use self::report::OF_LEVELS;
-pub use self::report::Summary;
+pub use self::report::SuiteSummary;
 pub use self::strength::{Strength, efficiencies};
 use super::ending::{Ending, NoHistory, Verdict, check_finite};
 use super::threshold::below::{FineHistory, Fineness, search_below_edge};
@@ -209,8 +209,8 @@ impl Study for RecordSuite<'_> {
             let upper = overturn[case] == Some(true) && survives_below != Some(false);
             upper.then(|| self.edge(index, below, survives_below.is_some()))?
         };
-        let edges: Vec<Option<Edge>> = (0..indices.len()).map(edge).collect();
-        let row = |((index, result), edge): ((&usize, _), Option<Edge>)| {
+        let edges: Vec<Option<BisectedEdge>> = (0..indices.len()).map(edge).collect();
+        let row = |((index, result), edge): ((&usize, _), Option<BisectedEdge>)| {
             let (level, record, direction) = self.case_parts(*index);
             let series = &self.suite.records[record];
             let own_g = series.peak_g(self.scenario.gravity_m_s2());
@@ -303,7 +303,7 @@ fn overturns_certainly(result: &Result<Ending, NoHistory>) -> Option<bool> {
 
 /// The edge below a level that overturns.
 #[derive(Clone, Copy)]
-struct Edge {
+struct BisectedEdge {
     /// The lowest overturning level of the bisection.
     lowest: f64,
     /// True if the edge may lie lower, because a level without a verdict counted as surviving.
@@ -389,7 +389,7 @@ impl RecordSuite<'_> {
         &self,
         index: usize,
         own: &Result<Ending, NoHistory>,
-        edge: Option<Edge>,
+        edge: Option<BisectedEdge>,
     ) -> Option<f64> {
         let (level, ..) = self.case_parts(index);
         let survives = own
@@ -406,7 +406,7 @@ impl RecordSuite<'_> {
     fn search_below(
         &self,
         index: usize,
-        (own, edge): (&Result<Ending, NoHistory>, Option<Edge>),
+        (own, edge): (&Result<Ending, NoHistory>, Option<BisectedEdge>),
         at: f64,
     ) -> Option<FirstEdge> {
         let (level, record, direction) = self.case_parts(index);
@@ -443,7 +443,7 @@ impl RecordSuite<'_> {
     }
 
     /// Finds the edge between the level of a case that overturns and the level `below`; `None` if that level overturns as well.
-    fn edge(&self, index: usize, below: f64, survives_below: bool) -> Option<Edge> {
+    fn edge(&self, index: usize, below: f64, survives_below: bool) -> Option<BisectedEdge> {
         let (level, record, direction) = self.case_parts(index);
         let ending = |level: f64| self.ending(record, level, direction);
         if !survives_below && overturns_certainly(&ending(below))? {
@@ -470,7 +470,7 @@ impl RecordSuite<'_> {
         let up_to_safe = demands
             .into_iter()
             .filter(|(level, _)| Some(*level) <= safe);
-        Some(Edge {
+        Some(BisectedEdge {
             lowest,
             at_most,
             safe,

@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use super::fragility::{Fragility, NoFit};
 use super::ida::Fractiles;
-use super::strength::{Capacity, Efficiency, MEASURES, efficiencies, warning_of_few_records};
+use super::strength::{Efficiency, MEASURES, RecordCapacity, efficiencies, warning_of_few_records};
 use super::{
     CaseRow, Counts, FragilityRow, Heading, SuiteFragility, ida, picture, records_in_words,
 };
@@ -52,7 +52,7 @@ pub const FILES: [&str; 11] = [
 /// Report on a suite of records. Missing values are null.
 #[derive(Serialize, Deserialize, Template)]
 #[template(path = "studies/suite/words.txt")]
-pub struct Summary {
+pub struct SuiteSummary {
     /// Name of the program.
     program: String,
     /// Version of the program.
@@ -221,7 +221,7 @@ impl Heading {
         let end = |end: usize| results.fits().nth(1 + end).map(curve);
         let survivals = results.survivals().into_iter();
         let owned = |names: Vec<&str>| names.into_iter().map(str::to_owned).collect();
-        let report = Summary {
+        let report = SuiteSummary {
             program: env!("CARGO_PKG_NAME").to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             scenario: self.scenario.clone(),
@@ -279,7 +279,7 @@ impl Heading {
         &self,
         found: Results,
         results: &SuiteFragility,
-        (capacities, measures): (&[Capacity<'_>], &[Efficiency]),
+        (capacities, measures): (&[RecordCapacity<'_>], &[Efficiency]),
     ) -> Result<Results, OutputError> {
         let mut fractiles = vec![column(self.measure.name(), |at: &Fractiles| at.intensity)];
         fractiles.extend(fields!(|at: &Fractiles| at => cases, overturned));
@@ -415,18 +415,18 @@ const fn sign(mirrored: bool) -> i64 {
 }
 
 /// Returns the columns of `capacities.csv`, one row per record. Missing values are empty.
-fn capacity_columns<'r>() -> [Column<'r, Capacity<'r>>; 7] {
+fn capacity_columns<'r>() -> [Column<'r, RecordCapacity<'r>>; 7] {
     let measures = MEASURES.map(|(name, _, _)| name);
     [
-        column("record", |one: &Capacity<'_>| shown(one.record)),
-        column("sign", |one: &Capacity<'_>| sign(one.mirrored)),
-        column("survives_up_to_scale", |one: &Capacity<'_>| {
+        column("record", |one: &RecordCapacity<'_>| shown(one.record)),
+        column("sign", |one: &RecordCapacity<'_>| sign(one.mirrored)),
+        column("survives_up_to_scale", |one: &RecordCapacity<'_>| {
             one.survives_up_to_scale
         }),
-        column("scale", |one: &Capacity<'_>| one.scale),
-        list(measures, |one: &Capacity<'_>| one.in_measures),
-        column("at_most", |one: &Capacity<'_>| yes_or_no(one.at_most)),
-        column("levels_only", |one: &Capacity<'_>| {
+        column("scale", |one: &RecordCapacity<'_>| one.scale),
+        list(measures, |one: &RecordCapacity<'_>| one.in_measures),
+        column("at_most", |one: &RecordCapacity<'_>| yes_or_no(one.at_most)),
+        column("levels_only", |one: &RecordCapacity<'_>| {
             yes_or_no(one.levels_only)
         }),
     ]
@@ -446,7 +446,7 @@ fn efficiency_columns() -> Vec<Column<'static, Efficiency>> {
     all
 }
 
-impl Report for Summary {
+impl Report for SuiteSummary {
     fn verdict(&self) -> String {
         let (cases, records) = (self.outcomes.total(), records_in_words(self.records));
         format!("{cases} cases of {records}: {}", self.outcomes)
@@ -461,7 +461,7 @@ impl Report for Summary {
     }
 }
 
-impl Summary {
+impl SuiteSummary {
     /// Returns the curves in words, or the reason why there is none. Before each is the treatment of doubtful cases: uncertain ones count by their
     /// fractions, and in two more curves all count as survived and as overturned.
     fn curves(&self) -> Vec<(String, Result<String, String>)> {

@@ -43,7 +43,7 @@ impl Strength {
 
 /// The lowest intensity that overturns the structure under a record.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Capacity<'a> {
+pub struct RecordCapacity<'a> {
     /// Name of the record file.
     pub record: &'a str,
     /// True if the record is mirrored.
@@ -89,13 +89,13 @@ pub struct Efficiency {
 
 impl SuiteFragility {
     /// Computes the capacity under each record and each mirrored record.
-    pub fn capacities(&self) -> Vec<Capacity<'_>> {
+    pub fn capacities(&self) -> Vec<RecordCapacity<'_>> {
         self.cases_by_record()
             .map(|levels| self.capacity(levels))
             .collect()
     }
 
-    fn capacity<'a>(&self, levels: &'a [CaseRow]) -> Capacity<'a> {
+    fn capacity<'a>(&self, levels: &'a [CaseRow]) -> RecordCapacity<'a> {
         let own = &levels[0];
         let survival = self.survival(levels);
         let levels_only = Self::is_of_levels_only(levels, &survival);
@@ -112,7 +112,7 @@ impl SuiteFragility {
         let of = |strength: fn(&Strength) -> f64, power: i32| {
             Some(strength(own.strength.as_ref()?) * scale?.powi(power))
         };
-        Capacity {
+        RecordCapacity {
             record: &own.record,
             mirrored: own.mirrored,
             survives_up_to_scale: safe.map(scale_of),
@@ -147,7 +147,7 @@ const LEAST_CAPACITIES: usize = 3;
 /// Computes number, geometric mean and dispersion of the capacities in a measure, and the dispersion of the factor on the record. `None` with
 /// fewer than three capacities.
 fn scatter<'a>(
-    capacities: impl Iterator<Item = &'a Capacity<'a>>,
+    capacities: impl Iterator<Item = &'a RecordCapacity<'a>>,
     measure: usize,
 ) -> Option<(usize, [f64; 3])> {
     let found = capacities.filter_map(|capacity| capacity.in_measures[measure]);
@@ -166,13 +166,13 @@ fn scatter<'a>(
 
 /// Computes the efficiency of each measure of intensity, the best first, with intervals. Records that do not
 /// overturn the structure are ignored. Empty with fewer than three capacities that are no upper bounds: bounds have the order of the levels.
-pub fn efficiencies(capacities: &[Capacity<'_>]) -> Vec<Efficiency> {
-    let known = |one: &&Capacity<'_>| one.scale.is_some() && !one.at_most;
+pub fn efficiencies(capacities: &[RecordCapacity<'_>]) -> Vec<Efficiency> {
+    let known = |one: &&RecordCapacity<'_>| one.scale.is_some() && !one.at_most;
     if capacities.iter().filter(known).count() < LEAST_CAPACITIES {
         return Vec::new();
     }
     // Draws whole records, because a record and its mirror image are not independent.
-    let records: Vec<&[Capacity<'_>]> = capacities
+    let records: Vec<&[RecordCapacity<'_>]> = capacities
         .chunk_by(|a, b| a.record == b.record)
         .filter(|own| own.iter().any(|capacity| capacity.scale.is_some()))
         .collect();

@@ -15,12 +15,12 @@ mod search;
 pub(crate) mod survival;
 mod varied;
 
-pub use along::{Along, AlongOptions, AlongRow, KeyRange, Summary as AlongSummary};
+pub use along::{Along, AlongOptions, AlongRow, AlongSummary, KeyRange};
 pub(super) use digits::{format_edge, rounded_down, rounded_edge, rounded_range};
 use factors::UNCERTAIN_EDGE_WIDTH;
 pub use factors::{EDGE_WIDTH, Factors, SearchedFactors, onset_factor};
 pub use picture::draw;
-pub use report::{FILES, Summary};
+pub use report::{FILES, ThresholdSummary};
 pub use survival::{Survival, VerdictRange, survival_in_words};
 use varied::repeat_governing;
 pub use varied::{VariedThreshold, vary};

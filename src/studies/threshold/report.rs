@@ -36,7 +36,7 @@ pub const FILES: [&str; 4] = [
 /// Report on the thresholds of scenarios that differ only in their models of motion.
 #[derive(Serialize, Deserialize, Template)]
 #[template(path = "studies/threshold/words.txt")]
-pub struct Summary {
+pub struct ThresholdSummary {
     /// Name of the program.
     program: String,
     /// Version of the program.
@@ -215,7 +215,7 @@ pub fn report(
     let falls = ground_falls(thresholds);
     let (ground, gravity_m_s2) = (scenario.ground_motion(), scenario.gravity_m_s2());
     let unlikely = Scenario::unlikely_of_all(scenarios, &factors.varied());
-    let report = Summary {
+    let report = ThresholdSummary {
         program: env!("CARGO_PKG_NAME").to_owned(),
         version: env!("CARGO_PKG_VERSION").to_owned(),
         record: match scenario.ground.as_ref() {
@@ -309,7 +309,7 @@ fn limits(models: &[ModelSummary], frictions: Vec<Option<FrictionCondition>>) ->
     warnings
 }
 
-impl Report for Summary {
+impl Report for ThresholdSummary {
     fn verdict(&self) -> String {
         let mut lines = Vec::new();
         for model in &self.models {

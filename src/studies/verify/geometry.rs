@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
 use crate::mechanics::masonry::{Fill, FillLevel};
-use crate::mechanics::{PlacedLoad, Shape};
+use crate::mechanics::{MasonryShape, PlacedLoad};
 use crate::scenario::{Scenario, Structure};
 use crate::{Masonry, Row};
 
@@ -142,7 +142,7 @@ impl Geometry {
                 let rows = [&filled, &bare].map(|one| one.as_ref().map(|one| &one.row));
                 geometry.shape = masonry.shape.name().to_owned();
                 let given = match &masonry.shape {
-                    Shape::Blocks(given) => &*given.density_kg_m3,
+                    MasonryShape::Blocks(given) => &*given.density_kg_m3,
                     _ => &[],
                 };
                 let [left, right] = masonry.springing_joints().unwrap_or([0, usize::MAX]);

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::mechanism::Mechanism;
+use super::mechanism::CheckedMechanism;
 use super::spectrum::Spectrum;
 use super::{CheckInput, SideCheck, VerifyError};
 use crate::dynamics::Details;
@@ -33,7 +33,7 @@ const AFTER_S: f64 = 10.0;
 
 /// The largest displacement to one side under a record.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Peak {
+pub struct RecordPeak {
     /// The largest displacement, in metres; `None` if the structure overturns to that side, or a history ended too early.
     pub peak_m: Option<f64>,
     /// True if the structure overturned to that side.
@@ -56,7 +56,7 @@ pub struct RecordPeaks {
     pub peak_g: f64,
     /// Peaks to each checked side.
     #[serde(flatten)]
-    pub peaks: BTreeMap<Sway, Peak>,
+    pub peaks: BTreeMap<Sway, RecordPeak>,
     /// Largest excess of the thrust line of four links up to the largest rotation, over the thickness; `None` for a column.
     pub thrust_excess_ratio: Option<f64>,
 }
@@ -163,7 +163,7 @@ fn all_pass(
 pub(super) fn histories(
     input: &CheckInput<'_>,
     (state, rule, spectrum): (LimitState, &StateRule, &Spectrum),
-    mechanisms: &BTreeMap<Sway, Mechanism>,
+    mechanisms: &BTreeMap<Sway, CheckedMechanism>,
     sides: &BTreeMap<Sway, SideCheck>,
 ) -> Result<Option<Histories>, VerifyError> {
     let (scenario, gravity_m_s2) = (input.scenario, input.gravity_m_s2);
@@ -193,7 +193,7 @@ pub(super) fn histories(
     let records = found.map_err(|error| failed(error.to_string()))?;
     let model_check = ModelCheck::of(records.iter().map(|one| one.thrust_excess_ratio));
     let results = mechanisms.iter().map(|(sway, mechanism)| {
-        let peaks: Vec<Peak> = records.iter().map(|one| one.peaks[sway]).collect();
+        let peaks: Vec<RecordPeak> = records.iter().map(|one| one.peaks[sway]).collect();
         let d0_m = mechanism.d0_m.unwrap_or_default();
         let capacity_m = rule.part_of_d0 * d0_m / rule.divide_displacement;
         let side = HistorySide {
@@ -243,7 +243,7 @@ fn record_peaks(
     input: &CheckInput<'_>,
     model: &dyn MechanismModel,
     series: &Series,
-    mechanisms: &BTreeMap<Sway, Mechanism>,
+    mechanisms: &BTreeMap<Sway, CheckedMechanism>,
 ) -> Result<RecordPeaks, SimulationError> {
     let scenario = input.scenario;
     let both = in_parallel(&[1.0, -1.0], |sign| {
@@ -256,13 +256,13 @@ fn record_peaks(
         peaks(model, &ground, &request, mechanisms)
     });
     let both = both.into_iter();
-    let both = both.collect::<Result<Vec<(Sides<Peak>, Option<f64>)>, _>>()?;
+    let both = both.collect::<Result<Vec<(Sides<RecordPeak>, Option<f64>)>, _>>()?;
     let larger = |sway: Sway| {
         let (one, other) = (both[0].0.get(sway), both[1].0.get(sway));
         let overturned = one.overturned || other.overturned;
         let incomplete = one.incomplete || other.incomplete;
         let displacement_m = one.displacement_m.max(other.displacement_m);
-        Peak {
+        RecordPeak {
             peak_m: (!overturned && !incomplete).then_some(displacement_m),
             overturned,
             incomplete,
@@ -282,7 +282,7 @@ fn record_peaks(
 }
 
 fn history_side(
-    peaks: &[Peak],
+    peaks: &[RecordPeak],
     records_outside_model: usize,
     [capacity_m, d0_m]: [f64; 2],
     confidence_factor: f64,
@@ -303,7 +303,7 @@ fn history_side(
         interval(means.collect())
     });
     let [(beyond, passed), (beyond_fc, passed_fc)] = [1.0, confidence_factor].map(|divisor| {
-        let exceeds = |peak: &&Peak| peak.overturned || peak.displacement_m > d0_m / divisor;
+        let exceeds = |peak: &&RecordPeak| peak.overturned || peak.displacement_m > d0_m / divisor;
         let exceeded = peaks.iter().filter(exceeds).count();
         let passes = !overturned && exceeded == 0 && least_m <= capacity_m / divisor;
         // Later peaks of an incomplete history can only be larger, and four links outside their model are not on the safe side, so a failure is final.
@@ -331,17 +331,17 @@ fn peaks(
     model: &dyn MechanismModel,
     ground: &GroundMotion,
     request: &Request,
-    mechanisms: &BTreeMap<Sway, Mechanism>,
-) -> Result<(Sides<Peak>, Option<f64>), SimulationError> {
+    mechanisms: &BTreeMap<Sway, CheckedMechanism>,
+) -> Result<(Sides<RecordPeak>, Option<f64>), SimulationError> {
     let summary = model.simulate(ground, request, None)?;
     let shifts_kg_m = match &summary.details {
         Details::Mechanisms(of) => of.largest_shifts_kg_m,
         Details::Rigid(_) | Details::Elastic(..) => Sides::default(),
     };
-    let mut peaks = Sides::of(|sway| Peak {
+    let mut peaks = Sides::of(|sway| RecordPeak {
         displacement_m: (mechanisms.get(&sway))
             .map_or(0.0, |own| shifts_kg_m.get(sway) / own.m_star_kg),
-        ..Peak::default()
+        ..RecordPeak::default()
     });
     match summary.outcome {
         Outcome::Overturned(sway) => peaks.to_mut(sway).overturned = true,

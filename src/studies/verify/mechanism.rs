@@ -32,7 +32,7 @@ pub struct PlacedHinge {
 
 /// A rigid body of a mechanism, with its virtual displacement per unit displacement of the common centre.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Body {
+pub struct MechanismBody {
     /// Mass of the body, with the fill and loads that it carries, in kg.
     pub mass_kg: f64,
     /// Weight of the body, in kN.
@@ -99,7 +99,7 @@ impl ConstantForce {
 
 /// Joints that slide before the mechanism without sliding forms.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Sliding {
+pub struct Slide {
     /// Friction coefficient of the joints.
     pub coefficient: f64,
     /// Upper bound of the acceleration at which joints slide, in g, by associated limit analysis; zero if they slide under the weight of the
@@ -127,11 +127,11 @@ const PRINTED_PARTS: [f64; 3] = [0.4, 0.6, 1.0];
 
 /// The mechanism that starts to one side.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Mechanism {
+pub struct CheckedMechanism {
     /// Hinges from left to right.
     pub hinges: Vec<PlacedHinge>,
     /// Rigid bodies from left to right; the virtual displacement of their common centre is one.
-    pub bodies: Vec<Body>,
+    pub bodies: Vec<MechanismBody>,
     /// Ties, with their elongation for that displacement.
     pub ties: Vec<HeldTie>,
     /// Constant forces, with the displacements of their points; absent without such forces.
@@ -184,7 +184,7 @@ pub struct Mechanism {
     pub no_curve: Option<NoCurve>,
     /// Joints that slide before this mechanism forms, so that it does not count; absent unless they do.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub sliding: Option<Sliding>,
+    pub sliding: Option<Slide>,
     /// The body to which each block of a row belongs; for pictures of a mechanism without a curve.
     #[serde(skip)]
     pub body_of_block: Vec<Option<usize>>,
@@ -366,9 +366,9 @@ impl CapacityCurves {
     }
 }
 
-impl Mechanism {
+impl CheckedMechanism {
     /// Makes the mechanism without sliding. If joints slide first, it has no capacity curve.
-    fn new(mut found: VirtualMechanism, sliding: Option<Sliding>, input: &CheckInput<'_>) -> Self {
+    fn new(mut found: VirtualMechanism, sliding: Option<Slide>, input: &CheckInput<'_>) -> Self {
         if sliding.is_some() {
             found.curves = Err(NoCurve::Slides);
         }
@@ -376,7 +376,7 @@ impl Mechanism {
         let alpha0 = found.alpha0();
         let participation = Participation::of_bodies(&found.bodies);
         let scale = displacement_factor(&found.bodies);
-        let bodies = found.bodies.iter().enumerate().map(|(index, body)| Body {
+        let body = |(index, body): (usize, &MovingBody)| MechanismBody {
             mass_kg: body.mass_kg,
             weight_kn: weight_kn(body.mass_kg),
             // Adding zero makes a negative zero positive.
@@ -386,9 +386,9 @@ impl Mechanism {
             delta_y: body.displacement.y * scale,
             rotation_per_m: body.rotation * scale,
             blocks: found.blocks_of(index),
-        });
-        let bodies: Vec<Body> = bodies.collect();
-        let sum = |term: fn(&Body) -> f64| -> f64 {
+        };
+        let bodies: Vec<MechanismBody> = found.bodies.iter().enumerate().map(body).collect();
+        let sum = |term: fn(&MechanismBody) -> f64| -> f64 {
             let terms = bodies.iter().map(|body| body.weight_kn * term(body));
             terms.sum()
         };
@@ -623,7 +623,7 @@ const CUT: usize = 60;
 const BOUND_TOLERANCE: f64 = 1e-6;
 
 /// Finds the slide of the joints of a row to one side, if its bound is below the load multiplier `alpha0` of the mechanism without sliding.
-fn find_slide(row: &Row, coefficient: f64, sway: Sway, alpha0: f64) -> Option<Sliding> {
+fn find_slide(row: &Row, coefficient: f64, sway: Sway, alpha0: f64) -> Option<Slide> {
     let bound_g = match friction::onset(row, coefficient, sway) {
         Ok(Some(onset)) => {
             let governs = onset.sliding_governs() && onset.acceleration_g < alpha0;
@@ -632,16 +632,16 @@ fn find_slide(row: &Row, coefficient: f64, sway: Sway, alpha0: f64) -> Option<Sl
         Err(FrictionError::CannotStand(_)) => 0.0,
         Ok(None) | Err(_) => return None,
     };
-    Some(Sliding {
+    Some(Slide {
         coefficient,
         bound_g,
     })
 }
 
 /// Gives both sides the larger of two bounds that differ only by the tolerance of the linear program.
-fn equalise(mechanisms: &mut BTreeMap<Sway, Mechanism>) {
+fn equalise(mechanisms: &mut BTreeMap<Sway, CheckedMechanism>) {
     let slides = mechanisms.values_mut();
-    let mut slides: Vec<&mut Sliding> = slides.filter_map(|one| one.sliding.as_mut()).collect();
+    let mut slides: Vec<&mut Slide> = slides.filter_map(|one| one.sliding.as_mut()).collect();
     if let [one, other] = &mut slides[..] {
         let larger_g = one.bound_g.max(other.bound_g);
         if (one.bound_g - other.bound_g).abs() <= BOUND_TOLERANCE * larger_g {
@@ -654,7 +654,9 @@ fn equalise(mechanisms: &mut BTreeMap<Sway, Mechanism>) {
 ///
 /// # Errors
 /// When the structure cannot stand, or no acceleration moves it to a side.
-pub(super) fn mechanisms(input: &CheckInput<'_>) -> Result<BTreeMap<Sway, Mechanism>, VerifyError> {
+pub(super) fn mechanisms(
+    input: &CheckInput<'_>,
+) -> Result<BTreeMap<Sway, CheckedMechanism>, VerifyError> {
     let structure = &input.scenario.structure;
     let coefficient = input.allowed_friction;
     let none =
@@ -684,7 +686,7 @@ pub(super) fn mechanisms(input: &CheckInput<'_>) -> Result<BTreeMap<Sway, Mechan
         };
         let joints = row.as_ref().ok().or(cut.as_ref());
         let slides = joints.and_then(|row| find_slide(row, coefficient, sway, found.alpha0()));
-        Ok((sway, Mechanism::new(found, slides, input)))
+        Ok((sway, CheckedMechanism::new(found, slides, input)))
     };
     let checked = match input.settings.sides {
         CheckedSides::Both => Sway::ALL,
@@ -692,7 +694,8 @@ pub(super) fn mechanisms(input: &CheckInput<'_>) -> Result<BTreeMap<Sway, Mechan
         CheckedSides::Left => &[Sway::Left],
     };
     let mechanisms = checked.iter().copied().map(of);
-    let mut mechanisms = mechanisms.collect::<Result<BTreeMap<Sway, Mechanism>, VerifyError>>()?;
+    let mut mechanisms =
+        mechanisms.collect::<Result<BTreeMap<Sway, CheckedMechanism>, VerifyError>>()?;
     equalise(&mut mechanisms);
     Ok(mechanisms)
 }

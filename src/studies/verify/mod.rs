@@ -1,7 +1,7 @@
 //! A check of local mechanisms by the Circolare 7/2019, C8.7.1.2.1, with the spectra of NTC 2018.
 //!
 //! The mechanism that starts to one side is a chain of rigid bodies ([`Mechanism`]). Its load multiplier, participating mass and capacity curve
-//! are compared with a spectrum ([`Spectrum`]) at each limit state. The [`Summary`] has every number and verdict; words, notes and the printed
+//! are compared with a spectrum ([`Spectrum`]) at each limit state. The [`VerifySummary`] has every number and verdict; words, notes and the printed
 //! page are templates that read the summary. Where the text of the Circolare leaves a choice, the notes state the decision.
 
 mod geometry;
@@ -32,17 +32,17 @@ use crate::scenario::{
 };
 use crate::studies::report::Warnings;
 pub use geometry::{FillGeometry, Geometry, LoadAt, PlacedBlock, RingGeometry};
-pub use histories::{ComparedPeak, Histories, HistorySide, MeanSpectrum, Peak, RecordPeaks};
+pub use histories::{ComparedPeak, Histories, HistorySide, MeanSpectrum, RecordPeak, RecordPeaks};
 pub use mechanism::{
-    Body, CapacityCurves, HeldTie, Mechanism, NoCurve, PlacedHinge, Position, Sliding,
+    CapacityCurves, CheckedMechanism, HeldTie, MechanismBody, NoCurve, PlacedHinge, Position, Slide,
 };
-pub use report::{FILES, Page, SidePictures, page_of, report, words};
+pub use report::{FILES, SidePictures, VerifyPage, page_of, report, words};
 pub use side::{
-    ActivationCheck, DisplacementCheck, GoverningSide, Margin, Method, SideCheck, SimplifiedCheck,
-    SlidingCheck, Verdict,
+    ActivationCheck, CheckVerdict, DisplacementCheck, GoverningSide, Margin, Method, SideCheck,
+    SimplifiedCheck, SlidingCheck,
 };
 use side::{SideOutcome, equal_numbers};
-pub use spectrum::{FloorMode, FloorOrdinates, Ground, Spectrum};
+pub use spectrum::{FloorMode, FloorOrdinates, Spectrum, SpectrumGround};
 
 /// Friction coefficient that the Circolare gives for walls (C8.7.1.2.1.2).
 pub const FRICTION: f64 = 0.577;
@@ -91,7 +91,7 @@ pub enum VerifyError {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StateCheck {
     /// The verdict.
-    pub verdict: Verdict,
+    pub verdict: CheckVerdict,
     /// The governing result; `None` if the state cannot be checked, or joints slide first to a side.
     pub zeta_e: Option<f64>,
     /// The governing side.
@@ -131,7 +131,7 @@ pub struct Decision {
 /// The check of a scenario by the Circolare 7/2019.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Template)]
 #[template(source = "{{ self.words() }}", ext = "txt")]
-pub struct Summary {
+pub struct VerifySummary {
     /// Name of the program.
     pub program: Cow<'static, str>,
     /// Version of the program.
@@ -150,7 +150,7 @@ pub struct Summary {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub no_zeta_e_because: Option<String>,
     /// The verdict on each limit state of the demand.
-    pub verdict: BTreeMap<LimitState, Verdict>,
+    pub verdict: BTreeMap<LimitState, CheckVerdict>,
     /// Confidence factor FC, by which accelerations are divided.
     pub confidence_factor: f64,
     /// Behaviour factor q of the simplified check.
@@ -167,7 +167,7 @@ pub struct Summary {
     /// Largest friction coefficient that joints may need: that of the Circolare, or that of the scenario if it is smaller.
     pub allowed_friction: f64,
     /// The mechanism to each side.
-    pub mechanisms: BTreeMap<Sway, Mechanism>,
+    pub mechanisms: BTreeMap<Sway, CheckedMechanism>,
     /// The limit states of the demand.
     pub states: BTreeMap<LimitState, StateCheck>,
     /// The warnings.
@@ -212,7 +212,7 @@ struct CheckInput<'a> {
 ///
 /// # Errors
 /// When there is no demand, no mechanism or no possible check, or a spectrum of points ends at too small a period.
-pub fn verify(scenario: &Scenario) -> Result<Summary, VerifyError> {
+pub fn verify(scenario: &Scenario) -> Result<VerifySummary, VerifyError> {
     let demand = scenario.demand.clone().ok_or(VerifyError::NoDemand)?;
     let known = scenario.check_restitution();
     known.map_err(VerifyError::NoRestitution)?;
@@ -240,7 +240,7 @@ pub fn verify(scenario: &Scenario) -> Result<Summary, VerifyError> {
         states.insert(state, one);
     }
     let mut ultimate = states.range(LimitState::Slv..);
-    if ultimate.all(|(_, one)| one.verdict == Verdict::NotChecked) {
+    if ultimate.all(|(_, one)| one.verdict == CheckVerdict::NotChecked) {
         let why = mechanisms.values().find_map(|one| one.no_curve.clone());
         return Err(VerifyError::NoCurve(
             why.map_or_else(String::new, String::from),
@@ -250,7 +250,7 @@ pub fn verify(scenario: &Scenario) -> Result<Summary, VerifyError> {
     let formulas = "Circolare 7/2019, C8.7.1.2.1, with the spectra of NTC 2018";
     let results = states.values().filter_map(|one| one.zeta_e);
     let verdicts = states.iter().map(|(state, one)| (*state, one.verdict));
-    let mut summary = Summary {
+    let mut summary = VerifySummary {
         program: env!("CARGO_PKG_NAME").into(),
         version: env!("CARGO_PKG_VERSION").into(),
         title: scenario.title.as_deref().map(str::to_owned),
@@ -338,7 +338,7 @@ impl CheckInput<'_> {
     fn state(
         &self,
         state: LimitState,
-        mechanisms: &BTreeMap<Sway, Mechanism>,
+        mechanisms: &BTreeMap<Sway, CheckedMechanism>,
         sld: Option<&StateCheck>,
     ) -> Result<StateCheck, VerifyError> {
         let rule = self.rule(state);
@@ -389,7 +389,7 @@ impl CheckInput<'_> {
         let slides = sides.values().any(|side| side.sliding.is_some());
         let outcome = governing.map(|(_, outcome)| outcome);
         Ok(StateCheck {
-            verdict: outcome.map_or(Verdict::NotChecked, |outcome| outcome.verdict),
+            verdict: outcome.map_or(CheckVerdict::NotChecked, |outcome| outcome.verdict),
             zeta_e: outcome.filter(|_| !slides).map(|outcome| outcome.ratio),
             side: governing.map(|(side, _)| side),
             method: outcome.map(|outcome| outcome.method),
@@ -422,7 +422,7 @@ impl CheckInput<'_> {
     /// Checks the onset of motion by C8.7.1.2.1.5: with [C8.7.1.8] if walls hold the structure, with [C8.7.1.9] if it is free to vibrate.
     fn activation(
         &self,
-        mechanism: &Mechanism,
+        mechanism: &CheckedMechanism,
         spectrum: &Spectrum,
     ) -> Result<ActivationCheck, PeriodOutOfRange> {
         let capacity_g = mechanism.a0_over_fc_g;
@@ -489,10 +489,12 @@ impl CheckInput<'_> {
             by_displacement_ag_g: by_displacement.ag_capacity_g,
             activation_governs: activation_ag_g.is_some(),
             ag_capacity_following_g: match spectrum {
-                Spectrum::Ground(Ground { spectrum, .. }) => following_g(spectrum, |ground| {
-                    ground.largest_displacement_m(period_s, damping_percent, gravity_m_s2)
-                        >= capacity_m
-                }),
+                Spectrum::Ground(SpectrumGround { spectrum, .. }) => {
+                    following_g(spectrum, |ground| {
+                        ground.largest_displacement_m(period_s, damping_percent, gravity_m_s2)
+                            >= capacity_m
+                    })
+                }
                 Spectrum::Floor { .. } | Spectrum::Points { .. } => None,
             },
             zeta_e_crown: crown.map(|(capacity_m, .., demand_m)| capacity_m / demand_m),

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use nalgebra::Vector2;
 
-use super::{Body, Mechanism, Summary};
+use super::{CheckedMechanism, MechanismBody, VerifySummary};
 use crate::mechanics::quarter_turn;
 use crate::output::elevation::{BODIES, SheetTransform, View, draw_dimensions, room_px};
 use crate::output::{
@@ -24,7 +24,7 @@ pub(super) fn mechanism(
     language: Language,
     structure: &Structure,
     sway: Sway,
-    mechanism: &Mechanism,
+    mechanism: &CheckedMechanism,
 ) -> String {
     let scene = match structure.row() {
         Ok(row) if !mechanism.body_of_block.is_empty() => Scene::of_row(&row, structure),
@@ -52,7 +52,7 @@ fn draw_mechanism(
     drawing: &mut Drawing,
     place: SheetTransform,
     scene: &Scene,
-    (sway, mechanism): (Sway, &Mechanism),
+    (sway, mechanism): (Sway, &CheckedMechanism),
 ) {
     let px = |point_m: Vector2<f64>| place.px(point_m);
     let [low, high] = scene.frame_m();
@@ -75,7 +75,7 @@ fn draw_mechanism(
     });
     view.draw_loads(drawing, None, false);
     view.draw_ties(drawing);
-    let moves = |body: &Body| Vector2::new(sway.sign() * body.delta_x, -body.delta_y);
+    let moves = |body: &MechanismBody| Vector2::new(sway.sign() * body.delta_x, -body.delta_y);
     let fastest = mechanism.bodies.iter().map(|body| moves(body).norm());
     let fastest = fastest.fold(f64::MIN_POSITIVE, f64::max);
     let arrow = Stroke::new(color::BLUE, 1.6, "");
@@ -112,9 +112,9 @@ fn draw_mechanism(
 /// of their periods. `None` without a curve.
 pub(super) fn capacity(
     figure: Figure,
-    check: &Summary,
+    check: &VerifySummary,
     sway: Sway,
-    mechanism: &Mechanism,
+    mechanism: &CheckedMechanism,
 ) -> Option<String> {
     let (curve, end_m) = (mechanism.curve_m_g.as_ref()?, mechanism.d0_m?);
     let divided = |[d_m, a_g]: &[f64; 2]| (*d_m, a_g / check.confidence_factor);

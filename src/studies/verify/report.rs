@@ -1,6 +1,6 @@
 //! The report of a check: the numbers in JSON, and words, notes and a page that prints on A4 as templates.
 //!
-//! Every number of the page is a rounded number of the [`Summary`], in an element `data` that holds the full value.
+//! Every number of the page is a rounded number of the [`VerifySummary`], in an element `data` that holds the full value.
 
 use std::collections::BTreeMap;
 
@@ -11,9 +11,9 @@ use serde_json::{Value, json};
 
 use super::histories::{FOR_THE_MEAN, SPECTRUM_MARGIN};
 use super::{
-    ComparedPeak, Decision, FRICTION, FloorMode, FloorOrdinates, GoverningSide, HighestPoint,
-    Histories, Mechanism, Method, PlacedHinge, SlidingCheck, Spectrum, StateCheck, Summary,
-    Verdict, equal_numbers, picture,
+    CheckVerdict, CheckedMechanism, ComparedPeak, Decision, FRICTION, FloorMode, FloorOrdinates,
+    GoverningSide, HighestPoint, Histories, Method, PlacedHinge, SlidingCheck, Spectrum,
+    StateCheck, VerifySummary, equal_numbers, picture,
 };
 use crate::clock;
 use crate::dynamics::MODEL_LIMIT;
@@ -39,15 +39,15 @@ const MOST_POINTS: usize = 40;
 ///
 /// # Errors
 /// When a value is not finite.
-pub fn report(scenario: &Scenario, check: &Summary) -> Result<Results, OutputError> {
+pub fn report(scenario: &Scenario, check: &VerifySummary) -> Result<Results, OutputError> {
     let today = clock::since_1970().map(|since| date_of(since.as_secs() / 86_400));
-    let page = Page::new(scenario, check, today);
+    let page = VerifyPage::new(scenario, check, today);
     let results = Results::of("verify.json", check)?.with_file("verify.html", page.html());
     Ok(results.in_order(&FILES))
 }
 
 /// Returns the verdict in a sentence, then the result for each limit state, with the governing side.
-pub fn words(check: &Summary) -> String {
+pub fn words(check: &VerifySummary) -> String {
     render(check)
 }
 
@@ -58,10 +58,10 @@ pub fn words(check: &Summary) -> String {
     ext = "txt"
 )]
 struct Sentence<'a> {
-    check: &'a Summary,
+    check: &'a VerifySummary,
 }
 
-impl Report for Summary {
+impl Report for VerifySummary {
     const IS_TABLE: bool = true;
 
     fn verdict(&self) -> String {
@@ -76,9 +76,9 @@ impl Report for Summary {
 /// The printed page.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, Template)]
 #[template(path = "studies/verify/page.html")]
-pub struct Page {
+pub struct VerifyPage {
     /// The check.
-    pub check: Summary,
+    pub check: VerifySummary,
     /// Date of the check, such as 2025-01-31; `None` if it is unknown.
     pub date: Option<String>,
     /// Pictures of the printed sides: one if the left side is the mirror image of the right one.
@@ -99,14 +99,14 @@ pub struct SidePictures {
 /// Makes the HTML of a page again from its JSON.
 ///
 /// # Errors
-/// When the JSON is not that of a [`Page`].
+/// When the JSON is not that of a [`VerifyPage`].
 pub fn page_of(json: &str) -> serde_json::Result<String> {
-    serde_json::from_str(json).map(|page: Page| page.html())
+    serde_json::from_str(json).map(|page: VerifyPage| page.html())
 }
 
-impl Page {
+impl VerifyPage {
     /// Makes the page of a check.
-    pub fn new(scenario: &Scenario, check: &Summary, date: Option<String>) -> Self {
+    pub fn new(scenario: &Scenario, check: &VerifySummary, date: Option<String>) -> Self {
         let mut figure: Figure = "78mm".parse().expect("a width of a figure");
         figure.decimal_mark = check.language.decimal_mark();
         let drawn = |(sway, mechanism): (&Sway, _)| {
@@ -157,7 +157,7 @@ impl Page {
     }
 
     /// Returns every fifth point of a capacity curve in rows of three, which continue downwards.
-    fn curve_rows(&self, one: &Mechanism) -> Vec<Vec<[f64; 2]>> {
+    fn curve_rows(&self, one: &CheckedMechanism) -> Vec<Vec<[f64; 2]>> {
         let points: Vec<[f64; 2]> = one.curve_m_g.iter().flatten().step_by(5).copied().collect();
         let rows = points.len().div_ceil(3).max(1);
         let row = |row| points.iter().skip(row).step_by(rows).copied().collect();
@@ -167,7 +167,7 @@ impl Page {
     /// Returns the hinges with their letters on the picture.
     fn hinge_letters<'a>(
         &self,
-        one: &'a Mechanism,
+        one: &'a CheckedMechanism,
     ) -> impl Iterator<Item = (char, &'a PlacedHinge)> {
         ('A'..='Z').zip(&one.hinges)
     }
@@ -214,7 +214,7 @@ const WORDS: [[&str; 2]; 8] = [
 #[derive(Template)]
 #[template(path = "studies/verify/words.txt")]
 struct Words<'a> {
-    check: &'a Summary,
+    check: &'a VerifySummary,
 }
 
 impl Words<'_> {
@@ -229,7 +229,7 @@ impl Words<'_> {
     }
 }
 
-impl Summary {
+impl VerifySummary {
     /// Returns the words of the check.
     pub(super) fn words(&self) -> String {
         render_in(&Words { check: self }, self.language)
@@ -253,13 +253,13 @@ impl Summary {
     }
 
     /// Returns the printed sides to which joints slide first.
-    pub(super) fn sliding_sides(&self) -> Vec<(&Sway, &Mechanism)> {
+    pub(super) fn sliding_sides(&self) -> Vec<(&Sway, &CheckedMechanism)> {
         let printed = self.mechanisms.iter().take(self.printed_sides());
         printed.filter(|(_, one)| one.sliding.is_some()).collect()
     }
 
     /// Returns the limit states with this verdict.
-    pub(super) fn states_with(&self, verdict: Verdict) -> Vec<(&LimitState, &StateCheck)> {
+    pub(super) fn states_with(&self, verdict: CheckVerdict) -> Vec<(&LimitState, &StateCheck)> {
         let states = self.states.iter();
         states.filter(|(_, one)| one.verdict == verdict).collect()
     }
@@ -284,7 +284,7 @@ impl Summary {
     ext = "txt"
 )]
 struct NoRatio<'a> {
-    check: &'a Summary,
+    check: &'a VerifySummary,
 }
 
 /// The notes, one per line, in four paragraphs.
@@ -295,7 +295,7 @@ struct NoRatio<'a> {
     ext = "txt"
 )]
 struct Notes<'a> {
-    check: &'a Summary,
+    check: &'a VerifySummary,
     /// Keys of records whose histories are not computed, because joints slide first.
     unused_records: &'a [&'static str],
 }
@@ -327,7 +327,7 @@ impl Notes<'_> {
 
 /// Adds decisions, assumptions, gaps and warnings to a check, and the reason if it has no `zeta_E`. `unused_records` are
 /// the keys of records whose histories are not computed.
-pub(super) fn add_notes(check: &mut Summary, unused_records: &[&'static str]) {
+pub(super) fn add_notes(check: &mut VerifySummary, unused_records: &[&'static str]) {
     if check.zeta_e.is_none() {
         let why = render_in(&NoRatio { check }, check.language);
         check.no_zeta_e_because = Some(why.trim().to_owned());
@@ -354,7 +354,7 @@ pub(super) fn add_notes(check: &mut Summary, unused_records: &[&'static str]) {
 
 /// Returns true if the left side is the mirror image of the right one, including all numbers.
 pub(super) fn are_mirrored(
-    mechanisms: &BTreeMap<Sway, Mechanism>,
+    mechanisms: &BTreeMap<Sway, CheckedMechanism>,
     states: &BTreeMap<LimitState, StateCheck>,
 ) -> bool {
     let both = [Sway::Right, Sway::Left].map(|sway| mechanisms.get(&sway));

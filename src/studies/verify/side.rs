@@ -111,7 +111,7 @@ pub struct SlidingCheck {
     /// Acceleration demanded, in g: that of the check of the onset of motion, with the spectrum of the limit state.
     pub demand_g: f64,
     /// `not_passed` if the demand exceeds the bound, `no_answer` otherwise.
-    pub verdict: Verdict,
+    pub verdict: CheckVerdict,
 }
 
 impl SlidingCheck {
@@ -120,8 +120,8 @@ impl SlidingCheck {
             bound_g,
             demand_g,
             verdict: match demand_g > bound_g {
-                true => Verdict::NotPassed,
-                false => Verdict::NoAnswer,
+                true => CheckVerdict::NotPassed,
+                false => CheckVerdict::NoAnswer,
             },
         }
     }
@@ -193,9 +193,9 @@ impl SideCheck {
     }
 
     /// Returns the verdict to this side.
-    pub fn verdict(&self) -> Verdict {
+    pub fn verdict(&self) -> CheckVerdict {
         self.outcome()
-            .map_or(Verdict::NotChecked, |outcome| outcome.verdict)
+            .map_or(CheckVerdict::NotChecked, |outcome| outcome.verdict)
     }
 
     /// Returns the governing method with its verdict; `None` if the side cannot be checked.
@@ -211,8 +211,8 @@ impl SideCheck {
         Some(SideOutcome {
             method,
             verdict: match margin.passed {
-                true => Verdict::Passed,
-                false => Verdict::NotPassed,
+                true => CheckVerdict::Passed,
+                false => CheckVerdict::NotPassed,
             },
             ratio: margin.zeta_e,
         })
@@ -223,7 +223,7 @@ impl SideCheck {
 #[derive(Clone, Copy)]
 pub(super) struct SideOutcome {
     pub(super) method: Method,
-    pub(super) verdict: Verdict,
+    pub(super) verdict: CheckVerdict,
     /// The ratio of capacity to demand; an upper bound if joints slide first.
     pub(super) ratio: f64,
 }
@@ -232,10 +232,10 @@ impl SideOutcome {
     /// Returns true if this side decides rather than another: a side that fails, then a side without an answer, then the smaller ratio.
     pub(super) fn is_worse_than(&self, other: &Self) -> bool {
         let severity = |verdict| match verdict {
-            Verdict::NotPassed => 3,
-            Verdict::NoAnswer => 2,
-            Verdict::NotChecked => 1,
-            Verdict::Passed => 0,
+            CheckVerdict::NotPassed => 3,
+            CheckVerdict::NoAnswer => 2,
+            CheckVerdict::NotChecked => 1,
+            CheckVerdict::Passed => 0,
         };
         let [own, others] = [self, other].map(|one| severity(one.verdict));
         let is_smaller = self.ratio < other.ratio && !equal_numbers(self.ratio, other.ratio);
@@ -246,7 +246,7 @@ impl SideOutcome {
 named! {
     /// The verdict on a limit state.
     #[non_exhaustive]
-    pub enum Verdict {
+    pub enum CheckVerdict {
         /// The capacity reaches the demand.
         Passed = "passed",
         /// The capacity is less than the demand.

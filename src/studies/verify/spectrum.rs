@@ -14,14 +14,14 @@ pub enum Spectrum {
     Floor {
         /// The spectrum of the ground.
         #[serde(flatten)]
-        ground: Ground,
+        ground: SpectrumGround,
         /// The modes of the building.
         modes: Vec<FloorMode>,
         /// Peak acceleration of the floor that carries the mechanism, in g.
         a_z_g: f64,
     },
     /// Spectrum of the ground by NTC 2018. It follows `Floor`, because the first variant that fits is read, and the JSON of a floor fits this one as well.
-    Ground(Ground),
+    Ground(SpectrumGround),
     /// Spectrum given by points.
     Points {
         /// Name of the file of points.
@@ -34,7 +34,7 @@ pub enum Spectrum {
 
 /// The spectrum of the ground by NTC 2018.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Ground {
+pub struct SpectrumGround {
     /// The spectrum.
     #[serde(flatten)]
     pub spectrum: GroundSpectrum,
@@ -69,7 +69,7 @@ pub struct FloorOrdinates {
     pub acceleration_g: f64,
 }
 
-fn floor_spectrum(ground: &Ground, modes: &[FloorMode]) -> FloorSpectrum {
+fn floor_spectrum(ground: &SpectrumGround, modes: &[FloorMode]) -> FloorSpectrum {
     FloorSpectrum {
         ground: ground.spectrum,
         modes: modes.iter().map(|one| one.mode).collect(),
@@ -105,7 +105,7 @@ impl Spectrum {
         };
         let spectrum = GroundSpectrum::new(*code.hazards.get(&state)?, site)
             .expect("the hazards of a scenario are within the ranges of the code");
-        let ground = Ground {
+        let ground = SpectrumGround {
             spectrum,
             peak_displacement_m: spectrum.peak_displacement_m(gravity_m_s2),
         };
@@ -129,7 +129,7 @@ impl Spectrum {
     }
 
     /// Returns the spectrum of the ground; `None` for points.
-    pub const fn ground(&self) -> Option<&Ground> {
+    pub const fn ground(&self) -> Option<&SpectrumGround> {
         match self {
             Self::Ground(ground) | Self::Floor { ground, .. } => Some(ground),
             Self::Points { .. } => None,
@@ -244,7 +244,7 @@ impl Spectrum {
         gravity_m_s2: f64,
     ) -> Result<f64, PeriodOutOfRange> {
         Ok(match self {
-            Self::Ground(Ground { spectrum, .. }) => {
+            Self::Ground(SpectrumGround { spectrum, .. }) => {
                 spectrum.largest_displacement_m(period_s, damping_percent, gravity_m_s2)
             }
             Self::Floor { ground, modes, .. } => {

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::motion::{ElasticMotion, SlidingSupport, Step};
+use super::motion::{ElasticMotion, ElasticStep, SlidingSupport};
 use super::stillness::Stillness;
 use crate::dynamics::ground::FeetApart;
 use crate::dynamics::recorder::Recorder;
@@ -110,7 +110,7 @@ impl<'a> Lane<'a> {
     }
 
     /// Advances the clock by one step, and returns the step.
-    pub fn next(&mut self, damping_time_s: f64) -> Step<Lanes<1>> {
+    pub fn next(&mut self, damping_time_s: f64) -> ElasticStep<Lanes<1>> {
         let step_s = equal_step(
             self.observer.time,
             self.until_s,
@@ -140,17 +140,17 @@ impl<'a> Lane<'a> {
     }
 
     /// Returns a kick up to `to_s`, and the ground velocity at this time, which is constant once the ground is quiet.
-    pub fn kick(&self, to_s: f64) -> (Step<Lanes<1>>, Vector2<f64>) {
+    pub fn kick(&self, to_s: f64) -> (ElasticStep<Lanes<1>>, Vector2<f64>) {
         let ground_m_s = if self.is_shaken() {
             self.velocity.velocity_at(to_s)
         } else {
             self.ground_m_s
         };
         let shift = ground_m_s - self.ground_m_s;
-        let step = Step {
+        let step = ElasticStep {
             kick_s: Lanes([to_s - self.kicked_s]),
             ground_change_m_s: [Lanes([shift.x]), Lanes([shift.y])],
-            ..Step::none()
+            ..ElasticStep::none()
         };
         (step, ground_m_s)
     }

@@ -101,7 +101,7 @@ remembered!(EnergyTerms {
 
 /// Step of all lanes. A lane with zero values does not change.
 #[derive(Clone, Copy)]
-pub struct Step<R> {
+pub struct ElasticStep<R> {
     /// Time between successive positions, in s.
     pub drift_s: R,
     /// Time between successive velocities, in s.
@@ -114,7 +114,7 @@ pub struct Step<R> {
     pub feet_apart_change_m: [R; 2],
 }
 
-remembered!(Step { drift_s, kick_s, damping; ground_change_m_s, feet_apart_change_m });
+remembered!(ElasticStep { drift_s, kick_s, damping; ground_change_m_s, feet_apart_change_m });
 
 /// Movements of the ground in a step of any lane. Absent movements are not computed.
 #[derive(Clone, Copy, Default)]
@@ -210,7 +210,7 @@ impl<'a, const L: usize> ElasticMotion<'a, L> {
     }
 
     /// Takes one step of all lanes, with the widest vectors of the processor. The vector width does not change the results.
-    pub fn step(&mut self, step: &Step<Lanes<L>>, activity: GroundActivity) {
+    pub fn step(&mut self, step: &ElasticStep<Lanes<L>>, activity: GroundActivity) {
         let arch = self.arch;
         arch.dispatch(LeapfrogStep {
             motion: self,
@@ -220,7 +220,7 @@ impl<'a, const L: usize> ElasticMotion<'a, L> {
     }
 
     #[inline(always)]
-    fn leapfrog(&mut self, step: &Step<Lanes<L>>, activity: GroundActivity) {
+    fn leapfrog(&mut self, step: &ElasticStep<Lanes<L>>, activity: GroundActivity) {
         self.kick(step, activity.ground_moves);
         self.drift(step.drift_s);
         if activity.feet_move_apart {
@@ -232,7 +232,7 @@ impl<'a, const L: usize> ElasticMotion<'a, L> {
 
     /// Moves the right support and computes the forces. The work of the support is the mean of its forces before and after times its displacement.
     #[inline(always)]
-    fn move_right_support(&mut self, step: &Step<Lanes<L>>) {
+    fn move_right_support(&mut self, step: &ElasticStep<Lanes<L>>) {
         let right = self.structure.bodies.len() + 1;
         let by_m = step.feet_apart_change_m;
         let support = &mut self.bodies[right];
@@ -246,7 +246,7 @@ impl<'a, const L: usize> ElasticMotion<'a, L> {
 
     /// Updates the velocities to half a step after the positions.
     #[inline(always)]
-    fn kick(&mut self, step: &Step<Lanes<L>>, ground_moves: bool) {
+    fn kick(&mut self, step: &ElasticStep<Lanes<L>>, ground_moves: bool) {
         let mut work = Lanes([0.0; L]);
         let constants = &self.structure.bodies;
         let mut index = 0;
@@ -357,7 +357,7 @@ impl<'a, const L: usize> ElasticMotion<'a, L> {
     /// Computes quantities at the positions, with velocities at the same time after another half kick.
     pub fn observe(
         &self,
-        half: &Step<Lanes<L>>,
+        half: &ElasticStep<Lanes<L>>,
         supports: &[SlidingSupport],
     ) -> Observation<Lanes<L>> {
         let arch = self.arch;
@@ -370,7 +370,7 @@ impl<'a, const L: usize> ElasticMotion<'a, L> {
     #[inline(always)]
     fn observe_lanes(
         &self,
-        half: &Step<Lanes<L>>,
+        half: &ElasticStep<Lanes<L>>,
         supports: &[SlidingSupport],
     ) -> Observation<Lanes<L>> {
         let structure = self.structure;
@@ -443,7 +443,7 @@ impl<'a, const L: usize> ElasticMotion<'a, L> {
 
     /// Returns the velocity and the rotation rate of a body after another half kick.
     #[inline(always)]
-    pub fn velocity(&self, body: usize, half: &Step<Lanes<L>>) -> [Lanes<L>; 3] {
+    pub fn velocity(&self, body: usize, half: &ElasticStep<Lanes<L>>) -> [Lanes<L>; 3] {
         let [per_kg, per_kg_m2] = self.inverses[body];
         let moving = &self.bodies[body];
         let [sideways, upwards] = half.ground_change_m_s;
@@ -500,7 +500,7 @@ impl<'a> ElasticMotion<'a, 1> {
 /// Step to be compiled once for every vector width; with a closure it is a tenth slower.
 struct LeapfrogStep<'m, 'a, const L: usize> {
     motion: &'m mut ElasticMotion<'a, L>,
-    step: &'m Step<Lanes<L>>,
+    step: &'m ElasticStep<Lanes<L>>,
     activity: GroundActivity,
 }
 

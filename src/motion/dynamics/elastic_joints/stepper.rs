@@ -6,7 +6,7 @@ use nalgebra::{Vector2, Vector3};
 
 use super::lane::Lane;
 use super::motion::{
-    ElasticMotion, GroundActivity, Observation, SlidingSupport, Step, joint_bodies,
+    ElasticMotion, ElasticStep, GroundActivity, Observation, SlidingSupport, joint_bodies,
 };
 use crate::dynamics::history::{JointPressure, Stress};
 use crate::dynamics::recorder::Recorder;
@@ -98,7 +98,7 @@ impl<'a, const L: usize> Group<'a, L> {
         begun.observer.least_sway_kg_m =
             begun.observer.least_sway_kg_m.max(SIDE_RATIO * moved_kg_m);
         self.lanes[lane] = Some(begun);
-        let observation = self.motion.observe(&Step::none(), &self.supports);
+        let observation = self.motion.observe(&ElasticStep::none(), &self.supports);
         self.record_lane(lane, &observation);
     }
 
@@ -112,7 +112,7 @@ impl<'a, const L: usize> Group<'a, L> {
     pub fn stride(&mut self) {
         let damping_time_s = self.structure.damping_time_s;
         loop {
-            let mut step = Step::none();
+            let mut step = ElasticStep::none();
             let (mut activity, mut due) = (GroundActivity::default(), false);
             for (index, lane) in self.lanes.iter_mut().enumerate() {
                 let Some(lane) = lane else {
@@ -139,8 +139,8 @@ impl<'a, const L: usize> Group<'a, L> {
     }
 
     /// Returns the half kick from the velocities to the positions.
-    fn half_kick(&self) -> Step<Lanes<L>> {
-        let mut half = Step::none();
+    fn half_kick(&self) -> ElasticStep<Lanes<L>> {
+        let mut half = ElasticStep::none();
         for (index, lane) in self.lanes.iter().enumerate() {
             if let Some(lane) = lane {
                 half.set(index, &lane.kick(lane.observer.time).0);

@@ -44,7 +44,7 @@ impl Intensity {
         }
         let mut state = [0.0; 3];
         for (pair, after) in samples.windows(2).zip(1..) {
-            let line = Line::between(pair[0], pair[1]);
+            let line = LinearPiece::between(pair[0], pair[1]);
             intensity.peaks_within(&line, state);
             state = line.advance(state, line.duration_s);
             intensity.course[after] = state;
@@ -56,7 +56,7 @@ impl Intensity {
                 let target = part * squares;
                 let reached = |course: &[f64; 3]| course[2] < target;
                 let after = intensity.course.partition_point(reached).max(1);
-                let line = Line::between(samples[after - 1], samples[after]);
+                let line = LinearPiece::between(samples[after - 1], samples[after]);
                 line.start_s + line.time_of_squares(target - intensity.course[after - 1][2])
             });
             for course in &mut intensity.course {
@@ -73,7 +73,7 @@ impl Intensity {
     }
 
     /// Records the peaks of velocity and displacement after a state: at the end, and where their rates are zero.
-    fn peaks_within(&mut self, line: &Line, state: [f64; 3]) {
+    fn peaks_within(&mut self, line: &LinearPiece, state: [f64; 3]) {
         let [velocity, ..] = state;
         let turns = roots([line.acceleration, line.slope, 0.0])
             .into_iter()
@@ -89,14 +89,14 @@ impl Intensity {
 }
 
 /// Acceleration between two samples.
-struct Line {
+struct LinearPiece {
     start_s: f64,
     duration_s: f64,
     acceleration: f64,
     slope: f64,
 }
 
-impl Line {
+impl LinearPiece {
     fn between(from: (f64, f64), to: (f64, f64)) -> Self {
         let duration_s = to.0 - from.0;
         let slope = (to.1 - from.1) / duration_s;

@@ -18,7 +18,7 @@ mod velocity;
 pub use error::GroundError;
 pub use intensity::Intensity;
 pub use motion::GroundMotion;
-pub use piece::Piece;
+pub use piece::GroundPiece;
 pub use pulse::{Pulse, PulseShape};
 pub use shape::WaveTrain;
 pub(in crate::dynamics) use velocity::FeetApart;

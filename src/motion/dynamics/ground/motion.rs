@@ -5,7 +5,7 @@ use std::sync::Arc;
 use nalgebra::Vector2;
 
 use super::error::{GroundError, TIME_S};
-use super::piece::{Formula, Piece};
+use super::piece::{Formula, GroundPiece};
 use crate::argument::{ArgumentError, require_within};
 use crate::bisection::{Width, bisect, middle};
 use crate::mechanics::{Row, Supports};
@@ -17,7 +17,7 @@ use crate::mechanics::{Row, Supports};
 #[derive(Clone, Debug, PartialEq)]
 pub struct GroundMotion {
     /// The pieces in order, without gaps, from [`GroundMotion::start_s`] to infinity.
-    pub pieces: Vec<Piece>,
+    pub pieces: Vec<GroundPiece>,
     /// True if the ground stops after the last corner; otherwise it keeps its velocity.
     pub(super) stops: bool,
     /// Ground under the right foot; `None` if both feet move alike.
@@ -47,7 +47,7 @@ impl GroundMotion {
         for (end_s, origin_s, formula) in all {
             // A piece shorter than the resolution of floating-point times vanishes.
             if end_s > piece_start_s {
-                pieces.push(Piece {
+                pieces.push(GroundPiece {
                     start_s: piece_start_s,
                     end_s,
                     origin_s,
@@ -97,7 +97,7 @@ impl GroundMotion {
 
     /// Returns the index of the piece at a time not before the start; at a corner, of the later piece.
     pub(in crate::dynamics) fn piece_at(&self, time_s: f64) -> usize {
-        let starts = |piece: &Piece| piece.start_s <= time_s;
+        let starts = |piece: &GroundPiece| piece.start_s <= time_s;
         self.pieces.partition_point(starts).max(1) - 1
     }
 
@@ -106,7 +106,7 @@ impl GroundMotion {
         match self.pieces.first_mut() {
             Some(first) if start_s < first.start_s && first.is_quiet() => first.start_s = start_s,
             Some(first) if start_s < first.start_s => {
-                let quiet = Piece {
+                let quiet = GroundPiece {
                     start_s,
                     end_s: first.start_s,
                     origin_s: start_s,
@@ -209,13 +209,13 @@ impl GroundMotion {
 
     /// Returns whether the ground ever moves vertically, under either foot.
     pub fn has_vertical(&self) -> bool {
-        let mut ends = self.pieces.iter().flat_map(Piece::ends_m_s2);
+        let mut ends = self.pieces.iter().flat_map(GroundPiece::ends_m_s2);
         ends.any(|end| end.y != 0.0) || self.right_foot().is_some_and(Self::has_vertical)
     }
 
     /// Returns whether the ground ever moves horizontally, under either foot.
     pub fn has_horizontal(&self) -> bool {
-        let mut ends = self.pieces.iter().flat_map(Piece::ends_m_s2);
+        let mut ends = self.pieces.iter().flat_map(GroundPiece::ends_m_s2);
         ends.any(|end| end.x != 0.0) || self.right_foot().is_some_and(Self::has_horizontal)
     }
 
@@ -244,7 +244,7 @@ impl GroundMotion {
     /// Returns the factor on this motion from which the ground falls as fast as a free body at some time, under either foot; `None` if it never
     /// accelerates downwards.
     pub fn free_fall_factor(&self, gravity_m_s2: f64) -> Option<f64> {
-        let ends = self.pieces.iter().flat_map(Piece::ends_m_s2);
+        let ends = self.pieces.iter().flat_map(GroundPiece::ends_m_s2);
         let down_m_s2 = ends.fold(0.0, |most, end| f64::max(most, -end.y));
         let own = (down_m_s2 > 0.0).then(|| gravity_m_s2 / down_m_s2);
         let right = self.right_foot();
@@ -258,7 +258,7 @@ impl GroundMotion {
     /// When the factor is outside that range.
     pub fn scaled(&self, factor: f64) -> Result<Self, ArgumentError> {
         require_within("factor", factor, -1e9..=1e9)?;
-        let pieces = self.pieces.iter().map(|piece| Piece {
+        let pieces = self.pieces.iter().map(|piece| GroundPiece {
             formula: piece.formula.scaled(factor),
             ..*piece
         });
@@ -273,7 +273,7 @@ impl GroundMotion {
     /// Returns the mirror image of this motion: the horizontal accelerations of both feet change sign. Vertical accelerations and delays stay.
     #[must_use]
     pub fn mirrored(&self) -> Self {
-        let pieces = self.pieces.iter().map(|piece| Piece {
+        let pieces = self.pieces.iter().map(|piece| GroundPiece {
             formula: piece.formula.mirrored(),
             ..*piece
         });
@@ -288,7 +288,7 @@ impl GroundMotion {
     pub fn cut_at(&self, times_s: &[f64]) -> Self {
         let mut cut = self.clone();
         for time_s in times_s {
-            let within = |piece: &Piece| piece.start_s < *time_s && *time_s < piece.end_s;
+            let within = |piece: &GroundPiece| piece.start_s < *time_s && *time_s < piece.end_s;
             if let Some(index) = cut.pieces.iter().position(within) {
                 let mut rest = cut.pieces[index];
                 cut.pieces[index].end_s = *time_s;

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::shape::Shape;
+use super::shape::Waveform;
 use crate::mechanics::mirrored;
 
 /// One-sided formula of a piece in the time since its origin, for both components.
@@ -11,7 +11,7 @@ pub enum Formula {
     /// Linear acceleration: value at the origin, and slope.
     Linear(Vector2<f64>, Vector2<f64>),
     /// Amplitude times a shape.
-    Shaped(Vector2<f64>, Shape),
+    Shaped(Vector2<f64>, Waveform),
 }
 
 impl Formula {
@@ -59,7 +59,7 @@ impl Formula {
 
 /// Piece of ground motion: smooth, and every linear combination of its components is monotone.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Piece {
+pub struct GroundPiece {
     /// Start, in seconds.
     pub start_s: f64,
     /// End, in seconds; infinite for the last piece.
@@ -69,7 +69,7 @@ pub struct Piece {
     pub(super) formula: Formula,
 }
 
-impl Piece {
+impl GroundPiece {
     /// Returns the change of the ground velocity from the start of the piece to a time in it, in m/s.
     pub(crate) fn velocity_gained_m_s(&self, time_s: f64) -> Vector2<f64> {
         let (from_s, to_s) = (self.start_s - self.origin_s, time_s - self.origin_s);
@@ -82,7 +82,7 @@ impl Piece {
         self.formula.acceleration_and_rate(time_s - self.origin_s)
     }
 
-    /// Returns the horizontal acceleration in m/s2, as [`Piece::acceleration_and_rate`].
+    /// Returns the horizontal acceleration in m/s2, as [`GroundPiece::acceleration_and_rate`].
     pub fn acceleration_m_s2(&self, time_s: f64) -> f64 {
         self.acceleration_and_rate(time_s).0.x
     }

@@ -8,7 +8,7 @@ use nalgebra::Vector2;
 use super::error::{ACCELERATION_M_S2, DURATION_S, GroundError, TIME_S};
 use super::motion::GroundMotion;
 use super::piece::Formula;
-use super::shape::{Gabor, Shape, Sine, WaveTrain};
+use super::shape::{Gabor, Sine, WaveTrain, Waveform};
 use crate::argument::require_within;
 
 named! {
@@ -114,7 +114,7 @@ pub struct PulseShape {
 /// A wave train, cut at its extrema.
 #[derive(Clone, Debug)]
 struct CutTrain {
-    shape: Shape,
+    shape: Waveform,
     /// Extrema and end, in seconds since the start.
     ends_s: Vec<f64>,
     /// Largest magnitude of the shape.
@@ -176,7 +176,7 @@ impl PulseShape {
                 frequency_rad_s: periods * 2.0 * PI / t,
                 phase_rad,
             };
-            Formula::Shaped(a, Shape::Sine(sine))
+            Formula::Shaped(a, Waveform::Sine(sine))
         };
         let cut =
             |ends: &[f64], formula: Formula| ends.iter().map(|end| (end * t, formula)).collect();
@@ -197,7 +197,7 @@ impl PulseShape {
             Pulse::Ricker => {
                 // The troughs of the wavelet are at x^2 = 3/2.
                 let trough = 1.5_f64.sqrt() / PI;
-                let ricker = Formula::Shaped(a, Shape::Ricker(t));
+                let ricker = Formula::Shaped(a, Waveform::Ricker(t));
                 cut(&[2.0 - trough, 2.0, 2.0 + trough, 4.0], ricker)
             }
             Pulse::AntisymmetricRicker => {
@@ -206,7 +206,7 @@ impl PulseShape {
                 let peak = inner * 6.0_f64.sqrt() * libm::exp(-0.5 * inner * inner);
                 let ends =
                     [-outer, -inner, inner, outer].map(|y| 2.5 + y * 3.0_f64.sqrt() / (2.0 * PI));
-                let wavelet = Formula::Shaped(a / peak, Shape::AntisymmetricRicker(t));
+                let wavelet = Formula::Shaped(a / peak, Waveform::AntisymmetricRicker(t));
                 cut(&[&ends[..], &[5.0]].concat(), wavelet)
             }
             Pulse::MavroeidisPapageorgiou => self.cut_train(mavroeidis_papageorgiou).pieces(a),
@@ -217,9 +217,9 @@ impl PulseShape {
 }
 
 /// Makes the shape of a wave train with a period in s, and its length in s.
-type TrainShape = fn(f64, WaveTrain) -> (Shape, f64);
+type TrainShape = fn(f64, WaveTrain) -> (Waveform, f64);
 
-fn mavroeidis_papageorgiou(period_s: f64, train: WaveTrain) -> (Shape, f64) {
+fn mavroeidis_papageorgiou(period_s: f64, train: WaveTrain) -> (Waveform, f64) {
     let (less, more) = (1.0 - 1.0 / train.cycles, 1.0 + 1.0 / train.cycles);
     // The product of cosines is a sum of three; about its middle the derivative is this.
     let terms = [(-1.0, 1.0), (-0.5 * less, less), (-0.5 * more, more)];
@@ -227,17 +227,17 @@ fn mavroeidis_papageorgiou(period_s: f64, train: WaveTrain) -> (Shape, f64) {
     (beat(terms, period_s, train, 0.5 * length_s), length_s)
 }
 
-fn gabor(period_s: f64, train: WaveTrain) -> (Shape, f64) {
+fn gabor(period_s: f64, train: WaveTrain) -> (Waveform, f64) {
     let centre_s = 3.0 * train.cycles * period_s / PI;
     let gabor = Gabor {
         centre_s,
         frequency_rad_s: 2.0 * PI / period_s,
         train,
     };
-    (Shape::Gabor(gabor), 2.0 * centre_s)
+    (Waveform::Gabor(gabor), 2.0 * centre_s)
 }
 
-fn windowed_sine(period_s: f64, train: WaveTrain) -> (Shape, f64) {
+fn windowed_sine(period_s: f64, train: WaveTrain) -> (Waveform, f64) {
     let (less, more) = (1.0 - 1.0 / train.cycles, 1.0 + 1.0 / train.cycles);
     // sin^2(w s / (2 n)) is (1 - cos(w s / n)) / 2.
     let terms = [(0.5, 1.0), (-0.25, less), (-0.25, more)];
@@ -245,8 +245,8 @@ fn windowed_sine(period_s: f64, train: WaveTrain) -> (Shape, f64) {
 }
 
 /// Returns a sum of sines of these amplitudes and numbers of periods, with the phase of the train at a time.
-fn beat(terms: [(f64, f64); 3], period_s: f64, train: WaveTrain, middle_s: f64) -> Shape {
-    Shape::Beat(terms.map(|(amplitude, periods)| {
+fn beat(terms: [(f64, f64); 3], period_s: f64, train: WaveTrain, middle_s: f64) -> Waveform {
+    Waveform::Beat(terms.map(|(amplitude, periods)| {
         let frequency_rad_s = periods * 2.0 * PI / period_s;
         let phase_rad = train.phase_rad - frequency_rad_s * middle_s;
         Sine {
@@ -258,7 +258,7 @@ fn beat(terms: [(f64, f64); 3], period_s: f64, train: WaveTrain, middle_s: f64) 
 }
 
 impl CutTrain {
-    fn new((shape, length_s): (Shape, f64), period_s: f64) -> Self {
+    fn new((shape, length_s): (Waveform, f64), period_s: f64) -> Self {
         let mut ends_s = shape.extrema_s(length_s, period_s);
         ends_s.push(length_s);
         // The value at the start of the train does not exceed its strongest extremum or its end.
@@ -280,7 +280,7 @@ impl CutTrain {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Piece;
+    use super::super::GroundPiece;
     use super::*;
 
     /// Returns wave trains with various numbers of cycles and phases.
@@ -427,7 +427,7 @@ mod tests {
 
     /// Integral of the acceleration by Simpson's rule on the pieces (2000 intervals).
     fn final_velocity(ground: &GroundMotion) -> f64 {
-        let integral = |piece: &Piece| {
+        let integral = |piece: &GroundPiece| {
             let (n, width) = (2000, piece.end_s - piece.start_s);
             let h = width / f64::from(n);
             (0..n)
@@ -480,7 +480,7 @@ mod tests {
                 .starting_at_s(0.1)
                 .horizontal_m_s2(2.0)
                 .unwrap();
-            let inside = |p: &&Piece| p.start_s <= 0.1 + at && 0.1 + at < p.end_s;
+            let inside = |p: &&GroundPiece| p.start_s <= 0.1 + at && 0.1 + at < p.end_s;
             ground
                 .pieces
                 .iter()

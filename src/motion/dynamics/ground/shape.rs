@@ -77,7 +77,7 @@ const GAUSS_LEGENDRE_8: [(f64, f64); 4] = [
 
 /// A smooth function of the time since the start of a pulse.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Shape {
+pub enum Waveform {
     Sine(Sine),
     /// A sum of sines: an oscillation under a cosine-shaped envelope.
     Beat([Sine; 3]),
@@ -88,7 +88,7 @@ pub enum Shape {
     Gabor(Gabor),
 }
 
-impl Shape {
+impl Waveform {
     /// Returns the value and its rate of change.
     pub fn value_and_rate(&self, since_s: f64) -> (f64, f64) {
         match *self {

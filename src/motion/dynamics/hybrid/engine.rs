@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 
 use thiserror::Error;
 
-use super::integrator::{IntegrationTask, IntegratorError, State, Step, integrate};
+use super::integrator::{IntegrationTask, IntegratorError, IntegratorStep, State, integrate};
 use crate::dynamics::Cost;
 
 /// State of a system at one time.
@@ -68,7 +68,7 @@ pub trait HybridSystem<const N: usize> {
 
     /// Returns the state within a step by interpolation. Near the end of the step it is as accurate as the end; elsewhere it serves to find
     /// events.
-    fn interpolate(&self, step: &Step<N>, time_s: f64) -> State<N>;
+    fn interpolate(&self, step: &IntegratorStep<N>, time_s: f64) -> State<N>;
 
     /// Returns the scales of the state's components in the future motion, to which tolerances refer.
     fn scale(&self, now: &SystemState<Self::Mode, N>) -> State<N>;
@@ -111,7 +111,7 @@ pub struct Transition<M, G, const N: usize> {
 /// Observer of a simulation. Steps and transitions arrive in order of time; breaking ends the simulation.
 pub trait Observer<S: HybridSystem<N>, const N: usize> {
     /// Receives a part of the motion without an event, in the mode and on the piece of its start.
-    fn step(&mut self, _from: &SystemState<S::Mode, N>, _: &Step<N>) -> ControlFlow<()> {
+    fn step(&mut self, _from: &SystemState<S::Mode, N>, _: &IntegratorStep<N>) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
 
@@ -234,7 +234,7 @@ fn advance<S: HybridSystem<N>, const N: usize>(
     let from = finish.now;
     let end_s = system.piece_end_s(from.piece).min(settings.end_s);
     if system.is_still(from.mode) {
-        let mut step = Step {
+        let mut step = IntegratorStep {
             start_s: from.time_s,
             end_s,
             start: from.state,
@@ -253,7 +253,7 @@ fn advance<S: HybridSystem<N>, const N: usize>(
     finish.cost.evaluations += 1;
     let mut event = None;
     let mut stopped_s = None;
-    let watch = |step: &Step<N>| match first_event(system, &from, step) {
+    let watch = |step: &IntegratorStep<N>| match first_event(system, &from, step) {
         Some((guard, time_s)) => {
             event = Some((guard, time_s, *step));
             ControlFlow::Break(())
@@ -310,11 +310,11 @@ fn land<S: HybridSystem<N>, const N: usize>(
     task: &IntegrationTask<N>,
     guard: S::Guard,
     time_s: f64,
-    step: &Step<N>,
+    step: &IntegratorStep<N>,
     cost: &mut Cost,
-) -> Result<Step<N>, EngineError> {
+) -> Result<IntegratorStep<N>, EngineError> {
     let span_s = time_s - step.start_s;
-    let mut landed = Step {
+    let mut landed = IntegratorStep {
         end_s: time_s,
         end: system.interpolate(step, time_s),
         ..*step
@@ -336,7 +336,7 @@ fn land<S: HybridSystem<N>, const N: usize>(
         longest_step_s: span_s,
         ..*task
     };
-    let watch = |last: &Step<N>| {
+    let watch = |last: &IntegratorStep<N>| {
         (landed.end, landed.end_slope) = (last.end, last.end_slope);
         ControlFlow::Continue(())
     };
@@ -364,7 +364,7 @@ type Point = (f64, (f64, f64));
 fn first_event<S: HybridSystem<N>, const N: usize>(
     system: &S,
     from: &SystemState<S::Mode, N>,
-    step: &Step<N>,
+    step: &IntegratorStep<N>,
 ) -> Option<(S::Guard, f64)> {
     let mut first: Option<(S::Guard, f64)> = None;
     for guard in system.guards(from.mode) {

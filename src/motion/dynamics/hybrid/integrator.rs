@@ -19,7 +19,7 @@ pub type State<const N: usize> = SVector<f64, N>;
 
 /// A smooth stretch of motion between two instants, with the states and their rates at both.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Step<const N: usize> {
+pub struct IntegratorStep<const N: usize> {
     /// Start, in seconds.
     pub start_s: f64,
     /// End, in seconds.
@@ -81,7 +81,7 @@ const MAX_STEPS: u32 = 1_000_000;
 pub fn integrate<const N: usize>(
     task: &IntegrationTask<N>,
     slope: impl Fn(f64, &State<N>) -> State<N>,
-    watch: impl FnMut(&Step<N>) -> ControlFlow<()>,
+    watch: impl FnMut(&IntegratorStep<N>) -> ControlFlow<()>,
     cost: &mut Cost,
 ) -> Result<State<N>, IntegratorError> {
     let span_s = task.end_s - task.start_s;
@@ -152,7 +152,7 @@ struct Problem<'a, F, W, const N: usize> {
 impl<F, W, const N: usize> System<f64, State<N>> for Problem<'_, F, W, N>
 where
     F: Fn(f64, &State<N>) -> State<N>,
-    W: FnMut(&Step<N>) -> ControlFlow<()>,
+    W: FnMut(&IntegratorStep<N>) -> ControlFlow<()>,
 {
     fn system(&self, x: f64, y: &State<N>, dy: &mut State<N>) {
         let slope = if x == 0.0 {
@@ -169,7 +169,7 @@ where
 
     fn solout(&mut self, x: f64, y: &State<N>, dy: &State<N>) -> bool {
         let (start_s, start, start_slope) = self.last;
-        let step = Step {
+        let step = IntegratorStep {
             start_s,
             end_s: self.task.start_s + x,
             start,
@@ -203,7 +203,7 @@ mod tests {
             first_step_s: 0.01,
             longest_step_s: f64::INFINITY,
         };
-        let watch = |_: &Step<1>| ControlFlow::Continue(());
+        let watch = |_: &IntegratorStep<1>| ControlFlow::Continue(());
         let end = integrate(&task, noise, watch, &mut Cost::default());
         assert!(matches!(end, Err(IntegratorError::ToleranceNotMet(_))));
     }

@@ -11,9 +11,9 @@
 use nalgebra::Vector2;
 
 use super::engine::{self, HybridSystem};
-use super::integrator::{State, Step};
+use super::integrator::{IntegratorStep, State};
 use crate::dynamics::GroundMotion;
-use crate::dynamics::ground::Piece;
+use crate::dynamics::ground::GroundPiece;
 use crate::mechanics::chain::{Coefficients, MechanismState};
 use crate::mechanics::{Demand, Link, Mechanism, MechanismChain, Sides, Sway};
 
@@ -180,7 +180,7 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
         link.map_or(Phase::Rest, |link| Phase::Rocking(swing(link)))
     }
 
-    fn piece(&self, piece: usize) -> &'a Piece {
+    fn piece(&self, piece: usize) -> &'a GroundPiece {
         &self.ground.pieces[piece]
     }
 
@@ -344,7 +344,7 @@ impl<'a, C: MechanismChain> HybridSystem<3> for Rocking<'a, C> {
         RockingState::new(rate, acceleration, work)
     }
 
-    fn interpolate(&self, step: &Step<3>, time_s: f64) -> RockingState {
+    fn interpolate(&self, step: &IntegratorStep<3>, time_s: f64) -> RockingState {
         let span = step.end_s - step.start_s;
         if span <= 0.0 {
             return step.start;

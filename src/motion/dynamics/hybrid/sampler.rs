@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use nalgebra::Vector2;
 
 use super::engine::{HybridSystem, task};
-use super::integrator::{Step, integrate};
+use super::integrator::{IntegratorStep, integrate};
 use super::posture::{StructureState, posture, state};
 use super::rocking::{Phase, Rocking, RockingState, Swing, SystemState};
 use crate::dynamics::recorder::Recorder;
@@ -41,7 +41,7 @@ pub(super) struct Sampler<'r, 'a, C: MechanismChain> {
 pub(super) fn instants<'a, C: MechanismChain>(
     rocking: &Rocking<'a, C>,
     swing: Swing<'a, C::Mechanism>,
-    step: &Step<3>,
+    step: &IntegratorStep<3>,
 ) -> impl Iterator<Item = f64> + use<C> {
     let (start_s, span_s) = (step.start_s, step.end_s - step.start_s);
     let parts = (span_s / (DEMAND_STEP_RATIO * rocking.fall_s(swing.link))).ceil();
@@ -121,7 +121,7 @@ impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
     }
 
     /// Records the demand and the positions at several instants of a step.
-    fn note_step(&mut self, from: &StructureState<'a, C>, step: &Step<3>) {
+    fn note_step(&mut self, from: &StructureState<'a, C>, step: &IntegratorStep<3>) {
         let span_s = step.end_s - step.start_s;
         let Some(swing) = from.mode.swing().filter(|_| span_s > 0.0) else {
             return;
@@ -145,7 +145,11 @@ impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
     }
 
     /// Takes the samples of a step.
-    pub(super) fn step(&mut self, from: &StructureState<'a, C>, step: &Step<3>) -> ControlFlow<()> {
+    pub(super) fn step(
+        &mut self,
+        from: &StructureState<'a, C>,
+        step: &IntegratorStep<3>,
+    ) -> ControlFlow<()> {
         self.note_step(from, step);
         while self.next_s() < step.end_s {
             let time_s = self.next_s().max(step.start_s);
@@ -202,7 +206,7 @@ impl<'r, 'a, C: MechanismChain> Sampler<'r, 'a, C> {
             let end_s = motion.end_s.min(until_s);
             let task = task(rocking, &now, end_s, FALL_TOLERANCE);
             let overturned = SystemState { piece, ..*from };
-            let watch = |step: &Step<3>| {
+            let watch = |step: &IntegratorStep<3>| {
                 while self.next_s() <= step.end_s {
                     let time_s = self.next_s();
                     let state = rocking.interpolate(step, time_s);

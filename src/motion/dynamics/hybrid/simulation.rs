@@ -6,7 +6,7 @@ use super::engine::{
     EngineSettings, Finish, HybridSystem, Observer, Transition, falling_root, resume, simulate,
 };
 use super::friction::FrictionCollector;
-use super::integrator::Step;
+use super::integrator::IntegratorStep;
 use super::posture::{StructureState, posture, seen_from_ground, state};
 use super::rocking::{Guard, Mode, Phase, Rocking, RockingState, Swing};
 use super::sampler::{Sampler, instants};
@@ -471,7 +471,7 @@ impl<'a, C: MechanismChain> SummaryCollector<'_, 'a, C> {
     /// The excess of the thrust line is largest near impacts, at corners of the ground motion, and where the ground pushes most. Steps begin and end
     /// there, and are short compared with the motion between. After the largest rotation the excess does not count, so it is not computed once no
     /// larger one can follow; the friction demand is not computed once no half cycle can reach half of it.
-    fn note_step(&mut self, from: &StructureState<'a, C>, step: &Step<3>) {
+    fn note_step(&mut self, from: &StructureState<'a, C>, step: &IntegratorStep<3>) {
         let mode = from.mode;
         let Phase::Rocking(swing @ Swing { link, .. }) = mode else {
             self.note_rest(from, step);
@@ -519,7 +519,7 @@ impl<'a, C: MechanismChain> SummaryCollector<'_, 'a, C> {
     }
 
     /// Records the demand at rest, which is largest at an end of the step, or at an end of the piece of the ground motion.
-    fn note_rest(&mut self, from: &StructureState<'a, C>, step: &Step<3>) {
+    fn note_rest(&mut self, from: &StructureState<'a, C>, step: &IntegratorStep<3>) {
         if let Phase::Rest = from.mode {
             for (time_s, state) in [(step.start_s, &step.start), (step.end_s, &step.end)] {
                 self.friction
@@ -530,7 +530,7 @@ impl<'a, C: MechanismChain> SummaryCollector<'_, 'a, C> {
 }
 
 impl<'a, C: MechanismChain> Observer<Rocking<'a, C>, 3> for SummaryCollector<'_, 'a, C> {
-    fn step(&mut self, from: &StructureState<'a, C>, step: &Step<3>) -> ControlFlow<()> {
+    fn step(&mut self, from: &StructureState<'a, C>, step: &IntegratorStep<3>) -> ControlFlow<()> {
         self.note_step(from, step);
         let sampler = self.sampler.as_mut();
         sampler.map_or(ControlFlow::Continue(()), |one| one.step(from, step))

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix2, Vector2};
 
-use super::factor::{Body, Factor, Pin};
+use super::factor::{Factor, OpenPin, RigidRun};
 use crate::mechanics::geometry::field::quarter_turn;
 use crate::mechanics::joints::Closure;
 use crate::mechanics::{Edge, Momentum, Supports, Twist};
@@ -17,7 +17,7 @@ pub(super) struct BodyVelocity {
 
 impl BodyVelocity {
     /// Returns the velocities of a body with a given momentum.
-    fn with(body: &Body, momentum: &Momentum) -> Self {
+    fn with(body: &RigidRun, momentum: &Momentum) -> Self {
         Self {
             centre: body.centre,
             velocity: momentum.linear * body.inverse_mass,
@@ -46,13 +46,13 @@ impl BodyVelocity {
         }
     }
 
-    fn push(&mut self, body: &Body, point: Vector2<f64>, impulse: Vector2<f64>) {
+    fn push(&mut self, body: &RigidRun, point: Vector2<f64>, impulse: Vector2<f64>) {
         self.velocity += impulse * body.inverse_mass;
         self.rate += (point - self.centre).perp(&impulse) * body.inverse_inertia;
     }
 }
 
-impl Pin {
+impl OpenPin {
     /// Returns the velocity of the right body relative to the left one at the pin, along and normal to the joint.
     fn rate(&self, left: &BodyVelocity, right: &BodyVelocity) -> Vector2<f64> {
         let apart = right.velocity - left.velocity;
@@ -108,7 +108,7 @@ impl PinSolution {
     /// Solves for a unit impulse at one corner, without the load.
     pub(crate) fn take_unit(&mut self, factor: &Factor, pin: usize, edge: usize) {
         self.motions.clear();
-        let still = |body: &Body| BodyVelocity::with(body, &Momentum::ZERO);
+        let still = |body: &RigidRun| BodyVelocity::with(body, &Momentum::ZERO);
         self.motions.extend(factor.bodies.iter().map(still));
         let impulse = 1.0;
         self.add_body_impulses(
@@ -187,7 +187,7 @@ impl PinSolution {
 
     /// Adds the impulses of the pins at both ends to each body.
     fn move_bodies(&mut self, factor: &Factor) {
-        let mut left: Option<(&Pin, Vector2<f64>)> = None;
+        let mut left: Option<(&OpenPin, Vector2<f64>)> = None;
         for (index, (body, motion)) in factor.bodies.iter().zip(&mut self.motions).enumerate() {
             let right = factor.pins.get(index).map(|pin| (pin, self.pins[index]));
             let (mut linear, mut angular) = (Vector2::zeros(), 0.0);

@@ -11,13 +11,13 @@ use crate::mechanics::{Corners, Edge, MassMoments, Placement, Row, Supports};
 
 /// Run of blocks that move as one body, with its inverse inertia; zero for a body fixed to a support.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Body {
+pub(super) struct RigidRun {
     pub inverse_mass: f64,
     pub inverse_inertia: f64,
     pub centre: Vector2<f64>,
 }
 
-impl Body {
+impl RigidRun {
     /// Body with prescribed motion.
     const HELD: Self = Self {
         inverse_mass: 0.0,
@@ -42,7 +42,7 @@ impl Body {
 
 /// Open joint of the active set, between body `index` and body `index + 1`.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Pin {
+pub(super) struct OpenPin {
     pub joint: usize,
     pub point: Vector2<f64>,
     pub parted: bool,
@@ -63,8 +63,8 @@ pub(super) struct Factor {
     /// Active set of the current bodies and pins, at the joints before `factored`.
     pub active: Vec<Corners>,
     factored: usize,
-    pub bodies: Vec<Body>,
-    pub pins: Vec<Pin>,
+    pub bodies: Vec<RigidRun>,
+    pub pins: Vec<OpenPin>,
     /// Least pivot up to each pin, relative to its value before the elimination.
     least: Vec<f64>,
 }
@@ -113,10 +113,10 @@ impl Factor {
             };
             let axes = [frame.tangent, frame.normal];
             self.bodies.push(match first {
-                None => Body::HELD,
+                None => RigidRun::HELD,
                 Some(first) => self.body(first, joint),
             });
-            self.pins.push(Pin {
+            self.pins.push(OpenPin {
                 joint,
                 point,
                 parted: *active == [false; 2],
@@ -129,7 +129,7 @@ impl Factor {
         }
         self.bodies.push(match (self.row.supports, first) {
             (Supports::Left, Some(first)) => self.body(first, self.row.own.len()),
-            (Supports::Left, None) | (Supports::Both, _) => Body::HELD,
+            (Supports::Left, None) | (Supports::Both, _) => RigidRun::HELD,
         });
         // The pivot of a pin depends on the bodies at both sides.
         self.eliminate(kept.saturating_sub(1));
@@ -145,8 +145,8 @@ impl Factor {
         }
     }
 
-    fn body(&self, first: usize, end: usize) -> Body {
-        Body::free(&(self.row.moments[end] - self.row.moments[first]))
+    fn body(&self, first: usize, end: usize) -> RigidRun {
+        RigidRun::free(&(self.row.moments[end] - self.row.moments[first]))
     }
 
     /// Eliminates the compliances at the pins from `start` on, in axes along and normal to each joint.

@@ -11,7 +11,7 @@
 
 use nalgebra::{Matrix3, RowVector3, Vector3};
 
-use super::{Balance, Mode, PASSES, SlipProgram, TangentialMode};
+use super::{Balance, JointMode, PASSES, SlipProgram, TangentialMode};
 
 const STEPS: usize = 60;
 /// Mean products, relative to the first one, at which the modes are tested.
@@ -150,7 +150,7 @@ impl Pairs {
     }
 
     /// Returns the mode of the joint. The compliance converts impulses to rates for the comparison.
-    fn mode(&self, compliance: &Vector3<f64>) -> Mode {
+    fn mode(&self, compliance: &Vector3<f64>) -> JointMode {
         let (own, other) = (self.own, self.other);
         let pressed = [0, 1].map(|end| own[end] * compliance[end] > other[end]);
         let tangential = if own[4] < other[4] * compliance.z {
@@ -158,7 +158,7 @@ impl Pairs {
         } else {
             TangentialMode::Slip((own[2] - own[3]).signum())
         };
-        Mode {
+        JointMode {
             pressed,
             tangential,
         }

@@ -57,14 +57,14 @@ pub enum TangentialMode {
 
 /// Mode of a joint: contact at its ends, and tangential mode.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Mode {
+pub struct JointMode {
     /// Flags of contact at the intrados and the extrados end.
     pub pressed: [bool; 2],
     /// Tangential mode.
     pub tangential: TangentialMode,
 }
 
-impl Mode {
+impl JointMode {
     /// Mode of a closed joint that sticks.
     pub const STICKING: Self = Self {
         pressed: [true; 2],
@@ -128,7 +128,7 @@ pub struct SlipProgram {
     /// Rates without impulses.
     drive: Vec<Vector3<f64>>,
     /// Modes of the joints in the last solution.
-    pub modes: Vec<Mode>,
+    pub modes: Vec<JointMode>,
     /// Impulses in the last solution, in N s: at both ends of every joint, and along the joint.
     pub impulses: Vec<Vector3<f64>>,
     before: Vec<Vector3<f64>>,
@@ -140,7 +140,7 @@ pub struct SlipProgram {
     equations: Vec<[Equation; 3]>,
     gains: Vec<Matrix3<f64>>,
     target: Vec<Vector3<f64>>,
-    modes_before: Vec<Mode>,
+    modes_before: Vec<JointMode>,
     kept: Vec<Vector3<f64>>,
 }
 
@@ -159,7 +159,7 @@ impl SlipProgram {
             own: vec![Matrix3::zeros(); joints],
             next: vec![Matrix3::zeros(); joints],
             drive: vec![Vector3::zeros(); joints],
-            modes: vec![Mode::STICKING; joints],
+            modes: vec![JointMode::STICKING; joints],
             impulses: vec![Vector3::zeros(); joints],
             before: vec![Vector3::zeros(); joints],
             rates: vec![Vector3::zeros(); joints],
@@ -169,7 +169,7 @@ impl SlipProgram {
             equations: vec![[Equation::ZeroRate; 3]; joints],
             gains: vec![Matrix3::zeros(); joints],
             target: vec![Vector3::zeros(); joints],
-            modes_before: vec![Mode::STICKING; joints],
+            modes_before: vec![JointMode::STICKING; joints],
             kept: vec![Vector3::zeros(); joints],
         }
     }
@@ -328,7 +328,7 @@ impl SlipProgram {
     /// Changes the modes that contradict the impulses and rates. Returns true if there are none.
     fn correct_modes(&mut self, one: bool, tolerance: f64) -> bool {
         let mut right = true;
-        let mut worst = (0.0, 0, Mode::STICKING);
+        let mut worst = (0.0, 0, JointMode::STICKING);
         for joint in 0..self.modes.len() {
             let (impulse, rate) = (&self.impulses[joint], &self.rates[joint]);
             let compliance = self.own[joint].diagonal();
@@ -448,7 +448,7 @@ impl SlipProgram {
     /// Computes the rates of the joints that are open or slip. The modes of closed joints that stick depend on their impulses alone.
     fn find_free_rates(&mut self) {
         for joint in 0..self.rates.len() {
-            if self.modes[joint] != Mode::STICKING {
+            if self.modes[joint] != JointMode::STICKING {
                 let rate = self.drive[joint] + self.response(joint, &self.impulses);
                 self.rates[joint] = rate + self.proximal_rates(joint);
             }
@@ -523,7 +523,7 @@ impl SlipProgram {
     fn read_modes(&mut self) {
         for (joint, mode) in self.modes.iter_mut().enumerate() {
             let (impulse, bound) = (&self.impulses[joint], self.bounds[joint]);
-            *mode = Mode {
+            *mode = JointMode {
                 pressed: [impulse.x > 0.0, impulse.y > 0.0],
                 tangential: if impulse.z.abs() < bound {
                     TangentialMode::Stick

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, Vector3};
 
-use super::{Mode, PASSES, PROXIMAL, SlipProgram, TangentialMode};
+use super::{JointMode, PASSES, PROXIMAL, SlipProgram, TangentialMode};
 use crate::mechanics::complementarity;
 
 /// Maximum number of joints for Lemke's method; its effort grows with their cube.
@@ -83,7 +83,7 @@ impl SlipProgram {
                 (true, true) => TangentialMode::Slip(1.0),
                 (true, false) => TangentialMode::Slip(-1.0),
             };
-            self.modes[joint] = Mode {
+            self.modes[joint] = JointMode {
                 pressed: [found[0] > 0.0, found[1] > 0.0],
                 tangential,
             }

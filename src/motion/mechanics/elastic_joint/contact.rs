@@ -24,7 +24,7 @@ const CELLS: usize = 12;
 
 /// Positions along a joint at which the stress is computed.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Section {
+pub(crate) enum ContactSection {
     /// At the edges only; the stress is linear between them.
     Whole,
     /// At nodes from edge 0 to edge 1, as fractions of the length; the stress is linear between nodes.
@@ -33,7 +33,7 @@ pub(crate) enum Section {
     Points(Vec<[f64; 2]>),
 }
 
-impl Section {
+impl ContactSection {
     pub(super) fn new(contact: Contact, crushes: bool) -> Self {
         match contact {
             Contact::Continuous if crushes => {
@@ -178,7 +178,7 @@ pub struct ElasticJoint {
 /// Contact law of all joints of a structure.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ContactLaw {
-    pub section: Section,
+    pub section: ContactSection,
     pub crushes: bool,
     /// Coefficient of friction, and a constant added to the bound of the shear force: zero, or infinity to prevent slip.
     pub friction: [f64; 2],
@@ -210,7 +210,7 @@ impl ContactLaw {
         };
         let limit = self.crushes.then_some(joint.crushing_penetration_m);
         let (elastic, total, crushed) = match &self.section {
-            Section::Whole => {
+            ContactSection::Whole => {
                 let elastic = compressive_forces(p);
                 let total = match damping_m {
                     Some(b) => damped_compressive_forces(p, both!(end: p[end] + b[end])),
@@ -218,8 +218,8 @@ impl ContactLaw {
                 };
                 (elastic, total, zero)
             }
-            Section::Cells(nodes) => sum_in_cells(nodes, limit, p, damping_m, fibres),
-            Section::Points(points) => sum_at_points(points, limit, p, damping_m, fibres),
+            ContactSection::Cells(nodes) => sum_in_cells(nodes, limit, p, damping_m, fibres),
+            ContactSection::Points(points) => sum_at_points(points, limit, p, damping_m, fibres),
         };
         let k = joint.normal_n_m * (1.0 / 6.0);
         let mut damped_j = zero;

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use nalgebra::{Matrix3, Vector2, Vector3};
 
 use super::contact::{
-    Contact, ContactLaw, ElasticJoint, Fibre, Memory, NormalForces, Section, ShearForce,
+    Contact, ContactLaw, ContactSection, ElasticJoint, Fibre, Memory, NormalForces, ShearForce,
 };
 use super::kinematics::{Action, BodyPosition, JointGeometry};
 use super::tie::BoundTie;
@@ -294,7 +294,7 @@ impl ElasticStructure {
             ties: Vec::new(),
             ties_square_frequency: 0.0,
             law: ContactLaw {
-                section: Section::new(properties.contact, crushes),
+                section: ContactSection::new(properties.contact, crushes),
                 crushes,
                 friction,
             },
@@ -367,7 +367,7 @@ impl ElasticStructure {
     /// Returns this structure with continuous contact, without crushing.
     pub(super) fn continuous(&self) -> Self {
         let mut other = self.without_crushing();
-        other.law.section = Section::Whole;
+        other.law.section = ContactSection::Whole;
         other
     }
 

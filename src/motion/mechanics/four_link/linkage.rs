@@ -11,7 +11,7 @@ use std::sync::Arc;
 use nalgebra::Vector2;
 
 use super::mechanism::FourLink;
-use super::thrust::{Load, Part, Section, ThrustLine, demand_at_sections};
+use super::thrust::{PartLoad, ProfileSection, ThrustLine, ThrustPart, demand_at_sections};
 use crate::mechanics::chain::{Coefficients, MechanismState};
 use crate::mechanics::geometry::field::quarter_turn;
 use crate::mechanics::geometry::pose::product;
@@ -19,7 +19,7 @@ use crate::mechanics::{Demand, MassMoments, Mechanism, Momentum, Pose, Profile};
 
 /// A body of the linkage, about the pivot at which its bar begins.
 #[derive(Clone, Copy, Debug)]
-struct Body {
+struct LinkageBody {
     /// Undeformed bar of the body.
     bar: Vector2<f64>,
     /// First mass moment over the bar, as complex numbers; this ratio is constant, because both rotate together.
@@ -28,7 +28,7 @@ struct Body {
     polar: f64,
 }
 
-impl Body {
+impl LinkageBody {
     fn new(moments: &MassMoments, pivot: Vector2<f64>, bar: Vector2<f64>) -> Self {
         let first = moments.first - pivot * moments.mass;
         Self {
@@ -62,11 +62,11 @@ pub struct Linkage {
     profile: Arc<dyn Profile>,
     mechanism: FourLink,
     /// Bar A-B.
-    left: Body,
+    left: LinkageBody,
     /// Bar B-C.
-    middle: Body,
+    middle: LinkageBody,
     /// Bar D-C.
-    right: Body,
+    right: LinkageBody,
     /// Vector from A to D.
     ground: Vector2<f64>,
 }
@@ -103,9 +103,9 @@ impl Linkage {
         Self {
             profile: profile.to_shared(),
             mechanism: *mechanism,
-            left: Body::new(&left, point_a, point_b - point_a).loaded(middle.mass),
-            middle: Body::new(&middle, point_b, point_c - point_b),
-            right: Body::new(&right, point_d, point_c - point_d),
+            left: LinkageBody::new(&left, point_a, point_b - point_a).loaded(middle.mass),
+            middle: LinkageBody::new(&middle, point_b, point_c - point_b),
+            right: LinkageBody::new(&right, point_d, point_c - point_d),
             ground: point_d - point_a,
         }
     }
@@ -167,13 +167,13 @@ impl Linkage {
     pub(crate) fn demand_at_sections(
         &self,
         motion: &MechanismState,
-        sections: &[Section],
+        sections: &[ProfileSection],
     ) -> Demand {
         demand_at_sections(&self.parts(motion), sections)
     }
 
     /// Returns the parts of the thrust line in motion.
-    fn parts(&self, motion: &MechanismState) -> [Part; 5] {
+    fn parts(&self, motion: &MechanismState) -> [ThrustPart; 5] {
         let bars = self.bars(motion.q_rad);
         let (middle_rate, right_rate) = Self::rates(&bars);
         let (middle_slope, right_slope) = Self::slopes(&bars, middle_rate, right_rate);
@@ -194,9 +194,10 @@ impl Linkage {
         let force = motion.body_force_g;
         let at_b = quarter_turn(bars.left) * left_spin.0 - bars.left * left_spin.1;
         let [point_a, point_b, _, point_d] = self.mechanism.points;
-        let left = Load::of_body(point_a, rotate_back(turn_left, force), left_spin);
-        let middle = Load::of_body(point_b, rotate_back(turn_middle, force - at_b), middle_spin);
-        let right = Load::of_body(point_d, rotate_back(turn_right, force), right_spin);
+        let left = PartLoad::of_body(point_a, rotate_back(turn_left, force), left_spin);
+        let middle =
+            PartLoad::of_body(point_b, rotate_back(turn_middle, force - at_b), middle_spin);
+        let right = PartLoad::of_body(point_d, rotate_back(turn_right, force), right_spin);
 
         let [a, b, c, d] = self.mechanism.hinges_rad;
         let sectors = Self::sectors(&self.mechanism.before);
@@ -210,10 +211,10 @@ impl Linkage {
         let force_a = force_b - product(turn_left, on_left.linear);
         let force_d = force_c + product(turn_right, on_right.linear);
 
-        let still = Load::uniform(force);
-        let part = |hinge: usize, end_rad: f64, load: Load, force: Vector2<f64>| {
+        let still = PartLoad::uniform(force);
+        let part = |hinge: usize, end_rad: f64, load: PartLoad, force: Vector2<f64>| {
             let at_hinge = Momentum::applied_at(self.mechanism.points[hinge], force);
-            Part::after(&self.mechanism.before[hinge], end_rad, load, at_hinge)
+            ThrustPart::after(&self.mechanism.before[hinge], end_rad, load, at_hinge)
         };
         [
             part(0, a, still, force_a),

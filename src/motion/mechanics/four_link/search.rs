@@ -187,7 +187,7 @@ fn ascend(
     let mut ascent = Ascent {
         profile,
         objective,
-        cells: start.map(|angle| Cell::containing(ends, angle)),
+        cells: start.map(|angle| SearchCell::containing(ends, angle)),
     };
     let mut mechanism = FourLink::new(profile, start)?;
     for _ in 0..MAX_NEWTON_STEPS {
@@ -236,13 +236,13 @@ const MIN_BODY_RAD: f64 = 1e-7;
 
 /// Interval of a hinge in which the objective is smooth.
 #[derive(Clone, Copy, Debug)]
-struct Cell {
+struct SearchCell {
     index: usize,
     low: f64,
     high: f64,
 }
 
-impl Cell {
+impl SearchCell {
     fn new(ends: &[f64], index: usize) -> Self {
         Self {
             index,
@@ -265,7 +265,7 @@ impl Cell {
 struct Ascent<'a, O> {
     profile: &'a dyn Profile,
     objective: &'a O,
-    cells: [Cell; 4],
+    cells: [SearchCell; 4],
 }
 
 impl<O: Objective> Ascent<'_, O> {
@@ -373,7 +373,7 @@ impl<O: Objective> Ascent<'_, O> {
                 slope if slope > 0.0 && cell.index + 2 < ends.len() => cell.index + 1,
                 _ => continue,
             };
-            self.cells[i] = Cell::new(ends, next);
+            self.cells[i] = SearchCell::new(ends, next);
             let beyond = self.evaluate(mechanism).1[i];
             if beyond * gradient[i] > 0.0 {
                 crossed = true;

@@ -72,7 +72,7 @@ fn excess_ratio(normal: f64, moment: f64, thickness: f64, least: f64) -> f64 {
 
 /// Section of a profile with its constants, for many thrust lines through it.
 #[derive(Clone, Copy, Debug)]
-pub struct Section {
+pub struct ProfileSection {
     place: f64,
     before: MassMoments,
     onward: Vector2<f64>,
@@ -80,10 +80,10 @@ pub struct Section {
     thickness: f64,
 }
 
-/// Parts of a continuous ring between the sections of [`Section::all`].
+/// Parts of a continuous ring between the sections of [`ProfileSection::all`].
 const EXCESS_PARTS: usize = 48;
 
-impl Section {
+impl ProfileSection {
     /// Returns the joints of a profile, or equidistant sections of a continuous ring. Between these the excess exceeds the largest of them by some
     /// per cent of its value at most.
     pub(crate) fn all(profile: &dyn Profile, sites: HingeSites) -> Vec<Self> {
@@ -103,7 +103,7 @@ impl Section {
 }
 
 /// Returns thrust excess and friction demand over these parts, at sections in ascending order.
-pub(crate) fn demand_at_sections(parts: &[Part], sections: &[Section]) -> Demand {
+pub(crate) fn demand_at_sections(parts: &[ThrustPart], sections: &[ProfileSection]) -> Demand {
     let weight = sections.last().map_or(0.0, |section| section.before.mass);
     let least = LEAST_LOAD * weight;
     let (mut parts, mut largest, mut friction) = (parts, ROUNDING, 0.0_f64);
@@ -135,14 +135,14 @@ pub(crate) fn demand_at_sections(parts: &[Part], sections: &[Section]) -> Demand
 
 /// Load per unit mass `c + alpha k x r + kappa r` on a part of the ring, in the frame of its material.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Load {
+pub struct PartLoad {
     /// `c` and `alpha`.
     turning: Twist,
     /// `kappa`.
     centrifugal: f64,
 }
 
-impl Load {
+impl PartLoad {
     /// Returns the load of one force per unit mass everywhere.
     pub const fn uniform(force: Vector2<f64>) -> Self {
         Self {
@@ -177,27 +177,32 @@ impl Load {
 
 /// Rigid part of the ring, in the frame of its material.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Part {
+pub struct ThrustPart {
     /// Last section of the part.
     pub end_rad: f64,
-    load: Load,
+    load: PartLoad,
     /// Resultant at the left springing if the part extended to it.
     start: Momentum,
 }
 
-impl Part {
+impl ThrustPart {
     /// Returns the part that ends at `end_rad`, under `load`, with the resultant `known` at the section `known_rad`.
     pub fn new(
         profile: &dyn Profile,
         end_rad: f64,
-        load: Load,
+        load: PartLoad,
         (known_rad, known): (f64, Momentum),
     ) -> Self {
         Self::after(&profile.moments_to(known_rad), end_rad, load, known)
     }
 
     /// Returns the part that ends at `end_rad`, under `load`, with the resultant `known` at the section behind a part of these mass moments.
-    pub(crate) fn after(before: &MassMoments, end_rad: f64, load: Load, known: Momentum) -> Self {
+    pub(crate) fn after(
+        before: &MassMoments,
+        end_rad: f64,
+        load: PartLoad,
+        known: Momentum,
+    ) -> Self {
         let start = known - load.resultant(before);
         Self {
             end_rad,
@@ -219,12 +224,12 @@ impl Part {
 pub struct ThrustLine {
     profile: Arc<dyn Profile>,
     /// The parts.
-    pub parts: Vec<Part>,
+    pub parts: Vec<ThrustPart>,
 }
 
 impl ThrustLine {
     /// Returns the line over consecutive parts, from the left springing to the right one.
-    pub(crate) fn new(profile: &dyn Profile, parts: Vec<Part>) -> Self {
+    pub(crate) fn new(profile: &dyn Profile, parts: Vec<ThrustPart>) -> Self {
         Self {
             profile: profile.to_shared(),
             parts,
@@ -251,8 +256,8 @@ impl ThrustLine {
         let (weight, push) = (-body_force_g.y, body_force_g.x / both_g);
         let shares = [to_left, to_right].map(|onset| 2.0 * onset.acceleration_g / both_g);
         let start = (right * shares[0] + left * shares[1]) * (0.5 * weight) + (right - left) * push;
-        let load = Load::uniform(body_force_g);
-        let part = Part::new(profile, profile.end(), load, (0.0, start));
+        let load = PartLoad::uniform(body_force_g);
+        let part = ThrustPart::new(profile, profile.end(), load, (0.0, start));
         Self::new(profile, vec![part])
     }
 

@@ -98,7 +98,7 @@ impl Dimensions {
 /// Shape of an arch, or blocks of any shape.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Shape {
+pub enum MasonryShape {
     /// A circular arch.
     #[serde(rename = "arch")]
     Circular(CircularArch),
@@ -112,7 +112,7 @@ pub enum Shape {
     Blocks(GivenBlocks),
 }
 
-impl Shape {
+impl MasonryShape {
     /// Returns its name in scenarios and results.
     pub const fn name(&self) -> &'static str {
         match self {
@@ -173,7 +173,7 @@ impl Shape {
 pub struct Masonry {
     /// Shape of the arch.
     #[serde(flatten)]
-    pub shape: Shape,
+    pub shape: MasonryShape,
     /// Piers under its springings.
     #[serde(skip_serializing_if = "Piers::are_none")]
     pub piers: Piers,
@@ -269,7 +269,7 @@ impl Masonry {
     /// # Errors
     /// If a number is out of range, or the blocks do not form a row.
     pub fn new(
-        shape: Shape,
+        shape: MasonryShape,
         piers: Piers,
         fill: Option<Fill>,
         loads: Vec<PlacedLoad>,
@@ -277,7 +277,7 @@ impl Masonry {
         let arch = shape.cut()?;
         let mut extra = vec![None; arch.voussoirs()];
         let given = match &shape {
-            Shape::Blocks(given) => Some(given),
+            MasonryShape::Blocks(given) => Some(given),
             _ => None,
         };
         if given.is_some() && (!piers.are_none() || fill.is_some()) {
@@ -358,7 +358,7 @@ impl Masonry {
 
     /// Returns the indices of the joints at the left and the right springing; `None` for given blocks, whose springings are unknown.
     pub fn springing_joints(&self) -> Option<[usize; 2]> {
-        if matches!(self.shape, Shape::Blocks(_)) {
+        if matches!(self.shape, MasonryShape::Blocks(_)) {
             return None;
         }
         let courses =

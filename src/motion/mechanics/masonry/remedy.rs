@@ -2,7 +2,7 @@
 
 use super::{BasketArch, CircularArch, Pier, Piers};
 use crate::bisection::{Width, try_bisect};
-use crate::mechanics::{Masonry, Shape};
+use crate::mechanics::{Masonry, MasonryShape};
 
 /// Change that makes masonry stable, with the least factor, rounded up to four decimals; `None` if a factor of four is not enough.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,7 +35,7 @@ impl Masonry {
         }
     }
 
-    fn is_stable_with(&self, shape: Shape, piers: Piers) -> Option<bool> {
+    fn is_stable_with(&self, shape: MasonryShape, piers: Piers) -> Option<bool> {
         // Loads on piers are neglected for an arch on rigid ground.
         let loads = self.loads.iter().copied();
         let loads = loads.filter(|load| load.pier.is_none() || !piers.are_none());
@@ -58,7 +58,7 @@ impl Piers {
     }
 }
 
-impl Shape {
+impl MasonryShape {
     /// Returns the shape with the thickness of the arch multiplied by a factor; `None` for blocks, whose thickness is given.
     fn thickened(&self, factor: f64) -> Option<Self> {
         let mut thicker = self.clone();

@@ -51,7 +51,7 @@ const SHORTEST: f64 = 1e-6;
 const LONGEST: f64 = 1e3;
 
 /// A step of a descent with ties.
-struct Step<'a> {
+struct DescentStep<'a> {
     stance: &'a RowState,
     /// Lines of the ties at the beginning of the step.
     lines: &'a [TieLine],
@@ -65,7 +65,7 @@ struct Step<'a> {
     elongation_rates: DMatrix<f64>,
 }
 
-impl<'a> Step<'a> {
+impl<'a> DescentStep<'a> {
     fn new(row: &Row, stance: &'a RowState, lines: &'a [TieLine], force_g: Vector2<f64>) -> Self {
         let ties = row.ties.iter().zip(&stance.ties);
         let most_kg = ties.map(|(tie, memory)| {
@@ -250,7 +250,7 @@ impl<'a> Descent<'a> {
         farthest_m: f64,
         longest: &mut f64,
     ) -> Result<f64, SettlingError> {
-        let mut step = Step::new(self.row, stance, lines, force_g);
+        let mut step = DescentStep::new(self.row, stance, lines, force_g);
         let (before_kg, shortest) = (self.ties_kg.clone(), SHORTEST * *longest);
         loop {
             step.length = *longest;
@@ -274,7 +274,7 @@ impl<'a> Descent<'a> {
     ///
     /// # Errors
     /// When Newton's method does not converge.
-    fn balance_ties(&mut self, step: &mut Step<'_>) -> Result<f64, SettlingError> {
+    fn balance_ties(&mut self, step: &mut DescentStep<'_>) -> Result<f64, SettlingError> {
         // Some may have broken in the step before.
         for tie in 0..step.lines.len() {
             let [least_kg, most_kg] = step.bounds_kg[tie];
@@ -310,7 +310,7 @@ impl<'a> Descent<'a> {
     }
 
     /// Residual of each tie with the last velocities, in m: its length at the end of the step less the length under its force.
-    fn residuals_m(&self, step: &Step<'_>) -> DVector<f64> {
+    fn residuals_m(&self, step: &DescentStep<'_>) -> DVector<f64> {
         let velocities = &self.program.velocities;
         let residuals_m = step.lines.iter().enumerate().map(|(tie, line)| {
             let then_m = line.stretch_m + step.length * line.lengthening(velocities);
@@ -324,7 +324,11 @@ impl<'a> Descent<'a> {
     /// step would exceed it. `None` if the step is not determined.
     ///
     /// The unknowns are the speeds of the few degrees of freedom of the row. The forces of many ties follow from them.
-    fn newton_step_kg(&self, step: &Step<'_>, residuals_m: &DVector<f64>) -> Option<DVector<f64>> {
+    fn newton_step_kg(
+        &self,
+        step: &DescentStep<'_>,
+        residuals_m: &DVector<f64>,
+    ) -> Option<DVector<f64>> {
         let elongation_rates = &step.elongation_rates;
         let modes = elongation_rates.ncols();
         let kg_m = self.ties_m_kg.iter().map(|m_kg| 1.0 / m_kg);
@@ -359,13 +363,13 @@ impl<'a> Descent<'a> {
     }
 
     /// Returns true if the bounds of the force of a tie allow this change.
-    fn may_change(&self, step: &Step<'_>, tie: usize, change: f64) -> bool {
+    fn may_change(&self, step: &DescentStep<'_>, tie: usize, change: f64) -> bool {
         let end_kg = step.bounds_kg[tie][usize::from(change > 0.0)];
         (end_kg - self.ties_kg[tie]) * change > 0.0 || change == 0.0
     }
 
     /// Updates `step.elongation_rates` if the set of closed corners has changed. Returns true if it has; the velocities are then lost.
-    fn update_elongation_rates(&mut self, step: &mut Step<'_>) -> bool {
+    fn update_elongation_rates(&mut self, step: &mut DescentStep<'_>) -> bool {
         let unknown = step.closed_corners != self.program.active;
         if unknown {
             step.closed_corners = self.program.active.to_vec();
@@ -379,7 +383,7 @@ impl<'a> Descent<'a> {
     ///
     /// The response to tie forces is the projection of the free motion on the admissible motions. So responses to arbitrary forces span
     /// all these motions: the basis is complete once a response lies in it, or it has as many motions as there are degrees of freedom.
-    fn elongation_rates(&mut self, step: &Step<'_>) -> DMatrix<f64> {
+    fn elongation_rates(&mut self, step: &DescentStep<'_>) -> DMatrix<f64> {
         let (row, count) = (self.row, step.lines.len());
         let centres_m = &step.stance.placement.centres_m;
         let product = |one: &[Twist], other: &[Twist]| -> f64 {
@@ -424,7 +428,7 @@ impl<'a> Descent<'a> {
     }
 
     /// Computes the response of the row to tie forces alone, over gravity, for the present set of closed corners.
-    fn respond(&mut self, step: &Step<'_>, mut kg: impl FnMut(usize) -> f64) {
+    fn respond(&mut self, step: &DescentStep<'_>, mut kg: impl FnMut(usize) -> f64) {
         let ties = step.lines.iter().enumerate();
         let ties = ties.map(|(tie, line)| (line, kg(tie)));
         (self.load).push(self.row, &step.stance.placement, Vector2::zeros(), ties);
@@ -435,7 +439,7 @@ impl<'a> Descent<'a> {
     /// `falls` is the initial slope of the energy. Returns the largest velocity.
     fn search_line(
         &mut self,
-        step: &mut Step<'_>,
+        step: &mut DescentStep<'_>,
         newton_step_kg: &DVector<f64>,
         falls: f64,
     ) -> Result<f64, ContactError> {
@@ -553,10 +557,10 @@ mod tests {
         (stance, lines): &'a (RowState, Vec<TieLine>),
         force_g: Vector2<f64>,
         length: f64,
-    ) -> Step<'a> {
-        Step {
+    ) -> DescentStep<'a> {
+        DescentStep {
             length,
-            ..Step::new(row, stance, lines, force_g)
+            ..DescentStep::new(row, stance, lines, force_g)
         }
     }
 

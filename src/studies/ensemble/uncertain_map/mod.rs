@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use serde::{Deserialize, Serialize};
 
-pub use self::report::Summary;
+pub use self::report::UncertainMapSummary;
 use super::samples::ReasonCounts;
 use super::{NoAnswer, SampleCases, SampleRow, Samples};
 use crate::dynamics::Direction;

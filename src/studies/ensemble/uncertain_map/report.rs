@@ -67,7 +67,7 @@ const LINES: [(&str, Stroke); 3] = [
 /// Report on the map of samples.
 #[derive(Serialize, Deserialize, Template)]
 #[template(path = "studies/ensemble/uncertain_map/words.txt")]
-pub struct Summary {
+pub struct UncertainMapSummary {
     #[serde(flatten)]
     all: SampleSummary,
     /// Keys of the x and y axes.
@@ -130,7 +130,7 @@ pub(super) fn report(
         cells.filter(move |cell| cell.probability() >= Some(level))
     };
     let parts = samples.answers().map(|part| part.share);
-    let report = Summary {
+    let report = UncertainMapSummary {
         all: SampleSummary::new(
             (samples, &Varied::default()),
             model,
@@ -197,7 +197,7 @@ fn select_columns(crossings: &[Crossing]) -> Vec<Crossing> {
     chosen.into_iter().map(|column| crossings[column]).collect()
 }
 
-impl Report for Summary {
+impl Report for UncertainMapSummary {
     fn verdict(&self) -> String {
         let [some, half, most] = self.cells_at_levels;
         let [low, middle, high] = LEVELS.map(percent);

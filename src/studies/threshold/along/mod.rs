@@ -4,7 +4,7 @@ mod no_impact;
 mod picture;
 mod report;
 
-pub use self::report::Summary;
+pub use self::report::AlongSummary;
 
 use std::fmt;
 use std::str::FromStr;

@@ -22,7 +22,7 @@ use crate::studies::{
 /// Report on the threshold for each value of a key.
 #[derive(Serialize, Deserialize, Template)]
 #[template(path = "studies/threshold/along/words.txt")]
-pub struct Summary {
+pub struct AlongSummary {
     #[serde(flatten)]
     all: CaseSummary,
     /// The answer that may be quoted, in words: the least of all values.
@@ -68,7 +68,7 @@ impl Along<'_> {
         let friction = SurvivorFriction::of(demands, self.scenario, survivors);
         let condition = SlipWords::of(self.scenario).condition(friction.friction_demand, &study);
         let answer = self.answer(rows).with_friction(condition);
-        let report = Summary {
+        let report = AlongSummary {
             all: CaseSummary::new(
                 (self.scenario, &self.options.varied()),
                 rows.len(),
@@ -231,7 +231,7 @@ impl Along<'_> {
     }
 }
 
-impl Report for Summary {
+impl Report for AlongSummary {
     fn verdict(&self) -> String {
         let KeyRange { key, from, to, .. } = &self.along;
         let (from, to) = (plain(*from), plain(*to));
@@ -248,7 +248,7 @@ impl Report for Summary {
     }
 }
 
-impl Summary {
+impl AlongSummary {
     /// Returns the ranges of the thresholds, and the numbers of values without one, in words.
     fn ranges(&self) -> String {
         let points = &self.values;

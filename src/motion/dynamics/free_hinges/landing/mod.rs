@@ -43,7 +43,7 @@ const FALLEN_ENERGY_RATIO: f64 = 1e-3;
 
 /// Blocks that moved as one body in the last drift.
 #[derive(Clone, Copy, Debug, Default)]
-struct Piece {
+struct MovingPiece {
     first: usize,
     mass: f64,
     inertia: f64,
@@ -52,7 +52,7 @@ struct Piece {
     rate: f64,
 }
 
-impl Piece {
+impl MovingPiece {
     fn twist(&self, kick: Vector2<f64>) -> Twist {
         Twist {
             at_center: self.velocity + kick - quarter_turn(self.centre) * self.rate,
@@ -69,7 +69,7 @@ impl Piece {
 
 /// Solved step.
 #[derive(Clone, Copy, Debug)]
-struct Step {
+struct LandingStep {
     /// Expected step length: the impulses act up to its middle.
     expected_s: f64,
     length_s: f64,
@@ -101,8 +101,8 @@ pub struct LandingStepper<'a> {
     auxiliary: ContactProgram,
     closure_solver: ClosureSolver,
     ties: Ties<'a>,
-    pieces: Vec<Piece>,
-    next_pieces: Vec<Piece>,
+    pieces: Vec<MovingPiece>,
+    next_pieces: Vec<MovingPiece>,
     /// Corner about which each joint turned in the last drift, the intrados for a parted joint; `None` for closed joints.
     turning: Vec<Option<Edge>>,
     load: Load,
@@ -169,7 +169,7 @@ impl<'a> LandingStepper<'a> {
             program,
             closure_solver: ClosureSolver::new(row),
             ties: Ties::new(row, standing),
-            pieces: vec![Piece::default()],
+            pieces: vec![MovingPiece::default()],
             next_pieces: Vec::with_capacity(blocks),
             turning: vec![None; joints],
             load: Load::none(row),
@@ -240,7 +240,7 @@ impl<'a> LandingStepper<'a> {
         let (motions, pivots) = self.placement.motions(rates_rad_s);
         let blocks = self.row.blocks.iter().zip(&self.placement.centres_m);
         let moving = motions.iter().zip(blocks).enumerate();
-        let pieces = moving.map(|(first, (motion, (block, centre)))| Piece {
+        let pieces = moving.map(|(first, (motion, (block, centre)))| MovingPiece {
             first,
             mass: block.mass_kg,
             inertia: block.inertia_kg_m2,
@@ -363,7 +363,7 @@ impl<'a> LandingStepper<'a> {
                 edge
             };
             let point = self.placement.frames[joint].corner_m(nearer);
-            let arc_deviation = |piece: &Piece| piece.arc_deviation(point, step);
+            let arc_deviation = |piece: &MovingPiece| piece.arc_deviation(point, step);
             let left = index.checked_sub(1).map(|left| &self.pieces[left]);
             let jump = left.map_or(Vector2::zeros(), arc_deviation)
                 - right.map_or(Vector2::zeros(), arc_deviation);
@@ -438,7 +438,7 @@ impl<'a> LandingStepper<'a> {
                 let sum = moments[joint] - moments[first];
                 let centre = sum.centroid();
                 let twist = self.program.velocities[first];
-                self.next_pieces.push(Piece {
+                self.next_pieces.push(MovingPiece {
                     first,
                     mass: sum.mass,
                     inertia: sum.central_polar(),
@@ -452,7 +452,7 @@ impl<'a> LandingStepper<'a> {
     }
 
     /// Records the work of the ground and the forces of a solved step, and computes its pieces.
-    fn record_step(&mut self, step: &Step) {
+    fn record_step(&mut self, step: &LandingStep) {
         let before = self.momentum();
         let (from_s, to_s) = self.kick_interval(step.expected_s);
         self.form_pieces();
@@ -472,7 +472,7 @@ impl<'a> LandingStepper<'a> {
     ///
     /// # Errors
     /// If the closure error of the arch is too large.
-    fn drift(&mut self, step: &Step) -> Result<(), RowMotionError> {
+    fn drift(&mut self, step: &LandingStep) -> Result<(), RowMotionError> {
         self.kicked_s = self.kick_interval(step.expected_s).1;
         for (change, rates) in self.change.iter_mut().zip(&self.landing) {
             *change = rates.map(|rate| rate * step.length_s);

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::{LandingStepper, Piece};
+use super::{LandingStepper, MovingPiece};
 use crate::dynamics::row::observer::REST_ENERGY_RATIO;
 use crate::dynamics::row::stepper::{eccentricity_ratio, equal_step, open_hinge};
 use crate::dynamics::{MotionObserver, RowMotionError, Sample, Stepper};
@@ -12,14 +12,14 @@ use crate::mechanics::{Edge, Hinge, Pose};
 /// Least opening rate, relative to the fastest one, of a joint that an impact opens.
 const LEAST_OPENING: f64 = 1e-9;
 
-pub fn kinetic(pieces: &[Piece]) -> f64 {
-    let twice = |piece: &Piece| {
+pub fn kinetic(pieces: &[MovingPiece]) -> f64 {
+    let twice = |piece: &MovingPiece| {
         piece.mass * piece.velocity.norm_squared() + piece.inertia * piece.rate * piece.rate
     };
     0.5 * pieces.iter().map(twice).sum::<f64>()
 }
 
-pub fn momentum(pieces: &[Piece]) -> Vector2<f64> {
+pub fn momentum(pieces: &[MovingPiece]) -> Vector2<f64> {
     pieces.iter().map(|piece| piece.velocity * piece.mass).sum()
 }
 

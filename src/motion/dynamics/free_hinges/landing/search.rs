@@ -1,6 +1,6 @@
 //! Step length: up to the first landing, or a step with merged landings if impacts are too frequent.
 
-use super::{LandingStepper, Step};
+use super::{LandingStep, LandingStepper};
 use crate::dynamics::RowMotionError;
 use crate::mechanics::joints::SHUT_RATIO;
 
@@ -32,7 +32,7 @@ impl ClosingCorner {
 impl LandingStepper<'_> {
     /// Solves the step that ends at the first landing, or the longest step without a landing. The step length affects the kick and therefore the
     /// landing.
-    pub(super) fn solve_to_landing(&mut self, longest: f64) -> Result<Step, RowMotionError> {
+    pub(super) fn solve_to_landing(&mut self, longest: f64) -> Result<LandingStep, RowMotionError> {
         let floor = if self.has_impact_cluster() {
             self.observer.input.settings.shortest_step_s.min(longest)
         } else {
@@ -53,7 +53,7 @@ impl LandingStepper<'_> {
             let met = (lands - step).abs() <= LANDING_TOLERANCE * step;
             // With rounding errors a step may seem too long although it was safe before.
             if met || (lands > step && step == longest) || step == safe {
-                return Ok(Step {
+                return Ok(LandingStep {
                     expected_s: step,
                     length_s: if met { lands } else { step },
                     merged: false,
@@ -85,7 +85,7 @@ impl LandingStepper<'_> {
         }
         let length_s = self.observer.input.settings.shortest_step_s.min(longest);
         self.merge(length_s)?;
-        Ok(Step {
+        Ok(LandingStep {
             expected_s: length_s,
             length_s,
             merged: true,

@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 
 use super::{APART_RATIO, SlidingStepper};
 use crate::dynamics::Stepper as _;
-use crate::mechanics::coulomb::{Mode, TangentialMode};
+use crate::mechanics::coulomb::{JointMode, TangentialMode};
 use crate::mechanics::{Edge, Hinge};
 
 /// Impact that began in the last step. Its energy is complete after the next step.
@@ -12,7 +12,7 @@ pub(super) struct Landing {
     /// Corners that landed, joint by joint.
     pub(super) corners: Vec<[bool; 2]>,
     /// Modes of the joints before the impact.
-    pub(super) modes_before: Vec<Mode>,
+    pub(super) modes_before: Vec<JointMode>,
     pub(super) shut: Vec<Hinge>,
     /// Kinetic energy before the impact, in J.
     pub(super) energy_before_j: f64,
@@ -72,7 +72,11 @@ impl SlidingStepper<'_> {
     }
 
     /// Returns the joints that open in an impact: they close in the impact or were closed before, and are open afterwards.
-    fn find_opening_joints(shut: &[Hinge], before: &[Mode], after: &[Mode]) -> Vec<Hinge> {
+    fn find_opening_joints(
+        shut: &[Hinge],
+        before: &[JointMode],
+        after: &[JointMode],
+    ) -> Vec<Hinge> {
         let mut opened = Vec::new();
         for (joint, (before, after)) in before.iter().zip(after).enumerate() {
             let shuts = shut
@@ -104,7 +108,7 @@ impl SlidingStepper<'_> {
             }
             let part = &mut parts[usize::from(late == [false; 2])];
             part.total_j -= by_row.z;
-            let slips = |modes: &[Mode]| modes[joint].tangential != TangentialMode::Stick;
+            let slips = |modes: &[JointMode]| modes[joint].tangential != TangentialMode::Stick;
             if slips(&self.modes_before) || slips(&self.program.modes) {
                 // Below the tolerance of the rates the sign is a rounding error.
                 part.friction_j += (-by_row.z).max(0.0);
@@ -147,7 +151,7 @@ impl SlidingStepper<'_> {
         self.observer.opened =
             Self::find_opening_joints(&landing.shut, &landing.modes_before, after);
         self.observer.shut = landing.shut;
-        let sticks = |mode: &Mode| mode.tangential == TangentialMode::Stick;
+        let sticks = |mode: &JointMode| mode.tangential == TangentialMode::Stick;
         let moves = !(self.has_initial_contacts() && self.program.modes.iter().all(sticks));
         let stood = self
             .rotations_and_rates()

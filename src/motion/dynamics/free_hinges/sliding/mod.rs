@@ -27,7 +27,7 @@ use crate::dynamics::{
     EventKind, GroundVelocity, MotionInput, MotionObserver, RowMotionError, Sample, Sliding,
     Stepper,
 };
-use crate::mechanics::coulomb::{Mode, SlipProgram, TangentialMode};
+use crate::mechanics::coulomb::{JointMode, SlipProgram, TangentialMode};
 use crate::mechanics::slip::{FaceContact, Faces, Position};
 use crate::mechanics::{Corners, Edge, Hinge, Placement, Pose, Row, RowState, Supports};
 
@@ -73,7 +73,7 @@ pub struct SlidingStepper<'a> {
     program: SlipProgram,
     /// Copy for solutions that must not change the modes.
     auxiliary: SlipProgram,
-    modes_before: Vec<Mode>,
+    modes_before: Vec<JointMode>,
     /// True while the contacts are those of the initial position.
     stands: bool,
     /// Energy dissipated by friction outside impacts.
@@ -147,7 +147,7 @@ impl<'a> SlidingStepper<'a> {
             last_step: input.settings.longest_step_s,
             auxiliary: program.clone(),
             program,
-            modes_before: vec![Mode::STICKING; joints],
+            modes_before: vec![JointMode::STICKING; joints],
             initial_coordinates_m: stood.iter().map(|c| c.coordinates_m).collect(),
             rest,
             right: RightSupport::new(row, ground),
@@ -210,7 +210,7 @@ impl<'a> SlidingStepper<'a> {
             let mut error = now - Vector3::new(0.0, 0.0, self.stick_offsets_m[joint]);
             // A joint between blocks that move as one has no curvature; linear motion would produce some.
             let mut right = None;
-            if self.program.modes[joint] != Mode::STICKING {
+            if self.program.modes[joint] != JointMode::STICKING {
                 let left = left.unwrap_or_else(|| moved(joint - 1));
                 let then = self.faces[joint].contact(&left, right.insert(moved(joint)));
                 error += then.coordinates_m - now - self.program.joint_rate(joint) * step;
@@ -618,7 +618,7 @@ impl<'a> Stepper<'a> for SlidingStepper<'a> {
         } else {
             (0..self.faces.len()).all(touches)
         };
-        let slips = |mode: &Mode| matches!(mode.tangential, TangentialMode::Slip(_));
+        let slips = |mode: &JointMode| matches!(mode.tangential, TangentialMode::Slip(_));
         (lies && !self.program.modes.iter().any(slips))
             || sample.rotations_rad.iter().all(|angle| *angle == 0.0)
     }
