@@ -259,12 +259,15 @@ impl Scenario {
 
     /// The mechanisms through which impacts lead after a first sway to a side, as `archrock impact --format json`.
     fn chain_json(&self, py: Python<'_>, sway: &str, count: usize) -> PyResult<String> {
-        let first = Sway::ALL.iter().copied().find(|one| one.name() == sway);
-        let first = first.ok_or_else(|| {
-            refused_value(format!(
-                "`sway = {sway:?}` is not one of \"right\" and \"left\""
-            ))
-        })?;
+        let first = Sway::ALL
+            .iter()
+            .copied()
+            .find(|one| one.name() == sway)
+            .ok_or_else(|| {
+                refused_value(format!(
+                    "`sway = {sway:?}` is not one of \"right\" and \"left\""
+                ))
+            })?;
         if self.inner.structure.wall_behind() == Some(first) {
             let away = first.opposite().name();
             return Err(refused_value(format!(
@@ -301,7 +304,11 @@ impl Ground {
         match &*latest {
             Some((of, motion)) if *of == gravity_m_s2 => Ok(Arc::clone(motion)),
             _ => {
-                let motion = Arc::new(self.inner.ground_motion(gravity_m_s2).map_err(refused_value)?);
+                let motion = Arc::new(
+                    self.inner
+                        .ground_motion(gravity_m_s2)
+                        .map_err(refused_value)?,
+                );
                 *latest = Some((gravity_m_s2, Arc::clone(&motion)));
                 Ok(motion)
             }

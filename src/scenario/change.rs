@@ -62,8 +62,9 @@ pub(super) fn adjust_others(root: &mut Entries, new: &[String]) {
         if let Some((outer, key)) = path.rsplit_once('/')
             && let Some(Value::Object(table)) = tables.pointer_mut(outer)
         {
-            let names = outer.split('/').skip(1);
-            let names: Vec<_> = names
+            let names: Vec<_> = outer
+                .split('/')
+                .skip(1)
                 .filter(|name| name.parse::<usize>().is_err())
                 .collect();
             replace_alternatives(table, (&names, key), |key| {
@@ -103,8 +104,9 @@ fn replace_alternatives(
     is_new: impl Fn(&str) -> bool,
 ) {
     let has = |group: &KeyGroup, key: &str| group.keys.iter().any(|one| one == key);
-    let others = groups_in(tables).filter(|group| group.are_alternatives && has(group, key));
-    let others = others.flat_map(|group| &group.keys);
+    let others = groups_in(tables)
+        .filter(|group| group.are_alternatives && has(group, key))
+        .flat_map(|group| &group.keys);
     let replaced: Vec<&String> = others
         .filter(|other| *other != key && table.contains_key(*other) && !is_new(other))
         .collect();
@@ -149,10 +151,11 @@ fn scale_joints(arch: &mut Entries, is_new: impl Fn(&str) -> bool) {
     if let Some((embrace_deg, [joints_deg @ .., last_deg])) =
         span::given_embrace_deg(arch).zip(joints_deg.as_deref())
     {
-        let angles_deg = joints_deg
+        let angles_deg: Vec<f64> = joints_deg
             .iter()
-            .map(|angle_deg| angle_deg / last_deg * embrace_deg);
-        let angles_deg: Vec<f64> = angles_deg.chain([embrace_deg]).collect();
+            .map(|angle_deg| angle_deg / last_deg * embrace_deg)
+            .chain([embrace_deg])
+            .collect();
         arch.insert("joints_deg".to_owned(), Value::from(angles_deg));
     }
 }

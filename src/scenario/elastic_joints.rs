@@ -144,8 +144,11 @@ impl ElasticTable {
     fn joints(&self, structure: &Structure) -> Option<Result<ElasticStructure, ArgumentError>> {
         let (depth_m, _) = structure.depth_and_density();
         let (row, properties) = (structure.row().ok()?, self.properties(depth_m));
-        let wall = structure.column().map(Column::wall_behind_drums);
-        let wall = wall.transpose().map(Option::flatten);
+        let wall = structure
+            .column()
+            .map(Column::wall_behind_drums)
+            .transpose()
+            .map(Option::flatten);
         let joints = ElasticStructure::of_row(&row, &properties);
         Some(joints.and_then(|joints| joints.with_wall(&row, wall?, &properties)))
     }
@@ -266,12 +269,13 @@ impl ModelOptions for ElasticTable {
             Some(_) => "stone_modulus_gpa",
             None => "normal_stiffness_gpa_m",
         };
-        let joints = joints.map_err(|error| {
-            let (name, value, allowed) = (error.argument, plain(error.value), error.allowed);
-            let wrong = format!("gives a joint `{name} = {value}`, which must be {allowed}");
-            table.wrong_in(TABLE, stiffness, wrong)
-        })?;
-        let joints = joints.on_supports(site.supports.displacements());
+        let joints = joints
+            .map_err(|error| {
+                let (name, value, allowed) = (error.argument, plain(error.value), error.allowed);
+                let wrong = format!("gives a joint `{name} = {value}`, which must be {allowed}");
+                table.wrong_in(TABLE, stiffness, wrong)
+            })?
+            .on_supports(site.supports.displacements());
         let Err(error) = joints.rest([0.0, -site.gravity_m_s2]) else {
             return self.check_step(table, &joints, end_s);
         };

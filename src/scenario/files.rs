@@ -45,8 +45,9 @@ impl FileContents {
         match self {
             Self::Bytes(bytes) => bytes.into(),
             Self::Samples(samples) => {
-                let rows = samples.iter();
-                let rows = rows.map(|(time_s, value)| format!("{time_s:?},{value:?}\n"));
+                let rows = samples
+                    .iter()
+                    .map(|(time_s, value)| format!("{time_s:?},{value:?}\n"));
                 rows.collect::<String>().into_bytes().into()
             }
         }
@@ -84,8 +85,7 @@ impl Files {
 
     fn open(&self, path: &Path) -> Result<Box<dyn Read + '_>, String> {
         if let Some(in_memory) = &self.in_memory {
-            let contents = in_memory.get(path);
-            let contents = contents.ok_or("is not among the given files")?;
+            let contents = in_memory.get(path).ok_or("is not among the given files")?;
             return Ok(Box::new(io::Cursor::new(contents.bytes())));
         }
         let is_file = fs::metadata(path).map_err(describe_error)?.is_file();
@@ -132,8 +132,10 @@ impl Files {
         let mut files = Vec::new();
         if let Some(in_memory) = &self.in_memory {
             let pattern = Pattern::new(pattern).map_err(invalid)?;
-            let names = in_memory.keys().map(Path::new);
-            let names = names.filter(|name| pattern.matches_path_with(name, options));
+            let names = in_memory
+                .keys()
+                .map(Path::new)
+                .filter(|name| pattern.matches_path_with(name, options));
             files = names.map(file_name).collect::<Result<_, _>>()?;
             ensure(!files.is_empty(), || "matches no file")?;
             return Ok(files);

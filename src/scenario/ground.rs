@@ -88,8 +88,11 @@ impl Ground {
             found = found.or(pulse.map(|(pulse, motion)| (Self::Pulse(pulse), motion)));
         }
         let record = table.table(RECORD, |table| Record::read(table, known));
-        let kinds = Pulse::ALL.iter().map(|kind| kind.name());
-        let kinds: Vec<_> = kinds.chain([RECORD]).collect();
+        let kinds: Vec<_> = Pulse::ALL
+            .iter()
+            .map(|kind| kind.name())
+            .chain([RECORD])
+            .collect();
         table.apply_relations(&[OneOf(&kinds, None)])?;
         let record = record.map(|(record, motion)| (Self::Record(Box::new(record)), motion));
         found.or(record).ok_or(FaultRecorded)

@@ -115,8 +115,9 @@ pub(super) fn loaded_column(
         let held = column.wall_behind_drums().map(drop);
         held.map_err(|error| wrong_wall(table, &error))?;
         let row = column.row().map_err(|error| error.to_string());
-        let falls = row.and_then(|row| collapse_mechanism(&row).map_err(|error| error.to_string()));
-        let falls = falls.map_err(|wrong| format!("cannot be checked to stand: {wrong}"));
+        let falls = row
+            .and_then(|row| collapse_mechanism(&row).map_err(|error| error.to_string()))
+            .map_err(|wrong| format!("cannot be checked to stand: {wrong}"));
         if let Some(openings) = table.accept("load", falls)? {
             // The intrados of a column is its left side.
             let edge = |side| match side {

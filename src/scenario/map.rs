@@ -156,10 +156,14 @@ impl Map {
             _ => None,
         };
         let mut axes = Vec::new();
-        let others = table.keys_of_other_tables().into_iter();
-        let others = others.map(|key| (Quantity::Other, key));
-        let own = Quantity::ALL.iter().skip(1);
-        let own = own.map(|quantity| (*quantity, quantity.name().to_owned()));
+        let others = table
+            .keys_of_other_tables()
+            .into_iter()
+            .map(|key| (Quantity::Other, key));
+        let own = Quantity::ALL
+            .iter()
+            .skip(1)
+            .map(|quantity| (*quantity, quantity.name().to_owned()));
         for (quantity, key) in own.chain(others) {
             if let Some(sequence) = Sequence::read(table, &key, quantity.range()) {
                 if let Some(wrong) = unsuited(quantity) {
@@ -177,8 +181,7 @@ impl Map {
         axes.sort_by_key(|axis| axis.quantity != Quantity::Other);
         let mut axes = axes.into_iter();
         let (Some(x), Some(y), None) = (axes.next(), axes.next(), axes.next()) else {
-            let keys = Quantity::ALL.iter().skip(1);
-            let keys: Vec<_> = keys.map(|one| one.name()).collect();
+            let keys: Vec<_> = Quantity::ALL.iter().skip(1).map(|one| one.name()).collect();
             return Err(table.fault_of_table(format!(
                 "needs exactly two of the keys {}, or of other tables, such as \"arch.depth_m\"",
                 keys.join(", ")

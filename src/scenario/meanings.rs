@@ -34,8 +34,10 @@ pub(super) fn add(schema: &mut Value, path: &str) {
 
 /// Returns the meaning of a key: that of the first section of its table that has the key.
 fn meaning(table: &str, key: &str) -> Option<&'static str> {
-    let sections = TEXT.split("\n\n[").skip(1);
-    let mut sections = sections.filter_map(|section| section.split_once("]\n"));
+    let mut sections = TEXT
+        .split("\n\n[")
+        .skip(1)
+        .filter_map(|section| section.split_once("]\n"));
     sections.find_map(|(tables, lines)| {
         tables.split("] [").find(|name| fits(name, table))?;
         let mut lines = lines.lines().filter_map(|line| line.split_once(": "));

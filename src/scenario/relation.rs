@@ -108,8 +108,11 @@ pub(super) const GIVE_ONE: &str = "give one of them";
 
 /// Records faults of all given keys but the first in the file. Returns true if a key is given.
 fn exclude(table: &mut Table<'_>, keys: &[&str], remedy: &str) -> bool {
-    let given = keys.iter().copied().filter(|key| table.gives(key));
-    let mut given: Vec<_> = given.collect();
+    let mut given: Vec<_> = keys
+        .iter()
+        .copied()
+        .filter(|key| table.gives(key))
+        .collect();
     given.sort_by_key(|key| table.value_position(key));
     if let [first, others @ ..] = &given[..] {
         for key in others {

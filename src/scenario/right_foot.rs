@@ -70,8 +70,10 @@ impl RightFoot {
             let wrong = "needs two feet, and this stands on one: leave it out";
             return Err(outer.wrong_in(&["ground"], "right", wrong));
         }
-        let changing = [StudyTable::Map, StudyTable::Suite].map(StudyTable::name);
-        let mut changing = changing.into_iter().filter(|study| outer.gives(study));
+        let mut changing = [StudyTable::Map, StudyTable::Suite]
+            .map(StudyTable::name)
+            .into_iter()
+            .filter(|study| outer.gives(study));
         if let (Self::Record(_), Some(study)) = (self, changing.next()) {
             let wrong = "changes the motion of the ground, and [ground.right] has a record of its own: give `delay_s` or \
                          `apparent_velocity_m_s` there, with which both feet change";
@@ -112,8 +114,8 @@ impl RightFoot {
         }
         let right = self
             .record()
-            .map(|record| record.ground_motion(gravity_m_s2));
-        let right = right.unwrap_or_else(GroundMotion::still);
+            .map(|record| record.ground_motion(gravity_m_s2))
+            .unwrap_or_else(GroundMotion::still);
         match (left.end_s(), right.end_s()) {
             (left_s, right_s) if left_s < right_s => left.stopping().with_right_foot(right),
             (left_s, right_s) if right_s < left_s => left.with_right_foot(right.stopping()),

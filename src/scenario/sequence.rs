@@ -121,8 +121,9 @@ impl Sequence {
 /// Rounds a number as people would write it: 0.12 instead of 0.12000000000000002. The largest number has twelve digits; there are more decimals
 /// if a millionth of a step needs them.
 fn round_readably(value: f64, largest: f64, step: f64) -> f64 {
-    let digits = (12.0 - libm::log10(largest).floor()).max(6.0 - libm::log10(step).floor());
-    let digits = digits.clamp(0.0, 340.0) as usize;
+    let digits = (12.0 - libm::log10(largest).floor())
+        .max(6.0 - libm::log10(step).floor())
+        .clamp(0.0, 340.0) as usize;
     let rounded: f64 = format!("{value:.digits$}").parse().unwrap_or(value);
     // Turns negative zero into zero.
     rounded + 0.0

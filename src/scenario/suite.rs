@@ -130,11 +130,13 @@ impl Suite {
     ) -> ReadResult<(Self, Option<Directions>)> {
         let patterns = table.optional(RECORDS, &one_or_more(&text()));
         let format = Format::read(table);
-        let levels = Measure::ALL.iter().filter_map(|&measure| {
-            let levels = Sequence::read(table, measure.key(), measure.range())?;
-            Some((measure, levels))
-        });
-        let levels: Vec<_> = levels.collect();
+        let levels: Vec<_> = Measure::ALL
+            .iter()
+            .filter_map(|&measure| {
+                let levels = Sequence::read(table, measure.key(), measure.range())?;
+                Some((measure, levels))
+            })
+            .collect();
         let named = table.optional(BOTH_SIGNS, &switch()).map(directions_of);
         let spectral = Spectral::read(table);
         let strongest = levels.first().and_then(|(measure, levels)| {
@@ -246,8 +248,8 @@ impl Serialize for Suite {
                 SPECTRAL_DAMPING_PERCENT,
                 json!(self.spectral.damping_percent),
             ),
-        ];
-        let own = own.map(|(key, value)| (key.to_owned(), value));
+        ]
+        .map(|(key, value)| (key.to_owned(), value));
         serializer.collect_map(records.into_iter().chain(own))
     }
 }

@@ -442,9 +442,9 @@ impl<'a> Table<'a> {
         let innermost = around.last().and_then(|(path, _)| self.place_of(path));
         // With nested tables, only these are searched.
         let mut searched = around.iter().skip(path.len().min(1)).rev();
-        let found =
-            searched.find_map(|(path, entries)| Some((format!("{path}/{key}"), entries.get(key)?)));
-        let found = found.or_else(|| self.default_of(key));
+        let found = searched
+            .find_map(|(path, entries)| Some((format!("{path}/{key}"), entries.get(key)?)))
+            .or_else(|| self.default_of(key));
         let Some((path, value)) = found else {
             let place = innermost.unwrap_or(self.place);
             return self.fault(place, format!("`{key}` {message}"));
@@ -460,8 +460,10 @@ impl<'a> Table<'a> {
             _ => format!("`{key} = {}`", self.document.quote(&path, value)),
         };
         let assigned = value.is_array().then(|| self.document.assigned(&path));
-        let place = assigned.flatten().or_else(|| self.place_of(&path));
-        let place = place.unwrap_or_default();
+        let place = assigned
+            .flatten()
+            .or_else(|| self.place_of(&path))
+            .unwrap_or_default();
         self.fault(place, format!("{given} {message}"))
     }
 
@@ -500,8 +502,10 @@ impl<'a> Table<'a> {
             Some(value) => format!("`{key} = {}`", self.document.quote(&path, value)),
             None => format!("`{key}`"),
         };
-        let place = self.place_of(&path).or_else(|| self.place_of(&element));
-        let place = place.unwrap_or_default();
+        let place = self
+            .place_of(&path)
+            .or_else(|| self.place_of(&element))
+            .unwrap_or_default();
         self.fault(place, format!("{given} of {name} {} {message}", at + 1))
     }
 

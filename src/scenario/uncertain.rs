@@ -297,8 +297,10 @@ impl UncertainKey {
         let is_known = before.any(|other| parts(&other.key) == parts(&self.key));
         let wrong = "is the same as a key before it; leave one out";
         ensure(!is_known, || wrong)?;
-        let own = known.iter().find_map(|known| number(known, &self.key));
-        let own = own.unwrap_or_default();
+        let own = known
+            .iter()
+            .find_map(|known| number(known, &self.key))
+            .unwrap_or_default();
         self.own = own.as_f64();
         ensure(!own.is_i64() && !own.is_u64(), || {
             format!(
@@ -322,8 +324,9 @@ impl UncertainKey {
         let largest = self.quantile(0.0).abs().max(self.quantile(1.0).abs());
         for part in PROBED {
             // A bound that differs from zero by rounding errors only is zero.
-            let value = Some(self.quantile(part)).filter(|value| value.abs() > 1e-12 * largest);
-            let value = value.unwrap_or(0.0);
+            let value = Some(self.quantile(part))
+                .filter(|value| value.abs() > 1e-12 * largest)
+                .unwrap_or(0.0);
             let allowed = scenario.with_values(&[(&self.key, value)]);
             let value = plain(value);
             allowed.map_err(|wrong| {

@@ -583,8 +583,7 @@ impl Building {
 
     /// Returns the modes at a limit state.
     pub fn modes_at(&self, state: LimitState) -> Vec<Mode> {
-        let modes = self.modes.iter();
-        let modes = modes.filter_map(|mode| {
+        let modes = self.modes.iter().filter_map(|mode| {
             let at_state = mode.states.get(&state)?;
             Some(Mode {
                 t_s: at_state.t_s,

@@ -361,8 +361,9 @@ mod tests {
                 };
                 let (rows, columns) = (normals(records, of_record), normals(samples, of_sample));
                 let pairs = normals(records * samples, of_pair);
-                let values = pairs.iter().enumerate();
-                let values = values
+                let values = pairs
+                    .iter()
+                    .enumerate()
                     .map(|(index, pair)| rows[index / samples] + columns[index % samples] + pair);
                 let values = ascending(values);
                 let [low, middle, high] = FRACTILES.map(|part| quantile(&values, part).unwrap());

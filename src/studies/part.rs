@@ -165,8 +165,9 @@ impl Header {
             (here != there).then(|| format!("{what} {there:?} instead of {here:?}"))
         };
         let mut lines = self.scenario.lines().zip(other.scenario.lines());
-        let lines = lines.find(|(here, there)| here != there);
-        let lines = lines.unwrap_or((&self.scenario, &other.scenario));
+        let lines = lines
+            .find(|(here, there)| here != there)
+            .unwrap_or((&self.scenario, &other.scenario));
         let [options, other_options] = [self, other].map(|header| header.options.to_string());
         let (here, there) = (self.cases, other.cases);
         let all = [
@@ -261,9 +262,8 @@ struct Lines<'p> {
 impl<'p> Lines<'p> {
     fn of(path: &'p Path) -> Result<Self, PartError> {
         check_file(path)?;
-        let bytes = fs::read(path);
-        let mut bytes =
-            bytes.map_err(|error| unusable_part(path, format!("cannot be read: {error}")))?;
+        let mut bytes = fs::read(path)
+            .map_err(|error| unusable_part(path, format!("cannot be read: {error}")))?;
         // An incomplete last line was being written when the program was killed.
         let last = bytes.iter().rposition(|byte| *byte == b'\n');
         let begins_header = bytes.starts_with(HEADER) || HEADER.starts_with(&bytes);

@@ -143,8 +143,8 @@ impl PlacedStructure<'_> {
             let named = Text::from(format!("{letter}{mark}"));
             let half = Vector2::new(0.5 * named.px() + 2.0, 7.5);
             let middle = at + Vector2::new(outward.x, -outward.y) * (side * 17.0);
-            let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
-            let corners = corners.map(|(x, y)| middle + half.component_mul(&Vector2::new(x, y)));
+            let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
+                .map(|(x, y)| middle + half.component_mul(&Vector2::new(x, y)));
             drawing.polygon("paper", corners, "#ffffff", Stroke::new("none", 0.0, ""));
             let text = middle + Vector2::new(0.0, 4.5);
             drawing.label(text, Anchor::Middle, 0.0, named);
@@ -190,19 +190,25 @@ impl PlacedStructure<'_> {
         let profile = self.of.profile(sway);
         let closing = closing_field(&before.link.mechanism, profile);
         let field = after.link.mechanism.field();
-        let cuts = closing.minus(&field).cuts_rad.into_iter();
-        let mut cuts: Vec<f64> = cuts.map(|cut| sway.convert_section(profile, cut)).collect();
+        let mut cuts: Vec<f64> = closing
+            .minus(&field)
+            .cuts_rad
+            .into_iter()
+            .map(|cut| sway.convert_section(profile, cut))
+            .collect();
         cuts.sort_by(f64::total_cmp);
         cuts.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
-        let hinges = cuts.iter().map(|section| {
-            let (angle_rad, edge) = (*section, Edge::Intrados);
-            let in_ring = Hinge::Section { angle_rad, edge };
-            let edge = Some(edge);
-            let at_joint = seen.joint(angle_rad);
-            let hinge = at_joint.map_or(in_ring, |joint| Hinge::Joint { joint, edge });
-            open_at(hinge, Vector2::zeros())
-        });
-        let hinges: Vec<OpenHinge> = hinges.collect();
+        let hinges: Vec<OpenHinge> = cuts
+            .iter()
+            .map(|section| {
+                let (angle_rad, edge) = (*section, Edge::Intrados);
+                let in_ring = Hinge::Section { angle_rad, edge };
+                let edge = Some(edge);
+                let at_joint = seen.joint(angle_rad);
+                let hinge = at_joint.map_or(in_ring, |joint| Hinge::Joint { joint, edge });
+                open_at(hinge, Vector2::zeros())
+            })
+            .collect();
         let (view, greys) = (self.view(&[], &hinges), ["#eeeeee", "#e0e0e0"]);
         view.draw_behind(drawing);
         view.draw_blocks(drawing, |_, body| match body {

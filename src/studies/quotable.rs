@@ -355,8 +355,11 @@ pub fn quote_answers(answers: &[ModelAnswer]) -> Option<String> {
     let clause = friction.map_or(String::new(), FrictionCondition::clause);
     let slip = friction.filter(|friction| friction.may_slip());
     let slip = slip.map_or(String::new(), |slip| format!("; {slip}"));
-    let restitution = best.restitution.iter();
-    let restitution: String = restitution.map(|words| format!(", {words}")).collect();
+    let restitution: String = best
+        .restitution
+        .iter()
+        .map(|words| format!(", {words}"))
+        .collect();
     Some(match &best.answer {
         Ok(answer) => {
             format!("to quote: {answer}{clause}, with {label}{restitution}{more}{slip}")

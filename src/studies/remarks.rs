@@ -283,9 +283,10 @@ impl CaseSummary {
         warnings: impl IntoIterator<Item = String>,
     ) -> Self {
         let one_direction = one_direction(scenario);
-        let warnings = warnings.into_iter();
-        let warnings = warnings.chain(friction.friction_condition.clone());
-        let warnings = warnings.chain(one_direction.clone());
+        let warnings = warnings
+            .into_iter()
+            .chain(friction.friction_condition.clone())
+            .chain(one_direction.clone());
         Self {
             program: env!("CARGO_PKG_NAME").to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),

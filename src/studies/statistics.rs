@@ -102,8 +102,10 @@ pub fn ascending(values: impl IntoIterator<Item = f64>) -> Vec<f64> {
 
 /// Sorts values with weights, given as `[value, weight]`, in ascending order of the values.
 pub fn ascending_weighted(values: impl IntoIterator<Item = [f64; 2]>) -> Vec<[f64; 2]> {
-    let values = values.into_iter().filter(|[_, weight]| *weight > 0.0);
-    let mut values: Vec<[f64; 2]> = values.collect();
+    let mut values: Vec<[f64; 2]> = values
+        .into_iter()
+        .filter(|[_, weight]| *weight > 0.0)
+        .collect();
     values.sort_by(|a, b| a[0].total_cmp(&b[0]));
     values
 }

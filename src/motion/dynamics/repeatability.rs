@@ -281,10 +281,10 @@ impl Repeatability {
 
 /// Returns a quantity of the slip in all these motions; `None` if joints do not slip.
 fn repeated_slip(runs: &[&Summary], value: impl Fn(&Sliding) -> f64) -> Option<RepeatedValue> {
-    let values = runs
+    let values: Vec<f64> = runs
         .iter()
-        .map(|run| Some(value(run.row()?.sliding.as_ref()?)));
-    let values: Vec<f64> = values.collect::<Option<_>>()?;
+        .map(|run| Some(value(run.row()?.sliding.as_ref()?)))
+        .collect::<Option<_>>()?;
     let (own, others) = values.split_first()?;
     Some(RepeatedValue::of(*own, others.iter().copied()))
 }

@@ -220,11 +220,12 @@ impl Row {
         forces: impl IntoIterator<Item = (usize, Vector2<f64>, Vector2<f64>)>,
         gravity_m_s2: f64,
     ) -> Self {
-        let forces = forces.into_iter();
-        let forces = forces.filter(|(block, _, force_n)| {
-            *block < self.blocks.len() && *force_n != Vector2::zeros()
-        });
-        let forces = forces.map(|(block, at_m, force_n)| Tie::constant_force(block, at_m, force_n));
+        let forces = forces
+            .into_iter()
+            .filter(|(block, _, force_n)| {
+                *block < self.blocks.len() && *force_n != Vector2::zeros()
+            })
+            .map(|(block, at_m, force_n)| Tie::constant_force(block, at_m, force_n));
         self.ties = forces.collect();
         self.gravity_m_s2 = gravity_m_s2;
         self

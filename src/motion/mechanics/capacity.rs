@@ -79,17 +79,19 @@ pub fn moving_bodies<C: MechanismChain>(structure: &C, sway: Sway) -> Option<Vec
     // Every hinge adds a rotation about itself to the motion of the body before it.
     let mut twist = Twist::ZERO;
     let bodies = mechanism.moments().into_iter().zip(&hinges);
-    let moving = bodies.zip(rates.as_ref()).map(|((moments, hinge), rate)| {
-        twist = twist + Twist::rotation(*hinge, rate - twist.rate);
-        let centre = moments.centroid();
-        MovingBody {
-            mass_kg: moments.mass * structure.mass_unit_kg(),
-            centre_m: Vector2::new(sway.sign() * centre.x, centre.y) * structure.length_m(),
-            displacement: twist.velocity_at(centre) * structure.length_m(),
-            rotation: -rate,
-        }
-    });
-    let mut moving: Vec<MovingBody> = moving.collect();
+    let mut moving: Vec<MovingBody> = bodies
+        .zip(rates.as_ref())
+        .map(|((moments, hinge), rate)| {
+            twist = twist + Twist::rotation(*hinge, rate - twist.rate);
+            let centre = moments.centroid();
+            MovingBody {
+                mass_kg: moments.mass * structure.mass_unit_kg(),
+                centre_m: Vector2::new(sway.sign() * centre.x, centre.y) * structure.length_m(),
+                displacement: twist.velocity_at(centre) * structure.length_m(),
+                rotation: -rate,
+            }
+        })
+        .collect();
     if sway == Sway::Left {
         moving.reverse();
     }
@@ -104,12 +106,14 @@ pub fn moving_forces<C: MechanismChain>(structure: &C, sway: Sway) -> Option<Vec
     mechanism.write_poses(0.0, &mut poses, &mut hinges);
     let rates = mechanism.rotation_rates(0.0);
     let twist = Twist::rotation(hinges[0], rates.as_ref()[0]);
-    let forces = mechanism.constant_forces().into_iter();
-    let forces = forces.map(|(at, force)| MovingForce {
-        at_m: Vector2::new(sway.sign() * at.x, at.y) * structure.length_m(),
-        force_kg: force * structure.mass_unit_kg(),
-        displacement: twist.velocity_at(at) * structure.length_m(),
-    });
+    let forces = mechanism
+        .constant_forces()
+        .into_iter()
+        .map(|(at, force)| MovingForce {
+            at_m: Vector2::new(sway.sign() * at.x, at.y) * structure.length_m(),
+            force_kg: force * structure.mass_unit_kg(),
+            displacement: twist.velocity_at(at) * structure.length_m(),
+        });
     Some(forces.collect())
 }
 
@@ -143,8 +147,9 @@ impl Control {
     pub fn centre_of(masses: &[(f64, BodyPoint)]) -> Self {
         let moving = || masses.iter().filter(|(_, point)| point.body.is_some());
         let whole_kg: f64 = moving().map(|(mass_kg, _)| mass_kg).sum();
-        let points = moving().map(|(mass_kg, point)| (mass_kg / whole_kg, *point));
-        let points: Vec<(f64, BodyPoint)> = points.collect();
+        let points: Vec<(f64, BodyPoint)> = moving()
+            .map(|(mass_kg, point)| (mass_kg / whole_kg, *point))
+            .collect();
         let at_m = points.iter().map(|(part, point)| point.at_m * *part).sum();
         Self { at_m, points }
     }
@@ -257,10 +262,11 @@ impl Capacity {
             sway.sign() * (after_m - before_m) / (near[1].q_rad - near[0].q_rad)
         };
         let control_velocity = velocity(&|poses| control.shift_m(poses));
-        let moving = masses.iter().filter(|(_, point)| point.body.is_some());
-        let moving =
-            moving.map(|(mass_kg, point)| (*mass_kg, velocity(&|poses| point.shift_m(poses))));
-        let moving: Vec<(f64, f64)> = moving.collect();
+        let moving: Vec<(f64, f64)> = masses
+            .iter()
+            .filter(|(_, point)| point.body.is_some())
+            .map(|(mass_kg, point)| (*mass_kg, velocity(&|poses| point.shift_m(poses))))
+            .collect();
         let speeds = moving.iter().map(|(_, velocity)| velocity.abs());
         let fastest = speeds.fold(0.0, f64::max);
         if control_velocity <= 1e-9 * fastest {

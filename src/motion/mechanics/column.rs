@@ -272,8 +272,9 @@ impl Column {
 
     /// Returns its loads for drawings, each with the drum that carries it.
     pub fn load_outlines(&self) -> LoadOutlines {
-        let loads_m = self.placed_loads();
-        let loads_m = loads_m.map(|(_, at_m)| (self.drum_at(at_m.y), at_m));
+        let loads_m = self
+            .placed_loads()
+            .map(|(_, at_m)| (self.drum_at(at_m.y), at_m));
         LoadOutlines {
             fill_m: Vec::new(),
             loads_m: loads_m.collect(),
@@ -312,8 +313,9 @@ impl Column {
             centre_m: Vector2::new(0.0, 0.5 * self.height_m),
             inertia_kg_m2: mass_kg * diagonal_m * diagonal_m / 12.0,
         };
-        let loads = self.placed_loads();
-        let loads = loads.filter_map(|(load, at_m)| load.moving_body(at_m));
+        let loads = self
+            .placed_loads()
+            .filter_map(|(load, at_m)| load.moving_body(at_m));
         loads.fold(own, |body, load| body.with(&load))
     }
 
@@ -417,12 +419,14 @@ impl Column {
             self.depth_m,
             self.density_kg_m3,
         )?;
-        let loads = self.placed_loads();
-        let loads = loads.filter_map(|(load, at_m)| Some((at_m, load.moving_body(at_m)?)));
-        let row = loads.fold(row, |row, (at_m, load)| {
-            row.with_body(self.drum_at(at_m.y), &load)
-        });
-        let row = row.with_supports_that_extend([!self.pedestal, false]);
+        let loads = self
+            .placed_loads()
+            .filter_map(|(load, at_m)| Some((at_m, load.moving_body(at_m)?)));
+        let row = loads
+            .fold(row, |row, (at_m, load)| {
+                row.with_body(self.drum_at(at_m.y), &load)
+            })
+            .with_supports_that_extend([!self.pedestal, false]);
         let mut forces = self.constant_forces();
         if self.ties.is_empty() {
             let forces = forces.map(|(at_m, force_n)| (self.drum_at(at_m.y), at_m, force_n));
@@ -700,8 +704,12 @@ mod tests {
 
     #[test]
     fn mass_and_size_are_those_of_the_block() {
-        let column = Column::new(4.0, 0.8).unwrap().with_depth_m(0.5).unwrap();
-        let column = column.with_density_kg_m3(2200.0).unwrap();
+        let column = Column::new(4.0, 0.8)
+            .unwrap()
+            .with_depth_m(0.5)
+            .unwrap()
+            .with_density_kg_m3(2200.0)
+            .unwrap();
         let column = RockingColumn::new(&column, ImpactModel::MaxRestitution).unwrap();
         let kg = column.mass_unit_kg() * column.first.right.mechanism.moments()[0].mass;
         assert!((kg - 4.0 * 0.8 * 0.5 * 2200.0).abs() < 1e-9);

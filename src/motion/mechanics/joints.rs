@@ -84,13 +84,16 @@ pub struct Closure {
 impl Placement {
     /// Returns the placement of the undeformed row.
     pub fn new(row: &Row) -> Self {
-        let faces = row.joints.iter().map(|joint| Face {
-            joint: *joint,
-            middle: joint.middle_m(),
-            tangent: joint.direction(),
-            thickness: joint.thickness_m(),
-        });
-        let faces: Vec<Face> = faces.collect();
+        let faces: Vec<Face> = row
+            .joints
+            .iter()
+            .map(|joint| Face {
+                joint: *joint,
+                middle: joint.middle_m(),
+                tangent: joint.direction(),
+                thickness: joint.thickness_m(),
+            })
+            .collect();
         let undeformed_m: Vec<_> = row.blocks.iter().map(|block| block.centre_m).collect();
         let mut placement = Self {
             handedness: row.handedness,

@@ -97,12 +97,14 @@ impl Parts for Arch {
 
     fn sections(&self) -> Vec<StructureSection> {
         let (ring, mean_radius_m) = (self.ring(), self.mean_radius_m);
-        let sections = self.thrust_sections_rad().into_iter();
-        let sections = sections.map(|angle_rad| StructureSection {
-            middle_m: ring.radial_direction(angle_rad) * mean_radius_m,
-            across_m: ring.radial_direction(angle_rad) * (ring.thickness_ratio * mean_radius_m),
-            angle_rad: Some(angle_rad),
-        });
+        let sections = self
+            .thrust_sections_rad()
+            .into_iter()
+            .map(|angle_rad| StructureSection {
+                middle_m: ring.radial_direction(angle_rad) * mean_radius_m,
+                across_m: ring.radial_direction(angle_rad) * (ring.thickness_ratio * mean_radius_m),
+                angle_rad: Some(angle_rad),
+            });
         sections.collect()
     }
 
@@ -159,12 +161,14 @@ impl Parts for Column {
         if let Some(row) = self.tied_row() {
             return row.sections();
         }
-        let sections = self.thrust_sections_m().into_iter();
-        let sections = sections.map(|height_m| StructureSection {
-            middle_m: Vector2::new(0.0, height_m),
-            across_m: Vector2::new(self.width_m, 0.0),
-            angle_rad: None,
-        });
+        let sections = self
+            .thrust_sections_m()
+            .into_iter()
+            .map(|height_m| StructureSection {
+                middle_m: Vector2::new(0.0, height_m),
+                across_m: Vector2::new(self.width_m, 0.0),
+                angle_rad: None,
+            });
         sections.collect()
     }
 

@@ -263,8 +263,9 @@ mod tests {
     #[test]
     fn gradients_are_those_of_the_coordinates() {
         let ring = Ring::new(0.2, 2.5).unwrap();
-        let row = Row::arch(&ring, 3, 2.0, 1.0, 1.0).unwrap();
-        let row = row.with_supports_that_extend([true; 2]);
+        let row = Row::arch(&ring, 3, 2.0, 1.0, 1.0)
+            .unwrap()
+            .with_supports_that_extend([true; 2]);
         for joint in [1, 0, 3] {
             check_gradients(&row, joint);
         }

@@ -74,8 +74,9 @@ impl Tilting {
             force: towards(load.constant_force_n(gravity_m_s2)) / (block_kg * gravity_m_s2),
         });
         // A load of zero must not change any bit.
-        let loads = loads.filter(|load| load.mass > 0.0 || load.force != Vector2::zeros());
-        let loads: Vec<CarriedLoad> = loads.collect();
+        let loads: Vec<CarriedLoad> = loads
+            .filter(|load| load.mass > 0.0 || load.force != Vector2::zeros())
+            .collect();
         // Housner's block has an inertia of 1/3 about its centre, and of 4/3 about its toe.
         let mut body = MassMoments::of_body(1.0, Vector2::new(0.0, cos), 1.0 / 3.0);
         let mut inertia = 4.0 / 3.0;

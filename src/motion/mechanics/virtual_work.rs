@@ -53,8 +53,9 @@ pub fn load_multiplier(bodies: &[MovingBody], ties: &[MovingTie], forces: &[Movi
         each.sum()
     };
     let held = ties.iter().map(|tie| tie.force_kg * tie.lengthening);
-    let pushing = forces.iter();
-    let pushing = pushing.map(|force| force.force_kg.dot(&force.displacement));
+    let pushing = forces
+        .iter()
+        .map(|force| force.force_kg.dot(&force.displacement));
     let held = held.sum::<f64>() - pushing.sum::<f64>();
     (work(|body| body.displacement.y) + held) / work(|body| body.displacement.x)
 }

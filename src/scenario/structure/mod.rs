@@ -73,8 +73,7 @@ impl Structure {
         let tables = ["arch", "column", pointed, elliptic, basket, blocks];
         table.apply_relations(&[OneOf(&tables, None)])?;
         let column = column.map(|(column, back)| StructureTable::Column(column, back));
-        let read = arch.or(column).or(shape);
-        let read = read.ok_or(FaultRecorded)?;
+        let read = arch.or(column).or(shape).ok_or(FaultRecorded)?;
         let (beside, gravity_m_s2) = (beside?, gravity_m_s2.ok_or(FaultRecorded)?);
         let ties = beside.ties.clone();
         let structure = match read {
@@ -404,8 +403,9 @@ fn read_column(table: &mut Table<'_>, has_joints: bool) -> ReadResult<(Column, O
         .expect("the ranges of the keys are within those of a column")
         .on_pedestal(pedestal);
     if let Some(heights_m) = drum_heights_m {
-        let drums = column.with_drum_heights_m(heights_m);
-        let drums = drums.map_err(|error| format!("does not fit: {error}"));
+        let drums = column
+            .with_drum_heights_m(heights_m)
+            .map_err(|error| format!("does not fit: {error}"));
         column = table.accept("drum_heights_m", drums)?;
     }
     Ok((column, back))

@@ -67,8 +67,10 @@ impl Scenario {
     }
 
     fn unlikely_pulse(&self, pulse: &PulseGround, starts_g: StartsG<'_>) -> Option<Unlikely> {
-        let peak_g = pulse.amplitude_g.abs();
-        let peak_g = peak_g.max(pulse.vertical_amplitude_g.abs());
+        let peak_g = pulse
+            .amplitude_g
+            .abs()
+            .max(pulse.vertical_amplitude_g.abs());
         let key = format!("ground.{}.amplitude_g", pulse.kind.name());
         let unit = "is its amplitude in units of gravity?";
         let doubt = |value_g: f64, phrase: String| {
@@ -112,11 +114,13 @@ impl Scenario {
     fn largest_push(&self, starts_g: StartsG<'_>) -> Option<[f64; 2]> {
         let pushes_m_s2 = self.ground_motion().pushes_m_s2(f64::INFINITY);
         let starts_g = starts_g()?;
-        let ratios = pushes_m_s2.into_iter().zip(starts_g);
-        let ratios = ratios.filter_map(|(push_m_s2, starts_g)| {
-            let push_g = push_m_s2 / self.gravity_m_s2();
-            Some([push_g, push_g / starts_g?])
-        });
+        let ratios = pushes_m_s2
+            .into_iter()
+            .zip(starts_g)
+            .filter_map(|(push_m_s2, starts_g)| {
+                let push_g = push_m_s2 / self.gravity_m_s2();
+                Some([push_g, push_g / starts_g?])
+            });
         ratios.max_by(|one, other| one[1].total_cmp(&other[1]))
     }
 
@@ -142,8 +146,11 @@ impl Scenario {
     fn strengths(&self, study: &Varied<'_>) -> Vec<Strengths> {
         let mut all = Vec::new();
         if let Some(ground) = &self.ground {
-            let axes = self.map.iter().flat_map(|map| [&map.x, &map.y]);
-            let axes = axes.filter_map(|axis| self.axis_strengths(axis, ground));
+            let axes = self
+                .map
+                .iter()
+                .flat_map(|map| [&map.x, &map.y])
+                .filter_map(|axis| self.axis_strengths(axis, ground));
             all.extend(axes);
             let axis = study.key_range.map(|(key, ends)| Axis {
                 quantity: Quantity::Other,
@@ -271,8 +278,9 @@ fn unlikely_records<'s>(
         .clone()
         .filter_map(Series::different_header)
         .collect();
-    let values = records.map(|series| series.unlikely_values(gravity_m_s2));
-    let mut values = values.filter(|faults| !faults.is_empty());
+    let mut values = records
+        .map(|series| series.unlikely_values(gravity_m_s2))
+        .filter(|faults| !faults.is_empty());
     unlikely.extend(values.next().into_iter().flatten());
     let others = values.count();
     let more = match others {

@@ -154,12 +154,14 @@ impl Shaking {
 /// Computes the largest velocity of accelerations without its line of least squares.
 fn peak_velocity(accelerations: &[(f64, f64)]) -> f64 {
     let mut velocity = 0.0;
-    let velocities = accelerations.windows(2).map(|pair| {
-        let [(t0, a0), (t1, a1)] = [pair[0], pair[1]];
-        velocity += 0.5 * (a0 + a1) * (t1 - t0);
-        (t1, velocity)
-    });
-    let mut velocities: Vec<_> = velocities.collect();
+    let mut velocities: Vec<_> = accelerations
+        .windows(2)
+        .map(|pair| {
+            let [(t0, a0), (t1, a1)] = [pair[0], pair[1]];
+            velocity += 0.5 * (a0 + a1) * (t1 - t0);
+            (t1, velocity)
+        })
+        .collect();
     Baseline::Linear.subtract(&mut velocities);
     velocities
         .iter()

@@ -109,12 +109,14 @@ pub(super) struct Bodies {
 impl Bodies {
     /// Returns the bodies of the first mechanism of a model to a side.
     pub(super) fn of_model(model: &dyn MechanismModel, sway: Sway) -> Self {
-        let hinges = model.hinges_after(0, sway).into_iter();
-        let hinges = hinges.map(|hinge| match hinge {
-            Hinge::Section { angle_rad, .. } => angle_rad,
-            Hinge::Joint { joint, .. } => joint as f64,
-            Hinge::Toe(_) => 0.0,
-        });
+        let hinges = model
+            .hinges_after(0, sway)
+            .into_iter()
+            .map(|hinge| match hinge {
+                Hinge::Section { angle_rad, .. } => angle_rad,
+                Hinge::Joint { joint, .. } => joint as f64,
+                Hinge::Toe(_) => 0.0,
+            });
         Self {
             hinges: hinges.collect(),
             count: model.bodies().len(),

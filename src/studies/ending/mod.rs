@@ -238,8 +238,8 @@ pub(super) fn answer_valid_cases<C, A, E>(
     answer: impl FnOnce(&[C]) -> Vec<Result<A, E>>,
 ) -> Vec<Result<A, E>> {
     let mut known = Vec::new();
-    let cases = cases.into_iter();
     let cases: Vec<Result<(), E>> = cases
+        .into_iter()
         .map(|case| case.map(|case| known.push(case)))
         .collect();
     let mut answers = answer(&known).into_iter();

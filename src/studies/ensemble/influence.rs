@@ -104,8 +104,13 @@ impl Influences {
 
     /// Returns the index of the number with the largest influence on the first answer with known influences.
     pub(super) fn find_strongest(&self) -> Option<usize> {
-        let shares = self.0.values().flatten().next()?.iter();
-        let shares = shares.map(|number| number.sensitivity.first_order);
+        let shares = self
+            .0
+            .values()
+            .flatten()
+            .next()?
+            .iter()
+            .map(|number| number.sensitivity.first_order);
         let strongest = shares.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
         strongest.map(|(index, _)| index)
     }
@@ -207,7 +212,8 @@ fn bar(drawing: &mut Drawing, axes: &Axes, top: f64, (name, number): (&str, &Num
     }
     drawing.band(&number.key, &bar(sensitivity.first_order), color::BLUE, 0.6);
     let middle = top + 20.0 + 0.5 * BAR_PX;
-    let ends = sensitivity.first_order_interval;
-    let ends = ends.map(|share| Vector2::new(at(share), middle));
+    let ends = sensitivity
+        .first_order_interval
+        .map(|share| Vector2::new(at(share), middle));
     drawing.curve("interval", ends, INTERVAL);
 }

@@ -124,9 +124,11 @@ impl SampleSummary {
         let scenario = samples.scenario;
         let condition = friction.friction_condition.clone();
         let one_direction = one_direction(scenario);
-        let limits = [outside_in_words(&model, checked), no_verdict];
-        let limits = limits.into_iter().flatten().chain(condition);
-        let limits = limits.chain(one_direction.clone());
+        let limits = [outside_in_words(&model, checked), no_verdict]
+            .into_iter()
+            .flatten()
+            .chain(condition)
+            .chain(one_direction.clone());
         let own = samples.own.as_ref().err();
         let without = samples
             .samples_without_answer()

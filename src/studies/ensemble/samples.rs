@@ -140,8 +140,9 @@ impl<'a, A> Samples<'a, A> {
             });
         }
         let keys = self.uncertain.keys.iter().map(|key| key.key.clone());
-        let of_keys = keys.zip(all);
-        let of_keys = of_keys.map(|(key, sensitivity)| NumberInfluence { key, sensitivity });
+        let of_keys = keys
+            .zip(all)
+            .map(|(key, sensitivity)| NumberInfluence { key, sensitivity });
         Some(of_keys.collect())
     }
 }

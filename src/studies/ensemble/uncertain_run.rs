@@ -79,8 +79,9 @@ impl Question for Histories {
         scenario.check_for_run()?;
         let model = scenario.model().map_err(|error| error.to_string())?;
         let request = scenario.request();
-        let summary = model.simulate(scenario.ground_motion(), &request, None);
-        let summary = summary.map_err(|error| error.to_string())?;
+        let summary = model
+            .simulate(scenario.ground_motion(), &request, None)
+            .map_err(|error| error.to_string())?;
         let peaks = summary.peak_rotations_rad.iter().enumerate();
         let most = peaks.max_by(|a, b| a.1.total_cmp(b.1));
         // Other samples may come to rest later than the scenario itself.
@@ -89,8 +90,9 @@ impl Question for Histories {
         let stride = (samples / MOST_TIMES as f64).ceil();
         let times = (samples / stride).floor() as usize + 1;
         let structure = scenario.structure.clone();
-        let many_cases = scenario.model_for_many_cases();
-        let many_cases = many_cases.map_err(|error| error.to_string())?;
+        let many_cases = scenario
+            .model_for_many_cases()
+            .map_err(|error| error.to_string())?;
         Ok(Self {
             body: most.map_or(0, |(body, _)| body),
             step_s: stride * request.output_step_s,
@@ -105,8 +107,10 @@ impl Question for Histories {
         figure: Figure,
     ) -> Result<Results, OutputError> {
         let influences = influences(samples);
-        let of_samples = samples.rows.iter();
-        let of_samples = of_samples.map(|row| row.answer.as_ref().ok().map(peak_rad));
+        let of_samples = samples
+            .rows
+            .iter()
+            .map(|row| row.answer.as_ref().ok().map(peak_rad));
         let largest_rotations_rad: Vec<_> = iter::once(None).chain(of_samples).collect();
         let outcomes = OUTCOMES.into_iter().filter_map(|name| {
             let share = samples.share(|answer| match name {
@@ -117,8 +121,10 @@ impl Question for Histories {
         });
         let answers = samples.answers();
         let model = samples.model_check(answers.map(|answer| answer.ending.thrust_excess_ratio));
-        let survivors = samples.answers().map(|answer| &answer.ending);
-        let survivors = survivors.filter(|ending| ending.verdict() == Verdict::Survives);
+        let survivors = samples
+            .answers()
+            .map(|answer| &answer.ending)
+            .filter(|ending| ending.verdict() == Verdict::Survives);
         let demands = survivors.map(|ending| ending.friction_demand);
         let study = ("run FILE", "surviving samples");
         let friction = SurvivorFriction::of(demands, samples.scenario, study);
@@ -180,8 +186,9 @@ impl Question for Histories {
         if scenario.structure == *structure && scenario.motion == *motion {
             return self.history(scenario, &**model);
         }
-        let model = scenario.model_for_many_cases();
-        let model = model.map_err(NoAnswer::without_model)?;
+        let model = scenario
+            .model_for_many_cases()
+            .map_err(NoAnswer::without_model)?;
         self.history(scenario, &*model)
     }
 
@@ -288,15 +295,17 @@ impl Histories {
             incipient_g: [None; 2],
         };
         panels.ground(90.0, &subject, None);
-        let values = bands.iter();
-        let values = values.flat_map(|at| at.band_rad.into_iter().chain(at.own_rad));
+        let values = bands
+            .iter()
+            .flat_map(|at| at.band_rad.into_iter().chain(at.own_rad));
         let y = scale_around(&[], values, 6);
         let model = scenario.model().ok();
         let body = model.and_then(|model| model.bodies().get(self.body).cloned());
-        let of_body = body.filter(|name| !name.is_empty());
-        let of_body = of_body.map_or(String::new(), |name| {
-            format!("of {} ", name.replace('_', " "))
-        });
+        let of_body = body
+            .filter(|name| !name.is_empty())
+            .map_or(String::new(), |name| {
+                format!("of {} ", name.replace('_', " "))
+            });
         let label = format!("Rotation {of_body}(rad)");
         // Overturned samples are outside the picture.
         let at = |which: usize| {
@@ -311,8 +320,9 @@ impl Histories {
         ];
         panels.panel(&label, 330.0, y, None, marks);
         let all = samples.answers().count().max(1) as f64;
-        let shares = bands.iter();
-        let shares = shares.map(|at| (at.time_s, at.overturned as f64 / all));
+        let shares = bands
+            .iter()
+            .map(|at| (at.time_s, at.overturned as f64 / all));
         let shares = vec![Mark::curve("overturned", MEDIAN, shares)];
         let y = Scale::exactly(0.0, 1.0, 2);
         panels.panel("Overturned", 70.0, y, None, shares);
@@ -439,8 +449,10 @@ impl OwnHistory {
 
 impl Report for UncertainRunSummary {
     fn verdict(&self) -> String {
-        let share = self.outcomes.get(OVERTURNED);
-        let share = share.map_or(String::new(), Share::in_words);
+        let share = self
+            .outcomes
+            .get(OVERTURNED)
+            .map_or(String::new(), Share::in_words);
         let words = format!("overturns with a probability of {share} of [uncertain]");
         self.all.verdict(|| words)
     }

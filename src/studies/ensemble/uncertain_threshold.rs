@@ -134,8 +134,10 @@ impl Question for FirstEdges {
         let own = samples.own.as_ref().ok();
         let count = |condition: fn(&&_) -> bool| edges.clone().filter(condition).count();
         let lower_limit = LowerLimit::of(samples);
-        let excess = edges.clone().filter_map(|edge| edge.thrust_excess_ratio);
-        let excess = excess.reduce(f64::max);
+        let excess = edges
+            .clone()
+            .filter_map(|edge| edge.thrust_excess_ratio)
+            .reduce(f64::max);
         let quoted = lower_limit.quotable_answer(samples.scenario, excess);
         let condition = SlipWords::of(samples.scenario).condition(friction.friction_demand, &study);
         let quoted = quoted.with_friction(condition);
@@ -392,8 +394,7 @@ fn draw(
     probabilities: &[ProbabilityAt],
 ) -> String {
     let own = samples.own.as_ref().ok().and_then(|edge| edge.factor);
-    let factors = probabilities.iter().map(|at| at.0);
-    let factors = factors.chain(own).chain([1.0]);
+    let factors = probabilities.iter().map(|at| at.0).chain(own).chain([1.0]);
     let ends = factors.flat_map(|factor| [0.97 * factor, 1.03 * factor]);
     let x = Scale::around(ends, figure.ticks(8));
     let y = Scale::exactly(0.0, 1.0, 5);

@@ -149,8 +149,9 @@ pub fn four_links_result(
             summary.models = Some(impact.compare_models(before, scenario.motion.impact().model));
         }
         if options.certificate {
-            let projection = impact.largest_restitution(before, options.joints);
-            let projection = projection.map_err(StudyError::failed)?;
+            let projection = impact
+                .largest_restitution(before, options.joints)
+                .map_err(StudyError::failed)?;
             summary.certificate = Some(Certificate::of(impact, &projection));
         }
     }

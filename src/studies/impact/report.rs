@@ -355,10 +355,10 @@ impl Certificate {
         let is_ring = impact.chain().sites == HingeSites::Anywhere;
         let mut zones: Vec<([f64; 2], Zone)> = Vec::new();
         for edge in [Edge::Intrados, Edge::Extrados] {
-            let opened = projection
+            let opened: Vec<_> = projection
                 .opening_joints()
-                .filter(|(_, own, _)| *own == edge);
-            let opened: Vec<_> = opened.collect();
+                .filter(|(_, own, _)| *own == edge)
+                .collect();
             for zone in opened.chunk_by(|a, b| is_ring && a.0 + 1 == b.0) {
                 let mut ends = [zone[0].0, zone[zone.len() - 1].0].map(from_left);
                 ends.sort_by(f64::total_cmp);

@@ -51,8 +51,9 @@ fn summary(scenario: &Scenario) -> Result<LimitSummary, StudyError> {
     let mut summary = match scenario.row().map_err(StudyError::scenario)? {
         Some(row) => compute_row(scenario, &row).map_err(StudyError::scenario)?,
         None => {
-            let model = scenario.mechanisms_without_impacts();
-            let model = model.map_err(StudyError::scenario)?;
+            let model = scenario
+                .mechanisms_without_impacts()
+                .map_err(StudyError::scenario)?;
             LimitSummary {
                 wall_behind: scenario.structure.wall_behind(),
                 ..LimitSummary::of_mechanism(&*model, scenario.gravity_m_s2())
@@ -196,8 +197,8 @@ fn compute_moved_row(
     let moved = follower.move_supports(|part| *movements * part, 0.0, 1.0);
     moved.map_err(StudyError::scenario)?;
     let stance = &follower.stance;
-    let starts_g = Sides::try_of(|sway| follower.first_motion_g(sway));
-    let starts_g = starts_g.map_err(StudyError::scenario)?;
+    let starts_g =
+        Sides::try_of(|sway| follower.first_motion_g(sway)).map_err(StudyError::scenario)?;
     let mechanism = Sides::of(|sway| open_joints(row, mechanism(row, &follower, sway).as_ref()));
     let capacity = Sides::of(|sway| match *starts_g.get(sway) {
         Some(start_g) => follower.capacity_g(sway, start_g),

@@ -200,8 +200,11 @@ impl Report for LimitSummary {
             let [right, left] = Sides::of(|sway| friction.start_in_words(&sway)).into();
             format!("{}: {right}; {left}", friction.heading())
         });
-        let all = self.pushes_in_words().into_iter();
-        let all = all.chain(self.needs_friction()).chain(friction);
+        let all = self
+            .pushes_in_words()
+            .into_iter()
+            .chain(self.needs_friction())
+            .chain(friction);
         all.collect::<Vec<_>>().join("; ")
     }
 
@@ -254,17 +257,21 @@ impl LimitSummary {
 
     /// Returns the coefficients of friction that the mechanisms need in words; `None` if none is known.
     fn needs_friction(&self) -> Option<String> {
-        let needs = self.friction_demand.iter().filter_map(|(sway, needed)| {
-            let needed = format_fixed((*needed)?, 4);
-            Some((needed, sway.name()))
-        });
-        let needs: Vec<(String, &str)> = needs.collect();
+        let needs: Vec<(String, &str)> = self
+            .friction_demand
+            .iter()
+            .filter_map(|(sway, needed)| {
+                let needed = format_fixed((*needed)?, 4);
+                Some((needed, sway.name()))
+            })
+            .collect();
         let needs = match &needs[..] {
             [] => return None,
             [(right, _), (left, _)] if right == left => format!("{right} to either side"),
             sides => {
-                let sides = sides.iter();
-                let sides = sides.map(|(needed, side)| format!("{needed} to the {side}"));
+                let sides = sides
+                    .iter()
+                    .map(|(needed, side)| format!("{needed} to the {side}"));
                 sides.collect::<Vec<_>>().join(" and ")
             }
         };

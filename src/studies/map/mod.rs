@@ -239,8 +239,10 @@ impl<'a> OverturningMap<'a> {
 
     /// Returns the scenario with the thickness ratio of its arch, which is constant under a mean radius; `None` without that axis.
     fn with_constant_ratio(quantities: &[Quantity; 2], sample: &Scenario) -> Option<Scenario> {
-        let arch = sample.structure.circular_arch();
-        let arch = arch.filter(|_| quantities.contains(&Quantity::MeanRadius))?;
+        let arch = sample
+            .structure
+            .circular_arch()
+            .filter(|_| quantities.contains(&Quantity::MeanRadius))?;
         let ratio = ("arch.thickness_ratio", arch.thickness_ratio);
         sample.with_unproved_values(&[ratio]).ok()
     }
@@ -403,15 +405,18 @@ fn all_outcomes_in(
 /// Computes the endings of histories, and the number of outcomes of each with its repetitions. All histories run to their end.
 fn endings_with_repetitions(model: &dyn Model, cases: &[Case]) -> Vec<Result<Ended, NoHistory>> {
     let repetitions = model.repetitions().into_iter();
-    let repeated = repetitions.map(|Repetition { name, model }| (name, model.simulate_all(cases)));
-    let repeated: Vec<(_, Vec<_>)> = repeated.collect();
+    let repeated: Vec<(_, Vec<_>)> = repetitions
+        .map(|Repetition { name, model }| (name, model.simulate_all(cases)))
+        .collect();
     let outcomes = |(index, own): (usize, Result<Summary, SimulationError>)| {
         let own = own?;
         let others = || repeated.iter().map(|(name, all)| (*name, &all[index]));
         let computed = others().filter_map(|(_, other)| other.as_ref().ok());
-        let outcomes = computed.clone().chain([&own]);
-        let outcomes = outcomes.map(|one| one.outcome.name());
-        let outcomes: BTreeSet<&str> = outcomes.collect();
+        let outcomes: BTreeSet<&str> = computed
+            .clone()
+            .chain([&own])
+            .map(|one| one.outcome.name())
+            .collect();
         let count = OutcomeCount::new(&own, others());
         let failed = count.failed.first();
         let failed = failed.map(|failed| format!("with {failed}"));

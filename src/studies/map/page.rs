@@ -112,11 +112,13 @@ impl ColoredCells {
             }
         });
         let drawn = [Figure::PAGE, Figure::PHONE].map(|figure| (figure, draw(figure)));
-        let pictures = ["wide", "narrow"].into_iter().zip(&drawn);
-        let pictures = pictures.map(|(name, (_, drawn))| {
-            format!("<div class=\"picture {name}\">{}</div>", drawn.picture)
-        });
-        let pictures: Vec<String> = pictures.collect();
+        let pictures: Vec<String> = ["wide", "narrow"]
+            .into_iter()
+            .zip(&drawn)
+            .map(|(name, (_, drawn))| {
+                format!("<div class=\"picture {name}\">{}</div>", drawn.picture)
+            })
+            .collect();
         let axis = |i: usize| PageAxis {
             label: label(map.axes[i]).to_owned(),
             values: map.values[i].clone(),
@@ -176,14 +178,16 @@ pub(super) fn columns(rows: &[CellRow]) -> impl Iterator<Item = CellNumbers> {
 fn command(map: &OverturningMap<'_>) -> String {
     // A command of one cell has no samples and no other studies.
     let set = map.axes.iter().zip(&map.paths);
-    let set = set.zip(["cell.x", "cell.y"]).map(|((axis, path), place)| {
-        let of_value = match axis.quantity {
-            Quantity::Frequency => "1/",
-            _ => "",
-        };
-        format!(" --set {path}={{{of_value}{place}}}")
-    });
-    let set: String = set.collect();
+    let set: String = set
+        .zip(["cell.x", "cell.y"])
+        .map(|((axis, path), place)| {
+            let of_value = match axis.quantity {
+                Quantity::Frequency => "1/",
+                _ => "",
+            };
+            format!(" --set {path}={{{of_value}{place}}}")
+        })
+        .collect();
     let text = text_without_studies(&map.base.to_json(), false);
     format!("archrock run -{set} --out cell <<'END'\n{text}END\n")
 }

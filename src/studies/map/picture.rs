@@ -64,11 +64,12 @@ fn scale(axis: &Axis, factor: f64, figure: Figure) -> (Scale, Vec<f64>) {
         [] => [0.0; 2],
     };
     let middles = places.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
-    let edges = [first - before]
+    let edges: Vec<_> = [first - before]
         .into_iter()
         .chain(middles)
-        .chain([last + after]);
-    let edges: Vec<_> = edges.map(from).collect();
+        .chain([last + after])
+        .map(from)
+        .collect();
     let (low, high) = (edges[0], edges[edges.len() - 1]);
     // Half a cell beyond the ends may contain invalid values.
     let low = if values[0] >= 0.0 { low.max(0.0) } else { low };

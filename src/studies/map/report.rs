@@ -45,8 +45,9 @@ impl ReportedStudy for OverturningMap<'_> {
         let remarks = remarks(self, &cells);
         let for_looking = super::use_in_words(scenario).map(str::to_owned);
         let warnings = remarks.warnings("cells").chain(for_looking.clone());
-        let survivors = cells.iter().filter_map(|cell| cell.result.as_ref().ok());
-        let survivors = survivors
+        let survivors = cells
+            .iter()
+            .filter_map(|cell| cell.result.as_ref().ok())
             .filter(|ending| ending.verdict() == Verdict::Survives && !ending.is_outside_model());
         let demands = survivors.map(|ending| ending.friction_demand);
         let friction = SurvivorFriction::of(demands, scenario, ("map FILE", "surviving cells"));
@@ -150,8 +151,8 @@ impl Style {
         );
         let scales = model
             .ok()
-            .and_then(|model| Scales::new(&*model, gravity_m_s2));
-        let scales = scales.ok_or("needs a mechanism that has an unstable equilibrium")?;
+            .and_then(|model| Scales::new(&*model, gravity_m_s2))
+            .ok_or("needs a mechanism that has an unstable equilibrium")?;
         let [right, left] = scales.incipient_m_s2;
         Ok([scales.frequency_rad_s, gravity_m_s2 / right.min(left)])
     }

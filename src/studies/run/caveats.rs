@@ -112,8 +112,10 @@ impl RunSummary {
     }
 
     fn variations_with(&self, verdict: Verdict) -> Vec<&str> {
-        let varied = self.variations.iter();
-        let varied = varied.filter(|one| one.verdict() == verdict);
+        let varied = self
+            .variations
+            .iter()
+            .filter(|one| one.verdict() == verdict);
         varied.map(|one| one.with.as_str()).collect()
     }
 }

@@ -22,10 +22,10 @@ struct OutcomeCell<'a> {
 impl Comparison<RunSummary> {
     /// Returns the rows of the table, and the widths of its first two columns.
     pub(super) fn table(&self) -> (Vec<(&RunSummary, String)>, [usize; 2]) {
-        let rows = self
+        let rows: Vec<_> = self
             .models()
-            .map(|summary| (summary, OutcomeCell { summary }.to_string()));
-        let rows: Vec<_> = rows.collect();
+            .map(|summary| (summary, OutcomeCell { summary }.to_string()))
+            .collect();
         let widths = rows
             .iter()
             .map(|(summary, ends)| [summary.label().len(), ends.len()]);

@@ -174,8 +174,10 @@ pub fn results(
         .collect();
     let (runs, mut all) = (runs.map_err(StudyError::Scenario)?, Vec::new());
     for (number, run) in runs.iter().enumerate() {
-        let folder = sinks.folder.as_ref();
-        let folder = folder.map(|it| it.of_model(run.scenario.motion.kind, runs.len() > 1));
+        let folder = sinks
+            .folder
+            .as_ref()
+            .map(|it| it.of_model(run.scenario.motion.kind, runs.len() > 1));
         let samples = sinks.samples.get(number);
         let sinks = Sinks {
             folder,
@@ -277,8 +279,11 @@ pub fn compute_varied(
         .has_second_direction(model)
         .then(|| scenario.in_directions(Directions::Mirrored));
     let own = variations(scenario)?;
-    let turned = turned.as_ref().map(variations).transpose()?;
-    let turned = turned.map_or_else(Vec::new, Variations::wait);
+    let turned = turned
+        .as_ref()
+        .map(variations)
+        .transpose()?
+        .map_or_else(Vec::new, Variations::wait);
     Ok(directions::pair_results(own.wait(), &turned))
 }
 
@@ -600,8 +605,8 @@ impl Drawings {
             (PICTURE, files.contains(&PICTURE).then(draw)),
             (REPORT, report),
             (SNAPSHOTS, snapshots),
-        ];
-        let texts = texts.into_iter();
+        ]
+        .into_iter();
         texts
             .filter_map(|(name, text)| Some((name, text?)))
             .collect()

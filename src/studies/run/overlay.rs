@@ -78,15 +78,18 @@ pub fn draw(
     let mut rotations = each(Curves::rotation_rad);
     panels.keys = rotations.iter().map(Mark::key).collect();
     let y = scale_around(&rotations, [], 6);
-    let marks = rotations.iter().zip(spots).filter_map(|(curve, spot)| {
-        let points = curve.points().iter();
-        let at = match spot.kind {
-            SpotKind::Overturns => points.last(),
-            _ => points.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())),
-        };
-        Some(Mark::spot(spot, *at?))
-    });
-    let marks: Vec<Mark> = marks.collect();
+    let marks: Vec<Mark> = rotations
+        .iter()
+        .zip(spots)
+        .filter_map(|(curve, spot)| {
+            let points = curve.points().iter();
+            let at = match spot.kind {
+                SpotKind::Overturns => points.last(),
+                _ => points.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())),
+            };
+            Some(Mark::spot(spot, *at?))
+        })
+        .collect();
     rotations.extend(marks);
     panels.panel(
         "Largest rotation (rad), swaying left positive",

@@ -22,16 +22,18 @@ pub(super) fn layouts<'a>(
         Iterator::eq(one.iter().map(hinges), other.iter().map(hinges))
     };
     let mut layouts: Vec<&[OpenHinge]> = Vec::new();
-    let layout_of = frames.iter().map(|frame| {
-        let open = if is_row { &[][..] } else { &frame.hinges };
-        let known = layouts.iter().position(|layout| same(layout, open));
-        let layout = known.unwrap_or_else(|| {
-            layouts.push(open);
-            layouts.len() - 1
-        });
-        u16::try_from(layout).expect("there are fewer layouts than frames")
-    });
-    let layout_of = layout_of.collect();
+    let layout_of = frames
+        .iter()
+        .map(|frame| {
+            let open = if is_row { &[][..] } else { &frame.hinges };
+            let known = layouts.iter().position(|layout| same(layout, open));
+            let layout = known.unwrap_or_else(|| {
+                layouts.push(open);
+                layouts.len() - 1
+            });
+            u16::try_from(layout).expect("there are fewer layouts than frames")
+        })
+        .collect();
     (layouts, layout_of)
 }
 

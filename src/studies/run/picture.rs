@@ -194,10 +194,13 @@ impl Timeline {
             joints.add_to(&mut panels, figure, self.end_s);
         }
         if shows(Panel::Slip) {
-            let slips = self.slips_mm.iter().enumerate();
-            let slips = slips
-                .map(|(joint, slip)| Mark::curve(format!("slip {joint}"), BLOCK, slip.points()));
-            let slips = slips.filter(|slip| !slip.is_flat()).collect();
+            let slips = self
+                .slips_mm
+                .iter()
+                .enumerate()
+                .map(|(joint, slip)| Mark::curve(format!("slip {joint}"), BLOCK, slip.points()))
+                .filter(|slip| !slip.is_flat())
+                .collect();
             panels.curves("Slip (mm)", 120.0, slips, states);
         }
         if shows(Panel::Points) {
@@ -235,9 +238,13 @@ impl Timeline {
     /// Adds the panel of the right foot, if it moves.
     fn add_feet(&self, panels: &mut Panels, states: Option<&StateHistory>) {
         let names = ["right foot to the right", "right foot upwards"];
-        let feet = names.into_iter().zip(&self.feet_mm).zip([MAIN, UPWARDS]);
-        let feet = feet.map(|((name, foot), stroke)| Mark::curve(name, stroke, foot.points()));
-        let feet: Vec<Mark> = feet.filter(|foot| !foot.is_flat()).collect();
+        let feet: Vec<Mark> = names
+            .into_iter()
+            .zip(&self.feet_mm)
+            .zip([MAIN, UPWARDS])
+            .map(|((name, foot), stroke)| Mark::curve(name, stroke, foot.points()))
+            .filter(|foot| !foot.is_flat())
+            .collect();
         if feet.len() > 1 {
             panels.keys.extend(feet.iter().map(Mark::key));
         }

@@ -336,17 +336,21 @@ impl Report {
             let (body, x_m, y_m) = point(arrow.at);
             (body, x_m, y_m, arrow.width_m, arrow.label, arrow.sideways)
         });
-        let marks = self.scene.hinges(hinges).into_iter().zip(hinges);
-        let marks = marks.map(|(at, open)| {
-            let code = match open.hinge {
-                Hinge::Section { edge, .. } => edge_code(Some(edge)),
-                Hinge::Toe(Sway::Left) => edge_code(Some(Edge::Intrados)),
-                Hinge::Toe(Sway::Right) => edge_code(Some(Edge::Extrados)),
-                Hinge::Joint { edge, .. } => edge_code(edge),
-            };
-            let (body, x_m, y_m) = point(at);
-            (body, x_m, y_m, code)
-        });
+        let marks = self
+            .scene
+            .hinges(hinges)
+            .into_iter()
+            .zip(hinges)
+            .map(|(at, open)| {
+                let code = match open.hinge {
+                    Hinge::Section { edge, .. } => edge_code(Some(edge)),
+                    Hinge::Toe(Sway::Left) => edge_code(Some(Edge::Intrados)),
+                    Hinge::Toe(Sway::Right) => edge_code(Some(Edge::Extrados)),
+                    Hinge::Joint { edge, .. } => edge_code(edge),
+                };
+                let (body, x_m, y_m) = point(at);
+                (body, x_m, y_m, code)
+            });
         let bodies = self.scene.bodies_of_sections(hinges).into_iter();
         let points = points.into_iter().flat_map(|points| points.bodies(hinges));
         Layout {
@@ -376,8 +380,9 @@ impl Report {
         let ground_g = frames
             .iter()
             .map(|frame| frame.ground_acceleration_m_s2 / self.gravity_m_s2);
-        let apart_m = frames.iter();
-        let apart_m = apart_m.flat_map(|frame| [frame.feet_apart_m.x, frame.feet_apart_m.y]);
+        let apart_m = frames
+            .iter()
+            .flat_map(|frame| [frame.feet_apart_m.x, frame.feet_apart_m.y]);
         let thrust_unit = FARTHEST / LARGEST_I16;
         let ratios = frames.iter().flat_map(|frame| &frame.eccentricity_ratios);
         let thrust = ratios.map(|ratio| match ratio {

@@ -397,8 +397,10 @@ impl OutcomeSummary {
 fn peak_rotations<'de, D: Deserializer<'de>>(keys: D) -> Result<Named<f64>, D::Error> {
     let Named(keys) = Named::<Value>::deserialize(keys)?;
     let is_peak = |key: &str| key.starts_with("peak_rotation") && key.ends_with("_rad");
-    let peaks = keys.into_iter().filter(|(key, _)| is_peak(key));
-    let peaks = peaks.filter_map(|(key, peak)| Some((key, peak.as_f64()?)));
+    let peaks = keys
+        .into_iter()
+        .filter(|(key, _)| is_peak(key))
+        .filter_map(|(key, peak)| Some((key, peak.as_f64()?)));
     Ok(Named(peaks.collect()))
 }
 
@@ -618,8 +620,9 @@ impl RowResults {
 
 impl RepeatabilitySummary {
     fn of(repeatability: &Repeatability) -> Self {
-        let names = ["own"].into_iter();
-        let names = names.chain(repeatability.repeated.iter().copied());
+        let names = ["own"]
+            .into_iter()
+            .chain(repeatability.repeated.iter().copied());
         let named = names.map(key).zip(&repeatability.outcomes);
         let outcomes = named.clone().map(|(key, one)| (key, one.kind()));
         let sways = named.map(|(key, one)| (key, one.overturning_sway()));

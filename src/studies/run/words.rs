@@ -179,8 +179,10 @@ impl RunSummary {
 
     /// Returns the comparisons of these half cycles with the repetitions: first the certain ones, then the others.
     fn repeated_half_cycles(&self) -> [RepeatedHalfCycles<'_>; 2] {
-        let repeated = self.repeatability.iter();
-        let repeated = repeated.flat_map(|all| &all.repeatability.half_cycles);
+        let repeated = self
+            .repeatability
+            .iter()
+            .flat_map(|all| &all.repeatability.half_cycles);
         let cycles = || self.row.iter().flat_map(|row| &row.half_cycles);
         let pairs = repeated.filter_map(|repeated| {
             let own = cycles().find(|own| own.peak_time_s == repeated.peak_time_s)?;

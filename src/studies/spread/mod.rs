@@ -198,8 +198,9 @@ pub fn spread(
     let settled = scenario.motion.supports().unwrap_or_default();
     let sizes = [clear_span_m, weight_n];
     let compute = |direction: &SpringingDirection| path(&row, settled, *direction, sizes);
-    let paths = in_parallel(directions, compute).into_iter();
-    let paths = paths.collect::<Result<_, _>>();
+    let paths = in_parallel(directions, compute)
+        .into_iter()
+        .collect::<Result<_, _>>();
     Ok(SpreadSummary {
         paths: paths.map_err(StudyError::scenario)?,
         clear_span_m,
@@ -296,8 +297,9 @@ fn stage(follower: &Follower<'_>, movement_m: f64, weight_n: f64) -> Stage {
             first_g.map_err(|error| error.to_string())
         };
         let first_g = found(Push::FirstMotion, sway, first_g)?;
-        let capacity_g = follower.capacity_g(sway, first_g);
-        let capacity_g = capacity_g.map_err(|error| error.to_string());
+        let capacity_g = follower
+            .capacity_g(sway, first_g)
+            .map_err(|error| error.to_string());
         Some((first_g, found(Push::Capacity, sway, capacity_g)))
     });
     let open = |state: &HingeState| {

@@ -70,9 +70,10 @@ fn draw_pushes(figure: Figure, spread: &SpreadSummary, spots: &[Spot]) -> Chart 
             (Push::Capacity, solid),
             (Push::FirstMotion, thin(stroke.color)),
         ] {
-            let points = path.stages.iter();
-            let points =
-                points.filter_map(|stage| Some((stage.movement_m, stage.smaller_push(push)?)));
+            let points = path
+                .stages
+                .iter()
+                .filter_map(|stage| Some((stage.movement_m, stage.smaller_push(push)?)));
             let name = format!("{}, {direction}", push.name());
             marks.push(Mark::curve(name, stroke, points));
         }

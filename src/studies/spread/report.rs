@@ -67,8 +67,8 @@ pub fn report(
 
 /// Returns the keys and values of `[supports]`.
 fn values_of(movements: Movements) -> Vec<(String, f64)> {
-    let sides = json!(movements);
-    let sides = sides.as_object().into_iter().flatten();
+    let movements = json!(movements);
+    let sides = movements.as_object().into_iter().flatten();
     let values = sides.flat_map(|(side, table)| {
         let table = table.as_object().into_iter().flatten();
         table.filter_map(move |(key, value)| {

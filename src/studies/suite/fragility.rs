@@ -384,9 +384,10 @@ const SHORT: f64 = 1e-20;
 
 impl Likelihood {
     fn at(levels: &[Fraction], mut line: FittedLine) -> Self {
-        let terms = levels.iter();
-        let terms = terms.map(|level| level.log_probability(line.value_at(level.log())));
-        let terms: Vec<LogProbability> = terms.collect();
+        let terms: Vec<LogProbability> = levels
+            .iter()
+            .map(|level| level.log_probability(line.value_at(level.log())))
+            .collect();
         let information: f64 = terms.iter().map(|term| term.bend).sum();
         let lever: f64 = (levels.iter().zip(&terms))
             .map(|(level, term)| term.bend * (level.log() - line.pivot))

@@ -61,12 +61,14 @@ pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility, spots: 
         .keys
         .extend(results.has_uncertain().then_some(uncertain));
     let levels = fractiles(results);
-    let fractiles = FRACTILES.into_iter().enumerate();
-    let fractiles = fractiles.map(|(which, (_, name, stroke))| {
-        let known = levels.iter();
-        let points = known.filter_map(|level| Some((level.peaks[which]?, level.intensity)));
-        Mark::curve(name, stroke, points)
-    });
+    let fractiles = FRACTILES
+        .into_iter()
+        .enumerate()
+        .map(|(which, (_, name, stroke))| {
+            let known = levels.iter();
+            let points = known.filter_map(|level| Some((level.peaks[which]?, level.intensity)));
+            Mark::curve(name, stroke, points)
+        });
     let mut chart = chart.with_named(fractiles.collect());
     if over_critical {
         chart.keys.push(Key::line("critical rotation", CRITICAL));
@@ -89,8 +91,9 @@ fn draw_record(
 ) -> Vec<Mark> {
     let level = |case: &CaseRow| case.level(results.measure);
     // Overturned cases interrupt the curve.
-    let points = cases.iter();
-    let points = points.filter_map(|case| Some((peak_or_infinity(case)?, level(case))));
+    let points = cases
+        .iter()
+        .filter_map(|case| Some((peak_or_infinity(case)?, level(case))));
     let mut marks = vec![Mark::curve(name, stroke, points)];
     let plain = Stroke::new(stroke.color, 1.0, "");
     for case in cases {

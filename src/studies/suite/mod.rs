@@ -189,11 +189,13 @@ impl Study for RecordSuite<'_> {
     }
 
     fn rows(&self, indices: &[usize]) -> Vec<CaseRow> {
-        let cases = indices.iter().map(|index| {
-            let (level, record, direction) = self.case_parts(*index);
-            case(self.scenario, self.suite, record, level, direction)
-        });
-        let cases: Vec<Case> = cases.collect();
+        let cases: Vec<Case> = indices
+            .iter()
+            .map(|index| {
+                let (level, record, direction) = self.case_parts(*index);
+                case(self.scenario, self.suite, record, level, direction)
+            })
+            .collect();
         let results = Ending::of_all(&*self.model, &cases);
         let overturn: Vec<Option<bool>> = results.iter().map(overturns_certainly).collect();
         let edge = |case: usize| {
@@ -277,8 +279,9 @@ pub(super) fn case(
     level: f64,
     direction: Direction,
 ) -> Case {
-    let shake = suite.record_at(record, level);
-    let shake = shake.ground_motion(scenario.gravity_m_s2());
+    let shake = suite
+        .record_at(record, level)
+        .ground_motion(scenario.gravity_m_s2());
     let ground = scenario.move_both_feet_in(direction, shake);
     let request = scenario.request_on(&ground, &scenario.structure);
     (ground, request)
@@ -602,17 +605,19 @@ impl SuiteFragility {
             Some([fit.probability(intensity), low, high])
         };
         let levels =
-            group_by_intensity(cases.iter().collect(), |case: &CaseRow| case.level(measure));
-        let levels = levels.into_iter().map(|(intensity, cases)| {
-            let others = ends.iter().filter_map(|fit| curve(fit, intensity));
-            let widened =
-                |[at, low, high]: [f64; 3], end: [f64; 3]| [at, low.min(end[1]), high.max(end[2])];
-            FragilityRow {
-                intensity,
-                counts: Counts::of(&cases),
-                curve: curve(&fit, intensity).map(|own| others.fold(own, widened)),
-            }
-        });
+            group_by_intensity(cases.iter().collect(), |case: &CaseRow| case.level(measure))
+                .into_iter()
+                .map(|(intensity, cases)| {
+                    let others = ends.iter().filter_map(|fit| curve(fit, intensity));
+                    let widened = |[at, low, high]: [f64; 3], end: [f64; 3]| {
+                        [at, low.min(end[1]), high.max(end[2])]
+                    };
+                    FragilityRow {
+                        intensity,
+                        counts: Counts::of(&cases),
+                        curve: curve(&fit, intensity).map(|own| others.fold(own, widened)),
+                    }
+                });
         Self {
             measure,
             levels: levels.collect(),
@@ -641,8 +646,9 @@ impl SuiteFragility {
         for cases in self.cases_by_record() {
             let survival = self.survival(cases);
             let case = &cases[0];
-            let last = survivals.last();
-            let last = last.filter(|(other, _)| case.mirrored && other[0].record == case.record);
+            let last = survivals
+                .last()
+                .filter(|(other, _)| case.mirrored && other[0].record == case.record);
             if last.is_none_or(|(_, other)| *other != survival) {
                 survivals.push((cases, survival));
             }
@@ -693,12 +699,13 @@ impl SuiteFragility {
             let safe = cases[first].safe_below_edge.or(survival.survives_up_to);
             survival.survives_up_to = safe;
             // If the bisection met levels without a certain verdict, they are a range of their own.
-            let doubtful = safe.filter(|safe| lowest > safe * (1.0 + 2.0 * EDGE_WIDTH));
-            let doubtful = doubtful.map(|safe| VerdictRange {
-                verdict: Some(Verdict::Uncertain),
-                from: safe,
-                to: lowest,
-            });
+            let doubtful = safe
+                .filter(|safe| lowest > safe * (1.0 + 2.0 * EDGE_WIDTH))
+                .map(|safe| VerdictRange {
+                    verdict: Some(Verdict::Uncertain),
+                    from: safe,
+                    to: lowest,
+                });
             survival.ranges.splice(1..1, doubtful);
         }
         survival

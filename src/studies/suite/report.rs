@@ -207,11 +207,13 @@ impl Heading {
         let remarks = self.remarks(&results);
         let (answer, friction_demand) = self.answer(&results);
         let friction = self.slip.condition(friction_demand, "suite FILE");
-        let incomplete = remarks.incomplete_in_words();
-        let incomplete = incomplete.map(|words| format!("{words}; {AT_ENDS}"));
-        let limits = [remarks.model.in_words("cases"), incomplete];
-        let limits = limits.into_iter().flatten();
-        let limits = limits.chain(friction.as_ref().map(ToString::to_string));
+        let incomplete = remarks
+            .incomplete_in_words()
+            .map(|words| format!("{words}; {AT_ENDS}"));
+        let limits = [remarks.model.in_words("cases"), incomplete]
+            .into_iter()
+            .flatten()
+            .chain(friction.as_ref().map(ToString::to_string));
         let is_uncertain = !self.scenario["uncertain"].is_null();
         let answer = answer
             .with_friction(friction.clone())
@@ -356,8 +358,8 @@ impl Heading {
                 )),
             }
         });
-        let answer = ModelAnswer::new(self.model, self.is_arch, excess_ratio, answer);
-        let answer = answer.with_restitution(self.restitution.clone());
+        let answer = ModelAnswer::new(self.model, self.is_arch, excess_ratio, answer)
+            .with_restitution(self.restitution.clone());
         (answer, friction_demand)
     }
 
@@ -507,10 +509,11 @@ impl SuiteSummary {
             }
             _ => String::new(),
         };
-        let interval = one.dispersion_of_factor_interval;
-        let interval = interval.map_or(String::new(), |[low, high]| {
-            format!(" ({low:.2} to {high:.2})")
-        });
+        let interval = one
+            .dispersion_of_factor_interval
+            .map_or(String::new(), |[low, high]| {
+                format!(" ({low:.2} to {high:.2})")
+            });
         format!("{words}{at} {:.2}{interval}", one.dispersion_of_factor)
     }
 
@@ -521,8 +524,11 @@ impl SuiteSummary {
 
     /// Returns all measures but the best, in words.
     fn other_measures(&self) -> String {
-        let others = self.intensity_measures.iter().skip(1);
-        let others = others.map(|one| self.measure(one));
+        let others = self
+            .intensity_measures
+            .iter()
+            .skip(1)
+            .map(|one| self.measure(one));
         others.collect::<Vec<_>>().join(", ")
     }
 }

@@ -193,8 +193,9 @@ pub fn efficiencies(capacities: &[RecordCapacity<'_>]) -> Vec<Efficiency> {
         // Both signs of a record count as one value.
         let degrees = records.len() as f64 - 1.0;
         let likeliest = dispersion_of_factor * (degrees.max(0.0) / records.len() as f64).sqrt();
-        let best = drawn.iter();
-        let best = best.filter(|draw| draw[measure].is_some() && draw[measure] == least(draw));
+        let best = drawn
+            .iter()
+            .filter(|draw| draw[measure].is_some() && draw[measure] == least(draw));
         Some(Efficiency {
             measure: MEASURES[measure].0.to_owned(),
             capacities: count,

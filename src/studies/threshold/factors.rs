@@ -71,8 +71,9 @@ impl Factors {
 
     /// Returns the options of a command that searches these factors, with a space before each; empty for the default.
     pub(in crate::studies) fn options(&self) -> String {
-        let given = [("--from", self.from), ("--to", self.to)];
-        let given = given.into_iter().filter_map(|(name, at)| Some((name, at?)));
+        let given = [("--from", self.from), ("--to", self.to)]
+            .into_iter()
+            .filter_map(|(name, at)| Some((name, at?)));
         let own = Self::default().stride != self.stride;
         let stride = own.then_some(("--stride", self.stride));
         let all = given.chain(stride);

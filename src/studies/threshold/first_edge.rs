@@ -244,8 +244,10 @@ impl FirstEdge {
     /// Returns the edge with the results of all tried strengths, each with its share of repetitions that overturn, and of the search below it.
     fn with_tried(mut self, tried: Vec<([f64; 2], TriedHistory)>, fine: &FineSearch) -> Self {
         // The bisection of the first doubt may meet a strength that certainly overturns below one that is uncertain.
-        let certain = tried.iter().filter(|(own, _)| own[1] == 1.0);
-        let certain = certain.map(|(own, _)| own[0]);
+        let certain = tried
+            .iter()
+            .filter(|(own, _)| own[1] == 1.0)
+            .map(|(own, _)| own[0]);
         self.factor = self.factor.into_iter().chain(certain).reduce(f64::min);
         let last = self.factor.unwrap_or(self.tried_to);
         let at = |wanted: f64| {
@@ -260,8 +262,10 @@ impl FirstEdge {
             .iter()
             .filter(|([strength, _], _)| Some(*strength) <= safe);
         let demands = up_to_safe.filter_map(|(_, found)| found.friction_demand);
-        let fine = fine.histories.iter();
-        let fine = fine.filter(|history| Some(history.factor) <= safe);
+        let fine = fine
+            .histories
+            .iter()
+            .filter(|history| Some(history.factor) <= safe);
         let demands = demands.chain(fine.filter_map(|history| history.friction_demand));
         self.friction_demand = demands.reduce(f64::max);
         let below = |[strength, share]: &[f64; 2]| *strength < self.strength() && *share < 1.0;

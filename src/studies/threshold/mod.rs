@@ -221,11 +221,14 @@ impl Threshold {
             return;
         };
         let samples = self.directions().flat_map(|one| &one.samples);
-        let up_to = samples.chain(others.iter().flat_map(|one| &one.bisected));
-        let up_to = up_to.filter(|sample| sample.factor <= safe);
+        let up_to = samples
+            .chain(others.iter().flat_map(|one| &one.bisected))
+            .filter(|sample| sample.factor <= safe);
         let endings = up_to.flat_map(|sample| &sample.result);
-        let fine = others.iter().flat_map(|one| &one.fine);
-        let fine = fine.filter(|history| history.factor <= safe);
+        let fine = others
+            .iter()
+            .flat_map(|one| &one.fine)
+            .filter(|history| history.factor <= safe);
         let of_endings = endings.map(|one| (one.thrust_excess_ratio, one.friction_demand));
         let of_fine = fine.map(|one| (one.thrust_excess_ratio, one.friction_demand));
         let (excess_ratios, demands): (Vec<_>, Vec<_>) = of_endings.chain(of_fine).unzip();
@@ -319,8 +322,9 @@ pub fn results(
     check(scenario).map_err(StudyError::Scenario)?;
     let (ground, request) = (scenario.ground_motion(), scenario.request());
     // The search with one model may take hours, so errors of all models come first.
-    let models = scenarios.iter().map(Scenario::model);
-    let models: Vec<_> = models
+    let models: Vec<_> = scenarios
+        .iter()
+        .map(Scenario::model)
         .collect::<Result<_, _>>()
         .map_err(StudyError::scenario)?;
     let mut found = Vec::new();

@@ -161,10 +161,13 @@ fn scale(
 /// Returns the edges of the bands and of the uncertain ranges, ascending.
 fn edges(threshold: &Threshold) -> impl Iterator<Item = f64> {
     let mut last = f64::NAN;
-    let ranges = threshold.ranges.iter();
-    let ranges = ranges.filter(|range| range.verdict != Some(Verdict::Survives));
-    let ends = ranges.flat_map(|at| [(at.from, at.from_end), (at.to, at.to_end)]);
-    let ends = ends.filter_map(|(factor, end)| (end == RangeEnd::Edge).then_some(factor));
+    let ranges = threshold
+        .ranges
+        .iter()
+        .filter(|range| range.verdict != Some(Verdict::Survives));
+    let ends = ranges
+        .flat_map(|at| [(at.from, at.from_end), (at.to, at.to_end)])
+        .filter_map(|(factor, end)| (end == RangeEnd::Edge).then_some(factor));
     // One of the two factors that enclose the edge between a band and an uncertain range is enough.
     ends.filter(move |factor| {
         let anew = factor - last > 2.0 * EDGE_WIDTH * factor || last.is_nan();
@@ -182,8 +185,9 @@ fn strip(drawing: &mut Drawing, axes: &Axes, threshold: &Threshold) {
     // The border between two colours is the edge, or without an edge the geometric mean of the factors.
     let border = |below: &FactorSample, above: &FactorSample| {
         let mut edges = edges.iter().copied();
-        let edge = edges.find(|edge| (below.factor..=above.factor).contains(edge));
-        let edge = edge.filter(|_| below.verdict() != above.verdict());
+        let edge = edges
+            .find(|edge| (below.factor..=above.factor).contains(edge))
+            .filter(|_| below.verdict() != above.verdict());
         edge.unwrap_or((below.factor * above.factor).sqrt())
     };
     let Frame { top, height, .. } = axes.frame;
@@ -191,9 +195,9 @@ fn strip(drawing: &mut Drawing, axes: &Axes, threshold: &Threshold) {
     let mut from = axes.x.low;
     let mut bands = Vec::new();
     let samples = &threshold.samples;
-    let runs = samples
-        .chunk_by(|a, b| OutcomeColor::of_result(&a.result) == OutcomeColor::of_result(&b.result));
-    let runs: Vec<_> = runs.collect();
+    let runs: Vec<_> = samples
+        .chunk_by(|a, b| OutcomeColor::of_result(&a.result) == OutcomeColor::of_result(&b.result))
+        .collect();
     for (index, run) in runs.iter().enumerate() {
         let last = &run[run.len() - 1];
         let next = runs.get(index + 1);

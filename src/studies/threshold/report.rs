@@ -191,24 +191,27 @@ pub fn report(
     figure: Figure,
 ) -> Result<Results, OutputError> {
     let scenario = &scenarios[0];
-    let title = scenario.title.as_deref();
-    let title = title.unwrap_or("Threshold of overturning");
+    let title = scenario
+        .title
+        .as_deref()
+        .unwrap_or("Threshold of overturning");
     let peak_g = peak_g(scenario);
     let models = thresholds.iter().zip(scenarios);
     let study = format!("threshold FILE{}", factors.options());
-    let frictions = models
+    let frictions: Vec<_> = models
         .clone()
-        .map(|(one, scenario)| SlipWords::of(scenario).condition(one.friction_demand, &study));
-    let frictions: Vec<_> = frictions.collect();
+        .map(|(one, scenario)| SlipWords::of(scenario).condition(one.friction_demand, &study))
+        .collect();
     let answers = models
         .clone()
         .zip(&frictions)
         .map(|((one, scenario), friction)| {
-            let answer = one.answer(scenario, peak_g);
-            let answer = answer.unless_uncertain(scenario.uncertain.is_some());
+            let answer = one
+                .answer(scenario, peak_g)
+                .unless_uncertain(scenario.uncertain.is_some());
             answer.with_friction(friction.clone())
-        });
-    let answers = answers.collect::<Vec<_>>();
+        })
+        .collect::<Vec<_>>();
     let models: Vec<ModelSummary> = models
         .map(|(threshold, scenario)| threshold.summary(scenario, peak_g))
         .collect();
@@ -238,8 +241,10 @@ pub fn report(
         threshold.add_to(&mut cases, scenario, peak_g);
     }
     let draw = |figure| picture::draw_marked(figure, title, peak_g, thresholds, &cases.spots);
-    let searched = thresholds.iter().map(|one| one.factors.in_words());
-    let mut searched: Vec<String> = searched.collect();
+    let mut searched: Vec<String> = thresholds
+        .iter()
+        .map(|one| one.factors.in_words())
+        .collect();
     searched.dedup();
     let edges = format!(
         "{}. The edge between two neighbours with different verdicts is bisected to {} %, beside an uncertain one to {} %",
@@ -437,11 +442,11 @@ impl Threshold {
             varied if varied.iter().all(is_known) => " over stiffness and contact",
             _ => " over stiffness and contact, as far as they have verdicts",
         };
-        let others = self
+        let others: Vec<f64> = self
             .varied
             .iter()
-            .filter_map(VariedThreshold::survives_up_to);
-        let others: Vec<f64> = others.collect();
+            .filter_map(VariedThreshold::survives_up_to)
+            .collect();
         let answer = match self.survives_up_to() {
             Some(safe) if others.iter().all(|other| *other >= self.factors.from) => {
                 let safe = ascending(others.into_iter().chain([safe]));

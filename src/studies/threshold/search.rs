@@ -155,11 +155,12 @@ impl Shaking<'_> {
         watch: impl FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<(Edges, Vec<FactorSample>), RunnerError> {
         let pairs = samples.windows(2).map(|pair| (&pair[0], &pair[1]));
-        let changes = pairs.filter(|(below, above)| {
-            let both = below.verdict().zip(above.verdict());
-            both.is_some_and(|(below, above)| below != above)
-        });
-        let changes: Vec<Change<'_>> = changes.collect();
+        let changes: Vec<Change<'_>> = pairs
+            .filter(|(below, above)| {
+                let both = below.verdict().zip(above.verdict());
+                both.is_some_and(|(below, above)| below != above)
+            })
+            .collect();
         let search = |index: usize| self.search(changes[index]);
         let watch = report_step(step_after(samples, false), watch);
         let found = runner.each(changes.len(), search, watch)?;

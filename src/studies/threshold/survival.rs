@@ -173,8 +173,9 @@ pub fn survival_in_words(survival: &Survival, unit: &str, peak_g: Option<f64>) -
     let [own, in_g] = [1.0, to_g].map(|unit| rounded_edge(ends.map(|end| Some(end? * unit))));
     let ([safe, overturns_from], [safe_g, from_g]) = (own, in_g);
     let safe = safe.zip(safe_g).map(|(own, in_g)| both(own, in_g));
-    let overturns_from = overturns_from.zip(from_g);
-    let overturns_from = overturns_from.map(|(own, in_g)| both(own, in_g));
+    let overturns_from = overturns_from
+        .zip(from_g)
+        .map(|(own, in_g)| both(own, in_g));
     let ranges = &survival.ranges[..];
     let Some(first) = ranges.first() else {
         return "no history".to_owned();

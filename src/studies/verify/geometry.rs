@@ -180,29 +180,31 @@ fn blocks(
     };
     let outlines = row.outlines_m.iter().zip(&row.blocks);
     let blocks = outlines.zip(filled.blocks.iter().zip(&bare.blocks));
-    let placed = (0..).zip(blocks);
-    let placed = placed.map(
-        |(index, ((corners_m, whole), (filled, bare)))| PlacedBlock {
-            corners_m: corners_m.clone(),
-            density_kg_m3: density_kg_m3(index),
-            masonry_kg: bare.mass_kg,
-            fill_kg: filled.mass_kg - bare.mass_kg,
-            loads_kg: whole.mass_kg - filled.mass_kg,
-            centre_m: whole.centre_m,
-        },
-    );
+    let placed =
+        (0..).zip(blocks).map(
+            |(index, ((corners_m, whole), (filled, bare)))| PlacedBlock {
+                corners_m: corners_m.clone(),
+                density_kg_m3: density_kg_m3(index),
+                masonry_kg: bare.mass_kg,
+                fill_kg: filled.mass_kg - bare.mass_kg,
+                loads_kg: whole.mass_kg - filled.mass_kg,
+                centre_m: whole.centre_m,
+            },
+        );
     placed.collect()
 }
 
 fn loads(loads: &[PlacedLoad], places_m: &[(usize, Vector2<f64>)]) -> Vec<LoadAt> {
-    let placed = loads.iter().zip(places_m);
-    let placed = placed.map(|(load, (block, at_m))| LoadAt {
-        block: block + 1,
-        at_m: *at_m,
-        width_m: load.width_m,
-        mass_kg: load.mass_kg,
-        moves: load.moves,
-        thrust_kn: load.thrust_n / 1000.0,
-    });
+    let placed = loads
+        .iter()
+        .zip(places_m)
+        .map(|(load, (block, at_m))| LoadAt {
+            block: block + 1,
+            at_m: *at_m,
+            width_m: load.width_m,
+            mass_kg: load.mass_kg,
+            moves: load.moves,
+            thrust_kn: load.thrust_n / 1000.0,
+        });
     placed.collect()
 }

@@ -297,8 +297,10 @@ pub fn verify(scenario: &Scenario) -> Result<VerifySummary, VerifyError> {
 /// # Errors
 /// When the scenario chooses the side of a wall behind a column.
 fn checked_sides(scenario: &Scenario) -> Result<CheckedSides, VerifyError> {
-    let chosen = scenario.verify.as_ref();
-    let chosen = chosen.map_or(CheckedSides::Both, |verify| verify.sides);
+    let chosen = scenario
+        .verify
+        .as_ref()
+        .map_or(CheckedSides::Both, |verify| verify.sides);
     let Some(wall) = scenario.structure.wall_behind() else {
         return Ok(chosen);
     };
@@ -342,45 +344,48 @@ impl CheckInput<'_> {
         sld: Option<&StateCheck>,
     ) -> Result<StateCheck, VerifyError> {
         let rule = self.rule(state);
-        let spectrum = Spectrum::of(&self.demand, state, rule.as_ref(), self.gravity_m_s2);
-        let spectrum = spectrum.expect("the demand has this state");
-        let sides = mechanisms.iter().map(|(sway, mechanism)| {
-            if let Some(sliding) = mechanism.sliding {
-                let demand_g = self.onset_demand_g(&spectrum)?;
-                let side = SideCheck {
-                    sliding: Some(SlidingCheck::new(sliding.bound_g, demand_g)),
-                    ..SideCheck::default()
-                };
-                return Ok((*sway, side));
-            }
-            let start_ag_g = sld.and_then(|sld| sld.sides[sway].activation?.margin.ag_capacity_g);
-            let activation = match state {
-                LimitState::Sld => Some(self.activation(mechanism, &spectrum)?),
-                LimitState::Slv | LimitState::Slc => None,
-            };
-            let displacement = match (&mechanism.curves, &rule) {
-                (Some(curves), Some(rule)) => {
-                    Some(self.check_displacement(curves, start_ag_g, &spectrum, rule)?)
+        let spectrum = Spectrum::of(&self.demand, state, rule.as_ref(), self.gravity_m_s2)
+            .expect("the demand has this state");
+        let sides = mechanisms
+            .iter()
+            .map(|(sway, mechanism)| {
+                if let Some(sliding) = mechanism.sliding {
+                    let demand_g = self.onset_demand_g(&spectrum)?;
+                    let side = SideCheck {
+                        sliding: Some(SlidingCheck::new(sliding.bound_g, demand_g)),
+                        ..SideCheck::default()
+                    };
+                    return Ok((*sway, side));
                 }
-                _ => None,
-            };
-            let both_g = match (state, &self.demand) {
-                (LimitState::Slv, Demand::Code(_)) => start_ag_g.zip(spectrum.ag_g()),
-                _ => None,
-            };
-            let mut side = SideCheck {
-                zeta_e: None,
-                sliding: None,
-                floor: self.floor(&spectrum, displacement.as_ref(), rule.as_ref()),
-                activation,
-                simplified: both_g.map(|(start_g, ag_g)| self.check_simplified(start_g, ag_g)),
-                displacement,
-            };
-            side.zeta_e = side.governing_result().map(|(_, margin)| margin.zeta_e);
-            Ok((*sway, side))
-        });
-        let sides = sides.collect::<Result<BTreeMap<Sway, SideCheck>, PeriodOutOfRange>>();
-        let sides = sides.map_err(|error| VerifyError::PeriodOutOfRange { state, error })?;
+                let start_ag_g =
+                    sld.and_then(|sld| sld.sides[sway].activation?.margin.ag_capacity_g);
+                let activation = match state {
+                    LimitState::Sld => Some(self.activation(mechanism, &spectrum)?),
+                    LimitState::Slv | LimitState::Slc => None,
+                };
+                let displacement = match (&mechanism.curves, &rule) {
+                    (Some(curves), Some(rule)) => {
+                        Some(self.check_displacement(curves, start_ag_g, &spectrum, rule)?)
+                    }
+                    _ => None,
+                };
+                let both_g = match (state, &self.demand) {
+                    (LimitState::Slv, Demand::Code(_)) => start_ag_g.zip(spectrum.ag_g()),
+                    _ => None,
+                };
+                let mut side = SideCheck {
+                    zeta_e: None,
+                    sliding: None,
+                    floor: self.floor(&spectrum, displacement.as_ref(), rule.as_ref()),
+                    activation,
+                    simplified: both_g.map(|(start_g, ag_g)| self.check_simplified(start_g, ag_g)),
+                    displacement,
+                };
+                side.zeta_e = side.governing_result().map(|(_, margin)| margin.zeta_e);
+                Ok((*sway, side))
+            })
+            .collect::<Result<BTreeMap<Sway, SideCheck>, PeriodOutOfRange>>()
+            .map_err(|error| VerifyError::PeriodOutOfRange { state, error })?;
         let histories = match &rule {
             Some(rule) => histories::histories(self, (state, rule, &spectrum), mechanisms, &sides)?,
             None => None,

@@ -176,8 +176,9 @@ impl SideCheck {
             let compared = (one.activation_ag_g?, one.margin.ag_g?).into();
             Some((Method::Activation, one.margin, Some((compared, "g"))))
         });
-        let simplified = self.simplified;
-        let simplified = simplified.map(|one| (Method::Simplified, one.margin, None));
+        let simplified = self
+            .simplified
+            .map(|one| (Method::Simplified, one.margin, None));
         let activation = self.activation.map(|one| {
             let compared = ([one.capacity_g, one.demand_g], "g");
             (Method::Activation, one.margin, Some(compared))

@@ -189,8 +189,9 @@ impl Spectrum {
             return None;
         };
         let spectrum = &ground.spectrum;
-        let modes_g = modes.iter();
-        let modes_g = modes_g.map(|one| one.mode.acceleration_g(spectrum, period_s, percent));
+        let modes_g = modes
+            .iter()
+            .map(|one| one.mode.acceleration_g(spectrum, period_s, percent));
         Some(FloorOrdinates {
             period_s,
             modes_g: modes_g.collect(),

@@ -93,8 +93,10 @@ impl PointSpectrum {
                 given_s: [from_s, to_s],
             });
         }
-        let after = self.points.partition_point(|point| point.0 < period_s);
-        let after = after.clamp(1, self.points.len() - 1);
+        let after = self
+            .points
+            .partition_point(|point| point.0 < period_s)
+            .clamp(1, self.points.len() - 1);
         let (low, high) = (self.points[after - 1], self.points[after]);
         let part = (period_s - low.0) / (high.0 - low.0);
         Ok(self.scale(damping_percent) * (low.1 + part * (high.1 - low.1)))

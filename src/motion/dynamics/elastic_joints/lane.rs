@@ -189,8 +189,11 @@ impl<'a> Lane<'a> {
         supports: &[SlidingSupport],
     ) -> f64 {
         if self.observer.has_rocked != Some(true) {
-            let edges = motion.memories.iter().map(|edges| edges.penetrations_m);
-            let edges = edges.take(motion.structure.row_joints().len());
+            let edges = motion
+                .memories
+                .iter()
+                .map(|edges| edges.penetrations_m)
+                .take(motion.structure.row_joints().len());
             let is_open = self.is_open(edges.map(|ends| ends.map(|end| end.0[index])));
             let slips =
                 self.observer.elastic.friction_j > REST_ENERGY_RATIO * self.observer.energy_unit;

@@ -125,10 +125,11 @@ impl ElasticJoints {
         row: Row,
         properties: ElasticProperties,
     ) -> Result<Self, RowModelError> {
-        let structure = ElasticStructure::of_row(&row, &properties)?;
-        let structure = structure.with_wall(&row, wall, &properties)?;
-        let rigid = RigidRow::new(row)?.with_friction(properties.friction_coefficient)?;
-        let rigid = rigid.before_wall(wall.map(|(side, _)| side));
+        let structure =
+            ElasticStructure::of_row(&row, &properties)?.with_wall(&row, wall, &properties)?;
+        let rigid = RigidRow::new(row)?
+            .with_friction(properties.friction_coefficient)?
+            .before_wall(wall.map(|(side, _)| side));
         Self::standing(rigid, properties, structure, gravity_m_s2)
     }
 
@@ -265,8 +266,9 @@ impl ElasticJoints {
         };
         let mut summed_otherwise = self.properties;
         summed_otherwise.contact = contact;
-        let others = MOST_POWERS.filter_map(stiffness);
-        let others = others.chain([(words.to_owned(), summed_otherwise)]);
+        let others = MOST_POWERS
+            .filter_map(stiffness)
+            .chain([(words.to_owned(), summed_otherwise)]);
         let variation = |(name, properties): (String, ElasticProperties)| Variation {
             name,
             model: match self.varied(properties) {
@@ -291,8 +293,11 @@ impl ElasticJoints {
         request: &Request,
     ) -> Result<(MotionInput<'a>, Vec<Vector3<f64>>), SimulationError> {
         check(ground, request)?;
-        let velocities = request.initial.map(|initial| self.velocities(initial));
-        let velocities = velocities.transpose()?.unwrap_or_default();
+        let velocities = request
+            .initial
+            .map(|initial| self.velocities(initial))
+            .transpose()?
+            .unwrap_or_default();
         let (step_s, longest_s) = (self.longest_step_s(), self.structure.stable_step_s());
         if step_s > longest_s {
             let why = format!(

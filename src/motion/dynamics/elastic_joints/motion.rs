@@ -161,8 +161,10 @@ remembered!(Observation {
 impl<'a, const L: usize> ElasticMotion<'a, L> {
     pub fn new(structure: &'a ElasticStructure, gravity_m_s2: f64) -> Self {
         let joints = structure.joints.len();
-        let ties = structure.ties.iter();
-        let ties = ties.map(|bound| TieMemory::undeformed(&bound.tie));
+        let ties = structure
+            .ties
+            .iter()
+            .map(|bound| TieMemory::undeformed(&bound.tie));
         let inverse = |body: &Block| [1.0 / body.mass_kg, 1.0 / body.inertia_kg_m2];
         Self {
             structure,

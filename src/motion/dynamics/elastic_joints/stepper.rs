@@ -364,9 +364,13 @@ impl<'a> Stepper<'a> for Group<'a, 1> {
             sample.pressures.push(pressure);
         }
         sample.demand.friction = self.friction_demand();
-        let ties = self.structure.ties.iter().zip(&motion.ties);
-        let ties = ties.filter(|(bound, _)| !bound.tie.is_constant_force());
-        let ties = ties.map(|(bound, memory)| TieSample::of(&bound.tie, memory));
+        let ties = self
+            .structure
+            .ties
+            .iter()
+            .zip(&motion.ties)
+            .filter(|(bound, _)| !bound.tie.is_constant_force())
+            .map(|(bound, memory)| TieSample::of(&bound.tie, memory));
         sample.ties.extend(ties);
         if let Some(sliding) = &self.observer().row_summary.sliding {
             sample.offsets_m.extend(&sliding.offsets_m);

@@ -143,8 +143,10 @@ impl FreeHinges {
         if movements.is_none() {
             return Ok(self);
         }
-        let rigid = self.rigid.on_supports(movements)?;
-        let rigid = rigid.with_friction(self.options.friction_coefficient)?;
+        let rigid = self
+            .rigid
+            .on_supports(movements)?
+            .with_friction(self.options.friction_coefficient)?;
         Ok(Self { rigid, ..self })
     }
 

@@ -39,13 +39,16 @@ impl<'a> Ties<'a> {
     /// Returns the force of the ties on the right support, in N.
     pub fn right_support_force_n(&self) -> Vector2<f64> {
         let feet_m = self.row.feet_m();
-        let ends = self.memories().zip(&self.lines);
-        let ends = ends.filter(|((tie, _), _)| !tie.is_constant_force());
-        let ends = ends.flat_map(|((tie, memory), line)| {
-            let force = line.direction * memory.force_n.0[0];
-            tie.ends.into_iter().zip([force, -force])
-        });
-        let ends = ends.filter(|(end, _)| end.block.is_none() && end.support(feet_m) == 1);
+        let ends = self
+            .memories()
+            .zip(&self.lines)
+            .filter(|((tie, _), _)| !tie.is_constant_force());
+        let ends = ends
+            .flat_map(|((tie, memory), line)| {
+                let force = line.direction * memory.force_n.0[0];
+                tie.ends.into_iter().zip([force, -force])
+            })
+            .filter(|(end, _)| end.block.is_none() && end.support(feet_m) == 1);
         ends.map(|(_, force)| force).sum()
     }
 

@@ -40,8 +40,10 @@ impl GroundMotion {
     /// negative) and after the last piece.
     pub(super) fn join(start_s: f64, moving: impl Iterator<Item = (f64, f64, Formula)>) -> Self {
         let quiet = |end_s: f64| (end_s, start_s, Formula::constant(Vector2::zeros()));
-        let all = [quiet(start_s)].into_iter().chain(moving);
-        let all = all.chain([quiet(f64::INFINITY)]);
+        let all = [quiet(start_s)]
+            .into_iter()
+            .chain(moving)
+            .chain([quiet(f64::INFINITY)]);
         let mut pieces = Vec::new();
         let mut piece_start_s = start_s.min(0.0);
         for (end_s, origin_s, formula) in all {

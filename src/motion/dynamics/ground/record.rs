@@ -29,9 +29,11 @@ impl GroundMotion {
     /// When there are fewer than two samples, or a number is outside its range.
     pub fn from_samples(step_s: f64, horizontal_m_s2: &[f64]) -> Result<Self, GroundError> {
         require_within("step_s", step_s, MIN_STEP_S..=1e9)?;
-        let samples = horizontal_m_s2.iter().enumerate();
-        let samples = samples.map(|(index, acceleration)| (index as f64 * step_s, *acceleration));
-        let samples: Vec<_> = samples.collect();
+        let samples: Vec<_> = horizontal_m_s2
+            .iter()
+            .enumerate()
+            .map(|(index, acceleration)| (index as f64 * step_s, *acceleration))
+            .collect();
         check("horizontal_m_s2", &samples)?;
         Ok(Self::polylines(&samples, &[], 0.0))
     }

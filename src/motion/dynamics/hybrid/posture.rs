@@ -43,8 +43,9 @@ pub(super) fn posture<C: MechanismChain>(
         Some(Swing { sway, link, .. }) => seen(sway, link, state[0], 1.0, state[1]),
         None => {
             let mut first = [Sway::Right, Sway::Left].into_iter();
-            let link = first.find_map(|side| rocking.chain.link_from(side, 0));
-            let link = link.expect("a structure has its first mechanism");
+            let link = first
+                .find_map(|side| rocking.chain.link_from(side, 0))
+                .expect("a structure has its first mechanism");
             seen(Sway::Right, link, 0.0, 0.0, 0.0)
         }
     }

@@ -139,8 +139,10 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
     /// Returns the smaller of the energy barriers of this mechanism and of the one after its impact.
     pub fn barrier_ahead(&self, swing: Swing<'a, C::Mechanism>) -> f64 {
         let first = self.chain.sway_after(swing.sway, swing.impacts);
-        let next = self.chain.link_from(first, swing.impacts + 1);
-        let next = next.map_or(f64::INFINITY, |link| self.barrier_of(link));
+        let next = self
+            .chain
+            .link_from(first, swing.impacts + 1)
+            .map_or(f64::INFINITY, |link| self.barrier_of(link));
         self.barrier_of(swing.link).min(next)
     }
 

@@ -246,9 +246,9 @@ impl SlipProgram {
     fn step_towards(&mut self, target: f64, errors: &[[f64; 5]], pairs: &mut [Pairs]) -> f64 {
         let coefficient = self.coefficient;
         let joints = pairs.iter().zip(errors);
-        let eliminated =
-            joints.map(|(pairs, errors)| pairs.newton_equations(errors, target, coefficient));
-        let eliminated: Vec<_> = eliminated.collect();
+        let eliminated: Vec<_> = joints
+            .map(|(pairs, errors)| pairs.newton_equations(errors, target, coefficient))
+            .collect();
         self.sweep(|program, joint| {
             let (matrix, right, _) = &eliminated[joint];
             let mut matrix = program.own[joint] + matrix;
@@ -271,8 +271,10 @@ impl SlipProgram {
             pairs[joint].changes(rest, &errors[joint], target, coefficient, (change, slip))
         });
         let changes: Vec<Pairs> = changes.collect();
-        let parts = pairs.iter().zip(&changes);
-        let parts = parts.map(|(pairs, change)| REACH * pairs.largest_part(change));
+        let parts = pairs
+            .iter()
+            .zip(&changes)
+            .map(|(pairs, change)| REACH * pairs.largest_part(change));
         let part = parts.fold(1.0, f64::min);
         for (pairs, change) in pairs.iter_mut().zip(&changes) {
             pairs.advance(change, part);

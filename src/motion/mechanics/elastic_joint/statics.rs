@@ -659,13 +659,17 @@ impl<'a> Search<'a> {
         let mut memories = vec![Memory::none(); joints.len()];
         let mut fibres = vec![Fibre::none(); joints.len() * each];
         let place = |body: usize| self.body_position(&moved, body);
-        let ties = self.structure.ties.iter().zip(&self.yielded_m);
-        let ties = ties.map(|(bound, yielded_m)| {
-            let [first, second] = bound.bodies.map(place);
-            let stretch_m = bound.span([&first, &second]).stretch_m;
-            TieMemory::stretched(&bound.tie, *yielded_m, stretch_m)
-        });
-        let ties = ties.collect();
+        let ties = self
+            .structure
+            .ties
+            .iter()
+            .zip(&self.yielded_m)
+            .map(|(bound, yielded_m)| {
+                let [first, second] = bound.bodies.map(place);
+                let stretch_m = bound.span([&first, &second]).stretch_m;
+                TieMemory::stretched(&bound.tie, *yielded_m, stretch_m)
+            })
+            .collect();
         for (index, joint) in joints.iter().enumerate() {
             let [one, other] = joint.geometry.bodies.map(place);
             let fibres = &mut fibres[index * each..(index + 1) * each];

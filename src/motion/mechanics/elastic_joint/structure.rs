@@ -222,8 +222,10 @@ impl ElasticStructure {
         debug_assert!(row.supports == Supports::Both || row.joints.len() == ground);
         let joints: Result<_, ArgumentError> = row.joints.iter().enumerate().map(joint).collect();
         let feet_m = row.feet_m();
-        let ties = row.ties.iter();
-        let ties = ties.map(|tie| BoundTie::new(*tie, blocks, feet_m));
+        let ties = row
+            .ties
+            .iter()
+            .map(|tie| BoundTie::new(*tie, blocks, feet_m));
         Ok(Self {
             ties: ties.collect(),
             ties_square_frequency: square_frequency(&row.ties, blocks),
@@ -490,8 +492,9 @@ impl ElasticStructure {
 
 /// Returns the stiffness of mortar and a length of stone in series.
 fn in_series(materials: &Materials, length_m: f64) -> JointStiffness {
-    let mortar = materials.mortar;
-    let mortar = mortar.map_or(0.0, |[modulus, thickness]| thickness / modulus);
+    let mortar = materials
+        .mortar
+        .map_or(0.0, |[modulus, thickness]| thickness / modulus);
     let normal_pa_m = 1.0 / (mortar + length_m / materials.stone_modulus_pa);
     JointStiffness {
         normal_pa_m,

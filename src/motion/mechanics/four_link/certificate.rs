@@ -125,8 +125,9 @@ pub fn project(
     let energy_before = before.product(before, profile);
     let scale = energy_before.sqrt();
     let parts = joints_rad.windows(2);
-    let bodies = parts.map(|ends| orthonormal_twists(profile, ends[0], ends[1]));
-    let bodies: Vec<[Twist; 3]> = bodies.collect();
+    let bodies: Vec<[Twist; 3]> = parts
+        .map(|ends| orthonormal_twists(profile, ends[0], ends[1]))
+        .collect();
     let target = components(before, profile, joints_rad, &bodies, scale);
 
     // Rows: no sliding at each joint, then for each joint the gap at the intrados and at the extrados.

@@ -77,8 +77,9 @@ impl Chain {
         incipient: Incipient,
         law: ImpactLaw,
     ) -> Self {
-        let sections = profiles.each_ref();
-        let sections = sections.map(|profile| ProfileSection::all(&**profile, sites));
+        let sections = profiles
+            .each_ref()
+            .map(|profile| ProfileSection::all(&**profile, sites));
         Self {
             profiles,
             sections,

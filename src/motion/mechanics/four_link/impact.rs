@@ -251,12 +251,15 @@ impl ProductTable {
     fn new(lattice: &Lattice, before: &Field, profile: &dyn Profile) -> Self {
         let end = profile.end();
         let whole = before.momentum_to(profile, end);
-        let rotations = lattice.sections_rad.iter().flat_map(|angle| {
-            let moments = profile.sector(*angle, end);
-            let momentum = whole - before.momentum_to(profile, *angle);
-            [EDGES[0], EDGES[1]].map(|edge| (profile.point(*angle, edge), moments, momentum))
-        });
-        let rotations: Vec<_> = rotations.collect();
+        let rotations: Vec<_> = lattice
+            .sections_rad
+            .iter()
+            .flat_map(|angle| {
+                let moments = profile.sector(*angle, end);
+                let momentum = whole - before.momentum_to(profile, *angle);
+                [EDGES[0], EDGES[1]].map(|edge| (profile.point(*angle, edge), moments, momentum))
+            })
+            .collect();
         let shares = rotations
             .iter()
             .map(|(point, _, momentum)| momentum.moment_about(*point));

@@ -36,9 +36,10 @@ impl JointedProfile {
             intrados_m: joint.intrados_m * per_m,
             extrados_m: joint.extrados_m * per_m,
         });
-        let outlines = row.outlines_m.iter();
-        let outlines =
-            outlines.map(|outline| outline.iter().map(|corner| corner * per_m).collect());
+        let outlines = row
+            .outlines_m
+            .iter()
+            .map(|outline| outline.iter().map(|corner| corner * per_m).collect());
         Some(Self {
             joints: joints.collect(),
             moments,

@@ -111,12 +111,15 @@ fn push(acceleration_g: f64) -> Field {
 fn least_acceleration(profile: &dyn Profile, sites: HingeSites) -> Option<(f64, FourLink)> {
     let lattice = Lattice::new(profile, sites);
     // Moments of the area before each section about both edge points, for a unit load along x and y.
-    let moments = lattice.sections_rad.iter().map(|angle| {
-        let part = profile.moments_to(*angle);
-        let arm = |edge| part.first - profile.point(*angle, edge) * part.mass;
-        [Edge::Intrados, Edge::Extrados].map(|edge| quarter_turn(arm(edge)))
-    });
-    let moments: Vec<[Vector2<f64>; 2]> = moments.collect();
+    let moments: Vec<[Vector2<f64>; 2]> = lattice
+        .sections_rad
+        .iter()
+        .map(|angle| {
+            let part = profile.moments_to(*angle);
+            let arm = |edge| part.first - profile.point(*angle, edge) * part.mass;
+            [Edge::Intrados, Edge::Extrados].map(|edge| quarter_turn(arm(edge)))
+        })
+        .collect();
     let score = |rotations: &[f64; 4], quadruple: &Quadruple| {
         let mut power = Vector2::zeros();
         for i in 0..4 {

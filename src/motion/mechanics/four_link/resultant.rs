@@ -99,8 +99,10 @@ impl ResultantLine {
             load.momentum_to(profile, mechanism.hinges_rad[hinge])
                 .moment_about(points[hinge])
         });
-        let start = matrix.lu().solve(&moments);
-        let start = start.expect("three hinges of an admissible mechanism are not on one line");
+        let start = matrix
+            .lu()
+            .solve(&moments)
+            .expect("three hinges of an admissible mechanism are not on one line");
         let (linear, angular) = (start.xy(), start.z);
         Self {
             profile: profile.to_shared(),

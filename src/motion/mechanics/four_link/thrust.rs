@@ -321,8 +321,9 @@ fn find_largest_demand(
         .ceil()
         .max(4.0);
     let part = |i: u32| start_rad + (end_rad - start_rad) * (f64::from(i) / intervals);
-    let samples = (0..=intervals as u32).map(|i| (part(i), at(part(i))));
-    let samples: Vec<(f64, Demand)> = samples.collect();
+    let samples: Vec<(f64, Demand)> = (0..=intervals as u32)
+        .map(|i| (part(i), at(part(i))))
+        .collect();
     let demands = samples.iter().map(|(_, sample)| *sample);
     let mut demand = demands.fold(known, Demand::max);
     for i in 0..samples.len() {

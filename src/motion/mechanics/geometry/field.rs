@@ -82,8 +82,12 @@ impl Field {
 
     /// Returns the mirror image about the vertical axis of the profile.
     pub fn mirrored(&self, profile: &dyn Profile) -> Self {
-        let cuts_rad = self.cuts_rad.iter().rev().map(|cut| profile.end() - cut);
-        let cuts_rad: Vec<f64> = cuts_rad.collect();
+        let cuts_rad: Vec<f64> = self
+            .cuts_rad
+            .iter()
+            .rev()
+            .map(|cut| profile.end() - cut)
+            .collect();
         let before = cuts_rad.iter().map(|cut| profile.moments_to(*cut));
         Self {
             before: before.collect(),
@@ -94,8 +98,9 @@ impl Field {
 
     /// Returns this field minus another: rigid on the sectors between the cuts of both.
     pub fn minus(&self, other: &Self) -> Self {
-        let cuts = zip(&self.cuts_rad, &self.before);
-        let mut cuts: Vec<_> = cuts.chain(zip(&other.cuts_rad, &other.before)).collect();
+        let mut cuts: Vec<_> = zip(&self.cuts_rad, &self.before)
+            .chain(zip(&other.cuts_rad, &other.before))
+            .collect();
         cuts.sort_by(|a, b| a.0.total_cmp(b.0));
         cuts.dedup_by_key(|cut| *cut.0);
         let (cuts_rad, before): (Vec<f64>, Vec<MassMoments>) = cuts.into_iter().unzip();

@@ -43,8 +43,10 @@ impl Fill {
         require_within("density_kg_m3", self.density_kg_m3, MAGNITUDE)?;
         let level_m = self.level_m(arch)?;
         for (voussoir, extra) in extra.iter_mut().enumerate() {
-            let pieces = arch.extrados_of(voussoir).into_iter();
-            let pieces = pieces.flat_map(|piece| parts_below(&piece, level_m));
+            let pieces = arch
+                .extrados_of(voussoir)
+                .into_iter()
+                .flat_map(|piece| parts_below(&piece, level_m));
             let columns = pieces.map(|piece| {
                 let (from, to) = (piece.point(0.0), piece.point(1.0));
                 let corners = [to.x, from.x].map(|x| Vector2::new(x, level_m));

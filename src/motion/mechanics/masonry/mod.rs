@@ -370,9 +370,9 @@ impl Masonry {
     #[must_use]
     pub fn with_constant_forces(mut self, gravity_m_s2: f64) -> Self {
         let loads = self.loads.iter().zip(&self.load_outlines.loads_m);
-        let forces =
-            loads.map(|(load, (block, at_m))| (*block, *at_m, load.constant_force_n(gravity_m_s2)));
-        let forces: Vec<_> = forces.collect();
+        let forces: Vec<_> = loads
+            .map(|(load, (block, at_m))| (*block, *at_m, load.constant_force_n(gravity_m_s2)))
+            .collect();
         self.row = self.row.with_constant_forces(forces, gravity_m_s2);
         self
     }

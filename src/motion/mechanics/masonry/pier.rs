@@ -66,8 +66,9 @@ impl Courses {
             Sway::Right => self.joints.last(),
         };
         let springing = springing.ok_or(RowError::Count(0))?;
-        let courses = pier.courses(springing, side, material);
-        let courses = courses.map_err(|error| MasonryError::Pier(side, error))?;
+        let courses = pier
+            .courses(springing, side, material)
+            .map_err(|error| MasonryError::Pier(side, error))?;
         let count = self.blocks.len() + courses.blocks.len();
         if count > MAX_BLOCKS {
             return Err(MasonryError::Count(count));

@@ -37,8 +37,11 @@ impl Masonry {
 
     fn is_stable_with(&self, shape: MasonryShape, piers: Piers) -> Option<bool> {
         // Loads on piers are neglected for an arch on rigid ground.
-        let loads = self.loads.iter().copied();
-        let loads = loads.filter(|load| load.pier.is_none() || !piers.are_none());
+        let loads = self
+            .loads
+            .iter()
+            .copied()
+            .filter(|load| load.pier.is_none() || !piers.are_none());
         let masonry = Self::new(shape, piers, self.fill, loads.collect()).ok()?;
         let gravity_m_s2 = self.row.gravity_m_s2;
         masonry.with_constant_forces(gravity_m_s2).stands().ok()

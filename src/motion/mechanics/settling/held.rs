@@ -237,11 +237,14 @@ impl<'a> Held<'a> {
 /// # Errors
 /// If the hinges are no mechanism of one degree of freedom.
 fn pins(row: &Row, sway: Sway, onset: &RowOnset) -> Result<Pins, HeldError> {
-    let hinges = onset.openings.iter().filter_map(|opening| {
-        let (joint, edge) = (opening.joint, opening.hinge?);
-        Some(Pin { joint, edge })
-    });
-    let hinges: Vec<Pin> = hinges.collect();
+    let hinges: Vec<Pin> = onset
+        .openings
+        .iter()
+        .filter_map(|opening| {
+            let (joint, edge) = (opening.joint, opening.hinge?);
+            Some(Pin { joint, edge })
+        })
+        .collect();
     let due = match row.supports {
         Supports::Left => 1,
         Supports::Both => 4,

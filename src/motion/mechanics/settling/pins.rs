@@ -293,11 +293,15 @@ impl Pins {
     ) -> TieLoads {
         let parts: Vec<usize> = self.parts(row).collect();
         let lines = lines(row, supports, |block| poses[parts[block]]);
-        let ties = row.ties.iter().zip(lines).zip(before);
-        let ties = ties.map(|((tie, line), memory)| {
-            let memory = memory.then(tie, line.stretch_m);
-            (memory, (line, memory.force_n.0[0]))
-        });
+        let ties = row
+            .ties
+            .iter()
+            .zip(lines)
+            .zip(before)
+            .map(|((tie, line), memory)| {
+                let memory = memory.then(tie, line.stretch_m);
+                (memory, (line, memory.force_n.0[0]))
+            });
         ties.unzip()
     }
 
@@ -316,8 +320,9 @@ impl Pins {
             Momentum::applied_at(centre, force_g * (body.mass_kg * weight))
         });
         let per_weight = weight / row.gravity_m_s2;
-        let pulls = pulls.iter();
-        let pulls = pulls.map(|(line, force_n)| (line, force_n * per_weight));
+        let pulls = pulls
+            .iter()
+            .map(|(line, force_n)| (line, force_n * per_weight));
         let pulls = sum_pulls(row.blocks.len(), pulls);
         let mut loads = vec![Momentum::ZERO];
         loads.extend(own.zip(pulls).scan(Momentum::ZERO, |sum, (own, pull)| {
@@ -516,8 +521,11 @@ impl<'a> Chain<'a> {
             None => anchor.support(row.feet_m()) * (count + 1),
         };
         let weight_n = row.mass_kg() * row.gravity_m_s2;
-        let ties = row.ties.iter().zip(&before.ties);
-        let ties = ties.filter(|(_, memory)| !memory.is_broken());
+        let ties = row
+            .ties
+            .iter()
+            .zip(&before.ties)
+            .filter(|(_, memory)| !memory.is_broken());
         let bars = ties.map(|(tie, memory)| {
             let yielded_m = memory.yielded_m.0[0];
             Bar::new(tie, tie.ends.map(part), yielded_m, weight_n)
@@ -700,8 +708,12 @@ mod tests {
             tie([foot, end(3)], 0.5),
         ];
         let row = row.with_ties(ties, 9.81).unwrap();
-        let hinges = Edge::ALL.iter().copied().cycle().zip([0, 2, 4, 6, 8]);
-        let hinges = hinges.map(|(edge, joint)| Pin { joint, edge });
+        let hinges = Edge::ALL
+            .iter()
+            .copied()
+            .cycle()
+            .zip([0, 2, 4, 6, 8])
+            .map(|(edge, joint)| Pin { joint, edge });
         let pins = Pins::new(&row, hinges.collect());
         let condition = Condition {
             supports: [Pose::UNDEFORMED; 2],

@@ -260,9 +260,10 @@ struct Crossing {
 impl Crossing {
     /// Finds the crossings in a column of cells with ascending y.
     fn of(column: &[CellCounts], logarithmic: bool) -> Self {
-        let known = column.iter();
-        let known = known.filter_map(|cell| Some([cell.at[1], cell.probability()?]));
-        let known: Vec<[f64; 2]> = known.collect();
+        let known: Vec<[f64; 2]> = column
+            .iter()
+            .filter_map(|cell| Some([cell.at[1], cell.probability()?]))
+            .collect();
         let index = |level: f64| known.iter().position(|[_, share]| *share >= level);
         let ends = |level: f64| Some([index(level)?.checked_sub(1)?, index(level)?]);
         let line = |level: f64| {

@@ -316,10 +316,13 @@ fn page_columns(counts: &[CellCounts]) -> impl Iterator<Item = CellNumbers> {
         let of = |cell: &CellCounts| Some(cell.overturned?.numbers()[which]);
         (name, counts.iter().map(of).collect())
     });
-    let others = OUTCOMES.into_iter().enumerate().skip(1);
-    let others = others.map(|(which, name)| {
-        let parts = counts.iter().map(|cell| cell.part(which));
-        (name, parts.collect())
-    });
+    let others = OUTCOMES
+        .into_iter()
+        .enumerate()
+        .skip(1)
+        .map(|(which, name)| {
+            let parts = counts.iter().map(|cell| cell.part(which));
+            (name, parts.collect())
+        });
     shares.chain(others)
 }

@@ -92,8 +92,11 @@ impl ReportedStudy for Along<'_> {
             point.direction.map(Direction::name)
         }));
         columns.push(column("why_not", |point: &Point| point.why_not.clone()));
-        let title = self.scenario.title.as_deref();
-        let title = title.unwrap_or("Threshold of overturning");
+        let title = self
+            .scenario
+            .title
+            .as_deref()
+            .unwrap_or("Threshold of overturning");
         let mut cases = PageCases::default();
         let text = cases.add_text(&self.scenario.to_json(), false);
         for row in &rows {
@@ -142,9 +145,9 @@ impl Along<'_> {
                     ("survives up to", safe),
                     ("UNCERTAIN from", edge.uncertain_from.map(format_edge)),
                     (overturns, first),
-                ];
-                let parts = parts.into_iter();
-                let parts = parts.filter_map(|(what, at)| Some(format!("{what} factor {}", at?)));
+                ]
+                .into_iter()
+                .filter_map(|(what, at)| Some(format!("{what} factor {}", at?)));
                 let words = parts.collect::<Vec<_>>().join("; ");
                 let words = match edge.direction {
                     Direction::AsGiven => words,
@@ -167,11 +170,13 @@ impl Along<'_> {
     /// Returns the answer that may be quoted: the least strength of all values.
     fn answer(&self, rows: &[AlongRow]) -> ModelAnswer {
         let (scenario, along) = (self.scenario, &self.options.along);
-        let known = rows.iter().map(|row| {
-            let edge = row.edge.as_ref().ok()?;
-            Some((edge.survives_up_to? * row.peak_g?, row.value, edge))
-        });
-        let known: Option<Vec<_>> = known.collect();
+        let known: Option<Vec<_>> = rows
+            .iter()
+            .map(|row| {
+                let edge = row.edge.as_ref().ok()?;
+                Some((edge.survives_up_to? * row.peak_g?, row.value, edge))
+            })
+            .collect();
         let least = known
             .into_iter()
             .flatten()
@@ -252,8 +257,9 @@ impl AlongSummary {
         let points = &self.values;
         // The lowest and the highest acceleration, with their values.
         let ends = |of: fn(&Point) -> Option<f64>| {
-            let known = points.iter();
-            let known = known.filter_map(|point| Some((of(point)?, point.value)));
+            let known = points
+                .iter()
+                .filter_map(|point| Some((of(point)?, point.value)));
             let least = known.clone().min_by(|a, b| a.0.total_cmp(&b.0));
             [least, known.max_by(|a, b| a.0.total_cmp(&b.0))]
         };

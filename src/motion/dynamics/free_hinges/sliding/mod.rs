@@ -291,8 +291,11 @@ impl<'a> SlidingStepper<'a> {
     }
 
     fn note_forces(&mut self, time_s: f64) {
-        let impulses = self.program.impulses.iter();
-        let impulses = impulses.map(|impulse| [impulse.z, impulse.x + impulse.y]);
+        let impulses = self
+            .program
+            .impulses
+            .iter()
+            .map(|impulse| [impulse.z, impulse.x + impulse.y]);
         self.friction_demand = self.observer.note_forces(impulses, time_s);
     }
 
@@ -377,8 +380,10 @@ impl<'a> SlidingStepper<'a> {
     /// Returns whether a block has turned too far, or is too far from its initial positions relative to both feet.
     fn has_fallen(&self) -> bool {
         let [left, right] = self.support_slips_m();
-        let blocks = self.positions.iter();
-        let blocks = blocks.map(|position| (position.centre_m, position.rotation_rad));
+        let blocks = self
+            .positions
+            .iter()
+            .map(|position| (position.centre_m, position.rotation_rad));
         let feet_m = [left, right + self.right.displacement_m];
         self.rest.has_left(blocks, feet_m)
     }
@@ -454,8 +459,11 @@ impl<'a> SlidingStepper<'a> {
             (Supports::Both, both) => both,
         };
         // A block can slide off a support that ends at the joint, so slip on such a support is included.
-        let slides = self.support_slips_m().into_iter().zip(on_ground);
-        let slides = slides.filter(|(_, on_ground)| *on_ground);
+        let slides = self
+            .support_slips_m()
+            .into_iter()
+            .zip(on_ground)
+            .filter(|(_, on_ground)| *on_ground);
         let slid: f64 = slides.map(|(slide, _)| 0.5 * slide.x).sum();
         let mass = self.row.mass_kg();
         let sway = self.rest.mass_displacement_kg_m(&self.centres).x
