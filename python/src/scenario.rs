@@ -47,7 +47,7 @@ impl From<Held<'_>> for FileContents {
     }
 }
 
-/// Returns the contents of a file with these samples.
+/// Contents of a file with these samples.
 #[pyfunction]
 pub fn file_of<'py>(py: Python<'py>, samples: Held<'py>) -> Bound<'py, PyBytes> {
     let contents = FileContents::from(samples);

@@ -18,7 +18,7 @@ pub struct ArgumentError {
 }
 
 impl ArgumentError {
-    /// Returns the error for a value.
+    /// Error for a value.
     pub fn new(argument: &'static str, value: f64, allowed: impl Into<String>) -> Self {
         Self {
             argument,
@@ -28,7 +28,7 @@ impl ArgumentError {
     }
 }
 
-/// Returns the value if the condition holds.
+/// The value if the condition holds.
 ///
 /// # Errors
 /// If the condition does not hold. The error names the allowed values.
@@ -44,7 +44,7 @@ pub fn require(
     Err(ArgumentError::new(argument, value, allowed.to_string()))
 }
 
-/// Returns the value if it is in the range; NaN never is.
+/// The value if it is in the range; NaN never is.
 pub fn require_within(
     argument: &'static str,
     value: f64,
@@ -58,7 +58,7 @@ pub fn require_within(
     Err(ArgumentError::new(argument, value, allowed))
 }
 
-/// Returns the count if it is in the range.
+/// The count if it is in the range.
 pub fn require_count(
     argument: &'static str,
     count: usize,
@@ -69,7 +69,7 @@ pub fn require_count(
     Ok(count)
 }
 
-/// Returns the value if it is above the first bound and at most the second one; NaN never is.
+/// The value if it is above the first bound and at most the second one; NaN never is.
 pub fn require_above(
     argument: &'static str,
     value: f64,
@@ -80,13 +80,13 @@ pub fn require_above(
     require(value > low && value <= high, argument, value, allowed)
 }
 
-/// Returns a number in decimal notation with at most six digits: 0.12, not 0.12000000000000002.
+/// Number in decimal notation with at most six digits: 0.12, not 0.12000000000000002.
 pub fn plain(x: f64) -> String {
     // Six digits, in the notation that gives the fewest digits without trailing zeros.
     short(format!("{x:.5e}").parse().unwrap_or(x))
 }
 
-/// Returns a number with `decimals` decimals; zero has no sign.
+/// Number with `decimals` decimals; zero has no sign.
 pub fn format_fixed(x: f64, decimals: usize) -> String {
     let text = format!("{x:.decimals$}");
     match text.strip_prefix('-') {
@@ -107,12 +107,12 @@ pub fn rounded_down(x: f64) -> f64 {
     (x * unit).floor() / unit
 }
 
-/// Returns the factor that gives a positive number `digits` digits before the decimal point.
+/// Factor that gives a positive number `digits` digits before the decimal point.
 fn digits_factor(x: f64, digits: f64) -> f64 {
     libm::pow(10.0, digits - 1.0 - libm::log10(x).floor())
 }
 
-/// Returns a bound in the shortest notation: 1e6, not 1000000.0.
+/// Bound in the shortest notation: 1e6, not 1000000.0.
 pub fn short(x: f64) -> String {
     if x != 0.0 && !(1e-3..1e5).contains(&x.abs()) {
         format!("{x:e}")

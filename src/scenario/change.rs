@@ -16,7 +16,7 @@ static DESCRIPTION: LazyLock<(Value, Vec<KeyGroup>)> = LazyLock::new(Scenario::d
 /// The key of `[suite]` that is an older name of `direction` in `[simulation]`.
 pub(super) const BOTH_SIGNS: &str = "both_signs";
 
-/// Returns true if a key is a count, which must be a whole number.
+/// True if a key is a count, which must be a whole number.
 pub(super) fn is_count(tables: &[&str], key: &str) -> bool {
     let table = tables.iter().fold(&DESCRIPTION.0, |outer, name| {
         let inner = &outer["properties"][*name];
@@ -25,7 +25,7 @@ pub(super) fn is_count(tables: &[&str], key: &str) -> bool {
     table["properties"][key]["type"] == "integer"
 }
 
-/// Returns the groups of keys in a table. `tables` are the names of the table and of those around it, the outermost first.
+/// Groups of keys in a table. `tables` are the names of the table and of those around it, the outermost first.
 fn groups_in<'t>(tables: &[&'t str]) -> impl Iterator<Item = &'static KeyGroup> + use<'t> {
     let tables = tables.to_vec();
     DESCRIPTION.1.iter().filter(move |group| {
@@ -37,7 +37,7 @@ fn groups_in<'t>(tables: &[&'t str]) -> impl Iterator<Item = &'static KeyGroup> 
     })
 }
 
-/// Returns true if a given table has another key that excludes this one.
+/// True if a given table has another key that excludes this one.
 pub(super) fn is_replaced(tables: &[&str], key: &str, given: &Entries) -> bool {
     let mut groups = groups_in(tables).filter(|group| group.are_alternatives);
     groups.any(|group| {
@@ -182,7 +182,7 @@ fn scale_drums(column: &mut Entries, is_new: impl Fn(&str) -> bool) {
     }
 }
 
-/// Returns the numbers of a list.
+/// Numbers of a list.
 fn numbers(table: &Entries, key: &str) -> Option<Vec<f64>> {
     let numbers = table.get(key)?.as_array()?.iter();
     Some(numbers.filter_map(Value::as_f64).collect())

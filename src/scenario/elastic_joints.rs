@@ -33,7 +33,7 @@ const MODULUS_GPA: Number = scale_range(&ElasticProperties::MODULUS_PA, GPA);
 const ONE_POINT: &str = "one does not hold a block";
 const POINTS: Count = Count(ElasticProperties::CONTACT_POINTS, ONE_POINT);
 
-/// Returns a range in another unit.
+/// Range in another unit.
 const fn scale_range(range: &RangeInclusive<f64>, unit: f64) -> Number {
     within(&(*range.start() / unit..=*range.end() / unit))
 }
@@ -108,7 +108,7 @@ impl ElasticTable {
         Ok(read)
     }
 
-    /// Returns the properties of the joints of a structure with this depth.
+    /// Properties of the joints of a structure with this depth.
     fn properties(&self, depth_m: f64) -> ElasticProperties {
         let stiffness = match (self.normal_stiffness_gpa_m, self.stone_modulus_gpa) {
             (None, Some(stone_gpa)) => {
@@ -140,7 +140,7 @@ impl ElasticTable {
         }
     }
 
-    /// Returns the joints of a structure, an error if their stiffness is out of range; `None` if the structure is not a row of blocks.
+    /// Joints of a structure, an error if their stiffness is out of range; `None` if the structure is not a row of blocks.
     fn joints(&self, structure: &Structure) -> Option<Result<ElasticStructure, ArgumentError>> {
         let (depth_m, _) = structure.depth_and_density();
         let (row, properties) = (structure.row().ok()?, self.properties(depth_m));

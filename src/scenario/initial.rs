@@ -84,7 +84,7 @@ fn check_first_mechanism(
     table.refuse(initial.rotation_rad >= limit_rad, "rotation_rad", wrong)
 }
 
-/// Returns the rate of the column just after a blow, in rad/s.
+/// Rate of the column just after a blow, in rad/s.
 fn rate_of_blow(table: &mut Table<'_>, structure: &Structure, blow: &Blow) -> ReadResult<f64> {
     let started = structure.column().and_then(|column| {
         let rate_rad_s = column.rate_of_blow_rad_s(blow.sway, blow.impulse_n_s, blow.height_m);

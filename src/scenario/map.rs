@@ -48,7 +48,7 @@ named! {
 }
 
 impl Quantity {
-    /// Returns the range of the same key in its own table.
+    /// Range of the same key in its own table.
     const fn range(self) -> &'static Number {
         match self {
             Self::Duration => &DURATION_S,
@@ -78,7 +78,7 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// Returns the key of the scenario that the axis sets; the values of a frequency set its reciprocal.
+    /// Key of the scenario that the axis sets; the values of a frequency set its reciprocal.
     pub(crate) fn path(&self, ground: Option<&Ground>) -> String {
         let of_ground = |key: &str| {
             let kind = ground.map_or(RECORD, Ground::kind);
@@ -95,7 +95,7 @@ impl Axis {
         }
     }
 
-    /// Returns the quantity of the ground motion that the axis sets, also by table and key; otherwise its own.
+    /// Quantity of the ground motion that the axis sets, also by table and key; otherwise its own.
     pub(crate) fn quantity_under(&self, ground: &Ground) -> Quantity {
         let by_key = Quantity::ALL.iter().copied().find(|quantity| {
             let axis = Self {

@@ -140,7 +140,7 @@ fn read_blocks(table: &mut Table<'_>) -> ReadResult<GivenBlocks> {
     Err(table.wrong("joints", wrong))
 }
 
-/// Returns the reason why blocks do not form a row, with blocks and joints counted as in the files.
+/// Reason why blocks do not form a row, with blocks and joints counted as in the files.
 fn why_no_row(error: &RowError) -> String {
     match error {
         RowError::Crossing(first) => format!(

@@ -1,6 +1,6 @@
 //! Files that are not plain text.
 
-/// Returns the reason why a file is not plain text, from its first bytes and its line ends; `None` for plain text.
+/// Reason why a file is not plain text, from its first bytes and its line ends; `None` for plain text.
 pub(super) fn not_plain(bytes: &[u8]) -> Option<String> {
     if let Some(kind) = binary_kind(bytes) {
         return Some(format!("the file is {kind}"));
@@ -17,7 +17,7 @@ pub(super) fn not_plain(bytes: &[u8]) -> Option<String> {
     Some(wrong.to_owned())
 }
 
-/// Returns the kind of a file that is no text, and its remedy, from its first bytes; `None` for other kinds and for text.
+/// Kind of a file that is no text, and its remedy, from its first bytes; `None` for other kinds and for text.
 pub(super) fn binary_kind(bytes: &[u8]) -> Option<&'static str> {
     const SHEET: &str = "a spreadsheet: save its sheet as CSV";
     const ARCHIVE: &str = "an archive (ZIP): unpack it";

@@ -25,7 +25,7 @@ pub(super) enum Relation<'a> {
 use Relation::{AtMostOne, Excludes, OneOf, Requires, SomeOf, Together};
 
 impl Relation<'_> {
-    /// Returns the relation as a JSON schema.
+    /// Relation as a JSON schema.
     pub(super) fn schema(&self) -> Value {
         let given = |key: &&str| json!({ "required": [key] });
         match self {
@@ -47,7 +47,7 @@ impl Relation<'_> {
         }
     }
 
-    /// Returns the keys that exclude or need each other, for a table at the outermost level; `None` for other relations.
+    /// Keys that exclude or need each other, for a table at the outermost level; `None` for other relations.
     fn group(&self) -> Option<KeyGroup> {
         let (keys, are_alternatives) = match self {
             OneOf(keys, _) | AtMostOne(keys, _) => (keys, true),

@@ -82,7 +82,7 @@ impl RightFoot {
         Ok(())
     }
 
-    /// Returns the record of the right foot; `None` if it has the delayed motion of the left foot.
+    /// Record of the right foot; `None` if it has the delayed motion of the left foot.
     pub fn record(&self) -> Option<&Record> {
         match self {
             Self::Record(record) => Some(record),
@@ -90,7 +90,7 @@ impl RightFoot {
         }
     }
 
-    /// Returns the delay in s for feet at the distance `apart_m`; `None` if the right foot has a separate record.
+    /// Delay in s for feet at the distance `apart_m`; `None` if the right foot has a separate record.
     pub fn delay_s(&self, apart_m: f64) -> Option<f64> {
         match self {
             Self::Late(delay_s) => Some(*delay_s),
@@ -99,7 +99,7 @@ impl RightFoot {
         }
     }
 
-    /// Returns the motion of both feet, from that of the left foot and the distance between the feet in m.
+    /// Motion of both feet, from that of the left foot and the distance between the feet in m.
     ///
     /// With two records, the foot with the shorter record stops at the end of that record.
     pub(super) fn with_left_foot(

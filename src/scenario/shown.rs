@@ -36,7 +36,7 @@ fn escape(text: &str, is_meant: impl Fn(char) -> bool) -> String {
     shown
 }
 
-/// Returns true if a character is invisible or changes the display of others.
+/// True if a character is invisible or changes the display of others.
 pub(super) fn is_hidden(c: char) -> bool {
     c.is_control()
         || matches!(
@@ -54,7 +54,7 @@ pub(super) fn is_hidden(c: char) -> bool {
         )
 }
 
-/// Returns true if a character joins or separates the shapes of neighbouring letters, as in several scripts.
+/// True if a character joins or separates the shapes of neighbouring letters, as in several scripts.
 fn is_joiner(c: char) -> bool {
     matches!(c, '\u{200c}' | '\u{200d}')
 }

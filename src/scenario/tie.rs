@@ -199,7 +199,7 @@ fn read_point(table: &mut Table<'_>, key: &str) -> Option<[f64; 2]> {
     table.accept(key, point.map_err(|_| wrong)).ok()
 }
 
-/// Returns a point of a block, or of the ground if `block` is 0.
+/// Point of a block, or of the ground if `block` is 0.
 fn anchor(row: &Row, point_m: [f64; 2], block: Option<usize>, end: &str) -> Result<Anchor, String> {
     let at_m = Vector2::from(point_m);
     let point = format!("({:?}, {:?}) m", at_m.x, at_m.y);
@@ -245,7 +245,7 @@ fn anchor(row: &Row, point_m: [f64; 2], block: Option<usize>, end: &str) -> Resu
     Ok(Anchor { block, at_m })
 }
 
-/// Returns the two points of the intrados at a height. The intrados is a straight line between joints.
+/// The two points of the intrados at a height. The intrados is a straight line between joints.
 fn points_at_height(row: &Row, height_m: f64) -> Result<[Anchor; 2], String> {
     let pairs = row.joints.windows(2).enumerate();
     let crossings: Vec<Anchor> = pairs

@@ -42,7 +42,7 @@ struct DrawnMechanism<'a> {
 }
 
 impl DrawnMechanism<'_> {
-    /// Returns the rotations in words.
+    /// Rotations in words.
     fn rotations(&self) -> String {
         let names = ["left", "middle", "right"].iter().zip(&self.poses);
         let all = names.map(|(name, pose)| format!("{name} {:+.3}", pose.rotation_rad()));
@@ -51,7 +51,7 @@ impl DrawnMechanism<'_> {
 }
 
 impl<'a> FourLinkStructure<'a> {
-    /// Returns the mechanism after this number of impacts, opened for a picture; `None` if an impact before it stops the structure.
+    /// Mechanism after this number of impacts, opened for a picture; `None` if an impact before it stops the structure.
     fn drawn_mechanism(&self, impacts: usize) -> Option<DrawnMechanism<'a>> {
         let link = self.model.chain_from(self.first).link(impacts)?;
         let sway = self.first.after(impacts);
@@ -68,7 +68,7 @@ impl<'a> FourLinkStructure<'a> {
         })
     }
 
-    /// Returns the profile in the frame of a sway to this side.
+    /// Profile in the frame of a sway to this side.
     fn profile(&self, sway: Sway) -> &'a dyn Profile {
         let chain = self.model.chain_from(self.first);
         chain.profile(usize::from(sway != self.first))
@@ -79,7 +79,7 @@ impl<'a> FourLinkStructure<'a> {
         Vector2::new(sway.sign() * point.x, point.y) * self.model.length_m()
     }
 
-    /// Returns the height at which the structure is drawn, in pixels, if its larger dimension is `width_px`.
+    /// Height at which the structure is drawn, in pixels, if its larger dimension is `width_px`.
     fn height_px(&self, width_px: f64) -> f64 {
         let [low_m, high_m] = self.scene.blocks_m();
         let size_m = high_m - low_m;
@@ -231,7 +231,7 @@ impl PlacedStructure<'_> {
         }
     }
 
-    /// Returns the position of the number of a body: outside the extrados of a ring. In a row it is inside the intrados, midway between two
+    /// Position of the number of a body: outside the extrados of a ring. In a row it is inside the intrados, midway between two
     /// joints, because buttresses stand behind the extrados.
     fn number_position(&self, profile: &dyn Profile, section: f64) -> Vector2<f64> {
         let out = 30.0 / (self.place.scale * self.of.model.length_m());

@@ -111,13 +111,13 @@ pub extern "C" fn compute() -> usize {
     keep(&answer)
 }
 
-/// Returns the place of the answer.
+/// Place of the answer.
 #[unsafe(no_mangle)]
 pub extern "C" fn answer() -> *const u8 {
     ANSWER.with_borrow(|answer| answer.as_ptr())
 }
 
-/// Returns the length of the answer in bytes.
+/// Length of the answer in bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn length() -> usize {
     ANSWER.with_borrow(Vec::len)

@@ -41,7 +41,7 @@ pub struct Displaced {
     pub friction: f64,
 }
 
-/// Returns the first mechanism to a side at a fraction `part` of the rotation at its unstable equilibrium. `None` without such a mechanism.
+/// First mechanism to a side at a fraction `part` of the rotation at its unstable equilibrium. `None` without such a mechanism.
 pub fn displaced_mechanism<C: MechanismChain>(
     structure: &C,
     sway: Sway,
@@ -69,7 +69,7 @@ pub fn displaced_mechanism<C: MechanismChain>(
     })
 }
 
-/// Returns the rigid bodies of the first mechanism to a side, from left to right, with their virtual displacements per radian of its coordinate, in
+/// Rigid bodies of the first mechanism to a side, from left to right, with their virtual displacements per radian of its coordinate, in
 /// metres. Parts at rest are omitted. `None` without such a mechanism.
 pub fn moving_bodies<C: MechanismChain>(structure: &C, sway: Sway) -> Option<Vec<MovingBody>> {
     let mechanism = &structure.link_from(sway, 0)?.mechanism;
@@ -98,7 +98,7 @@ pub fn moving_bodies<C: MechanismChain>(structure: &C, sway: Sway) -> Option<Vec
     Some(moving)
 }
 
-/// Returns the constant forces on the first body of the first mechanism to a side, with their virtual displacements per radian of its coordinate, in
+/// Constant forces on the first body of the first mechanism to a side, with their virtual displacements per radian of its coordinate, in
 /// metres. `None` without such a mechanism.
 pub fn moving_forces<C: MechanismChain>(structure: &C, sway: Sway) -> Option<Vec<MovingForce>> {
     let mechanism = &structure.link_from(sway, 0)?.mechanism;
@@ -118,7 +118,7 @@ pub fn moving_forces<C: MechanismChain>(structure: &C, sway: Sway) -> Option<Vec
 }
 
 impl BodyPoint {
-    /// Returns the horizontal displacement of the point, in metres.
+    /// Horizontal displacement of the point, in metres.
     fn shift_m(&self, poses: &[Pose]) -> f64 {
         let pose = self.body.and_then(|body| poses.get(body));
         pose.map_or(0.0, |pose| (pose.current_position(self.at_m) - self.at_m).x)
@@ -135,7 +135,7 @@ pub struct Control {
 }
 
 impl Control {
-    /// Returns a control point at a point of the structure.
+    /// Control point at a point of the structure.
     pub fn point(point: BodyPoint) -> Self {
         Self {
             at_m: point.at_m,
@@ -143,7 +143,7 @@ impl Control {
         }
     }
 
-    /// Returns the common centre of the moving masses, given in kg, as control point.
+    /// Common centre of the moving masses, given in kg, as control point.
     pub fn centre_of(masses: &[(f64, BodyPoint)]) -> Self {
         let moving = || masses.iter().filter(|(_, point)| point.body.is_some());
         let whole_kg: f64 = moving().map(|(mass_kg, _)| mass_kg).sum();
@@ -154,7 +154,7 @@ impl Control {
         Self { at_m, points }
     }
 
-    /// Returns the horizontal displacement of the control point, in metres.
+    /// Horizontal displacement of the control point, in metres.
     fn shift_m(&self, poses: &[Pose]) -> f64 {
         let points = self.points.iter();
         let shifts_m = points.map(|(part, point)| part * point.shift_m(poses));
@@ -296,7 +296,7 @@ impl Capacity {
         Ok(capacity)
     }
 
-    /// Returns this capacity with additional points: at yield of each tie, and just before and after its break.
+    /// This capacity with additional points: at yield of each tie, and just before and after its break.
     #[must_use]
     pub fn with_ties(
         mut self,
@@ -320,7 +320,7 @@ impl Capacity {
         self
     }
 
-    /// Returns the point of the curve at a fraction of the path.
+    /// Point of the curve at a fraction of the path.
     fn point(&self, part: f64, here: &Displaced, gravity_m_s2: f64) -> CurvePoint {
         // Rounding errors may change the sign of the first displacement and of the last acceleration.
         let (first, last) = (part == 0.0, part == 1.0);
@@ -341,7 +341,7 @@ impl Capacity {
         }
     }
 
-    /// Returns the first point of the curve: `a(0) = A_L`, and `a0*`.
+    /// First point of the curve: `a(0) = A_L`, and `a0*`.
     ///
     /// # Panics
     /// Never: a curve has points.
@@ -349,7 +349,7 @@ impl Capacity {
         self.curve.first().expect("a curve has points")
     }
 
-    /// Returns the last point of the curve: the ultimate displacement, and `d0*`.
+    /// Last point of the curve: the ultimate displacement, and `d0*`.
     ///
     /// # Panics
     /// Never: a curve has points.
@@ -357,7 +357,7 @@ impl Capacity {
         self.curve.last().expect("a curve has points")
     }
 
-    /// Returns the acceleration of the equivalent oscillator, in multiples of gravity, at a fraction of `d0*` between 0 and 1, by linear
+    /// Acceleration of the equivalent oscillator, in multiples of gravity, at a fraction of `d0*` between 0 and 1, by linear
     /// interpolation of the curve.
     pub fn oscillator_acceleration_g(&self, part: f64) -> f64 {
         let wanted_m = part * self.end().oscillator_displacement_m;
@@ -372,7 +372,7 @@ impl Capacity {
             + share * (high.oscillator_acceleration_g - low.oscillator_acceleration_g)
     }
 
-    /// Returns the secant period, in seconds, at a fraction of the ultimate displacement between 0 and 1; `None` at the end of the curve.
+    /// Secant period, in seconds, at a fraction of the ultimate displacement between 0 and 1; `None` at the end of the curve.
     pub fn secant_period_s(&self, part: f64, gravity_m_s2: f64) -> Option<f64> {
         let wanted_m = part * self.end().oscillator_displacement_m;
         let acceleration_g = self.oscillator_acceleration_g(part);

@@ -51,22 +51,22 @@ pub struct StructureSection {
 
 /// Access to the parts of a structure and their positions.
 pub trait Parts {
-    /// Returns its parts from left to right, or upwards.
+    /// Parts from left to right, or upwards.
     fn parts(&self) -> Vec<Part>;
 
-    /// Returns the bodies of its drawing.
+    /// Bodies of its drawing.
     fn outline(&self) -> Outline;
 
-    /// Returns the sections at which the position of the thrust line is known, from left to right, or upwards.
+    /// Sections at which the position of the thrust line is known, from left to right, or upwards.
     fn sections(&self) -> Vec<StructureSection>;
 
-    /// Returns the parts in words.
+    /// Parts in words.
     fn parts_in_words(&self) -> String;
 
-    /// Returns its crown, the highest point: position along the structure, and coordinates in metres.
+    /// Crown, the highest point: position along the structure, and coordinates in metres.
     fn crown(&self) -> (f64, Vector2<f64>);
 
-    /// Returns the position along the structure of a point in metres; `None` for a point outside the structure.
+    /// Position along the structure of a point in metres; `None` for a point outside the structure.
     fn place_of(&self, at_m: Vector2<f64>) -> Option<f64>;
 }
 
@@ -187,7 +187,7 @@ impl Parts for Column {
 }
 
 impl Column {
-    /// Returns its blocks; `None` without ties.
+    /// Blocks; `None` without ties.
     fn tied_row(&self) -> Option<Row> {
         self.row().ok().filter(|row| !row.bars().is_empty())
     }
@@ -253,7 +253,7 @@ impl Parts for Row {
 }
 
 impl Row {
-    /// Returns the blocks that contain a point, given in metres, or have it on their edge.
+    /// Blocks that contain a point, given in metres, or have it on their edge.
     pub fn blocks_at(&self, at_m: Vector2<f64>) -> Vec<usize> {
         let blocks = 0..self.outlines_m.len();
         blocks
@@ -261,7 +261,7 @@ impl Row {
             .collect()
     }
 
-    /// Returns the distance of a point from a block, in metres; 0 inside the block.
+    /// Distance of a point from a block, in metres; 0 inside the block.
     pub fn distance_m(&self, block: usize, at_m: Vector2<f64>) -> f64 {
         let outline = &self.outlines_m[block];
         if contains(outline, at_m) {
@@ -276,7 +276,7 @@ fn middle_of(block: usize) -> f64 {
     block as f64 + 0.5
 }
 
-/// Returns whether a point is inside a polygon or on its edge.
+/// Whether a point is inside a polygon or on its edge.
 fn contains(outline: &[Vector2<f64>], point: Vector2<f64>) -> bool {
     let mut inside = false;
     for [from, to] in sides(outline) {

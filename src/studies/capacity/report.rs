@@ -73,7 +73,7 @@ pub struct Oscillator {
 }
 
 impl CapacitySummary {
-    /// Returns the curves of the sides to which the structure moves.
+    /// Curves of the sides to which the structure moves.
     fn sides(&self) -> Vec<(Sway, &CapacitySide)> {
         let sides = self.capacity.iter();
         let moving = sides.filter_map(|(sway, side)| Some((sway, side.as_ref()?)));
@@ -176,7 +176,7 @@ impl Report for CapacitySummary {
 
 const STATIC: &str = "the first mechanism, held at each displacement without inertia and without slip; the hinges stay where they open";
 
-/// Returns the points of the curves, to the right first.
+/// Points of the curves, to the right first.
 fn points(sides: &Sides<Option<Capacity>>) -> impl Iterator<Item = (Sway, &CurvePoint)> {
     sides.iter().flat_map(|(sway, side)| {
         let points = side.iter().flat_map(|side| &side.curve);

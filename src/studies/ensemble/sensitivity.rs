@@ -147,7 +147,7 @@ impl Expansion {
         Self(cosines.collect())
     }
 
-    /// Returns the mean index of pure noise.
+    /// Mean index of pure noise.
     fn bias(&self) -> f64 {
         let samples = self.0.first().map_or(1, Vec::len);
         self.0.len() as f64 / samples as f64

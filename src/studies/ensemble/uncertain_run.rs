@@ -199,7 +199,7 @@ impl Question for Histories {
     }
 }
 
-/// Returns the largest rotation of a sample, in radians. Overturned samples have none, but rank above all others.
+/// Largest rotation of a sample, in radians. Overturned samples have none, but rank above all others.
 const fn peak_rad(answer: &HistoryAnswer) -> f64 {
     answer.ending.peak_or_infinite_rad()
 }
@@ -207,7 +207,7 @@ const fn peak_rad(answer: &HistoryAnswer) -> f64 {
 /// The influence of the uncertain numbers on an answer; `None` if it is unknown.
 type OnAnswer = (InfluencedAnswer, Option<Vec<NumberInfluence>>);
 
-/// Returns the influences on overturning, if enough samples overturn and survive, and on the rank of the largest rotation.
+/// Influences on overturning, if enough samples overturn and survive, and on the rank of the largest rotation.
 fn influences(samples: &Samples<'_, HistoryAnswer>) -> [OnAnswer; 2] {
     let is_enough = [1.0, 0.0].into_iter().all(|end| {
         let alike = samples
@@ -345,7 +345,7 @@ fn ended_history(checked: CheckedHistory) -> Result<Ended, NoHistory> {
     Ok((Ending::of_checked(checked)?, potential))
 }
 
-/// Returns the history of a scenario in its first direction, or the history under the mirrored ground motion if that is worse. The mirrored history is
+/// History of a scenario in its first direction, or the history under the mirrored ground motion if that is worse. The mirrored history is
 /// computed if the first survives or is uncertain.
 fn worse_direction(
     (mut ending, potential): Ended,
@@ -372,13 +372,13 @@ fn worse_direction(
 }
 
 impl HistoryAnswer {
-    /// Returns the weight of the sample as overturned: 1 or 0, or the fraction of its repetitions that overturn.
+    /// Weight of the sample as overturned: 1 or 0, or the fraction of its repetitions that overturn.
     pub fn overturned_weight(&self) -> f64 {
         let share = self.ending.overturning_share();
         share.expect("a sample with an incomplete history has no answer")
     }
 
-    /// Returns the rotation at a recorded time, in radians; infinite, with its sign, after the sample has overturned.
+    /// Rotation at a recorded time, in radians; infinite, with its sign, after the sample has overturned.
     fn rotation_rad(&self, time: usize) -> f64 {
         let last = self.course_rad.last().copied().map_or(0.0, f64::from);
         match self.course_rad.get(time) {
@@ -391,7 +391,7 @@ impl HistoryAnswer {
 
 const TITLE: &str = "Histories with uncertain data";
 
-/// Returns the answer of a sample on its page: the largest rotation, beyond the axis if the sample overturned.
+/// Answer of a sample on its page: the largest rotation, beyond the axis if the sample overturned.
 fn page_answer(HistoryAnswer { ending, .. }: &HistoryAnswer) -> PageAnswer {
     let peak_rad = (!ending.overturned_itself()).then_some(ending.peak_rotation_rad);
     (kind_of(Some(ending.verdict())), false, peak_rad)
@@ -437,7 +437,7 @@ impl OwnHistory {
         }
     }
 
-    /// Returns the largest part of the rotation or energy from which the structure would overturn, and the quantity.
+    /// Largest part of the rotation or energy from which the structure would overturn, and the quantity.
     fn margin(&self) -> Option<(f64, &'static str)> {
         let rotation = self
             .peak_rotation_over_critical
@@ -463,7 +463,7 @@ impl Report for UncertainRunSummary {
 }
 
 impl UncertainRunSummary {
-    /// Returns the outcomes of samples, in words, with their shares.
+    /// Outcomes of samples, in words, with their shares.
     fn outcomes(&self) -> impl Iterator<Item = (String, &Share)> {
         let known = OUTCOMES
             .iter()
@@ -495,7 +495,7 @@ fn table(bands: &[BandAt]) -> Result<Table, OutputError> {
     Table::new(columns, bands)
 }
 
-/// Returns a quantile of the largest rotation in words.
+/// Quantile of the largest rotation in words.
 fn rotation(rad: &Option<f64>) -> String {
     rad.map_or("overturning".to_owned(), |rad| format!("{rad:.4} rad"))
 }

@@ -47,7 +47,7 @@ impl Capacities {
         1 + usize::from(self.directions == Directions::Both)
     }
 
-    /// Returns the name and the sign of each record, in the order of the answers.
+    /// Name and the sign of each record, in the order of the answers.
     fn records_and_signs(&self) -> impl Iterator<Item = (&str, i64)> {
         let signs: &[_] = match self.directions {
             Directions::Both => &[1, -1],
@@ -58,7 +58,7 @@ impl Capacities {
         records.flat_map(move |series| signs.iter().map(|sign| (series.name.as_str(), *sign)))
     }
 
-    /// Returns the answer that may be quoted: median and dispersion over records and samples. `excess_ratio` is the largest excess of the thrust line, and
+    /// Answer that may be quoted: median and dispersion over records and samples. `excess_ratio` is the largest excess of the thrust line, and
     /// `demand` the largest friction demand.
     fn quotable_answer(
         &self,
@@ -355,7 +355,7 @@ struct Estimated {
 }
 
 impl Fragilities {
-    /// Returns the distributions with their names in words.
+    /// Distributions with their names in words.
     fn named_distributions(&self) -> [(&'static str, &Estimated); 3] {
         [
             ("record to record", &self.record_to_record),
@@ -365,7 +365,7 @@ impl Fragilities {
     }
 }
 
-/// Returns a number with its unit and its interval in words.
+/// Number with its unit and its interval in words.
 fn estimated(number: &Option<f64>, ends: &Option<[f64; 2]>, unit: &str) -> String {
     let ends = ends
         .map(rounded_range)
@@ -418,13 +418,13 @@ impl<'a> EdgesThatCount<'a> {
         }
     }
 
-    /// Returns the edges of the scenario itself that are inside the model.
+    /// Edges of the scenario itself that are inside the model.
     fn scenario_edges(&self) -> impl Iterator<Item = &'a FirstEdge> + Clone {
         let edges = self.own.iter().copied().flatten();
         edges.filter(|edge| !edge.is_outside_model())
     }
 
-    /// Returns the edges of all samples, also those outside the model.
+    /// Edges of all samples, also those outside the model.
     fn sample_edges(&self) -> impl Iterator<Item = &'a FirstEdge> + Clone {
         self.samples.iter().flatten().copied().flatten()
     }

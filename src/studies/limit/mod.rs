@@ -77,7 +77,7 @@ fn summary(scenario: &Scenario) -> Result<LimitSummary, StudyError> {
     Ok(summary)
 }
 
-/// Returns the coefficients of friction with which no joint of a row slides before it starts. `demand` computes that for a push. A coefficient that
+/// Coefficients of friction with which no joint of a row slides before it starts. `demand` computes that for a push. A coefficient that
 /// is not found is no error.
 fn friction_demand(
     summary: &LimitSummary,
@@ -235,7 +235,7 @@ fn compute_moved_row(
     Ok(summary)
 }
 
-/// Returns the mechanism of a row on moved springings under a push. `None` if any push moves the row, because ties hold it on more than three
+/// Mechanism of a row on moved springings under a push. `None` if any push moves the row, because ties hold it on more than three
 /// hinges or it is about to collapse.
 fn mechanism(row: &Row, follower: &Follower<'_>, sway: Sway) -> Option<RowOnset> {
     if follower.is_held_by_ties() {

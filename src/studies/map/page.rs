@@ -153,7 +153,7 @@ impl ColoredCells {
     }
 }
 
-/// Returns the reasons for uncertain cells, by the number of the cell.
+/// Reasons for uncertain cells, by the number of the cell.
 pub(super) fn doubts(rows: &[CellRow]) -> BTreeMap<usize, String> {
     let doubt = |row: &CellRow| Some(row.result.as_ref().ok()?.doubt()?.to_string());
     let doubts = rows.iter().map(doubt).enumerate();
@@ -162,7 +162,7 @@ pub(super) fn doubts(rows: &[CellRow]) -> BTreeMap<usize, String> {
         .collect()
 }
 
-/// Returns the columns with numbers of the cells.
+/// Columns with numbers of the cells.
 pub(super) fn columns(rows: &[CellRow]) -> impl Iterator<Item = CellNumbers> {
     let endings = move || rows.iter().map(|row| row.result.as_ref().ok());
     let impacts = endings().map(|ending| Some(ending?.known_impacts()? as f64));
@@ -173,7 +173,7 @@ pub(super) fn columns(rows: &[CellRow]) -> impl Iterator<Item = CellNumbers> {
     [("impacts", impacts.collect())].into_iter().chain(numbers)
 }
 
-/// Returns the command that runs a cell, with placeholders for its two values. The command contains the whole scenario, so it depends neither on
+/// Command that runs a cell, with placeholders for its two values. The command contains the whole scenario, so it depends neither on
 /// the location of the page nor on the keys of the scenario file.
 fn command(map: &OverturningMap<'_>) -> String {
     // A command of one cell has no samples and no other studies.

@@ -95,7 +95,7 @@ impl Report for MapSummary {
 }
 
 impl OverturningMap<'_> {
-    /// Returns the columns of `map.csv`, one row per cell: x varies slowly, y fast.
+    /// Columns of `map.csv`, one row per cell: x varies slowly, y fast.
     fn columns(&self) -> Vec<Column<'_, CellRow>> {
         let [x, y] = self.axes.map(|axis| axis.key.as_str());
         let mut all = vec![
@@ -118,7 +118,7 @@ impl OverturningMap<'_> {
     }
 }
 
-/// Returns failed cells, cells with a failed repetition, and uncertain cells.
+/// Failed cells, cells with a failed repetition, and uncertain cells.
 fn remarks(map: &OverturningMap<'_>, cells: &[CellRow]) -> Remarks {
     let [x_name, y_name] = map.axes.map(|axis| axis.key.as_str());
     let mut remarks = Remarks::default();
@@ -133,10 +133,10 @@ fn remarks(map: &OverturningMap<'_>, cells: &[CellRow]) -> Remarks {
 }
 
 impl Style {
-    /// Returns the factors that convert durations to p t_p, and amplitudes to a / A_L.
+    /// Factors that convert durations to p t_p, and amplitudes to a / A_L.
     ///
     /// # Errors
-    /// Returns the property that the map lacks, in words.
+    /// Property that the map lacks, in words.
     pub fn dimensionless(scenario: &Scenario) -> Result<[f64; 2], &'static str> {
         let map = scenario.map.as_ref().ok_or("there is no map")?;
         if (map.x.quantity, map.y.quantity) != (Quantity::Duration, Quantity::Amplitude) {

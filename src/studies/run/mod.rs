@@ -231,7 +231,7 @@ pub fn results(
     Ok(results)
 }
 
-/// Returns the statements about all models, with the answer and these details.
+/// Statements about all models, with the answer and these details.
 fn statement(all: &[ModelResults], quote: Option<&str>, details: String) -> Statement {
     let summaries = || all.iter().map(|one| &one.summary);
     let verdicts = summaries().map(|summary| {
@@ -430,7 +430,7 @@ impl<'a> Run<'a> {
         })
     }
 
-    /// Returns whether its motions are repeated.
+    /// Whether its motions are repeated.
     fn repeats(&self) -> bool {
         !self.options.no_repeat && self.model.row().is_some()
     }
@@ -517,7 +517,7 @@ pub fn scene(scenario: &Scenario, model: &dyn Model) -> Scene {
     scene
 }
 
-/// Returns the title of the pictures and the page of a scenario.
+/// Title of the pictures and the page of a scenario.
 fn title(scenario: &Scenario) -> &str {
     scenario.title.as_deref().unwrap_or("Rocking history")
 }
@@ -534,7 +534,7 @@ struct Drawings {
 }
 
 impl Drawings {
-    /// Returns the times of snapshots before the start and after the end, in seconds.
+    /// Times of snapshots before the start and after the end, in seconds.
     fn outside_times_s(&self) -> [Vec<f64>; 2] {
         let snapshots = self.snapshots.as_ref();
         snapshots.map_or_else(Default::default, Snapshots::outside_times_s)

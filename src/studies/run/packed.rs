@@ -10,7 +10,7 @@ use crate::{OpenHinge, Sample};
 /// Largest integer of an encoded rotation or displacement.
 pub(super) const LARGEST_I16: f64 = 32767.0;
 
-/// Returns the distinct sets of hinges of the frames, and the index of the set of each frame. Rows have one empty set, because their joints are
+/// Distinct sets of hinges of the frames, and the index of the set of each frame. Rows have one empty set, because their joints are
 /// encoded in each frame.
 pub(super) fn layouts<'a>(
     scene: &Scene,
@@ -44,7 +44,7 @@ pub(super) struct DrawnPiece {
     outline: Vec<i64>,
 }
 
-/// Returns a piece in units of the page.
+/// Piece in units of the page.
 pub(super) fn piece(piece: &Piece, unit_m: f64) -> DrawnPiece {
     let corners = piece.outline_m.iter();
     let coordinates = corners.flat_map(|corner| [corner.x, corner.y]);
@@ -54,7 +54,7 @@ pub(super) fn piece(piece: &Piece, unit_m: f64) -> DrawnPiece {
     }
 }
 
-/// Returns the number of a body; -1 for parts that do not move.
+/// Number of a body; -1 for parts that do not move.
 pub(super) fn body_number(body: Option<usize>) -> i64 {
     body.and_then(|body| i64::try_from(body).ok()).unwrap_or(-1)
 }

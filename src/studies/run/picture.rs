@@ -30,7 +30,7 @@ struct LargeCycle {
 /// Fraction of the unstable rotation, or of the barrier, from which the limit is drawn.
 const LARGE_RATIO: f64 = 0.25;
 
-/// Returns the stroke for the unstable rotation of a body, in the colour of its curve.
+/// Stroke for the unstable rotation of a body, in the colour of its curve.
 const fn unstable_stroke(body: usize) -> Stroke {
     Stroke::new(CURVES[body % CURVES.len()].color, 1.0, "1 3")
 }
@@ -251,7 +251,7 @@ impl Timeline {
         panels.curves("Right foot (mm)", 110.0, feet, states);
     }
 
-    /// Returns the curves of the rotations of a mechanism, with impacts and unstable equilibria, and their scale.
+    /// Curves of the rotations of a mechanism, with impacts and unstable equilibria, and their scale.
     fn rotations(&self, panels: &mut Panels) -> (Vec<Mark>, Scale) {
         let mut marks = Vec::new();
         let bodies = self.bodies.iter().zip(&self.rotations_rad);
@@ -284,7 +284,7 @@ impl Timeline {
         (marks, y)
     }
 
-    /// Returns the curves of the rotations of blocks and their scale. The block with the largest rotation is drawn last, on top.
+    /// Curves of the rotations of blocks and their scale. The block with the largest rotation is drawn last, on top.
     fn rotations_of_row(&self, panels: &mut Panels, largest: usize) -> (Vec<Mark>, Scale) {
         let others = (0..self.rotations_rad.len()).filter(|block| *block != largest);
         let strokes = others.map(|block| (block, BLOCK));
@@ -303,7 +303,7 @@ impl Timeline {
     }
 }
 
-/// Returns the states of a row: its half cycles, and the end.
+/// States of a row: its half cycles, and the end.
 fn row_states(history: &Summary, half_cycles: &[HalfCycle]) -> StateHistory {
     let end = match history.outcome {
         Outcome::Rest => Some(State::Rest),

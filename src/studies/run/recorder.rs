@@ -43,7 +43,7 @@ impl TableFiles {
         on_disk.chain(in_memory.map(|(name, bytes)| (*name, boxed(bytes))))
     }
 
-    /// Returns the tables in memory together with the other files.
+    /// Tables in memory together with the other files.
     pub(super) fn with_texts(
         self,
         texts: BTreeMap<&'static str, String>,

@@ -171,7 +171,7 @@ impl<'a> DeformedArch<'a> {
         drawing.label(below, Anchor::Middle, 0.0, text);
     }
 
-    /// Returns a point of the body with the face of a joint: the block after the joint, or the last block.
+    /// Point of the body with the face of a joint: the block after the joint, or the last block.
     fn body_point(&self, joint: usize, at_m: Vector2<f64>) -> BodyPoint {
         let body = Some(joint.min(self.stage.poses.len() - 1));
         BodyPoint { body, at_m }

@@ -139,7 +139,7 @@ pub struct Fractiles {
     pub peaks: [Option<f64>; 3],
 }
 
-/// Returns the peak of a history over the critical rotation, or of a row of blocks in radians.
+/// Peak of a history over the critical rotation, or of a row of blocks in radians.
 fn peak(ending: &Ending) -> f64 {
     let of_row = ending.peak_rotation_rad;
     ending.peak_over_critical.unwrap_or(of_row)
@@ -168,7 +168,7 @@ pub fn fractiles(results: &SuiteFragility) -> Vec<Fractiles> {
 const CRITICAL: Stroke = Stroke::new(color::GREY, 1.4, "6 4");
 const UNCERTAIN: Stroke = Stroke::new(SpotKind::Uncertain.fill(), 1.6, "");
 
-/// Returns the largest rotation of each case, in radians, infinite if the case overturned; `None` without a complete history.
+/// Largest rotation of each case, in radians, infinite if the case overturned; `None` without a complete history.
 pub(super) fn rotations_rad(cases: &[CaseRow]) -> Vec<Option<f64>> {
     let endings = cases.iter().map(CaseRow::complete_ending);
     endings
@@ -176,14 +176,14 @@ pub(super) fn rotations_rad(cases: &[CaseRow]) -> Vec<Option<f64>> {
         .collect()
 }
 
-/// Returns the distribution of the peaks of all cases: ascending finite peaks, as in [`Fractiles`], each with the share of cases up
+/// Distribution of the peaks of all cases: ascending finite peaks, as in [`Fractiles`], each with the share of cases up
 /// to the peak. The last share is below 1 if cases overturned.
 pub fn peaks(results: &SuiteFragility) -> Vec<(f64, f64)> {
     let peaks = results.cases.iter().filter_map(peak_or_infinity);
     shares_up_to(peaks.map(|peak| [peak, 1.0]))
 }
 
-/// Returns the peak of a case with a complete history, infinite if the case overturned.
+/// Peak of a case with a complete history, infinite if the case overturned.
 fn peak_or_infinity(case: &CaseRow) -> Option<f64> {
     let ending = case.complete_ending()?;
     match ending.overturned_itself() {

@@ -132,7 +132,7 @@ impl SuiteFragility {
 /// Number of records below which a dispersion gets a note.
 const MANY_RECORDS: usize = 30;
 
-/// Returns the error of a dispersion from this number of records, in words; `None` with many records. The relative standard deviation of the
+/// Error of a dispersion from this number of records, in words; `None` with many records. The relative standard deviation of the
 /// standard deviation of `n` normal values is `1 / sqrt(2 (n - 1))`.
 pub(in crate::studies) fn warning_of_few_records(records: usize) -> Option<String> {
     let percent = 100.0 / (2.0 * (records.max(2) - 1) as f64).sqrt();

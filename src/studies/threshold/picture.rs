@@ -118,7 +118,7 @@ pub(super) fn draw_marked(
     sheet.finish()
 }
 
-/// Returns the smallest and the largest factor.
+/// Smallest and the largest factor.
 fn find_range(factors: impl Iterator<Item = f64>) -> [f64; 2] {
     factors.fold([f64::INFINITY, 0.0], |[first, last], factor| {
         [first.min(factor), last.max(factor)]
@@ -126,7 +126,7 @@ fn find_range(factors: impl Iterator<Item = f64>) -> [f64; 2] {
 }
 
 impl FactorSample {
-    /// Returns the largest rotation, over the critical rotation or in radians; `None` if the history itself overturned.
+    /// Largest rotation, over the critical rotation or in radians; `None` if the history itself overturned.
     fn peak(&self, over_critical: bool) -> Option<f64> {
         let ending = self.result.as_ref().ok();
         let ending = ending.filter(|ending| !ending.overturned_itself())?;
@@ -137,7 +137,7 @@ impl FactorSample {
     }
 }
 
-/// Returns strokes for the curves of the models, in colours that no outcome has.
+/// Strokes for the curves of the models, in colours that no outcome has.
 fn curves() -> impl Iterator<Item = Stroke> {
     const CURVES: [Stroke; 3] = [
         Stroke::new(color::BLACK, 1.6, ""),
@@ -147,7 +147,7 @@ fn curves() -> impl Iterator<Item = Stroke> {
     CURVES.into_iter().cycle()
 }
 
-/// Returns the scale up to the largest rotation of a history that did not overturn.
+/// Scale up to the largest rotation of a history that did not overturn.
 fn scale(
     thresholds: &[&Threshold],
     least: f64,
@@ -158,7 +158,7 @@ fn scale(
     Scale::exactly(0.0, 1.15 * largest, 6)
 }
 
-/// Returns the edges of the bands and of the uncertain ranges, ascending.
+/// Edges of the bands and of the uncertain ranges, ascending.
 fn edges(threshold: &Threshold) -> impl Iterator<Item = f64> {
     let mut last = f64::NAN;
     let ranges = threshold
@@ -255,7 +255,7 @@ fn hatch(drawing: &mut Drawing, frame: &Frame) {
     });
 }
 
-/// Returns positions for labels near the given ascending positions, without overlaps between `left` and `right`; fewer if there is not enough
+/// Positions for labels near the given ascending positions, without overlaps between `left` and `right`; fewer if there is not enough
 /// space.
 fn spread(places: &[f64], left: f64, right: f64) -> Vec<f64> {
     let room = ((right - left) / LABEL_ADVANCE) as usize + 1;

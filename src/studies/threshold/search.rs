@@ -38,7 +38,7 @@ pub(super) struct OtherHistories {
 /// Edges: neighbouring factors with different verdicts.
 type Edges = Vec<(f64, f64)>;
 
-/// Returns the step of a search after these samples.
+/// Step of a search after these samples.
 fn step_after(samples: &[FactorSample], is_open: bool) -> SearchStep {
     let survives = |sample: &&FactorSample| sample.verdict() == Some(Verdict::Survives);
     let safe = samples.iter().take_while(survives).last();
@@ -48,7 +48,7 @@ fn step_after(samples: &[FactorSample], is_open: bool) -> SearchStep {
     }
 }
 
-/// Returns a function that reports the progress of a step of a search.
+/// Function that reports the progress of a step of a search.
 fn report_step(
     step: SearchStep,
     mut watch: impl FnMut(Progress) -> ControlFlow<()>,

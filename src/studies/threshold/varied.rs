@@ -30,7 +30,7 @@ pub struct VariedThreshold {
 const REPEATED_FROM: f64 = 0.8;
 
 impl VariedThreshold {
-    /// Returns the largest factor that the structure with this property survives; `None` if it survives all.
+    /// Largest factor that the structure with this property survives; `None` if it survives all.
     pub fn survives_up_to(&self) -> Option<f64> {
         let lowest = self.factor.as_ref().ok().copied().flatten();
         match self.repeated {

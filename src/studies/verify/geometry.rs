@@ -100,7 +100,7 @@ pub struct LoadAt {
 }
 
 impl Geometry {
-    /// Returns the geometry of the structure of a scenario.
+    /// Geometry of the structure of a scenario.
     pub(super) fn of(scenario: &Scenario) -> Self {
         let structure = &scenario.structure;
         let (depth_m, density_kg_m3) = structure.depth_and_density();
@@ -163,14 +163,14 @@ impl Geometry {
         geometry
     }
 
-    /// Returns true if the page prints the density of each block.
+    /// True if the page prints the density of each block.
     pub(super) fn has_densities(&self) -> bool {
         let mut blocks = self.blocks.iter();
         self.shape == "blocks" || blocks.any(|one| one.density_kg_m3 != self.density_kg_m3)
     }
 }
 
-/// Returns the blocks of a row, given as well without its loads, and without loads and fill.
+/// Blocks of a row, given as well without its loads, and without loads and fill.
 fn blocks(
     [row, filled, bare]: [Option<&Row>; 3],
     density_kg_m3: impl Fn(usize) -> f64,

@@ -92,7 +92,7 @@ pub struct HistorySide {
 }
 
 impl HistorySide {
-    /// Returns the allowed displacements with which the demand is compared, in metres.
+    /// Allowed displacements with which the demand is compared, in metres.
     pub(super) const fn limits_m(&self) -> [f64; 2] {
         [self.capacity_m, self.capacity_over_fc_m]
     }
@@ -145,7 +145,7 @@ pub struct Histories {
     pub sides: BTreeMap<Sway, HistorySide>,
 }
 
-/// Returns true if all sides pass. A failed side decides even if another has no verdict.
+/// True if all sides pass. A failed side decides even if another has no verdict.
 fn all_pass(
     sides: &BTreeMap<Sway, HistorySide>,
     passed: fn(&HistorySide) -> Option<bool>,

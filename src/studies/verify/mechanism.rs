@@ -83,7 +83,7 @@ pub struct ConstantForce {
 }
 
 impl ConstantForce {
-    /// Returns a force with the displacement of its point, multiplied by `scale`.
+    /// Force with the displacement of its point, multiplied by `scale`.
     fn new(force: &MovingForce, scale: f64, gravity_m_s2: f64) -> Self {
         let force_kn = force.force_kg * (gravity_m_s2 / 1000.0);
         Self {
@@ -220,7 +220,7 @@ pub enum NoCurve {
 }
 
 impl NoCurve {
-    /// Returns the reason as a sentence. In Italian all reasons of [`NoCurve::Moves`] have one sentence.
+    /// Reason as a sentence. In Italian all reasons of [`NoCurve::Moves`] have one sentence.
     pub(super) fn in_words(&self, language: Language) -> String {
         let [english, italian] = match self {
             Self::Slides => [
@@ -354,7 +354,7 @@ impl CapacityCurves {
         })
     }
 
-    /// Returns displacements in metres and accelerations in g of the oscillator.
+    /// Displacements in metres and accelerations in g of the oscillator.
     fn points_m_g(&self) -> Vec<[f64; 2]> {
         let points = self
             .centre
@@ -364,7 +364,7 @@ impl CapacityCurves {
         points.map(Into::into).collect()
     }
 
-    /// Returns the largest friction coefficient needed up to a fraction of the ultimate displacement.
+    /// Largest friction coefficient needed up to a fraction of the ultimate displacement.
     pub fn friction_up_to(&self, part: f64) -> f64 {
         let end_m = part * self.centre.end().oscillator_displacement_m;
         let points = self.centre.curve.iter();
@@ -464,13 +464,13 @@ impl VirtualMechanism {
         load_multiplier(&self.bodies, &self.ties, &self.forces)
     }
 
-    /// Returns `a_0 / FC` with the loads at points as separate weights, in g; `None` if no body carries such a load.
+    /// `a_0 / FC` with the loads at points as separate weights, in g; `None` if no body carries such a load.
     fn a0_with_separate_loads_over_fc_g(&self, input: &CheckInput<'_>) -> Option<f64> {
         let fraction = self.fraction_with_separate_loads(&input.scenario.structure)?;
         Some(self.alpha0() / (fraction * input.settings.confidence_factor))
     }
 
-    /// Returns `e*` with the loads at points as separate weights [C8.7.1.5, with n + m weights]; `None` if no body carries such a load.
+    /// `e*` with the loads at points as separate weights [C8.7.1.5, with n + m weights]; `None` if no body carries such a load.
     fn fraction_with_separate_loads(&self, structure: &Structure) -> Option<f64> {
         let (outlines, loads) = structure.fill_and_loads();
         let carried = outlines.loads_m.iter().zip(loads);
@@ -501,7 +501,7 @@ impl VirtualMechanism {
             .then(|| Participation::of(all()).mass_fraction)
     }
 
-    /// Returns the numbers of the first and the last block of a body, from 1; `None` for a ring.
+    /// Numbers of the first and the last block of a body, from 1; `None` for a ring.
     fn blocks_of(&self, body: usize) -> Option<[usize; 2]> {
         let of_body = |of: &Option<usize>| *of == Some(body);
         if let Some(first) = self.body_of_block.iter().position(of_body) {

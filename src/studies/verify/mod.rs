@@ -292,7 +292,7 @@ pub fn verify(scenario: &Scenario) -> Result<VerifySummary, VerifyError> {
     Ok(summary)
 }
 
-/// Returns the sides that are checked: those of the scenario to which the structure can move.
+/// Sides that are checked: those of the scenario to which the structure can move.
 ///
 /// # Errors
 /// When the scenario chooses the side of a wall behind a column.
@@ -319,7 +319,7 @@ fn checked_sides(scenario: &Scenario) -> Result<CheckedSides, VerifyError> {
 }
 
 impl CheckInput<'_> {
-    /// Returns the rule of a limit state; `None` for SLD.
+    /// Rule of a limit state; `None` for SLD.
     fn rule(&self, state: LimitState) -> Option<StateRule> {
         match &self.demand {
             Demand::Points(points) => points.get(&state)?.state,
@@ -327,7 +327,7 @@ impl CheckInput<'_> {
         }
     }
 
-    /// Returns the fractions of the ultimate displacement that the limit states allow.
+    /// Fractions of the ultimate displacement that the limit states allow.
     fn parts_of_d0(&self) -> impl Iterator<Item = f64> {
         let rules = self
             .demand
@@ -405,7 +405,7 @@ impl CheckInput<'_> {
         })
     }
 
-    /// Returns the ordinates of the spectrum at a height that a check uses: at the period of the mechanism, and at that of the building beyond
+    /// Ordinates of the spectrum at a height that a check uses: at the period of the mechanism, and at that of the building beyond
     /// resonance; for SLD of a structure that is free to vibrate, at its period.
     fn floor(
         &self,
@@ -439,7 +439,7 @@ impl CheckInput<'_> {
         })
     }
 
-    /// Returns the acceleration with which the onset of motion is compared, in g: the peak if walls hold the structure, and the spectral
+    /// Acceleration with which the onset of motion is compared, in g: the peak if walls hold the structure, and the spectral
     /// acceleration at its period if it is free to vibrate.
     fn onset_demand_g(&self, spectrum: &Spectrum) -> Result<f64, PeriodOutOfRange> {
         match self.t0_s {
@@ -510,7 +510,7 @@ impl CheckInput<'_> {
         })
     }
 
-    /// Returns the allowed displacement on a curve, in metres; the divided acceleration there, in g; the period, in s; and the displacement
+    /// Allowed displacement on a curve, in metres; the divided acceleration there, in g; the period, in s; and the displacement
     /// demand, in metres.
     fn allowed_displacement(
         &self,
@@ -532,7 +532,7 @@ impl CheckInput<'_> {
         Ok((capacity_m, acceleration_g, period_s, demand_m))
     }
 
-    /// Returns the acceleration of the elastic branch, in g; `None` if walls hold the structure.
+    /// Acceleration of the elastic branch, in g; `None` if walls hold the structure.
     fn elastic_g(&self, displacement_m: f64) -> Option<f64> {
         let circular = self.t0_s? / (2.0 * PI);
         Some(displacement_m / (circular * circular * self.gravity_m_s2))
@@ -552,7 +552,7 @@ impl CheckInput<'_> {
     }
 }
 
-/// Returns the governing side with its outcome. `None` if a side cannot be checked, unless joints slide first to the other side.
+/// Governing side with its outcome. `None` if a side cannot be checked, unless joints slide first to the other side.
 fn find_governing_side(sides: &BTreeMap<Sway, SideCheck>) -> Option<(GoverningSide, SideOutcome)> {
     let checked = sides
         .iter()

@@ -16,7 +16,7 @@ pub struct JointedProfile {
 }
 
 impl JointedProfile {
-    /// Returns the profile of a row; `None` for a stack, which has no right support.
+    /// Profile of a row; `None` for a stack, which has no right support.
     pub fn new(row: &Row) -> Option<Self> {
         if row.supports == Supports::Left {
             return None;
@@ -47,7 +47,7 @@ impl JointedProfile {
         })
     }
 
-    /// Returns the joint at a section.
+    /// Joint at a section.
     fn index(&self, section: f64) -> usize {
         (section.round().max(0.0) as usize).min(self.joints.len() - 1)
     }

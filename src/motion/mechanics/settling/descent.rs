@@ -183,7 +183,7 @@ impl<'a> Descent<'a> {
         Ok(false)
     }
 
-    /// Returns true if ties hold the row on these hinges in an equilibrium near by. Without ties the descent ends by itself.
+    /// True if ties hold the row on these hinges in an equilibrium near by. Without ties the descent ends by itself.
     fn is_near_equilibrium(&self, pins: &Pins, stance: &RowState, condition: &Condition) -> bool {
         let state = pins.state(self.row, condition, stance);
         state.is_some_and(|state| {
@@ -242,7 +242,7 @@ impl<'a> Descent<'a> {
         self.program.fastest(&self.load, self.row, placement)
     }
 
-    /// Returns the largest velocity with the tie forces at the end of the step. Shortens the step until no point moves farther than
+    /// Largest velocity with the tie forces at the end of the step. Shortens the step until no point moves farther than
     /// `farthest_m`.
     fn solve_with_ties(
         &mut self,
@@ -322,7 +322,7 @@ impl<'a> Descent<'a> {
         DVector::from_iterator(self.ties_kg.len(), residuals_m)
     }
 
-    /// Returns the Newton step of the tie forces, over gravity, for the present set of closed corners. Forces at a bound stay there if the
+    /// Newton step of the tie forces, over gravity, for the present set of closed corners. Forces at a bound stay there if the
     /// step would exceed it. `None` if the step is not determined.
     ///
     /// The unknowns are the speeds of the few degrees of freedom of the row. The forces of many ties follow from them.
@@ -364,7 +364,7 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Returns true if the bounds of the force of a tie allow this change.
+    /// True if the bounds of the force of a tie allow this change.
     fn may_change(&self, step: &DescentStep<'_>, tie: usize, change: f64) -> bool {
         let end_kg = step.bounds_kg[tie][usize::from(change > 0.0)];
         (end_kg - self.ties_kg[tie]) * change > 0.0 || change == 0.0

@@ -120,7 +120,7 @@ impl ReportedStudy for Along<'_> {
     }
 }
 
-/// Returns limits of the model, and the number of values without a verdict, in words.
+/// Limits of the model, and the number of values without a verdict, in words.
 fn limits(
     remarks: &Remarks,
     without_verdict: usize,
@@ -167,7 +167,7 @@ impl Along<'_> {
         });
     }
 
-    /// Returns the answer that may be quoted: the least strength of all values.
+    /// Answer that may be quoted: the least strength of all values.
     fn answer(&self, rows: &[AlongRow]) -> ModelAnswer {
         let (scenario, along) = (self.scenario, &self.options.along);
         let known: Option<Vec<_>> = rows
@@ -215,7 +215,7 @@ impl Along<'_> {
             .unless_uncertain(scenario.uncertain.is_some())
     }
 
-    /// Returns the values without an answer, with the reasons.
+    /// Values without an answer, with the reasons.
     fn remarks(&self, rows: &[AlongRow]) -> Remarks {
         let edges = rows.iter().flat_map(|row| &row.edge);
         let mut remarks = Remarks::default();
@@ -252,7 +252,7 @@ impl Report for AlongSummary {
 }
 
 impl AlongSummary {
-    /// Returns the ranges of the thresholds, and the numbers of values without one, in words.
+    /// Ranges of the thresholds, and the numbers of values without one, in words.
     fn ranges(&self) -> String {
         let points = &self.values;
         // The lowest and the highest acceleration, with their values.
