@@ -1,6 +1,6 @@
 //! A check of local mechanisms by the Circolare 7/2019, C8.7.1.2.1, with the spectra of NTC 2018.
 //!
-//! The mechanism that starts to one side is a chain of rigid bodies ([`Mechanism`]). Its load multiplier, participating mass and capacity curve
+//! The mechanism that starts to one side is a chain of rigid bodies ([`CheckedMechanism`]). Its load multiplier, participating mass and capacity curve
 //! are compared with a spectrum ([`Spectrum`]) at each limit state. The [`VerifySummary`] has every number and verdict; words, notes and the printed
 //! page are templates that read the summary. Where the text of the Circolare leaves a choice, the notes state the decision.
 
