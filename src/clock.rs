@@ -6,13 +6,13 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 /// False in a browser, which has no clock for the library.
 const HAS_CLOCK: bool = !cfg!(target_family = "wasm");
 
-/// Returns the time since 1970 (UTC); `None` without a clock.
+/// Time since 1970 (UTC); `None` without a clock.
 pub(crate) fn since_1970() -> Option<Duration> {
     let now = HAS_CLOCK.then(SystemTime::now)?;
     now.duration_since(UNIX_EPOCH).ok()
 }
 
-/// Returns the time since the first call, which never goes back; `None` without a clock.
+/// Time since the first call, which never goes back; `None` without a clock.
 pub(crate) fn elapsed() -> Option<Duration> {
     static START: OnceLock<Instant> = OnceLock::new();
     HAS_CLOCK.then(|| START.get_or_init(Instant::now).elapsed())

@@ -278,8 +278,12 @@ impl History {
             ),
             "open_hinges" => {
                 let open = self.take_indices(|all| {
-                    let ends = all.first_hinge.iter().skip(1).copied();
-                    let ends = ends.chain([all.hinges.len()]);
+                    let ends = all
+                        .first_hinge
+                        .iter()
+                        .skip(1)
+                        .copied()
+                        .chain([all.hinges.len()]);
                     let first = all.first_hinge.iter();
                     first.zip(ends).map(|(first, end)| end - first).collect()
                 });
@@ -465,8 +469,9 @@ impl History {
         };
         let model = scenario.model(py)?;
         let scene = run::scene(inner, &**model);
-        let point = point.map(|[x, y]| structure_point(&scene, [x, y]));
-        let point = point.transpose()?;
+        let point = point
+            .map(|[x, y]| structure_point(&scene, [x, y]))
+            .transpose()?;
         let needed_bytes = model.sample_bytes(motion, &inner.request_under(motion));
         let recording = Recording::new(needed_bytes, memory_bytes).map_err(too_large)?;
         let mut watched = Watched {
@@ -516,8 +521,10 @@ impl History {
 
     /// A column of the samples; the same array every time.
     fn column<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
-        let index = COLUMNS.iter().position(|column| *column == name);
-        let index = index.ok_or_else(|| PyKeyError::new_err(name.to_owned()))?;
+        let index = COLUMNS
+            .iter()
+            .position(|column| *column == name)
+            .ok_or_else(|| PyKeyError::new_err(name.to_owned()))?;
         let array =
             self.arrays[index].get_or_try_init(py, || self.take(py, name).map(Bound::unbind))?;
         Ok(array.bind(py).clone())

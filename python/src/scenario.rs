@@ -47,7 +47,7 @@ impl From<Held<'_>> for FileContents {
     }
 }
 
-/// Returns the contents of a file with these samples.
+/// Contents of a file with these samples.
 #[pyfunction]
 pub fn file_of<'py>(py: Python<'py>, samples: Held<'py>) -> Bound<'py, PyBytes> {
     let contents = FileContents::from(samples);
@@ -259,12 +259,15 @@ impl Scenario {
 
     /// The mechanisms through which impacts lead after a first sway to a side, as `archrock impact --format json`.
     fn chain_json(&self, py: Python<'_>, sway: &str, count: usize) -> PyResult<String> {
-        let first = Sway::ALL.iter().copied().find(|one| one.name() == sway);
-        let first = first.ok_or_else(|| {
-            refused_value(format!(
-                "`sway = {sway:?}` is not one of \"right\" and \"left\""
-            ))
-        })?;
+        let first = Sway::ALL
+            .iter()
+            .copied()
+            .find(|one| one.name() == sway)
+            .ok_or_else(|| {
+                refused_value(format!(
+                    "`sway = {sway:?}` is not one of \"right\" and \"left\""
+                ))
+            })?;
         if self.inner.structure.wall_behind() == Some(first) {
             let away = first.opposite().name();
             return Err(refused_value(format!(

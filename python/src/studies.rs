@@ -27,11 +27,14 @@ type Files<'py> = Vec<(&'static str, Bound<'py, PyBytes>)>;
 type TextColumns = Vec<(String, Vec<String>)>;
 
 fn to_python(py: Python<'_>, results: Results) -> (Files<'_>, TextColumns) {
-    let texts = results.text_columns();
-    let texts = texts.map(|(name, columns)| (name.to_owned(), columns.to_vec()));
-    let texts = texts.collect();
-    let files = results.files.into_iter();
-    let files = files.map(|(name, contents)| (name, PyBytes::new(py, &contents)));
+    let texts = results
+        .text_columns()
+        .map(|(name, columns)| (name.to_owned(), columns.to_vec()))
+        .collect();
+    let files = results
+        .files
+        .into_iter()
+        .map(|(name, contents)| (name, PyBytes::new(py, &contents)));
     (files.collect(), texts)
 }
 
@@ -170,8 +173,9 @@ pub fn merge<'py>(
     parts: Vec<PathBuf>,
     scenario: Option<&Scenario>,
 ) -> PyResult<(String, Files<'py>, String, TextColumns)> {
-    let scenario = scenario.map(|scenario| scenario.moving().map(Arc::clone));
-    let scenario = scenario.transpose()?;
+    let scenario = scenario
+        .map(|scenario| scenario.moving().map(Arc::clone))
+        .transpose()?;
     if parts.is_empty() {
         return Err(PyValueError::new_err("no parts given"));
     }

@@ -19,7 +19,7 @@ pub struct ArgumentError {
 }
 
 impl ArgumentError {
-    /// Returns the error for a value.
+    /// Error for a value.
     pub fn new(argument: &'static str, value: f64, allowed: impl Into<String>) -> Self {
         Self {
             argument,
@@ -29,7 +29,7 @@ impl ArgumentError {
     }
 }
 
-/// Returns the value if the condition holds.
+/// The value if the condition holds.
 ///
 /// # Errors
 /// If the condition does not hold. The error names the allowed values.
@@ -45,7 +45,7 @@ pub fn require(
     Err(ArgumentError::new(argument, value, allowed.to_string()))
 }
 
-/// Returns the value if it is in the range; NaN never is.
+/// The value if it is in the range; NaN never is.
 pub fn require_within(
     argument: &'static str,
     value: f64,
@@ -59,7 +59,7 @@ pub fn require_within(
     Err(ArgumentError::new(argument, value, allowed))
 }
 
-/// Returns the count if it is in the range.
+/// The count if it is in the range.
 pub fn require_count(
     argument: &'static str,
     count: usize,
@@ -70,7 +70,7 @@ pub fn require_count(
     Ok(count)
 }
 
-/// Returns the value if it is above the first bound and at most the second one; NaN never is.
+/// The value if it is above the first bound and at most the second one; NaN never is.
 pub fn require_above(
     argument: &'static str,
     value: f64,
@@ -93,7 +93,7 @@ pub fn rounded_down(x: f64) -> f64 {
     (x * unit).floor() / unit
 }
 
-/// Returns the factor that gives a positive number `digits` digits before the decimal point.
+/// Factor that gives a positive number `digits` digits before the decimal point.
 fn digits_factor(x: f64, digits: f64) -> f64 {
     libm::pow(10.0, digits - 1.0 - libm::log10(x).floor())
 }

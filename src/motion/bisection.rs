@@ -26,12 +26,12 @@ impl Width {
     }
 }
 
-/// Returns the middle of an interval; of two neighbouring numbers, the even one.
+/// Middle of an interval; of two neighbouring numbers, the even one.
 pub fn middle(low: f64, high: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// Returns all numbers at which [`bisect`] may evaluate the property in its next `steps` steps.
+/// All numbers at which [`bisect`] may evaluate the property in its next `steps` steps.
 pub fn next_middles(low: f64, high: f64, width: Width, steps: usize) -> Vec<f64> {
     if steps == 0 || width.is_reached(low, high) {
         return Vec::new();
@@ -69,7 +69,7 @@ pub fn try_bisect<E>(
     Ok((low, high))
 }
 
-/// Returns the ends of a small interval in which a function falls below zero. `high` is the upper end of the initial interval with its value. At the
+/// Ends of a small interval in which a function falls below zero. `high` is the upper end of the initial interval with its value. At the
 /// lower end the value is not negative; at the upper end it is negative or NaN.
 ///
 /// The search ends at neighbouring numbers, or if the function falls by at most `rounding` between the ends. If the upper value is NaN, the search
@@ -120,7 +120,7 @@ pub(crate) fn falls_below_zero(
     }
 }
 
-/// Returns the zero of the inverse quadratic interpolation of three points, as a fraction of the way from the newest point to the opposite one;
+/// Zero of the inverse quadratic interpolation of three points, as a fraction of the way from the newest point to the opposite one;
 /// `None` if the interpolation is not monotonic.
 fn inverse_quadratic(newest: (f64, f64), opposite: (f64, f64), former: (f64, f64)) -> Option<f64> {
     let ((a, at_a), (b, at_b), (c, at_c)) = (newest, opposite, former);

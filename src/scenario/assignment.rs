@@ -23,7 +23,7 @@ pub struct Assignment {
 }
 
 impl Assignment {
-    /// Returns the key in the text of the user.
+    /// Key in the text of the user.
     pub fn key(&self) -> &str {
         self.given.split('=').next().unwrap_or_default().trim()
     }
@@ -57,7 +57,7 @@ impl FromStr for Assignment {
     }
 }
 
-/// Returns the number of parts of the key of an assignment.
+/// Number of parts of the key of an assignment.
 fn depth(table: &DeTable<'_>) -> usize {
     match table.values().next().map(Spanned::get_ref) {
         Some(DeValue::Table(inner)) => 1 + depth(inner),

@@ -29,13 +29,15 @@ pub(super) fn place_before_wall(
     let Some(back) = back else {
         return Ok(column);
     };
-    let held = column.with_back(back).and_then(|column| {
-        if has_joints {
-            column.wall_behind_drums()?;
-        }
-        Ok(column)
-    });
-    let held = held.map_err(|error| wrong_wall(table, &error));
+    let held = column
+        .with_back(back)
+        .and_then(|column| {
+            if has_joints {
+                column.wall_behind_drums()?;
+            }
+            Ok(column)
+        })
+        .map_err(|error| wrong_wall(table, &error));
     if lands && back.height_m != Some(0.0) {
         return Err(table.wrong_in(&["column"], "back", NO_RIGID_BLOCKS));
     }

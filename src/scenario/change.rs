@@ -16,7 +16,7 @@ static DESCRIPTION: LazyLock<(Value, Vec<KeyGroup>)> = LazyLock::new(Scenario::d
 /// The key of `[suite]` that is an older name of `direction` in `[simulation]`.
 pub(super) const BOTH_SIGNS: &str = "both_signs";
 
-/// Returns true if a key is a count, which must be a whole number.
+/// True if a key is a count, which must be a whole number.
 pub(super) fn is_count(tables: &[&str], key: &str) -> bool {
     let table = tables.iter().fold(&DESCRIPTION.0, |outer, name| {
         let inner = &outer["properties"][*name];
@@ -25,7 +25,7 @@ pub(super) fn is_count(tables: &[&str], key: &str) -> bool {
     table["properties"][key]["type"] == "integer"
 }
 
-/// Returns the groups of keys in a table. `tables` are the names of the table and of those around it, the outermost first.
+/// Groups of keys in a table. `tables` are the names of the table and of those around it, the outermost first.
 fn groups_in<'t>(tables: &[&'t str]) -> impl Iterator<Item = &'static KeyGroup> + use<'t> {
     let tables = tables.to_vec();
     DESCRIPTION.1.iter().filter(move |group| {
@@ -37,7 +37,7 @@ fn groups_in<'t>(tables: &[&'t str]) -> impl Iterator<Item = &'static KeyGroup> 
     })
 }
 
-/// Returns true if a given table has another key that excludes this one.
+/// True if a given table has another key that excludes this one.
 pub(super) fn is_replaced(tables: &[&str], key: &str, given: &Entries) -> bool {
     let mut groups = groups_in(tables).filter(|group| group.are_alternatives);
     groups.any(|group| {
@@ -62,8 +62,9 @@ pub(super) fn adjust_others(root: &mut Entries, new: &[String]) {
         if let Some((outer, key)) = path.rsplit_once('/')
             && let Some(Value::Object(table)) = tables.pointer_mut(outer)
         {
-            let names = outer.split('/').skip(1);
-            let names: Vec<_> = names
+            let names: Vec<_> = outer
+                .split('/')
+                .skip(1)
                 .filter(|name| name.parse::<usize>().is_err())
                 .collect();
             replace_alternatives(table, (&names, key), |key| {
@@ -103,8 +104,9 @@ fn replace_alternatives(
     is_new: impl Fn(&str) -> bool,
 ) {
     let has = |group: &KeyGroup, key: &str| group.keys.iter().any(|one| one == key);
-    let others = groups_in(tables).filter(|group| group.are_alternatives && has(group, key));
-    let others = others.flat_map(|group| &group.keys);
+    let others = groups_in(tables)
+        .filter(|group| group.are_alternatives && has(group, key))
+        .flat_map(|group| &group.keys);
     let replaced: Vec<&String> = others
         .filter(|other| *other != key && table.contains_key(*other) && !is_new(other))
         .collect();
@@ -149,10 +151,11 @@ fn scale_joints(arch: &mut Entries, is_new: impl Fn(&str) -> bool) {
     if let Some((embrace_deg, [joints_deg @ .., last_deg])) =
         span::given_embrace_deg(arch).zip(joints_deg.as_deref())
     {
-        let angles_deg = joints_deg
+        let angles_deg: Vec<f64> = joints_deg
             .iter()
-            .map(|angle_deg| angle_deg / last_deg * embrace_deg);
-        let angles_deg: Vec<f64> = angles_deg.chain([embrace_deg]).collect();
+            .map(|angle_deg| angle_deg / last_deg * embrace_deg)
+            .chain([embrace_deg])
+            .collect();
         arch.insert("joints_deg".to_owned(), Value::from(angles_deg));
     }
 }
@@ -179,7 +182,7 @@ fn scale_drums(column: &mut Entries, is_new: impl Fn(&str) -> bool) {
     }
 }
 
-/// Returns the numbers of a list.
+/// Numbers of a list.
 fn numbers(table: &Entries, key: &str) -> Option<Vec<f64>> {
     let numbers = table.get(key)?.as_array()?.iter();
     Some(numbers.filter_map(Value::as_f64).collect())

@@ -45,7 +45,7 @@ pub(super) struct KeyGroup {
 /// Largest depth of nested values. Deeper values are ignored, because no key has this depth.
 const DEEPEST: usize = 16;
 
-/// Returns the kind of a value for messages.
+/// Kind of a value for messages.
 pub(super) fn kind(value: &Value) -> &'static str {
     match value {
         Value::Null => "a date or time",
@@ -252,7 +252,7 @@ impl<'a> Document<'a> {
         Ok([path, new_path, key_path])
     }
 
-    /// Returns the text of a value for messages.
+    /// Text of a value for messages.
     pub(super) fn quote(&self, path: &str, value: &Value) -> String {
         // The text of a list lacks the entries that assignments have replaced.
         let span = self.spans.get(path);
@@ -262,7 +262,7 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// Returns true if a value is an array of tables `[[key]]`. The span of such a value is the first header. An array of tables from a program counts as
+    /// True if a value is an array of tables `[[key]]`. The span of such a value is the first header. An array of tables from a program counts as
     /// one.
     pub(super) fn is_array_of_tables(&self, path: &str, value: &Value) -> bool {
         let Some(span) = self.spans.get(path) else {
@@ -273,7 +273,7 @@ impl<'a> Document<'a> {
         given.starts_with("[[") && value[0].is_object()
     }
 
-    /// Returns the position of the last value inside another one that an assignment replaces; `None` if all values are from the text.
+    /// Position of the last value inside another one that an assignment replaces; `None` if all values are from the text.
     pub(super) fn assigned(&self, path: &str) -> Option<(usize, usize)> {
         let inside = format!("{path}/");
         let spans = self
@@ -285,13 +285,13 @@ impl<'a> Document<'a> {
     }
 }
 
-/// Returns true unless a text is something else than a scenario, such as a record.
+/// True unless a text is something else than a scenario, such as a record.
 pub(super) fn is_scenario(text: &str) -> bool {
     let parsed = Document::parse(text, &Files::default());
     !matches!(parsed, Err(ParseError::NoScenario(_)))
 }
 
-/// Returns the single fault of a text that is not a scenario, such as a record: several lines are not valid, or none sets a key, and no line begins a
+/// Single fault of a text that is not a scenario, such as a record: several lines are not valid, or none sets a key, and no line begins a
 /// table. `None` for other texts.
 fn not_a_scenario([text, blanked]: [&str; 2], faults: &[Fault]) -> Option<Fault> {
     const FEW: usize = 2;
@@ -309,7 +309,7 @@ fn not_a_scenario([text, blanked]: [&str; 2], faults: &[Fault]) -> Option<Fault>
     Some(Fault::new(0, first.offset, message))
 }
 
-/// Returns the line at `offset`. If it is the header of a table, returns the whole table: its keys would otherwise belong to the previous table.
+/// Line at `offset`. If it is the header of a table, returns the whole table: its keys would otherwise belong to the previous table.
 fn faulty_part(text: &str, offset: usize) -> Range<usize> {
     let bytes = text.as_bytes();
     let start = bytes[..offset.min(bytes.len())]

@@ -33,7 +33,7 @@ const MODULUS_GPA: Number = scale_range(&ElasticProperties::MODULUS_PA, GPA);
 const ONE_POINT: &str = "one does not hold a block";
 const POINTS: Count = Count(ElasticProperties::CONTACT_POINTS, ONE_POINT);
 
-/// Returns a range in another unit.
+/// Range in another unit.
 const fn scale_range(range: &RangeInclusive<f64>, unit: f64) -> Number {
     within(&(*range.start() / unit..=*range.end() / unit))
 }
@@ -108,7 +108,7 @@ impl ElasticTable {
         Ok(read)
     }
 
-    /// Returns the properties of the joints of a structure with this depth.
+    /// Properties of the joints of a structure with this depth.
     fn properties(&self, depth_m: f64) -> ElasticProperties {
         let stiffness = match (self.normal_stiffness_gpa_m, self.stone_modulus_gpa) {
             (None, Some(stone_gpa)) => {
@@ -140,12 +140,15 @@ impl ElasticTable {
         }
     }
 
-    /// Returns the joints of a structure, an error if their stiffness is out of range; `None` if the structure is not a row of blocks.
+    /// Joints of a structure, an error if their stiffness is out of range; `None` if the structure is not a row of blocks.
     fn joints(&self, structure: &Structure) -> Option<Result<ElasticStructure, ArgumentError>> {
         let (depth_m, _) = structure.depth_and_density();
         let (row, properties) = (structure.row().ok()?, self.properties(depth_m));
-        let wall = structure.column().map(Column::wall_behind_drums);
-        let wall = wall.transpose().map(Option::flatten);
+        let wall = structure
+            .column()
+            .map(Column::wall_behind_drums)
+            .transpose()
+            .map(Option::flatten);
         let joints = ElasticStructure::of_row(&row, &properties);
         Some(joints.and_then(|joints| joints.with_wall(&row, wall?, &properties)))
     }
@@ -266,12 +269,13 @@ impl ModelOptions for ElasticTable {
             Some(_) => "stone_modulus_gpa",
             None => "normal_stiffness_gpa_m",
         };
-        let joints = joints.map_err(|error| {
-            let (name, value, allowed) = (error.argument, plain(error.value), error.allowed);
-            let wrong = format!("gives a joint `{name} = {value}`, which must be {allowed}");
-            table.wrong_in(TABLE, stiffness, wrong)
-        })?;
-        let joints = joints.on_supports(site.supports.displacements());
+        let joints = joints
+            .map_err(|error| {
+                let (name, value, allowed) = (error.argument, plain(error.value), error.allowed);
+                let wrong = format!("gives a joint `{name} = {value}`, which must be {allowed}");
+                table.wrong_in(TABLE, stiffness, wrong)
+            })?
+            .on_supports(site.supports.displacements());
         let Err(error) = joints.rest([0.0, -site.gravity_m_s2]) else {
             return self.check_step(table, &joints, end_s);
         };

@@ -28,7 +28,7 @@ pub struct TextPosition {
     pub column: usize,
 }
 
-/// Returns the position before a message.
+/// Position before a message.
 fn position_prefix(place: Option<&TextPosition>) -> String {
     place.map_or_else(String::new, |place| {
         format!("{}:{}:", place.line, place.column)
@@ -43,7 +43,7 @@ fn position_prefix(place: Option<&TextPosition>) -> String {
 pub struct ScenarioErrors(pub Vec<ScenarioError>);
 
 impl ScenarioErrors {
-    /// Returns the single error of a file that cannot be read.
+    /// Single error of a file that cannot be read.
     pub(super) fn unreadable(file: &str, message: impl Into<String>) -> Self {
         Self(vec![ScenarioError {
             file: file.to_owned(),
@@ -100,7 +100,7 @@ impl ScenarioErrors {
     }
 }
 
-/// Returns the errors, one per line.
+/// Errors, one per line.
 fn lines(errors: &[ScenarioError]) -> String {
     let lines: Vec<_> = errors.iter().map(ToString::to_string).collect();
     lines.join("\n")

@@ -38,13 +38,14 @@ impl From<Vec<u8>> for FileContents {
 impl Eq for FileContents {}
 
 impl FileContents {
-    /// Returns the bytes of the file: of samples, a table with a column of times and one of values, whose numbers have all digits.
+    /// Bytes of the file: of samples, a table with a column of times and one of values, whose numbers have all digits.
     pub fn bytes(&self) -> Cow<'_, [u8]> {
         match self {
             Self::Bytes(bytes) => bytes.into(),
             Self::Samples(samples) => {
-                let rows = samples.iter();
-                let rows = rows.map(|(time_s, value)| format!("{time_s:?},{value:?}\n"));
+                let rows = samples
+                    .iter()
+                    .map(|(time_s, value)| format!("{time_s:?},{value:?}\n"));
                 rows.collect::<String>().into_bytes().into()
             }
         }
@@ -52,7 +53,7 @@ impl FileContents {
 }
 
 impl Files {
-    /// Returns the path of a file.
+    /// Path of a file.
     pub(super) fn path(&self, name: &str) -> PathBuf {
         match self.in_memory {
             Some(_) => without_current_folders(Path::new(name)),
@@ -72,7 +73,7 @@ impl Files {
         read.map(|_| start).map_err(describe_error)
     }
 
-    /// Returns the samples that a program has given in place of a file.
+    /// Samples that a program has given in place of a file.
     pub(super) fn samples(&self, path: &Path) -> Option<&[(f64, f64)]> {
         match self.in_memory.as_ref()?.get(path)? {
             FileContents::Bytes(_) => None,
@@ -82,8 +83,7 @@ impl Files {
 
     fn open(&self, path: &Path) -> Result<Box<dyn Read + '_>, String> {
         if let Some(in_memory) = &self.in_memory {
-            let contents = in_memory.get(path);
-            let contents = contents.ok_or("is not among the given files")?;
+            let contents = in_memory.get(path).ok_or("is not among the given files")?;
             return Ok(Box::new(io::Cursor::new(contents.bytes())));
         }
         let is_file = fs::metadata(path).map_err(describe_error)?.is_file();
@@ -91,7 +91,7 @@ impl Files {
         Ok(Box::new(fs::File::open(path).map_err(describe_error)?))
     }
 
-    /// Returns the one path of a file that may have several.
+    /// One path of a file that may have several.
     pub(super) fn identity(&self, path: PathBuf) -> PathBuf {
         match self.in_memory {
             Some(_) => path,
@@ -99,7 +99,7 @@ impl Files {
         }
     }
 
-    /// Returns true if there is a file with this path.
+    /// True if there is a file with this path.
     fn has_file(&self, path: &Path) -> bool {
         match &self.in_memory {
             Some(in_memory) => in_memory.contains_key(path),
@@ -107,7 +107,7 @@ impl Files {
         }
     }
 
-    /// Returns the files that match a pattern, relative to the folder. The error is a phrase that follows the pattern.
+    /// Files that match a pattern, relative to the folder. The error is a phrase that follows the pattern.
     pub(super) fn find(&self, pattern: &str) -> Result<Vec<String>, String> {
         // A name that looks like a pattern is a file if such a file exists: so a resolved scenario reads back the same.
         let path = self.path(pattern);
@@ -130,8 +130,10 @@ impl Files {
         let mut files = Vec::new();
         if let Some(in_memory) = &self.in_memory {
             let pattern = Pattern::new(pattern).map_err(invalid)?;
-            let names = in_memory.keys().map(Path::new);
-            let names = names.filter(|name| pattern.matches_path_with(name, options));
+            let names = in_memory
+                .keys()
+                .map(Path::new)
+                .filter(|name| pattern.matches_path_with(name, options));
             files = names.map(file_name).collect::<Result<_, _>>()?;
             ensure(!files.is_empty(), || "matches no file")?;
             return Ok(files);
@@ -176,13 +178,13 @@ pub(super) fn read_at_most(reader: impl Read, mib: u64, what: &str) -> Result<Ve
 /// First characters of cells that spreadsheets interpret as formulas. A tab would be another, but it is a control character.
 const FORMULA: [char; 4] = ['=', '+', '-', '@'];
 
-/// Returns a path without the parts `.`.
+/// Path without the parts `.`.
 pub(super) fn without_current_folders(path: &Path) -> PathBuf {
     let parts = path.components();
     parts.filter(|part| *part != Component::CurDir).collect()
 }
 
-/// Returns the name of a file for scenarios and results. The name must fit on one line and in one cell.
+/// Name of a file for scenarios and results. The name must fit on one line and in one cell.
 fn file_name(path: &Path) -> Result<String, String> {
     let plain = without_current_folders(path);
     match plain.to_str() {

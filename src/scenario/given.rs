@@ -24,7 +24,7 @@ impl PartialEq for Given {
 }
 
 impl Given {
-    /// Returns resolved tables with the given keys, and the resolved ones as defaults of keys that are not given.
+    /// Resolved tables with the given keys, and the resolved ones as defaults of keys that are not given.
     pub(super) fn with_defaults(&self, resolved: Value) -> Value {
         let Value::Object(resolved) = resolved else {
             return resolved;
@@ -41,12 +41,12 @@ impl Given {
     }
 }
 
-/// Returns true for tables that describe the structure and its motion.
+/// True for tables that describe the structure and its motion.
 fn is_of_structure(name: &str) -> bool {
     name != "title" && !StudyTable::is_name(name)
 }
 
-/// Returns a given value with the resolved one as default. `tables` are the names of the tables around it and its own, the outermost first.
+/// Given value with the resolved one as default. `tables` are the names of the tables around it and its own, the outermost first.
 fn with_defaults(tables: &[&str], given: &Value, resolved: Value) -> Value {
     match (given, resolved) {
         (Value::Object(given), Value::Object(mut resolved)) => {
@@ -89,13 +89,13 @@ fn with_defaults(tables: &[&str], given: &Value, resolved: Value) -> Value {
     }
 }
 
-/// Returns the given value of a key in a table, with the resolved one as default.
+/// Given value of a key in a table, with the resolved one as default.
 fn inner(tables: &[&str], key: &str, given: &Value, resolved: Value) -> Value {
     let tables: Vec<&str> = tables.iter().copied().chain([key]).collect();
     with_defaults(&tables, given, resolved)
 }
 
-/// Returns a given value. A length, which may be given as a whole number, has a fraction; `resolved` is the same value after reading.
+/// Given value. A length, which may be given as a whole number, has a fraction; `resolved` is the same value after reading.
 fn length(given: &Value, resolved: Option<&Value>) -> Value {
     match (given.as_f64(), resolved) {
         (Some(number), None) => Value::from(number),

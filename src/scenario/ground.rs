@@ -52,7 +52,7 @@ impl Ground {
         .map_err(|faults| ScenarioErrors::placed((&source.text, &source.name), &[], faults))
     }
 
-    /// Returns the name of the table `[ground.<kind>]`.
+    /// Name of the table `[ground.<kind>]`.
     pub(crate) const fn kind(&self) -> &'static str {
         match self {
             Self::Pulse(pulse) => pulse.kind.name(),
@@ -60,7 +60,7 @@ impl Ground {
         }
     }
 
-    /// Returns the motion under a gravity from 0.001 to 1000 m/s2.
+    /// Motion under a gravity from 0.001 to 1000 m/s2.
     ///
     /// # Errors
     /// When gravity is outside that range.
@@ -69,7 +69,7 @@ impl Ground {
         Ok(self.ground_motion_under(gravity_m_s2))
     }
 
-    /// Returns the motion under the gravity of a scenario, whose range was checked.
+    /// Motion under the gravity of a scenario, whose range was checked.
     pub(super) fn ground_motion_under(&self, gravity_m_s2: f64) -> GroundMotion {
         match self {
             Self::Pulse(pulse) => pulse.ground_motion(gravity_m_s2),
@@ -88,8 +88,11 @@ impl Ground {
             found = found.or(pulse.map(|(pulse, motion)| (Self::Pulse(pulse), motion)));
         }
         let record = table.table(RECORD, |table| Record::read(table, known));
-        let kinds = Pulse::ALL.iter().map(|kind| kind.name());
-        let kinds: Vec<_> = kinds.chain([RECORD]).collect();
+        let kinds: Vec<_> = Pulse::ALL
+            .iter()
+            .map(|kind| kind.name())
+            .chain([RECORD])
+            .collect();
         table.apply_relations(&[OneOf(&kinds, None)])?;
         let record = record.map(|(record, motion)| (Self::Record(Box::new(record)), motion));
         found.or(record).ok_or(FaultRecorded)
@@ -97,7 +100,7 @@ impl Ground {
 }
 
 impl Scenario {
-    /// Returns keys and values of `[ground]` that multiply all ground accelerations by a factor.
+    /// Keys and values of `[ground]` that multiply all ground accelerations by a factor.
     pub(crate) fn ground_values_times(&self, factor: f64) -> Vec<(String, f64)> {
         let mut values = match &self.ground {
             None => Vec::new(),
@@ -153,7 +156,7 @@ pub struct PulseGround {
 }
 
 impl PulseGround {
-    /// Returns the pulse without its amplitudes.
+    /// Pulse without its amplitudes.
     pub fn shape(&self) -> PulseShape {
         let default = WaveTrain::default();
         let train = WaveTrain {
@@ -166,7 +169,7 @@ impl PulseGround {
             .with_train(train)
     }
 
-    /// Returns the ground motion under a gravity in m/s2.
+    /// Ground motion under a gravity in m/s2.
     pub(crate) fn ground_motion(&self, gravity_m_s2: f64) -> GroundMotion {
         let amplitude_g = Vector2::new(self.amplitude_g, self.vertical_amplitude_g);
         self.shape()

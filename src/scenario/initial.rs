@@ -42,12 +42,13 @@ pub(super) fn read(
         AtMostOne(&["rotation_rad", "impulse_n_s"], at_rest),
     ])?;
     let sway = initial.sway;
-    let blow = impulse_n_s.zip(height_m);
-    let blow = blow.map(|(impulse_n_s, height_m)| Blow {
-        sway,
-        impulse_n_s,
-        height_m,
-    });
+    let blow = impulse_n_s
+        .zip(height_m)
+        .map(|(impulse_n_s, height_m)| Blow {
+            sway,
+            impulse_n_s,
+            height_m,
+        });
     let lacks = "starts at rest: give `rotation_rad`, a positive `rate_rad_s`, or `impulse_n_s` with `height_m`";
     table.refuse_all(blow.is_none() && !initial.moves(), lacks)?;
     let wrong = "releases rigid blocks about a hinge, and elastic joints have none: they start under the weight; give `rate_rad_s` alone, or leave [initial] out";
@@ -83,7 +84,7 @@ fn check_first_mechanism(
     table.refuse(initial.rotation_rad >= limit_rad, "rotation_rad", wrong)
 }
 
-/// Returns the rate of the column just after a blow, in rad/s.
+/// Rate of the column just after a blow, in rad/s.
 fn rate_of_blow(table: &mut Table<'_>, structure: &Structure, blow: &Blow) -> ReadResult<f64> {
     let started = structure.column().and_then(|column| {
         let rate_rad_s = column.rate_of_blow_rad_s(blow.sway, blow.impulse_n_s, blow.height_m);

@@ -32,7 +32,7 @@ impl InputFile {
     }
 }
 
-/// Returns SHA-256 in hexadecimal digits.
+/// SHA-256 in hexadecimal digits.
 pub(crate) fn sha256(bytes: &[u8]) -> String {
     let digest = Sha256::digest(bytes);
     digest.iter().map(|byte| format!("{byte:02x}")).collect()

@@ -76,7 +76,7 @@ impl RecordListing {
         table.check_faultless()
     }
 
-    /// Returns the number of files.
+    /// Number of files.
     pub(super) const fn len(&self) -> usize {
         self.files.len()
     }
@@ -115,7 +115,7 @@ impl RecordListing {
 /// The key of the file of an entry.
 const FILE: &str = "file";
 
-/// Returns records as entries of a table: the files of each key, and the keys of their layout.
+/// Records as entries of a table: the files of each key, and the keys of their layout.
 pub(super) fn table_entries(keys: &[(&str, &[Series])]) -> Map<String, Value> {
     let keys = keys.iter().filter(|(_, records)| !records.is_empty());
     let files = keys.clone().map(|(key, records)| {
@@ -138,12 +138,12 @@ pub(super) fn table_entries(keys: &[(&str, &[Series])]) -> Map<String, Value> {
     files.chain(keys).collect()
 }
 
-/// Returns the formats of files: the keys of tables are needed if and only if one of them is a table.
+/// Formats of files: the keys of tables are needed if and only if one of them is a table.
 fn formats(files: &[ListedFile]) -> Vec<Format> {
     files.iter().map(|listed| listed.format).collect()
 }
 
-/// Returns all files that match the patterns, sorted by name, without duplicates. Paths in `seen` are left out.
+/// All files that match the patterns, sorted by name, without duplicates. Paths in `seen` are left out.
 fn list_files(
     table: &mut Table<'_>,
     (key, patterns): (&'static str, &[String]),

@@ -38,7 +38,7 @@ impl LoadTable {
         })
     }
 
-    /// Returns the load for an arch or one of its piers.
+    /// Load for an arch or one of its piers.
     ///
     /// # Errors
     /// A key that is missing, or that applies to piers and columns only, with the reason.
@@ -52,7 +52,7 @@ impl LoadTable {
         Ok(self.load)
     }
 
-    /// Returns the load for a column.
+    /// Load for a column.
     ///
     /// # Errors
     /// A key that applies to arches only, with the reason.
@@ -67,7 +67,7 @@ impl LoadTable {
 /// A key of a load that does not fit, and the reason.
 type WrongKey = (&'static str, &'static str);
 
-/// Returns loads for an arch and its piers.
+/// Loads for an arch and its piers.
 pub(super) fn place_loads_on_arch(
     table: &mut Table<'_>,
     loads: &[LoadTable],
@@ -115,8 +115,9 @@ pub(super) fn loaded_column(
         let held = column.wall_behind_drums().map(drop);
         held.map_err(|error| wrong_wall(table, &error))?;
         let row = column.row().map_err(|error| error.to_string());
-        let falls = row.and_then(|row| collapse_mechanism(&row).map_err(|error| error.to_string()));
-        let falls = falls.map_err(|wrong| format!("cannot be checked to stand: {wrong}"));
+        let falls = row
+            .and_then(|row| collapse_mechanism(&row).map_err(|error| error.to_string()))
+            .map_err(|wrong| format!("cannot be checked to stand: {wrong}"));
         if let Some(openings) = table.accept("load", falls)? {
             // The intrados of a column is its left side.
             let edge = |side| match side {
@@ -139,7 +140,7 @@ pub(super) fn loaded_column(
     Ok(column)
 }
 
-/// Returns the loads of a column with their defaults, except the height of loads at the top, which follows that of the column.
+/// Loads of a column with their defaults, except the height of loads at the top, which follows that of the column.
 pub(super) fn with_defaults(loads: &[PlacedLoad]) -> Vec<Value> {
     let keys = |load: &PlacedLoad| {
         let mut keys = json!(load);

@@ -48,7 +48,7 @@ named! {
 }
 
 impl Quantity {
-    /// Returns the range of the same key in its own table.
+    /// Range of the same key in its own table.
     const fn range(self) -> &'static Number {
         match self {
             Self::Duration => &DURATION_S,
@@ -78,7 +78,7 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// Returns the key of the scenario that the axis sets; the values of a frequency set its reciprocal.
+    /// Key of the scenario that the axis sets; the values of a frequency set its reciprocal.
     pub(crate) fn path(&self, ground: Option<&Ground>) -> String {
         let of_ground = |key: &str| {
             let kind = ground.map_or(RECORD, Ground::kind);
@@ -95,7 +95,7 @@ impl Axis {
         }
     }
 
-    /// Returns the quantity of the ground motion that the axis sets, also by table and key; otherwise its own.
+    /// Quantity of the ground motion that the axis sets, also by table and key; otherwise its own.
     pub(crate) fn quantity_under(&self, ground: &Ground) -> Quantity {
         let by_key = Quantity::ALL.iter().copied().find(|quantity| {
             let axis = Self {
@@ -156,10 +156,14 @@ impl Map {
             _ => None,
         };
         let mut axes = Vec::new();
-        let others = table.keys_of_other_tables().into_iter();
-        let others = others.map(|key| (Quantity::Other, key));
-        let own = Quantity::ALL.iter().skip(1);
-        let own = own.map(|quantity| (*quantity, quantity.name().to_owned()));
+        let others = table
+            .keys_of_other_tables()
+            .into_iter()
+            .map(|key| (Quantity::Other, key));
+        let own = Quantity::ALL
+            .iter()
+            .skip(1)
+            .map(|quantity| (*quantity, quantity.name().to_owned()));
         for (quantity, key) in own.chain(others) {
             if let Some(sequence) = Sequence::read(table, &key, quantity.range()) {
                 if let Some(wrong) = unsuited(quantity) {
@@ -177,8 +181,7 @@ impl Map {
         axes.sort_by_key(|axis| axis.quantity != Quantity::Other);
         let mut axes = axes.into_iter();
         let (Some(x), Some(y), None) = (axes.next(), axes.next(), axes.next()) else {
-            let keys = Quantity::ALL.iter().skip(1);
-            let keys: Vec<_> = keys.map(|one| one.name()).collect();
+            let keys: Vec<_> = Quantity::ALL.iter().skip(1).map(|one| one.name()).collect();
             return Err(table.fault_of_table(format!(
                 "needs exactly two of the keys {}, or of other tables, such as \"arch.depth_m\"",
                 keys.join(", ")

@@ -144,7 +144,7 @@ fn read_blocks(table: &mut Table<'_>) -> ReadResult<GivenBlocks> {
     Err(table.wrong("joints", wrong))
 }
 
-/// Returns the reason why blocks do not form a row, with blocks and joints counted as in the files.
+/// Reason why blocks do not form a row, with blocks and joints counted as in the files.
 fn why_no_row(error: &RowError) -> String {
     match error {
         RowError::Crossing(first) => format!(
@@ -257,8 +257,8 @@ impl Additions {
     ) -> ReadResult<Masonry> {
         let key = shape.name();
         let loads = load::place_loads_on_arch(table, &self.loads)?;
-        let masonry = Masonry::new(shape, self.piers, self.fill, loads);
-        let masonry = masonry.map_err(|error| self.reject_for(table, key, &error))?;
+        let masonry = Masonry::new(shape, self.piers, self.fill, loads)
+            .map_err(|error| self.reject_for(table, key, &error))?;
         let on = (&masonry.row, masonry.springing_joints());
         let ties = tie::place_ties(table, &self.ties, on)?;
         let is_tied = !ties.is_empty();

@@ -32,10 +32,12 @@ pub(super) fn add(schema: &mut Value, path: &str) {
     }
 }
 
-/// Returns the meaning of a key: that of the first section of its table that has the key.
+/// Meaning of a key: that of the first section of its table that has the key.
 fn meaning(table: &str, key: &str) -> Option<&'static str> {
-    let sections = TEXT.split("\n\n[").skip(1);
-    let mut sections = sections.filter_map(|section| section.split_once("]\n"));
+    let mut sections = TEXT
+        .split("\n\n[")
+        .skip(1)
+        .filter_map(|section| section.split_once("]\n"));
     sections.find_map(|(tables, lines)| {
         tables.split("] [").find(|name| fits(name, table))?;
         let mut lines = lines.lines().filter_map(|line| line.split_once(": "));
@@ -44,7 +46,7 @@ fn meaning(table: &str, key: &str) -> Option<&'static str> {
     })
 }
 
-/// Returns true if a name is the given one, of which a part `*` stands for any part.
+/// True if a name is the given one, of which a part `*` stands for any part.
 fn fits(given: &str, name: &str) -> bool {
     let [given, name] = [given, name].map(|path| path.split('.').collect::<Vec<_>>());
     let mut parts = given.iter().zip(&name);

@@ -182,7 +182,7 @@ pub struct Scenario {
 
 /// The contents of the scenario.
 impl Scenario {
-    /// Returns the records of the ground motion, of both feet.
+    /// Records of the ground motion, of both feet.
     pub(crate) fn series(&self) -> impl Iterator<Item = &Series> {
         let record = match &self.ground {
             Some(Ground::Record(record)) => Some(&**record),
@@ -192,13 +192,13 @@ impl Scenario {
         record.into_iter().chain(right).flat_map(Record::series)
     }
 
-    /// Returns true if the text gives a motion of the ground or of the structure, even one whose files cannot be read.
+    /// True if the text gives a motion of the ground or of the structure, even one whose files cannot be read.
     pub fn gives_motion(&self) -> bool {
         let shakes = self.ground.is_some() || self.unread_ground.is_some();
         shakes || self.initial.is_some() || self.suite.is_some()
     }
 
-    /// Returns name and checksum of each record file of the ground, of the suite and of the check, separated by a space.
+    /// Name and checksum of each record file of the ground, of the suite and of the check, separated by a space.
     pub fn record_checksums(&self) -> Vec<String> {
         let named = |series: &Series| format!("{} {:08x}", series.file, series.checksum());
         let mut seen = BTreeSet::new();
@@ -217,14 +217,14 @@ impl Scenario {
         self.series().chain(suite).chain(checked)
     }
 
-    /// Returns the paths of all files from which the scenario was read.
+    /// Paths of all files from which the scenario was read.
     pub(crate) fn input_paths(&self) -> impl Iterator<Item = PathBuf> {
         let records = self.all_series().map(|series| &series.file);
         let files = self.files.files.iter().map(|input| &input.file);
         files.chain(records).map(|file| self.files.place.path(file))
     }
 
-    /// Returns this scenario without uncertain numbers.
+    /// This scenario without uncertain numbers.
     #[must_use]
     pub fn without_uncertain(self) -> Self {
         Self {
@@ -233,17 +233,17 @@ impl Scenario {
         }
     }
 
-    /// Returns the scenario file, the files of its structure, and those of `[demand]` and `[verify]`, with their hashes.
+    /// Scenario file, the files of its structure, and those of `[demand]` and `[verify]`, with their hashes.
     pub fn files(&self) -> &[InputFile] {
         &self.files.files
     }
 
-    /// Returns the acceleration of gravity, in m/s2.
+    /// Acceleration of gravity, in m/s2.
     pub const fn gravity_m_s2(&self) -> f64 {
         self.simulation.gravity_m_s2
     }
 
-    /// Returns the message about a table that the model of motion ignores; `None` if it ignores no table of the file.
+    /// Message about a table that the model of motion ignores; `None` if it ignores no table of the file.
     pub fn ignored_table(&self) -> Option<&'static str> {
         let message = self.motion.kind.ignored;
         message.filter(|_| self.ignores_impact)
@@ -270,7 +270,7 @@ impl Scenario {
         Self::of(&Source::of_file(path)?, &ReadOptions::default())
     }
 
-    /// Returns the JSON schema of scenarios for editors: all tables and keys with their meanings, rules and defaults.
+    /// JSON schema of scenarios for editors: all tables and keys with their meanings, rules and defaults.
     pub fn schema() -> Value {
         let (mut schema, _) = Self::describe();
         schema["$schema"] = "http://json-schema.org/draft-07/schema#".into();
@@ -279,7 +279,7 @@ impl Scenario {
         schema
     }
 
-    /// Returns the JSON schema of all tables without meanings, and the keys that exclude or need each other.
+    /// JSON schema of all tables without meanings, and the keys that exclude or need each other.
     fn describe() -> (Value, Vec<document::KeyGroup>) {
         // With a set model, tables of several models are allowed together.
         let options = ReadOptions {
@@ -391,7 +391,7 @@ impl Scenario {
         certain.with_uncertain(table, uncertain?)
     }
 
-    /// Returns this scenario with uncertain numbers, checked against it. Without its ground motion they cannot be checked.
+    /// This scenario with uncertain numbers, checked against it. Without its ground motion they cannot be checked.
     fn with_uncertain(
         self,
         table: &mut Table<'_>,
@@ -407,7 +407,7 @@ impl Scenario {
         })
     }
 
-    /// Returns the scenario with another ground motion, without tables of studies, because they were checked against the original ground.
+    /// Scenario with another ground motion, without tables of studies, because they were checked against the original ground.
     pub fn with_ground(&self, ground: Option<Ground>) -> Self {
         let left = ground.as_ref().map_or_else(GroundMotion::still, |ground| {
             ground.ground_motion_under(self.simulation.gravity_m_s2)
@@ -430,7 +430,7 @@ impl Scenario {
         shaken
     }
 
-    /// Returns this scenario with other directions of its ground motion.
+    /// This scenario with other directions of its ground motion.
     #[must_use]
     pub fn in_directions(&self, directions: Directions) -> Self {
         let mut turned = self.clone();
@@ -450,12 +450,12 @@ impl Scenario {
         turned
     }
 
-    /// Returns the motion of both feet for a motion of the left one, mirrored if only the mirrored direction is requested.
+    /// Motion of both feet for a motion of the left one, mirrored if only the mirrored direction is requested.
     pub(crate) fn move_both_feet(&self, left: GroundMotion) -> GroundMotion {
         self.move_both_feet_in(self.simulation.direction.first(), left)
     }
 
-    /// Returns the motion of both feet in a direction, for a motion of the left one as given.
+    /// Motion of both feet in a direction, for a motion of the left one as given.
     pub(crate) fn move_both_feet_in(
         &self,
         direction: Direction,
@@ -478,7 +478,7 @@ impl Scenario {
         }
     }
 
-    /// Returns one scenario for each record of the suite, by its name, with the record at level 1 as ground motion and without other studies.
+    /// One scenario for each record of the suite, by its name, with the record at level 1 as ground motion and without other studies.
     /// Empty without a suite.
     pub fn by_record(&self) -> Vec<(String, Self)> {
         let records = self.suite.iter().flat_map(|suite| &suite.records);
@@ -491,7 +491,7 @@ impl Scenario {
             .collect()
     }
 
-    /// Returns the ground motion of a record multiplied by a factor, with both feet moving together, for the gravity of this scenario.
+    /// Ground motion of a record multiplied by a factor, with both feet moving together, for the gravity of this scenario.
     pub(crate) fn record_motion(&self, series: &Series, factor: f64) -> GroundMotion {
         suite::scaled_record(series, Scaling::Factor(factor))
             .ground_motion(self.simulation.gravity_m_s2)
@@ -516,7 +516,7 @@ impl Scenario {
         Ok(self.repeated_mirrored(options.model_for_many_cases(&self.structure, site)?))
     }
 
-    /// Returns a model of motion whose first repetition is mirrored, if both directions are requested and the problem is symmetric.
+    /// Model of motion whose first repetition is mirrored, if both directions are requested and the problem is symmetric.
     fn repeated_mirrored(&self, mut model: Box<dyn Model>) -> Box<dyn Model> {
         let is_alike = self.right_foot.is_none() && self.initial.is_none();
         if self.simulation.direction == Directions::Both && is_alike {
@@ -525,7 +525,7 @@ impl Scenario {
         model
     }
 
-    /// Returns whether the motion of this scenario, by its own model, is also computed under the mirrored ground motion; see [`Directions::has_second`].
+    /// Whether the motion of this scenario, by its own model, is also computed under the mirrored ground motion; see [`Directions::has_second`].
     pub fn has_second_direction(&self, model: &dyn Model) -> bool {
         let directions = self.simulation.direction;
         directions.has_second(model, &self.ground_motion, &self.request())
@@ -540,7 +540,7 @@ impl Scenario {
         options.variations(&self.structure, site)
     }
 
-    /// Returns the name of the model of motion in results; four links of a column are a `column`.
+    /// Name of the model of motion in results; four links of a column are a `column`.
     pub fn model_name(&self) -> &'static str {
         match !self.motion.kind.has_mechanism || self.structure.has_horizontal_thrust() {
             true => self.motion.kind.name,
@@ -594,7 +594,7 @@ impl Scenario {
         })
     }
 
-    /// Returns the row of blocks of masonry, of a column that is not Housner's single block, and of voussoirs that do not start as four links: limit
+    /// Row of blocks of masonry, of a column that is not Housner's single block, and of voussoirs that do not start as four links: limit
     /// analysis of the row finds their first mechanism. `None` for a structure that starts as one mechanism.
     ///
     /// # Errors
@@ -612,7 +612,7 @@ impl Scenario {
         })
     }
 
-    /// Returns the ground motion; it is zero if the scenario has no `[ground]`.
+    /// Ground motion; it is zero if the scenario has no `[ground]`.
     pub fn ground_motion(&self) -> &GroundMotion {
         &self.ground_motion
     }
@@ -645,12 +645,12 @@ impl Scenario {
         ensure(self.motion.supports().is_none(), || wrong.to_owned())
     }
 
-    /// Returns the request for the simulation, with samples at every output step.
+    /// Request for the simulation, with samples at every output step.
     pub fn request(&self) -> Request {
         self.request_under(&self.ground_motion)
     }
 
-    /// Returns the request for a simulation with another ground motion.
+    /// Request for a simulation with another ground motion.
     pub fn request_under(&self, ground: &GroundMotion) -> Request {
         Request {
             initial: self.initial,
@@ -658,7 +658,7 @@ impl Scenario {
         }
     }
 
-    /// Returns the request for a history of a structure from rest on a ground motion; `[initial]` is ignored.
+    /// Request for a history of a structure from rest on a ground motion; `[initial]` is ignored.
     pub fn request_on(&self, ground: &GroundMotion, structure: &Structure) -> Request {
         let end_s = self.simulation.end_s(ground.end_s(), structure.size_m());
         Request {
@@ -672,14 +672,14 @@ impl Scenario {
         }
     }
 
-    /// Returns the scenario as TOML text with all defaults. A default `duration_s` is omitted, because it depends on the ground motion.
+    /// Scenario as TOML text with all defaults. A default `duration_s` is omitted, because it depends on the ground motion.
     ///
     /// Reading the text of a valid scenario gives an equal scenario.
     pub fn to_toml(&self) -> String {
         toml_text(&self.to_json())
     }
 
-    /// Returns the scenario as TOML text as [`Scenario::to_toml`] does, with a default `duration_s` as a comment: a default in the text would no
+    /// Scenario as TOML text as [`Scenario::to_toml`] does, with a default `duration_s` as a comment: a default in the text would no
     /// longer follow the ground motion and the structure.
     pub fn to_resolved_toml(&self) -> String {
         let text = self.to_toml();
@@ -694,7 +694,7 @@ impl Scenario {
         }
     }
 
-    /// Returns the scenario as JSON as [`Scenario::to_json`] does, with `duration_s` always written, to the nanosecond.
+    /// Scenario as JSON as [`Scenario::to_json`] does, with `duration_s` always written, to the nanosecond.
     pub fn to_resolved_json(&self) -> Value {
         let mut json = self.to_json();
         if let Some(Value::Object(simulation)) = json.get_mut("simulation") {
@@ -704,13 +704,13 @@ impl Scenario {
         json
     }
 
-    /// Returns the scenario as JSON with the given keys and all defaults. A default `duration_s` is omitted, because it depends on the ground
+    /// Scenario as JSON with the given keys and all defaults. A default `duration_s` is omitted, because it depends on the ground
     /// motion.
     pub fn to_json(&self) -> Value {
         self.given.with_defaults(self.resolved_values())
     }
 
-    /// Returns the scenario as JSON. A circular arch has mean radius, thickness ratio and embrace angle, regardless of the keys in the file.
+    /// Scenario as JSON. A circular arch has mean radius, thickness ratio and embrace angle, regardless of the keys in the file.
     pub(crate) fn resolved_values(&self) -> Value {
         let mut ground = self.unread_ground.clone();
         let ground = ground.get_or_insert_with(|| json!(self.ground));

@@ -79,7 +79,7 @@ pub(crate) struct Site {
 
 /// The options of a model of motion, from its table.
 pub(crate) trait ModelOptions: Debug + Send + Sync {
-    /// Returns the contents of the scenario table of the model.
+    /// Contents of the scenario table of the model.
     fn to_json(&self) -> Value;
 
     /// Makes the model of a structure.
@@ -104,22 +104,22 @@ pub(crate) trait ModelOptions: Debug + Send + Sync {
         Ok(Vec::new())
     }
 
-    /// Returns the impact law; `None` if impacts follow from the blocks, or if there are none.
+    /// Impact law; `None` if impacts follow from the blocks, or if there are none.
     fn law(&self) -> Option<ImpactLaw> {
         None
     }
 
-    /// Returns Coulomb's coefficient of friction; `None` if joints cannot slip.
+    /// Coulomb's coefficient of friction; `None` if joints cannot slip.
     fn friction_coefficient(&self) -> Option<f64> {
         None
     }
 
-    /// Returns the compressive strength of joints that may crush, in MPa; otherwise `None`.
+    /// Compressive strength of joints that may crush, in MPa; otherwise `None`.
     fn compressive_strength_mpa(&self) -> Option<f64> {
         None
     }
 
-    /// Returns the longest step of the motion, in seconds; `None` if a tolerance determines the steps, or if the structure cannot stand.
+    /// Longest step of the motion, in seconds; `None` if a tolerance determines the steps, or if the structure cannot stand.
     fn longest_step_s(&self, _: &Structure, _: &Site, _: &Request) -> Option<f64> {
         None
     }

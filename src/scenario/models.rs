@@ -16,12 +16,12 @@ use crate::{ImpactLaw, ImpactModel, Request};
 pub static MODELS: [&ModelKind; 3] = [&FOUR_LINKS, &FREE_HINGES, &ELASTIC_JOINTS];
 
 impl ModelKind {
-    /// Returns the model with this name of the option `--hinges`.
+    /// Model with this name of the option `--hinges`.
     pub fn of_option(name: &str) -> Option<&'static Self> {
         MODELS.into_iter().find(|model| model.option == name)
     }
 
-    /// Returns the position in [`MODELS`], the order of trust.
+    /// Position in [`MODELS`], the order of trust.
     pub fn rank(&self) -> Option<usize> {
         MODELS.into_iter().position(|model| model == self)
     }
@@ -48,7 +48,7 @@ impl PartialEq for MotionModel {
 }
 
 impl MotionModel {
-    /// Returns the impact law of four links; the theoretical law for models without four links.
+    /// Impact law of four links; the theoretical law for models without four links.
     pub fn impact(&self) -> ImpactLaw {
         self.options
             .law()
@@ -74,7 +74,7 @@ impl MotionModel {
         self.options.check(table, structure, site, end_s)
     }
 
-    /// Returns the movements of the supports before time 0; `None` without movements.
+    /// Movements of the supports before time 0; `None` without movements.
     pub fn supports(&self) -> Option<Movements> {
         Some(self.site.supports).filter(|moved| !moved.is_none())
     }
@@ -94,7 +94,7 @@ const ELASTIC_IMPACT: &str =
 const FREE_IMPACT: &str =
     "cannot be combined with [free_hinges], whose impacts follow from the blocks; leave one out";
 
-/// Returns true if the structure needs a model with joints: it has drums, or moved springings.
+/// True if the structure needs a model with joints: it has drums, or moved springings.
 fn needs_joints(table: &Table<'_>) -> bool {
     table.gives("supports") || DRUM_KEYS.iter().any(|key| table.gives_in("column", key))
 }

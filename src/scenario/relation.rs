@@ -25,7 +25,7 @@ pub(super) enum Relation<'a> {
 use Relation::{AtMostOne, Excludes, OneOf, Requires, SomeOf, Together};
 
 impl Relation<'_> {
-    /// Returns the relation as a JSON schema.
+    /// Relation as a JSON schema.
     pub(super) fn schema(&self) -> Value {
         let given = |key: &&str| json!({ "required": [key] });
         match self {
@@ -47,7 +47,7 @@ impl Relation<'_> {
         }
     }
 
-    /// Returns the keys that exclude or need each other, for a table at the outermost level; `None` for other relations.
+    /// Keys that exclude or need each other, for a table at the outermost level; `None` for other relations.
     fn group(&self) -> Option<KeyGroup> {
         let (keys, are_alternatives) = match self {
             OneOf(keys, _) | AtMostOne(keys, _) => (keys, true),
@@ -108,8 +108,11 @@ pub(super) const GIVE_ONE: &str = "give one of them";
 
 /// Records faults of all given keys but the first in the file. Returns true if a key is given.
 fn exclude(table: &mut Table<'_>, keys: &[&str], remedy: &str) -> bool {
-    let given = keys.iter().copied().filter(|key| table.gives(key));
-    let mut given: Vec<_> = given.collect();
+    let mut given: Vec<_> = keys
+        .iter()
+        .copied()
+        .filter(|key| table.gives(key))
+        .collect();
     given.sort_by_key(|key| table.value_position(key));
     if let [first, others @ ..] = &given[..] {
         for key in others {

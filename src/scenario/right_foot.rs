@@ -70,8 +70,10 @@ impl RightFoot {
             let wrong = "needs two feet, and this stands on one: leave it out";
             return Err(outer.wrong_in(&["ground"], "right", wrong));
         }
-        let changing = [StudyTable::Map, StudyTable::Suite].map(StudyTable::name);
-        let mut changing = changing.into_iter().filter(|study| outer.gives(study));
+        let mut changing = [StudyTable::Map, StudyTable::Suite]
+            .map(StudyTable::name)
+            .into_iter()
+            .filter(|study| outer.gives(study));
         if let (Self::Record(_), Some(study)) = (self, changing.next()) {
             let wrong = "changes the motion of the ground, and [ground.right] has a record of its own: give `delay_s` or \
                          `apparent_velocity_m_s` there, with which both feet change";
@@ -80,7 +82,7 @@ impl RightFoot {
         Ok(())
     }
 
-    /// Returns the record of the right foot; `None` if it has the delayed motion of the left foot.
+    /// Record of the right foot; `None` if it has the delayed motion of the left foot.
     pub fn record(&self) -> Option<&Record> {
         match self {
             Self::Record(record) => Some(record),
@@ -88,7 +90,7 @@ impl RightFoot {
         }
     }
 
-    /// Returns the delay in s for feet at the distance `apart_m`; `None` if the right foot has a separate record.
+    /// Delay in s for feet at the distance `apart_m`; `None` if the right foot has a separate record.
     pub fn delay_s(&self, apart_m: f64) -> Option<f64> {
         match self {
             Self::Late(delay_s) => Some(*delay_s),
@@ -97,7 +99,7 @@ impl RightFoot {
         }
     }
 
-    /// Returns the motion of both feet, from that of the left foot and the distance between the feet in m.
+    /// Motion of both feet, from that of the left foot and the distance between the feet in m.
     ///
     /// With two records, the foot with the shorter record stops at the end of that record.
     pub(super) fn with_left_foot(
@@ -112,8 +114,8 @@ impl RightFoot {
         }
         let right = self
             .record()
-            .map(|record| record.ground_motion(gravity_m_s2));
-        let right = right.unwrap_or_else(GroundMotion::still);
+            .map(|record| record.ground_motion(gravity_m_s2))
+            .unwrap_or_else(GroundMotion::still);
         match (left.end_s(), right.end_s()) {
             (left_s, right_s) if left_s < right_s => left.stopping().with_right_foot(right),
             (left_s, right_s) if right_s < left_s => left.with_right_foot(right.stopping()),

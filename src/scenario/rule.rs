@@ -13,11 +13,11 @@ use super::document::{NOT_FINITE, kind};
 pub(super) trait Rule {
     /// Type of the value in the program.
     type Output: Serialize;
-    /// Returns the allowed values in words.
+    /// Allowed values in words.
     fn allowed(&self) -> String;
     /// Reads a value. The error is a phrase that follows the value.
     fn read(&self, value: &Value) -> Result<Self::Output, String>;
-    /// Returns the rule as a JSON schema.
+    /// Rule as a JSON schema.
     fn schema(&self) -> Value;
 }
 
@@ -27,17 +27,17 @@ pub(super) struct Number(Bound<f64>, Bound<f64>, Option<&'static str>);
 /// Any finite number.
 pub(super) const ANY_NUMBER: Number = between(Unbounded, Unbounded);
 
-/// Returns the rule for a number between two bounds.
+/// Rule for a number between two bounds.
 pub(super) const fn between(low: Bound<f64>, high: Bound<f64>) -> Number {
     Number(low, high, None)
 }
 
-/// Returns the rule for a number in a range.
+/// Rule for a number in a range.
 pub(super) const fn within(range: &RangeInclusive<f64>) -> Number {
     between(Included(*range.start()), Included(*range.end()))
 }
 
-/// Returns the rule for a number above the first bound and up to the second.
+/// Rule for a number above the first bound and up to the second.
 pub(super) const fn above(low: f64, high: f64) -> Number {
     between(Excluded(low), Included(high))
 }
@@ -127,7 +127,7 @@ impl<T: Serialize> Rule for Custom<'_, T> {
     }
 }
 
-/// Returns the rule for an array whose elements follow a rule.
+/// Rule for an array whose elements follow a rule.
 pub(super) fn list_of<R: Rule>(rule: &R) -> Custom<'_, Vec<R::Output>> {
     let allowed = format!("an array, each element {}", rule.allowed());
     let read = |value: &Value| {
@@ -142,7 +142,7 @@ pub(super) fn list_of<R: Rule>(rule: &R) -> Custom<'_, Vec<R::Output>> {
     Custom(allowed, schema, Box::new(read))
 }
 
-/// Returns the rule for a value that follows a rule, or a non-empty array of such values.
+/// Rule for a value that follows a rule, or a non-empty array of such values.
 pub(super) fn one_or_more<R: Rule>(rule: &R) -> Custom<'_, Vec<R::Output>> {
     let allowed = format!("{} or an array of at least one", rule.allowed());
     let (one, list) = (rule.schema(), list_of(rule));
@@ -155,18 +155,18 @@ pub(super) fn one_or_more<R: Rule>(rule: &R) -> Custom<'_, Vec<R::Output>> {
     Custom(allowed, schema, Box::new(read))
 }
 
-/// Returns the rule for true or false.
+/// Rule for true or false.
 pub(super) fn switch() -> Custom<'static, bool> {
     value_of_kind("true or false", "boolean", Value::as_bool)
 }
 
-/// Returns the rule for any string.
+/// Rule for any string.
 pub(super) fn text() -> Custom<'static, String> {
     let read = |value: &Value| string(value).map(str::to_owned);
     value_of_kind("a string", "string", read)
 }
 
-/// Returns the rule for any value of a JSON type.
+/// Rule for any value of a JSON type.
 fn value_of_kind<T: 'static>(
     allowed: &str,
     kind: &str,
@@ -176,7 +176,7 @@ fn value_of_kind<T: 'static>(
     Custom(allowed.to_owned(), json!({ "type": kind }), Box::new(read))
 }
 
-/// Returns the rule for a value that is named by a string.
+/// Rule for a value that is named by a string.
 pub(super) fn one_of<T: Copy + Serialize>(all: &[T]) -> Custom<'_, T> {
     let names: Vec<_> = all.iter().map(|one| json!(one)).collect();
     let quoted: Vec<_> = names.iter().map(Value::to_string).collect();
@@ -222,17 +222,17 @@ impl Rule for Count {
     }
 }
 
-/// Returns the string of a value; `None` for other values, and for a number that is not finite.
+/// String of a value; `None` for other values, and for a number that is not finite.
 pub(super) fn string(value: &Value) -> Option<&str> {
     value.as_str().filter(|text| !text.starts_with(NOT_FINITE))
 }
 
-/// Returns a phrase with the kind of a value: `is a string`.
+/// Phrase with the kind of a value: `is a string`.
 fn kind_phrase(value: &Value) -> String {
     format!("is {}", kind(value))
 }
 
-/// Returns a suggestion of the known name nearest to `name`; empty if none is near.
+/// Suggestion of the known name nearest to `name`; empty if none is near.
 pub(super) fn did_you_mean<'k>(name: &str, known: impl Iterator<Item = &'k str>) -> String {
     // At least half of the name must agree: this finds names with a missing unit or prefix, but no unrelated names.
     const NEAR: f64 = 0.5;

@@ -31,7 +31,7 @@ pub enum Sequence {
     List(Vec<f64>),
 }
 
-/// Returns the rule for an array of ascending numbers.
+/// Rule for an array of ascending numbers.
 fn ascending(number: &Number) -> Custom<'_, Vec<f64>> {
     let allowed = format!(
         "an array of ascending numbers or {{ from = ..., to = ..., count = ... }}, each {}",
@@ -56,7 +56,7 @@ fn ascend(values: &[f64]) -> bool {
 const COUNT: Count = Count(2..=10_000, "the ends");
 
 impl Sequence {
-    /// Returns the numbers.
+    /// Numbers.
     pub fn values(&self) -> Vec<f64> {
         match self {
             Self::List(values) => values.clone(),
@@ -71,12 +71,12 @@ impl Sequence {
         }
     }
 
-    /// Returns true if the axis of these values, multiples of the numbers, is logarithmic.
+    /// True if the axis of these values, multiples of the numbers, is logarithmic.
     pub fn is_logarithmic(&self, values: &[f64]) -> bool {
         self.spacing() == Spacing::Logarithmic && values.iter().all(|value| *value > 0.0)
     }
 
-    /// Returns the spacing of the axis on which the numbers are drawn.
+    /// Spacing of the axis on which the numbers are drawn.
     pub const fn spacing(&self) -> Spacing {
         match self {
             Self::Range { spacing, .. } => *spacing,
@@ -121,14 +121,15 @@ impl Sequence {
 /// Rounds a number as people would write it: 0.12 instead of 0.12000000000000002. The largest number has twelve digits; there are more decimals
 /// if a millionth of a step needs them.
 fn round_readably(value: f64, largest: f64, step: f64) -> f64 {
-    let digits = (12.0 - libm::log10(largest).floor()).max(6.0 - libm::log10(step).floor());
-    let digits = digits.clamp(0.0, 340.0) as usize;
+    let digits = (12.0 - libm::log10(largest).floor())
+        .max(6.0 - libm::log10(step).floor())
+        .clamp(0.0, 340.0) as usize;
     let rounded: f64 = format!("{value:.digits$}").parse().unwrap_or(value);
     // Turns negative zero into zero.
     rounded + 0.0
 }
 
-/// Returns a number of a range. The ends are exact, and so is every number with few digits.
+/// Number of a range. The ends are exact, and so is every number with few digits.
 fn number_at(from: f64, to: f64, index: usize, last: usize, spacing: Spacing) -> f64 {
     let part = index as f64 / last as f64;
     match spacing {

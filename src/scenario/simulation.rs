@@ -48,7 +48,7 @@ impl Simulation {
         })
     }
 
-    /// Returns the latest end of a history, in seconds: `duration_s`. The default is the end of the ground motion plus the larger of 10 s and 20
+    /// Latest end of a history, in seconds: `duration_s`. The default is the end of the ground motion plus the larger of 10 s and 20
     /// times the square root of size over gravity, at most ten million output steps. In that time a surviving structure comes to rest, or nearly
     /// so. `size_m` is that of [`Structure::size_m`](super::Structure::size_m).
     pub fn end_s(&self, ground_end_s: f64, size_m: f64) -> f64 {
@@ -59,7 +59,7 @@ impl Simulation {
         self.duration_s.unwrap_or(default_s.min(most_s))
     }
 
-    /// Returns the latest end of a history without an outcome at its default end `end_s`: 64 times as long after the ground motion; `None` if
+    /// Latest end of a history without an outcome at its default end `end_s`: 64 times as long after the ground motion; `None` if
     /// `duration_s` is given.
     pub(super) fn outcome_by_s(&self, ground_end_s: f64, end_s: f64) -> Option<f64> {
         let latest_s = ground_end_s + LATEST_RATIO * (end_s - ground_end_s);
@@ -92,7 +92,7 @@ const AFTER_RATIO: f64 = 20.0;
 /// of their energy in an impact, and take so long until a quarter of the barrier is left.
 const LATEST_RATIO: f64 = 64.0;
 
-/// Returns the reason why the output of a history is too short or too long; `None` if it is neither.
+/// Reason why the output of a history is too short or too long; `None` if it is neither.
 fn rows_fault(duration_s: f64, step_s: f64) -> Option<String> {
     let rows = duration_s / step_s;
     let (step, run, most) = (plain(step_s), plain(duration_s), Request::MOST_SAMPLES);

@@ -44,7 +44,7 @@ impl Source {
         Self { files, ..self }
     }
 
-    /// Returns the name in errors.
+    /// Name in errors.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -91,7 +91,7 @@ impl Source {
     }
 }
 
-/// Returns the files in the folder of a file.
+/// Files in the folder of a file.
 fn folder_of(file: &Path) -> Files {
     Files {
         folder: file.parent().unwrap_or(Path::new("")).to_owned(),

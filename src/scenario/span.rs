@@ -87,7 +87,7 @@ impl Circular {
     }
 }
 
-/// Returns the embrace angle of the given arch, in degrees; `None` if the table gives none.
+/// Embrace angle of the given arch, in degrees; `None` if the table gives none.
 pub(super) fn given_embrace_deg(arch: &Entries) -> Option<f64> {
     let number = |key: &str| arch.get(key).and_then(Value::as_f64);
     let measured = number("span_m").zip(number("rise_m"));
@@ -111,14 +111,14 @@ pub(super) fn keep_embrace_angle(arch: &mut Entries, is_new: impl Fn(&str) -> bo
     }
 }
 
-/// Returns the embrace angle of an arc with this span and rise, in degrees.
+/// Embrace angle of an arc with this span and rise, in degrees.
 fn embrace_deg(span_m: f64, rise_m: f64) -> f64 {
     let half_m = 0.5 * span_m;
     // The angle between chord and tangent at the crown is a quarter of the embrace angle.
     4.0 * libm::atan(rise_m / half_m).to_degrees()
 }
 
-/// Returns the embrace angle of an arc with this span and rise, in degrees. A fault is recorded if it is out of range.
+/// Embrace angle of an arc with this span and rise, in degrees. A fault is recorded if it is out of range.
 fn checked_embrace_deg(table: &mut Table<'_>, span_m: f64, rise_m: f64) -> ReadResult<f64> {
     let embrace_deg = embrace_deg(span_m, rise_m);
     // The rise at the smallest angle, from the inverse of the formula above.

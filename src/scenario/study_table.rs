@@ -23,7 +23,7 @@ impl StudyTable {
         scenario.given_table(self.name(), read)
     }
 
-    /// Returns true for the name of such a table.
+    /// True for the name of such a table.
     pub(crate) fn is_name(name: &str) -> bool {
         Self::ALL.iter().any(|table| table.name() == name)
     }

@@ -42,7 +42,7 @@ const MAX_SCALE: f64 = 1e6;
 const SCALE: Number = above(0.0, MAX_SCALE);
 
 impl Measure {
-    /// Returns the range of a single level.
+    /// Range of a single level.
     const fn range(self) -> &'static Number {
         match self {
             Self::Scale => &SCALE,
@@ -50,7 +50,7 @@ impl Measure {
         }
     }
 
-    /// Returns the key of the levels in `[suite]`.
+    /// Key of the levels in `[suite]`.
     const fn key(self) -> &'static str {
         match self {
             Self::Scale => "scales",
@@ -58,7 +58,7 @@ impl Measure {
         }
     }
 
-    /// Returns the unit that follows a level in words.
+    /// Unit that follows a level in words.
     pub const fn unit(self) -> &'static str {
         match self {
             Self::Scale => "",
@@ -196,7 +196,7 @@ impl Suite {
         Ok((suite, named))
     }
 
-    /// Returns each record with a peak of 1 g, as the ground motion of a scenario.
+    /// Each record with a peak of 1 g, as the ground motion of a scenario.
     pub(crate) fn unit_grounds(&self, gravity_m_s2: f64) -> Vec<UnitGround> {
         let records = self.records.iter();
         let unit = records.map(|series| {
@@ -214,7 +214,7 @@ impl Suite {
         unit.collect()
     }
 
-    /// Returns a record scaled to a level.
+    /// Record scaled to a level.
     pub(crate) fn record_at(&self, record: usize, level: f64) -> Record {
         scaled_record(&self.records[record], self.measure.scaling(level))
     }
@@ -246,13 +246,13 @@ impl Serialize for Suite {
                 SPECTRAL_DAMPING_PERCENT,
                 json!(self.spectral.damping_percent),
             ),
-        ];
-        let own = own.map(|(key, value)| (key.to_owned(), value));
+        ]
+        .map(|(key, value)| (key.to_owned(), value));
         serializer.collect_map(records.into_iter().chain(own))
     }
 }
 
-/// Returns the directions that `both_signs` names.
+/// Directions that `both_signs` names.
 const fn directions_of(both_signs: bool) -> Directions {
     match both_signs {
         true => Directions::Both,
@@ -343,7 +343,7 @@ fn check_record(
     strongest.check_strength(simulation.gravity_m_s2)
 }
 
-/// Returns an error that lists the records longer than the given duration; `None` if there are none.
+/// Error that lists the records longer than the given duration; `None` if there are none.
 fn cut_off(records: &[Series], duration_s: Option<f64>) -> Option<String> {
     let end_s = |series: &Series| start_s(series) + series.last_s();
     let duration_s = duration_s?;
@@ -368,7 +368,7 @@ fn cut_off(records: &[Series], duration_s: Option<f64>) -> Option<String> {
     ))
 }
 
-/// Returns the horizontal ground motion of a record.
+/// Horizontal ground motion of a record.
 pub(super) fn scaled_record(series: &Series, scaling: Scaling) -> Record {
     Record {
         component: Component::Horizontal,
@@ -378,7 +378,7 @@ pub(super) fn scaled_record(series: &Series, scaling: Scaling) -> Record {
     }
 }
 
-/// Returns the time of the simulation at time zero of the file: no record begins before the simulation.
+/// Time of the simulation at time zero of the file: no record begins before the simulation.
 fn start_s(series: &Series) -> f64 {
     (0.0 - series.first_s()).max(0.0)
 }

@@ -61,7 +61,7 @@ pub(super) fn read_document<T>(
     }
 }
 
-/// Returns the JSON schema of all texts that `read` reads, and the groups of keys in all tables.
+/// JSON schema of all texts that `read` reads, and the groups of keys in all tables.
 pub(super) fn describe<T>(read: impl Reader<T>) -> (Value, Vec<KeyGroup>) {
     let document = Document::default();
     let mut table = Table::new(String::new(), &document.root, &document);
@@ -71,7 +71,7 @@ pub(super) fn describe<T>(read: impl Reader<T>) -> (Value, Vec<KeyGroup>) {
     (table.description.unwrap_or_default(), table.groups)
 }
 
-/// Returns the JSON schema of a table without keys.
+/// JSON schema of a table without keys.
 fn an_object() -> Value {
     json!({ "type": "object", "properties": {}, "additionalProperties": false })
 }
@@ -138,7 +138,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// Returns the files that the scenario may name.
+    /// Files that the scenario may name.
     pub(super) fn files(&self) -> &'a Files {
         &self.document.files
     }
@@ -154,14 +154,14 @@ impl<'a> Table<'a> {
         ensure(is_faultless && self.description.is_none(), || FaultRecorded)
     }
 
-    /// Returns the value of a key that must be given.
+    /// Value of a key that must be given.
     pub(super) fn required<R: Rule<Output: Default>>(&mut self, key: &str, rule: &R) -> R::Output {
         let value = self.optional(key, rule);
         self.describe("required", || json!(key));
         self.needed(key, rule, value)
     }
 
-    /// Returns the value of an optional key that other keys make necessary. `value` is the result of reading the key.
+    /// Value of an optional key that other keys make necessary. `value` is the result of reading the key.
     pub(super) fn needed<R: Rule<Output: Default>>(
         &mut self,
         key: &str,
@@ -174,7 +174,7 @@ impl<'a> Table<'a> {
         value.unwrap_or_default()
     }
 
-    /// Returns the value of an optional key, or `default`.
+    /// Value of an optional key, or `default`.
     pub(super) fn or<R: Rule>(&mut self, key: &str, rule: &R, default: R::Output) -> R::Output {
         let value = self.optional(key, rule);
         if let Some(description) = &mut self.description {
@@ -183,7 +183,7 @@ impl<'a> Table<'a> {
         value.unwrap_or(default)
     }
 
-    /// Returns the value of an optional key; `None` if it is not given or wrong.
+    /// Value of an optional key; `None` if it is not given or wrong.
     pub(super) fn optional<R: Rule>(&mut self, key: &str, rule: &R) -> Option<R::Output> {
         self.describe_key(key, || rule.schema());
         match rule.read(self.entry(key, false)?) {
@@ -263,7 +263,7 @@ impl<'a> Table<'a> {
         self.descend(key, None, read)
     }
 
-    /// Returns the keys that name a value of another table, such as `"arch.depth_m"`, in the order of the file. For a description it returns one
+    /// Keys that name a value of another table, such as `"arch.depth_m"`, in the order of the file. For a description it returns one
     /// such key.
     pub(super) fn keys_of_other_tables(&self) -> Vec<String> {
         if self.description.is_some() {
@@ -273,22 +273,22 @@ impl<'a> Table<'a> {
         keys.filter(|key| key.contains('.')).cloned().collect()
     }
 
-    /// Returns a value as in the file; `None` if it is not given.
+    /// Value as in the file; `None` if it is not given.
     pub(super) fn as_given(&self, key: &str) -> Option<Value> {
         self.entries.get(key).cloned()
     }
 
-    /// Returns all entries as in the file.
+    /// All entries as in the file.
     pub(super) fn all_given(&self) -> Entries {
         self.entries.clone()
     }
 
-    /// Returns true if the file has a table with this key.
+    /// True if the file has a table with this key.
     pub(super) fn gives_table(&self, key: &str) -> bool {
         self.entries.get(key).is_some_and(Value::is_object)
     }
 
-    /// Returns true if the file has this key, here or as a default in the outer table.
+    /// True if the file has this key, here or as a default in the outer table.
     pub(super) fn gives(&self, key: &str) -> bool {
         self.entries.contains_key(key) || self.default_of(key).is_some()
     }
@@ -298,49 +298,49 @@ impl<'a> Table<'a> {
         self.inherited.extend(keys);
     }
 
-    /// Returns true if a table in this one has read the value of this key as a default.
+    /// True if a table in this one has read the value of this key as a default.
     pub(super) fn is_default(&self, key: &str) -> bool {
         self.defaults.contains(key)
     }
 
-    /// Returns path and value of a default in the outer table.
+    /// Path and value of a default in the outer table.
     fn default_of(&self, key: &str) -> Option<(String, &'a Value)> {
         let (path, entries) = self.outer.as_ref()?;
         let value = entries.get(key).filter(|_| self.inherited.contains(&key))?;
         Some((format!("{path}/{key}"), value))
     }
 
-    /// Returns true if a table inside this one has the key.
+    /// True if a table inside this one has the key.
     pub(super) fn gives_in(&self, table: &str, key: &str) -> bool {
         let inner = self.entries.get(table);
         inner.is_some_and(|inner| inner.get(key).is_some())
     }
 
-    /// Returns true if the file has one of the keys, or if lines that are not TOML contain one.
+    /// True if the file has one of the keys, or if lines that are not TOML contain one.
     pub(super) fn may_give(&self, keys: &[&str]) -> bool {
         let unread = &self.document.unread;
         let mut keys = keys.iter();
         keys.any(|key| self.gives(key) || unread.contains(key))
     }
 
-    /// Returns true if the key is read as a table.
+    /// True if the key is read as a table.
     pub(super) fn is_table(&self, key: &str) -> bool {
         let mut known = self.known.iter();
         known.any(|(known, is_table)| known == key && *is_table)
     }
 
-    /// Returns the position of the value of a key.
+    /// Position of the value of a key.
     pub(super) fn value_position(&self, key: &str) -> Option<(usize, usize)> {
         self.place_of(&format!("{}/{key}", self.path))
     }
 
-    /// Returns the position of the value with this path.
+    /// Position of the value with this path.
     fn place_of(&self, path: &str) -> Option<(usize, usize)> {
         let Span { text, range, .. } = self.document.spans.get(path)?;
         Some((*text, range.start))
     }
 
-    /// Returns true if the keys are collected for a description.
+    /// True if the keys are collected for a description.
     pub(super) const fn describes(&self) -> bool {
         self.description.is_some()
     }
@@ -371,7 +371,7 @@ impl<'a> Table<'a> {
         };
     }
 
-    /// Returns the number of faults.
+    /// Number of faults.
     pub(super) fn faults(&self) -> usize {
         self.faults.len()
     }
@@ -414,7 +414,7 @@ impl<'a> Table<'a> {
         ensure(!when, || self.fault_of_table(message))
     }
 
-    /// Returns the value of a result. An error is recorded as a fault of `key`; it follows the key and its value.
+    /// Value of a result. An error is recorded as a fault of `key`; it follows the key and its value.
     pub(super) fn accept<T, E: Display>(
         &mut self,
         key: &str,
@@ -442,9 +442,9 @@ impl<'a> Table<'a> {
         let innermost = around.last().and_then(|(path, _)| self.place_of(path));
         // With nested tables, only these are searched.
         let mut searched = around.iter().skip(path.len().min(1)).rev();
-        let found =
-            searched.find_map(|(path, entries)| Some((format!("{path}/{key}"), entries.get(key)?)));
-        let found = found.or_else(|| self.default_of(key));
+        let found = searched
+            .find_map(|(path, entries)| Some((format!("{path}/{key}"), entries.get(key)?)))
+            .or_else(|| self.default_of(key));
         let Some((path, value)) = found else {
             let place = innermost.unwrap_or(self.place);
             return self.fault(place, format!("`{key}` {message}"));
@@ -460,8 +460,10 @@ impl<'a> Table<'a> {
             _ => format!("`{key} = {}`", self.document.quote(&path, value)),
         };
         let assigned = value.is_array().then(|| self.document.assigned(&path));
-        let place = assigned.flatten().or_else(|| self.place_of(&path));
-        let place = place.unwrap_or_default();
+        let place = assigned
+            .flatten()
+            .or_else(|| self.place_of(&path))
+            .unwrap_or_default();
         self.fault(place, format!("{given} {message}"))
     }
 
@@ -500,8 +502,10 @@ impl<'a> Table<'a> {
             Some(value) => format!("`{key} = {}`", self.document.quote(&path, value)),
             None => format!("`{key}`"),
         };
-        let place = self.place_of(&path).or_else(|| self.place_of(&element));
-        let place = place.unwrap_or_default();
+        let place = self
+            .place_of(&path)
+            .or_else(|| self.place_of(&element))
+            .unwrap_or_default();
         self.fault(place, format!("{given} of {name} {} {message}", at + 1))
     }
 
@@ -512,7 +516,7 @@ impl<'a> Table<'a> {
         self.fault(place, message);
     }
 
-    /// Returns true if a program has given samples in place of the file with this name.
+    /// True if a program has given samples in place of the file with this name.
     fn has_samples(&self, name: &str) -> bool {
         let files = self.files();
         files.samples(&files.path(name)).is_some()
@@ -528,7 +532,7 @@ impl<'a> Table<'a> {
         FaultRecorded
     }
 
-    /// Returns the entry of a key; `None` if the file does not give it.
+    /// Entry of a key; `None` if the file does not give it.
     fn entry(&mut self, key: &str, is_table: bool) -> Option<&'a Value> {
         if !self.known.iter().any(|(known, _)| known == key) {
             self.known.push((key.to_owned(), is_table));

@@ -138,8 +138,10 @@ impl TieTable {
                  smaller `area_mm2` or `modulus_gpa`"
             )
         })?;
-        let by_section = self.yield_stress_mpa.zip(self.area_mm2);
-        let by_section = by_section.map(|(mpa, mm2)| mpa * mm2);
+        let by_section = self
+            .yield_stress_mpa
+            .zip(self.area_mm2)
+            .map(|(mpa, mm2)| mpa * mm2);
         let tie = Tie {
             ends,
             stiffness_n_m,
@@ -197,7 +199,7 @@ fn read_point(table: &mut Table<'_>, key: &str) -> Option<[f64; 2]> {
     table.accept(key, point.map_err(|_| wrong)).ok()
 }
 
-/// Returns a point of a block, or of the ground if `block` is 0.
+/// Point of a block, or of the ground if `block` is 0.
 fn anchor(row: &Row, point_m: [f64; 2], block: Option<usize>, end: &str) -> Result<Anchor, String> {
     let at_m = Vector2::from(point_m);
     let point = format!("({:?}, {:?}) m", at_m.x, at_m.y);
@@ -243,18 +245,19 @@ fn anchor(row: &Row, point_m: [f64; 2], block: Option<usize>, end: &str) -> Resu
     Ok(Anchor { block, at_m })
 }
 
-/// Returns the two points of the intrados at a height. The intrados is a straight line between joints.
+/// The two points of the intrados at a height. The intrados is a straight line between joints.
 fn points_at_height(row: &Row, height_m: f64) -> Result<[Anchor; 2], String> {
     let pairs = row.joints.windows(2).enumerate();
-    let crossings = pairs.filter_map(|(block, pair)| {
-        let (from, to) = (pair[0].intrados_m, pair[1].intrados_m);
-        let crosses = (from.y <= height_m) != (to.y <= height_m);
-        crosses.then(|| Anchor {
-            block: Some(block),
-            at_m: from + (to - from) * ((height_m - from.y) / (to.y - from.y)),
+    let crossings: Vec<Anchor> = pairs
+        .filter_map(|(block, pair)| {
+            let (from, to) = (pair[0].intrados_m, pair[1].intrados_m);
+            let crosses = (from.y <= height_m) != (to.y <= height_m);
+            crosses.then(|| Anchor {
+                block: Some(block),
+                at_m: from + (to - from) * ((height_m - from.y) / (to.y - from.y)),
+            })
         })
-    });
-    let crossings: Vec<Anchor> = crossings.collect();
+        .collect();
     <[Anchor; 2]>::try_from(crossings).map_err(|_| {
         let corners = row.joints.iter().map(|joint| joint.intrados_m.y);
         let lowest = corners.clone().fold(f64::INFINITY, f64::min);
@@ -293,11 +296,13 @@ pub(super) fn tied_column(
     let row = row.map_err(|error| format!("makes no row of blocks: {error}"));
     let row = table.accept("column", row)?;
     let ties = place_ties(table, ties, (&row, None))?;
-    let column = column.with_ties(ties, gravity_m_s2);
-    let column = column.map_err(|(index, error)| table.wrong_element("tie", index, error))?;
+    let column = column
+        .with_ties(ties, gravity_m_s2)
+        .map_err(|(index, error)| table.wrong_element("tie", index, error))?;
     let row = column.row().map_err(|error| error.to_string());
-    let falls = row.and_then(|row| collapse_mechanism(&row).map_err(|error| error.to_string()));
-    let falls = falls.map_err(|wrong| format!("cannot be checked to stand: {wrong}"));
+    let falls = row
+        .and_then(|row| collapse_mechanism(&row).map_err(|error| error.to_string()))
+        .map_err(|wrong| format!("cannot be checked to stand: {wrong}"));
     let falls = table.accept("column", falls)?.is_some();
     table.refuse(falls, "tie", PULLS_OVER)?;
     Ok(column)

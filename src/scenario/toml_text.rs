@@ -4,7 +4,7 @@ use serde_json::{Map, Value};
 
 use archrock_text::is_hidden;
 
-/// Returns the text of a table and of all tables in it. A table with the key `from` or `deviation` is a range or a distribution, and is written
+/// Text of a table and of all tables in it. A table with the key `from` or `deviation` is a range or a distribution, and is written
 /// in one line.
 pub(crate) fn toml_text(table: &Value) -> String {
     let mut text = String::new();
@@ -61,7 +61,7 @@ pub(super) fn inline(value: &Value) -> String {
     }
 }
 
-/// Returns a key, in quotation marks if it contains a dot.
+/// Key, in quotation marks if it contains a dot.
 fn bare(key: &str) -> String {
     if key.contains('.') {
         quote_string(key)
@@ -70,7 +70,7 @@ fn bare(key: &str) -> String {
     }
 }
 
-/// Returns a string in the syntax of TOML.
+/// String in the syntax of TOML.
 pub(super) fn quote_string(text: &str) -> String {
     let mut quoted = String::from("\"");
     for c in text.chars() {

@@ -134,7 +134,7 @@ impl Distribution {
     }
 }
 
-/// Returns the probability that a standard normal variable is below this deviation.
+/// Probability that a standard normal variable is below this deviation.
 fn normal(deviations: f64) -> f64 {
     0.5 * libm::erfc(-deviations * std::f64::consts::FRAC_1_SQRT_2)
 }
@@ -238,14 +238,14 @@ impl Uncertain {
         Ok(self)
     }
 
-    /// Returns the number of cases. With total indices, after all samples, each sample has one more case for each key, in which only that key
+    /// Number of cases. With total indices, after all samples, each sample has one more case for each key, in which only that key
     /// has another value.
     pub fn cases(&self) -> usize {
         let keys = usize::from(self.total_indices) * self.keys.len();
         self.samples.saturating_mul(1 + keys)
     }
 
-    /// Returns the point of a sample, counted from 0: a number between 0 and 1, exclusive, for each key.
+    /// Point of a sample, counted from 0: a number between 0 and 1, exclusive, for each key.
     pub fn point(&self, sample: usize) -> Vec<f64> {
         let keys = self.keys.len();
         // A case after the samples has the values of sample `like`, except for the key `other`.
@@ -260,7 +260,7 @@ impl Uncertain {
         (0..keys).map(at).collect()
     }
 
-    /// Returns a coordinate of a point of the sequence.
+    /// Coordinate of a point of the sequence.
     fn coordinate(&self, index: usize, dimension: usize) -> f64 {
         // The sequence has numbers of 24 bits. The middle of the interval that is rounded down to such a number is used.
         const HALF_BIT: f64 = 0.5 / (1_u32 << 24) as f64;
@@ -269,13 +269,13 @@ impl Uncertain {
         f64::from(part) + HALF_BIT
     }
 
-    /// Returns the values of a sample, counted from 0, in the order of the keys.
+    /// Values of a sample, counted from 0, in the order of the keys.
     pub fn values(&self, sample: usize) -> Vec<f64> {
         let parts = self.point(sample).into_iter().zip(&self.keys);
         parts.map(|(part, key)| key.quantile(part)).collect()
     }
 
-    /// Returns the scenario with these values of the keys, without studies and without uncertain numbers.
+    /// Scenario with these values of the keys, without studies and without uncertain numbers.
     ///
     /// # Errors
     /// The reason why the scenario does not allow the values.
@@ -297,8 +297,10 @@ impl UncertainKey {
         let is_known = before.any(|other| parts(&other.key) == parts(&self.key));
         let wrong = "is the same as a key before it; leave one out";
         ensure(!is_known, || wrong)?;
-        let own = known.iter().find_map(|known| number(known, &self.key));
-        let own = own.unwrap_or_default();
+        let own = known
+            .iter()
+            .find_map(|known| number(known, &self.key))
+            .unwrap_or_default();
         self.own = own.as_f64();
         ensure(!own.is_i64() && !own.is_u64(), || {
             format!(
@@ -322,8 +324,9 @@ impl UncertainKey {
         let largest = self.quantile(0.0).abs().max(self.quantile(1.0).abs());
         for part in PROBED {
             // A bound that differs from zero by rounding errors only is zero.
-            let value = Some(self.quantile(part)).filter(|value| value.abs() > 1e-12 * largest);
-            let value = value.unwrap_or(0.0);
+            let value = Some(self.quantile(part))
+                .filter(|value| value.abs() > 1e-12 * largest)
+                .unwrap_or(0.0);
             let allowed = scenario.with_values(&[(&self.key, value)]);
             let value = plain(value);
             allowed.map_err(|wrong| {

@@ -6,7 +6,7 @@ use super::prelude::*;
 use super::{ReadOptions, Scenario, Series, StudyTable, change, table};
 
 impl Scenario {
-    /// Returns the scenario with other numbers for some keys, each named `table.key`, without studies and check. Records are not read again.
+    /// Scenario with other numbers for some keys, each named `table.key`, without studies and check. Records are not read again.
     ///
     /// # Errors
     /// The fault of the keys or of the changed scenario.
@@ -55,7 +55,7 @@ impl Scenario {
     }
 }
 
-/// Returns true if setting one key sets or replaces the other.
+/// True if setting one key sets or replaces the other.
 pub(crate) fn replaces(new: &str, other: &str) -> bool {
     let ([outer @ .., new], [others @ .., other]) = (&parts(new)[..], &parts(other)[..]) else {
         return false;
@@ -79,7 +79,7 @@ fn check_key(key: &str) -> Result<(), String> {
     )
 }
 
-/// Returns a number as a value. Whole numbers may be counts.
+/// Number as a value. Whole numbers may be counts.
 fn value_of(number: f64) -> Value {
     match number.fract() == 0.0 && number.abs() < 1e15 {
         true => Value::from(number as i64),
@@ -87,18 +87,18 @@ fn value_of(number: f64) -> Value {
     }
 }
 
-/// Returns true if a text is a TOML key without quotation marks.
+/// True if a text is a TOML key without quotation marks.
 fn is_name(text: &str) -> bool {
     let is_letter = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-');
     !text.is_empty() && text.chars().all(is_letter)
 }
 
-/// Returns the parts of a key `table.key`.
+/// Parts of a key `table.key`.
 pub(super) fn parts(key: &str) -> Vec<&str> {
     key.split('.').map(str::trim).collect()
 }
 
-/// Returns a value of some tables by its key; entries of lists are counted from 1.
+/// Value of some tables by its key; entries of lists are counted from 1.
 pub(super) fn value<'v>(tables: &'v Value, key: &str) -> Option<&'v Value> {
     parts(key)
         .iter()
@@ -108,7 +108,7 @@ pub(super) fn value<'v>(tables: &'v Value, key: &str) -> Option<&'v Value> {
         })
 }
 
-/// Returns a value of a resolved scenario by its key. The thickness of a circular arch is computed from the ratio in the resolved scenario.
+/// Value of a resolved scenario by its key. The thickness of a circular arch is computed from the ratio in the resolved scenario.
 pub(super) fn number(resolved: &Value, key: &str) -> Option<Value> {
     if let Some(found) = value(resolved, key) {
         return Some(found.clone());

@@ -79,7 +79,7 @@ named! {
 }
 
 impl Language {
-    /// Returns true for English, which resolved scenarios and summaries leave out.
+    /// True for English, which resolved scenarios and summaries leave out.
     pub const fn is_english(&self) -> bool {
         matches!(self, Self::English)
     }
@@ -126,7 +126,7 @@ pub enum FreeStanding {
 }
 
 impl FreeStanding {
-    /// Returns the period in seconds, for masonry of this density in kg/m3: `kappa lambda L sqrt(W / (E g))`, with `lambda = L / t` and the
+    /// Period in seconds, for masonry of this density in kg/m3: `kappa lambda L sqrt(W / (E g))`, with `lambda = L / t` and the
     /// weight per volume `W` [C8.7.1.7].
     pub fn period_s(&self, density_kg_m3: f64) -> f64 {
         match *self {
@@ -195,7 +195,7 @@ const RECORDS: [(LimitState, &str); 2] = [
 const LEAST_RECORDS: usize = 3;
 
 impl Records {
-    /// Returns the keys of the limit states that have records.
+    /// Keys of the limit states that have records.
     pub fn keys(&self) -> Vec<&'static str> {
         let given = RECORDS
             .iter()
@@ -203,12 +203,12 @@ impl Records {
         given.map(|(_, key)| *key).collect()
     }
 
-    /// Returns the records of a limit state.
+    /// Records of a limit state.
     pub fn records_of(&self, state: LimitState) -> &[Series] {
         self.0.get(&state).map_or(&[], Vec::as_slice)
     }
 
-    /// Returns the records of all limit states.
+    /// Records of all limit states.
     pub(super) fn all_records(&self) -> impl Iterator<Item = &Series> + Clone {
         self.0.values().flatten()
     }
@@ -368,7 +368,7 @@ pub enum SiteTopography {
 }
 
 impl SiteTopography {
-    /// Returns the coefficient `S_T`.
+    /// Coefficient `S_T`.
     pub const fn factor(&self) -> f64 {
         match self {
             Self::Topography(category) => category.factor(),
@@ -438,7 +438,7 @@ pub struct StateRule {
 }
 
 impl StateRule {
-    /// Returns the rule of the Circolare 7/2019 (C8.7.1.2.1.6 and .8) for a confidence factor; `None` for SLD.
+    /// Rule of the Circolare 7/2019 (C8.7.1.2.1.6 and .8) for a confidence factor; `None` for SLD.
     pub const fn circolare(state: LimitState, confidence_factor: f64) -> Option<Self> {
         let (part_of_d0, period_factor, damping_percent) = match state {
             LimitState::Sld => return None,
@@ -510,7 +510,7 @@ impl Demand {
         Ok(demand)
     }
 
-    /// Returns the checked limit states.
+    /// Checked limit states.
     pub fn limit_states(&self) -> impl Iterator<Item = LimitState> {
         let states = LimitState::ALL.iter().copied();
         states.filter(move |state| match self {
@@ -583,10 +583,9 @@ impl Building {
         Ok(Self { modes })
     }
 
-    /// Returns the modes at a limit state.
+    /// Modes at a limit state.
     pub fn modes_at(&self, state: LimitState) -> Vec<Mode> {
-        let modes = self.modes.iter();
-        let modes = modes.filter_map(|mode| {
+        let modes = self.modes.iter().filter_map(|mode| {
             let at_state = mode.states.get(&state)?;
             Some(Mode {
                 t_s: at_state.t_s,

@@ -37,7 +37,7 @@ impl<R> Comparison<R> {
         }
     }
 
-    /// Returns the results of each model, in the order in which they were computed.
+    /// Results of each model, in the order in which they were computed.
     pub fn models(&self) -> impl Iterator<Item = &R> {
         self.models.0.iter().map(|(_, results)| results)
     }

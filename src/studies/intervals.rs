@@ -10,7 +10,7 @@ use std::f64::consts::FRAC_2_PI;
 use super::statistics::{RandomNumbers, ascending, quantile};
 use crate::bisection::{Width, bisect};
 
-/// Returns the rank, from 1, of the value that is the lower 95 % confidence limit of the 5 % fractile, among `count` independent values in ascending
+/// Rank, from 1, of the value that is the lower 95 % confidence limit of the 5 % fractile, among `count` independent values in ascending
 /// order: the largest rank `k` for which at most `k - 1` of the values are below the fractile with a probability of at most 5 %. `None` if there are too
 /// few values, so that even the lowest may be above the fractile.
 pub(super) fn rank_of_lower_limit(count: usize) -> Option<usize> {
@@ -34,7 +34,7 @@ pub(super) const LOW_PART: f64 = 0.05;
 /// Smallest number of values that have such a rank.
 pub(super) const LEAST_FOR_LIMIT: usize = 59;
 
-/// Returns the ends of the interval of a dispersion of maximum likelihood from `count` independent values; `None` with fewer than two.
+/// Ends of the interval of a dispersion of maximum likelihood from `count` independent values; `None` with fewer than two.
 pub(super) fn dispersion_interval(dispersion: f64, count: usize) -> Option<[f64; 2]> {
     let degrees = count.checked_sub(1).filter(|degrees| *degrees > 0)?;
     // The sum of squares of `count` logarithms about their mean.
@@ -43,7 +43,7 @@ pub(super) fn dispersion_interval(dispersion: f64, count: usize) -> Option<[f64;
     Some([end(0.975), end(0.025)])
 }
 
-/// Returns the ends of the interval of a median from `count` independent values with this dispersion; `None` with fewer than two.
+/// Ends of the interval of a median from `count` independent values with this dispersion; `None` with fewer than two.
 pub(super) fn median_interval(median: f64, dispersion: f64, count: usize) -> Option<[f64; 2]> {
     let degrees = count.checked_sub(1).filter(|degrees| *degrees > 0)?;
     let margin = student_quantile(degrees) * dispersion / (degrees as f64).sqrt();
@@ -85,13 +85,13 @@ impl FractileIntervals {
         })
     }
 
-    /// Returns the ends of the interval of a dispersion.
+    /// Ends of the interval of a dispersion.
     pub(super) fn dispersion_interval(&self, dispersion: f64) -> [f64; 2] {
         let [low, high] = self.ratios;
         [dispersion / high, dispersion / low]
     }
 
-    /// Returns the ends of the interval of a median with this dispersion.
+    /// Ends of the interval of a median with this dispersion.
     pub(super) fn median_interval(&self, median: f64, dispersion: f64) -> [f64; 2] {
         let margin = self.margin * dispersion;
         [-margin, margin].map(|margin| median * libm::exp(margin))
@@ -106,12 +106,12 @@ fn solve(value: f64, mut high: f64, function: impl Fn(f64) -> f64) -> f64 {
     bisect(0.0, high, Width::Rounding, |at| function(at) >= value).1
 }
 
-/// Returns the quantile of the chi-square distribution.
+/// Quantile of the chi-square distribution.
 pub(super) fn chi_square_quantile(part: f64, degrees: usize) -> f64 {
     solve(part, degrees as f64, |x| chi_square_probability(x, degrees))
 }
 
-/// Returns the probability that a chi-square variable is at most `x`: a finite sum for whole degrees of freedom (Abramowitz and Stegun, 26.4.4 and
+/// Probability that a chi-square variable is at most `x`: a finite sum for whole degrees of freedom (Abramowitz and Stegun, 26.4.4 and
 /// 26.4.5).
 fn chi_square_probability(x: f64, degrees: usize) -> f64 {
     let half = 0.5 * x;
@@ -126,12 +126,12 @@ fn chi_square_probability(x: f64, degrees: usize) -> f64 {
     1.0 - beyond - terms.sum::<f64>()
 }
 
-/// Returns the quantile of 97.5 % of Student's distribution.
+/// Quantile of 97.5 % of Student's distribution.
 pub(super) fn student_quantile(degrees: usize) -> f64 {
     solve(0.95, 2.0, |t| student_probability(t, degrees))
 }
 
-/// Returns the probability that the absolute value of a variable of Student is at most `t`: a finite sum (Abramowitz and Stegun, 26.7.3 and 26.7.4).
+/// Probability that the absolute value of a variable of Student is at most `t`: a finite sum (Abramowitz and Stegun, 26.7.3 and 26.7.4).
 fn student_probability(t: f64, degrees: usize) -> f64 {
     let (sine, cosine) = {
         let hypotenuse = (t * t + degrees as f64).sqrt();
@@ -361,8 +361,9 @@ mod tests {
                 };
                 let (rows, columns) = (normals(records, of_record), normals(samples, of_sample));
                 let pairs = normals(records * samples, of_pair);
-                let values = pairs.iter().enumerate();
-                let values = values
+                let values = pairs
+                    .iter()
+                    .enumerate()
                     .map(|(index, pair)| rows[index / samples] + columns[index % samples] + pair);
                 let values = ascending(values);
                 let [low, middle, high] = FRACTILES.map(|part| quantile(&values, part).unwrap());

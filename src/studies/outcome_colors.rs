@@ -78,14 +78,14 @@ impl OutcomeColor {
         Self::new(FAILED, "failed", color::BLACK),
     ];
 
-    /// Returns the colour of a case.
+    /// Colour of a case.
     pub(crate) fn of_result(result: &Result<Ending, NoHistory>) -> Self {
         let ending = result.as_ref().ok();
         let impacts = ending.and_then(Ending::impacts_of_all_hinges);
         Self::of(outcome_name(result), impacts)
     }
 
-    /// Returns the colour of an outcome. It depends on the number of impacts before overturning if all hinges close at once;
+    /// Colour of an outcome. It depends on the number of impacts before overturning if all hinges close at once;
     /// landings of free hinges come in cascades, and their number does not matter.
     pub(crate) fn of(outcome: &str, impacts: Option<usize>) -> Self {
         let name = match (outcome, impacts) {
@@ -112,7 +112,7 @@ pub(crate) fn keys(palette: &[OutcomeColor], colors: &[OutcomeColor]) -> Vec<Key
 mod tests {
     use super::*;
 
-    /// Returns a colour in the CIELAB space (D65): lightness, green to red, and blue to yellow.
+    /// Colour in the CIELAB space (D65): lightness, green to red, and blue to yellow.
     fn lab(fill: &str) -> [f64; 3] {
         let channel = |at: usize| {
             let value = f64::from(u8::from_str_radix(&fill[at..at + 2], 16).unwrap()) / 255.0;

@@ -34,22 +34,22 @@ impl Shard {
     /// All cases.
     pub const WHOLE: Self = Self { index: 1, count: 1 };
 
-    /// Returns the indices of the cases of this shard, in a study of `all` cases.
+    /// Indices of the cases of this shard, in a study of `all` cases.
     pub fn cases(self, all: usize) -> impl Iterator<Item = usize> {
         (self.index - 1..all).step_by(self.count)
     }
 
-    /// Returns true if the case with this index belongs to the shard.
+    /// True if the case with this index belongs to the shard.
     pub const fn has_case(self, case: usize) -> bool {
         case % self.count == self.index - 1
     }
 
-    /// Returns true if the shard contains all cases.
+    /// True if the shard contains all cases.
     pub const fn is_whole(self) -> bool {
         self.count == 1
     }
 
-    /// Returns the name of the part file, such as `map-2-of-4.part`.
+    /// Name of the part file, such as `map-2-of-4.part`.
     pub fn file_name(self, study: &str) -> String {
         if self.is_whole() {
             format!("{study}.part")
@@ -129,12 +129,12 @@ pub struct Header {
 }
 
 impl Header {
-    /// Returns the number of cases of the shard.
+    /// Number of cases of the shard.
     pub fn shard_cases(&self) -> usize {
         self.shard.cases(self.cases).count()
     }
 
-    /// Returns the first difference from another header, in words; `None` if both belong to the same part.
+    /// First difference from another header, in words; `None` if both belong to the same part.
     fn first_difference(&self, other: &Self) -> Option<String> {
         self.difference(other).or_else(|| {
             let (here, there) = (self.shard, other.shard);
@@ -142,7 +142,7 @@ impl Header {
         })
     }
 
-    /// Returns the first input that only one of the two headers has, in words.
+    /// First input that only one of the two headers has, in words.
     fn other_input(&self, other: &Self) -> Option<String> {
         fn key_only_here<'h>(here: &'h Header, there: &Header) -> Option<&'h str> {
             let input = here.inputs.iter().find(|i| !there.inputs.contains(i))?;
@@ -159,14 +159,15 @@ impl Header {
         }
     }
 
-    /// Returns the first difference from another header apart from the shard, in words; `None` if both belong to the same study.
+    /// First difference from another header apart from the shard, in words; `None` if both belong to the same study.
     pub fn difference(&self, other: &Self) -> Option<String> {
         let differ = |what: &str, here: &str, there: &str| {
             (here != there).then(|| format!("{what} {there:?} instead of {here:?}"))
         };
         let mut lines = self.scenario.lines().zip(other.scenario.lines());
-        let lines = lines.find(|(here, there)| here != there);
-        let lines = lines.unwrap_or((&self.scenario, &other.scenario));
+        let lines = lines
+            .find(|(here, there)| here != there)
+            .unwrap_or((&self.scenario, &other.scenario));
         let [options, other_options] = [self, other].map(|header| header.options.to_string());
         let (here, there) = (self.cases, other.cases);
         let all = [
@@ -244,7 +245,7 @@ fn unusable_part(path: &Path, problem: impl Display) -> PartError {
     PartErrorKind::Unusable.error(path, problem)
 }
 
-/// Returns an error for a path that exists but is not a file: reading a pipe would never end.
+/// Error for a path that exists but is not a file: reading a pipe would never end.
 fn check_file(path: &Path) -> Result<(), PartError> {
     match fs::metadata(path) {
         Ok(found) if !found.is_file() => Err(unusable_part(path, "is not a file")),
@@ -261,9 +262,8 @@ struct Lines<'p> {
 impl<'p> Lines<'p> {
     fn of(path: &'p Path) -> Result<Self, PartError> {
         check_file(path)?;
-        let bytes = fs::read(path);
-        let mut bytes =
-            bytes.map_err(|error| unusable_part(path, format!("cannot be read: {error}")))?;
+        let mut bytes = fs::read(path)
+            .map_err(|error| unusable_part(path, format!("cannot be read: {error}")))?;
         // An incomplete last line was being written when the program was killed.
         let last = bytes.iter().rposition(|byte| *byte == b'\n');
         let begins_header = bytes.starts_with(HEADER) || HEADER.starts_with(&bytes);
@@ -275,7 +275,7 @@ impl<'p> Lines<'p> {
         Ok(Self { path, text })
     }
 
-    /// Returns the header; `None` if the program was killed before it wrote the header.
+    /// Header; `None` if the program was killed before it wrote the header.
     fn header(&self) -> Result<Option<Header>, PartError> {
         let first = self.text.lines().next();
         let header = first.map(|first| match serde_json::from_str::<Header>(first) {
@@ -297,13 +297,13 @@ impl<'p> Lines<'p> {
         header.transpose()
     }
 
-    /// Returns the header, or an error if the file has none.
+    /// Header, or an error if the file has none.
     fn known_header(&self) -> Result<Header, PartError> {
         self.header()?
             .ok_or_else(|| unusable_part(self.path, "is empty"))
     }
 
-    /// Returns the number of rows, damaged ones included.
+    /// Number of rows, damaged ones included.
     fn count(&self) -> usize {
         self.text.lines().skip(1).count()
     }
@@ -341,7 +341,7 @@ pub fn read_header(path: &Path) -> Result<Header, PartError> {
     Lines::of(path)?.known_header()
 }
 
-/// Returns the number of complete rows in a file; `None` if the file is not a part file.
+/// Number of complete rows in a file; `None` if the file is not a part file.
 pub fn rows_in(path: &Path) -> Option<usize> {
     let lines = Lines::of(path).ok()?;
     lines.header().ok()?;
@@ -432,7 +432,7 @@ impl PartFile {
         Ok((part, rows))
     }
 
-    /// Returns the path of the file.
+    /// Path of the file.
     pub fn path(&self) -> &Path {
         &self.path
     }

@@ -132,13 +132,17 @@ impl ModelSummary {
 /// When a value is not finite.
 pub fn results(all: &[(&Scenario, &Results)], figure: Figure) -> Result<Results, OutputError> {
     let (scenario, _) = all[0];
-    let title = scenario.title.as_deref();
-    let title = title.unwrap_or("Largest rotations of several models");
-    let peaks = all.iter().map(|(scenario, found)| {
-        let known = found.largest_rotations_rad.iter().copied().flatten();
-        (scenario.motion.kind.label, known.collect::<Vec<f64>>())
-    });
-    let peaks: Vec<_> = peaks.collect();
+    let title = scenario
+        .title
+        .as_deref()
+        .unwrap_or("Largest rotations of several models");
+    let peaks: Vec<_> = all
+        .iter()
+        .map(|(scenario, found)| {
+            let known = found.largest_rotations_rad.iter().copied().flatten();
+            (scenario.motion.kind.label, known.collect::<Vec<f64>>())
+        })
+        .collect();
     let models: Vec<ModelPeaks<'_>> = peaks.iter().map(|(name, all)| (*name, &all[..])).collect();
     let distributions: Vec<Distribution<'_>> = models
         .iter()
@@ -168,8 +172,11 @@ pub fn results(all: &[(&Scenario, &Results)], figure: Figure) -> Result<Results,
         .with_file("peaks.svg", draw(figure, &[]));
     let mut cases = PageCases::default();
     for ((_, found), (model, distribution)) in all.iter().zip(&distributions) {
-        let known = found.largest_rotations_rad.iter().enumerate();
-        let known = known.filter_map(|(row, peak)| Some(((*peak)?, row)));
+        let known = found
+            .largest_rotations_rad
+            .iter()
+            .enumerate()
+            .filter_map(|(row, peak)| Some(((*peak)?, row)));
         let mut ranked: Vec<(f64, usize)> = known.collect();
         ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
         let first = cases.add_texts_of(&found.cases);
@@ -180,9 +187,10 @@ pub fn results(all: &[(&Scenario, &Results)], figure: Figure) -> Result<Results,
         }
     }
     let overturned = report.models.iter();
-    let overturned =
-        overturned.map(|one| format!("{}: {} of {}", one.model, one.overturned, one.cases));
-    let overturned = overturned.collect::<Vec<_>>().join(", ");
+    let overturned = overturned
+        .map(|one| format!("{}: {} of {}", one.model, one.overturned, one.cases))
+        .collect::<Vec<_>>()
+        .join(", ");
     let own = format!("overturned cases count as infinite and have no mark ({overturned})");
     let kinds: Vec<&ModelKind> = all.iter().map(|(one, _)| one.motion.kind).collect();
     let still = scenario.with_ground(None);
@@ -201,13 +209,14 @@ fn draw(figure: Figure, title: &str, distributions: &[Distribution<'_>], spots: 
     let peaks = distributions.iter().flat_map(|(_, all)| all);
     let largest = peaks.map(|at| at.0).fold(1e-3, f64::max);
     let x = Scale::exactly(0.0, 1.05 * largest, figure.ticks(8));
-    let curves = distributions.iter().zip(CURVES);
-    let curves = curves
+    let curves = distributions
+        .iter()
+        .zip(CURVES)
         .map(|((name, all), stroke)| Mark::staircase(*name, stroke, (x, 0.0), all.iter().copied()));
     let label = "largest rotation (rad); overturned cases count as infinite";
     let y = Scale::exactly(0.0, 1.0, 5);
-    let chart = Chart::new(405.0, (label, x), ("share with at most this rotation", y));
-    let mut chart = chart.with_named(curves.collect());
+    let mut chart = Chart::new(405.0, (label, x), ("share with at most this rotation", y))
+        .with_named(curves.collect());
     let rows = distributions.iter().flat_map(|(_, all)| all);
     let marks = rows.zip(spots).map(|(at, spot)| spot.mark(*at));
     chart.marks.extend(marks);

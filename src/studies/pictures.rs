@@ -43,7 +43,7 @@ struct DrawnMechanism<'a> {
 }
 
 impl DrawnMechanism<'_> {
-    /// Returns the rotations in words.
+    /// Rotations in words.
     fn rotations(&self) -> String {
         let names = ["left", "middle", "right"].iter().zip(&self.poses);
         let all = names.map(|(name, pose)| format!("{name} {:+.3}", pose.rotation_rad()));
@@ -52,7 +52,7 @@ impl DrawnMechanism<'_> {
 }
 
 impl<'a> FourLinkStructure<'a> {
-    /// Returns the mechanism after this number of impacts, opened for a picture; `None` if an impact before it stops the structure.
+    /// Mechanism after this number of impacts, opened for a picture; `None` if an impact before it stops the structure.
     fn drawn_mechanism(&self, impacts: usize) -> Option<DrawnMechanism<'a>> {
         let link = self.model.chain_from(self.first).link(impacts)?;
         let sway = self.first.after(impacts);
@@ -69,7 +69,7 @@ impl<'a> FourLinkStructure<'a> {
         })
     }
 
-    /// Returns the profile in the frame of a sway to this side.
+    /// Profile in the frame of a sway to this side.
     fn profile(&self, sway: Sway) -> &'a dyn Profile {
         let chain = self.model.chain_from(self.first);
         chain.profile(usize::from(sway != self.first))
@@ -80,7 +80,7 @@ impl<'a> FourLinkStructure<'a> {
         Vector2::new(sway.sign() * point.x, point.y) * self.model.length_m()
     }
 
-    /// Returns the height at which the structure is drawn, in pixels, if its larger dimension is `width_px`.
+    /// Height at which the structure is drawn, in pixels, if its larger dimension is `width_px`.
     fn height_px(&self, width_px: f64) -> f64 {
         let [low_m, high_m] = self.scene.blocks_m();
         let size_m = high_m - low_m;
@@ -144,8 +144,8 @@ impl PlacedStructure<'_> {
             let named = Text::from(format!("{letter}{mark}"));
             let half = Vector2::new(0.5 * named.px() + 2.0, 7.5);
             let middle = at + Vector2::new(outward.x, -outward.y) * (side * 17.0);
-            let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
-            let corners = corners.map(|(x, y)| middle + half.component_mul(&Vector2::new(x, y)));
+            let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
+                .map(|(x, y)| middle + half.component_mul(&Vector2::new(x, y)));
             drawing.polygon("paper", corners, "#ffffff", Stroke::new("none", 0.0, ""));
             let text = middle + Vector2::new(0.0, 4.5);
             drawing.label(text, Anchor::Middle, 0.0, named);
@@ -191,19 +191,25 @@ impl PlacedStructure<'_> {
         let profile = self.of.profile(sway);
         let closing = closing_field(&before.link.mechanism, profile);
         let field = after.link.mechanism.field();
-        let cuts = closing.minus(&field).cuts_rad.into_iter();
-        let mut cuts: Vec<f64> = cuts.map(|cut| sway.convert_section(profile, cut)).collect();
+        let mut cuts: Vec<f64> = closing
+            .minus(&field)
+            .cuts_rad
+            .into_iter()
+            .map(|cut| sway.convert_section(profile, cut))
+            .collect();
         cuts.sort_by(f64::total_cmp);
         cuts.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
-        let hinges = cuts.iter().map(|section| {
-            let (angle_rad, edge) = (*section, Edge::Intrados);
-            let in_ring = Hinge::Section { angle_rad, edge };
-            let edge = Some(edge);
-            let at_joint = seen.joint(angle_rad);
-            let hinge = at_joint.map_or(in_ring, |joint| Hinge::Joint { joint, edge });
-            open_at(hinge, Vector2::zeros())
-        });
-        let hinges: Vec<OpenHinge> = hinges.collect();
+        let hinges: Vec<OpenHinge> = cuts
+            .iter()
+            .map(|section| {
+                let (angle_rad, edge) = (*section, Edge::Intrados);
+                let in_ring = Hinge::Section { angle_rad, edge };
+                let edge = Some(edge);
+                let at_joint = seen.joint(angle_rad);
+                let hinge = at_joint.map_or(in_ring, |joint| Hinge::Joint { joint, edge });
+                open_at(hinge, Vector2::zeros())
+            })
+            .collect();
         let (view, greys) = (self.view(&[], &hinges), ["#eeeeee", "#e0e0e0"]);
         view.draw_behind(drawing);
         view.draw_blocks(drawing, |_, body| match body {
@@ -226,7 +232,7 @@ impl PlacedStructure<'_> {
         }
     }
 
-    /// Returns the position of the number of a body: outside the extrados of a ring. In a row it is inside the intrados, midway between two
+    /// Position of the number of a body: outside the extrados of a ring. In a row it is inside the intrados, midway between two
     /// joints, because buttresses stand behind the extrados.
     fn number_position(&self, profile: &dyn Profile, section: f64) -> Vector2<f64> {
         let out = 30.0 / (self.place.scale * self.of.model.length_m());

@@ -45,7 +45,7 @@ pub(super) struct SlipWords {
 }
 
 impl SlipWords {
-    /// Returns the words for a scenario.
+    /// Words for a scenario.
     pub(super) fn of(scenario: &Scenario) -> Self {
         let (structure, motion) = (&scenario.structure, &scenario.motion);
         let arch = structure.circular_arch();
@@ -60,7 +60,7 @@ impl SlipWords {
         }
     }
 
-    /// Returns the condition of an answer whose histories require this coefficient. `study` is the command of the study with its options, without
+    /// Condition of an answer whose histories require this coefficient. `study` is the command of the study with its options, without
     /// `archrock`. `None` if stone certainly has the coefficient, or without one: if joints slip or are elastic.
     pub(super) fn condition(&self, demand: Option<f64>, study: &str) -> Option<FrictionCondition> {
         let coefficient = demand.filter(|demand| *demand > STONE_FRICTION[0])?;
@@ -89,12 +89,12 @@ pub struct FrictionCondition {
 }
 
 impl FrictionCondition {
-    /// Returns whether joints of stone may slip under weaker motions.
+    /// Whether joints of stone may slip under weaker motions.
     fn may_slip(&self) -> bool {
         may_slip(self.coefficient)
     }
 
-    /// Returns the words that follow an answer: `if its joints have a friction coefficient of 0.54`; empty if joints may slip.
+    /// Words that follow an answer: `if its joints have a friction coefficient of 0.54`; empty if joints may slip.
     fn clause(&self) -> String {
         match self.may_slip() {
             true => String::new(),
@@ -106,7 +106,7 @@ impl FrictionCondition {
         }
     }
 
-    /// Returns the condition in words; `need` is a verb with its subject.
+    /// Condition in words; `need` is a verb with its subject.
     fn in_words(&self, need: &str) -> String {
         let condition = friction_in_words(self.coefficient, need);
         if !self.may_slip() {
@@ -132,7 +132,7 @@ fn may_slip(coefficient: f64) -> bool {
     coefficient > SLIPS_ABOVE
 }
 
-/// Returns a needed friction coefficient in words, and whether joints of stone may slip under weaker motions. `need` is a verb with its subject.
+/// Needed friction coefficient in words, and whether joints of stone may slip under weaker motions. `need` is a verb with its subject.
 fn friction_in_words(coefficient: f64, need: &str) -> String {
     let need = match coefficient > MOST_FRICTION {
         true => need.trim_end_matches(" up to"),
@@ -146,7 +146,7 @@ fn friction_in_words(coefficient: f64, need: &str) -> String {
     format!("{before}{need} {}", format_friction(coefficient))
 }
 
-/// Returns the friction coefficient that a history needs, in words; `None` if stone certainly has it.
+/// Friction coefficient that a history needs, in words; `None` if stone certainly has it.
 pub(super) fn condition_of(demand: Option<f64>) -> Option<String> {
     let demand = demand.filter(|demand| *demand > STONE_FRICTION[0])?;
     Some(friction_in_words(demand, NEEDS))
@@ -155,7 +155,7 @@ pub(super) fn condition_of(demand: Option<f64>) -> Option<String> {
 /// Coefficient of friction above which values are not printed. No stone has them; they occur at almost unloaded joints.
 pub(super) const MOST_FRICTION: f64 = 10.0;
 
-/// Returns a needed coefficient of friction as text, rounded up: with less, joints slip.
+/// Needed coefficient of friction as text, rounded up: with less, joints slip.
 fn format_friction(coefficient: f64) -> String {
     match coefficient > MOST_FRICTION {
         true => format!("more than {MOST_FRICTION}"),
@@ -208,7 +208,7 @@ pub struct ModelAnswer {
     restitution: Option<String>,
 }
 
-/// Returns the restitution that one rigid block assumes, in words that follow its name; `None` for other models.
+/// Restitution that one rigid block assumes, in words that follow its name; `None` for other models.
 pub(super) fn restitution_in_words(scenario: &Scenario) -> Option<String> {
     let structure = &scenario.structure;
     let column = structure
@@ -269,7 +269,7 @@ impl ModelAnswer {
         }
     }
 
-    /// Returns the answer with the restitution that it assumes, in words.
+    /// Answer with the restitution that it assumes, in words.
     pub fn with_restitution(self, restitution: Option<String>) -> Self {
         Self {
             restitution,
@@ -277,7 +277,7 @@ impl ModelAnswer {
         }
     }
 
-    /// Returns the answer of a scenario itself, which may not be quoted if its numbers are uncertain.
+    /// Answer of a scenario itself, which may not be quoted if its numbers are uncertain.
     pub(super) fn unless_uncertain(self, is_uncertain: bool) -> Self {
         match is_uncertain {
             false => self,
@@ -288,7 +288,7 @@ impl ModelAnswer {
         }
     }
 
-    /// Returns the answer of a single history that survives with this peak rotation over that of overturning. It is none for four links of an arch from
+    /// Answer of a single history that survives with this peak rotation over that of overturning. It is none for four links of an arch from
     /// 40 % on, because most of them overturn with free hinges.
     pub fn surviving_with(self, peak_over_critical: f64) -> Self {
         let is_arch = self.model == &FOUR_LINKS && self.label == self.model.label;
@@ -305,13 +305,13 @@ impl ModelAnswer {
         Self { answer, ..self }
     }
 
-    /// Returns the answer with the friction on which it depends.
+    /// Answer with the friction on which it depends.
     pub fn with_friction(self, friction: Option<FrictionCondition>) -> Self {
         Self { friction, ..self }
     }
 }
 
-/// Returns the directions of the ground motion for which an answer holds, in words that follow the answer. `governing` is the direction of the worse
+/// Directions of the ground motion for which an answer holds, in words that follow the answer. `governing` is the direction of the worse
 /// result, if both are computed.
 pub(super) const fn directions_in_words(
     directions: Directions,
@@ -327,7 +327,7 @@ pub(super) const fn directions_in_words(
     }
 }
 
-/// Returns the reason why four links of an arch are outside their model; `None` if they are inside.
+/// Reason why four links of an arch are outside their model; `None` if they are inside.
 fn outside_four_links(excess_ratio: Option<f64>) -> Option<String> {
     let why = match excess_ratio {
         None => "their thrust line was not followed".to_owned(),
@@ -342,7 +342,7 @@ fn outside_four_links(excess_ratio: Option<f64>) -> Option<String> {
 /// Begin of a quote without an answer.
 pub(super) const NO_ANSWER: &str = "to quote: no answer";
 
-/// Returns the answer that may be quoted, in words; `None` without models.
+/// Answer that may be quoted, in words; `None` without models.
 pub fn quote_answers(answers: &[ModelAnswer]) -> Option<String> {
     let best = answers.iter().max_by_key(|one| one.model.rank())?;
     let label = best.label;
@@ -355,8 +355,11 @@ pub fn quote_answers(answers: &[ModelAnswer]) -> Option<String> {
     let clause = friction.map_or(String::new(), FrictionCondition::clause);
     let slip = friction.filter(|friction| friction.may_slip());
     let slip = slip.map_or(String::new(), |slip| format!("; {slip}"));
-    let restitution = best.restitution.iter();
-    let restitution: String = restitution.map(|words| format!(", {words}")).collect();
+    let restitution: String = best
+        .restitution
+        .iter()
+        .map(|words| format!(", {words}"))
+        .collect();
     Some(match &best.answer {
         Ok(answer) => {
             format!("to quote: {answer}{clause}, with {label}{restitution}{more}{slip}")

@@ -105,12 +105,12 @@ pub fn record(
     })
 }
 
-/// Returns a step without the rounding error of a mean: the time over the number of steps.
+/// Step without the rounding error of a mean: the time over the number of steps.
 fn without_error(step_s: f64) -> f64 {
     format!("{step_s:.11e}").parse().unwrap_or(step_s)
 }
 
-/// Returns format and unit of a record, in words.
+/// Format and unit of a record, in words.
 fn format(series: &Series) -> String {
     let format = match series.layout.wrapped {
         true => "table with several samples a row",

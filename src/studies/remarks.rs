@@ -78,7 +78,7 @@ struct StepRange {
 }
 
 impl StepRange {
-    /// Returns the range with one more step.
+    /// Range with one more step.
     fn with(range: Option<Self>, value: f64) -> Option<Self> {
         let ends = range.map_or((value, value), |Self { min, max }| {
             (min.min(value), max.max(value))
@@ -121,24 +121,24 @@ impl Remarks {
         }
     }
 
-    /// Returns warnings about the model of four links, and about histories without a verdict; `cases` are the histories in words.
+    /// Warnings about the model of four links, and about histories without a verdict; `cases` are the histories in words.
     pub(crate) fn warnings(&self, cases: &str) -> impl Iterator<Item = String> + use<> {
         let warnings = [self.model.in_words(cases), self.incomplete_in_words()];
         warnings.into_iter().flatten()
     }
 
-    /// Returns the number of histories that ended too early for a verdict, and the remedy, in words; `None` if the number is zero.
+    /// Number of histories that ended too early for a verdict, and the remedy, in words; `None` if the number is zero.
     pub(crate) fn incomplete_in_words(&self) -> Option<String> {
         no_verdict(self.histories_without_verdict, self.histories, "histories")
     }
 
-    /// Returns the number of failed cases, the first reason, and the file that lists the others, in words; `None` if no case failed.
+    /// Number of failed cases, the first reason, and the file that lists the others, in words; `None` if no case failed.
     pub(crate) fn failed_in_words(&self, file: &str) -> Option<String> {
         let failures = first_of(&self.failures, file)?;
         Some(format!("failed: {}; {failures}", self.failures.len()))
     }
 
-    /// Returns the first uncertain case and the file that lists the others, in words; `None` if no case is uncertain.
+    /// First uncertain case and the file that lists the others, in words; `None` if no case is uncertain.
     pub(crate) fn uncertain_in_words(&self, file: &str) -> Option<String> {
         let cases = first_of(&self.uncertain, file)?;
         Some(format!(
@@ -203,7 +203,7 @@ impl ModelCheck {
         }
     }
 
-    /// Returns the check with this number of further histories outside the model, whose excess is not known.
+    /// Check with this number of further histories outside the model, whose excess is not known.
     pub(crate) fn with_outside(self, outside: usize) -> Self {
         match outside {
             0 => self,
@@ -225,7 +225,7 @@ impl ModelCheck {
         self.largest_ratio = Some(self.largest_ratio.map_or(ratio, |most| most.max(ratio)));
     }
 
-    /// Returns the number of `cases` outside the model, or the largest excess of the thrust line, and the remedy, in words. `None` if the thrust line
+    /// Number of `cases` outside the model, or the largest excess of the thrust line, and the remedy, in words. `None` if the thrust line
     /// stays almost inside. The text names no options, because the Python package prints it too.
     pub(crate) fn in_words(&self, cases: &str) -> Option<String> {
         let (of, outside) = (self.of, self.outside?);
@@ -283,9 +283,10 @@ impl CaseSummary {
         warnings: impl IntoIterator<Item = String>,
     ) -> Self {
         let one_direction = one_direction(scenario);
-        let warnings = warnings.into_iter();
-        let warnings = warnings.chain(friction.friction_condition.clone());
-        let warnings = warnings.chain(one_direction.clone());
+        let warnings = warnings
+            .into_iter()
+            .chain(friction.friction_condition.clone())
+            .chain(one_direction.clone());
         Self {
             program: env!("CARGO_PKG_NAME").to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -300,7 +301,7 @@ impl CaseSummary {
     }
 }
 
-/// Returns the only direction of the ground motion that a study of many cases computes, in words; `None` if the structure has no second direction, or
+/// The only direction of the ground motion that a study of many cases computes, in words; `None` if the structure has no second direction, or
 /// both count.
 pub(crate) fn one_direction(scenario: &Scenario) -> Option<String> {
     let directions = scenario.simulation.direction;
@@ -315,13 +316,13 @@ pub(crate) fn one_direction(scenario: &Scenario) -> Option<String> {
     })
 }
 
-/// Returns the number of cases that ended too early for a verdict, and the remedy, in words; `None` if the number is zero.
+/// Number of cases that ended too early for a verdict, and the remedy, in words; `None` if the number is zero.
 pub(crate) fn no_verdict(incomplete: usize, of: usize, cases: &str) -> Option<String> {
     let what_to_do = Ending::INCOMPLETE;
     (incomplete > 0).then(|| format!("no verdict from {incomplete} of {of} {cases}; {what_to_do}"))
 }
 
-/// Returns the first remark, and the file that lists the others, in words; `None` without remarks.
+/// First remark, and the file that lists the others, in words; `None` without remarks.
 fn first_of(remarks: &[Remark], file: &str) -> Option<String> {
     let (first, others) = remarks.split_first()?;
     let listed = match others {
@@ -365,12 +366,12 @@ impl OutcomeCounts {
         Self(counts)
     }
 
-    /// Returns the number of all cases.
+    /// Number of all cases.
     pub(crate) fn total(&self) -> usize {
         self.0.values().sum()
     }
 
-    /// Returns true if cases still rock at the end.
+    /// True if cases still rock at the end.
     pub(crate) fn has_still_rocking(&self) -> bool {
         self.0.contains_key(STILL_ROCKING)
     }

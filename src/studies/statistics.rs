@@ -66,12 +66,12 @@ impl Share {
         })
     }
 
-    /// Returns true if the share itself says little: fewer than [`FEW`] samples have a verdict, or more than a tenth of all has none.
+    /// True if the share itself says little: fewer than [`FEW`] samples have a verdict, or more than a tenth of all has none.
     pub(super) const fn is_known_by_interval_only(&self) -> bool {
         self.of < FEW || 9 * self.no_verdict > self.of
     }
 
-    /// Returns the share and both ends of its interval.
+    /// Share and both ends of its interval.
     pub(super) const fn numbers(&self) -> [f64; 3] {
         [self.share, self.low, self.high]
     }
@@ -102,13 +102,15 @@ pub fn ascending(values: impl IntoIterator<Item = f64>) -> Vec<f64> {
 
 /// Sorts values with weights, given as `[value, weight]`, in ascending order of the values.
 pub fn ascending_weighted(values: impl IntoIterator<Item = [f64; 2]>) -> Vec<[f64; 2]> {
-    let values = values.into_iter().filter(|[_, weight]| *weight > 0.0);
-    let mut values: Vec<[f64; 2]> = values.collect();
+    let mut values: Vec<[f64; 2]> = values
+        .into_iter()
+        .filter(|[_, weight]| *weight > 0.0)
+        .collect();
     values.sort_by(|a, b| a[0].total_cmp(&b[0]));
     values
 }
 
-/// Returns the finite values in ascending order, each with the share of all weights up to it, from values with weights in any order.
+/// Finite values in ascending order, each with the share of all weights up to it, from values with weights in any order.
 pub(super) fn shares_up_to(values: impl IntoIterator<Item = [f64; 2]>) -> Vec<(f64, f64)> {
     let values = ascending_weighted(values);
     let all: f64 = values.iter().map(|[_, weight]| weight).sum();
@@ -245,12 +247,12 @@ impl RandomNumbers {
         mixed ^ (mixed >> 31)
     }
 
-    /// Returns a number below `count`.
+    /// Number below `count`.
     fn index(&mut self, count: usize) -> usize {
         ((u128::from(self.next_number()) * count as u128) >> 64) as usize
     }
 
-    /// Returns a number from the standard normal distribution (Box and Muller 1958).
+    /// Number from the standard normal distribution (Box and Muller 1958).
     pub(super) fn normal(&mut self) -> f64 {
         // The middle of one of 2^53 equal parts of 0 to 1.
         let [radius, angle] =

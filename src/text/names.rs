@@ -37,7 +37,7 @@ macro_rules! listed {
             /// All variants, in the order of their definition.
             pub const ALL: &[Self] = &[$(Self::$variant $({ $field: $value })?),+];
 
-            /// Returns the name in scenarios and results.
+            /// Name in scenarios and results.
             pub const fn name(self) -> &'static str {
                 match self { $(Self::$variant { .. } => $name,)+ }
             }

@@ -54,7 +54,7 @@ pub fn is_hidden(c: char) -> bool {
         )
 }
 
-/// Returns true if a character joins or separates the shapes of neighbouring letters, as in several scripts.
+/// True if a character joins or separates the shapes of neighbouring letters, as in several scripts.
 fn is_joiner(c: char) -> bool {
     matches!(c, '\u{200c}' | '\u{200d}')
 }

@@ -111,13 +111,13 @@ pub extern "C" fn compute() -> usize {
     keep(&answer)
 }
 
-/// Returns the place of the answer.
+/// Place of the answer.
 #[unsafe(no_mangle)]
 pub extern "C" fn answer() -> *const u8 {
     ANSWER.with_borrow(|answer| answer.as_ptr())
 }
 
-/// Returns the length of the answer in bytes.
+/// Length of the answer in bytes.
 #[unsafe(no_mangle)]
 pub extern "C" fn length() -> usize {
     ANSWER.with_borrow(Vec::len)
@@ -130,8 +130,7 @@ fn keep(answer: &Answer) -> usize {
 }
 
 fn answer_to(request: Request) -> Answer {
-    let files = request.files.into_iter();
-    let files = files.map(|(name, text)| (name, text.into_bytes()));
+    let files = request.files.into_iter().map(|(name, text)| (name, text.into_bytes()));
     let source = Source::of_text(&request.scenario, "scenario.toml").with_files(files);
     let kind = request.study.as_deref().map(StudyKind::of_name);
     let options = ReadOptions {

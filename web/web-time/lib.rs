@@ -7,12 +7,12 @@ pub use std::time::Duration;
 pub struct Instant;
 
 impl Instant {
-    /// Returns the only instant.
+    /// The only instant.
     pub const fn now() -> Self {
         Self
     }
 
-    /// Returns zero.
+    /// Zero.
     pub const fn elapsed(self) -> Duration {
         Duration::ZERO
     }

@@ -24,7 +24,7 @@ named! {
 }
 
 impl Direction {
-    /// Returns the direction in words.
+    /// Direction in words.
     pub const fn in_words(self) -> &'static str {
         match self {
             Self::AsGiven => "as given",
@@ -48,7 +48,7 @@ named! {
 }
 
 impl Directions {
-    /// Returns the direction of the scenario's ground motion, which is computed first.
+    /// Direction of the scenario's ground motion, which is computed first.
     pub const fn first(self) -> Direction {
         match self {
             Self::Both | Self::AsGiven => Direction::AsGiven,
@@ -56,7 +56,7 @@ impl Directions {
         }
     }
 
-    /// Returns whether a motion is computed in a second direction: both directions are requested, the ground moves horizontally, and the motion does
+    /// Whether a motion is computed in a second direction: both directions are requested, the ground moves horizontally, and the motion does
     /// not [cover](Model::covers_mirrored) the mirrored ground.
     pub fn has_second(self, model: &dyn Model, ground: &GroundMotion, request: &Request) -> bool {
         let is_alike = ground.right_foot().is_none() && request.initial.is_none();
@@ -151,7 +151,7 @@ impl Jobs for MirroredBack<'_> {
 }
 
 impl Outcome {
-    /// Returns the outcome of the mirrored motion.
+    /// Outcome of the mirrored motion.
     #[must_use]
     pub const fn mirrored(self) -> Self {
         match self {
@@ -162,7 +162,7 @@ impl Outcome {
 }
 
 impl Summary {
-    /// Returns the summary of the mirror image of the motion of a symmetric structure; `row` are its blocks, if it is a row.
+    /// Summary of the mirror image of the motion of a symmetric structure; `row` are its blocks, if it is a row.
     #[must_use]
     pub fn mirrored(mut self, row: Option<&Row>) -> Self {
         self.outcome = self.outcome.mirrored();
@@ -220,7 +220,7 @@ impl Repetition {
     /// Name of the repetition under the mirrored ground.
     pub const MIRRORED: &'static str = "mirrored";
 
-    /// Returns the repetition of a symmetric model under the mirrored ground.
+    /// Repetition of a symmetric model under the mirrored ground.
     pub(super) fn mirrored(model: impl Model + 'static) -> Self {
         Self {
             name: Self::MIRRORED,
@@ -228,7 +228,7 @@ impl Repetition {
         }
     }
 
-    /// Returns these repetitions; the first one is mirrored if the model [covers](Model::covers_mirrored) the mirrored ground by repetitions.
+    /// These repetitions; the first one is mirrored if the model [covers](Model::covers_mirrored) the mirrored ground by repetitions.
     pub(super) fn first_mirrored(
         mut repetitions: Vec<Self>,
         model: &(impl Model + Clone + 'static),

@@ -36,7 +36,7 @@ impl fmt::Display for FallEnd {
     }
 }
 
-/// Returns the end of the fall if it ends with this sample; `None` otherwise.
+/// End of the fall if it ends with this sample; `None` otherwise.
 pub(super) fn end_at(sample: &Sample) -> Option<FallEnd> {
     let turned = |rotation_rad: &f64| rotation_rad.abs() >= TURNED_RAD;
     let any = sample.rotations_rad.iter().any(turned);

@@ -41,7 +41,7 @@ pub enum Outcome {
 }
 
 impl Outcome {
-    /// Returns the side to which the structure overturned; `None` if it did not.
+    /// Side to which the structure overturned; `None` if it did not.
     pub const fn overturning_sway(self) -> Option<Sway> {
         match self {
             Self::Overturned(sway) => Some(sway),
@@ -49,7 +49,7 @@ impl Outcome {
         }
     }
 
-    /// Returns the outcome without the side of overturning.
+    /// Outcome without the side of overturning.
     pub const fn kind(self) -> OutcomeKind {
         match self {
             Self::NeverMoved => OutcomeKind::NeverMoved,
@@ -61,7 +61,7 @@ impl Outcome {
         }
     }
 
-    /// Returns the name in machine-readable results.
+    /// Name in machine-readable results.
     pub const fn name(self) -> &'static str {
         self.kind().name()
     }
@@ -86,7 +86,7 @@ named! {
 }
 
 impl OutcomeKind {
-    /// Returns the outcome, with the side to which the structure overturned.
+    /// Outcome, with the side to which the structure overturned.
     pub fn to_outcome(self, sway: Option<Sway>) -> Outcome {
         match self {
             Self::NeverMoved => Outcome::NeverMoved,
@@ -127,7 +127,7 @@ pub enum State {
 }
 
 impl State {
-    /// Returns the name in machine-readable results: `rest`, `right`, `left` or `overturned`.
+    /// Name in machine-readable results: `rest`, `right`, `left` or `overturned`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Rest => "rest",
@@ -136,7 +136,7 @@ impl State {
         }
     }
 
-    /// Returns the side to which the structure sways or has overturned; `None` at rest.
+    /// Side to which the structure sways or has overturned; `None` at rest.
     pub const fn sway(self) -> Option<Sway> {
         match self {
             Self::Rest => None,
@@ -221,7 +221,7 @@ pub struct TieSample {
 }
 
 impl TieSample {
-    /// Returns the sample of a tie in a given state.
+    /// Sample of a tie in a given state.
     pub(in crate::dynamics) fn of(tie: &Tie, memory: &TieMemory<Lanes<1>>) -> Self {
         Self {
             force_n: memory.force_n.0[0],
@@ -253,7 +253,7 @@ pub struct TieSummary {
 }
 
 impl TieSummary {
-    /// Returns the summary of a tie at rest.
+    /// Summary of a tie at rest.
     pub(in crate::dynamics) fn at_rest(
         tie: &Tie,
         memory: &TieMemory<Lanes<1>>,
@@ -383,7 +383,7 @@ pub struct Event {
 }
 
 impl Event {
-    /// Returns an event with empty lists.
+    /// Event with empty lists.
     pub(super) const fn new(time_s: f64, kind: EventKind, state: State) -> Self {
         Self {
             time_s,
@@ -399,7 +399,7 @@ impl Event {
         }
     }
 
-    /// Returns an event of rest with the state of a sample.
+    /// Event of rest with the state of a sample.
     pub(super) fn of_sample(sample: &Sample) -> Self {
         Self {
             rotations_rad: sample.rotations_rad.clone(),
@@ -410,7 +410,7 @@ impl Event {
         }
     }
 
-    /// Returns the memory of the event, in bytes.
+    /// Memory of the event, in bytes.
     pub(super) fn bytes(&self) -> u64 {
         let impact = self.impact.as_ref().map_or(0, |impact| {
             size_of_val(&impact.rates_before_rad_s[..])
@@ -457,7 +457,7 @@ pub struct Impact {
 }
 
 impl Impact {
-    /// Returns the sway of the mechanism that opened.
+    /// Sway of the mechanism that opened.
     pub const fn sway_after(&self) -> Sway {
         match self.strikes_wall {
             true => self.sway_before,
@@ -526,7 +526,7 @@ pub enum Details {
 }
 
 impl Summary {
-    /// Returns the results of a row of blocks; `None` for mechanisms.
+    /// Results of a row of blocks; `None` for mechanisms.
     pub const fn row(&self) -> Option<&RowSummary> {
         match &self.details {
             Details::Mechanisms(_) => None,
@@ -534,7 +534,7 @@ impl Summary {
         }
     }
 
-    /// Returns the results of elastic joints; `None` for other models.
+    /// Results of elastic joints; `None` for other models.
     pub const fn elastic_summary(&self) -> Option<&ElasticSummary> {
         match &self.details {
             Details::Elastic(_, elastic) => Some(elastic),
@@ -542,7 +542,7 @@ impl Summary {
         }
     }
 
-    /// Returns the largest rotation over that at the unstable equilibrium of the moving mechanism; `None` for rows of blocks.
+    /// Largest rotation over that at the unstable equilibrium of the moving mechanism; `None` for rows of blocks.
     pub const fn peak_over_critical(&self) -> Option<f64> {
         match self.details {
             Details::Mechanisms(of) => Some(of.peak_over_critical),
@@ -550,7 +550,7 @@ impl Summary {
         }
     }
 
-    /// Returns the remaining energy over the barrier that it cannot pass any more, as in [`MechanismSummary`]; `None` for other models.
+    /// Remaining energy over the barrier that it cannot pass any more, as in [`MechanismSummary`]; `None` for other models.
     pub const fn remaining_over_barrier(&self) -> Option<f64> {
         match self.details {
             Details::Mechanisms(of) => of.remaining_over_barrier,
@@ -558,7 +558,7 @@ impl Summary {
         }
     }
 
-    /// Returns the largest excess of the thrust line of four links, as in [`MechanismSummary`]; `None` for other models.
+    /// Largest excess of the thrust line of four links, as in [`MechanismSummary`]; `None` for other models.
     pub const fn thrust_excess_ratio(&self) -> Option<f64> {
         match self.details {
             Details::Mechanisms(of) => of.thrust_excess_ratio,
@@ -566,12 +566,12 @@ impl Summary {
         }
     }
 
-    /// Returns the largest potential energy over the barrier of the first mechanism, as in [`RowSummary`]; `None` for mechanisms.
+    /// Largest potential energy over the barrier of the first mechanism, as in [`RowSummary`]; `None` for mechanisms.
     pub fn peak_potential_over_barrier(&self) -> Option<f64> {
         self.row()?.peak_potential_over_barrier
     }
 
-    /// Returns the friction coefficient on which the history depends, because joints that slip would move otherwise. `None` if joints slip or are
+    /// Friction coefficient on which the history depends, because joints that slip would move otherwise. `None` if joints slip or are
     /// elastic.
     pub fn required_friction(&self) -> Option<f64> {
         let rigid = self.elastic_summary().is_none();
@@ -580,12 +580,12 @@ impl Summary {
         friction.map(|friction| friction.required_coefficient())
     }
 
-    /// Returns the largest rotation of any body, without sign, in radians.
+    /// Largest rotation of any body, without sign, in radians.
     pub fn largest_rotation_rad(&self) -> f64 {
         self.peak_rotations_rad.iter().copied().fold(0.0, f64::max)
     }
 
-    /// Returns the index of the body with the largest rotation; the last one of several.
+    /// Index of the body with the largest rotation; the last one of several.
     pub fn largest_body(&self) -> usize {
         let most_rad = self.largest_rotation_rad();
         let mut peaks_rad = self.peak_rotations_rad.iter();
@@ -593,17 +593,17 @@ impl Summary {
         last.unwrap_or(0)
     }
 
-    /// Returns the number of impacts; `None` for elastic joints, which have no instantaneous impacts.
+    /// Number of impacts; `None` for elastic joints, which have no instantaneous impacts.
     pub fn known_impacts(&self) -> Option<usize> {
         self.elastic_summary().is_none().then_some(self.impacts)
     }
 
-    /// Returns the time of overturning, in seconds; `None` if the structure did not overturn.
+    /// Time of overturning, in seconds; `None` if the structure did not overturn.
     pub fn overturned_s(&self) -> Option<f64> {
         matches!(self.outcome, Outcome::Overturned(_)).then_some(self.outcome_time_s)
     }
 
-    /// Returns the half cycles of a row of blocks with peaks of at least a thousandth of the largest peak; empty for other structures. Smaller half
+    /// Half cycles of a row of blocks with peaks of at least a thousandth of the largest peak; empty for other structures. Smaller half
     /// cycles are vibration, and their number is arbitrary.
     pub fn half_cycles(&self) -> Vec<HalfCycle> {
         let mut cycles = self
@@ -710,7 +710,7 @@ pub struct HalfCycle {
 }
 
 impl RowSummary {
-    /// Returns the half cycles of any size; [`Summary::half_cycles`] omits vibration. A half cycle continues when the centre of gravity changes its side
+    /// Half cycles of any size; [`Summary::half_cycles`] omits vibration. A half cycle continues when the centre of gravity changes its side
     /// before the blocks have turned back. Its side is that of its largest rotation.
     pub fn joined_half_cycles(&self) -> Vec<HalfCycle> {
         let mut joined: Vec<HalfCycle> = Vec::new();
@@ -737,12 +737,12 @@ impl HalfCycle {
         }
     }
 
-    /// Returns the end of the half cycle, in seconds.
+    /// End of the half cycle, in seconds.
     pub fn end_s(&self) -> f64 {
         self.start_s + self.duration_s
     }
 
-    /// Returns the corresponding half cycle of another motion: to the same side, overlapping in time, and with the nearest peak in time; `None` if
+    /// Corresponding half cycle of another motion: to the same side, overlapping in time, and with the nearest peak in time; `None` if
     /// there is none.
     pub fn counterpart<'a>(&self, others: &'a [Self]) -> Option<&'a Self> {
         let coincides = |other: &&Self| {
@@ -776,12 +776,12 @@ pub struct Sliding {
 }
 
 impl Sliding {
-    /// Returns the largest slip of any joint, in metres.
+    /// Largest slip of any joint, in metres.
     pub(super) fn largest_m(&self) -> f64 {
         self.largest_offsets_m.iter().copied().fold(0.0, f64::max)
     }
 
-    /// Returns a record without slip.
+    /// Record without slip.
     pub fn none(joints: usize) -> Self {
         Self {
             offsets_m: vec![0.0; joints],

@@ -20,30 +20,30 @@ use crate::mechanics::{Demand, Displaced, Equivalent, Hinge, MovingBody, MovingF
 ///
 /// The trait is called once per history. The equation of motion is evaluated inside the model, not through this trait.
 pub trait Model: Debug + Send + Sync {
-    /// Returns the names of its bodies from left to right, the order of all lists by body; a single body has an empty name.
+    /// Names of its bodies from left to right, the order of all lists by body; a single body has an empty name.
     fn bodies(&self) -> Vec<String>;
 
-    /// Returns the horizontal acceleration at which it starts to move from rest to a side, in multiples of gravity; `None` if no push moves it.
+    /// Horizontal acceleration at which it starts to move from rest to a side, in multiples of gravity; `None` if no push moves it.
     fn incipient_acceleration_g(&self, sway: Sway) -> Option<f64>;
 
-    /// Returns this model as one of mechanisms with one degree of freedom; `None` for other models.
+    /// This model as one of mechanisms with one degree of freedom; `None` for other models.
     fn as_mechanisms(&self) -> Option<&dyn MechanismModel> {
         None
     }
 
-    /// Returns the row of blocks, if the model moves its blocks individually.
+    /// Row of blocks, if the model moves its blocks individually.
     fn row(&self) -> Option<&Row> {
         None
     }
 
-    /// Returns copies of this model with other, equally valid numerical settings: if their results differ, the result is uncertain. Empty if the
+    /// Copies of this model with other, equally valid numerical settings: if their results differ, the result is uncertain. Empty if the
     /// settings do not affect the result. A model that [repeats motions mirrored](Model::repeat_mirrored) begins with itself under the mirrored
     /// ground, in place of its first setting.
     fn repetitions(&self) -> Vec<Repetition> {
         Vec::new()
     }
 
-    /// Returns whether a motion from rest, on ground that moves alike under both feet, covers the mirrored ground as well. The structure is then its own
+    /// Whether a motion from rest, on ground that moves alike under both feet, covers the mirrored ground as well. The structure is then its own
     /// mirror image, and either the motion repeats to the last bit, or one of its [repetitions](Model::repetitions) is mirrored.
     fn covers_mirrored(&self) -> bool {
         false
@@ -65,33 +65,33 @@ pub trait Model: Debug + Send + Sync {
         recorder: Option<&mut dyn Recorder>,
     ) -> Result<Summary, SimulationError>;
 
-    /// Returns the energy above that at rest, in J, required to overturn without slip; only for elastic joints, `None` if unknown. With slip, less
+    /// Energy above that at rest, in J, required to overturn without slip; only for elastic joints, `None` if unknown. With slip, less
     /// energy may suffice.
     fn elastic_barrier_j(&self, _gravity_m_s2: f64) -> Option<f64> {
         None
     }
 
-    /// Returns whether joints slip.
+    /// Whether joints slip.
     fn slips(&self) -> bool {
         false
     }
 
-    /// Returns whether the structure has impacts; elastic contact lasts.
+    /// Whether the structure has impacts; elastic contact lasts.
     fn has_impacts(&self) -> bool {
         true
     }
 
-    /// Returns whether samples have the forces and stresses of joints.
+    /// Whether samples have the forces and stresses of joints.
     fn has_pressures(&self) -> bool {
         false
     }
 
-    /// Returns whether the structure moves under weaker pushes than that of incipient motion.
+    /// Whether the structure moves under weaker pushes than that of incipient motion.
     fn moves_below_incipient(&self) -> bool {
         false
     }
 
-    /// Returns the number of motions that are computed side by side, faster than one by one.
+    /// Number of motions that are computed side by side, faster than one by one.
     fn lanes(&self) -> usize {
         1
     }
@@ -146,7 +146,7 @@ pub trait Model: Debug + Send + Sync {
         one_by_one(self, cases, jobs);
     }
 
-    /// Returns the memory of all samples of a motion in bytes, at most: as if all hinges were open all the time.
+    /// Memory of all samples of a motion in bytes, at most: as if all hinges were open all the time.
     fn sample_bytes(&self, ground: &GroundMotion, request: &Request) -> u64 {
         let bodies = self.bodies().len();
         // Times, two accelerations, two displacements of feet, energies; number of events and index of the first hinge; two optional ratios.
@@ -205,7 +205,7 @@ pub struct Job {
 }
 
 impl Job {
-    /// Returns the job of a model itself, without repetition, in a case.
+    /// Job of a model itself, without repetition, in a case.
     pub(super) const fn of(case: usize, until: EndCondition) -> Self {
         Self {
             case,
@@ -217,7 +217,7 @@ impl Job {
 
 /// Queue of motions to compute; the result of one motion may add others.
 pub trait Jobs {
-    /// Returns the next job; `None` if there is none until another one has ended.
+    /// Next job; `None` if there is none until another one has ended.
     fn next_job(&mut self) -> Option<Job>;
 
     /// Receives the result of a job.
@@ -265,11 +265,11 @@ pub struct Repetition {
 
 /// Model that moves as a sequence of mechanisms with one degree of freedom, with the properties of such models.
 pub trait MechanismModel: Model {
-    /// Returns the restitution coefficient of the impact that starts the mechanism after `impacts` impacts and a first sway to a side, 1 for the
+    /// Restitution coefficient of the impact that starts the mechanism after `impacts` impacts and a first sway to a side, 1 for the
     /// first mechanism. `None` if an earlier impact stops the structure.
     fn restitution_from(&self, first: Sway, impacts: usize) -> Option<f64>;
 
-    /// Returns the side to which the structure sways after `impacts` impacts and a first sway to a side. Every impact changes the side unless a
+    /// Side to which the structure sways after `impacts` impacts and a first sway to a side. Every impact changes the side unless a
     /// wall stands behind the structure.
     fn sway_after(&self, first: Sway, impacts: usize) -> Sway;
 
@@ -281,28 +281,28 @@ pub trait MechanismModel: Model {
         }
     }
 
-    /// Returns the hinges, from left to right, of the mechanism after `impacts` impacts that now sways to `sway`; empty without such a mechanism.
+    /// Hinges, from left to right, of the mechanism after `impacts` impacts that now sways to `sway`; empty without such a mechanism.
     fn hinges_after(&self, impacts: usize, sway: Sway) -> Vec<Hinge>;
 
-    /// Returns the rotations of the bodies, in radians, at the unstable equilibrium of the first mechanism to a side.
+    /// Rotations of the bodies, in radians, at the unstable equilibrium of the first mechanism to a side.
     fn critical_rotations_rad(&self, sway: Sway) -> Vec<f64>;
 
-    /// Returns the coordinate at the limit position of the first mechanism to a side; releases must start below it.
+    /// Coordinate at the limit position of the first mechanism to a side; releases must start below it.
     fn limit_rad(&self, sway: Sway) -> f64;
 
-    /// Returns free-standing blocks equivalent to the first mechanism to a side.
+    /// Free-standing blocks equivalent to the first mechanism to a side.
     fn equivalent(&self, sway: Sway, gravity_m_s2: f64) -> Option<Equivalent>;
 
-    /// Returns the first mechanism to a side at a fraction `part` of the rotation at its unstable equilibrium; `None` without such a mechanism.
+    /// First mechanism to a side at a fraction `part` of the rotation at its unstable equilibrium; `None` without such a mechanism.
     fn displaced_mechanism(&self, sway: Sway, part: f64) -> Option<Displaced>;
 
-    /// Returns the rigid bodies of the first mechanism to a side; `None` without such a mechanism.
+    /// Rigid bodies of the first mechanism to a side; `None` without such a mechanism.
     fn moving_bodies(&self, sway: Sway) -> Option<Vec<MovingBody>>;
 
-    /// Returns the constant forces on these bodies; `None` without such a mechanism.
+    /// Constant forces on these bodies; `None` without such a mechanism.
     fn moving_forces(&self, sway: Sway) -> Option<Vec<MovingForce>>;
 
-    /// Returns the side to which moving ground overturns the structure from rest before its first impact; `None` if it does not.
+    /// Side to which moving ground overturns the structure from rest before its first impact; `None` if it does not.
     ///
     /// # Errors
     /// Those of [`Model::simulate`].
@@ -355,7 +355,7 @@ pub enum SimulationError {
 }
 
 impl SimulationError {
-    /// Returns an error for a reason of the model.
+    /// Error for a reason of the model.
     pub fn computation(reason: impl Error + Send + Sync + 'static) -> Self {
         Self::Computation(Arc::new(reason))
     }

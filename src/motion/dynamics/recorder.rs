@@ -21,23 +21,23 @@ pub trait Recorder {
         ControlFlow::Continue(())
     }
 
-    /// Returns whether samples need the thrust excess and the friction demand. These take most of the time of a history of four links. Without them,
+    /// Whether samples need the thrust excess and the friction demand. These take most of the time of a history of four links. Without them,
     /// the summary of mechanisms has no thrust record.
     fn wants_demand(&self) -> bool {
         true
     }
 
-    /// Returns whether the recorder needs events, which take time to make.
+    /// Whether the recorder needs events, which take time to make.
     fn wants_events(&self) -> bool {
         true
     }
 
-    /// Returns whether samples need the thrust line, which takes time to compute.
+    /// Whether samples need the thrust line, which takes time to compute.
     fn wants_thrust_line(&self) -> bool {
         false
     }
 
-    /// Returns the time of a clock, to measure the slowest step; `None` without a clock.
+    /// Time of a clock, to measure the slowest step; `None` without a clock.
     fn clock(&self) -> Option<Duration> {
         None
     }
@@ -45,7 +45,7 @@ pub trait Recorder {
     /// Receives the positions after a step of the computation: the time in seconds, the poses of the bodies, and the open hinges of a mechanism.
     fn step(&mut self, _time_s: f64, _poses: &[Pose], _hinges: &[OpenHinge]) {}
 
-    /// Returns whether the recorder needs samples after the structure has overturned.
+    /// Whether the recorder needs samples after the structure has overturned.
     fn wants_fall(&self) -> bool {
         false
     }

@@ -24,7 +24,7 @@ pub struct History {
 }
 
 impl History {
-    /// Returns the impacts, with their times in seconds.
+    /// Impacts, with their times in seconds.
     pub fn impacts(&self) -> impl Iterator<Item = (f64, &Impact)> {
         let events = self.events.iter();
         events.filter_map(|event| Some((event.time_s, event.impact.as_ref()?)))
@@ -76,12 +76,12 @@ pub struct Samples {
 }
 
 impl Samples {
-    /// Returns the number of samples.
+    /// Number of samples.
     pub const fn len(&self) -> usize {
         self.time_s.len()
     }
 
-    /// Returns whether there are no samples.
+    /// Whether there are no samples.
     pub const fn is_empty(&self) -> bool {
         self.time_s.is_empty()
     }
@@ -115,7 +115,7 @@ impl Samples {
             .push(sample.rotation_over_critical);
     }
 
-    /// Returns a sample; `None` beyond the last.
+    /// Sample; `None` beyond the last.
     pub fn get(&self, index: usize) -> Option<Sample> {
         let time_s = *self.time_s.get(index)?;
         let samples = self.len();
@@ -144,19 +144,19 @@ impl Samples {
         })
     }
 
-    /// Returns all samples in their order.
+    /// All samples in their order.
     pub fn iter(&self) -> impl Iterator<Item = Sample> {
         (0..self.len()).map_while(|index| self.get(index))
     }
 }
 
-/// Returns the part of a column that belongs to sample `index`; `samples` is the number of samples.
+/// Part of a column that belongs to sample `index`; `samples` is the number of samples.
 fn part<T: Clone>(column: &[T], index: usize, samples: usize) -> Vec<T> {
     let each = column.len() / samples;
     column[index * each..(index + 1) * each].to_vec()
 }
 
-/// Returns the pose of an entry of [`Samples::poses`].
+/// Pose of an entry of [`Samples::poses`].
 fn pose(&[rotation_rad, x_m, y_m]: &[f64; 3]) -> Pose {
     Pose::new(rotation_rad, Vector2::new(x_m, y_m))
 }
@@ -178,7 +178,7 @@ pub struct MemoryError {
     pub allowed_bytes: u64,
 }
 
-/// Returns a size in readable units.
+/// Size in readable units.
 fn size_in_words(bytes: u64) -> String {
     let megabytes = bytes as f64 / 1e6;
     if megabytes < 1e3 {
@@ -198,7 +198,7 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// Returns a recorder for samples of at most `needed_bytes` of memory, see [`Model::sample_bytes`](super::model::Model::sample_bytes).
+    /// Recorder for samples of at most `needed_bytes` of memory, see [`Model::sample_bytes`](super::model::Model::sample_bytes).
     /// `allowed_bytes` is the limit of memory for samples and events.
     ///
     /// # Errors
@@ -223,7 +223,7 @@ impl Recording {
         Ok(())
     }
 
-    /// Returns all samples and events.
+    /// All samples and events.
     ///
     /// # Errors
     /// If they needed too much memory, which ended the history.

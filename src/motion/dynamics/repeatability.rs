@@ -91,13 +91,13 @@ impl OutcomeCount {
         }
     }
 
-    /// Returns whether the verdict is uncertain: some motions overturn and others survive, or at most half of them have a verdict.
+    /// Whether the verdict is uncertain: some motions overturn and others survive, or at most half of them have a verdict.
     pub const fn is_uncertain(&self) -> bool {
         let is_mixed = 0 < self.overturns_in && self.overturns_in < self.of;
         is_mixed || self.of <= self.incomplete.len() + self.failed.len()
     }
 
-    /// Returns the repetitions without a verdict, in words that follow the count; empty if all have one.
+    /// Repetitions without a verdict, in words that follow the count; empty if all have one.
     pub fn without_verdict(&self) -> String {
         let named = |words: &str, names: &[String]| match names {
             [] => String::new(),
@@ -149,13 +149,13 @@ pub struct Repeatability {
     pub friction_demand: Option<f64>,
 }
 
-/// Returns the largest friction coefficient that these motions require; `None` if joints slip or are elastic.
+/// Largest friction coefficient that these motions require; `None` if joints slip or are elastic.
 pub fn required_friction<'a>(motions: impl IntoIterator<Item = &'a Summary>) -> Option<f64> {
     let required = motions.into_iter().filter_map(Summary::required_friction);
     required.reduce(f64::max)
 }
 
-/// Returns the name of a repetition as a key in results.
+/// Name of a repetition as a key in results.
 pub fn key(repetition: &str) -> String {
     repetition.replace(' ', "_")
 }
@@ -170,7 +170,7 @@ pub struct RepeatedHalfCycle {
 }
 
 impl RepeatedHalfCycle {
-    /// Returns whether the peak is certain.
+    /// Whether the peak is certain.
     pub fn is_certain(&self) -> bool {
         self.peak_rad.is_some_and(|peak| peak.is_certain())
     }
@@ -188,7 +188,7 @@ pub struct RepeatedValue {
 }
 
 impl RepeatedValue {
-    /// Returns the range of a value of the motion itself and of its repetitions.
+    /// Range of a value of the motion itself and of its repetitions.
     fn of(own: f64, others: impl IntoIterator<Item = f64>) -> Self {
         let (mut min, mut max) = (own, own);
         for other in others {
@@ -197,7 +197,7 @@ impl RepeatedValue {
         Self { own, min, max }
     }
 
-    /// Returns whether the value is certain to [`SAME_PEAK_RATIO`].
+    /// Whether the value is certain to [`SAME_PEAK_RATIO`].
     pub fn is_certain(&self) -> bool {
         self.max - self.min <= AGREEMENT * SAME_PEAK_RATIO * self.max
     }
@@ -258,7 +258,7 @@ impl Repeatability {
         }
     }
 
-    /// Returns whether any joint has slipped at the end.
+    /// Whether any joint has slipped at the end.
     pub fn has_slipped(&self) -> bool {
         self.most_slip_m() > LEAST_SLIP_M
     }
@@ -268,7 +268,7 @@ impl Repeatability {
         ends_m.fold(0.0, |most_m, end_m| most_m.max(end_m.abs()))
     }
 
-    /// Returns the joint whose final slips differ most, if they are not certain to [`SAME_PEAK_RATIO`] of the largest slip of any joint; `None` if
+    /// Joint whose final slips differ most, if they are not certain to [`SAME_PEAK_RATIO`] of the largest slip of any joint; `None` if
     /// all are certain.
     pub fn uncertain_slip(&self) -> Option<usize> {
         let range_m = |joint: &usize| self.slips_m[*joint].max - self.slips_m[*joint].min;
@@ -279,17 +279,17 @@ impl Repeatability {
     }
 }
 
-/// Returns a quantity of the slip in all these motions; `None` if joints do not slip.
+/// Quantity of the slip in all these motions; `None` if joints do not slip.
 fn repeated_slip(runs: &[&Summary], value: impl Fn(&Sliding) -> f64) -> Option<RepeatedValue> {
-    let values = runs
+    let values: Vec<f64> = runs
         .iter()
-        .map(|run| Some(value(run.row()?.sliding.as_ref()?)));
-    let values: Vec<f64> = values.collect::<Option<_>>()?;
+        .map(|run| Some(value(run.row()?.sliding.as_ref()?)))
+        .collect::<Option<_>>()?;
     let (own, others) = values.split_first()?;
     Some(RepeatedValue::of(*own, others.iter().copied()))
 }
 
-/// Returns the final slips of the joints in all these motions; `None` if joints do not slip.
+/// Final slips of the joints in all these motions; `None` if joints do not slip.
 fn slips_m(runs: &[&Summary]) -> Option<Vec<RepeatedValue>> {
     let slipped = runs.iter().map(|run| run.row()?.sliding.as_ref());
     let all: Vec<_> = slipped.collect::<Option<_>>()?;
@@ -300,7 +300,7 @@ fn slips_m(runs: &[&Summary]) -> Option<Vec<RepeatedValue>> {
     (0..all[0].offsets_m.len()).map(joint).collect()
 }
 
-/// Returns whether two motions follow the same path: the half cycles of each, up to its largest, have counterparts in the other with the same peaks.
+/// Whether two motions follow the same path: the half cycles of each, up to its largest, have counterparts in the other with the same peaks.
 /// The fall of a motion that overturns does not count.
 fn path_repeats(one: &Summary, other: &Summary) -> bool {
     one.outcome.overturning_sway() == other.outcome.overturning_sway()
@@ -308,7 +308,7 @@ fn path_repeats(one: &Summary, other: &Summary) -> bool {
         && has_same_half_cycles(other, one)
 }
 
-/// Returns whether the half cycles of a motion up to its largest have counterparts with the same peaks in another motion.
+/// Whether the half cycles of a motion up to its largest have counterparts with the same peaks in another motion.
 fn has_same_half_cycles(own: &Summary, other: &Summary) -> bool {
     let others = other.row().map_or(&[][..], |row| &row.half_cycles);
     let cycles = own.row().map_or(&[][..], |row| &row.half_cycles);
@@ -382,7 +382,7 @@ fn start_repetitions(
     repetitions.into_iter().map(start).collect()
 }
 
-/// Returns whether the first repetitions of a motion decide on its verdict, or no repetition can give one.
+/// Whether the first repetitions of a motion decide on its verdict, or no repetition can give one.
 fn repetitions_suffice<'a>(
     model: &dyn Model,
     request: &Request,
@@ -430,7 +430,7 @@ impl From<Outcome> for Verdict {
 }
 
 impl Verdict {
-    /// Returns the verdict on a motion with this outcome, uncertain if the count of its repetitions says so.
+    /// Verdict on a motion with this outcome, uncertain if the count of its repetitions says so.
     pub fn counted(outcome: Outcome, count: Option<&OutcomeCount>) -> Self {
         match Self::from(outcome) {
             Self::Incomplete => Self::Incomplete,
@@ -630,7 +630,7 @@ impl<'a> Checks<'a> {
         }
     }
 
-    /// Returns the results of all cases; `None` for mirrored cases that were not computed.
+    /// Results of all cases; `None` for mirrored cases that were not computed.
     fn answers(self) -> Vec<Option<CheckedHistory>> {
         let each = self.results.into_iter();
         each.map(|results| {
@@ -673,7 +673,7 @@ const ELASTIC_FAR_FROM_OVERTURNING: f64 = 0.25;
 /// Largest energy, over the same barrier, above which a survivor is certain only with all repetitions, although its path repeats.
 const CLOSE_TO_BARRIER: f64 = 0.8;
 
-/// Returns whether repetitions can be skipped: the history is incomplete, the structure never moved, it overturned before its first change of side,
+/// Whether repetitions can be skipped: the history is incomplete, the structure never moved, it overturned before its first change of side,
 /// or it survived far from overturning. Up to the first change of side all settings agree.
 fn needs_no_repetition(model: &dyn Model, request: &Request, own: &Summary) -> bool {
     match own.outcome {
@@ -689,7 +689,7 @@ fn needs_no_repetition(model: &dyn Model, request: &Request, own: &Summary) -> b
     }
 }
 
-/// Returns the largest potential energy of a motion over the energy barrier of the first mechanism; `None` if the barrier is not known.
+/// Largest potential energy of a motion over the energy barrier of the first mechanism; `None` if the barrier is not known.
 pub fn energy_over_barrier(model: &dyn Model, request: &Request, own: &Summary) -> Option<f64> {
     match &own.details {
         Details::Mechanisms(_) => None,

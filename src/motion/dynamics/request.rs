@@ -29,7 +29,7 @@ pub struct Request {
     pub rest_energy_ratio: f64,
 }
 
-/// Returns the next end of a history that is incomplete at `end_s`, from [`Request::outcome_by_s`]; `None` if it must end there.
+/// Next end of a history that is incomplete at `end_s`, from [`Request::outcome_by_s`]; `None` if it must end there.
 pub(super) fn later_end_s(
     outcome_by_s: Option<f64>,
     ground: &GroundMotion,
@@ -62,7 +62,7 @@ impl Initial {
     /// Range of initial rates, in rad/s. The largest rate overturns every column with a half diagonal above 1.5 mm.
     pub const RATE_RAD_S: RangeInclusive<f64> = -1e2..=1e2;
 
-    /// Returns whether the structure moves after the start: it is rotated, or has a rate away from its position at rest.
+    /// Whether the structure moves after the start: it is rotated, or has a rate away from its position at rest.
     pub fn moves(self) -> bool {
         self.rotation_rad >= Self::MIN_ROTATION_RAD
             || (self.rotation_rad == 0.0 && self.rate_rad_s >= Self::MIN_ROTATION_RAD)
@@ -82,7 +82,7 @@ impl Initial {
 }
 
 impl Default for Request {
-    /// Returns a request for ten seconds from rest under 9.81 m/s2, with the defaults of a scenario.
+    /// Request for ten seconds from rest under 9.81 m/s2, with the defaults of a scenario.
     fn default() -> Self {
         Self {
             gravity_m_s2: 9.81,
@@ -108,14 +108,14 @@ impl Request {
     /// Maximum number of samples of a history: about a gigabyte of rows.
     pub const MOST_SAMPLES: f64 = 1e7;
 
-    /// Returns the maximum number of samples of a history on this ground: one at the start, at every output step and at the end.
+    /// Maximum number of samples of a history on this ground: one at the start, at every output step and at the end.
     pub fn most_samples(&self, ground: &GroundMotion) -> u64 {
         let before = if ground.start_s() < 0.0 { 1 } else { 0 };
         // Invalid numbers are rejected elsewhere.
         (self.lasts_s(ground) / self.output_step_s) as u64 + 2 + before
     }
 
-    /// Returns the longest time from the start of the ground motion to the end of a history, in seconds.
+    /// Longest time from the start of the ground motion to the end of a history, in seconds.
     fn lasts_s(&self, ground: &GroundMotion) -> f64 {
         self.end_s - ground.start_s()
     }

@@ -33,7 +33,7 @@ pub struct FrictionRecord {
 }
 
 impl FrictionRecord {
-    /// Returns the coefficient that prevents slip, except for short peaks of rows.
+    /// Coefficient that prevents slip, except for short peaks of rows.
     pub fn required_coefficient(&self) -> f64 {
         self.lasting.unwrap_or(self.largest.value)
     }
@@ -62,7 +62,7 @@ impl HalfCycles {
         peak >= STRONG * largest
     }
 
-    /// Returns whether no half cycle has ended yet.
+    /// Whether no half cycle has ended yet.
     pub const fn are_none(&self) -> bool {
         self.largest.is_none()
     }
@@ -106,12 +106,12 @@ impl FrictionDemands {
         }
     }
 
-    /// Returns the part of the history up to now.
+    /// Part of the history up to now.
     pub const fn until_now(&self) -> Until {
         self.until
     }
 
-    /// Returns the record of the part that counts: up to overturning if the row `overturned` from there, or else up to the end of the last strong
+    /// Record of the part that counts: up to overturning if the row `overturned` from there, or else up to the end of the last strong
     /// half cycle. `None` if no step was noted.
     pub fn record(&mut self, overturned: Option<Until>) -> Option<FrictionRecord> {
         let of_motion = match self.half_cycles.are_none() {
@@ -172,14 +172,14 @@ impl Thinned {
         }
     }
 
-    /// Returns the kept demands of the first steps.
+    /// Kept demands of the first steps.
     fn first(&mut self, steps: usize) -> &mut [[f32; 2]] {
         let count = (steps / self.stride).min(self.kept.len());
         &mut self.kept[..count]
     }
 }
 
-/// Returns the demand that is exceeded for a time, in seconds; the largest one for zero. Sorts the demands, which are given with the durations of their
+/// Demand that is exceeded for a time, in seconds; the largest one for zero. Sorts the demands, which are given with the durations of their
 /// steps.
 fn exceeded_for(demands: &mut [[f32; 2]], time_s: f64) -> f64 {
     demands.sort_unstable_by(|a, b| b[0].total_cmp(&a[0]));
@@ -214,7 +214,7 @@ impl ThrustRecord {
         }
     }
 
-    /// Returns the fractions of the time in motion in which the excess is at most each of [`EXCESS_LEVELS`]; `None` if no sample is in motion.
+    /// Fractions of the time in motion in which the excess is at most each of [`EXCESS_LEVELS`]; `None` if no sample is in motion.
     pub fn shares_within(&self) -> Option<[f64; 2]> {
         (self.moving > 0).then(|| self.within.map(|count| count as f64 / self.moving as f64))
     }

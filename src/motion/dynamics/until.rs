@@ -31,7 +31,7 @@ const DECAYED: f64 = 0.1;
 /// Slip, over the thickness of the thinnest joint, up to which the barrier is that of the row before slip.
 const COMPARABLE_SLIP: f64 = 0.01;
 
-/// Returns the slip, in metres, up to which the barrier of a row is that before slip.
+/// Slip, in metres, up to which the barrier of a row is that before slip.
 pub(super) fn comparable_slip_m(row: &Row) -> f64 {
     let thicknesses_m = row.joints.iter().map(Joint::thickness_m);
     COMPARABLE_SLIP * thicknesses_m.fold(f64::INFINITY, f64::min)
@@ -70,7 +70,7 @@ pub(super) struct SafetyMonitor {
 }
 
 impl SafetyMonitor {
-    /// Returns the recorder for a motion with this end; `None` for the regular end.
+    /// Recorder for a motion with this end; `None` for the regular end.
     pub(super) fn new(
         until: EndCondition,
         ground: &GroundMotion,
@@ -93,7 +93,7 @@ impl SafetyMonitor {
         self.largest_slip_m = comparable_slip_m(row);
     }
 
-    /// Returns the longest duration of a half cycle from now on, in seconds.
+    /// Longest duration of a half cycle from now on, in seconds.
     fn longest_half_cycle_s(&mut self, sample: &Sample) -> f64 {
         let State::Rocking(sway) = sample.state else {
             return f64::INFINITY;
@@ -110,7 +110,7 @@ impl SafetyMonitor {
             .max(now_s - self.sways.map_or(now_s, |(_, since_s)| since_s))
     }
 
-    /// Returns whether the friction demand cannot change any more. If joints slip it is not needed.
+    /// Whether the friction demand cannot change any more. If joints slip it is not needed.
     fn knows_demand(&mut self, sample: &Sample, ratio: f64) -> bool {
         let rotations_rad = sample.rotations_rad.iter().map(|rotation| rotation.abs());
         let largest_rad = rotations_rad.fold(0.0, f64::max);

@@ -44,7 +44,7 @@ named! {
 }
 
 impl MeasuredAt {
-    /// Returns the line in words.
+    /// Line in words.
     pub const fn in_words(self) -> &'static str {
         match self {
             Self::Intrados => "at the intrados",
@@ -53,7 +53,7 @@ impl MeasuredAt {
         }
     }
 
-    /// Returns the distance outwards from this line to the mean line, in thicknesses.
+    /// Distance outwards from this line to the mean line, in thicknesses.
     pub const fn to_mean(self) -> f64 {
         match self {
             Self::Intrados => 0.5,
@@ -107,7 +107,7 @@ impl PartialEq for Arch {
 }
 
 impl Arch {
-    /// Returns an arch whose hinges may open at any section, 1 m deep, of 2000 kg/m3.
+    /// Arch whose hinges may open at any section, 1 m deep, of 2000 kg/m3.
     ///
     /// `mean_radius_m` is the radius of its middle line (0.001 to 1e6 m), `thickness_ratio` its thickness over
     /// that (from 1e-6, below 2) and `embrace_deg` the angle from springing to springing (1 to 180).
@@ -133,7 +133,7 @@ impl Arch {
         arch.reshaped()
     }
 
-    /// Returns the arch after a change of its shape.
+    /// Arch after a change of its shape.
     ///
     /// # Errors
     /// If the thickness is out of range.
@@ -146,7 +146,7 @@ impl Arch {
         Ok(self)
     }
 
-    /// Returns this arch with another mean radius, in metres, and a proportional thickness.
+    /// This arch with another mean radius, in metres, and a proportional thickness.
     ///
     /// # Errors
     /// When it is outside 0.001 to 1e6.
@@ -155,7 +155,7 @@ impl Arch {
         Ok(self)
     }
 
-    /// Returns this arch with another thickness, in mean radii.
+    /// This arch with another thickness, in mean radii.
     ///
     /// # Errors
     /// When it is not from 1e-6 to below 2.
@@ -164,7 +164,7 @@ impl Arch {
         self.reshaped()
     }
 
-    /// Returns this arch with another embrace angle, in degrees.
+    /// This arch with another embrace angle, in degrees.
     ///
     /// # Errors
     /// When it is outside 1 to 180.
@@ -173,7 +173,7 @@ impl Arch {
         self.reshaped()
     }
 
-    /// Returns this arch cut into equal voussoirs, so that hinges open at their joints only.
+    /// This arch cut into equal voussoirs, so that hinges open at their joints only.
     ///
     /// # Errors
     /// When there are fewer than 3, as four hinges need four joints, or more than 200.
@@ -182,7 +182,7 @@ impl Arch {
         self.reshaped()
     }
 
-    /// Returns this arch with another depth out of plane, in metres.
+    /// This arch with another depth out of plane, in metres.
     ///
     /// # Errors
     /// When it is outside 0.001 to 1e6.
@@ -191,7 +191,7 @@ impl Arch {
         Ok(self)
     }
 
-    /// Returns this arch with another density, in kg/m3.
+    /// This arch with another density, in kg/m3.
     ///
     /// # Errors
     /// When it is outside 0.001 to 1e6.
@@ -200,26 +200,26 @@ impl Arch {
         Ok(self)
     }
 
-    /// Returns this arch with a line whose span and rise are given in drawings and captions.
+    /// This arch with a line whose span and rise are given in drawings and captions.
     #[must_use]
     pub const fn with_measured_at(mut self, line: Option<MeasuredAt>) -> Self {
         self.measured_at = line;
         self
     }
 
-    /// Returns the radius of a line, in metres.
+    /// Radius of a line, in metres.
     pub fn radius_at_m(&self, line: MeasuredAt) -> f64 {
         self.mean_radius_m * (1.0 - line.to_mean() * self.thickness_ratio)
     }
 
-    /// Returns span and rise of a line, in metres.
+    /// Span and rise of a line, in metres.
     pub fn span_and_rise_m(&self, line: MeasuredAt) -> [f64; 2] {
         let radius_m = self.radius_at_m(line);
         let (sin, cos) = libm::sincos(0.5 * self.embrace_deg.to_radians());
         [2.0 * radius_m * sin, radius_m * (1.0 - cos)]
     }
 
-    /// Returns its voussoirs as a row of blocks.
+    /// Voussoirs as a row of blocks.
     ///
     /// # Errors
     /// If it has no voussoirs.
@@ -233,25 +233,25 @@ impl Arch {
         )
     }
 
-    /// Returns the sections at which hinges may open.
+    /// Sections at which hinges may open.
     pub fn sites(&self) -> HingeSites {
         (self.voussoirs).map_or(HingeSites::Anywhere, HingeSites::Voussoirs)
     }
 
-    /// Returns the sections at which thrust lines are reported, in radians from the left springing: the joints, or 61 sections of an arch with hinges
+    /// Sections at which thrust lines are reported, in radians from the left springing: the joints, or 61 sections of an arch with hinges
     /// anywhere.
     pub(crate) fn thrust_sections_rad(&self) -> Vec<f64> {
         let parts = self.voussoirs.unwrap_or(60);
         self.ring().sections(parts)
     }
 
-    /// Returns the shape: the ring of unit mean radius.
+    /// Shape: the ring of unit mean radius.
     pub fn ring(&self) -> Ring {
         Ring::new(self.thickness_ratio, self.embrace_deg.to_radians())
             .expect("the constructors check what makes a ring")
     }
 
-    /// Returns the onset of rocking by limit analysis; see [`incipient`].
+    /// Onset of rocking by limit analysis; see [`incipient`].
     ///
     /// # Errors
     /// When the arch cannot stand, or does not start as a four-link mechanism.

@@ -80,23 +80,23 @@ pub struct BackWall {
     pub rate_ratio: Option<f64>,
 }
 
-/// Returns the rate about `to`, for a unit rate about `from`, after an impact at `to`. The motion before is projected in the kinetic-energy metric onto
+/// Rate about `to`, for a unit rate about `from`, after an impact at `to`. The motion before is projected in the kinetic-energy metric onto
 /// the motion after, which conserves the angular momentum about `to`.
 pub(super) fn rate_passed(moments: &MassMoments, from: Vector2<f64>, to: Vector2<f64>) -> f64 {
     product(moments, to, from) / product(moments, to, to)
 }
 
-/// Returns the product of the rotations about two points in the kinetic-energy metric, `m <A, B>` above.
+/// Product of the rotations about two points in the kinetic-energy metric, `m <A, B>` above.
 fn product(moments: &MassMoments, a: Vector2<f64>, b: Vector2<f64>) -> f64 {
     Twist::rotation(a, 1.0).power(&Twist::rotation(b, 1.0).momentum(moments))
 }
 
-/// Returns the cosine between the rotations about two points in the kinetic-energy metric, `c(A, B)` above.
+/// Cosine between the rotations about two points in the kinetic-energy metric, `c(A, B)` above.
 fn cosine(moments: &MassMoments, [a, b]: [Vector2<f64>; 2]) -> f64 {
     product(moments, a, b) / (product(moments, a, a) * product(moments, b, b)).sqrt()
 }
 
-/// Returns the ratio of rates after and before three impacts in turn of a rigid body, from its outer and inner toe and the contact at the top of the
+/// Ratio of rates after and before three impacts in turn of a rigid body, from its outer and inner toe and the contact at the top of the
 /// wall. `None` if they do not throw it back.
 pub fn three_impacts(
     moments: &MassMoments,

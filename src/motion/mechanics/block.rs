@@ -20,13 +20,13 @@ pub struct Block {
 }
 
 impl Block {
-    /// Returns a prism with a simple polygon as outline, given by its corners (m) in order, clockwise or anticlockwise.
+    /// Prism with a simple polygon as outline, given by its corners (m) in order, clockwise or anticlockwise.
     pub fn prism(corners_m: &[Vector2<f64>], depth_m: f64, density_kg_m3: f64) -> Self {
         let pole = corners_m.first().copied().unwrap_or_else(Vector2::zeros);
         Self::bounded(polygon(corners_m), pole, depth_m, density_kg_m3)
     }
 
-    /// Returns a prism with a closed outline (m), clockwise or anticlockwise; `pole_m` is a point near it, which limits rounding errors.
+    /// Prism with a closed outline (m), clockwise or anticlockwise; `pole_m` is a point near it, which limits rounding errors.
     pub(crate) fn bounded(
         outline_m: impl IntoIterator<Item = Curve>,
         pole_m: Vector2<f64>,
@@ -46,7 +46,7 @@ impl Block {
         }
     }
 
-    /// Returns this block and another one combined as one rigid body.
+    /// This block and another one combined as one rigid body.
     pub fn with(&self, other: &Self) -> Self {
         let mass_kg = self.mass_kg + other.mass_kg;
         let apart_m = other.centre_m - self.centre_m;
@@ -59,7 +59,7 @@ impl Block {
         }
     }
 
-    /// Returns the mirror image about the y axis.
+    /// Mirror image about the y axis.
     pub fn mirrored(&self) -> Self {
         Self {
             centre_m: mirrored(self.centre_m),
@@ -67,7 +67,7 @@ impl Block {
         }
     }
 
-    /// Returns mass, first and polar moment about the origin, for a centre of gravity at `centre_m`.
+    /// Mass, first and polar moment about the origin, for a centre of gravity at `centre_m`.
     pub fn moments_at(&self, centre_m: Vector2<f64>) -> MassMoments {
         MassMoments::of_body(self.mass_kg, centre_m, self.inertia_kg_m2)
     }
@@ -83,27 +83,27 @@ pub struct Joint {
 }
 
 impl Joint {
-    /// Returns the distance of the corners in metres.
+    /// Distance of the corners in metres.
     pub fn thickness_m(&self) -> f64 {
         (self.extrados_m - self.intrados_m).norm()
     }
 
-    /// Returns the midpoint of the corners in metres.
+    /// Midpoint of the corners in metres.
     pub fn middle_m(&self) -> Vector2<f64> {
         (self.intrados_m + self.extrados_m) * 0.5
     }
 
-    /// Returns the unit vector from the intrados to the extrados.
+    /// Unit vector from the intrados to the extrados.
     pub fn direction(&self) -> Vector2<f64> {
         (self.extrados_m - self.intrados_m) / self.thickness_m()
     }
 
-    /// Returns the corner on an edge, in metres.
+    /// Corner on an edge, in metres.
     pub const fn corner_m(&self, edge: Edge) -> Vector2<f64> {
         [self.intrados_m, self.extrados_m][edge as usize]
     }
 
-    /// Returns the mirror image about the y axis.
+    /// Mirror image about the y axis.
     pub fn mirrored(&self) -> Self {
         Self {
             intrados_m: mirrored(self.intrados_m),
@@ -111,7 +111,7 @@ impl Joint {
         }
     }
 
-    /// Returns the corners of the quadrilateral between this joint and the next one, in order around it.
+    /// Corners of the quadrilateral between this joint and the next one, in order around it.
     pub const fn outline_m(&self, next: &Self) -> [Vector2<f64>; 4] {
         [
             self.intrados_m,
@@ -121,7 +121,7 @@ impl Joint {
         ]
     }
 
-    /// Returns whether two joints have a point in common.
+    /// Whether two joints have a point in common.
     pub(super) fn meets(&self, other: &Self) -> bool {
         let side = |joint: &Self, point: Vector2<f64>| {
             (joint.extrados_m - joint.intrados_m).perp(&(point - joint.intrados_m))

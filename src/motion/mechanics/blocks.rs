@@ -133,7 +133,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// Returns a row of given blocks and joints. `size_m` is the length that scales energies and steps: the mean radius of an arch, the half diagonal
+    /// Row of given blocks and joints. `size_m` is the length that scales energies and steps: the mean radius of an arch, the half diagonal
     /// of a stack.
     ///
     /// # Errors
@@ -195,7 +195,7 @@ impl Row {
         })
     }
 
-    /// Returns this row with these ties in place of its own, under this gravity.
+    /// This row with these ties in place of its own, under this gravity.
     ///
     /// # Errors
     /// If a tie is not valid, with its index.
@@ -213,24 +213,25 @@ impl Row {
         Ok(self)
     }
 
-    /// Returns this row with constant forces in place of its ties: index of the block, point in metres, and force in N, under this gravity.
+    /// This row with constant forces in place of its ties: index of the block, point in metres, and force in N, under this gravity.
     #[must_use]
     pub fn with_constant_forces(
         mut self,
         forces: impl IntoIterator<Item = (usize, Vector2<f64>, Vector2<f64>)>,
         gravity_m_s2: f64,
     ) -> Self {
-        let forces = forces.into_iter();
-        let forces = forces.filter(|(block, _, force_n)| {
-            *block < self.blocks.len() && *force_n != Vector2::zeros()
-        });
-        let forces = forces.map(|(block, at_m, force_n)| Tie::constant_force(block, at_m, force_n));
+        let forces = forces
+            .into_iter()
+            .filter(|(block, _, force_n)| {
+                *block < self.blocks.len() && *force_n != Vector2::zeros()
+            })
+            .map(|(block, at_m, force_n)| Tie::constant_force(block, at_m, force_n));
         self.ties = forces.collect();
         self.gravity_m_s2 = gravity_m_s2;
         self
     }
 
-    /// Returns the ties of the row; empty if it carries constant forces.
+    /// Ties of the row; empty if it carries constant forces.
     pub fn bars(&self) -> &[Tie] {
         match self.ties.iter().any(Tie::is_constant_force) {
             true => &[],
@@ -238,26 +239,26 @@ impl Row {
         }
     }
 
-    /// Returns the constant forces on the blocks of the row.
+    /// Constant forces on the blocks of the row.
     pub fn constant_forces(&self) -> impl Iterator<Item = &Tie> {
         self.ties.iter().filter(|tie| tie.is_constant_force())
     }
 
-    /// Returns this row without ties.
+    /// This row without ties.
     #[must_use]
     pub fn without_ties(mut self) -> Self {
         self.ties.clear();
         self
     }
 
-    /// Returns this row with other outlines to draw its blocks: closed polygons, in metres.
+    /// This row with other outlines to draw its blocks: closed polygons, in metres.
     #[must_use]
     pub(crate) fn with_outlines_m(self, outlines_m: Vec<Vec<Vector2<f64>>>) -> Self {
         debug_assert_eq!(outlines_m.len(), self.blocks.len());
         Self { outlines_m, ..self }
     }
 
-    /// Returns this row with supports, left and right, that extend beyond their joints or not (a stack has only the left one, its base). A support
+    /// This row with supports, left and right, that extend beyond their joints or not (a stack has only the left one, its base). A support
     /// that extends, as the ground around a base, carries the block at any slip. Otherwise the block can slide off. Without slip both are equivalent.
     #[must_use]
     pub const fn with_supports_that_extend(mut self, sides: [bool; 2]) -> Self {
@@ -266,7 +267,7 @@ impl Row {
         self
     }
 
-    /// Returns this row with a body fixed to a block.
+    /// This row with a body fixed to a block.
     #[must_use]
     pub fn with_body(mut self, block: usize, body: &Block) -> Self {
         if let Some(block) = self.blocks.get_mut(block) {
@@ -275,7 +276,7 @@ impl Row {
         self
     }
 
-    /// Returns the mirror image about the y axis, in which the right support becomes the left one. `None` for a stack, whose blocks would keep their
+    /// Mirror image about the y axis, in which the right support becomes the left one. `None` for a stack, whose blocks would keep their
     /// order.
     pub fn mirrored(&self) -> Option<Self> {
         if self.supports == Supports::Left {
@@ -296,7 +297,7 @@ impl Row {
         })
     }
 
-    /// Returns annular voussoirs between sections of a ring (radians from the left springing, ascending, both springings included), with exact
+    /// Annular voussoirs between sections of a ring (radians from the left springing, ascending, both springings included), with exact
     /// sectors. The size is the mean radius.
     ///
     /// # Errors
@@ -332,7 +333,7 @@ impl Row {
         Ok(row.with_outlines_m(outlines_m.collect()))
     }
 
-    /// Returns an arch of `voussoirs` equal annular voussoirs.
+    /// Arch of `voussoirs` equal annular voussoirs.
     ///
     /// # Errors
     /// When a dimension is not positive and finite, or the number of voussoirs out of range.
@@ -348,7 +349,7 @@ impl Row {
         Self::annular(ring, &sections_rad, mean_radius_m, depth_m, density_kg_m3)
     }
 
-    /// Returns a free-standing stack of drums from the bottom up, on one vertical axis. Drums of different width touch on the narrower face. The size
+    /// Free-standing stack of drums from the bottom up, on one vertical axis. Drums of different width touch on the narrower face. The size
     /// is half the diagonal of total height and base width.
     ///
     /// # Errors
@@ -378,7 +379,7 @@ impl Row {
         Ok(Self::new(blocks, joints, Supports::Left, size_m)?.with_outlines_m(outlines_m))
     }
 
-    /// Returns a stack of drums of given heights from the bottom up, with a width that varies linearly from `base_width_m` to `top_width_m`.
+    /// Stack of drums of given heights from the bottom up, with a width that varies linearly from `base_width_m` to `top_width_m`.
     ///
     /// # Errors
     /// Those of [`Row::stack`].
@@ -404,7 +405,7 @@ impl Row {
         Self::stack(&drums.collect::<Vec<_>>(), depth_m, density_kg_m3)
     }
 
-    /// Returns the middles of the joints on the left and the right support, in metres; twice the same point for a stack.
+    /// Middles of the joints on the left and the right support, in metres; twice the same point for a stack.
     pub fn feet_m(&self) -> [Vector2<f64>; 2] {
         let last = match self.supports {
             Supports::Left => 0,
@@ -413,7 +414,7 @@ impl Row {
         [0, last].map(|joint| self.joints[joint].middle_m())
     }
 
-    /// Returns the mass of all blocks in kg.
+    /// Mass of all blocks in kg.
     pub fn mass_kg(&self) -> f64 {
         self.blocks.iter().map(|block| block.mass_kg).sum()
     }
@@ -425,7 +426,7 @@ fn check_positive(name: &'static str, value: f64) -> Result<(), RowError> {
     holds.then_some(()).ok_or(error)
 }
 
-/// Returns the mass per unit area, in kg/m2.
+/// Mass per unit area, in kg/m2.
 fn surface_density(depth_m: f64, density_kg_m3: f64) -> Result<f64, RowError> {
     check_positive("depth in m", depth_m)?;
     check_positive("density in kg/m3", density_kg_m3)?;
@@ -437,7 +438,7 @@ fn check_block_count(blocks: usize) -> Result<(), RowError> {
     holds.then_some(()).ok_or(RowError::Count(blocks))
 }
 
-/// Returns an error for joints without thickness, for a size too small for the row, and for joints that cross.
+/// Error for joints without thickness, for a size too small for the row, and for joints that cross.
 fn check_joints(joints: &[Joint], size_m: f64) -> Result<(), RowError> {
     for (index, joint) in joints.iter().enumerate() {
         let value = joint.thickness_m();
@@ -456,7 +457,7 @@ fn check_joints(joints: &[Joint], size_m: f64) -> Result<(), RowError> {
     crossing.map_or(Ok(()), |first| Err(RowError::Crossing(first)))
 }
 
-/// Returns an error for blocks without mass or inertia, and for centres that are not finite.
+/// Error for blocks without mass or inertia, and for centres that are not finite.
 fn check_blocks(blocks: &[Block]) -> Result<(), RowError> {
     let (positive, finite) = ("it must be positive and finite", "it must be finite");
     for (index, block) in blocks.iter().enumerate() {

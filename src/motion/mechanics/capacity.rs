@@ -41,7 +41,7 @@ pub struct Displaced {
     pub friction: f64,
 }
 
-/// Returns the first mechanism to a side at a fraction `part` of the rotation at its unstable equilibrium. `None` without such a mechanism.
+/// First mechanism to a side at a fraction `part` of the rotation at its unstable equilibrium. `None` without such a mechanism.
 pub fn displaced_mechanism<C: MechanismChain>(
     structure: &C,
     sway: Sway,
@@ -69,7 +69,7 @@ pub fn displaced_mechanism<C: MechanismChain>(
     })
 }
 
-/// Returns the rigid bodies of the first mechanism to a side, from left to right, with their virtual displacements per radian of its coordinate, in
+/// Rigid bodies of the first mechanism to a side, from left to right, with their virtual displacements per radian of its coordinate, in
 /// metres. Parts at rest are omitted. `None` without such a mechanism.
 pub fn moving_bodies<C: MechanismChain>(structure: &C, sway: Sway) -> Option<Vec<MovingBody>> {
     let mechanism = &structure.link_from(sway, 0)?.mechanism;
@@ -79,24 +79,26 @@ pub fn moving_bodies<C: MechanismChain>(structure: &C, sway: Sway) -> Option<Vec
     // Every hinge adds a rotation about itself to the motion of the body before it.
     let mut twist = Twist::ZERO;
     let bodies = mechanism.moments().into_iter().zip(&hinges);
-    let moving = bodies.zip(rates.as_ref()).map(|((moments, hinge), rate)| {
-        twist = twist + Twist::rotation(*hinge, rate - twist.rate);
-        let centre = moments.centroid();
-        MovingBody {
-            mass_kg: moments.mass * structure.mass_unit_kg(),
-            centre_m: Vector2::new(sway.sign() * centre.x, centre.y) * structure.length_m(),
-            displacement: twist.velocity_at(centre) * structure.length_m(),
-            rotation: -rate,
-        }
-    });
-    let mut moving: Vec<MovingBody> = moving.collect();
+    let mut moving: Vec<MovingBody> = bodies
+        .zip(rates.as_ref())
+        .map(|((moments, hinge), rate)| {
+            twist = twist + Twist::rotation(*hinge, rate - twist.rate);
+            let centre = moments.centroid();
+            MovingBody {
+                mass_kg: moments.mass * structure.mass_unit_kg(),
+                centre_m: Vector2::new(sway.sign() * centre.x, centre.y) * structure.length_m(),
+                displacement: twist.velocity_at(centre) * structure.length_m(),
+                rotation: -rate,
+            }
+        })
+        .collect();
     if sway == Sway::Left {
         moving.reverse();
     }
     Some(moving)
 }
 
-/// Returns the constant forces on the first body of the first mechanism to a side, with their virtual displacements per radian of its coordinate, in
+/// Constant forces on the first body of the first mechanism to a side, with their virtual displacements per radian of its coordinate, in
 /// metres. `None` without such a mechanism.
 pub fn moving_forces<C: MechanismChain>(structure: &C, sway: Sway) -> Option<Vec<MovingForce>> {
     let mechanism = &structure.link_from(sway, 0)?.mechanism;
@@ -104,17 +106,19 @@ pub fn moving_forces<C: MechanismChain>(structure: &C, sway: Sway) -> Option<Vec
     mechanism.write_poses(0.0, &mut poses, &mut hinges);
     let rates = mechanism.rotation_rates(0.0);
     let twist = Twist::rotation(hinges[0], rates.as_ref()[0]);
-    let forces = mechanism.constant_forces().into_iter();
-    let forces = forces.map(|(at, force)| MovingForce {
-        at_m: Vector2::new(sway.sign() * at.x, at.y) * structure.length_m(),
-        force_kg: force * structure.mass_unit_kg(),
-        displacement: twist.velocity_at(at) * structure.length_m(),
-    });
+    let forces = mechanism
+        .constant_forces()
+        .into_iter()
+        .map(|(at, force)| MovingForce {
+            at_m: Vector2::new(sway.sign() * at.x, at.y) * structure.length_m(),
+            force_kg: force * structure.mass_unit_kg(),
+            displacement: twist.velocity_at(at) * structure.length_m(),
+        });
     Some(forces.collect())
 }
 
 impl BodyPoint {
-    /// Returns the horizontal displacement of the point, in metres.
+    /// Horizontal displacement of the point, in metres.
     fn shift_m(&self, poses: &[Pose]) -> f64 {
         let pose = self.body.and_then(|body| poses.get(body));
         pose.map_or(0.0, |pose| (pose.current_position(self.at_m) - self.at_m).x)
@@ -131,7 +135,7 @@ pub struct Control {
 }
 
 impl Control {
-    /// Returns a control point at a point of the structure.
+    /// Control point at a point of the structure.
     pub fn point(point: BodyPoint) -> Self {
         Self {
             at_m: point.at_m,
@@ -139,17 +143,18 @@ impl Control {
         }
     }
 
-    /// Returns the common centre of the moving masses, given in kg, as control point.
+    /// Common centre of the moving masses, given in kg, as control point.
     pub fn centre_of(masses: &[(f64, BodyPoint)]) -> Self {
         let moving = || masses.iter().filter(|(_, point)| point.body.is_some());
         let whole_kg: f64 = moving().map(|(mass_kg, _)| mass_kg).sum();
-        let points = moving().map(|(mass_kg, point)| (mass_kg / whole_kg, *point));
-        let points: Vec<(f64, BodyPoint)> = points.collect();
+        let points: Vec<(f64, BodyPoint)> = moving()
+            .map(|(mass_kg, point)| (mass_kg / whole_kg, *point))
+            .collect();
         let at_m = points.iter().map(|(part, point)| point.at_m * *part).sum();
         Self { at_m, points }
     }
 
-    /// Returns the horizontal displacement of the control point, in metres.
+    /// Horizontal displacement of the control point, in metres.
     fn shift_m(&self, poses: &[Pose]) -> f64 {
         let points = self.points.iter();
         let shifts_m = points.map(|(part, point)| part * point.shift_m(poses));
@@ -257,10 +262,11 @@ impl Capacity {
             sway.sign() * (after_m - before_m) / (near[1].q_rad - near[0].q_rad)
         };
         let control_velocity = velocity(&|poses| control.shift_m(poses));
-        let moving = masses.iter().filter(|(_, point)| point.body.is_some());
-        let moving =
-            moving.map(|(mass_kg, point)| (*mass_kg, velocity(&|poses| point.shift_m(poses))));
-        let moving: Vec<(f64, f64)> = moving.collect();
+        let moving: Vec<(f64, f64)> = masses
+            .iter()
+            .filter(|(_, point)| point.body.is_some())
+            .map(|(mass_kg, point)| (*mass_kg, velocity(&|poses| point.shift_m(poses))))
+            .collect();
         let speeds = moving.iter().map(|(_, velocity)| velocity.abs());
         let fastest = speeds.fold(0.0, f64::max);
         if control_velocity <= 1e-9 * fastest {
@@ -290,7 +296,7 @@ impl Capacity {
         Ok(capacity)
     }
 
-    /// Returns this capacity with additional points: at yield of each tie, and just before and after its break.
+    /// This capacity with additional points: at yield of each tie, and just before and after its break.
     #[must_use]
     pub fn with_ties(
         mut self,
@@ -314,7 +320,7 @@ impl Capacity {
         self
     }
 
-    /// Returns the point of the curve at a fraction of the path.
+    /// Point of the curve at a fraction of the path.
     fn point(&self, part: f64, here: &Displaced, gravity_m_s2: f64) -> CurvePoint {
         // Rounding errors may change the sign of the first displacement and of the last acceleration.
         let (first, last) = (part == 0.0, part == 1.0);
@@ -335,7 +341,7 @@ impl Capacity {
         }
     }
 
-    /// Returns the first point of the curve: `a(0) = A_L`, and `a0*`.
+    /// First point of the curve: `a(0) = A_L`, and `a0*`.
     ///
     /// # Panics
     /// Never: a curve has points.
@@ -343,7 +349,7 @@ impl Capacity {
         self.curve.first().expect("a curve has points")
     }
 
-    /// Returns the last point of the curve: the ultimate displacement, and `d0*`.
+    /// Last point of the curve: the ultimate displacement, and `d0*`.
     ///
     /// # Panics
     /// Never: a curve has points.
@@ -351,7 +357,7 @@ impl Capacity {
         self.curve.last().expect("a curve has points")
     }
 
-    /// Returns the acceleration of the equivalent oscillator, in multiples of gravity, at a fraction of `d0*` between 0 and 1, by linear
+    /// Acceleration of the equivalent oscillator, in multiples of gravity, at a fraction of `d0*` between 0 and 1, by linear
     /// interpolation of the curve.
     pub fn oscillator_acceleration_g(&self, part: f64) -> f64 {
         let wanted_m = part * self.end().oscillator_displacement_m;
@@ -366,7 +372,7 @@ impl Capacity {
             + share * (high.oscillator_acceleration_g - low.oscillator_acceleration_g)
     }
 
-    /// Returns the secant period, in seconds, at a fraction of the ultimate displacement between 0 and 1; `None` at the end of the curve.
+    /// Secant period, in seconds, at a fraction of the ultimate displacement between 0 and 1; `None` at the end of the curve.
     pub fn secant_period_s(&self, part: f64, gravity_m_s2: f64) -> Option<f64> {
         let wanted_m = part * self.end().oscillator_displacement_m;
         let acceleration_g = self.oscillator_acceleration_g(part);

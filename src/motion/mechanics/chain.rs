@@ -28,7 +28,7 @@ pub struct Coefficients {
 }
 
 impl Coefficients {
-    /// Returns the derivative of the potential energy of weights and constant forces with respect to `q`, over gravity.
+    /// Derivative of the potential energy of weights and constant forces with respect to `q`, over gravity.
     pub const fn potential_slope(&self) -> f64 {
         self.s_y + self.s_f
     }
@@ -70,21 +70,21 @@ pub trait Mechanism {
 
     /// Mass moments of the bodies, undeformed, from left to right.
     fn moments(&self) -> Vec<MassMoments>;
-    /// Returns the coefficients of the equation of motion at `q`.
+    /// Coefficients of the equation of motion at `q`.
     fn coefficients(&self, q_rad: f64) -> Coefficients;
     /// Mass times displacement of the centre of gravity at `q`.
     fn displacement(&self, q_rad: f64) -> Vector2<f64>;
-    /// Returns the potential energy of weights and constant forces at `q` over gravity, zero at `q = 0`.
+    /// Potential energy of weights and constant forces at `q` over gravity, zero at `q = 0`.
     fn potential(&self, q_rad: f64) -> f64 {
         self.displacement(q_rad).y
     }
-    /// Returns the constant forces over gravity, each with the position of its point at `q = 0`. They act on the first body.
+    /// Constant forces over gravity, each with the position of its point at `q = 0`. They act on the first body.
     fn constant_forces(&self) -> Vec<(Vector2<f64>, Vector2<f64>)> {
         Vec::new()
     }
-    /// Returns the rotations of the bodies at `q`.
+    /// Rotations of the bodies at `q`.
     fn rotations(&self, q_rad: f64) -> Self::Rotations;
-    /// Returns the rotation rates of the bodies at `q` for `q' = 1`.
+    /// Rotation rates of the bodies at `q` for `q' = 1`.
     fn rotation_rates(&self, q_rad: f64) -> Self::Rotations;
     /// Writes the poses of the bodies at `q`, from left to right, and the positions of the hinges into two lists, which are emptied first.
     fn write_poses(&self, q_rad: f64, poses: &mut Vec<Pose>, hinges: &mut Vec<Vector2<f64>>);
@@ -158,7 +158,7 @@ fn deserialize_toe<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Sway, D
 }
 
 impl<M: Mechanism> Link<M> {
-    /// Returns the link of a mechanism with its unstable equilibrium and its limit, and with the impact that starts it.
+    /// Link of a mechanism with its unstable equilibrium and its limit, and with the impact that starts it.
     pub fn new(
         mechanism: M,
         critical_rad: f64,
@@ -186,18 +186,18 @@ pub trait MechanismChain: std::fmt::Debug + Send + Sync {
     /// Type of the mechanisms.
     type Mechanism: Mechanism + Send + Sync;
 
-    /// Returns the size of the structure: the unit of length of its mechanisms, in metres.
+    /// Size of the structure: the unit of length of its mechanisms, in metres.
     fn length_m(&self) -> f64;
-    /// Returns the unit of mass of its mechanisms, in kg.
+    /// Unit of mass of its mechanisms, in kg.
     fn mass_unit_kg(&self) -> f64;
-    /// Returns the unit of energy of the mechanisms in J.
+    /// Unit of energy of the mechanisms in J.
     fn joules_per_unit(&self) -> f64 {
         self.mass_unit_kg() * self.length_m() * self.length_m()
     }
 
-    /// Returns the horizontal acceleration at which rocking starts from rest to a side to which the structure can sway, in multiples of gravity.
+    /// Horizontal acceleration at which rocking starts from rest to a side to which the structure can sway, in multiples of gravity.
     fn incipient_towards_g(&self, sway: Sway) -> f64;
-    /// Returns the incipient acceleration to the right, in multiples of gravity; for symmetric structures, to either side.
+    /// Incipient acceleration to the right, in multiples of gravity; for symmetric structures, to either side.
     fn incipient_g(&self) -> f64 {
         self.incipient_towards_g(Sway::Right)
     }
@@ -228,7 +228,7 @@ pub trait MechanismChain: std::fmt::Debug + Send + Sync {
     }
     /// True if a thrust line runs through the structure, so that its excess is known.
     const THRUSTS: bool;
-    /// Returns thrust excess and friction demand of a mechanism in motion, after a number of impacts and a first sway to this side. Faster than
+    /// Thrust excess and friction demand of a mechanism in motion, after a number of impacts and a first sway to this side. Faster than
     /// [`Self::demand`], and lower by some per cent for a continuous ring, whose sections are further apart.
     fn demand_at_sections(
         &self,
@@ -239,45 +239,45 @@ pub trait MechanismChain: std::fmt::Debug + Send + Sync {
     ) -> Demand {
         self.demand(mechanism, motion)
     }
-    /// Returns thrust excess and friction demand of a mechanism in motion.
+    /// Thrust excess and friction demand of a mechanism in motion.
     fn demand(&self, mechanism: &Self::Mechanism, motion: &MechanismState) -> Demand;
-    /// Returns thrust excess and friction demand at rest, for a force per unit mass (gravity minus ground acceleration) in multiples of gravity.
+    /// Thrust excess and friction demand at rest, for a force per unit mass (gravity minus ground acceleration) in multiples of gravity.
     fn demand_at_rest(&self, body_force_g: Vector2<f64>) -> Demand;
-    /// Returns the thrust line of a mechanism in motion, section by section from left to right in the mechanism's frame: outward distance from the
+    /// Thrust line of a mechanism in motion, section by section from left to right in the mechanism's frame: outward distance from the
     /// axis over the thickness. The sections of a column go from the base up, with distances to the right. `None` for a section without compression;
     /// empty if unknown.
     fn eccentricity_ratios(&self, _: &Self::Mechanism, _: &MechanismState) -> Vec<Option<f64>> {
         Vec::new()
     }
-    /// Returns the mirror image of a thrust line, with sections in reverse order. For a column the distances change sign instead.
+    /// Mirror image of a thrust line, with sections in reverse order. For a column the distances change sign instead.
     fn mirrored(&self, mut eccentricity_ratios: Vec<Option<f64>>) -> Vec<Option<f64>> {
         eccentricity_ratios.reverse();
         eccentricity_ratios
     }
-    /// Returns the thrust line at rest, in the form of [`Self::eccentricity_ratios`]; empty if unknown.
+    /// Thrust line at rest, in the form of [`Self::eccentricity_ratios`]; empty if unknown.
     fn eccentricity_ratios_at_rest(&self, _body_force_g: Vector2<f64>) -> Vec<Option<f64>> {
         Vec::new()
     }
-    /// Returns the side of the sway `impacts` impacts later or earlier than a sway to this side. Every impact changes the side, unless a wall stands
+    /// Side of the sway `impacts` impacts later or earlier than a sway to this side. Every impact changes the side, unless a wall stands
     /// behind the structure.
     fn sway_after(&self, sway: Sway, impacts: usize) -> Sway {
         sway.after(impacts)
     }
-    /// Returns the mechanism after a number of impacts and a first sway to this side; `None` if it cannot sway to that side, or if an earlier impact
+    /// Mechanism after a number of impacts and a first sway to this side; `None` if it cannot sway to that side, or if an earlier impact
     /// stops the structure.
     fn link_from(&self, first: Sway, impacts: usize) -> Option<&Link<Self::Mechanism>>;
-    /// Returns the mechanism after a number of impacts and a first sway to the right; for symmetric structures, to either side.
+    /// Mechanism after a number of impacts and a first sway to the right; for symmetric structures, to either side.
     fn link(&self, impacts: usize) -> Option<&Link<Self::Mechanism>> {
         self.link_from(Sway::Right, impacts)
     }
-    /// Returns the number of impacts, after a first sway to this side, from which on the mechanisms repeat in pairs; `None` while it is not known.
+    /// Number of impacts, after a first sway to this side, from which on the mechanisms repeat in pairs; `None` while it is not known.
     fn repeats_from(&self, first: Sway) -> Option<usize>;
-    /// Returns whether the energy barriers of the mechanisms are all that prevents overturning on quiet ground: false for a column that may turn over
+    /// Whether the energy barriers of the mechanisms are all that prevents overturning on quiet ground: false for a column that may turn over
     /// the top of a lower wall behind it, which no mechanism describes.
     fn barriers_decide(&self) -> bool {
         true
     }
-    /// Returns the least energy barrier of the mechanism after a number of impacts and a first sway to this side, and of all mechanisms that may follow
+    /// Least energy barrier of the mechanism after a number of impacts and a first sway to this side, and of all mechanisms that may follow
     /// it, in the unit of [`Link::barrier`]. `None` if [barriers do not decide](Self::barriers_decide), or without such a mechanism.
     ///
     /// **On quiet ground, a structure with less energy, whose mechanism is not beyond its unstable equilibrium `q_c`, cannot overturn.** Quiet ground does no work, so kinetic plus potential energy is constant between
@@ -300,16 +300,16 @@ pub trait MechanismChain: std::fmt::Debug + Send + Sync {
         }
         Some(least)
     }
-    /// Returns the hinges of the mechanism after a number of impacts, from left to right, for a sway to the given side; empty without such a
+    /// Hinges of the mechanism after a number of impacts, from left to right, for a sway to the given side; empty without such a
     /// mechanism.
     fn hinges(&self, impacts: usize, sway: Sway) -> Vec<Hinge>;
-    /// Returns the impulses at the hinges in the impact that starts the mechanism, in the frame of the ground, for a unit closing rate, in the units
+    /// Impulses at the hinges in the impact that starts the mechanism, in the frame of the ground, for a unit closing rate, in the units
     /// of mass and length; empty if unknown.
     fn hinge_impulses(&self, impacts: usize, sway: Sway) -> Vec<Vector2<f64>>;
 }
 
-/// Returns the unstable equilibrium under gravity: the first `q` in `(0, limit_rad)` at which the slope of the potential energy becomes zero.
-/// Returns the limit if there is none.
+/// Unstable equilibrium under gravity: the first `q` in `(0, limit_rad)` at which the slope of the potential energy becomes zero.
+/// The limit if there is none.
 pub fn critical_rad(mechanism: &impl Mechanism, limit_rad: f64) -> f64 {
     let rise = |q| mechanism.coefficients(q).potential_slope();
     // The potential energy has one maximum before the limit; the scan only brackets it.

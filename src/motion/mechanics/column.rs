@@ -94,7 +94,7 @@ pub enum ColumnLoadError {
 }
 
 impl Column {
-    /// Returns a column of given height and width (in the plane of the motion), with a depth of 1 m and a density of 2000 kg/m3.
+    /// Column of given height and width (in the plane of the motion), with a depth of 1 m and a density of 2000 kg/m3.
     ///
     /// # Errors
     /// When a size is outside 1e-9 to 1e12 m.
@@ -114,7 +114,7 @@ impl Column {
         })
     }
 
-    /// Returns this column cut into equal drums.
+    /// This column cut into equal drums.
     ///
     /// # Errors
     /// If there is none, or more than a row of blocks may have.
@@ -125,7 +125,7 @@ impl Column {
         Ok(self)
     }
 
-    /// Returns this column cut into drums of these heights in metres, from the base up.
+    /// This column cut into drums of these heights in metres, from the base up.
     ///
     /// # Errors
     /// When a height is outside 1e-9 to 1e12, they do not add up to the height of the column (to a millionth), or
@@ -143,7 +143,7 @@ impl Column {
         Ok(self)
     }
 
-    /// Returns this column with another width at the top, in metres; the width varies linearly.
+    /// This column with another width at the top, in metres; the width varies linearly.
     ///
     /// # Errors
     /// When it is outside 1e-9 to 1e12.
@@ -152,14 +152,14 @@ impl Column {
         Ok(self)
     }
 
-    /// Returns this column on a pedestal as wide as its base (`true`), from which it can slide off, or on ground that extends beyond the base
+    /// This column on a pedestal as wide as its base (`true`), from which it can slide off, or on ground that extends beyond the base
     /// (`false`).
     #[must_use]
     pub fn on_pedestal(self, pedestal: bool) -> Self {
         Self { pedestal, ..self }
     }
 
-    /// Returns this column with these ties, under this gravity. A column with ties is a row of blocks, also if it is one prism.
+    /// This column with these ties, under this gravity. A column with ties is a row of blocks, also if it is one prism.
     ///
     /// # Errors
     /// If a tie is not valid, with its index.
@@ -175,7 +175,7 @@ impl Column {
         })
     }
 
-    /// Returns this column with a wall behind it.
+    /// This column with a wall behind it.
     ///
     /// # Errors
     /// If the wall is higher than the column, or below its centre of gravity, or the ratio of rates is not in 0 to 1.
@@ -205,7 +205,7 @@ impl Column {
         require(height_m >= centre_m, "height_m", height_m, allowed).map(|_| ())
     }
 
-    /// Returns this column with these loads, under this gravity. The column carries its loads as a rigid block, or as drums: each load is on the drum
+    /// This column with these loads, under this gravity. The column carries its loads as a rigid block, or as drums: each load is on the drum
     /// at its height, on the lower one at a joint.
     ///
     /// # Errors
@@ -232,7 +232,7 @@ impl Column {
         }
     }
 
-    /// Returns the side to which the column, as one block, overturns under its own weight and its loads; `None` if it stands.
+    /// Side to which the column, as one block, overturns under its own weight and its loads; `None` if it stands.
     fn overturns_to(&self) -> Option<Sway> {
         let is_held = |sway| match self.wall() {
             Some((wall, height_m)) => wall.side == sway && self.leans_safely(sway, height_m),
@@ -242,14 +242,14 @@ impl Column {
         sides.find(|sway| self.tilting_block(*sway).incipient_g() <= 0.0 && !is_held(*sway))
     }
 
-    /// Returns the column as one block that sways to this side.
+    /// Column as one block that sways to this side.
     fn tilting_block(&self, sway: Sway) -> Tilting {
         let size_m = [self.height_m, self.width_m];
         let loads = self.placed_loads();
         Tilting::new(size_m, self.prism_kg(), loads, self.gravity_m_s2, sway)
     }
 
-    /// Returns whether its weight and its loads do not turn the column over the top of a wall of this height on this side: in a virtual rotation
+    /// Whether its weight and its loads do not turn the column over the top of a wall of this height on this side: in a virtual rotation
     /// about that point, towards the wall, they do no positive work.
     fn leans_safely(&self, side: Sway, height_m: f64) -> bool {
         let top_m = Vector2::new(0.5 * self.width_m * side.sign(), height_m);
@@ -262,7 +262,7 @@ impl Column {
         side.sign() * moments.sum::<f64>() >= 0.0
     }
 
-    /// Returns its loads, each with its point, in metres from the middle of the base.
+    /// Loads, each with its point, in metres from the middle of the base.
     pub fn placed_loads(&self) -> impl Iterator<Item = (&PlacedLoad, Vector2<f64>)> {
         self.loads.iter().map(|load| {
             let height_m = load.height_m.unwrap_or(self.height_m);
@@ -270,17 +270,18 @@ impl Column {
         })
     }
 
-    /// Returns its loads for drawings, each with the drum that carries it.
+    /// Loads for drawings, each with the drum that carries it.
     pub fn load_outlines(&self) -> LoadOutlines {
-        let loads_m = self.placed_loads();
-        let loads_m = loads_m.map(|(_, at_m)| (self.drum_at(at_m.y), at_m));
+        let loads_m = self
+            .placed_loads()
+            .map(|(_, at_m)| (self.drum_at(at_m.y), at_m));
         LoadOutlines {
             fill_m: Vec::new(),
             loads_m: loads_m.collect(),
         }
     }
 
-    /// Returns the index of the drum at a height; at a joint, of the lower one.
+    /// Index of the drum at a height; at a joint, of the lower one.
     fn drum_at(&self, height_m: f64) -> usize {
         let heights_m = self.drum_heights_m();
         let mut top_m = 0.0;
@@ -291,19 +292,19 @@ impl Column {
         drum.unwrap_or(heights_m.len() - 1)
     }
 
-    /// Returns the constant forces of its loads in N, each after its point in metres.
+    /// Constant forces of its loads in N, each after its point in metres.
     pub fn constant_forces(&self) -> impl Iterator<Item = (Vector2<f64>, Vector2<f64>)> {
         let loads = self.placed_loads();
         let forces = loads.map(|(load, at_m)| (at_m, load.constant_force_n(self.gravity_m_s2)));
         forces.filter(|(_, force_n)| *force_n != Vector2::zeros())
     }
 
-    /// Returns the mass of a prism of its base, its height and its depth, in kg.
+    /// Mass of a prism of its base, its height and its depth, in kg.
     fn prism_kg(&self) -> f64 {
         self.density_kg_m3 * self.depth_m * self.height_m * self.width_m
     }
 
-    /// Returns the column and its moving loads as one rigid body; its drums and its taper are neglected.
+    /// Column and its moving loads as one rigid body; its drums and its taper are neglected.
     pub fn body(&self) -> Block {
         let mass_kg = self.prism_kg();
         let diagonal_m = libm::hypot(self.height_m, self.width_m);
@@ -312,19 +313,20 @@ impl Column {
             centre_m: Vector2::new(0.0, 0.5 * self.height_m),
             inertia_kg_m2: mass_kg * diagonal_m * diagonal_m / 12.0,
         };
-        let loads = self.placed_loads();
-        let loads = loads.filter_map(|(load, at_m)| load.moving_body(at_m));
+        let loads = self
+            .placed_loads()
+            .filter_map(|(load, at_m)| load.moving_body(at_m));
         loads.fold(own, |body, load| body.with(&load))
     }
 
-    /// Returns the wall behind the column with its height in metres; `None` without a wall, or if its height is zero.
+    /// Wall behind the column with its height in metres; `None` without a wall, or if its height is zero.
     pub fn wall(&self) -> Option<(BackWall, f64)> {
         let back = self.back?;
         let height_m = back.height_m.unwrap_or(self.height_m);
         (height_m > 0.0).then_some((back, height_m))
     }
 
-    /// Returns the ratio of the rates after and before an impact on the wall behind the column; `None` without a wall. The default is that of a
+    /// Ratio of the rates after and before an impact on the wall behind the column; `None` without a wall. The default is that of a
     /// homogeneous block that is held over its full height.
     ///
     /// # Errors
@@ -358,7 +360,7 @@ impl Column {
         ratio.map(Some).ok_or(wide)
     }
 
-    /// Returns the rate about the toe to this side, in rad/s, of a column of one block at rest just after a short horizontal blow: the angular impulse
+    /// Rate about the toe to this side, in rad/s, of a column of one block at rest just after a short horizontal blow: the angular impulse
     /// about the toe over the moment of inertia about it. The base does not slip in the blow. `None` for several drums, which do not start as one.
     pub fn rate_of_blow_rad_s(&self, sway: Sway, impulse_n_s: f64, height_m: f64) -> Option<f64> {
         let [block] = &self.row().ok()?.blocks[..] else {
@@ -369,7 +371,7 @@ impl Column {
         Some(impulse_n_s * height_m / inertia_kg_m2)
     }
 
-    /// Returns side and height in metres of a wall behind drums with elastic joints; `None` without a wall. Each drum is held at its centre or above, so
+    /// Side and height in metres of a wall behind drums with elastic joints; `None` without a wall. Each drum is held at its centre or above, so
     /// the wall carries every push towards it.
     ///
     /// # Errors
@@ -395,17 +397,17 @@ impl Column {
         Ok(Some((wall.side, height_m)))
     }
 
-    /// Returns half the diagonal of its outline, in metres, for a top as wide as the base.
+    /// Half the diagonal of its outline, in metres, for a top as wide as the base.
     pub fn half_diagonal_m(&self) -> f64 {
         0.5 * libm::hypot(self.height_m, self.width_m)
     }
 
-    /// Returns whether the column with its loads and ties is its own mirror image, without a wall behind it. See [`Row::is_symmetric`].
+    /// Whether the column with its loads and ties is its own mirror image, without a wall behind it. See [`Row::is_symmetric`].
     pub fn is_symmetric(&self) -> bool {
         self.wall().is_none() && self.row().is_ok_and(|row| row.is_symmetric())
     }
 
-    /// Returns its drums as a row of blocks, on ground that extends beyond the base, or on a pedestal.
+    /// Drums as a row of blocks, on ground that extends beyond the base, or on a pedestal.
     ///
     /// # Errors
     /// If the drums do not form a row, or the column has ties and constant forces.
@@ -417,12 +419,14 @@ impl Column {
             self.depth_m,
             self.density_kg_m3,
         )?;
-        let loads = self.placed_loads();
-        let loads = loads.filter_map(|(load, at_m)| Some((at_m, load.moving_body(at_m)?)));
-        let row = loads.fold(row, |row, (at_m, load)| {
-            row.with_body(self.drum_at(at_m.y), &load)
-        });
-        let row = row.with_supports_that_extend([!self.pedestal, false]);
+        let loads = self
+            .placed_loads()
+            .filter_map(|(load, at_m)| Some((at_m, load.moving_body(at_m)?)));
+        let row = loads
+            .fold(row, |row, (at_m, load)| {
+                row.with_body(self.drum_at(at_m.y), &load)
+            })
+            .with_supports_that_extend([!self.pedestal, false]);
         let mut forces = self.constant_forces();
         if self.ties.is_empty() {
             let forces = forces.map(|(at_m, force_n)| (self.drum_at(at_m.y), at_m, force_n));
@@ -435,24 +439,24 @@ impl Column {
         Ok(tied.expect("the ties were checked with the same blocks"))
     }
 
-    /// Returns the heights of its drums from the base up, in metres; its own height for a single block.
+    /// Heights of its drums from the base up, in metres; its own height for a single block.
     pub fn drum_heights_m(&self) -> Vec<f64> {
         let drums = self.drum_heights_m.clone();
         drums.unwrap_or_else(|| vec![self.height_m])
     }
 
-    /// Returns whether it is one prismatic block without ties, as in Housner's model.
+    /// Whether it is one prismatic block without ties, as in Housner's model.
     pub fn is_one_prism(&self) -> bool {
         let prism = self.drum_heights_m().len() == 1 && self.top_width_m() == self.width_m;
         prism && self.ties.is_empty()
     }
 
-    /// Returns the width at the top, in metres.
+    /// Width at the top, in metres.
     pub fn top_width_m(&self) -> f64 {
         self.top_width_m.unwrap_or(self.width_m)
     }
 
-    /// Returns this column with another depth out of plane, in metres.
+    /// This column with another depth out of plane, in metres.
     ///
     /// # Errors
     /// When it is outside 1e-9 to 1e12.
@@ -461,7 +465,7 @@ impl Column {
         Ok(self)
     }
 
-    /// Returns this column with another density, in kg/m3.
+    /// This column with another density, in kg/m3.
     ///
     /// # Errors
     /// When it is outside 1e-9 to 1e12.
@@ -470,13 +474,13 @@ impl Column {
         Ok(self)
     }
 
-    /// Returns the sections at which the thrust line of a single block is reported, in metres above the base: 21, from the base to the top.
+    /// Sections at which the thrust line of a single block is reported, in metres above the base: 21, from the base to the top.
     pub fn thrust_sections_m(&self) -> Vec<f64> {
         let parts = thrust_section_parts();
         parts.map(|part| part * self.height_m).collect()
     }
 
-    /// Returns the slenderness `alpha`, the angle of the diagonal with the vertical, in radians.
+    /// Slenderness `alpha`, the angle of the diagonal with the vertical, in radians.
     pub fn slenderness_rad(&self) -> f64 {
         libm::atan2(self.width_m, self.height_m)
     }
@@ -499,7 +503,7 @@ pub struct RockingColumn {
 }
 
 impl RockingColumn {
-    /// Returns the column under an impact model. A prescribed restitution coefficient, or a factor on it, applies to impacts on the base, or on the
+    /// Column under an impact model. A prescribed restitution coefficient, or a factor on it, applies to impacts on the base, or on the
     /// wall behind the column.
     ///
     /// # Errors
@@ -556,13 +560,13 @@ impl RockingColumn {
         })
     }
 
-    /// Returns whether the column is its own mirror image.
+    /// Whether the column is its own mirror image.
     pub const fn is_symmetric(&self) -> bool {
         self.is_symmetric
     }
 }
 
-/// Returns the demand at the base for a ground reaction per unit weight and its moment about the middle of the base.
+/// Demand at the base for a ground reaction per unit weight and its moment about the middle of the base.
 fn base_demand(mechanism: &Tilting, (reaction, moment): (Vector2<f64>, f64)) -> Demand {
     let width = 2.0 * mechanism.toe().x;
     let base = SectionResultant {
@@ -651,7 +655,7 @@ impl MechanismChain for RockingColumn {
         link.map_or(Vec::new(), |_| vec![Hinge::Toe(sway)])
     }
 
-    /// Returns an empty list: the restitution coefficient alone describes the impact of a column.
+    /// Empty list: the restitution coefficient alone describes the impact of a column.
     fn hinge_impulses(&self, _: usize, _: Sway) -> Vec<Vector2<f64>> {
         Vec::new()
     }
@@ -700,8 +704,12 @@ mod tests {
 
     #[test]
     fn mass_and_size_are_those_of_the_block() {
-        let column = Column::new(4.0, 0.8).unwrap().with_depth_m(0.5).unwrap();
-        let column = column.with_density_kg_m3(2200.0).unwrap();
+        let column = Column::new(4.0, 0.8)
+            .unwrap()
+            .with_depth_m(0.5)
+            .unwrap()
+            .with_density_kg_m3(2200.0)
+            .unwrap();
         let column = RockingColumn::new(&column, ImpactModel::MaxRestitution).unwrap();
         let kg = column.mass_unit_kg() * column.first.right.mechanism.moments()[0].mass;
         assert!((kg - 4.0 * 0.8 * 0.5 * 2200.0).abs() < 1e-9);

@@ -78,13 +78,13 @@ pub fn solve(matrix: &DMatrix<f64>, constant: &[f64]) -> Option<Vec<f64>> {
     None
 }
 
-/// Returns the coefficient of the artificial variable in a row; it differs between rows, so that equal ratios are rare.
+/// Coefficient of the artificial variable in a row; it differs between rows, so that equal ratios are rare.
 fn cover(row: usize) -> f64 {
     let golden = row as f64 * 0.618_033_988_749_894_9;
     1.0 + 0.5 * golden.fract()
 }
 
-/// Returns the values of the unknowns in a basis.
+/// Values of the unknowns in a basis.
 fn values(table: &DMatrix<f64>, basis: &[usize]) -> Vec<f64> {
     let n = basis.len();
     let mut z = vec![0.0; n];

@@ -5,7 +5,7 @@ use clarabel::solver::{
     DefaultSettings, DefaultSolution, DefaultSolver, IPSolver as _, NonnegativeConeT, ZeroConeT,
 };
 
-/// Returns a sparse matrix with given height, width and entries (row, column, value).
+/// Sparse matrix with given height, width and entries (row, column, value).
 pub(crate) fn matrix(
     height: usize,
     width: usize,

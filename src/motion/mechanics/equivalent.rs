@@ -41,7 +41,7 @@ pub struct Equivalent {
     pub at_critical: Option<HousnerBlock>,
 }
 
-/// Returns the blocks equivalent to the first mechanism of `structure` to a side under gravity. `None` without such a mechanism.
+/// Blocks equivalent to the first mechanism of `structure` to a side under gravity. `None` without such a mechanism.
 pub fn equivalent_towards<C: MechanismChain>(
     structure: &C,
     sway: Sway,
@@ -63,7 +63,7 @@ pub fn equivalent_towards<C: MechanismChain>(
     })
 }
 
-/// Returns `n^2` for unit gravity and length.
+/// `n^2` for unit gravity and length.
 fn growth_squared<M: Mechanism>(link: &Link<M>, q_rad: f64) -> f64 {
     let rise = |q| link.mechanism.coefficients(q).potential_slope();
     // Five-point central difference. The step is a thousandth of the way to q_c: its relative error is of the order of the fourth power of that, as

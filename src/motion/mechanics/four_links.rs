@@ -96,14 +96,14 @@ pub enum FourLinkError {
 const VOUSSOIRS: &str = "; `limit` and [free_hinges] take any mechanism of voussoirs";
 
 impl FourLinkError {
-    /// Returns true if the structure is stable and does not start as four links.
+    /// True if the structure is stable and does not start as four links.
     pub fn is_other_mechanism(&self) -> bool {
         matches!(self, Self::Limit(error) | Self::Row(_, error) if *error != LimitError::CannotStand)
     }
 }
 
 impl FourLinks {
-    /// Returns the four-link model of an arch.
+    /// Four-link model of an arch.
     ///
     /// # Errors
     /// When the arch cannot stand or does not start as a four-link mechanism, or when a number of the law is not allowed.
@@ -122,7 +122,7 @@ impl FourLinks {
         })
     }
 
-    /// Returns the four-link model of a row of blocks, with a depth of 1 m.
+    /// Four-link model of a row of blocks, with a depth of 1 m.
     ///
     /// # Errors
     /// If the row is a stack, has ties or constant forces, falls under its own weight, starts as another mechanism to either side, or if a number of the
@@ -173,12 +173,12 @@ impl FourLinks {
         })
     }
 
-    /// Returns whether the structure is its own mirror image.
+    /// Whether the structure is its own mirror image.
     pub const fn is_symmetric(&self) -> bool {
         self.is_symmetric
     }
 
-    /// Returns the model of an arch with this shape and another size, which shares the sequences of mechanisms.
+    /// Model of an arch with this shape and another size, which shares the sequences of mechanisms.
     pub fn with_size_of(&self, arch: &Arch) -> Self {
         Self {
             size: Size::of(arch),
@@ -186,7 +186,7 @@ impl FourLinks {
         }
     }
 
-    /// Returns the model with another depth out of plane, in metres. The depth affects only the impulses, which are per metre of depth; the masses of
+    /// Model with another depth out of plane, in metres. The depth affects only the impulses, which are per metre of depth; the masses of
     /// the blocks are given.
     ///
     /// # Errors
@@ -197,22 +197,22 @@ impl FourLinks {
         Ok(self)
     }
 
-    /// Returns the sequence of mechanisms after a first sway to the right; for a symmetric structure, to either side.
+    /// Sequence of mechanisms after a first sway to the right; for a symmetric structure, to either side.
     pub fn chain(&self) -> &Chain {
         self.chain_from(Sway::Right)
     }
 
-    /// Returns the sequence of mechanisms after a first sway to this side.
+    /// Sequence of mechanisms after a first sway to this side.
     pub fn chain_from(&self, first: Sway) -> &Chain {
         self.chains.get(first)
     }
 
-    /// Returns the unit of the impulses of an impact: N s per metre of depth and per rad/s of the closing mechanism.
+    /// Unit of the impulses of an impact: N s per metre of depth and per rad/s of the closing mechanism.
     pub const fn impulse_unit_n_s_per_m(&self) -> f64 {
         self.size.impulse_n_s_per_m
     }
 
-    /// Returns the thrust line at rest, seen such that a push to this side is one to the right.
+    /// Thrust line at rest, seen such that a push to this side is one to the right.
     fn thrust_at_rest(&self, side: Sway, body_force_g: Vector2<f64>) -> ThrustLine {
         let [towards, away] = [side, side.opposite()].map(|side| &self.chain_from(side).incipient);
         let force_g = Vector2::new(side.sign() * body_force_g.x, body_force_g.y);

@@ -48,7 +48,7 @@ pub struct FrictionOnset {
 }
 
 impl FrictionOnset {
-    /// Returns whether a joint of the mechanism slips.
+    /// Whether a joint of the mechanism slips.
     pub fn sliding_governs(&self) -> bool {
         self.yields
             .iter()
@@ -119,7 +119,7 @@ pub(crate) fn onset_of_standing(
     }))
 }
 
-/// Returns whether an undeformed row carries its own weight with this coefficient.
+/// Whether an undeformed row carries its own weight with this coefficient.
 ///
 /// # Errors
 /// If the row falls with any coefficient, or the linear program is not solved.
@@ -127,7 +127,7 @@ pub fn stands(row: &Row, coefficient: f64) -> Result<bool, FrictionError> {
     stands_at(row, &RowState::undeformed(row), coefficient)
 }
 
-/// Returns whether a row in a given state carries its own weight. Open joints are in contact only at their closed corner.
+/// Whether a row in a given state carries its own weight. Open joints are in contact only at their closed corner.
 ///
 /// # Errors
 /// Those of [`stands`].
@@ -141,7 +141,7 @@ pub(crate) fn stands_at(
     Ok(found.is_none_or(|(excess, _)| excess <= FRICTION_EXCESS_TOLERANCE))
 }
 
-/// Returns the least coefficient of friction for which a row carries its own weight, with a tolerance of 1e-7.
+/// Least coefficient of friction for which a row carries its own weight, with a tolerance of 1e-7.
 ///
 /// # Errors
 /// If the row falls with any coefficient, or a linear program is not solved.
@@ -156,7 +156,7 @@ pub fn least_coefficient(row: &Row) -> Result<f64, FrictionError> {
     Ok(least)
 }
 
-/// Returns the least coefficient of friction with which an undeformed row carries its weight and a push, in multiples of gravity, with a tolerance
+/// Least coefficient of friction with which an undeformed row carries its weight and a push, in multiples of gravity, with a tolerance
 /// of 1e-7; `None` if none is found. With the push that starts the row without slip, this is the coefficient with which no joint slips before. It
 /// is the largest ratio of shear to normal force over all joints; if the joint forces are not unique, the least of these ratios.
 ///
@@ -166,7 +166,7 @@ pub fn demand(row: &Row, push_g: f64, sway: Sway) -> Result<Option<f64>, Frictio
     demand_at(row, &RowState::undeformed(row), push_g, sway)
 }
 
-/// Returns the least coefficient of friction with which a row in a given state carries its weight and a push; see [`demand`].
+/// Least coefficient of friction with which a row in a given state carries its weight and a push; see [`demand`].
 ///
 /// # Errors
 /// Those of [`demand`].
@@ -214,7 +214,7 @@ struct FrictionProgram {
     joints: usize,
 }
 
-/// Returns the loads of the blocks, three numbers each: weights minus tie forces. The joint forces balance them.
+/// Loads of the blocks, three numbers each: weights minus tie forces. The joint forces balance them.
 fn loads(row: &Row, stance: &RowState) -> Vec<f64> {
     let (size_m, mass_kg, centres_m) = (row.size_m, row.mass_kg(), &stance.placement.centres_m);
     let weights = row.blocks.iter().map(|block| block.mass_kg / mass_kg);

@@ -33,7 +33,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Returns the corner on an edge, in metres.
+    /// Corner on an edge, in metres.
     pub fn corner_m(&self, edge: Edge) -> Vector2<f64> {
         match edge {
             Edge::Intrados => self.intrados_m,
@@ -82,15 +82,18 @@ pub struct Closure {
 }
 
 impl Placement {
-    /// Returns the placement of the undeformed row.
+    /// Placement of the undeformed row.
     pub fn new(row: &Row) -> Self {
-        let faces = row.joints.iter().map(|joint| Face {
-            joint: *joint,
-            middle: joint.middle_m(),
-            tangent: joint.direction(),
-            thickness: joint.thickness_m(),
-        });
-        let faces: Vec<Face> = faces.collect();
+        let faces: Vec<Face> = row
+            .joints
+            .iter()
+            .map(|joint| Face {
+                joint: *joint,
+                middle: joint.middle_m(),
+                tangent: joint.direction(),
+                thickness: joint.thickness_m(),
+            })
+            .collect();
         let undeformed_m: Vec<_> = row.blocks.iter().map(|block| block.centre_m).collect();
         let mut placement = Self {
             handedness: row.handedness,
@@ -113,29 +116,29 @@ impl Placement {
         self.support_poses = poses;
     }
 
-    /// Returns the length of the closure error in metres.
+    /// Length of the closure error in metres.
     pub fn closure_error(&self) -> f64 {
         self.closure.map_or(0.0, |closure| closure.error_m.norm())
     }
 
-    /// Returns whether both corners of a joint are in contact.
+    /// Whether both corners of a joint are in contact.
     pub(crate) fn is_shut(&self, joint: usize) -> bool {
         self.gaps_m[joint] == [0.0; 2]
     }
 
-    /// Returns the first joint that is open at both edges.
+    /// First joint that is open at both edges.
     pub(crate) fn parted_joint(&self) -> Option<usize> {
         let mut gaps_m = self.gaps_m.iter();
         gaps_m.position(|gaps| gaps.iter().all(|gap| *gap > 0.0))
     }
 
-    /// Returns the number of open corners.
+    /// Number of open corners.
     pub(crate) fn open_corners(&self) -> usize {
         let corners = self.gaps_m.iter().flatten();
         corners.filter(|gap| **gap > 0.0).count()
     }
 
-    /// Returns the largest gap over the thickness of its joint.
+    /// Largest gap over the thickness of its joint.
     pub(crate) fn largest_gap_ratio(&self) -> f64 {
         let corners = self.gaps_m.iter().zip(&self.faces);
         let ratios = corners.flat_map(|(gaps, face)| gaps.map(|gap| gap / face.thickness));
@@ -181,7 +184,7 @@ impl Placement {
         self.update_positions();
     }
 
-    /// Returns the edge about which a joint turns when it opens at this rate, in rad/s: the edge in contact, or in a closed joint the edge that stays
+    /// Edge about which a joint turns when it opens at this rate, in rad/s: the edge in contact, or in a closed joint the edge that stays
     /// in contact.
     fn pivot(&self, joint: usize, opening_rad_s: f64) -> Edge {
         let [intrados, extrados] = self.gaps_m[joint];
@@ -195,7 +198,7 @@ impl Placement {
         }
     }
 
-    /// Returns the motions of the blocks for given rotation rates in rad/s, and the edge about which each joint turns; `None` for joints that do not
+    /// Motions of the blocks for given rotation rates in rad/s, and the edge about which each joint turns; `None` for joints that do not
     /// turn.
     pub fn motions(&self, rates_rad_s: &[f64]) -> (Vec<Twist>, Vec<Option<Edge>>) {
         let mut motions = Vec::with_capacity(self.poses.len());
@@ -214,7 +217,7 @@ impl Placement {
         (motions, pivots)
     }
 
-    /// Returns the velocities of the centres, in m/s, and the rotation rates of the blocks for given rotation rates in rad/s.
+    /// Velocities of the centres, in m/s, and the rotation rates of the blocks for given rotation rates in rad/s.
     pub fn velocities(&self, rates_rad_s: &[f64]) -> Vec<Vector3<f64>> {
         let (motions, _) = self.motions(rates_rad_s);
         let moving = motions.iter().zip(&self.centres_m);
@@ -317,13 +320,13 @@ impl Placement {
     }
 }
 
-/// Returns the gaps of a joint that is open by `width_m` at the extrados (if negative, at the intrados), with an additional gap `nearer_m` at both
+/// Gaps of a joint that is open by `width_m` at the extrados (if negative, at the intrados), with an additional gap `nearer_m` at both
 /// corners.
 fn hinge_gaps_m(width_m: f64, nearer_m: f64) -> [f64; 2] {
     [nearer_m + (-width_m).max(0.0), nearer_m + width_m.max(0.0)]
 }
 
-/// Returns the gap, or zero if it is below [`SHUT_RATIO`].
+/// Gap, or zero if it is below [`SHUT_RATIO`].
 fn closed_gap(gap: f64, face: &Face) -> f64 {
     let least = SHUT_RATIO * face.thickness;
     if gap < least { 0.0 } else { gap }

@@ -36,34 +36,34 @@ pub trait Real:
     + AddAssign
     + SubAssign
 {
-    /// Returns a constant.
+    /// Constant.
     fn of(value: f64) -> Self;
 
-    /// Returns the square root.
+    /// Square root.
     fn sqrt(self) -> Self;
 
-    /// Returns `yes` if this is above another number, else `no`. It compares and does not subtract, because the difference of two infinities is NaN.
+    /// `yes` if this is above another number, else `no`. It compares and does not subtract, because the difference of two infinities is NaN.
     fn above(self, other: Self, yes: Self, no: Self) -> Self;
 
-    /// Returns `yes` if this is positive, else `no`.
+    /// `yes` if this is positive, else `no`.
     #[inline(always)]
     fn positive(self, yes: Self, no: Self) -> Self {
         self.above(Self::of(0.0), yes, no)
     }
 
-    /// Returns the larger one of two numbers.
+    /// Larger one of two numbers.
     #[inline(always)]
     fn max(self, other: Self) -> Self {
         self.above(other, self, other)
     }
 
-    /// Returns the smaller one of two numbers.
+    /// Smaller one of two numbers.
     #[inline(always)]
     fn min(self, other: Self) -> Self {
         other.above(self, self, other)
     }
 
-    /// Returns the absolute value.
+    /// Absolute value.
     #[inline(always)]
     fn abs(self) -> Self {
         self.positive(self, -self)
@@ -162,7 +162,7 @@ impl<const L: usize> Real for Lanes<L> {
 macro_rules! remembered {
     ($type:ident { $($field:ident),* $(; $($pair:ident),+ $(; $($part:ident: $of:ident),+)?)? }) => {
         impl<R: Real> $type<R> {
-            /// Returns the initial state, with all values zero.
+            /// Initial state, with all values zero.
             pub fn none() -> Self {
                 let zero = R::of(0.0);
                 Self { $($field: zero,)* $($($pair: [zero; 2],)+ $($($part: $of::none(),)+)?)? }
@@ -179,7 +179,7 @@ macro_rules! remembered {
                 })+ $($(self.$part.set(lane, &alone.$part);)+)?)?
             }
 
-            /// Returns one lane.
+            /// One lane.
             pub(crate) fn lane(&self, lane: usize) -> $type<Lanes<1>> {
                 $type {
                     $($field: Lanes([self.$field.0[lane]]),)*
@@ -201,12 +201,12 @@ pub struct Dual<const D: usize> {
 }
 
 impl<const D: usize> Dual<D> {
-    /// Returns the variable with this index.
+    /// Variable with this index.
     pub(crate) fn variable(value: f64, index: usize) -> Self {
         Self::with(value, |other| if other == index { 1.0 } else { 0.0 })
     }
 
-    /// Returns a function of this number, given by its value and derivative.
+    /// Function of this number, given by its value and derivative.
     pub(crate) fn chained(self, value: f64, derivative: f64) -> Self {
         Self::with(value, |i| self.slope[i] * derivative)
     }

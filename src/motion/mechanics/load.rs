@@ -44,7 +44,7 @@ const fn is_true(moves: &bool) -> bool {
 }
 
 impl Default for PlacedLoad {
-    /// Returns a load of zero mass on the axis, at the top of a column.
+    /// Load of zero mass on the axis, at the top of a column.
     fn default() -> Self {
         Self {
             mass_kg: 0.0,
@@ -62,7 +62,7 @@ impl Default for PlacedLoad {
 pub const LARGEST_THRUST_N: f64 = 1e15;
 
 impl PlacedLoad {
-    /// Returns a mass at a distance to the right of the middle.
+    /// Mass at a distance to the right of the middle.
     pub fn mass(mass_kg: f64, x_m: f64) -> Self {
         Self {
             mass_kg,
@@ -103,18 +103,18 @@ impl PlacedLoad {
         Ok(())
     }
 
-    /// Returns the mass that moves with the block, in kg.
+    /// Mass that moves with the block, in kg.
     pub const fn moving_mass_kg(&self) -> f64 {
         if self.moves { self.mass_kg } else { 0.0 }
     }
 
-    /// Returns the constant force, in N.
+    /// Constant force, in N.
     pub fn constant_force_n(&self, gravity_m_s2: f64) -> Vector2<f64> {
         let still_kg = self.mass_kg - self.moving_mass_kg();
         Vector2::new(self.thrust_n, -still_kg * gravity_m_s2)
     }
 
-    /// Returns the moving mass as a body at a point in metres; `None` without such a mass.
+    /// Moving mass as a body at a point in metres; `None` without such a mass.
     pub(super) fn moving_body(&self, at_m: Vector2<f64>) -> Option<Block> {
         let mass_kg = self.moving_mass_kg();
         (mass_kg > 0.0).then_some(Block {

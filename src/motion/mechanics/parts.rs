@@ -51,22 +51,22 @@ pub struct StructureSection {
 
 /// Access to the parts of a structure and their positions.
 pub trait Parts {
-    /// Returns its parts from left to right, or upwards.
+    /// Parts from left to right, or upwards.
     fn parts(&self) -> Vec<Part>;
 
-    /// Returns the bodies of its drawing.
+    /// Bodies of its drawing.
     fn outline(&self) -> Outline;
 
-    /// Returns the sections at which the position of the thrust line is known, from left to right, or upwards.
+    /// Sections at which the position of the thrust line is known, from left to right, or upwards.
     fn sections(&self) -> Vec<StructureSection>;
 
-    /// Returns the parts in words.
+    /// Parts in words.
     fn parts_in_words(&self) -> String;
 
-    /// Returns its crown, the highest point: position along the structure, and coordinates in metres.
+    /// Crown, the highest point: position along the structure, and coordinates in metres.
     fn crown(&self) -> (f64, Vector2<f64>);
 
-    /// Returns the position along the structure of a point in metres; `None` for a point outside the structure.
+    /// Position along the structure of a point in metres; `None` for a point outside the structure.
     fn place_of(&self, at_m: Vector2<f64>) -> Option<f64>;
 }
 
@@ -97,12 +97,14 @@ impl Parts for Arch {
 
     fn sections(&self) -> Vec<StructureSection> {
         let (ring, mean_radius_m) = (self.ring(), self.mean_radius_m);
-        let sections = self.thrust_sections_rad().into_iter();
-        let sections = sections.map(|angle_rad| StructureSection {
-            middle_m: ring.radial_direction(angle_rad) * mean_radius_m,
-            across_m: ring.radial_direction(angle_rad) * (ring.thickness_ratio * mean_radius_m),
-            angle_rad: Some(angle_rad),
-        });
+        let sections = self
+            .thrust_sections_rad()
+            .into_iter()
+            .map(|angle_rad| StructureSection {
+                middle_m: ring.radial_direction(angle_rad) * mean_radius_m,
+                across_m: ring.radial_direction(angle_rad) * (ring.thickness_ratio * mean_radius_m),
+                angle_rad: Some(angle_rad),
+            });
         sections.collect()
     }
 
@@ -159,12 +161,14 @@ impl Parts for Column {
         if let Some(row) = self.tied_row() {
             return row.sections();
         }
-        let sections = self.thrust_sections_m().into_iter();
-        let sections = sections.map(|height_m| StructureSection {
-            middle_m: Vector2::new(0.0, height_m),
-            across_m: Vector2::new(self.width_m, 0.0),
-            angle_rad: None,
-        });
+        let sections = self
+            .thrust_sections_m()
+            .into_iter()
+            .map(|height_m| StructureSection {
+                middle_m: Vector2::new(0.0, height_m),
+                across_m: Vector2::new(self.width_m, 0.0),
+                angle_rad: None,
+            });
         sections.collect()
     }
 
@@ -183,7 +187,7 @@ impl Parts for Column {
 }
 
 impl Column {
-    /// Returns its blocks; `None` without ties.
+    /// Blocks; `None` without ties.
     fn tied_row(&self) -> Option<Row> {
         self.row().ok().filter(|row| !row.bars().is_empty())
     }
@@ -249,7 +253,7 @@ impl Parts for Row {
 }
 
 impl Row {
-    /// Returns the blocks that contain a point, given in metres, or have it on their edge.
+    /// Blocks that contain a point, given in metres, or have it on their edge.
     pub fn blocks_at(&self, at_m: Vector2<f64>) -> Vec<usize> {
         let blocks = 0..self.outlines_m.len();
         blocks
@@ -257,7 +261,7 @@ impl Row {
             .collect()
     }
 
-    /// Returns the distance of a point from a block, in metres; 0 inside the block.
+    /// Distance of a point from a block, in metres; 0 inside the block.
     pub fn distance_m(&self, block: usize, at_m: Vector2<f64>) -> f64 {
         let outline = &self.outlines_m[block];
         if contains(outline, at_m) {
@@ -272,7 +276,7 @@ fn middle_of(block: usize) -> f64 {
     block as f64 + 0.5
 }
 
-/// Returns whether a point is inside a polygon or on its edge.
+/// Whether a point is inside a polygon or on its edge.
 fn contains(outline: &[Vector2<f64>], point: Vector2<f64>) -> bool {
     let mut inside = false;
     for [from, to] in sides(outline) {

@@ -12,7 +12,7 @@ pub struct RowState {
 }
 
 impl RowState {
-    /// Returns the state of the undeformed row.
+    /// State of the undeformed row.
     pub fn undeformed(row: &Row) -> Self {
         Self {
             placement: Placement::new(row),
@@ -20,13 +20,13 @@ impl RowState {
         }
     }
 
-    /// Returns the lines of action of the ties.
+    /// Lines of action of the ties.
     pub fn lines(&self, row: &Row) -> impl Iterator<Item = TieLine> {
         let poses = &self.placement.poses;
         lines(row, &self.placement.support_poses, |block| poses[block])
     }
 
-    /// Returns the forces of the ties, in N.
+    /// Forces of the ties, in N.
     pub fn forces_n(&self) -> impl Iterator<Item = f64> {
         self.ties.iter().map(|tie| tie.force_n.0[0])
     }
@@ -40,13 +40,13 @@ impl RowState {
         lines
     }
 
-    /// Returns the index of the first broken tie.
+    /// Index of the first broken tie.
     pub fn broken_tie(&self) -> Option<usize> {
         self.ties.iter().position(TieMemory::is_broken)
     }
 }
 
-/// Returns the lines of action of the ties for given poses of supports and blocks.
+/// Lines of action of the ties for given poses of supports and blocks.
 pub fn lines(
     row: &Row,
     supports: &[Pose; 2],

@@ -32,7 +32,7 @@ impl<T> Sides<T> {
         })
     }
 
-    /// Returns the result for one side.
+    /// Result for one side.
     pub const fn get(&self, sway: Sway) -> &T {
         match sway {
             Sway::Right => &self.right,
@@ -40,7 +40,7 @@ impl<T> Sides<T> {
         }
     }
 
-    /// Returns the result for one side, as a mutable reference.
+    /// Result for one side, as a mutable reference.
     pub const fn to_mut(&mut self, sway: Sway) -> &mut T {
         match sway {
             Sway::Right => &mut self.right,
@@ -48,7 +48,7 @@ impl<T> Sides<T> {
         }
     }
 
-    /// Returns both results with their sides, the right one first.
+    /// Both results with their sides, the right one first.
     pub fn iter(&self) -> impl Iterator<Item = (Sway, &T)> {
         [(Sway::Right, &self.right), (Sway::Left, &self.left)].into_iter()
     }
@@ -60,7 +60,7 @@ impl<T> Sides<T> {
 }
 
 impl<T> From<Sides<T>> for [T; 2] {
-    /// Returns both results, the right one first.
+    /// Both results, the right one first.
     fn from(sides: Sides<T>) -> Self {
         [sides.right, sides.left]
     }

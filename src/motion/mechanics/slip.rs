@@ -36,7 +36,7 @@ impl Position {
         half: Vector2::new(1.0, 0.0),
     };
 
-    /// Returns the position of a block with a given centre and rotation.
+    /// Position of a block with a given centre and rotation.
     pub fn new(centre_m: Vector2<f64>, rotation_rad: f64) -> Self {
         Self {
             centre_m,
@@ -45,12 +45,12 @@ impl Position {
         }
     }
 
-    /// Returns the position of a support; its faces are given relative to the origin.
+    /// Position of a support; its faces are given relative to the origin.
     pub fn of(support: &Pose) -> Self {
         Self::new(support.translation, support.rotation_rad())
     }
 
-    /// Returns this position after a displacement.
+    /// This position after a displacement.
     pub fn moved(&self, by_m: Vector2<f64>) -> Self {
         Self {
             centre_m: self.centre_m + by_m,
@@ -58,17 +58,17 @@ impl Position {
         }
     }
 
-    /// Returns the pose relative to the undeformed row, in which the centre of gravity is at `undeformed_m`.
+    /// Pose relative to the undeformed row, in which the centre of gravity is at `undeformed_m`.
     pub fn pose(&self, undeformed_m: Vector2<f64>) -> Pose {
         Pose::about(undeformed_m, self.centre_m, self.rotation_rad)
     }
 
-    /// Returns the current position of the point at `arm_m` from the centre in the undeformed row.
+    /// Current position of the point at `arm_m` from the centre in the undeformed row.
     pub(crate) fn current_position(&self, arm_m: Vector2<f64>) -> Vector2<f64> {
         self.centre_m + self.current_direction(arm_m)
     }
 
-    /// Returns the current direction of a vector of the block in the undeformed row.
+    /// Current direction of a vector of the block in the undeformed row.
     fn current_direction(&self, vector: Vector2<f64>) -> Vector2<f64> {
         product(product(self.half, self.half), vector)
     }
@@ -88,7 +88,7 @@ pub struct Faces {
 }
 
 impl Faces {
-    /// Returns the joints of a row.
+    /// Joints of a row.
     pub fn of_row(row: &Row) -> Vec<Self> {
         let centre = |block: Option<usize>| {
             let block = block.and_then(|block| row.blocks.get(block));
@@ -111,7 +111,7 @@ impl Faces {
         row.joints.iter().enumerate().map(faces).collect()
     }
 
-    /// Returns the joint between two blocks at given positions.
+    /// Joint between two blocks at given positions.
     pub fn contact(&self, left: &Position, right: &Position) -> FaceContact {
         if let Some(side) = self.on_support {
             let bodies = [left, right];
@@ -141,7 +141,7 @@ impl Faces {
         }
     }
 
-    /// Returns the joint between a block, on the given side, and a support that extends beyond the joint.
+    /// Joint between a block, on the given side, and a support that extends beyond the joint.
     fn contact_with_support(
         &self,
         block: &Position,
@@ -196,7 +196,7 @@ pub struct FaceContact {
 }
 
 impl FaceContact {
-    /// Returns the end of the overlap at an edge.
+    /// End of the overlap at an edge.
     pub fn corner_m(&self, edge: Edge) -> Vector2<f64> {
         let intrados_m = self.middle_m + self.tangent * self.ends_m[0];
         match edge {
@@ -205,7 +205,7 @@ impl FaceContact {
         }
     }
 
-    /// Returns the inclination along the joint of the forces at the ends of the overlap. These forces are normal to the face that they act on.
+    /// Inclination along the joint of the forces at the ends of the overlap. These forces are normal to the face that they act on.
     fn lean(&self, faces: &Faces) -> f64 {
         let offset_m = self.coordinates_m.z;
         if offset_m == 0.0 {
@@ -215,13 +215,13 @@ impl FaceContact {
         }
     }
 
-    /// Returns the rates of the three coordinates for a translation of the right block.
+    /// Rates of the three coordinates for a translation of the right block.
     pub fn rates_of_translation(&self, faces: &Faces, velocity_m_s: Vector2<f64>) -> Vector3<f64> {
         let [_, right] = self.gradients(faces, self.middle_m, self.middle_m);
         right * velocity_m_s.push(0.0)
     }
 
-    /// Returns the gradients of the three coordinates, one row each, by the velocity (x, y) and the rotation rate of the left block, then of the
+    /// Gradients of the three coordinates, one row each, by the velocity (x, y) and the rotation rate of the left block, then of the
     /// right block. `left_m` and `right_m` are the centres of the blocks.
     pub fn gradients(
         &self,
@@ -263,8 +263,9 @@ mod tests {
     #[test]
     fn gradients_are_those_of_the_coordinates() {
         let ring = Ring::new(0.2, 2.5).unwrap();
-        let row = Row::arch(&ring, 3, 2.0, 1.0, 1.0).unwrap();
-        let row = row.with_supports_that_extend([true; 2]);
+        let row = Row::arch(&ring, 3, 2.0, 1.0, 1.0)
+            .unwrap()
+            .with_supports_that_extend([true; 2]);
         for joint in [1, 0, 3] {
             check_gradients(&row, joint);
         }

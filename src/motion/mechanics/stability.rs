@@ -54,7 +54,7 @@ pub enum StabilityError {
     Contact(#[from] ContactError),
 }
 
-/// Returns the mechanism in which an undeformed row falls under its own weight; `None` if it is stable.
+/// Mechanism in which an undeformed row falls under its own weight; `None` if it is stable.
 ///
 /// # Errors
 /// When the velocities under the weight are not found.
@@ -62,7 +62,7 @@ pub fn collapse_mechanism(row: &Row) -> Result<Option<Vec<OpeningJoint>>, Contac
     collapse_mechanism_at(row, &RowState::undeformed(row))
 }
 
-/// Returns the mechanism in which a row falls under its own weight from a given state; `None` if it is in equilibrium.
+/// Mechanism in which a row falls under its own weight from a given state; `None` if it is in equilibrium.
 ///
 /// # Errors
 /// When the velocities under the weight are not found.
@@ -75,7 +75,7 @@ pub(crate) fn collapse_mechanism_at(
     Ok(moves.map(|_| trial.openings()))
 }
 
-/// Returns whether a straight line fits into an undeformed row between two supports, inside all its joints. No load moves such a row without sliding:
+/// Whether a straight line fits into an undeformed row between two supports, inside all its joints. No load moves such a row without sliding:
 /// the thrust along that line can be as large as the load needs.
 ///
 /// There is no mechanism either. Its hinges would turn by `w > 0` at the intrados and by `-w` at the extrados, and the supports stay, so that both
@@ -90,7 +90,7 @@ pub fn is_straight(row: &Row) -> bool {
     row.supports == Supports::Both && are_apart([&intrados, &extrados], STRAIGHT_RATIO * thinnest_m)
 }
 
-/// Returns the least horizontal ground acceleration at which the undeformed row starts to sway to a side, with the tie forces at rest. `None` if no
+/// Least horizontal ground acceleration at which the undeformed row starts to sway to a side, with the tie forces at rest. `None` if no
 /// push moves the row without sliding, as where a straight line fits into it.
 ///
 /// # Errors
@@ -99,7 +99,7 @@ pub fn onset(row: &Row, sway: Sway) -> Result<Option<RowOnset>, StabilityError> 
     onset_at(row, &RowState::undeformed(row), sway)
 }
 
-/// Returns the least horizontal ground acceleration at which a row in a given state starts to sway to a side, also on moved supports. Open joints are
+/// Least horizontal ground acceleration at which a row in a given state starts to sway to a side, also on moved supports. Open joints are
 /// in contact at one corner, and may open further or close again. The tie forces are those of the given state.
 ///
 /// # Errors
@@ -242,7 +242,7 @@ struct Plane {
 }
 
 impl Plane {
-    /// Returns the bound of a mechanism. `work` is the integral of its velocities over the masses.
+    /// Bound of a mechanism. `work` is the integral of its velocities over the masses.
     fn new(row: &Row, work: Vector2<f64>, lengthening: &[f64], sway: Sway) -> Self {
         let work = work / row.mass_kg();
         let (push, weight) = (sway.sign() * work.x, work.y);
@@ -256,7 +256,7 @@ impl Plane {
         }
     }
 
-    /// Returns the largest push for given tie forces; `None` if the plane does not bound the push.
+    /// Largest push for given tie forces; `None` if the plane does not bound the push.
     fn bound_g(&self, forces: &[f64]) -> Option<f64> {
         let (push, pulls) = (self.slopes[0], self.slopes.iter().skip(1));
         let held: f64 = pulls.zip(forces).map(|(pull, force)| -pull * force).sum();
@@ -310,7 +310,7 @@ impl LargestPushProgram {
         }
     }
 
-    /// Returns the push and the tie forces; `None` if there are none.
+    /// Push and the tie forces; `None` if there are none.
     fn solve(&mut self) -> Option<(f64, Vec<f64>)> {
         for exchange in 1..=MOST_EXCHANGES {
             if exchange % EXACT_EXCHANGES == 0 {
@@ -331,7 +331,7 @@ impl LargestPushProgram {
         None
     }
 
-    /// Returns the intersection of the active constraints.
+    /// Intersection of the active constraints.
     fn corner(&self) -> DVector<f64> {
         let basis = || self.basis.iter().map(|index| &self.planes[*index]);
         let width = self.basis.len();
@@ -343,7 +343,7 @@ impl LargestPushProgram {
         at + &self.inverse * left
     }
 
-    /// Returns the index of the constraint with the largest violation at a point; `None` if all are satisfied.
+    /// Index of the constraint with the largest violation at a point; `None` if all are satisfied.
     fn most_violated(&self, at: &DVector<f64>) -> Option<usize> {
         let mut worst = (0.0, None);
         for (index, plane) in self.planes.iter().enumerate() {
@@ -378,7 +378,7 @@ impl LargestPushProgram {
     }
 }
 
-/// Returns the integral of the velocities over the masses.
+/// Integral of the velocities over the masses.
 fn work(row: &Row, placement: &Placement, velocities: &[Twist]) -> Vector2<f64> {
     let blocks = row.blocks.iter().zip(&placement.centres_m).zip(velocities);
     let each =
@@ -413,7 +413,7 @@ impl<'a> Trial<'a> {
         }
     }
 
-    /// Returns the mechanism of the last trial, with a given push.
+    /// Mechanism of the last trial, with a given push.
     fn onset(&self, acceleration_g: f64) -> RowOnset {
         RowOnset {
             acceleration_g,
@@ -423,7 +423,7 @@ impl<'a> Trial<'a> {
         }
     }
 
-    /// Returns the integral of the velocities over the masses under a load per unit mass; `None` if the row does not move.
+    /// Integral of the velocities over the masses under a load per unit mass; `None` if the row does not move.
     fn motion_of_masses(
         &mut self,
         load: Vector2<f64>,
@@ -436,12 +436,12 @@ impl<'a> Trial<'a> {
         Ok((fastest > STANDSTILL * load.norm()).then(|| self.work()))
     }
 
-    /// Returns the integral of the velocities of the last trial over the masses.
+    /// Integral of the velocities of the last trial over the masses.
     fn work(&self) -> Vector2<f64> {
         work(self.row, self.placement, &self.program.velocities)
     }
 
-    /// Returns the rates at which the ties lengthen in the last trial.
+    /// Rates at which the ties lengthen in the last trial.
     fn lengthening(&self) -> Vec<f64> {
         let velocities = &self.program.velocities;
         let rates = self.lines.iter().map(|line| line.lengthening(velocities));

@@ -15,7 +15,7 @@ named! {
 }
 
 impl Sway {
-    /// Returns the other direction.
+    /// The other direction.
     pub const fn opposite(self) -> Self {
         match self {
             Self::Right => Self::Left,
@@ -23,7 +23,7 @@ impl Sway {
         }
     }
 
-    /// Returns the side of the sway `impacts` impacts later or earlier, if every impact changes the side.
+    /// Side of the sway `impacts` impacts later or earlier, if every impact changes the side.
     pub const fn after(self, impacts: usize) -> Self {
         if impacts.is_multiple_of(2) {
             self
@@ -32,7 +32,7 @@ impl Sway {
         }
     }
 
-    /// Returns +1 to the right and -1 to the left: the sign of x in the frame in which this sway goes right.
+    /// +1 to the right and -1 to the left: the sign of x in the frame in which this sway goes right.
     pub const fn sign(self) -> f64 {
         match self {
             Self::Right => 1.0,

@@ -13,7 +13,7 @@ use crate::mechanics::{Block, Joint, Row, Supports};
 const SAME_RATIO: f64 = 1e-9;
 
 impl Row {
-    /// Returns whether the row as built is its own mirror image: masses, moments of inertia, joints, supports, ties and constant forces, within 1e-9
+    /// Whether the row as built is its own mirror image: masses, moments of inertia, joints, supports, ties and constant forces, within 1e-9
     /// of their values, and of the size of the row for positions. Motions under mirrored ground are then mirror images but for rounding errors.
     pub fn is_symmetric(&self) -> bool {
         let [left, right] = self.supports_extend;
@@ -30,7 +30,7 @@ impl Row {
             && self.opposite_ties().is_some()
     }
 
-    /// Returns the index of the block at the place of the mirror image of a block.
+    /// Index of the block at the place of the mirror image of a block.
     pub(crate) fn mirrored_block(&self, block: usize) -> usize {
         match self.supports {
             Supports::Both => self.blocks.len() - 1 - block,
@@ -38,7 +38,7 @@ impl Row {
         }
     }
 
-    /// Returns the index of the joint at the place of the mirror image of a joint.
+    /// Index of the joint at the place of the mirror image of a joint.
     pub(crate) fn opposite_joint(&self, joint: usize) -> usize {
         match self.supports {
             Supports::Both => self.joints.len() - 1 - joint,
@@ -58,7 +58,7 @@ impl Row {
         self.ties.iter().map(opposite).collect()
     }
 
-    /// Returns the mirror image of a point about the vertical through the middle between the feet.
+    /// Mirror image of a point about the vertical through the middle between the feet.
     fn image_m(&self, point_m: Vector2<f64>) -> Vector2<f64> {
         let [left_m, right_m] = self.feet_m();
         Vector2::new(left_m.x + right_m.x - point_m.x, point_m.y)
@@ -103,7 +103,7 @@ impl Row {
     }
 }
 
-/// Returns whether two numbers, which are not negative and may be infinite, are the same.
+/// Whether two numbers, which are not negative and may be infinite, are the same.
 fn is_same(one: f64, other: f64) -> bool {
     one == other || (one - other).abs() <= SAME_RATIO * one.max(other)
 }

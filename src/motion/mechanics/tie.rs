@@ -24,7 +24,7 @@ pub struct Anchor {
 }
 
 impl Anchor {
-    /// Returns the support of an end that is on no block, 0 or 1: the horizontally nearer one.
+    /// Support of an end that is on no block, 0 or 1: the horizontally nearer one.
     pub fn support(&self, feet_m: [Vector2<f64>; 2]) -> usize {
         let [left, right] = feet_m.map(|foot_m| (self.at_m.x - foot_m.x).abs());
         usize::from(right < left)
@@ -70,7 +70,7 @@ pub enum TieError {
 const NOT_NEGATIVE: &str = "a number that is not negative: a tie does not push";
 
 impl Tie {
-    /// Returns a constant force on a block, in N, at a point in metres.
+    /// Constant force on a block, in N, at a point in metres.
     pub(super) fn constant_force(block: usize, at_m: Vector2<f64>, force_n: Vector2<f64>) -> Self {
         let force = force_n.norm();
         let ends = [(Some(block), at_m), (None, at_m + force_n / force)];
@@ -83,12 +83,12 @@ impl Tie {
         }
     }
 
-    /// Returns whether it is a constant force.
+    /// Whether it is a constant force.
     pub const fn is_constant_force(&self) -> bool {
         self.stiffness_n_m == 0.0
     }
 
-    /// Returns the constant force in N, or the force of the tie in the undeformed structure, on the block at its first end.
+    /// Constant force in N, or the force of the tie in the undeformed structure, on the block at its first end.
     pub fn force_at_rest_n(&self) -> Vector2<f64> {
         self.direction() * self.prestress_n
     }
@@ -151,22 +151,22 @@ impl Tie {
         Ok(())
     }
 
-    /// Returns the length in the undeformed structure, in metres.
+    /// Length in the undeformed structure, in metres.
     pub fn length_m(&self) -> f64 {
         (self.ends[1].at_m - self.ends[0].at_m).norm()
     }
 
-    /// Returns the unstressed length, in metres.
+    /// Unstressed length, in metres.
     pub fn slack_length_m(&self) -> f64 {
         self.length_m() - self.prestress_n / self.stiffness_n_m
     }
 
-    /// Returns the unit vector from its first end to its second one, in the undeformed structure.
+    /// Unit vector from its first end to its second one, in the undeformed structure.
     pub fn direction(&self) -> Vector2<f64> {
         (self.ends[1].at_m - self.ends[0].at_m) / self.length_m()
     }
 
-    /// Returns the line of action for given positions of its ends, in metres.
+    /// Line of action for given positions of its ends, in metres.
     pub fn line(&self, ends_m: [Vector2<f64>; 2]) -> TieLine {
         let moved = [0, 1].map(|end| ends_m[end] - self.ends[end].at_m);
         let span = self.span(moved.map(|by| [Lanes([by.x]), Lanes([by.y])]));
@@ -178,7 +178,7 @@ impl Tie {
         }
     }
 
-    /// Returns this tie mirrored about the y axis, in a mirrored row of `blocks` blocks.
+    /// This tie mirrored about the y axis, in a mirrored row of `blocks` blocks.
     pub(super) fn mirrored(&self, blocks: usize) -> Self {
         let mirror = |anchor: Anchor| Anchor {
             block: anchor.block.map(|block| blocks - 1 - block),
@@ -190,7 +190,7 @@ impl Tie {
         }
     }
 
-    /// Returns stretch and direction after given displacements of its ends, in m.
+    /// Stretch and direction after given displacements of its ends, in m.
     ///
     /// The difference of the squared lengths avoids cancellation for small displacements.
     #[inline(always)]
@@ -217,7 +217,7 @@ impl Tie {
         }
     }
 
-    /// Returns the force in N for a stretch beyond the unstressed length, in m, if the tie could push and did not yield.
+    /// Force in N for a stretch beyond the unstressed length, in m, if the tie could push and did not yield.
     pub(crate) fn linear_pull_n<R: Real>(&self, stretch_m: R) -> R {
         if self.is_constant_force() {
             return R::of(self.prestress_n);
@@ -225,7 +225,7 @@ impl Tie {
         stretch_m * self.stiffness_n_m
     }
 
-    /// Returns the force in N for a plastic elongation and a stretch beyond the unstressed length, both in m. The tie does not break here.
+    /// Force in N for a plastic elongation and a stretch beyond the unstressed length, both in m. The tie does not break here.
     pub(crate) fn pull_n<R: Real>(&self, yielded_m: f64, stretch_m: R) -> R {
         if self.is_constant_force() {
             return R::of(self.prestress_n);
@@ -235,7 +235,7 @@ impl Tie {
     }
 }
 
-/// Returns an upper bound of the square of the highest angular frequency, in (rad/s)2, of free blocks held by ties.
+/// Upper bound of the square of the highest angular frequency, in (rad/s)2, of free blocks held by ties.
 pub(crate) fn square_frequency(ties: &[Tie], blocks: &[Block]) -> f64 {
     let flexibility = |anchor: &Anchor| {
         let block = anchor.block.and_then(|block| blocks.get(block));
@@ -298,12 +298,12 @@ impl TieLine {
         }
     }
 
-    /// Returns a unit force on the block at its first end; the force on the block at its second end is opposite.
+    /// Unit force on the block at its first end; the force on the block at its second end is opposite.
     fn unit_pull(&self) -> Momentum {
         Momentum::applied_at(self.ends_m[0], self.direction)
     }
 
-    /// Returns the rate at which the tie lengthens for given velocities of the blocks; supports are at rest.
+    /// Rate at which the tie lengthens for given velocities of the blocks; supports are at rest.
     pub fn lengthening(&self, velocities: &[Twist]) -> f64 {
         let pull = self.unit_pull();
         let power = |block: usize| velocities[block].power(&pull);
@@ -312,7 +312,7 @@ impl TieLine {
     }
 }
 
-/// Returns the sum of the impulses of ties on each block.
+/// Sum of the impulses of ties on each block.
 pub(crate) fn sum_pulls<'a>(
     blocks: usize,
     ties: impl Iterator<Item = (&'a TieLine, f64)>,
@@ -381,7 +381,7 @@ remembered!(TieMemory {
 });
 
 impl<R: Real> TieMemory<R> {
-    /// Returns the state of a tie after slow stretching to `stretch_m` beyond its unstressed length; `yielded_m` is the plastic elongation before.
+    /// State of a tie after slow stretching to `stretch_m` beyond its unstressed length; `yielded_m` is the plastic elongation before.
     /// The dissipated energy starts from zero.
     pub fn stretched(tie: &Tie, yielded_m: f64, stretch_m: R) -> Self {
         let mut memory = Self {
@@ -430,7 +430,7 @@ impl<R: Real> TieMemory<R> {
         self.intact = intact;
     }
 
-    /// Returns the state of a tie in the undeformed structure.
+    /// State of a tie in the undeformed structure.
     pub fn undeformed(tie: &Tie) -> Self {
         let stretch_m = match tie.is_constant_force() {
             true => 0.0,
@@ -439,7 +439,7 @@ impl<R: Real> TieMemory<R> {
         Self::stretched(tie, 0.0, R::of(stretch_m))
     }
 
-    /// Returns the elastic energy, or the potential energy of a constant force above that in the undeformed structure, in J.
+    /// Elastic energy, or the potential energy of a constant force above that in the undeformed structure, in J.
     #[inline(always)]
     pub fn energy_j(&self, tie: &Tie) -> R {
         if tie.is_constant_force() {
@@ -450,7 +450,7 @@ impl<R: Real> TieMemory<R> {
 }
 
 impl TieMemory<Lanes<1>> {
-    /// Returns the state after slow stretching to `stretch_m`, without dissipated energy.
+    /// State after slow stretching to `stretch_m`, without dissipated energy.
     pub fn then(&self, tie: &Tie, stretch_m: f64) -> Self {
         let stretch_m = Lanes([stretch_m]);
         if self.is_broken() {
@@ -459,7 +459,7 @@ impl TieMemory<Lanes<1>> {
         Self::stretched(tie, self.yielded_m.0[0], stretch_m)
     }
 
-    /// Returns whether the tie has broken.
+    /// Whether the tie has broken.
     pub fn is_broken(&self) -> bool {
         self.intact.0[0] == 0.0
     }

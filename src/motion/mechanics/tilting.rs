@@ -53,7 +53,7 @@ pub struct Tilting {
 }
 
 impl Tilting {
-    /// Returns a prismatic block, given by height and width in metres and by its mass, with loads at points in metres from the middle of its base. It
+    /// Prismatic block, given by height and width in metres and by its mass, with loads at points in metres from the middle of its base. It
     /// sways to this side.
     pub(super) fn new<'l>(
         [height_m, width_m]: [f64; 2],
@@ -74,8 +74,9 @@ impl Tilting {
             force: towards(load.constant_force_n(gravity_m_s2)) / (block_kg * gravity_m_s2),
         });
         // A load of zero must not change any bit.
-        let loads = loads.filter(|load| load.mass > 0.0 || load.force != Vector2::zeros());
-        let loads: Vec<CarriedLoad> = loads.collect();
+        let loads: Vec<CarriedLoad> = loads
+            .filter(|load| load.mass > 0.0 || load.force != Vector2::zeros())
+            .collect();
         // Housner's block has an inertia of 1/3 about its centre, and of 4/3 about its toe.
         let mut body = MassMoments::of_body(1.0, Vector2::new(0.0, cos), 1.0 / 3.0);
         let mut inertia = 4.0 / 3.0;
@@ -102,22 +103,22 @@ impl Tilting {
         }
     }
 
-    /// Returns the moments of block and moving loads about the middle of the base, in masses of the block and half diagonals.
+    /// Moments of block and moving loads about the middle of the base, in masses of the block and half diagonals.
     pub(super) const fn body(&self) -> &MassMoments {
         &self.body
     }
 
-    /// Returns the toe about which it rotates, as seen from the middle of the base.
+    /// Toe about which it rotates, as seen from the middle of the base.
     pub(super) const fn toe(&self) -> Vector2<f64> {
         Vector2::new(self.sin, 0.0)
     }
 
-    /// Returns the push that starts the rotation, in multiples of gravity; not positive if the loads alone start it.
+    /// Push that starts the rotation, in multiples of gravity; not positive if the loads alone start it.
     pub(super) fn incipient_g(&self) -> f64 {
         (self.arm.x - self.moment / self.body.mass) / self.arm.y
     }
 
-    /// Returns the rotation at the unstable equilibrium, at most a right angle. `slenderness_rad` is that of the column without loads.
+    /// Rotation at the unstable equilibrium, at most a right angle. `slenderness_rad` is that of the column without loads.
     pub(super) fn critical_rad(&self, slenderness_rad: f64) -> f64 {
         if self.loads.is_empty() {
             return slenderness_rad;
@@ -128,7 +129,7 @@ impl Tilting {
         libm::atan2(rise, fall).min(FRAC_PI_2)
     }
 
-    /// Returns the rate of this rotation after an impact on the base, for a unit rate of the opposite rotation before it. The closing motion, a
+    /// Rate of this rotation after an impact on the base, for a unit rate of the opposite rotation before it. The closing motion, a
     /// rotation about the other toe, is projected in the kinetic-energy metric onto the rotation about this toe. This conserves angular momentum about
     /// this toe, and gives `1 - 3/2 sin^2(alpha)` for a block without loads.
     ///
@@ -139,12 +140,12 @@ impl Tilting {
         rate_passed(&self.body, -toe, toe)
     }
 
-    /// Returns the moment of inertia about the toe, in masses of the block.
+    /// Moment of inertia about the toe, in masses of the block.
     pub(super) const fn unit_inertia(&self) -> f64 {
         self.inertia
     }
 
-    /// Returns the arm of the centre of gravity after a rotation: its distance behind the toe, and its height.
+    /// Arm of the centre of gravity after a rotation: its distance behind the toe, and its height.
     fn arm_at(&self, q_rad: f64) -> Vector2<f64> {
         let (sin, cos) = libm::sincos(q_rad);
         Vector2::new(
@@ -153,7 +154,7 @@ impl Tilting {
         )
     }
 
-    /// Returns the ground reaction per unit weight while the column moves; it acts at the toe.
+    /// Ground reaction per unit weight while the column moves; it acts at the toe.
     pub(super) fn reaction(&self, motion: &MechanismState) -> Vector2<f64> {
         // Acceleration of the centre of gravity, on its circle about the toe.
         let arm = self.arm_at(motion.q_rad);
@@ -162,7 +163,7 @@ impl Tilting {
         along + inward - motion.body_force_g - self.constant_force()
     }
 
-    /// Returns the ground reaction per unit weight at rest, and its moment about the middle of the base, positive to the right. The column does not
+    /// Ground reaction per unit weight at rest, and its moment about the middle of the base, positive to the right. The column does not
     /// lean beyond its base towards a wall on the side `wall`.
     pub(super) fn reaction_at_rest(
         &self,
@@ -185,7 +186,7 @@ impl Tilting {
         }
     }
 
-    /// Returns the thrust line at rest, in the form of [`Self::crossings`].
+    /// Thrust line at rest, in the form of [`Self::crossings`].
     pub(super) fn eccentricity_ratios_at_rest(
         &self,
         body_force_g: Vector2<f64>,
@@ -195,7 +196,7 @@ impl Tilting {
         self.crossings(&PartLoad::uniform(onto_base(body_force_g)), onto_base)
     }
 
-    /// Returns a function of the forces at rest that returns their parts which press on the base. A wall on the side `wall` carries the horizontal
+    /// Function of the forces at rest that returns their parts which press on the base. A wall on the side `wall` carries the horizontal
     /// forces, at their heights, if their sum points to it.
     fn pressing_forces(
         &self,
@@ -210,13 +211,13 @@ impl Tilting {
         }
     }
 
-    /// Returns the sum of the constant forces, in weights of block and moving loads.
+    /// Sum of the constant forces, in weights of block and moving loads.
     fn constant_force(&self) -> Vector2<f64> {
         let forces = self.loads.iter().map(|load| load.force);
         forces.sum::<Vector2<f64>>() / self.body.mass
     }
 
-    /// Returns the crossings of the thrust line with sections normal to the axis in motion; see [`Self::crossings`].
+    /// Crossings of the thrust line with sections normal to the axis in motion; see [`Self::crossings`].
     pub(super) fn eccentricity_ratios(&self, motion: &MechanismState) -> Vec<Option<f64>> {
         // In the frame of the block, which has turned clockwise.
         let turn = unit(motion.q_rad);
@@ -226,7 +227,7 @@ impl Tilting {
         self.crossings(&load, |force| product(turn, force))
     }
 
-    /// Returns the crossings of the thrust line with sections normal to the axis, from the base up: the distance to the right over the width, for the
+    /// Crossings of the thrust line with sections normal to the axis, from the base up: the distance to the right over the width, for the
     /// resultant of the load on the part above. `force` returns a constant force in the frame of the block. `None` if the section would be in tension.
     ///
     /// If nothing is above a section, its value is the limit for a thin slice, which includes the inertia of the slice's rotation.
@@ -260,13 +261,13 @@ impl Tilting {
 }
 
 impl CarriedLoad {
-    /// Returns the moments of the moving mass about the middle of the base, in masses of the block.
+    /// Moments of the moving mass about the middle of the base, in masses of the block.
     fn moments(&self) -> MassMoments {
         MassMoments::of_body(self.mass, self.at, 0.0)
     }
 }
 
-/// Returns the sections at which the thrust line is reported, as fractions of the height.
+/// Sections at which the thrust line is reported, as fractions of the height.
 pub(super) fn thrust_section_parts() -> impl Iterator<Item = f64> {
     (0..=20_u8).map(|section| f64::from(section) / 20.0)
 }
@@ -313,7 +314,7 @@ impl Mechanism for Tilting {
         [-1.0]
     }
 
-    /// Returns the forces as momenta, in the unit of mass, with gravity as unit.
+    /// Forces as momenta, in the unit of mass, with gravity as unit.
     fn constant_forces(&self) -> Vec<(Vector2<f64>, Vector2<f64>)> {
         let acts = |load: &&CarriedLoad| load.force != Vector2::zeros();
         let loads = self.loads.iter().filter(acts);

@@ -19,7 +19,7 @@ pub struct MovingBody {
 }
 
 impl MovingBody {
-    /// Returns the virtual displacement, in the direction of the sway, of a point of the body at a height in metres.
+    /// Virtual displacement, in the direction of the sway, of a point of the body at a height in metres.
     pub fn displacement_at(&self, height_m: f64) -> f64 {
         self.displacement.x + self.rotation * (height_m - self.centre_m.y)
     }
@@ -45,7 +45,7 @@ pub struct MovingForce {
     pub displacement: Vector2<f64>,
 }
 
-/// Returns the load multiplier `alpha0`: the horizontal acceleration, in multiples of gravity, at which the work of the inertia forces equals the
+/// Load multiplier `alpha0`: the horizontal acceleration, in multiples of gravity, at which the work of the inertia forces equals the
 /// work against weights, ties and constant forces, `(sum P delta_y + sum T delta_l - sum F . delta_F) / sum P delta_x`.
 pub fn load_multiplier(bodies: &[MovingBody], ties: &[MovingTie], forces: &[MovingForce]) -> f64 {
     let work = |component: fn(&MovingBody) -> f64| -> f64 {
@@ -53,8 +53,9 @@ pub fn load_multiplier(bodies: &[MovingBody], ties: &[MovingTie], forces: &[Movi
         each.sum()
     };
     let held = ties.iter().map(|tie| tie.force_kg * tie.lengthening);
-    let pushing = forces.iter();
-    let pushing = pushing.map(|force| force.force_kg.dot(&force.displacement));
+    let pushing = forces
+        .iter()
+        .map(|force| force.force_kg.dot(&force.displacement));
     let held = held.sum::<f64>() - pushing.sum::<f64>();
     (work(|body| body.displacement.y) + held) / work(|body| body.displacement.x)
 }
@@ -98,7 +99,7 @@ impl Participation {
     }
 }
 
-/// Returns the factor on virtual displacements for which the centre of all masses moves by one.
+/// Factor on virtual displacements for which the centre of all masses moves by one.
 pub fn displacement_factor(bodies: &[MovingBody]) -> f64 {
     let mass_kg: f64 = bodies.iter().map(|body| body.mass_kg).sum();
     let first = bodies.iter().map(|body| body.mass_kg * body.displacement.x);

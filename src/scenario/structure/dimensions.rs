@@ -63,7 +63,7 @@ impl Dimension {
         }
     }
 
-    /// Returns the label on the drawing.
+    /// Label on the drawing.
     pub(crate) fn label(&self, language: Language) -> String {
         let length = language.number(self.length.clone());
         match self.label {
@@ -73,7 +73,7 @@ impl Dimension {
     }
 }
 
-/// Returns a length for a drawing, rounded to a millimetre, or to three digits below 0.1.
+/// Length for a drawing, rounded to a millimetre, or to three digits below 0.1.
 pub fn metres(length_m: f64) -> String {
     let rounded = if length_m.abs() < 0.1 {
         format!("{length_m:.2e}").parse().unwrap_or(length_m)
@@ -84,7 +84,7 @@ pub fn metres(length_m: f64) -> String {
 }
 
 impl Structure {
-    /// Returns the dimensions of the structure.
+    /// Dimensions of the structure.
     pub fn dimensions(&self) -> Vec<Dimension> {
         match self {
             Self::Arch(arch) => {
@@ -107,7 +107,7 @@ impl Structure {
 }
 
 impl Structure {
-    /// Returns the outline of the wall behind a column for drawings, in metres, as thick as the column; `None` without a wall.
+    /// Outline of the wall behind a column for drawings, in metres, as thick as the column; `None` without a wall.
     pub fn wall_outline_m(&self) -> Option<[Vector2<f64>; 4]> {
         let column = self.column()?;
         let (wall, height_m) = column.wall()?;
@@ -121,7 +121,7 @@ impl Structure {
     }
 }
 
-/// Returns the circular arch of masonry, which may have piers, fill and loads; `None` for other shapes.
+/// Circular arch of masonry, which may have piers, fill and loads; `None` for other shapes.
 pub(super) fn circular_arch(masonry: &Masonry) -> Option<&Arch> {
     match &masonry.shape {
         MasonryShape::Circular(circular) => Some(&circular.arch),
@@ -129,7 +129,7 @@ pub(super) fn circular_arch(masonry: &Masonry) -> Option<&Arch> {
     }
 }
 
-/// Returns the lowest and the highest coordinates of the blocks of a row.
+/// Lowest and the highest coordinates of the blocks of a row.
 pub(in crate::scenario) fn bounds_m(row: &Row) -> [Vector2<f64>; 2] {
     let corners = row.outlines_m.iter().flatten();
     let empty = [f64::INFINITY, f64::NEG_INFINITY].map(|x| Vector2::new(x, x));
@@ -138,7 +138,7 @@ pub(in crate::scenario) fn bounds_m(row: &Row) -> [Vector2<f64>; 2] {
     })
 }
 
-/// Returns width and height between the lowest and the highest coordinates.
+/// Width and height between the lowest and the highest coordinates.
 fn width_and_height([low, high]: [Vector2<f64>; 2]) -> [Dimension; 2] {
     let [right, top] = [Vector2::new(high.x, low.y), Vector2::new(low.x, high.y)];
     [
@@ -147,7 +147,7 @@ fn width_and_height([low, high]: [Vector2<f64>; 2]) -> [Dimension; 2] {
     ]
 }
 
-/// Returns span and rise from the ends of a line and the height of its crown. The words name the line if it was given.
+/// Span and rise from the ends of a line and the height of its crown. The words name the line if it was given.
 fn span_and_rise(ends: Ends, crown_m: f64, line: Option<MeasuredAt>) -> [Dimension; 2] {
     let crown = Vector2::new(ends[0].x, crown_m);
     let mut dimensions = [
@@ -161,7 +161,7 @@ fn span_and_rise(ends: Ends, crown_m: f64, line: Option<MeasuredAt>) -> [Dimensi
     dimensions
 }
 
-/// Returns the height of the wall behind a column if it is lower than the column.
+/// Height of the wall behind a column if it is lower than the column.
 fn wall_height(column: &Column) -> Option<Dimension> {
     let (wall, height_m) = column.wall()?;
     let x_m = 0.5 * column.width_m * wall.side.sign();
@@ -220,7 +220,7 @@ fn masonry_dimensions(masonry: &Masonry) -> Vec<Dimension> {
     dimensions
 }
 
-/// Returns height and width of a pier, from the inner corner at its springing.
+/// Height and width of a pier, from the inner corner at its springing.
 fn pier_dimensions(pier: &Pier, inner: Vector2<f64>, side: DimensionSide) -> [Dimension; 2] {
     let foot = inner - Vector2::new(0.0, pier.height_m);
     let base = match side {

@@ -73,8 +73,7 @@ impl Structure {
         let tables = ["arch", "column", pointed, elliptic, basket, blocks];
         table.apply_relations(&[OneOf(&tables, None)])?;
         let column = column.map(|(column, back)| StructureTable::Column(column, back));
-        let read = arch.or(column).or(shape);
-        let read = read.ok_or(FaultRecorded)?;
+        let read = arch.or(column).or(shape).ok_or(FaultRecorded)?;
         let (beside, gravity_m_s2) = (beside?, gravity_m_s2.ok_or(FaultRecorded)?);
         let ties = beside.ties.clone();
         let structure = match read {
@@ -102,7 +101,7 @@ impl Structure {
         Ok((structure, ties))
     }
 
-    /// Returns the ties of the structure.
+    /// Ties of the structure.
     pub fn ties(&self) -> &[Tie] {
         match self {
             Self::Arch(_) => &[],
@@ -142,7 +141,7 @@ impl Structure {
         })
     }
 
-    /// Returns the structure as parts with masses.
+    /// Structure as parts with masses.
     pub fn as_parts(&self) -> &dyn Parts {
         match self {
             Self::Arch(arch) => arch,
@@ -151,13 +150,13 @@ impl Structure {
         }
     }
 
-    /// Returns the side of the wall behind a column, towards which it cannot move; `None` without a wall.
+    /// Side of the wall behind a column, towards which it cannot move; `None` without a wall.
     pub fn wall_behind(&self) -> Option<Sway> {
         let (wall, _) = self.column()?.wall()?;
         Some(wall.side)
     }
 
-    /// Returns fill and loads for drawings.
+    /// Fill and loads for drawings.
     pub fn fill_and_loads(&self) -> (LoadOutlines, &[PlacedLoad]) {
         match self {
             Self::Arch(_) => (LoadOutlines::default(), &[]),
@@ -166,12 +165,12 @@ impl Structure {
         }
     }
 
-    /// Returns true for an arch, which has thrust at its springings; false for a free-standing column.
+    /// True for an arch, which has thrust at its springings; false for a free-standing column.
     pub const fn has_horizontal_thrust(&self) -> bool {
         !matches!(self, Self::Column(_))
     }
 
-    /// Returns the name of each of its two supports: springing, foot of a pier, or support of given blocks.
+    /// Name of each of its two supports: springing, foot of a pier, or support of given blocks.
     pub fn support_name(&self) -> &'static str {
         match self {
             Self::Masonry(masonry) => match masonry.springing_joints() {
@@ -183,12 +182,12 @@ impl Structure {
         }
     }
 
-    /// Returns true if the structure stands on one support, as a column does.
+    /// True if the structure stands on one support, as a column does.
     pub fn stands_on_one_support(&self) -> bool {
         self.row().is_ok_and(|row| row.supports == Supports::Left)
     }
 
-    /// Returns true for shapes that are symmetric for all dimensions.
+    /// True for shapes that are symmetric for all dimensions.
     pub fn is_symmetric(&self) -> bool {
         match self {
             Self::Arch(_) => true,
@@ -197,7 +196,7 @@ impl Structure {
         }
     }
 
-    /// Returns the circular arch; `None` for other structures, and for an arch with piers, fill, loads or ties.
+    /// Circular arch; `None` for other structures, and for an arch with piers, fill, loads or ties.
     pub const fn circular_arch(&self) -> Option<&Arch> {
         match self {
             Self::Arch(arch) => Some(arch),
@@ -205,7 +204,7 @@ impl Structure {
         }
     }
 
-    /// Returns the column; `None` for other structures.
+    /// Column; `None` for other structures.
     pub(crate) const fn column(&self) -> Option<&Column> {
         match self {
             Self::Column(column) => Some(column),
@@ -213,7 +212,7 @@ impl Structure {
         }
     }
 
-    /// Returns the length out of plane in m and the density in kg/m3; if densities differ, the first.
+    /// Length out of plane in m and the density in kg/m3; if densities differ, the first.
     pub(crate) fn depth_and_density(&self) -> (f64, f64) {
         match self {
             Self::Arch(arch) => (arch.depth_m, arch.density_kg_m3),
@@ -225,7 +224,7 @@ impl Structure {
         }
     }
 
-    /// Returns the limit position of the first mechanism, in rad: initial rotations must be smaller. `None` if that mechanism has more than one
+    /// Limit position of the first mechanism, in rad: initial rotations must be smaller. `None` if that mechanism has more than one
     /// degree of freedom. Drums turn about the base as one block.
     pub(super) fn release_limit_rad(&self) -> Option<f64> {
         // The limit position does not depend on the impact model.
@@ -236,7 +235,7 @@ impl Structure {
         Some(sides.fold(f64::INFINITY, f64::min))
     }
 
-    /// Returns the structure as a row of blocks.
+    /// Structure as a row of blocks.
     ///
     /// # Errors
     /// When the structure is an arch without voussoirs.
@@ -248,7 +247,7 @@ impl Structure {
         }
     }
 
-    /// Returns the length that scales the motion, in m: the mean radius of an arch, half the diagonal of a column.
+    /// Length that scales the motion, in m: the mean radius of an arch, half the diagonal of a column.
     pub fn size_m(&self) -> f64 {
         match self {
             Self::Arch(arch) => arch.mean_radius_m,
@@ -337,7 +336,7 @@ fn read_arch(
     }
 }
 
-/// Returns the reason why limit analysis rejects the arch, and the remedy.
+/// Reason why limit analysis rejects the arch, and the remedy.
 fn why_not(arch: &Arch, error: LimitError) -> String {
     let embrace_deg = arch.embrace_deg;
     let embrace = plain(embrace_deg);
@@ -404,8 +403,9 @@ fn read_column(table: &mut Table<'_>, has_joints: bool) -> ReadResult<(Column, O
         .expect("the ranges of the keys are within those of a column")
         .on_pedestal(pedestal);
     if let Some(heights_m) = drum_heights_m {
-        let drums = column.with_drum_heights_m(heights_m);
-        let drums = drums.map_err(|error| format!("does not fit: {error}"));
+        let drums = column
+            .with_drum_heights_m(heights_m)
+            .map_err(|error| format!("does not fit: {error}"));
         column = table.accept("drum_heights_m", drums)?;
     }
     Ok((column, back))

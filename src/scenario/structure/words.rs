@@ -7,7 +7,7 @@ use crate::mechanics::{MasonryShape, MeasuredAt, PlacedLoad, Tie};
 use crate::{Arch, Column, Masonry};
 
 impl Structure {
-    /// Returns the structure in words, with properties that its drawing does not show.
+    /// Structure in words, with properties that its drawing does not show.
     pub fn describe(&self) -> String {
         let (depth_m, density_kg_m3) = self.depth_and_density();
         let mut parts = Vec::new();
@@ -31,7 +31,7 @@ impl Structure {
         parts.join("; ")
     }
 
-    /// Returns the origin of the coordinates x and y, in words. Ties, loads, points and results use this frame.
+    /// Origin of the coordinates x and y, in words. Ties, loads, points and results use this frame.
     pub fn origin(&self) -> String {
         let circular = match self {
             Self::Arch(arch) => Some(arch),
@@ -57,7 +57,7 @@ impl Structure {
         words.to_owned()
     }
 
-    /// Returns the frame of reference and the position of each tie, one line each; empty without ties.
+    /// Frame of reference and the position of each tie, one line each; empty without ties.
     pub fn tie_places(&self) -> Vec<String> {
         let mut places = self.ties_in_words();
         if !places.is_empty() {
@@ -66,7 +66,7 @@ impl Structure {
         places
     }
 
-    /// Returns the position of each tie in words: its ends, and its height above the springings of an arch.
+    /// Position of each tie in words: its ends, and its height above the springings of an arch.
     pub fn ties_in_words(&self) -> Vec<String> {
         let springing_m = match self {
             Self::Masonry(masonry) => masonry.springings().map(|[left, _]| left.intrados_m.y),
@@ -78,7 +78,7 @@ impl Structure {
     }
 }
 
-/// Returns the line along which span and rise are measured, in words; `None` if the scenario does not give them.
+/// Line along which span and rise are measured, in words; `None` if the scenario does not give them.
 fn measured_line(arch: &Arch) -> Option<String> {
     let line = arch.measured_at?;
     Some(format!("span and rise {}", line.in_words()))
@@ -98,7 +98,7 @@ fn column_words(column: &Column) -> Vec<String> {
     parts
 }
 
-/// Returns weight and thrust of a load, each as a direction and in words. Directions: 0 downwards, 1 to the right, -1 to the left. A mass that does not
+/// Weight and thrust of a load, each as a direction and in words. Directions: 0 downwards, 1 to the right, -1 to the left. A mass that does not
 /// move with its block is a constant weight. Empty without forces.
 pub fn forces_in_words(load: &PlacedLoad) -> Vec<(f64, String)> {
     let mut forces = Vec::new();
@@ -118,7 +118,7 @@ pub fn forces_in_words(load: &PlacedLoad) -> Vec<(f64, String)> {
     forces
 }
 
-/// Returns a load in words.
+/// Load in words.
 pub fn load_in_words(load: &PlacedLoad) -> String {
     let forces = forces_in_words(load).into_iter();
     let words: Vec<_> = forces.map(|(_, words)| words).collect();
@@ -173,7 +173,7 @@ fn masonry_words(masonry: &Masonry) -> Vec<String> {
     parts
 }
 
-/// Returns the height of the intrados of the springings above the centre of the circle, in metres; zero for a semicircle with rounding errors.
+/// Height of the intrados of the springings above the centre of the circle, in metres; zero for a semicircle with rounding errors.
 fn springing_m(arch: &Arch) -> f64 {
     let radius_m = arch.radius_at_m(MeasuredAt::Intrados);
     let [_, rise_m] = arch.span_and_rise_m(MeasuredAt::Intrados);
@@ -198,7 +198,7 @@ fn tie_position(tie: &Tie, springing_m: Option<f64>) -> String {
     format!("from {from} m to {to} m{above}")
 }
 
-/// Returns a height relative to a level, in words.
+/// Height relative to a level, in words.
 fn height(above_m: f64) -> String {
     // Heights up to a micrometre count as zero.
     let height = metres(above_m.abs());

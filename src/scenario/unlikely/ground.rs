@@ -33,7 +33,7 @@ struct Strengths {
 type StartsG<'f> = &'f dyn Fn() -> Option<[Option<f64>; 2]>;
 
 impl Scenario {
-    /// Returns the unlikely values of the ground motions of a study. `is_sized` is true if size and density of the structure are usual.
+    /// Unlikely values of the ground motions of a study. `is_sized` is true if size and density of the structure are usual.
     pub(super) fn unlikely_ground(&self, study: &Varied<'_>, is_sized: bool) -> Vec<Unlikely> {
         let gravity_m_s2 = self.simulation.gravity_m_s2;
         let found = OnceCell::new();
@@ -67,8 +67,10 @@ impl Scenario {
     }
 
     fn unlikely_pulse(&self, pulse: &PulseGround, starts_g: StartsG<'_>) -> Option<Unlikely> {
-        let peak_g = pulse.amplitude_g.abs();
-        let peak_g = peak_g.max(pulse.vertical_amplitude_g.abs());
+        let peak_g = pulse
+            .amplitude_g
+            .abs()
+            .max(pulse.vertical_amplitude_g.abs());
         let key = format!("ground.{}.amplitude_g", pulse.kind.name());
         let unit = "is its amplitude in units of gravity?";
         let doubt = |value_g: f64, phrase: String| {
@@ -88,7 +90,7 @@ impl Scenario {
         })
     }
 
-    /// Returns a warning about a table in m/s2 that moves nothing, and would move the structure if it were in g.
+    /// Warning about a table in m/s2 that moves nothing, and would move the structure if it were in g.
     fn too_weak(&self, series: &Series, starts_g: StartsG<'_>) -> Option<Unlikely> {
         let peak_g = series.peak_g(self.gravity_m_s2());
         let in_gravities_g = peak_g * self.gravity_m_s2();
@@ -107,20 +109,22 @@ impl Scenario {
         })
     }
 
-    /// Returns the largest push of the ground, in g, and its ratio to the push that starts the structure to the same side; of the side with the
+    /// Largest push of the ground, in g, and its ratio to the push that starts the structure to the same side; of the side with the
     /// larger ratio. `None` if no push starts the structure, or any push does, because ties hold it on its hinges, or its springings have moved.
     fn largest_push(&self, starts_g: StartsG<'_>) -> Option<[f64; 2]> {
         let pushes_m_s2 = self.ground_motion().pushes_m_s2(f64::INFINITY);
         let starts_g = starts_g()?;
-        let ratios = pushes_m_s2.into_iter().zip(starts_g);
-        let ratios = ratios.filter_map(|(push_m_s2, starts_g)| {
-            let push_g = push_m_s2 / self.gravity_m_s2();
-            Some([push_g, push_g / starts_g?])
-        });
+        let ratios = pushes_m_s2
+            .into_iter()
+            .zip(starts_g)
+            .filter_map(|(push_m_s2, starts_g)| {
+                let push_g = push_m_s2 / self.gravity_m_s2();
+                Some([push_g, push_g / starts_g?])
+            });
         ratios.max_by(|one, other| one[1].total_cmp(&other[1]))
     }
 
-    /// Returns the push that starts the structure to the right and to the left, in g, if it has one. `None` on moved springings: there the structure
+    /// Push that starts the structure to the right and to the left, in g, if it has one. `None` on moved springings: there the structure
     /// stands on three hinges, and a small push starts it.
     fn starts_g(&self, model: Option<&dyn Model>) -> Option<[Option<f64>; 2]> {
         if self.motion.supports().is_some() {
@@ -138,12 +142,15 @@ impl Scenario {
         Some(starts_g.map(|starts_g| starts_g.filter(|starts_g| *starts_g > 0.0)))
     }
 
-    /// Returns the strengths over which the studies of this scenario vary.
+    /// Strengths over which the studies of this scenario vary.
     fn strengths(&self, study: &Varied<'_>) -> Vec<Strengths> {
         let mut all = Vec::new();
         if let Some(ground) = &self.ground {
-            let axes = self.map.iter().flat_map(|map| [&map.x, &map.y]);
-            let axes = axes.filter_map(|axis| self.axis_strengths(axis, ground));
+            let axes = self
+                .map
+                .iter()
+                .flat_map(|map| [&map.x, &map.y])
+                .filter_map(|axis| self.axis_strengths(axis, ground));
             all.extend(axes);
             let axis = study.key_range.map(|(key, ends)| Axis {
                 quantity: Quantity::Other,
@@ -179,7 +186,7 @@ impl Scenario {
         all
     }
 
-    /// Returns the strengths along an axis; `None` if it varies another quantity.
+    /// Strengths along an axis; `None` if it varies another quantity.
     fn axis_strengths(&self, axis: &Axis, ground: &Ground) -> Option<Strengths> {
         let unit_g = match (axis.quantity_under(ground), ground) {
             (Quantity::Amplitude | Quantity::PeakG, _) => 1.0,
@@ -226,7 +233,7 @@ impl Strengths {
         })
     }
 
-    /// Returns the middle of the peaks on a logarithmic scale, in g.
+    /// Middle of the peaks on a logarithmic scale, in g.
     fn middle_g(&self) -> f64 {
         match self.weakest_g {
             0.0 => self.strongest_g,
@@ -234,7 +241,7 @@ impl Strengths {
         }
     }
 
-    /// Returns a warning about motions that are too strong, or all too weak or too strong for the structure.
+    /// Warning about motions that are too strong, or all too weak or too strong for the structure.
     fn unlikely_strength(&self, starts_g: StartsG<'_>) -> Option<Unlikely> {
         let doubt = |value_g: f64, (verb, end): (&str, &str)| {
             let (what, value, question) = (&self.what, plain(value_g), self.question);
@@ -261,7 +268,7 @@ impl Strengths {
     }
 }
 
-/// Returns the warnings about several records. A wrong unit affects all tables, so only the first record is described.
+/// Warnings about several records. A wrong unit affects all tables, so only the first record is described.
 fn unlikely_records<'s>(
     records: impl Iterator<Item = &'s Series> + Clone,
     of: &str,
@@ -271,8 +278,9 @@ fn unlikely_records<'s>(
         .clone()
         .filter_map(Series::different_header)
         .collect();
-    let values = records.map(|series| series.unlikely_values(gravity_m_s2));
-    let mut values = values.filter(|faults| !faults.is_empty());
+    let mut values = records
+        .map(|series| series.unlikely_values(gravity_m_s2))
+        .filter(|faults| !faults.is_empty());
     unlikely.extend(values.next().into_iter().flatten());
     let others = values.count();
     let more = match others {

@@ -53,7 +53,7 @@ impl Unlikely {
         }
     }
 
-    /// Returns the warnings about unlikely numbers.
+    /// Warnings about unlikely numbers.
     pub fn sentences(unlikely: &[Self]) -> Vec<String> {
         unlikely.iter().map(Self::to_string).collect()
     }
@@ -67,7 +67,7 @@ impl Unlikely {
         Self { likely, ..self }
     }
 
-    /// Returns the outermost table of the key.
+    /// Outermost table of the key.
     fn table(&self) -> &str {
         self.key.split('.').next().unwrap_or_default()
     }
@@ -91,7 +91,7 @@ pub struct Varied<'a> {
 }
 
 impl<'a> Varied<'a> {
-    /// Returns no options, for a known model of motion.
+    /// No options, for a known model of motion.
     pub fn of_model(model: &'a dyn Model) -> Self {
         Self {
             model: Some(model),
@@ -101,12 +101,12 @@ impl<'a> Varied<'a> {
 }
 
 impl Scenario {
-    /// Returns sentences about unlikely values, each with the probably intended unit.
+    /// Sentences about unlikely values, each with the probably intended unit.
     pub fn unlikely_values(&self) -> Vec<String> {
         Unlikely::sentences(&self.unlikely_in(&Varied::default()))
     }
 
-    /// Returns the unlikely values of a study: of the structure, the ground motion, the levels of a suite, the axes of a map and the options. Each mistake
+    /// Unlikely values of a study: of the structure, the ground motion, the levels of a suite, the axes of a map and the options. Each mistake
     /// has one warning.
     pub fn unlikely_in(&self, study: &Varied<'_>) -> Vec<Unlikely> {
         let json = self.to_json();
@@ -136,7 +136,7 @@ impl Scenario {
         unlikely
     }
 
-    /// Returns the usual masses and forces of the loads and ties of this structure; empty without loads, ties and blow.
+    /// Usual masses and forces of the loads and ties of this structure; empty without loads, ties and blow.
     fn usual_forces(&self, numbers: &Numbers) -> Vec<Usual> {
         let has_forces = numbers.0.iter().any(|(path, _)| {
             let tables = ["load.", "tie.", "initial.impulse"];
@@ -154,7 +154,7 @@ impl Scenario {
         })
     }
 
-    /// Returns the unlikely values of a study of several scenarios, each once.
+    /// Unlikely values of a study of several scenarios, each once.
     pub fn unlikely_of_all<'s>(
         scenarios: impl IntoIterator<Item = &'s Self>,
         study: &Varied<'_>,
@@ -181,7 +181,7 @@ impl Scenario {
         })
     }
 
-    /// Returns a warning if a motion up to the end of the simulation takes long to compute.
+    /// A warning if a motion up to the end of the simulation takes long to compute.
     fn takes_long(&self) -> Option<Unlikely> {
         let request = self.request();
         let begin = format!("the simulation lasts {} s", plain(request.end_s));
@@ -285,7 +285,7 @@ impl Numbers {
         }
     }
 
-    /// Returns the number of a key in the scenario itself.
+    /// Number of a key in the scenario itself.
     fn get(&self, key: &str) -> Option<f64> {
         let mut numbers = self.0.iter();
         numbers
@@ -293,7 +293,7 @@ impl Numbers {
             .map(|(_, number)| *number)
     }
 
-    /// Returns the numbers outside the usual range of their key. `forces` are the usual forces of the structure.
+    /// Numbers outside the usual range of their key. `forces` are the usual forces of the structure.
     fn unlikely_numbers(&self, forces: &[Usual]) -> Vec<Unlikely> {
         let numbers = self.0.iter().filter_map(|(path, value)| {
             let mut all = USUAL.iter().chain(forces);
@@ -308,7 +308,7 @@ impl Numbers {
 }
 
 impl Usual {
-    /// Returns true if these are the usual numbers of a key with its tables.
+    /// True if these are the usual numbers of a key with its tables.
     fn fits(&self, path: &str) -> bool {
         let mut given = path.split('.').rev();
         let (mut own, last) = (self.key.split('.').rev(), given.next());
@@ -316,7 +316,7 @@ impl Usual {
         own.next() == last && own.all(|table| given.any(|given| given == table))
     }
 
-    /// Returns the warning about an unusual value.
+    /// Warning about an unusual value.
     fn warning(&self, path: &str, value: f64) -> Unlikely {
         let table = path.rsplit_once('.').map_or("", |(table, _)| table);
         let of = match table.rsplit_once('.') {

@@ -21,7 +21,7 @@ const END_RATIO: f64 = 0.25;
 const REVERSALS: usize = 20;
 
 impl Series {
-    /// Returns the unlikely values of a record, each with the probably intended unit.
+    /// Unlikely values of a record, each with the probably intended unit.
     pub fn unlikely(&self, gravity_m_s2: f64) -> Vec<Unlikely> {
         let difference = self.different_header().into_iter();
         difference
@@ -29,7 +29,7 @@ impl Series {
             .collect()
     }
 
-    /// Returns a warning about a difference between header and samples.
+    /// Warning about a difference between header and samples.
     pub(super) fn different_header(&self) -> Option<Unlikely> {
         let difference = self.difference.as_ref()?;
         Some(Unlikely {
@@ -85,7 +85,7 @@ impl Series {
         unlikely
     }
 
-    /// Returns a warning about the step of the samples, or about the frequency at which the ground shakes.
+    /// Warning about the step of the samples, or about the frequency at which the ground shakes.
     fn unlikely_times(&self, shaking: &Shaking) -> Option<Unlikely> {
         let sampling = self.sampling();
         let step_s = sampling.duration_s / (sampling.count - 1) as f64;
@@ -154,12 +154,14 @@ impl Shaking {
 /// Computes the largest velocity of accelerations without its line of least squares.
 fn peak_velocity(accelerations: &[(f64, f64)]) -> f64 {
     let mut velocity = 0.0;
-    let velocities = accelerations.windows(2).map(|pair| {
-        let [(t0, a0), (t1, a1)] = [pair[0], pair[1]];
-        velocity += 0.5 * (a0 + a1) * (t1 - t0);
-        (t1, velocity)
-    });
-    let mut velocities: Vec<_> = velocities.collect();
+    let mut velocities: Vec<_> = accelerations
+        .windows(2)
+        .map(|pair| {
+            let [(t0, a0), (t1, a1)] = [pair[0], pair[1]];
+            velocity += 0.5 * (a0 + a1) * (t1 - t0);
+            (t1, velocity)
+        })
+        .collect();
     Baseline::Linear.subtract(&mut velocities);
     velocities
         .iter()

@@ -5,7 +5,7 @@ use crate::Column;
 use crate::scenario::Scenario;
 
 impl Scenario {
-    /// Returns the mistakes that only several numbers together show.
+    /// Mistakes that only several numbers together show.
     pub(super) fn unlikely_together(&self, numbers: &Numbers) -> Vec<Unlikely> {
         let column = self.structure.column();
         let alone = column.into_iter().flat_map(|column| {
@@ -21,7 +21,7 @@ impl Scenario {
     }
 }
 
-/// Returns a warning about a column that is wider than twice its height: it rocks under no ground motion below 2 g.
+/// Warning about a column that is wider than twice its height: it rocks under no ground motion below 2 g.
 fn width_exchanged(column: &Column) -> Option<Unlikely> {
     let (height_m, width_m) = (column.height_m, column.width_m);
     (width_m > 2.0 * height_m).then(|| {
@@ -33,7 +33,7 @@ fn width_exchanged(column: &Column) -> Option<Unlikely> {
     })
 }
 
-/// Returns a warning about a column that is released beyond its unstable equilibrium, from where it falls.
+/// Warning about a column that is released beyond its unstable equilibrium, from where it falls.
 fn released_beyond_balance(column: &Column, numbers: &Numbers) -> Option<Unlikely> {
     let key = "initial.rotation_rad";
     let rotation_rad = numbers.get(key).filter(|_| column.is_one_prism())?;
@@ -46,7 +46,7 @@ fn released_beyond_balance(column: &Column, numbers: &Numbers) -> Option<Unlikel
     })
 }
 
-/// Returns warnings about loads that are more than its width outside of the faces of a column.
+/// Warnings about loads that are more than its width outside of the faces of a column.
 fn loads_beside(column: &Column) -> impl Iterator<Item = Unlikely> {
     let width_m = column.width_m;
     let loads = (1..).zip(&column.loads);
@@ -60,7 +60,7 @@ fn loads_beside(column: &Column) -> impl Iterator<Item = Unlikely> {
     })
 }
 
-/// Returns a warning about mortar that is stiffer than the blocks between it.
+/// Warning about mortar that is stiffer than the blocks between it.
 fn stiff_mortar(numbers: &Numbers) -> Option<Unlikely> {
     let key = "elastic_joints.mortar_modulus_gpa";
     let mortar_gpa = numbers.get(key)?;
@@ -73,7 +73,7 @@ fn stiff_mortar(numbers: &Numbers) -> Option<Unlikely> {
     })
 }
 
-/// Returns a warning about a rarer limit state with a weaker ground motion.
+/// Warning about a rarer limit state with a weaker ground motion.
 fn falling_hazard(numbers: &Numbers) -> Option<Unlikely> {
     let states = ["sld", "slv", "slc"].map(|state| {
         let key = format!("demand.{state}.ag_g");

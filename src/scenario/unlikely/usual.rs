@@ -25,7 +25,7 @@ pub(super) struct Usual {
 }
 
 impl Usual {
-    /// Returns the unit in which a number would be nearest to the middle of the usual ones, on a logarithmic scale; `None` if it would be unusual in
+    /// Unit in which a number would be nearest to the middle of the usual ones, on a logarithmic scale; `None` if it would be unusual in
     /// all units.
     pub(super) fn nearest_unit(&self, magnitude: f64) -> Option<&'static str> {
         let (low, high) = (*self.range.start(), *self.range.end());
@@ -76,7 +76,7 @@ const PERCENT: &[(&str, f64)] = &[("per cent", 0.01)];
 /// Force or mass of a load or a tie over the weight or mass of the structure: a smaller one has no effect, a larger one is no part of a structure.
 const PART_OF_WEIGHT: RangeInclusive<f64> = 1e-3..=100.0;
 
-/// Returns the usual masses and forces of a structure of a mass in kg and a size in m.
+/// Usual masses and forces of a structure of a mass in kg and a size in m.
 pub(super) fn usual_forces(mass_kg: f64, size_m: f64, gravity_m_s2: f64) -> [Usual; 6] {
     const KILONEWTONS: &[(&str, f64)] = &[("kN", 1e3)];
     let times = |factor: f64| PART_OF_WEIGHT.start() * factor..=PART_OF_WEIGHT.end() * factor;

@@ -74,7 +74,7 @@ pub fn capacity(
     })
 }
 
-/// Returns the blocks of a structure whose first mechanism is that of a row: a structure with ties, an arch with constant forces, or a stack on one
+/// Blocks of a structure whose first mechanism is that of a row: a structure with ties, an arch with constant forces, or a stack on one
 /// support other than Housner's block. `None` for structures that move as four links or as Housner's block.
 fn held_row(structure: &Structure) -> Result<Option<Row>, RowError> {
     let is_one_prism = structure.column().is_some_and(crate::Column::is_one_prism);
@@ -86,7 +86,7 @@ fn held_row(structure: &Structure) -> Result<Option<Row>, RowError> {
     (is_stack || is_held).then(|| structure.row()).transpose()
 }
 
-/// Returns the control point with its place along the structure: the given point, or the crown.
+/// Control point with its place along the structure: the given point, or the crown.
 fn control(
     structure: &dyn Parts,
     point_m: Option<Vector2<f64>>,
@@ -107,21 +107,23 @@ pub(super) struct Bodies {
 }
 
 impl Bodies {
-    /// Returns the bodies of the first mechanism of a model to a side.
+    /// Bodies of the first mechanism of a model to a side.
     pub(super) fn of_model(model: &dyn MechanismModel, sway: Sway) -> Self {
-        let hinges = model.hinges_after(0, sway).into_iter();
-        let hinges = hinges.map(|hinge| match hinge {
-            Hinge::Section { angle_rad, .. } => angle_rad,
-            Hinge::Joint { joint, .. } => joint as f64,
-            Hinge::Toe(_) => 0.0,
-        });
+        let hinges = model
+            .hinges_after(0, sway)
+            .into_iter()
+            .map(|hinge| match hinge {
+                Hinge::Section { angle_rad, .. } => angle_rad,
+                Hinge::Joint { joint, .. } => joint as f64,
+                Hinge::Toe(_) => 0.0,
+            });
         Self {
             hinges: hinges.collect(),
             count: model.bodies().len(),
         }
     }
 
-    /// Returns the bodies of the first mechanism of a row.
+    /// Bodies of the first mechanism of a row.
     pub(super) fn of_row(held: &Held<'_>) -> Self {
         let hinges = held.pins.hinges.iter().map(|hinge| hinge.joint as f64);
         Self {
@@ -137,7 +139,7 @@ impl Bodies {
         BodyPoint { at_m, body }
     }
 
-    /// Returns the parts of a structure as points with masses, and its control point.
+    /// Parts of a structure as points with masses, and its control point.
     fn masses(
         &self,
         structure: &dyn Parts,

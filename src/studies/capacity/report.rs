@@ -73,7 +73,7 @@ pub struct Oscillator {
 }
 
 impl CapacitySummary {
-    /// Returns the curves of the sides to which the structure moves.
+    /// Curves of the sides to which the structure moves.
     fn sides(&self) -> Vec<(Sway, &CapacitySide)> {
         let sides = self.capacity.iter();
         let moving = sides.filter_map(|(sway, side)| Some((sway, side.as_ref()?)));
@@ -141,8 +141,8 @@ pub fn report(
     }
     let control_m = sides
         .iter()
-        .find_map(|(_, side)| Some(side.as_ref()?.control.at_m));
-    let control_m = control_m.unwrap_or_default();
+        .find_map(|(_, side)| Some(side.as_ref()?.control.at_m))
+        .unwrap_or_default();
     let draw = |figure| chart(sides, figure, &cases.spots).draw(figure, title);
     let masses = format!("masses at the centres of {}", summary.masses);
     let what = scenario.structure.describe();
@@ -176,7 +176,7 @@ impl Report for CapacitySummary {
 
 const STATIC: &str = "the first mechanism, held at each displacement without inertia and without slip; the hinges stay where they open";
 
-/// Returns the points of the curves, to the right first.
+/// Points of the curves, to the right first.
 fn points(sides: &Sides<Option<Capacity>>) -> impl Iterator<Item = (Sway, &CurvePoint)> {
     sides.iter().flat_map(|(sway, side)| {
         let points = side.iter().flat_map(|side| &side.curve);
@@ -187,13 +187,18 @@ fn points(sides: &Sides<Option<Capacity>>) -> impl Iterator<Item = (Sway, &Curve
 /// Makes the chart of acceleration against displacement of the control point, for both sides, with marks for their points on a
 /// page.
 fn chart(sides: &Sides<Option<Capacity>>, figure: Figure, spots: &[Spot]) -> Chart {
-    let curves = sides.iter().zip(CURVES);
-    let curves = curves.filter_map(|((sway, side), stroke)| {
-        let points = side.as_ref()?.curve.iter();
-        let points = points.map(|point| (point.displacement_m, point.acceleration_g));
-        let name = format!("to the {}", sway.name());
-        Some(Mark::curve(name, stroke, points))
-    });
+    let curves = sides
+        .iter()
+        .zip(CURVES)
+        .filter_map(|((sway, side), stroke)| {
+            let points = side
+                .as_ref()?
+                .curve
+                .iter()
+                .map(|point| (point.displacement_m, point.acceleration_g));
+            let name = format!("to the {}", sway.name());
+            Some(Mark::curve(name, stroke, points))
+        });
     let labels = ["displacement of the control point (m)", "a (g)"];
     let mut chart = Chart::around(figure, 330.0, labels, curves.collect());
     let marks = points(sides)

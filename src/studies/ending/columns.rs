@@ -33,7 +33,7 @@ pub(crate) const NOT_FOUR_LINKS: &str = "not_four_links";
 pub(crate) const GROUND_FALLS: &str = "ground_falls";
 
 impl NoHistory {
-    /// Returns the name of the reason in tables, in place of an outcome.
+    /// Name of the reason in tables, in place of an outcome.
     pub const fn name(&self) -> &'static str {
         match self {
             Self::CannotStand => CANNOT_STAND,
@@ -44,7 +44,7 @@ impl NoHistory {
     }
 }
 
-/// Returns true if all histories are of mechanisms: their rotations are drawn over the critical one, those of rows of blocks in radians.
+/// True if all histories are of mechanisms: their rotations are drawn over the critical one, those of rows of blocks in radians.
 pub(crate) fn are_over_critical<'a>(
     results: impl IntoIterator<Item = &'a Result<Ending, NoHistory>>,
 ) -> bool {
@@ -52,14 +52,14 @@ pub(crate) fn are_over_critical<'a>(
     endings.all(|ending| ending.peak_over_critical.is_some())
 }
 
-/// Returns the outcome of a case by its name in tables, or the reason why the case has no history.
+/// Outcome of a case by its name in tables, or the reason why the case has no history.
 pub fn outcome_name(result: &Result<Ending, NoHistory>) -> &'static str {
     let ending = result.as_ref();
     ending.map_or_else(NoHistory::name, Ending::outcome_name)
 }
 
 impl Ending {
-    /// Returns the name of the outcome of a case.
+    /// Name of the outcome of a case.
     pub fn outcome_name(&self) -> &'static str {
         match self.verdict() {
             Verdict::Uncertain => UNCERTAIN,
@@ -67,7 +67,7 @@ impl Ending {
         }
     }
 
-    /// Returns the side to which a case overturned; `None` unless overturning is certain.
+    /// Side to which a case overturned; `None` unless overturning is certain.
     pub(crate) fn certain_overturning_sway(&self) -> Option<Sway> {
         let sway = self.outcome.overturning_sway();
         sway.filter(|_| self.doubt().is_none())
@@ -94,7 +94,7 @@ pub(crate) const NUMBERS: [(&str, NumberOf); 6] = [
 /// Function that returns the ending of a row, or the outcome to report if the row has none.
 type Ended<R> = fn(&R) -> Result<&Ending, &'static str>;
 
-/// Returns the columns of the ending of a row. Sway, and impacts before overturning, are empty unless overturning is certain. The numbers of an
+/// Columns of the ending of a row. Sway, and impacts before overturning, are empty unless overturning is certain. The numbers of an
 /// uncertain case are those of the history itself, not of its repetitions, whose count stands beside them if histories are repeated.
 pub(crate) fn columns<'a, R: 'a>(is_repeated: bool, ended: Ended<R>) -> Vec<Column<'a, R>> {
     let number = |which: usize| {
@@ -125,14 +125,14 @@ pub(crate) fn columns<'a, R: 'a>(is_repeated: bool, ended: Ended<R>) -> Vec<Colu
     columns
 }
 
-/// Returns the column of the direction of the ground motion to which the numbers of a row belong; empty without a history.
+/// Column of the direction of the ground motion to which the numbers of a row belong; empty without a history.
 pub(crate) fn direction<'a, R: 'a>(ended: Ended<R>) -> Column<'a, R> {
     column("direction", move |row| {
         Some(ended(row).ok()?.direction.name())
     })
 }
 
-/// Returns a truth value for the cell of a table.
+/// Truth value for the cell of a table.
 pub(crate) const fn yes_or_no(is_true: bool) -> &'static str {
     if is_true { "yes" } else { "no" }
 }

@@ -72,38 +72,38 @@ impl Ending {
     /// Reason why a sample outside the model of four links has no verdict, and the remedy.
     pub const OUTSIDE_MODEL: &str = "outside the model of four links: the thrust line leaves the arch too far; compute it with free hinges";
 
-    /// Returns the time of the outcome, in seconds; `None` if it is unknown.
+    /// Time of the outcome, in seconds; `None` if it is unknown.
     pub fn known_time_s(&self) -> Option<f64> {
         self.safe_from_s.is_none().then_some(self.outcome_time_s)
     }
 
-    /// Returns the number of all impacts; `None` if it is unknown.
+    /// Number of all impacts; `None` if it is unknown.
     pub fn known_impacts(&self) -> Option<usize> {
         self.impacts.filter(|_| self.safe_from_s.is_none())
     }
 
-    /// Returns the number of impacts at which all hinges close together; `None` for a row of blocks, whose hinges close one by one.
+    /// Number of impacts at which all hinges close together; `None` for a row of blocks, whose hinges close one by one.
     pub fn impacts_of_all_hinges(&self) -> Option<usize> {
         self.impacts.filter(|_| self.steps.is_none())
     }
 
-    /// Returns the largest rotation of a row of blocks, in radians; `None` for mechanisms.
+    /// Largest rotation of a row of blocks, in radians; `None` for mechanisms.
     pub fn peak_of_row_rad(&self) -> Option<f64> {
         self.steps.map(|_| self.peak_rotation_rad)
     }
 
-    /// Returns true if the thrust line leaves the structure so far that four links do not describe the history; false for other models.
+    /// True if the thrust line leaves the structure so far that four links do not describe the history; false for other models.
     pub fn is_outside_model(&self) -> bool {
         self.thrust_excess_ratio
             .is_some_and(|ratio| ratio > MODEL_LIMIT)
     }
 
-    /// Returns true if the history itself overturned, even if the verdict is uncertain.
+    /// True if the history itself overturned, even if the verdict is uncertain.
     pub const fn overturned_itself(&self) -> bool {
         matches!(self.outcome, Outcome::Overturned(_))
     }
 
-    /// Returns the largest rotation of any body, in radians; infinite if the history overturned.
+    /// Largest rotation of any body, in radians; infinite if the history overturned.
     pub const fn peak_or_infinite_rad(&self) -> f64 {
         match self.overturned_itself() {
             true => f64::INFINITY,
@@ -111,18 +111,18 @@ impl Ending {
         }
     }
 
-    /// Returns the verdict on overturning.
+    /// Verdict on overturning.
     pub fn verdict(&self) -> Verdict {
         Verdict::counted(self.outcome, self.count.as_ref())
     }
 
-    /// Returns the count of the outcomes if the verdict is uncertain; `None` otherwise.
+    /// Count of the outcomes if the verdict is uncertain; `None` otherwise.
     pub fn doubt(&self) -> Option<&OutcomeCount> {
         let count = self.count.as_ref();
         count.filter(|_| self.verdict() == Verdict::Uncertain)
     }
 
-    /// Returns the share of the history and its repetitions that overturn: 0 or 1 if the verdict is certain. `None` for an incomplete history.
+    /// Share of the history and its repetitions that overturn: 0 or 1 if the verdict is certain. `None` for an incomplete history.
     pub fn overturning_share(&self) -> Option<f64> {
         match (self.verdict(), &self.count) {
             (Verdict::Uncertain, Some(count)) => Some(count.overturns_in as f64 / count.of as f64),
@@ -168,7 +168,7 @@ impl Ending {
         checked.map(worse).collect()
     }
 
-    /// Returns the worse ending of this one and that under the mirrored ground motion, if there is one: the worse verdict counts, of equal verdicts the
+    /// Worse ending of this one and that under the mirrored ground motion, if there is one: the worse verdict counts, of equal verdicts the
     /// larger peak. Its friction demand is the larger one of both.
     ///
     /// # Errors
@@ -238,8 +238,8 @@ pub(super) fn answer_valid_cases<C, A, E>(
     answer: impl FnOnce(&[C]) -> Vec<Result<A, E>>,
 ) -> Vec<Result<A, E>> {
     let mut known = Vec::new();
-    let cases = cases.into_iter();
     let cases: Vec<Result<(), E>> = cases
+        .into_iter()
         .map(|case| case.map(|case| known.push(case)))
         .collect();
     let mut answers = answer(&known).into_iter();
@@ -247,7 +247,7 @@ pub(super) fn answer_valid_cases<C, A, E>(
     cases.into_iter().map(of).collect()
 }
 
-/// Returns an error for numbers that are not finite: they are a bug of the program.
+/// Error for numbers that are not finite: they are a bug of the program.
 pub(super) fn check_finite(values: &[f64]) -> Result<(), NoHistory> {
     let wrong = "a result is not a finite number: please report the scenario";
     let are_finite = values.iter().all(|value| value.is_finite());
@@ -276,7 +276,7 @@ pub enum NoHistory {
 }
 
 impl NoHistory {
-    /// Returns the reason for a history under the mirrored ground motion.
+    /// Reason for a history under the mirrored ground motion.
     fn mirrored(self) -> Self {
         let reason = |why: String| format!("with the mirrored ground motion: {why}");
         match self {
@@ -338,7 +338,7 @@ impl From<NoHistory> for NoAnswer {
 }
 
 impl NoAnswer {
-    /// Returns the error of a sample whose structure has no model of motion. Without a restitution the structure is valid, but its answer unknown.
+    /// Error of a sample whose structure has no model of motion. Without a restitution the structure is valid, but its answer unknown.
     pub(super) fn without_model(error: ModelError) -> Self {
         match error {
             ModelError::FourLinks(error @ FourLinkError::Wall(_)) => {
@@ -348,7 +348,7 @@ impl NoAnswer {
         }
     }
 
-    /// Returns the name of the reason in tables.
+    /// Name of the reason in tables.
     pub const fn name(&self) -> &'static str {
         match self {
             Self::Invalid(_) => "invalid",
@@ -358,7 +358,7 @@ impl NoAnswer {
         }
     }
 
-    /// Returns the reason in words.
+    /// Reason in words.
     pub fn reason(&self) -> &str {
         match self {
             Self::Invalid(reason) | Self::Failed(reason) => reason,

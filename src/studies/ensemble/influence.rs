@@ -22,7 +22,7 @@ pub(super) enum InfluencedAnswer {
 }
 
 impl InfluencedAnswer {
-    /// Returns words that follow "decides 60 % of".
+    /// Words that follow "decides 60 % of".
     const fn in_words(self) -> &'static str {
         match self {
             Self::Overturning => "whether it overturns",
@@ -49,7 +49,7 @@ pub(super) struct NumberInfluence {
 pub(super) struct Influences(pub(super) BTreeMap<InfluencedAnswer, Option<Vec<NumberInfluence>>>);
 
 impl Influences {
-    /// Returns the influences on the first answer with known ones in words: `friction coefficient decides 60 % (95 %: 51 % to 67 %) of the first
+    /// Influences on the first answer with known ones in words: `friction coefficient decides 60 % (95 %: 51 % to 67 %) of the first
     /// factor that overturns, thickness ratio 25 % (...)`. The rest is due to several numbers together, or, if the intervals allow that no rest is
     /// left, perhaps to chance.
     pub(super) fn in_words(&self) -> String {
@@ -102,10 +102,15 @@ impl Influences {
         words
     }
 
-    /// Returns the index of the number with the largest influence on the first answer with known influences.
+    /// Index of the number with the largest influence on the first answer with known influences.
     pub(super) fn find_strongest(&self) -> Option<usize> {
-        let shares = self.0.values().flatten().next()?.iter();
-        let shares = shares.map(|number| number.sensitivity.first_order);
+        let shares = self
+            .0
+            .values()
+            .flatten()
+            .next()?
+            .iter()
+            .map(|number| number.sensitivity.first_order);
         let strongest = shares.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
         strongest.map(|(index, _)| index)
     }
@@ -153,7 +158,7 @@ impl Influences {
 }
 
 impl NumberInfluence {
-    /// Returns the key in words: `thickness ratio` for `arch.thickness_ratio`; the key itself if another key has the same last part.
+    /// Key in words: `thickness ratio` for `arch.thickness_ratio`; the key itself if another key has the same last part.
     fn key_in_words(&self, all: &[Self]) -> String {
         const UNITS: [&str; 12] = [
             "_m_s2", "_kg_m3", "_gpa_m", "_mpa", "_gpa", "_rad", "_deg", "_hz", "_kn", "_m", "_s",
@@ -170,7 +175,7 @@ impl NumberInfluence {
     }
 }
 
-/// Returns a share in percent, with one decimal near 0 and near 100 %.
+/// Share in percent, with one decimal near 0 and near 100 %.
 pub(super) fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     let decimals =
@@ -207,7 +212,8 @@ fn bar(drawing: &mut Drawing, axes: &Axes, top: f64, (name, number): (&str, &Num
     }
     drawing.band(&number.key, &bar(sensitivity.first_order), color::BLUE, 0.6);
     let middle = top + 20.0 + 0.5 * BAR_PX;
-    let ends = sensitivity.first_order_interval;
-    let ends = ends.map(|share| Vector2::new(at(share), middle));
+    let ends = sensitivity
+        .first_order_interval
+        .map(|share| Vector2::new(at(share), middle));
     drawing.curve("interval", ends, INTERVAL);
 }

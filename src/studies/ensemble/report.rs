@@ -36,7 +36,7 @@ pub(super) fn table<'a, A: 'a>(
     Table::new(all, &samples.lines().collect::<Vec<_>>())
 }
 
-/// Returns a column of the answers; it is empty for samples without an answer.
+/// Column of the answers; it is empty for samples without an answer.
 pub(super) fn answer_column<'a, A: 'a, C: Into<Cell<'static>>>(
     name: &'static str,
     cell: impl Fn(&A) -> C + 'a,
@@ -46,7 +46,7 @@ pub(super) fn answer_column<'a, A: 'a, C: Into<Cell<'static>>>(
     })
 }
 
-/// Returns the column with the reasons for samples without an answer.
+/// Column with the reasons for samples without an answer.
 pub(super) fn why_not<'a, A: 'a>() -> Column<'a, Line<'a, A>> {
     column("why_not", |(_, row): &Line<'_, A>| {
         row.answer.as_ref().err().map(NoAnswer::name)
@@ -90,7 +90,7 @@ pub(super) struct SampleSummary {
     pub(super) what_matters: Influences,
 }
 
-/// Returns the number of histories outside the model of four links, or the largest excess of the thrust line, in words; `None` if the thrust line stays
+/// Number of histories outside the model of four links, or the largest excess of the thrust line, in words; `None` if the thrust line stays
 /// almost inside.
 fn outside_in_words(model: &ModelCheck, checked: &str) -> Option<String> {
     let words = model.in_words(checked)?;
@@ -124,9 +124,11 @@ impl SampleSummary {
         let scenario = samples.scenario;
         let condition = friction.friction_condition.clone();
         let one_direction = one_direction(scenario);
-        let limits = [outside_in_words(&model, checked), no_verdict];
-        let limits = limits.into_iter().flatten().chain(condition);
-        let limits = limits.chain(one_direction.clone());
+        let limits = [outside_in_words(&model, checked), no_verdict]
+            .into_iter()
+            .flatten()
+            .chain(condition)
+            .chain(one_direction.clone());
         let own = samples.own.as_ref().err();
         let without = samples
             .samples_without_answer()
@@ -159,7 +161,7 @@ impl SampleSummary {
         self.what_matters.draw(figure, title)
     }
 
-    /// Returns the verdict on the samples; that there is none without an answer.
+    /// Verdict on the samples; that there is none without an answer.
     pub(super) fn verdict(&self, verdict: impl FnOnce() -> String) -> String {
         match self.answered {
             0 => "no sample has a verdict".to_owned(),
@@ -167,7 +169,7 @@ impl SampleSummary {
         }
     }
 
-    /// Returns the reason of the first sample that has no answer for this reason.
+    /// Reason of the first sample that has no answer for this reason.
     pub(super) fn first_reason(&self, why: &str) -> Option<&str> {
         let first = self.without_answer.iter().find(|one| one.why == why)?;
         Some(&first.reason)
@@ -198,7 +200,7 @@ impl From<[Option<f64>; 3]> for Band {
 }
 
 impl Share {
-    /// Returns the share of samples with its interval in words.
+    /// Share of samples with its interval in words.
     pub(super) fn in_words(&self) -> String {
         let [part, low, high] = self.numbers().map(percent);
         let certain = match self.uncertain {
@@ -212,7 +214,7 @@ impl Share {
         }
     }
 
-    /// Returns the treatment of uncertain samples, and of samples without a verdict, in a probability of overturning, in words; `None` without such
+    /// Treatment of uncertain samples, and of samples without a verdict, in a probability of overturning, in words; `None` without such
     /// samples.
     pub(super) fn doubts_in_words(&self) -> Option<String> {
         let (uncertain, no_verdict) = (self.uncertain, self.no_verdict);

@@ -52,22 +52,22 @@ impl<'a, A> Samples<'a, A> {
         }
     }
 
-    /// Returns the scenario itself and all samples, with their numbers from 0.
+    /// Scenario itself and all samples, with their numbers from 0.
     pub(super) fn lines(&self) -> impl Iterator<Item = (usize, &'a SampleRow<A>)> + use<'a, A> {
         self.all.iter().enumerate()
     }
 
-    /// Returns the title of the scenario, or `otherwise` without one.
+    /// Title of the scenario, or `otherwise` without one.
     pub(crate) fn title(&self, otherwise: &'a str) -> &'a str {
         self.scenario.title.as_deref().unwrap_or(otherwise)
     }
 
-    /// Returns the answers of all samples that have one.
+    /// Answers of all samples that have one.
     pub(crate) fn answers(&self) -> impl Iterator<Item = &'a A> + Clone + use<'a, A> {
         self.rows.iter().filter_map(|row| row.answer.as_ref().ok())
     }
 
-    /// Returns the numbers of the samples without an answer, from 1, and the reasons.
+    /// Numbers of the samples without an answer, from 1, and the reasons.
     pub(super) fn samples_without_answer(
         &self,
     ) -> impl Iterator<Item = (usize, &'a NoAnswer)> + use<'a, A> {
@@ -75,7 +75,7 @@ impl<'a, A> Samples<'a, A> {
         rows.filter_map(|(number, row)| Some((number, row.answer.as_ref().err()?)))
     }
 
-    /// Returns the share of samples with a property, from its probability in each answer. Samples without an answer have no verdict, but those
+    /// Share of samples with a property, from its probability in each answer. Samples without an answer have no verdict, but those
     /// that are no valid structure do not count. `None` without answers.
     pub(crate) fn share(&self, chance: impl Fn(&A) -> f64) -> Option<Share> {
         let chance = |row: &'a SampleRow<A>| match &row.answer {
@@ -85,7 +85,7 @@ impl<'a, A> Samples<'a, A> {
         Share::of_chances(self.rows.iter().filter_map(chance))
     }
 
-    /// Returns the histories of four links outside their model; `excess_ratios` are those of the samples with an answer.
+    /// Histories of four links outside their model; `excess_ratios` are those of the samples with an answer.
     pub(super) fn model_check(
         &self,
         excess_ratios: impl IntoIterator<Item = Option<f64>>,
@@ -93,18 +93,18 @@ impl<'a, A> Samples<'a, A> {
         ModelCheck::of(excess_ratios).with_outside(self.reasons().outside)
     }
 
-    /// Returns the number of valid structures without an answer.
+    /// Number of valid structures without an answer.
     pub(super) fn count_unknown(&self) -> usize {
         let reasons = self.reasons();
         reasons.failed + reasons.incomplete + reasons.outside
     }
 
-    /// Returns the numbers of samples without an answer.
+    /// Numbers of samples without an answer.
     pub(super) fn reasons(&self) -> ReasonCounts {
         ReasonCounts::of(self.samples_without_answer().map(|(_, why)| why))
     }
 
-    /// Returns the number of samples without a verdict, and the remedy, in words; `None` if the number is zero.
+    /// Number of samples without a verdict, and the remedy, in words; `None` if the number is zero.
     pub(super) fn no_verdict(&self) -> Option<String> {
         self.reasons().no_verdict(self.rows.len(), "samples")
     }
@@ -141,8 +141,9 @@ impl<'a, A> Samples<'a, A> {
             });
         }
         let keys = self.uncertain.keys.iter().map(|key| key.key.clone());
-        let of_keys = keys.zip(all);
-        let of_keys = of_keys.map(|(key, sensitivity)| NumberInfluence { key, sensitivity });
+        let of_keys = keys
+            .zip(all)
+            .map(|(key, sensitivity)| NumberInfluence { key, sensitivity });
         Some(of_keys.collect())
     }
 }
@@ -178,13 +179,13 @@ impl ReasonCounts {
         self.invalid + self.failed + self.incomplete + self.outside
     }
 
-    /// Returns the number of `cases` that ended too early for a verdict, and the remedy, in words; `None` if the number is zero.
+    /// Number of `cases` that ended too early for a verdict, and the remedy, in words; `None` if the number is zero.
     pub(super) fn no_verdict(&self, of: usize, cases: &str) -> Option<String> {
         no_verdict(self.incomplete, of, cases)
     }
 }
 
-/// Returns the known numbers, or their ranks.
+/// Known numbers, or their ranks.
 fn numbers(of: Vec<Option<f64>>, by_rank: bool) -> Vec<Option<f64>> {
     if !by_rank {
         return of;

@@ -59,8 +59,9 @@ pub fn total_indices(answers: &[Option<f64>], moved: &[Option<f64>]) -> Option<V
             .clone()
             .filter_map(|sample| answers[sample])
             .collect();
-        let terms = chosen.filter_map(|sample| half_square(sample, number));
-        let terms: Vec<f64> = terms.collect();
+        let terms: Vec<f64> = chosen
+            .filter_map(|sample| half_square(sample, number))
+            .collect();
         let ([_, variance], [mean, _]) = (moments(&known), moments(&terms));
         (variance > 0.0 && !terms.is_empty()).then(|| (mean / variance).clamp(0.0, 1.0))
     };
@@ -146,7 +147,7 @@ impl Expansion {
         Self(cosines.collect())
     }
 
-    /// Returns the mean index of pure noise.
+    /// Mean index of pure noise.
     fn bias(&self) -> f64 {
         let samples = self.0.first().map_or(1, Vec::len);
         self.0.len() as f64 / samples as f64
@@ -156,14 +157,17 @@ impl Expansion {
     fn index(&self, samples: &[usize], answers: &[f64]) -> Option<f64> {
         let chosen: Vec<f64> = samples.iter().map(|index| answers[*index]).collect();
         let [mean, variance] = moments(&chosen);
-        let explained = self.0.iter().map(|cosines| {
-            let terms = samples.iter().zip(&chosen);
-            let sum: f64 = terms
-                .map(|(index, answer)| (answer - mean) * cosines[*index])
-                .sum();
-            (sum / chosen.len() as f64).powi(2)
-        });
-        let explained: f64 = explained.sum();
+        let explained: f64 = self
+            .0
+            .iter()
+            .map(|cosines| {
+                let terms = samples.iter().zip(&chosen);
+                let sum: f64 = terms
+                    .map(|(index, answer)| (answer - mean) * cosines[*index])
+                    .sum();
+                (sum / chosen.len() as f64).powi(2)
+            })
+            .sum();
         (variance > 0.0).then(|| explained / variance)
     }
 }

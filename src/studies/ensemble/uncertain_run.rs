@@ -71,8 +71,9 @@ impl<'a> Histories<'a> {
         scenario.check_for_run()?;
         let model = scenario.model().map_err(|error| error.to_string())?;
         let request = scenario.request();
-        let summary = model.simulate(scenario.ground_motion(), &request, None);
-        let summary = summary.map_err(|error| error.to_string())?;
+        let summary = model
+            .simulate(scenario.ground_motion(), &request, None)
+            .map_err(|error| error.to_string())?;
         let peaks = summary.peak_rotations_rad.iter().enumerate();
         let most = peaks.max_by(|a, b| a.1.total_cmp(b.1));
         // Other samples may come to rest later than the scenario itself.
@@ -81,8 +82,9 @@ impl<'a> Histories<'a> {
         let stride = (samples / MOST_TIMES as f64).ceil();
         let times = (samples / stride).floor() as usize + 1;
         let structure = scenario.structure.clone();
-        let many_cases = scenario.model_for_many_cases();
-        let many_cases = many_cases.map_err(|error| error.to_string())?;
+        let many_cases = scenario
+            .model_for_many_cases()
+            .map_err(|error| error.to_string())?;
         Ok(Self {
             cases: SampleCases::of(scenario)?,
             body: most.map_or(0, |(body, _)| body),
@@ -142,8 +144,10 @@ impl Study for Histories<'_> {
     ) -> Result<Results, OutputError> {
         let samples = &Samples::new(self.cases, &rows);
         let influences = influences(samples);
-        let of_samples = samples.rows.iter();
-        let of_samples = of_samples.map(|row| row.answer.as_ref().ok().map(peak_rad));
+        let of_samples = samples
+            .rows
+            .iter()
+            .map(|row| row.answer.as_ref().ok().map(peak_rad));
         let largest_rotations_rad: Vec<_> = iter::once(None).chain(of_samples).collect();
         let outcomes = OUTCOMES.into_iter().filter_map(|name| {
             let share = samples.share(|answer| match name {
@@ -154,8 +158,10 @@ impl Study for Histories<'_> {
         });
         let answers = samples.answers();
         let model = samples.model_check(answers.map(|answer| answer.ending.thrust_excess_ratio));
-        let survivors = samples.answers().map(|answer| &answer.ending);
-        let survivors = survivors.filter(|ending| ending.verdict() == Verdict::Survives);
+        let survivors = samples
+            .answers()
+            .map(|answer| &answer.ending)
+            .filter(|ending| ending.verdict() == Verdict::Survives);
         let demands = survivors.map(|ending| ending.friction_demand);
         let study = ("run FILE", "surviving samples");
         let friction = SurvivorFriction::of(demands, samples.scenario, study);
@@ -213,7 +219,7 @@ impl Study for Histories<'_> {
     }
 }
 
-/// Returns the largest rotation of a sample, in radians. Overturned samples have none, but rank above all others.
+/// Largest rotation of a sample, in radians. Overturned samples have none, but rank above all others.
 const fn peak_rad(answer: &HistoryAnswer) -> f64 {
     answer.ending.peak_or_infinite_rad()
 }
@@ -221,7 +227,7 @@ const fn peak_rad(answer: &HistoryAnswer) -> f64 {
 /// The influence of the uncertain numbers on an answer; `None` if it is unknown.
 type OnAnswer = (InfluencedAnswer, Option<Vec<NumberInfluence>>);
 
-/// Returns the influences on overturning, if enough samples overturn and survive, and on the rank of the largest rotation.
+/// Influences on overturning, if enough samples overturn and survive, and on the rank of the largest rotation.
 fn influences(samples: &Samples<'_, HistoryAnswer>) -> [OnAnswer; 2] {
     let is_enough = [1.0, 0.0].into_iter().all(|end| {
         let alike = samples
@@ -314,10 +320,11 @@ impl Histories<'_> {
         let y = scale_around(&[], values, 6);
         let model = scenario.model().ok();
         let body = model.and_then(|model| model.bodies().get(self.body).cloned());
-        let of_body = body.filter(|name| !name.is_empty());
-        let of_body = of_body.map_or(String::new(), |name| {
-            format!("of {} ", name.replace('_', " "))
-        });
+        let of_body = body
+            .filter(|name| !name.is_empty())
+            .map_or(String::new(), |name| {
+                format!("of {} ", name.replace('_', " "))
+            });
         let label = format!("Rotation {of_body}(rad)");
         // Overturned samples are outside the picture.
         let at = |which: usize| {
@@ -332,8 +339,9 @@ impl Histories<'_> {
         ];
         panels.panel(&label, 330.0, y, marks);
         let all = samples.answers().count().max(1) as f64;
-        let shares = bands.iter();
-        let shares = shares.map(|at| (at.time_s, at.overturned as f64 / all));
+        let shares = bands
+            .iter()
+            .map(|at| (at.time_s, at.overturned as f64 / all));
         let shares = vec![Mark::curve("overturned", MEDIAN, shares)];
         let y = Scale::exactly(0.0, 1.0, 2);
         panels.panel("Overturned", 70.0, y, shares);
@@ -356,7 +364,7 @@ fn ended_history(checked: CheckedHistory) -> Result<Ended, NoHistory> {
     Ok((Ending::of_checked(checked)?, potential))
 }
 
-/// Returns the history of a scenario in its first direction, or the history under the mirrored ground motion if that is worse. The mirrored history is
+/// History of a scenario in its first direction, or the history under the mirrored ground motion if that is worse. The mirrored history is
 /// computed if the first survives or is uncertain.
 fn worse_direction(
     (mut ending, potential): Ended,
@@ -383,13 +391,13 @@ fn worse_direction(
 }
 
 impl HistoryAnswer {
-    /// Returns the weight of the sample as overturned: 1 or 0, or the fraction of its repetitions that overturn.
+    /// Weight of the sample as overturned: 1 or 0, or the fraction of its repetitions that overturn.
     pub fn overturned_weight(&self) -> f64 {
         let share = self.ending.overturning_share();
         share.expect("a sample with an incomplete history has no answer")
     }
 
-    /// Returns the rotation at a recorded time, in radians; infinite, with its sign, after the sample has overturned.
+    /// Rotation at a recorded time, in radians; infinite, with its sign, after the sample has overturned.
     fn rotation_rad(&self, time: usize) -> f64 {
         let last = self.course_rad.last().copied().map_or(0.0, f64::from);
         match self.course_rad.get(time) {
@@ -402,7 +410,7 @@ impl HistoryAnswer {
 
 const TITLE: &str = "Histories with uncertain data";
 
-/// Returns the answer of a sample on its page: the largest rotation, beyond the axis if the sample overturned.
+/// Answer of a sample on its page: the largest rotation, beyond the axis if the sample overturned.
 fn page_answer(HistoryAnswer { ending, .. }: &HistoryAnswer) -> PageAnswer {
     let peak_rad = (!ending.overturned_itself()).then_some(ending.peak_rotation_rad);
     (kind_of(Some(ending.verdict())), false, peak_rad)
@@ -448,7 +456,7 @@ impl OwnHistory {
         }
     }
 
-    /// Returns the largest part of the rotation or energy from which the structure would overturn, and the quantity.
+    /// Largest part of the rotation or energy from which the structure would overturn, and the quantity.
     fn margin(&self) -> Option<(f64, &'static str)> {
         let rotation = self
             .peak_rotation_over_critical
@@ -460,8 +468,10 @@ impl OwnHistory {
 
 impl Report for UncertainRunSummary {
     fn verdict(&self) -> String {
-        let share = self.outcomes.get(OVERTURNED);
-        let share = share.map_or(String::new(), Share::in_words);
+        let share = self
+            .outcomes
+            .get(OVERTURNED)
+            .map_or(String::new(), Share::in_words);
         let words = format!("overturns with a probability of {share} of [uncertain]");
         self.all.verdict(|| words)
     }
@@ -472,7 +482,7 @@ impl Report for UncertainRunSummary {
 }
 
 impl UncertainRunSummary {
-    /// Returns the outcomes of samples, in words, with their shares.
+    /// Outcomes of samples, in words, with their shares.
     fn outcomes(&self) -> impl Iterator<Item = (String, &Share)> {
         let known = OUTCOMES
             .iter()
@@ -504,7 +514,7 @@ fn table(bands: &[BandAt]) -> Result<Table, OutputError> {
     Table::new(columns, bands)
 }
 
-/// Returns a quantile of the largest rotation in words.
+/// Quantile of the largest rotation in words.
 fn rotation(rad: &Option<f64>) -> String {
     rad.map_or("overturning".to_owned(), |rad| format!("{rad:.4} rad"))
 }

@@ -88,7 +88,7 @@ impl<'a> Capacities<'a> {
         1 + usize::from(self.directions == Directions::Both)
     }
 
-    /// Returns the name and the sign of each record, in the order of the answers.
+    /// Name and the sign of each record, in the order of the answers.
     fn records_and_signs(&self) -> impl Iterator<Item = (&str, i64)> {
         let signs: &[_] = match self.directions {
             Directions::Both => &[1, -1],
@@ -99,7 +99,7 @@ impl<'a> Capacities<'a> {
         records.flat_map(move |series| signs.iter().map(|sign| (series.name.as_str(), *sign)))
     }
 
-    /// Returns the answer that may be quoted: median and dispersion over records and samples. `excess_ratio` is the largest excess of the thrust line, and
+    /// Answer that may be quoted: median and dispersion over records and samples. `excess_ratio` is the largest excess of the thrust line, and
     /// `demand` the largest friction demand.
     fn quotable_answer(
         &self,
@@ -150,16 +150,18 @@ impl<'a> Capacities<'a> {
         const FAINT: Stroke = Stroke::new("#b9d3e8", 0.9, "");
         const ALL: Stroke = Stroke::new(color::BLUE, 1.6, "");
         const OWN: Stroke = Stroke::new(color::BLACK, 1.4, "6 4");
-        let ends = [self.levels.first(), self.levels.last()];
-        let ends = ends.map(|level| level.copied().unwrap_or(1.0));
+        let ends =
+            [self.levels.first(), self.levels.last()].map(|level| level.copied().unwrap_or(1.0));
         let x = Scale::logarithmic(0.95 * ends[0], 1.05 * ends[1]);
         let steps = |name, stroke, edges: Vec<&FirstEdge>| {
             let strengths = |edge: &FirstEdge| edge.strengths(TREATMENTS[0]);
             let rises = shares_up_to(edges.into_iter().flat_map(strengths));
             Mark::staircase(name, stroke, (x, 0.0), rises)
         };
-        let single = samples.answers().take(MOST_FAINT);
-        let single = single.map(|edges| steps("sample", FAINT, edges.iter().collect()));
+        let single = samples
+            .answers()
+            .take(MOST_FAINT)
+            .map(|edges| steps("sample", FAINT, edges.iter().collect()));
         let mut marks: Vec<Mark> = single.collect();
         marks.push(steps("both", ALL, samples.answers().flatten().collect()));
         if let Ok(own) = samples.own {
@@ -265,8 +267,8 @@ impl Study for Capacities<'_> {
             .with_file("fragility.svg", self.draw(figure, samples))
             .with_file("matters.svg", report.all.draw_influences(samples, figure));
         let answer = |edges: &EdgePerRecord| {
-            let median = first_strength(edges.iter().filter(inside), 0.5);
-            let median = median.map(|(strength, _)| strength);
+            let median =
+                first_strength(edges.iter().filter(inside), 0.5).map(|(strength, _)| strength);
             let outside = edges.iter().any(FirstEdge::is_outside_model);
             (
                 SpotKind::Point,
@@ -373,7 +375,7 @@ struct Estimated {
 }
 
 impl Fragilities {
-    /// Returns the distributions with their names in words.
+    /// Distributions with their names in words.
     fn named_distributions(&self) -> [(&'static str, &Estimated); 3] {
         [
             ("record to record", &self.record_to_record),
@@ -383,12 +385,13 @@ impl Fragilities {
     }
 }
 
-/// Returns a number with its unit and its interval in words.
+/// Number with its unit and its interval in words.
 fn estimated(number: &Option<f64>, ends: &Option<[f64; 2]>, unit: &str) -> String {
-    let ends = ends.map(rounded_range);
-    let ends = ends.map_or(String::new(), |[low, high]| {
-        format!(" ({low} to {high}{unit})")
-    });
+    let ends = ends
+        .map(rounded_range)
+        .map_or(String::new(), |[low, high]| {
+            format!(" ({low} to {high}{unit})")
+        });
     let number = number.map(|number| format_edge(number) + unit);
     number.unwrap_or("not known".to_owned()) + &ends
 }
@@ -435,13 +438,13 @@ impl<'a> EdgesThatCount<'a> {
         }
     }
 
-    /// Returns the edges of the scenario itself that are inside the model.
+    /// Edges of the scenario itself that are inside the model.
     fn scenario_edges(&self) -> impl Iterator<Item = &'a FirstEdge> + Clone {
         let edges = self.own.iter().copied().flatten();
         edges.filter(|edge| !edge.is_outside_model())
     }
 
-    /// Returns the edges of all samples, also those outside the model.
+    /// Edges of all samples, also those outside the model.
     fn sample_edges(&self) -> impl Iterator<Item = &'a FirstEdge> + Clone {
         self.samples.iter().flatten().copied().flatten()
     }
@@ -451,8 +454,8 @@ impl<'a> EdgesThatCount<'a> {
         let all: Vec<usize> = (0..count).collect();
         let found = self.distributions(&all, TREATMENTS[0], None);
         let lowest = self.question.levels.first().copied();
-        let ends = [(1, lowest), (2, Some(f64::INFINITY))];
-        let ends = ends.map(|(how, unknown)| self.distributions(&all, TREATMENTS[how], unknown));
+        let ends = [(1, lowest), (2, Some(f64::INFINITY))]
+            .map(|(how, unknown)| self.distributions(&all, TREATMENTS[how], unknown));
         // Both signs of a record, and all samples under it, count as one value.
         let intervals = FractileIntervals::of(count);
         let estimated = |which: usize| {
@@ -490,8 +493,10 @@ impl<'a> EdgesThatCount<'a> {
         unknown: Option<f64>,
     ) -> [[Option<f64>; 2]; 3] {
         let chosen = |of: &Vec<&[FirstEdge]>| -> Vec<[f64; 2]> {
-            let edges = records.iter().filter_map(|record| of.get(*record).copied());
-            let edges = edges.flatten();
+            let edges = records
+                .iter()
+                .filter_map(|record| of.get(*record).copied())
+                .flatten();
             let strengths = |edge: &FirstEdge| match edge.is_outside_model() {
                 true => unknown.map(|at| [at, 1.0]).into_iter().collect(),
                 false => edge.strengths(treatment),

@@ -77,7 +77,7 @@ impl StrengthBand {
         }
     }
 
-    /// Returns a quantile, counted from 0, between the words `at` and its unit: `at 0.5028`, `at or below peak_g 0.2000 g`, or `beyond`.
+    /// Quantile, counted from 0, between the words `at` and its unit: `at 0.5028`, `at or below peak_g 0.2000 g`, or `beyond`.
     pub(super) fn in_words(&self, which: usize, around: &[&str; 2], beyond: &str) -> String {
         let Band {
             quantile_05,
@@ -170,8 +170,10 @@ impl Study for FirstEdges<'_> {
         let own = samples.own.as_ref().ok();
         let count = |condition: fn(&&_) -> bool| edges.clone().filter(condition).count();
         let lower_limit = LowerLimit::of(samples);
-        let excess = edges.clone().filter_map(|edge| edge.thrust_excess_ratio);
-        let excess = excess.reduce(f64::max);
+        let excess = edges
+            .clone()
+            .filter_map(|edge| edge.thrust_excess_ratio)
+            .reduce(f64::max);
         let quoted = lower_limit.quotable_answer(samples.scenario, excess);
         let condition = SlipWords::of(samples.scenario).condition(friction.friction_demand, &study);
         let quoted = quoted.with_friction(condition);
@@ -254,7 +256,7 @@ impl LowerLimit {
         }
     }
 
-    /// Returns the answer that may be quoted. `excess_ratio` is the largest excess of the thrust line of the samples.
+    /// Answer that may be quoted. `excess_ratio` is the largest excess of the thrust line of the samples.
     fn quotable_answer(&self, scenario: &Scenario, excess_ratio: Option<f64>) -> ModelAnswer {
         let (directions, counted) = (scenario.simulation.direction, self.counted);
         let uncertain = scenario
@@ -319,7 +321,7 @@ pub struct UncertainThresholdSummary {
 /// A factor at which a sample first overturns, and the share of samples that overturn up to it.
 type ProbabilityAt = (f64, Share);
 
-/// Returns the distribution of the first factors of the samples, ascending.
+/// Distribution of the first factors of the samples, ascending.
 fn probabilities(samples: &Samples<'_, FirstEdge>) -> Vec<ProbabilityAt> {
     let edges = samples.answers();
     let strengths = |how| edges.clone().flat_map(move |edge| edge.strengths(how));
@@ -369,7 +371,7 @@ impl Report for UncertainThresholdSummary {
 }
 
 impl UncertainThresholdSummary {
-    /// Returns the factor up to which the scenario itself certainly survives, in words.
+    /// Factor up to which the scenario itself certainly survives, in words.
     fn own_safe(&self) -> String {
         match self.all.own_without_answer {
             Some(_) => "an unknown factor".to_owned(),
@@ -377,7 +379,7 @@ impl UncertainThresholdSummary {
         }
     }
 
-    /// Returns a quantile of the first factors, counted from 0, in words.
+    /// Quantile of the first factors, counted from 0, in words.
     fn first(&self, which: usize) -> String {
         let beyond = format!(
             "beyond {}",
@@ -386,7 +388,7 @@ impl UncertainThresholdSummary {
         self.first_factor.in_words(which, &[""; 2], &beyond)
     }
 
-    /// Returns the first factor of the scenario itself in words.
+    /// First factor of the scenario itself in words.
     fn own_first(&self) -> String {
         match (self.own_first_factor, &self.all.own_without_answer) {
             (Some(factor), _) => strength_in_words(factor, self.own_first_factor_at_most, [""; 2]),
@@ -396,7 +398,7 @@ impl UncertainThresholdSummary {
     }
 }
 
-/// Returns a factor up to which a structure certainly survives, in words.
+/// Factor up to which a structure certainly survives, in words.
 fn safe_factor_in_words(factor: &Option<f64>) -> String {
     let factor = factor.filter(|factor| *factor > 0.0);
     factor.map_or("less than the smallest factor".to_owned(), rounded_down)
@@ -416,8 +418,7 @@ fn draw(
     probabilities: &[ProbabilityAt],
 ) -> String {
     let own = samples.own.as_ref().ok().and_then(|edge| edge.factor);
-    let factors = probabilities.iter().map(|at| at.0);
-    let factors = factors.chain(own).chain([1.0]);
+    let factors = probabilities.iter().map(|at| at.0).chain(own).chain([1.0]);
     let ends = factors.flat_map(|factor| [0.97 * factor, 1.03 * factor]);
     let x = Scale::around(ends, figure.ticks(8));
     let y = Scale::exactly(0.0, 1.0, 5);

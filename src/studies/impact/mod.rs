@@ -25,27 +25,27 @@ pub struct LinkImpact<'a> {
 }
 
 impl<'a> LinkImpact<'a> {
-    /// Returns the chain of mechanisms.
+    /// Chain of mechanisms.
     pub fn chain(&self) -> &'a Chain {
         self.model.chain_from(self.first)
     }
 
-    /// Returns the mechanism before the impact; `None` if an earlier impact stops the structure.
+    /// Mechanism before the impact; `None` if an earlier impact stops the structure.
     pub fn mechanism_before(&self) -> Option<&'a ArchLink> {
         self.chain().link(self.index.checked_sub(1)?)
     }
 
-    /// Returns the mechanism after the impact; `None` if no mechanism can follow.
+    /// Mechanism after the impact; `None` if no mechanism can follow.
     pub fn mechanism_after(&self) -> Option<&'a ArchLink> {
         self.chain().link(self.index)
     }
 
-    /// Returns the impulse line; `None` if no mechanism can follow, or the restitution coefficient is prescribed.
+    /// Impulse line; `None` if no mechanism can follow, or the restitution coefficient is prescribed.
     pub fn line(&self) -> Option<&'a ImpulseLine> {
         self.mechanism_after()?.impulse_line.as_ref()
     }
 
-    /// Returns words that follow the number of the impact; empty for a first sway to the right.
+    /// Words that follow the number of the impact; empty for a first sway to the right.
     pub const fn words_after_number(&self) -> &'static str {
         match self.first {
             Sway::Right => "",
@@ -53,12 +53,12 @@ impl<'a> LinkImpact<'a> {
         }
     }
 
-    /// Returns the side to which the structure sways after the impact.
+    /// Side to which the structure sways after the impact.
     pub const fn sway(&self) -> Sway {
         self.first.after(self.index)
     }
 
-    /// Returns the profile in the frame in which the sway after the impact is to the right.
+    /// Profile in the frame in which the sway after the impact is to the right.
     pub fn profile(&self) -> &'a dyn Profile {
         self.chain().profile(self.index)
     }
@@ -150,8 +150,9 @@ pub fn four_links_result(
             summary.models = Some(impact.compare_models(before, scenario.motion.impact().model));
         }
         if options.certificate {
-            let projection = impact.largest_restitution(before, options.joints);
-            let projection = projection.map_err(StudyError::failed)?;
+            let projection = impact
+                .largest_restitution(before, options.joints)
+                .map_err(StudyError::failed)?;
             summary.certificate = Some(Certificate::of(impact, &projection));
         }
     }

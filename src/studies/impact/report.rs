@@ -267,7 +267,7 @@ impl SectionPosition {
     }
 }
 
-/// Returns a section for tables: its angle in degrees, or the number of its joint.
+/// Section for tables: its angle in degrees, or the number of its joint.
 fn cell(joint: &Option<usize>, angle_deg: &Option<f64>) -> String {
     match (joint, angle_deg) {
         (Some(joint), _) => joint.to_string(),
@@ -297,7 +297,7 @@ impl LineExtremes {
         }
     }
 
-    /// Returns true if a normal impulse is not compressive.
+    /// True if a normal impulse is not compressive.
     fn is_in_tension(&self) -> bool {
         self.least_normal_n_s_per_m.is_none_or(|least| least <= 0.0)
     }
@@ -355,10 +355,10 @@ impl Certificate {
         let is_ring = impact.chain().sites == HingeSites::Anywhere;
         let mut zones: Vec<([f64; 2], Zone)> = Vec::new();
         for edge in [Edge::Intrados, Edge::Extrados] {
-            let opened = projection
+            let opened: Vec<_> = projection
                 .opening_joints()
-                .filter(|(_, own, _)| *own == edge);
-            let opened: Vec<_> = opened.collect();
+                .filter(|(_, own, _)| *own == edge)
+                .collect();
             for zone in opened.chunk_by(|a, b| is_ring && a.0 + 1 == b.0) {
                 let mut ends = [zone[0].0, zone[zone.len() - 1].0].map(from_left);
                 ends.sort_by(f64::total_cmp);
@@ -393,7 +393,7 @@ impl Certificate {
 }
 
 impl Zone {
-    /// Returns the sections of the zone in words.
+    /// Sections of the zone in words.
     fn sections(&self) -> String {
         let [from, to] = [self.from, self.to].map(|end| cell(&end.joint, &end.angle_deg));
         if from == to {
@@ -453,14 +453,14 @@ impl ImpactSummary {
         }
     }
 
-    /// Returns the chains, each with the mechanism before its first impact.
+    /// Chains, each with the mechanism before its first impact.
     fn chains(&self) -> impl Iterator<Item = (&SwayingMechanism, &[ChainImpact])> {
         let left = self.impacts_after_left.as_deref();
         let chains = [Some(&*self.impacts), left].into_iter().flatten();
         self.starts.iter().zip(chains)
     }
 
-    /// Returns the impacts with an impulse line: number, impulses at the hinges, and extremes of the line.
+    /// Impacts with an impulse line: number, impulses at the hinges, and extremes of the line.
     fn lines<'a>(
         &self,
         chain: &'a [ChainImpact],
@@ -480,7 +480,7 @@ impl ImpactSummary {
         }
     }
 
-    /// Returns a hinge for the column of a table.
+    /// Hinge for the column of a table.
     fn hinge(&self, hinge: &Hinge) -> String {
         match hinge {
             Hinge::Section { angle_rad, edge } => {

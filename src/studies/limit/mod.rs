@@ -52,8 +52,9 @@ fn summary(scenario: &Scenario) -> Result<LimitSummary, StudyError> {
     let mut summary = match scenario.row().map_err(StudyError::scenario)? {
         Some(row) => compute_row(scenario, &row).map_err(StudyError::scenario)?,
         None => {
-            let model = scenario.mechanisms_without_impacts();
-            let model = model.map_err(StudyError::scenario)?;
+            let model = scenario
+                .mechanisms_without_impacts()
+                .map_err(StudyError::scenario)?;
             LimitSummary {
                 wall_behind: scenario.structure.wall_behind(),
                 ..LimitSummary::of_mechanism(&*model, scenario.gravity_m_s2())
@@ -77,7 +78,7 @@ fn summary(scenario: &Scenario) -> Result<LimitSummary, StudyError> {
     Ok(summary)
 }
 
-/// Returns the coefficients of friction with which no joint of a row slides before it starts. `demand` computes that for a push. A coefficient that
+/// Coefficients of friction with which no joint of a row slides before it starts. `demand` computes that for a push. A coefficient that
 /// is not found is no error.
 fn friction_demand(
     summary: &LimitSummary,
@@ -197,8 +198,8 @@ fn compute_moved_row(
     let moved = follower.move_supports(|part| *movements * part, 0.0, 1.0);
     moved.map_err(StudyError::scenario)?;
     let stance = &follower.stance;
-    let starts_g = Sides::try_of(|sway| follower.first_motion_g(sway));
-    let starts_g = starts_g.map_err(StudyError::scenario)?;
+    let starts_g =
+        Sides::try_of(|sway| follower.first_motion_g(sway)).map_err(StudyError::scenario)?;
     let mechanism = Sides::of(|sway| open_joints(row, mechanism(row, &follower, sway).as_ref()));
     let capacity = Sides::of(|sway| match *starts_g.get(sway) {
         Some(start_g) => follower.capacity_g(sway, start_g),
@@ -235,7 +236,7 @@ fn compute_moved_row(
     Ok(summary)
 }
 
-/// Returns the mechanism of a row on moved springings under a push. `None` if any push moves the row, because ties hold it on more than three
+/// Mechanism of a row on moved springings under a push. `None` if any push moves the row, because ties hold it on more than three
 /// hinges or it is about to collapse.
 fn mechanism(row: &Row, follower: &Follower<'_>, sway: Sway) -> Option<RowOnset> {
     if follower.is_held_by_ties() {

@@ -46,8 +46,12 @@ pub fn results(scenario: &Scenario, figure: Figure) -> Result<Results, StudyErro
         |figure, spots: &[Spot]| draw_hinges(figure, title, (&scene, HINGES), &hinges_m, spots);
     // Four links need the undeformed structure; the words have the reason if there are none.
     let as_built = scenario.motion.supports().is_none();
-    let model = scenario.structure.four_links(scenario.motion.impact());
-    let model = model.ok().flatten().filter(|_| as_built);
+    let model = scenario
+        .structure
+        .four_links(scenario.motion.impact())
+        .ok()
+        .flatten()
+        .filter(|_| as_built);
     let rocking = |figure, sway| Some(draw_limit(figure, model.as_ref()?, sway, &scene));
     let picture = rocking(figure, Sway::Right).unwrap_or_else(|| at_rest(figure, &[]));
     let results = Results::of("limit.json", &summary)?.with_file("limit.svg", picture);

@@ -200,8 +200,11 @@ impl Report for LimitSummary {
             let [right, left] = Sides::of(|sway| friction.start_in_words(&sway)).into();
             format!("{}: {right}; {left}", friction.heading())
         });
-        let all = self.pushes_in_words().into_iter();
-        let all = all.chain(self.needs_friction()).chain(friction);
+        let all = self
+            .pushes_in_words()
+            .into_iter()
+            .chain(self.needs_friction())
+            .chain(friction);
         all.collect::<Vec<_>>().join("; ")
     }
 
@@ -252,19 +255,23 @@ impl LimitSummary {
         }
     }
 
-    /// Returns the coefficients of friction that the mechanisms need in words; `None` if none is known.
+    /// Coefficients of friction that the mechanisms need in words; `None` if none is known.
     fn needs_friction(&self) -> Option<String> {
-        let needs = self.friction_demand.iter().filter_map(|(sway, needed)| {
-            let needed = format_fixed((*needed)?, 4);
-            Some((needed, sway.name()))
-        });
-        let needs: Vec<(String, &str)> = needs.collect();
+        let needs: Vec<(String, &str)> = self
+            .friction_demand
+            .iter()
+            .filter_map(|(sway, needed)| {
+                let needed = format_fixed((*needed)?, 4);
+                Some((needed, sway.name()))
+            })
+            .collect();
         let needs = match &needs[..] {
             [] => return None,
             [(right, _), (left, _)] if right == left => format!("{right} to either side"),
             sides => {
-                let sides = sides.iter();
-                let sides = sides.map(|(needed, side)| format!("{needed} to the {side}"));
+                let sides = sides
+                    .iter()
+                    .map(|(needed, side)| format!("{needed} to the {side}"));
                 sides.collect::<Vec<_>>().join(" and ")
             }
         };
@@ -273,7 +280,7 @@ impl LimitSummary {
         ))
     }
 
-    /// Returns the pushes that start the structure and those at which it falls in words, without slip.
+    /// Pushes that start the structure and those at which it falls in words, without slip.
     fn pushes_in_words(&self) -> Vec<String> {
         let sides = match self.wall_behind {
             Some(wall) if self.unstable_rotations.is_some() => [wall.opposite(), wall],
@@ -286,7 +293,7 @@ impl LimitSummary {
         lines
     }
 
-    /// Returns the push that starts the structure to one side in words.
+    /// Push that starts the structure to one side in words.
     fn start_in_words(&self, sway: &Sway) -> String {
         let name = sway.name();
         let shown = |starts: &Sides<Option<f64>>, decimals| {
@@ -320,7 +327,7 @@ impl LimitSummary {
         }
     }
 
-    /// Returns the push at which a structure on moved springings falls to one side in words; `None` if no push starts it.
+    /// Push at which a structure on moved springings falls to one side in words; `None` if no push starts it.
     fn fall_in_words(&self, sway: &Sway) -> Option<String> {
         let (name, pushes_g) = (sway.name(), self.capacity_g.as_ref()?);
         self.incipient_acceleration_g.get(*sway).as_ref()?;
@@ -335,12 +342,12 @@ impl LimitSummary {
         )
     }
 
-    /// Returns rotations with the names of their bodies.
+    /// Rotations with the names of their bodies.
     fn rotations_by_body(&self, rotations_rad: &[f64]) -> String {
         by_body(&self.bodies, rotations_rad)
     }
 
-    /// Returns the rotations at the unstable equilibrium with the names of their bodies.
+    /// Rotations at the unstable equilibrium with the names of their bodies.
     fn unstable_by_body(&self, Named(rotations_rad): &Named<f64>) -> String {
         let rotations_rad = rotations_rad.iter().map(|(_, value)| *value);
         self.rotations_by_body(&rotations_rad.collect::<Vec<_>>())
@@ -353,7 +360,7 @@ impl Friction {
         format!("with joints that slip at a coefficient of friction of {coefficient:?}")
     }
 
-    /// Returns the push that starts the row to one side in words.
+    /// Push that starts the row to one side in words.
     fn start_in_words(&self, sway: &Sway) -> String {
         let name = sway.name();
         let (push_g, slips) = match &self.onset {
@@ -379,7 +386,7 @@ impl Friction {
     }
 }
 
-/// Returns the joints of a row that open in a mechanism.
+/// Joints of a row that open in a mechanism.
 pub(super) fn open_joints(row: &Row, onset: Option<&RowOnset>) -> Vec<MechanismHinge> {
     let openings = onset.into_iter().flat_map(|onset| &onset.openings);
     let open = openings.map(|opening| {
@@ -396,7 +403,7 @@ pub(super) fn open_joints(row: &Row, onset: Option<&RowOnset>) -> Vec<MechanismH
 }
 
 impl MechanismHinge {
-    /// Returns the place of the hinge in the undeformed structure, in metres.
+    /// Place of the hinge in the undeformed structure, in metres.
     pub(super) fn position_m(&self, scene: &Scene) -> Vector2<f64> {
         match self {
             Self::Joint { x_m, y_m, .. } => Vector2::new(*x_m, *y_m),
@@ -407,7 +414,7 @@ impl MechanismHinge {
         }
     }
 
-    /// Returns a line about the hinge at this position in the mechanism, from 0.
+    /// Line about the hinge at this position in the mechanism, from 0.
     pub(super) fn words(&self, position: &usize) -> String {
         let named = |edge: &Option<Edge>, otherwise| edge.map_or(otherwise, Edge::name);
         match self {
@@ -436,7 +443,7 @@ impl MechanismHinge {
     }
 }
 
-/// Returns the motion of a joint in words.
+/// Motion of a joint in words.
 fn motion_in_words(joint: &YieldingJoint) -> String {
     // Hinges are named by the edge about which the joint turns.
     let opens = match (joint.opens_intrados, joint.opens_extrados) {

@@ -39,23 +39,23 @@ pub struct CellRow {
 }
 
 impl CellRow {
-    /// Returns true if the history is outside the model of four links.
+    /// True if the history is outside the model of four links.
     pub(super) fn is_outside_model(&self) -> bool {
         self.result.as_ref().is_ok_and(Ending::is_outside_model)
     }
 
-    /// Returns the ending, or the outcome to report without one.
+    /// Ending, or the outcome to report without one.
     fn ending(&self) -> Result<&Ending, &'static str> {
         self.result.as_ref().map_err(NoHistory::name)
     }
 
-    /// Returns true if the numbers are those of the mirrored ground motion.
+    /// True if the numbers are those of the mirrored ground motion.
     pub(super) fn is_mirrored(&self) -> bool {
         let direction = self.result.as_ref().map(|ending| ending.direction);
         direction == Ok(Direction::Mirrored)
     }
 
-    /// Returns true if the outcome depends on the computation.
+    /// True if the outcome depends on the computation.
     pub(super) const fn is_doubtful(&self) -> bool {
         matches!(self.outcomes, Some(Ok(2..)))
     }
@@ -85,7 +85,7 @@ pub struct OverturningMap<'a> {
     variants: Option<PerAxes<Result<Arc<Scenario>, String>>>,
 }
 
-/// Returns the label of an axis in pictures.
+/// Label of an axis in pictures.
 pub(super) fn label(axis: &Axis) -> &str {
     match axis.quantity {
         Quantity::Duration => "pulse duration (s)",
@@ -147,7 +147,7 @@ impl<T: Clone> PerAxes<T> {
         }
     }
 
-    /// Returns the index of the value for a cell; `None` if values are not shared.
+    /// Index of the value for a cell; `None` if values are not shared.
     fn value_index(&self, place: [usize; 2]) -> Option<usize> {
         let index = self.axis.map_or(0, |axis| place[axis]);
         (index < self.values.len()).then_some(index)
@@ -165,7 +165,7 @@ impl<'a> OverturningMap<'a> {
     /// Makes the map of a scenario that starts from rest. At least one cell must be valid.
     ///
     /// # Errors
-    /// Returns the change that the scenario needs, in words.
+    /// Change that the scenario needs, in words.
     pub fn of(scenario: &'a Scenario) -> Result<Self, String> {
         scenario.check_from_rest("map")?;
         if let Some(map) = &scenario.map {
@@ -216,7 +216,7 @@ impl<'a> OverturningMap<'a> {
         })
     }
 
-    /// Returns the scenario of a cell, with the values of keys outside `[map]`.
+    /// Scenario of a cell, with the values of keys outside `[map]`.
     fn variant(&self, index: usize) -> Result<Arc<Scenario>, String> {
         let Some(variants) = &self.variants else {
             return Ok(Arc::clone(&self.base));
@@ -232,40 +232,42 @@ impl<'a> OverturningMap<'a> {
         })
     }
 
-    /// Returns true if an axis sets a key by another reading of the scenario; strength and duration of the ground motion change without it.
+    /// True if an axis sets a key by another reading of the scenario; strength and duration of the ground motion change without it.
     fn is_of_variant(&self, axis: usize) -> bool {
         let changes = Changes::of(self.quantities[axis], &self.paths[axis]);
         matches!(changes, Changes::Ground | Changes::Model)
     }
 
-    /// Returns the scenario with the thickness ratio of its arch, which is constant under a mean radius; `None` without that axis.
+    /// Scenario with the thickness ratio of its arch, which is constant under a mean radius; `None` without that axis.
     fn with_constant_ratio(quantities: &[Quantity; 2], sample: &Scenario) -> Option<Scenario> {
-        let arch = sample.structure.circular_arch();
-        let arch = arch.filter(|_| quantities.contains(&Quantity::MeanRadius))?;
+        let arch = sample
+            .structure
+            .circular_arch()
+            .filter(|_| quantities.contains(&Quantity::MeanRadius))?;
         let ratio = ("arch.thickness_ratio", arch.thickness_ratio);
         sample.with_unproved_values(&[ratio]).ok()
     }
 
-    /// Returns the indices of a cell along x and y.
+    /// Indices of a cell along x and y.
     fn axis_indices(&self, index: usize) -> [usize; 2] {
         let rows = self.values[1].len();
         [index / rows, index % rows]
     }
 
-    /// Returns the values of x and y of a cell.
+    /// Values of x and y of a cell.
     pub fn coordinates(&self, index: usize) -> [f64; 2] {
         let [x, y] = self.axis_indices(index);
         [self.values[0][x], self.values[1][y]]
     }
 
-    /// Returns the value of a quantity in a cell; `None` if no axis varies the quantity.
+    /// Value of a quantity in a cell; `None` if no axis varies the quantity.
     fn value(&self, index: usize, quantity: Quantity) -> Option<f64> {
         let mut quantities = self.quantities.iter();
         let axis = quantities.position(|known| *known == quantity)?;
         Some(self.coordinates(index)[axis])
     }
 
-    /// Returns the model of motion of a cell, whose scenario has the values of keys outside `[map]`.
+    /// Model of motion of a cell, whose scenario has the values of keys outside `[map]`.
     fn model(&self, index: usize, scenario: &Scenario) -> Result<Arc<dyn Model>, ModelError> {
         self.models.get_or_make(self.axis_indices(index), || {
             if let Some(links) = self.links_of_size(scenario) {
@@ -276,7 +278,7 @@ impl<'a> OverturningMap<'a> {
         })
     }
 
-    /// Returns the four links of an arch that differs from that of the scenario in size only: they share the sequence of mechanisms. `None` for
+    /// Four links of an arch that differs from that of the scenario in size only: they share the sequence of mechanisms. `None` for
     /// other structures and models.
     fn links_of_size(&self, scenario: &Scenario) -> Option<FourLinks> {
         let shape = |scenario: &Scenario| {
@@ -296,7 +298,7 @@ impl<'a> OverturningMap<'a> {
         Some(links.as_ref()?.with_size_of(arch))
     }
 
-    /// Returns the ground motion of a cell.
+    /// Ground motion of a cell.
     fn motion(&self, index: usize, scenario: &Scenario) -> Result<GroundMotion, String> {
         let gravity_m_s2 = scenario.gravity_m_s2();
         let value = |quantity| self.value(index, quantity);
@@ -328,7 +330,7 @@ impl<'a> OverturningMap<'a> {
         })
     }
 
-    /// Returns the model of a cell, with its ground motion and request.
+    /// Model of a cell, with its ground motion and request.
     fn case(&self, index: usize) -> Result<(Arc<dyn Model>, Case), NoHistory> {
         let scenario = self.variant(index).map_err(NoHistory::Failed)?;
         let model = self.model(index, &scenario)?;
@@ -404,15 +406,18 @@ fn all_outcomes_in(
 /// Computes the endings of histories, and the number of outcomes of each with its repetitions. All histories run to their end.
 fn endings_with_repetitions(model: &dyn Model, cases: &[Case]) -> Vec<Result<Ended, NoHistory>> {
     let repetitions = model.repetitions().into_iter();
-    let repeated = repetitions.map(|Repetition { name, model }| (name, model.simulate_all(cases)));
-    let repeated: Vec<(_, Vec<_>)> = repeated.collect();
+    let repeated: Vec<(_, Vec<_>)> = repetitions
+        .map(|Repetition { name, model }| (name, model.simulate_all(cases)))
+        .collect();
     let outcomes = |(index, own): (usize, Result<Summary, SimulationError>)| {
         let own = own?;
         let others = || repeated.iter().map(|(name, all)| (*name, &all[index]));
         let computed = others().filter_map(|(_, other)| other.as_ref().ok());
-        let outcomes = computed.clone().chain([&own]);
-        let outcomes = outcomes.map(|one| one.outcome.name());
-        let outcomes: BTreeSet<&str> = outcomes.collect();
+        let outcomes: BTreeSet<&str> = computed
+            .clone()
+            .chain([&own])
+            .map(|one| one.outcome.name())
+            .collect();
         let count = OutcomeCount::new(&own, others());
         let failed = count.failed.first();
         let failed = failed.map(|failed| format!("with {failed}"));
@@ -444,7 +449,7 @@ impl Study for OverturningMap<'_> {
         self.values[0].len() * self.values[1].len()
     }
 
-    /// Returns the family of cells with the same structure; `None` unless their model computes several motions faster together.
+    /// Family of cells with the same structure; `None` unless their model computes several motions faster together.
     fn family(&self, index: usize) -> Option<usize> {
         let has_lanes = self.scenario.motion.kind.has_lanes;
         has_lanes.then(|| self.models.value_index(self.axis_indices(index)))?
@@ -482,7 +487,7 @@ impl Study for OverturningMap<'_> {
     }
 }
 
-/// Returns the use of a map of four links of an arch, in words, with the measured shares of wrong cells; `None` for other models and for columns.
+/// Use of a map of four links of an arch, in words, with the measured shares of wrong cells; `None` for other models and for columns.
 fn use_in_words(scenario: &Scenario) -> Option<&'static str> {
     let is_looked_at =
         scenario.motion.kind.has_mechanism && scenario.structure.has_horizontal_thrust();

@@ -112,11 +112,13 @@ impl ColoredCells {
             }
         });
         let drawn = [Figure::PAGE, Figure::PHONE].map(|figure| (figure, draw(figure)));
-        let pictures = ["wide", "narrow"].into_iter().zip(&drawn);
-        let pictures = pictures.map(|(name, (_, drawn))| {
-            format!("<div class=\"picture {name}\">{}</div>", drawn.picture)
-        });
-        let pictures: Vec<String> = pictures.collect();
+        let pictures: Vec<String> = ["wide", "narrow"]
+            .into_iter()
+            .zip(&drawn)
+            .map(|(name, (_, drawn))| {
+                format!("<div class=\"picture {name}\">{}</div>", drawn.picture)
+            })
+            .collect();
         let axis = |i: usize| PageAxis {
             label: label(map.axes[i]).to_owned(),
             values: map.values[i].clone(),
@@ -151,7 +153,7 @@ impl ColoredCells {
     }
 }
 
-/// Returns the reasons for uncertain cells, by the number of the cell.
+/// Reasons for uncertain cells, by the number of the cell.
 pub(super) fn doubts(rows: &[CellRow]) -> BTreeMap<usize, String> {
     let doubt = |row: &CellRow| Some(row.result.as_ref().ok()?.doubt()?.to_string());
     let doubts = rows.iter().map(doubt).enumerate();
@@ -160,7 +162,7 @@ pub(super) fn doubts(rows: &[CellRow]) -> BTreeMap<usize, String> {
         .collect()
 }
 
-/// Returns the columns with numbers of the cells.
+/// Columns with numbers of the cells.
 pub(super) fn columns(rows: &[CellRow]) -> impl Iterator<Item = CellNumbers> {
     let endings = move || rows.iter().map(|row| row.result.as_ref().ok());
     let impacts = endings().map(|ending| Some(ending?.known_impacts()? as f64));
@@ -171,19 +173,21 @@ pub(super) fn columns(rows: &[CellRow]) -> impl Iterator<Item = CellNumbers> {
     [("impacts", impacts.collect())].into_iter().chain(numbers)
 }
 
-/// Returns the command that runs a cell, with placeholders for its two values. The command contains the whole scenario, so it depends neither on
+/// Command that runs a cell, with placeholders for its two values. The command contains the whole scenario, so it depends neither on
 /// the location of the page nor on the keys of the scenario file.
 fn command(map: &OverturningMap<'_>) -> String {
     // A command of one cell has no samples and no other studies.
     let set = map.axes.iter().zip(&map.paths);
-    let set = set.zip(["cell.x", "cell.y"]).map(|((axis, path), place)| {
-        let of_value = match axis.quantity {
-            Quantity::Frequency => "1/",
-            _ => "",
-        };
-        format!(" --set {path}={{{of_value}{place}}}")
-    });
-    let set: String = set.collect();
+    let set: String = set
+        .zip(["cell.x", "cell.y"])
+        .map(|((axis, path), place)| {
+            let of_value = match axis.quantity {
+                Quantity::Frequency => "1/",
+                _ => "",
+            };
+            format!(" --set {path}={{{of_value}{place}}}")
+        })
+        .collect();
     let text = text_without_studies(&map.base.to_json(), false);
     format!("archrock run -{set} --out cell <<'END'\n{text}END\n")
 }

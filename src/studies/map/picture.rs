@@ -34,7 +34,7 @@ impl ColoredCells {
     }
 }
 
-/// Returns the colour of a cell.
+/// Colour of a cell.
 fn color_of(cell: &CellRow, style: Style) -> OutcomeColor {
     if let (true, Ok(ending)) = (style.by_peak, &cell.result)
         && let (Outcome::Vibrates | Outcome::Rest | Outcome::StillRocking, Some(peak)) =
@@ -45,7 +45,7 @@ fn color_of(cell: &CellRow, style: Style) -> OutcomeColor {
     OutcomeColor::of_result(&cell.result)
 }
 
-/// Returns the scale of an axis, and the edges of its cells halfway between the values. The values are multiplied by `factor`.
+/// Scale of an axis, and the edges of its cells halfway between the values. The values are multiplied by `factor`.
 fn scale(axis: &Axis, factor: f64, figure: Figure) -> (Scale, Vec<f64>) {
     let values: Vec<f64> = axis.sequence.values();
     let values: Vec<f64> = values.into_iter().map(|value| factor * value).collect();
@@ -64,11 +64,12 @@ fn scale(axis: &Axis, factor: f64, figure: Figure) -> (Scale, Vec<f64>) {
         [] => [0.0; 2],
     };
     let middles = places.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
-    let edges = [first - before]
+    let edges: Vec<_> = [first - before]
         .into_iter()
         .chain(middles)
-        .chain([last + after]);
-    let edges: Vec<_> = edges.map(from).collect();
+        .chain([last + after])
+        .map(from)
+        .collect();
     let (low, high) = (edges[0], edges[edges.len() - 1]);
     // Half a cell beyond the ends may contain invalid values.
     let low = if values[0] >= 0.0 { low.max(0.0) } else { low };
@@ -118,13 +119,13 @@ impl<'s> MapChart<'s> {
         }
     }
 
-    /// Returns a point of the map in the units of the axes, which may be dimensionless.
+    /// Point of the map in the units of the axes, which may be dimensionless.
     pub(crate) fn point(&self, x: f64, y: f64) -> (f64, f64) {
         let factors = self.style.factors.unwrap_or([1.0; 2]);
         (factors[0] * x, factors[1] * y)
     }
 
-    /// Returns a diagonal in each chosen cell; `ends` are 0 at its lower edge and 1 at its upper edge.
+    /// Diagonal in each chosen cell; `ends` are 0 at its lower edge and 1 at its upper edge.
     fn hatch(&self, name: &'static str, line: Stroke, ends: [usize; 2], cells: &[bool]) -> Mark {
         let [x_edges, y_edges] = &self.edges;
         let count = y_edges.len() - 1;
@@ -202,7 +203,7 @@ impl<'s> MapChart<'s> {
     }
 }
 
-/// Returns runs of equal cells in each column: their colour and two opposite corners.
+/// Runs of equal cells in each column: their colour and two opposite corners.
 fn runs<'c>(
     [x_edges, y_edges]: &'c [Vec<f64>; 2],
     colors: &'c [OutcomeColor],
@@ -224,7 +225,7 @@ pub fn draw(title: &str, map: &OverturningMap<'_>, rows: &[CellRow], style: Styl
     draw_cells(title, map, rows, &cells, style).picture
 }
 
-/// Returns the picture of a map, with the positions of its cells.
+/// Picture of a map, with the positions of its cells.
 pub(super) fn draw_cells(
     title: &str,
     map: &OverturningMap<'_>,

@@ -47,8 +47,9 @@ impl OverturningMap<'_> {
         let remarks = remarks(self, cells);
         let for_looking = super::use_in_words(scenario).map(str::to_owned);
         let warnings = remarks.warnings("cells").chain(for_looking.clone());
-        let survivors = cells.iter().filter_map(|cell| cell.result.as_ref().ok());
-        let survivors = survivors
+        let survivors = cells
+            .iter()
+            .filter_map(|cell| cell.result.as_ref().ok())
             .filter(|ending| ending.verdict() == Verdict::Survives && !ending.is_outside_model());
         let demands = survivors.map(|ending| ending.friction_demand);
         let friction = SurvivorFriction::of(demands, scenario, ("map FILE", "surviving cells"));
@@ -96,7 +97,7 @@ impl Report for MapSummary {
 }
 
 impl OverturningMap<'_> {
-    /// Returns the columns of `map.csv`, one row per cell: x varies slowly, y fast.
+    /// Columns of `map.csv`, one row per cell: x varies slowly, y fast.
     fn columns(&self) -> Vec<Column<'_, CellRow>> {
         let [x, y] = self.axes.map(|axis| axis.key.as_str());
         let mut all = vec![
@@ -119,7 +120,7 @@ impl OverturningMap<'_> {
     }
 }
 
-/// Returns failed cells, cells with a failed repetition, and uncertain cells.
+/// Failed cells, cells with a failed repetition, and uncertain cells.
 fn remarks(map: &OverturningMap<'_>, cells: &[CellRow]) -> Remarks {
     let [x_name, y_name] = map.axes.map(|axis| axis.key.as_str());
     let mut remarks = Remarks::default();
@@ -134,10 +135,10 @@ fn remarks(map: &OverturningMap<'_>, cells: &[CellRow]) -> Remarks {
 }
 
 impl Style {
-    /// Returns the factors that convert durations to p t_p, and amplitudes to a / A_L.
+    /// Factors that convert durations to p t_p, and amplitudes to a / A_L.
     ///
     /// # Errors
-    /// Returns the property that the map lacks, in words.
+    /// Property that the map lacks, in words.
     pub fn dimensionless(scenario: &Scenario) -> Result<[f64; 2], &'static str> {
         let map = scenario.map.as_ref().ok_or("there is no map")?;
         if (map.x.quantity, map.y.quantity) != (Quantity::Duration, Quantity::Amplitude) {
@@ -152,8 +153,8 @@ impl Style {
         );
         let scales = model
             .ok()
-            .and_then(|model| Scales::new(&*model, gravity_m_s2));
-        let scales = scales.ok_or("needs a mechanism that has an unstable equilibrium")?;
+            .and_then(|model| Scales::new(&*model, gravity_m_s2))
+            .ok_or("needs a mechanism that has an unstable equilibrium")?;
         let [right, left] = scales.incipient_m_s2;
         Ok([scales.frequency_rad_s, gravity_m_s2 / right.min(left)])
     }

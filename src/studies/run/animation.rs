@@ -27,7 +27,7 @@ impl Animation {
         self.last = Some(sample.clone());
     }
 
-    /// Returns the frames in order of time.
+    /// Frames in order of time.
     pub(super) fn frames(&self) -> Vec<&Sample> {
         let kept = &self.thinned.columns;
         let is_kept = |last: &&Sample| kept.last().is_some_and(|kept| kept.time_s >= last.time_s);

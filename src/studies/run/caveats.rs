@@ -9,7 +9,7 @@ use crate::output::filters;
 use crate::scenario::FREE_HINGES;
 use crate::studies::quotable::{MOST_FRICTION, condition_of};
 
-/// Returns a coefficient of friction as text.
+/// Coefficient of friction as text.
 pub(super) fn coefficient(friction: &f64) -> String {
     match *friction > MOST_FRICTION {
         true => format!("more than {MOST_FRICTION}"),
@@ -17,7 +17,7 @@ pub(super) fn coefficient(friction: &f64) -> String {
     }
 }
 
-/// Returns the largest coefficient of friction as text.
+/// Largest coefficient of friction as text.
 pub(super) fn largest_coefficient(friction: &f64) -> String {
     let bound = if *friction > MOST_FRICTION {
         ""
@@ -53,7 +53,7 @@ pub(super) enum Caveat<'a> {
 }
 
 impl RunSummary {
-    /// Returns the limits of the history, as warnings.
+    /// Limits of the history, as warnings.
     pub(super) fn caveats(&self) -> Vec<String> {
         let excess = self.limits(false).filter(|limits| match limits {
             // An arch moves as four links as long as its thrust line stays almost inside.
@@ -66,18 +66,18 @@ impl RunSummary {
         caveats.iter().flatten().map(Caveat::to_string).collect()
     }
 
-    /// Returns the reason why a run has no verdict, and the remedy; `None` for a complete run.
+    /// Reason why a run has no verdict, and the remedy; `None` for a complete run.
     pub(super) fn no_verdict(&self) -> Option<Caveat<'_>> {
         let is_incomplete = self.outcome.outcome == OutcomeKind::Incomplete;
         is_incomplete.then_some(Caveat::NoVerdict(self))
     }
 
-    /// Returns the friction that a motion without slip needs; `None` if stone certainly has it.
+    /// Friction that a motion without slip needs; `None` if stone certainly has it.
     pub(super) fn friction_condition(&self) -> Option<Caveat<'_>> {
         condition_of(self.friction_demand).map(Caveat::Friction)
     }
 
-    /// Returns the limits of four links, or of a column on its toe; `None` for rows, if the structure did not rock, and for a column that never needs
+    /// Limits of four links, or of a column on its toe; `None` for rows, if the structure did not rock, and for a column that never needs
     /// tension at its base.
     pub(super) fn limits(&self, in_words: bool) -> Option<Caveat<'_>> {
         let thrust = self.mechanisms.as_ref()?.thrust?;
@@ -94,7 +94,7 @@ impl RunSummary {
         }
     }
 
-    /// Returns the opposite outcome and the properties with which it occurs; `None` if no property changes the outcome.
+    /// Opposite outcome and the properties with which it occurs; `None` if no property changes the outcome.
     pub(super) fn changed_outcome(&self) -> Option<Caveat<'_>> {
         let opposite = match self.verdict_without_repetitions() {
             Verdict::Overturns => Verdict::Survives,
@@ -105,15 +105,17 @@ impl RunSummary {
         (!names.is_empty()).then_some(Caveat::Changed(opposite, names))
     }
 
-    /// Returns the properties with which the motion has no verdict; `None` if it has one with all.
+    /// Properties with which the motion has no verdict; `None` if it has one with all.
     pub(super) fn without_verdict(&self) -> Option<Caveat<'_>> {
         let names = self.variations_with(Verdict::Incomplete);
         (!names.is_empty()).then_some(Caveat::Unknown(names))
     }
 
     fn variations_with(&self, verdict: Verdict) -> Vec<&str> {
-        let varied = self.variations.iter();
-        let varied = varied.filter(|one| one.verdict() == verdict);
+        let varied = self
+            .variations
+            .iter()
+            .filter(|one| one.verdict() == verdict);
         varied.map(|one| one.with.as_str()).collect()
     }
 }

@@ -20,12 +20,12 @@ struct OutcomeCell<'a> {
 }
 
 impl Comparison<RunSummary> {
-    /// Returns the rows of the table, and the widths of its first two columns.
+    /// Rows of the table, and the widths of its first two columns.
     pub(super) fn table(&self) -> (Vec<(&RunSummary, String)>, [usize; 2]) {
-        let rows = self
+        let rows: Vec<_> = self
             .models()
-            .map(|summary| (summary, OutcomeCell { summary }.to_string()));
-        let rows: Vec<_> = rows.collect();
+            .map(|summary| (summary, OutcomeCell { summary }.to_string()))
+            .collect();
         let widths = rows
             .iter()
             .map(|(summary, ends)| [summary.label().len(), ends.len()]);
@@ -34,7 +34,7 @@ impl Comparison<RunSummary> {
         (rows, wide)
     }
 
-    /// Returns pairs of the most reliable model and another one. Pairs without a verdict, and pairs in which nothing moves, are left out.
+    /// Pairs of the most reliable model and another one. Pairs without a verdict, and pairs in which nothing moves, are left out.
     pub(super) fn pairs(&self) -> Vec<[&RunSummary; 2]> {
         let best = self.models().max_by_key(|one| one.model.rank());
         let pairs = best.into_iter().flat_map(|best| {
@@ -77,7 +77,7 @@ pub(super) fn with_page(results: Results, runs: &[Run<'_>], all: &[ModelResults]
 }
 
 impl RunSummary {
-    /// Returns the name of its model in sentences.
+    /// Name of its model in sentences.
     pub(super) fn label(&self) -> &'static str {
         self.model.label
     }

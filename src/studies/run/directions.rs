@@ -16,7 +16,7 @@ use crate::work::Pending;
 use crate::{Model, Request, SimulationError, Summary, Verdict};
 
 impl MirroredSummary {
-    /// Returns the result of a history, from the summary of the scenario in this direction alone.
+    /// Result of a history, from the summary of the scenario in this direction alone.
     pub fn of(summary: &RunSummary) -> Self {
         let mechanisms = summary.mechanisms.as_ref();
         let row = summary.row.as_ref();
@@ -34,7 +34,7 @@ impl MirroredSummary {
         }
     }
 
-    /// Returns the result of a history that failed.
+    /// Result of a history that failed.
     pub fn failed(reason: impl ToString) -> Self {
         Self {
             verdict: Verdict::Incomplete,
@@ -75,7 +75,7 @@ impl MirroredSummary {
     }
 }
 
-/// Returns each result with other properties, with that under the mirrored ground motion if there is one.
+/// Each result with other properties, with that under the mirrored ground motion if there is one.
 pub(super) fn pair_results(
     own: Vec<VariationResult>,
     turned: &[VariationResult],
@@ -200,21 +200,21 @@ pub(super) struct MirroredWords<'a> {
 }
 
 impl RunSummary {
-    /// Returns the verdict of the motion itself, with its repetitions; [`RunSummary::verdict`] is the worse one of both directions.
+    /// Verdict of the motion itself, with its repetitions; [`RunSummary::verdict`] is the worse one of both directions.
     pub fn own_verdict(&self) -> Verdict {
         let repeated = self.repeatability.as_ref();
         let count = repeated.map(|all| &all.repeatability.count);
         Verdict::counted(self.outcome.with_side(), count)
     }
 
-    /// Returns the worse verdict of both directions without repetitions, with which variations are compared.
+    /// Worse verdict of both directions without repetitions, with which variations are compared.
     pub(super) fn verdict_without_repetitions(&self) -> Verdict {
         let mirrored = self.mirrored.as_ref().and_then(|mirrored| mirrored.outcome);
         let own = Verdict::from(self.outcome.with_side());
         mirrored.map_or(own, |mirrored| own.max(mirrored.with_side().into()))
     }
 
-    /// Returns the result under the mirrored ground motion if its verdict is worse than that of the motion as given, or the same with a larger
+    /// Result under the mirrored ground motion if its verdict is worse than that of the motion as given, or the same with a larger
     /// rotation. Overturned structures have no largest rotation.
     pub fn worse_mirrored(&self) -> Option<&MirroredSummary> {
         let mirrored = self.mirrored.as_ref()?;
@@ -226,7 +226,7 @@ impl RunSummary {
         is_worse.then_some(mirrored)
     }
 
-    /// Returns the end of the worse direction.
+    /// End of the worse direction.
     pub(super) fn worse_direction(&self) -> DirectionEnd {
         let mirrored = self.worse_mirrored().and_then(|mirrored| {
             Some(DirectionEnd {
@@ -244,7 +244,7 @@ impl RunSummary {
         })
     }
 
-    /// Returns the words about the mirrored ground motion, and whether they precede the verdict as given, because they are worse; `None` without a
+    /// Words about the mirrored ground motion, and whether they precede the verdict as given, because they are worse; `None` without a
     /// second direction.
     pub(super) fn mirrored_words(&self) -> Option<(MirroredWords<'_>, bool)> {
         let mirrored = self.mirrored.as_ref()?;
@@ -252,7 +252,7 @@ impl RunSummary {
         Some((MirroredWords { mirrored }, is_worse))
     }
 
-    /// Returns the outcome in words that precede "this motion", with the direction in words that follow it. `only` is the single direction that is
+    /// Outcome in words that precede "this motion", with the direction in words that follow it. `only` is the single direction that is
     /// computed, if the other one is another problem.
     pub(super) fn outcome_in_words(&self, only: Option<Directions>) -> [&'static str; 2] {
         let overturns = |verdict| verdict == Verdict::Overturns;

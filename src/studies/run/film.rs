@@ -90,7 +90,7 @@ impl Film {
         })
     }
 
-    /// Returns the number of pictures.
+    /// Number of pictures.
     pub fn pictures(&self) -> usize {
         self.snapshots.count()
     }

@@ -54,7 +54,7 @@ impl NotableImpacts {
         }
     }
 
-    /// Returns the first impact, and the impact of a row that takes the most energy, if this is another one.
+    /// First impact, and the impact of a row that takes the most energy, if this is another one.
     pub(super) fn first_and_hardest(&self, history: &Summary) -> [Option<NotableImpact>; 2] {
         let mut impacts = self.0.iter().map(|(_, impact)| impact).cloned();
         let first = impacts.next();

@@ -177,8 +177,10 @@ pub fn results(
         .collect();
     let (runs, mut all) = (runs.map_err(StudyError::Scenario)?, Vec::new());
     for (number, run) in runs.iter().enumerate() {
-        let folder = sinks.folder.as_ref();
-        let folder = folder.map(|it| it.of_model(run.scenario.motion.kind, runs.len() > 1));
+        let folder = sinks
+            .folder
+            .as_ref()
+            .map(|it| it.of_model(run.scenario.motion.kind, runs.len() > 1));
         let samples = sinks.samples.get(number);
         let sinks = Sinks {
             folder,
@@ -235,7 +237,7 @@ pub fn results(
     Ok(results)
 }
 
-/// Returns the statements about all models, with the answer and these details.
+/// Statements about all models, with the answer and these details.
 fn statement(all: &[ModelResults], quote: Option<&str>, details: String) -> Statement {
     let summaries = || all.iter().map(|one| &one.summary);
     let verdicts = summaries().map(|summary| {
@@ -284,8 +286,11 @@ pub fn compute_varied(
         .has_second_direction(model)
         .then(|| scenario.in_directions(Directions::Mirrored));
     let own = variations(scenario)?;
-    let turned = turned.as_ref().map(variations).transpose()?;
-    let turned = turned.map_or_else(Vec::new, Variations::wait);
+    let turned = turned
+        .as_ref()
+        .map(variations)
+        .transpose()?
+        .map_or_else(Vec::new, Variations::wait);
     Ok(directions::pair_results(own.wait(), &turned))
 }
 
@@ -432,7 +437,7 @@ impl<'a> Run<'a> {
         })
     }
 
-    /// Returns whether its motions are repeated.
+    /// Whether its motions are repeated.
     fn repeats(&self) -> bool {
         !self.options.no_repeat && self.model.row().is_some()
     }
@@ -519,7 +524,7 @@ pub fn scene(scenario: &Scenario, model: &dyn Model) -> Scene {
     scene
 }
 
-/// Returns the title of the pictures and the page of a scenario.
+/// Title of the pictures and the page of a scenario.
 fn title(scenario: &Scenario) -> &str {
     scenario.title.as_deref().unwrap_or("Rocking history")
 }
@@ -536,7 +541,7 @@ struct Drawings {
 }
 
 impl Drawings {
-    /// Returns the times of snapshots before the start and after the end, in seconds.
+    /// Times of snapshots before the start and after the end, in seconds.
     fn outside_times_s(&self) -> [Vec<f64>; 2] {
         let snapshots = self.snapshots.as_ref();
         snapshots.map_or_else(Default::default, Snapshots::outside_times_s)
@@ -611,8 +616,8 @@ impl Drawings {
             (PICTURE, files.contains(&PICTURE).then(draw)),
             (REPORT, report),
             (SNAPSHOTS, snapshots),
-        ];
-        let texts = texts.into_iter();
+        ]
+        .into_iter();
         texts
             .filter_map(|(name, text)| Some((name, text?)))
             .collect()

@@ -50,7 +50,7 @@ impl OpenJoints {
         }
     }
 
-    /// Returns true if a joint is ever open in one of these ways.
+    /// True if a joint is ever open in one of these ways.
     fn has_kinds(&self, kinds: u8) -> bool {
         let mut columns = self.thinned.columns.iter();
         columns.any(|(_, bits)| bits.iter().any(|bits| bits & kinds != 0))
@@ -103,7 +103,7 @@ impl OpenJoints {
         panels.panel("Open joint", height_px, y, Vec::new(), marks);
     }
 
-    /// Returns the intervals of time in which a joint is open in this way.
+    /// Intervals of time in which a joint is open in this way.
     fn stretches(&self, joint: usize, bit: u8, end_s: f64) -> Vec<[f64; 2]> {
         let is_open = |(_, bits): &&(f64, Vec<u8>)| bits[joint] & bit != 0;
         let mut columns = self.thinned.columns.iter();
@@ -122,7 +122,7 @@ mod tests {
     use crate::dynamics::OpenHinge;
     use nalgebra::Vector2;
 
-    /// Returns a sample in which joint 1 of 3 is open at the intrados; if `parted`, joint 2 is open at both edges.
+    /// Sample in which joint 1 of 3 is open at the intrados; if `parted`, joint 2 is open at both edges.
     fn sample(time_s: f64, parted: bool) -> Sample {
         let hinge = |joint, edge| OpenHinge {
             hinge: Hinge::Joint { joint, edge },

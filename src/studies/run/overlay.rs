@@ -44,7 +44,7 @@ impl Curves {
         self.energy_j.push(time_s, sample.energy_j);
     }
 
-    /// Returns the rotations with their signs; they are positive if the structure never sways.
+    /// Rotations with their signs; they are positive if the structure never sways.
     fn rotation_rad(&self) -> Envelope {
         let mut all = self.rotation_rad.clone();
         for (time_s, rad) in &self.unsigned {

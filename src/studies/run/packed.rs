@@ -10,7 +10,7 @@ use crate::{OpenHinge, Sample};
 /// Largest integer of an encoded rotation or displacement.
 pub(super) const LARGEST_I16: f64 = 32767.0;
 
-/// Returns the distinct sets of hinges of the frames, and the index of the set of each frame. Rows have one empty set, because their joints are
+/// Distinct sets of hinges of the frames, and the index of the set of each frame. Rows have one empty set, because their joints are
 /// encoded in each frame.
 pub(super) fn layouts<'a>(
     scene: &Scene,
@@ -22,16 +22,18 @@ pub(super) fn layouts<'a>(
         Iterator::eq(one.iter().map(hinges), other.iter().map(hinges))
     };
     let mut layouts: Vec<&[OpenHinge]> = Vec::new();
-    let layout_of = frames.iter().map(|frame| {
-        let open = if is_row { &[][..] } else { &frame.hinges };
-        let known = layouts.iter().position(|layout| same(layout, open));
-        let layout = known.unwrap_or_else(|| {
-            layouts.push(open);
-            layouts.len() - 1
-        });
-        u16::try_from(layout).expect("there are fewer layouts than frames")
-    });
-    let layout_of = layout_of.collect();
+    let layout_of = frames
+        .iter()
+        .map(|frame| {
+            let open = if is_row { &[][..] } else { &frame.hinges };
+            let known = layouts.iter().position(|layout| same(layout, open));
+            let layout = known.unwrap_or_else(|| {
+                layouts.push(open);
+                layouts.len() - 1
+            });
+            u16::try_from(layout).expect("there are fewer layouts than frames")
+        })
+        .collect();
     (layouts, layout_of)
 }
 
@@ -42,7 +44,7 @@ pub(super) struct DrawnPiece {
     outline: Vec<i64>,
 }
 
-/// Returns a piece in units of the page.
+/// Piece in units of the page.
 pub(super) fn piece(piece: &Piece, unit_m: f64) -> DrawnPiece {
     let corners = piece.outline_m.iter();
     let coordinates = corners.flat_map(|corner| [corner.x, corner.y]);
@@ -52,7 +54,7 @@ pub(super) fn piece(piece: &Piece, unit_m: f64) -> DrawnPiece {
     }
 }
 
-/// Returns the number of a body; -1 for parts that do not move.
+/// Number of a body; -1 for parts that do not move.
 pub(super) fn body_number(body: Option<usize>) -> i64 {
     body.and_then(|body| i64::try_from(body).ok()).unwrap_or(-1)
 }

@@ -28,7 +28,7 @@ struct LargeCycle {
 /// Fraction of the unstable rotation, or of the barrier, from which the limit is drawn.
 const LARGE_RATIO: f64 = 0.25;
 
-/// Returns the stroke for the unstable rotation of a body, in the colour of its curve.
+/// Stroke for the unstable rotation of a body, in the colour of its curve.
 const fn unstable_stroke(body: usize) -> Stroke {
     Stroke::new(CURVES[body % CURVES.len()].color, 1.0, "1 3")
 }
@@ -233,9 +233,13 @@ impl Timeline {
     /// Adds the panel of the right foot, if it moves.
     fn add_feet(&self, panels: &mut HistoryPanels<'_>) {
         let names = ["right foot to the right", "right foot upwards"];
-        let feet = names.into_iter().zip(&self.feet_mm).zip([MAIN, UPWARDS]);
-        let feet = feet.map(|((name, foot), stroke)| Mark::curve(name, stroke, foot.points()));
-        let feet: Vec<Mark> = feet.filter(|foot| !foot.is_flat()).collect();
+        let feet: Vec<Mark> = names
+            .into_iter()
+            .zip(&self.feet_mm)
+            .zip([MAIN, UPWARDS])
+            .map(|((name, foot), stroke)| Mark::curve(name, stroke, foot.points()))
+            .filter(|foot| !foot.is_flat())
+            .collect();
         if feet.len() > 1 {
             panels.panels.keys.extend(feet.iter().map(Mark::key));
         }
@@ -302,7 +306,7 @@ impl Timeline {
     }
 }
 
-/// Returns the states of a row: its half cycles, and the end.
+/// States of a row: its half cycles, and the end.
 fn row_states(history: &Summary, half_cycles: &[HalfCycle]) -> StateHistory {
     let end = match history.outcome {
         Outcome::Rest => Some(State::Rest),

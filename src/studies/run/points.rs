@@ -77,7 +77,7 @@ impl ObservedPoints {
         Ok(Self { scene, observed })
     }
 
-    /// Returns true if there are observed points.
+    /// True if there are observed points.
     pub(super) const fn has_points(&self) -> bool {
         !self.observed.is_empty()
     }
@@ -104,7 +104,7 @@ impl ObservedPoints {
         }
     }
 
-    /// Returns the columns of the points in `rotations.csv`: `point_x_m` and `point_y_m`, displacements to the right and upwards; with several
+    /// Columns of the points in `rotations.csv`: `point_x_m` and `point_y_m`, displacements to the right and upwards; with several
     /// points `point_1_x_m` and so on.
     pub(super) fn columns(&self) -> Vec<Column<'static, Sample>> {
         let column = |observed: &ObservedPoint| {
@@ -122,7 +122,7 @@ impl ObservedPoints {
         self.observed.iter().map(column).collect()
     }
 
-    /// Returns the largest displacements of the points.
+    /// Largest displacements of the points.
     pub(super) fn peaks(&self) -> Vec<PointPeaks> {
         let peaks = self.observed.iter().map(|observed| {
             let [x, y] = &observed.displacements;
@@ -157,14 +157,14 @@ impl ObservedPoints {
         panels.curves("Displacement (mm)", 150.0, curves);
     }
 
-    /// Returns the names of the curves of each point, for displacements to the right and upwards.
+    /// Names of the curves of each point, for displacements to the right and upwards.
     pub(super) fn names(&self) -> Vec<[String; 2]> {
         let places = self.observed.iter().map(|one| format_point(one.point.at_m));
         let named = places.map(|at| AXES.map(|(_, positive)| format!("point {at}, {positive}")));
         named.collect()
     }
 
-    /// Returns the bodies that carry the points while these hinges are open.
+    /// Bodies that carry the points while these hinges are open.
     pub(super) fn bodies(&self, hinges: &[OpenHinge]) -> Vec<Option<usize>> {
         let marks = self
             .observed
@@ -173,7 +173,7 @@ impl ObservedPoints {
         marks.map(|mark| mark.body).collect()
     }
 
-    /// Returns the positions and named curves of the points, in millimetres, for the page.
+    /// Positions and named curves of the points, in millimetres, for the page.
     pub(super) fn page_curves(&self) -> Vec<PointCurves> {
         let observed = self.observed.iter().zip(self.names());
         let point = |(observed, names): (&ObservedPoint, [String; 2])| PointCurves {
@@ -210,7 +210,7 @@ fn displacement_m(
     carried.current_position(poses, 1.0) - point.at_m
 }
 
-/// Returns a position in the format of `--point`.
+/// Position in the format of `--point`.
 pub(super) fn format_point(at_m: Vector2<f64>) -> String {
     // Rounds to a millimetre. Adding zero makes a negative zero positive.
     let [x, y] = [at_m.x, at_m.y].map(|metres| (1e3 * metres).round() / 1e3 + 0.0);

@@ -35,19 +35,22 @@ impl TableFiles {
     }
 
     pub(super) fn outputs(&mut self) -> impl Iterator<Item = (&'static str, Output<'_>)> {
-        let on_disk = self.on_disk.iter_mut();
-        let on_disk = on_disk.map(|(name, file)| (*name, boxed(&mut file.writer)));
+        let on_disk = self
+            .on_disk
+            .iter_mut()
+            .map(|(name, file)| (*name, boxed(&mut file.writer)));
         let in_memory = self.in_memory.iter_mut();
         on_disk.chain(in_memory.map(|(name, bytes)| (*name, boxed(bytes))))
     }
 
-    /// Returns the tables in memory together with the other files.
+    /// Tables in memory together with the other files.
     pub(super) fn with_texts(
         self,
         texts: BTreeMap<&'static str, String>,
     ) -> Vec<(&'static str, Vec<u8>)> {
-        let texts = texts.into_iter();
-        let texts = texts.map(|(name, text)| (name, text.into_bytes()));
+        let texts = texts
+            .into_iter()
+            .map(|(name, text)| (name, text.into_bytes()));
         self.in_memory.into_iter().chain(texts).collect()
     }
 }
@@ -121,8 +124,10 @@ impl<'f> Tables<'f> {
     }
 
     fn event(&mut self, event: &Event) -> Result<(), OutputError> {
-        let tables = self.events.iter_mut();
-        let mut tables = tables.filter(|(of_impacts, _)| !of_impacts || event.impact.is_some());
+        let mut tables = self
+            .events
+            .iter_mut()
+            .filter(|(of_impacts, _)| !of_impacts || event.impact.is_some());
         tables.try_for_each(|(_, table)| table.write(event))
     }
 

@@ -109,14 +109,14 @@ struct PageContents {
 pub struct ReportPage(PageContents);
 
 impl ReportPage {
-    /// Returns a page that opens with this one, and has the history of the other direction beside it.
+    /// Page that opens with this one, and has the history of the other direction beside it.
     #[must_use]
     pub fn with_other_direction(mut self, other: Self) -> Self {
         self.0.other = Some(Box::new(other.0));
         self
     }
 
-    /// Returns the page as HTML.
+    /// Page as HTML.
     pub fn html(&self) -> String {
         render(&self.0)
     }
@@ -310,7 +310,7 @@ impl Report {
         })
     }
 
-    /// Returns the intrados of a joint, with its body, and the extrados.
+    /// Intrados of a joint, with its body, and the extrados.
     fn joint(&self, joint: usize) -> Option<(i64, f64, f64, f64, f64)> {
         let [intrados, extrados] = self.scene.joint(joint)?;
         let (body, x_m, y_m) = point(intrados);
@@ -328,7 +328,7 @@ impl Report {
         }
     }
 
-    /// Returns the outlines and hinges of a layout.
+    /// Outlines and hinges of a layout.
     fn layout(&self, hinges: &[OpenHinge], points: Option<&ObservedPoints>, unit_m: f64) -> Layout {
         let drawn = |piece: Piece| drawn_piece(&piece, unit_m);
         let pieces = self.scene.pieces(hinges).into_iter();
@@ -336,17 +336,21 @@ impl Report {
             let (body, x_m, y_m) = point(arrow.at);
             (body, x_m, y_m, arrow.width_m, arrow.label, arrow.sideways)
         });
-        let marks = self.scene.hinges(hinges).into_iter().zip(hinges);
-        let marks = marks.map(|(at, open)| {
-            let code = match open.hinge {
-                Hinge::Section { edge, .. } => edge_code(Some(edge)),
-                Hinge::Toe(Sway::Left) => edge_code(Some(Edge::Intrados)),
-                Hinge::Toe(Sway::Right) => edge_code(Some(Edge::Extrados)),
-                Hinge::Joint { edge, .. } => edge_code(edge),
-            };
-            let (body, x_m, y_m) = point(at);
-            (body, x_m, y_m, code)
-        });
+        let marks = self
+            .scene
+            .hinges(hinges)
+            .into_iter()
+            .zip(hinges)
+            .map(|(at, open)| {
+                let code = match open.hinge {
+                    Hinge::Section { edge, .. } => edge_code(Some(edge)),
+                    Hinge::Toe(Sway::Left) => edge_code(Some(Edge::Intrados)),
+                    Hinge::Toe(Sway::Right) => edge_code(Some(Edge::Extrados)),
+                    Hinge::Joint { edge, .. } => edge_code(edge),
+                };
+                let (body, x_m, y_m) = point(at);
+                (body, x_m, y_m, code)
+            });
         let bodies = self.scene.bodies_of_sections(hinges).into_iter();
         let points = points.into_iter().flat_map(|points| points.bodies(hinges));
         Layout {
@@ -359,7 +363,7 @@ impl Report {
         }
     }
 
-    /// Returns the data of the frames, encoded in base 64, as multiples of a unit where the key has a unit.
+    /// Data of the frames, encoded in base 64, as multiples of a unit where the key has a unit.
     fn frames(
         &self,
         ground: &GroundMotion,
@@ -376,8 +380,9 @@ impl Report {
         let ground_g = frames
             .iter()
             .map(|frame| frame.ground_acceleration_m_s2 / self.gravity_m_s2);
-        let apart_m = frames.iter();
-        let apart_m = apart_m.flat_map(|frame| [frame.feet_apart_m.x, frame.feet_apart_m.y]);
+        let apart_m = frames
+            .iter()
+            .flat_map(|frame| [frame.feet_apart_m.x, frame.feet_apart_m.y]);
         let thrust_unit = FARTHEST / LARGEST_I16;
         let ratios = frames.iter().flat_map(|frame| &frame.eccentricity_ratios);
         let thrust = ratios.map(|ratio| match ratio {
@@ -431,7 +436,7 @@ impl Report {
     }
 }
 
-/// Returns the number of the body of a point, and its position.
+/// Number of the body of a point, and its position.
 fn point(point: BodyPoint) -> Point {
     (body_number(point.body), point.at_m.x, point.at_m.y)
 }
@@ -440,7 +445,7 @@ fn flatten_corners([a, b]: [Vector2<f64>; 2]) -> [f64; 4] {
     [a.x, a.y, b.x, b.y]
 }
 
-/// Returns the rotation of each body at rest, from a sample.
+/// Rotation of each body at rest, from a sample.
 fn standing_rad(sample: &Sample) -> Vec<f64> {
     let bodies = sample.poses.iter().zip(&sample.rotations_rad);
     bodies
@@ -448,7 +453,7 @@ fn standing_rad(sample: &Sample) -> Vec<f64> {
         .collect()
 }
 
-/// Returns the time at which the page opens: that of overturning, or of the largest rotation.
+/// Time at which the page opens: that of overturning, or of the largest rotation.
 fn opening_time_s(frames: &[&Sample], history: &Summary) -> f64 {
     if let Some(overturned_s) = history.overturned_s() {
         return overturned_s;
@@ -462,7 +467,7 @@ fn opening_time_s(frames: &[&Sample], history: &Summary) -> f64 {
     farthest.map_or(0.0, |frame| frame.time_s)
 }
 
-/// Returns the code of an open joint; 0 means closed.
+/// Code of an open joint; 0 means closed.
 const fn edge_code(edge: Option<Edge>) -> u8 {
     match edge {
         Some(Edge::Intrados) => 1,

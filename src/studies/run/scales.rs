@@ -27,7 +27,7 @@ impl Scales {
         })
     }
 
-    /// Returns the larger ratio of a push, to the right or to the left, to the push that starts the structure to that side.
+    /// Larger ratio of a push, to the right or to the left, to the push that starts the structure to that side.
     pub fn ratio_to_incipient(&self, pushes_m_s2: [f64; 2]) -> f64 {
         let [right, left] = [0, 1].map(|side: usize| pushes_m_s2[side] / self.incipient_m_s2[side]);
         right.max(left)

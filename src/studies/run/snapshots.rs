@@ -85,7 +85,7 @@ impl Snapshots {
         self
     }
 
-    /// Returns the number of pictures.
+    /// Number of pictures.
     pub(super) fn count(&self) -> usize {
         self.taken.len()
     }
@@ -118,7 +118,7 @@ impl Snapshots {
         }
     }
 
-    /// Returns the requested times before the start and after the end of the history, in seconds. Their pictures show the first or the last instant.
+    /// Requested times before the start and after the end of the history, in seconds. Their pictures show the first or the last instant.
     pub(super) fn outside_times_s(&self) -> [Vec<f64>; 2] {
         let [start_s, end_s] = self.span_s;
         let times_s = || self.taken.iter().map(|(time_s, _)| *time_s);
@@ -128,7 +128,7 @@ impl Snapshots {
         ]
     }
 
-    /// Returns the largest joint stress in all pictures, in Pa.
+    /// Largest joint stress in all pictures, in Pa.
     fn largest_pa(&self) -> f64 {
         *self.largest_pa.get_or_init(|| {
             let pressures = self.drawn_samples().into_iter();
@@ -138,14 +138,14 @@ impl Snapshots {
         })
     }
 
-    /// Returns the thickness of the thinnest joint, in metres.
+    /// Thickness of the thinnest joint, in metres.
     fn thickness_m(&self) -> f64 {
         let sections = self.scene.sections.iter();
         let thicknesses_m = sections.map(|section| section.across_m.norm());
         thicknesses_m.fold(f64::INFINITY, f64::min)
     }
 
-    /// Returns the samples that are drawn.
+    /// Samples that are drawn.
     pub(super) fn drawn_samples(&self) -> Vec<&Sample> {
         let taken = self.taken.iter();
         taken.filter_map(|(_, sample)| sample.as_ref()).collect()
@@ -293,7 +293,7 @@ impl Snapshots {
     }
 }
 
-/// Returns the state between two samples. The bodies move evenly from one to the other; everything else is that of the first one. At a change
+/// State between two samples. The bodies move evenly from one to the other; everything else is that of the first one. At a change
 /// of the mechanism, whose bodies are others, it is the nearer sample.
 fn interpolate_sample(first: &Sample, second: &Sample, time_s: f64) -> Sample {
     let part = (time_s - first.time_s) / (second.time_s - first.time_s);

@@ -172,7 +172,7 @@ pub struct FrictionDemand {
 }
 
 impl FrictionDemand {
-    /// Returns the friction coefficient that prevents sliding, except for short peaks of rows.
+    /// Friction coefficient that prevents sliding, except for short peaks of rows.
     pub(super) fn required_coefficient(&self) -> f64 {
         self.lasting_friction_demand
             .unwrap_or(self.largest_friction_demand)
@@ -378,7 +378,7 @@ pub struct PointPeaks {
 }
 
 impl OutcomeSummary {
-    /// Returns the outcome of a history.
+    /// Outcome of a history.
     pub fn of(history: &Summary) -> Self {
         Self {
             outcome: history.outcome.kind(),
@@ -387,7 +387,7 @@ impl OutcomeSummary {
         }
     }
 
-    /// Returns the outcome with its side.
+    /// Outcome with its side.
     pub(super) fn with_side(&self) -> Outcome {
         self.outcome.to_outcome(self.overturning_sway)
     }
@@ -397,8 +397,10 @@ impl OutcomeSummary {
 fn peak_rotations<'de, D: Deserializer<'de>>(keys: D) -> Result<Named<f64>, D::Error> {
     let Named(keys) = Named::<Value>::deserialize(keys)?;
     let is_peak = |key: &str| key.starts_with("peak_rotation") && key.ends_with("_rad");
-    let peaks = keys.into_iter().filter(|(key, _)| is_peak(key));
-    let peaks = peaks.filter_map(|(key, peak)| Some((key, peak.as_f64()?)));
+    let peaks = keys
+        .into_iter()
+        .filter(|(key, _)| is_peak(key))
+        .filter_map(|(key, peak)| Some((key, peak.as_f64()?)));
     Ok(Named(peaks.collect()))
 }
 
@@ -458,7 +460,7 @@ impl RunSummary {
         summary
     }
 
-    /// Returns the answer that may be quoted: a certain outcome that does not depend on the stiffness and contact of its joints.
+    /// Answer that may be quoted: a certain outcome that does not depend on the stiffness and contact of its joints.
     pub(super) fn answer(&self, scenario: &Scenario, model: &dyn Model) -> ModelAnswer {
         let [happens, direction] = self.outcome_in_words(only_direction(scenario, model));
         let no_answer = match (self.verdict, self.changed_outcome()) {
@@ -512,7 +514,7 @@ impl RunSummary {
     }
 }
 
-/// Returns the friction coefficient that the motion, its repetitions and the mirrored motion require without slip.
+/// Friction coefficient that the motion, its repetitions and the mirrored motion require without slip.
 fn friction_demand(computed: &ComputedRun<'_>) -> Option<f64> {
     let own = match computed.repeated {
         Some(repeated) => repeated.friction_demand,
@@ -523,7 +525,7 @@ fn friction_demand(computed: &ComputedRun<'_>) -> Option<f64> {
     own.into_iter().chain(mirrored).reduce(f64::max)
 }
 
-/// Returns the only direction in which a motion is computed, if the other direction is another problem; otherwise `None`.
+/// The only direction in which a motion is computed, if the other direction is another problem; otherwise `None`.
 fn only_direction(scenario: &Scenario, model: &dyn Model) -> Option<Directions> {
     let directions = scenario.simulation.direction;
     let (ground, request) = (scenario.ground_motion(), scenario.request());
@@ -618,8 +620,9 @@ impl RowResults {
 
 impl RepeatabilitySummary {
     fn of(repeatability: &Repeatability) -> Self {
-        let names = ["own"].into_iter();
-        let names = names.chain(repeatability.repeated.iter().copied());
+        let names = ["own"]
+            .into_iter()
+            .chain(repeatability.repeated.iter().copied());
         let named = names.map(key).zip(&repeatability.outcomes);
         let outcomes = named.clone().map(|(key, one)| (key, one.kind()));
         let sways = named.map(|(key, one)| (key, one.overturning_sway()));
@@ -630,7 +633,7 @@ impl RepeatabilitySummary {
         }
     }
 
-    /// Returns the names of the repetitions that did not fail.
+    /// Names of the repetitions that did not fail.
     pub(super) fn repetition_names(&self) -> Vec<String> {
         let Self { outcomes, .. } = self;
         outcomes.0[1..]
@@ -639,19 +642,19 @@ impl RepeatabilitySummary {
             .collect()
     }
 
-    /// Returns whether one of the repetitions is that under the mirrored ground motion.
+    /// Whether one of the repetitions is that under the mirrored ground motion.
     pub(super) fn is_mirrored(&self) -> bool {
         let mut repeated = self.repetition_names().into_iter();
         repeated.any(|name| name == Repetition::MIRRORED)
     }
 
-    /// Returns the opposite side of overturning, with the names of the repetitions that overturn to it; `None` if all overturn to one side.
+    /// Opposite side of overturning, with the names of the repetitions that overturn to it; `None` if all overturn to one side.
     pub(super) fn other_side(&self) -> Option<(Sway, String)> {
         let mut others = self.other_outcomes().into_iter();
         others.find_map(|(other, names)| Some((other.overturning_sway()?, names)))
     }
 
-    /// Returns whether a repetition has another verdict, or overturns to the other side.
+    /// Whether a repetition has another verdict, or overturns to the other side.
     pub(super) fn differs(&self) -> bool {
         let own = self.own_outcome();
         let differs = |(other, _): &(Outcome, String)| {
@@ -661,7 +664,7 @@ impl RepeatabilitySummary {
         self.other_outcomes().iter().any(differs)
     }
 
-    /// Returns the outcome of the motion itself.
+    /// Outcome of the motion itself.
     fn own_outcome(&self) -> Option<Outcome> {
         let kinds = self.outcomes.0.iter();
         let mut outcomes = kinds.zip(&self.overturning_sways.0);
@@ -669,7 +672,7 @@ impl RepeatabilitySummary {
         Some(kind.to_outcome(*sway))
     }
 
-    /// Returns the other outcomes, including those that differ in the side of overturning alone, each with the names of its repetitions.
+    /// The other outcomes, including those that differ in the side of overturning alone, each with the names of its repetitions.
     pub(super) fn other_outcomes(&self) -> Vec<(Outcome, String)> {
         let Self {
             outcomes: Named(kinds),
@@ -693,7 +696,7 @@ impl RepeatabilitySummary {
     }
 }
 
-/// Returns the peak of the first half cycle that rocks, in radians.
+/// Peak of the first half cycle that rocks, in radians.
 fn first_peak_rad(history: &Summary) -> Option<f64> {
     let mut cycles = history.half_cycles().into_iter();
     let first = cycles.find(|cycle| cycle.peak_rad > STRAIGHT_RAD);
@@ -709,14 +712,14 @@ impl VariationSummary {
         }
     }
 
-    /// Returns the worse verdict of all directions; incomplete if a history failed.
+    /// Worse verdict of all directions; incomplete if a history failed.
     pub(super) fn verdict(&self) -> Verdict {
         let own = self.end.verdict();
         let mirrored = self.mirrored.as_ref();
         mirrored.map_or(own, |mirrored| own.max(mirrored.verdict()))
     }
 
-    /// Returns the ends in all directions, with their names.
+    /// Ends in all directions, with their names.
     pub(super) fn named_ends(&self) -> impl Iterator<Item = (&'static str, &VariationOutcome)> {
         let mirrored = self.mirrored.iter().map(|end| ("; mirrored: ", end));
         [("", &self.end)].into_iter().chain(mirrored)
@@ -745,7 +748,7 @@ impl VariationOutcome {
     }
 }
 
-/// Returns the summary of a history as JSON.
+/// Summary of a history as JSON.
 ///
 /// # Errors
 /// When a value is not finite.

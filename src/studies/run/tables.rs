@@ -159,7 +159,7 @@ pub(super) fn events(model: &dyn Model) -> Vec<Column<'static, Event>> {
     all
 }
 
-/// Returns the columns of `impacts.csv` for mechanisms, one row per impact.
+/// Columns of `impacts.csv` for mechanisms, one row per impact.
 ///
 /// The mechanism after the impact is written with the energy that it would keep, even if this energy is so small that the structure comes to
 /// rest. Hinges are empty if no mechanism can follow.
@@ -226,7 +226,7 @@ pub(super) fn landings(model: &dyn Model) -> Vec<Column<'static, Event>> {
     all
 }
 
-/// Returns the energy lost in an impact, in J.
+/// Energy lost in an impact, in J.
 pub(super) fn energy_loss_j(impact: &Impact) -> f64 {
     impact.energy_before_j - impact.energy_after_j
 }
@@ -239,7 +239,7 @@ fn opened_hinges(event: &Event) -> &[Hinge] {
     impact(event).map_or(&[], |impact| &impact.opened)
 }
 
-/// Returns a column with a quantity of the impact; empty for other events.
+/// Column with a quantity of the impact; empty for other events.
 fn impact_column<C: Into<Cell<'static>>>(
     name: &'static str,
     cell: impl Fn(&Impact) -> C + 'static,
@@ -250,19 +250,19 @@ fn impact_column<C: Into<Cell<'static>>>(
 /// Names of the hinges of a mechanism in columns, from left to right.
 const HINGES: [&str; 4] = ["a", "b", "c", "d"];
 
-/// Returns names of columns: `parts` of each of a number of hinges.
+/// Names of columns: `parts` of each of a number of hinges.
 fn hinge_columns<const N: usize>(sections: usize, what: &str, parts: [&str; N]) -> Vec<String> {
     let hinges = HINGES.iter().take(sections);
     let names = hinges.flat_map(|hinge| parts.map(|part| format!("{what}_{hinge}_{part}")));
     names.collect()
 }
 
-/// Returns the number of hinges of a mechanism that are at sections of an arch.
+/// Number of hinges of a mechanism that are at sections of an arch.
 fn sections(model: &dyn MechanismModel) -> usize {
     hinge_cells(&model.hinges_after(0, model.first_side()), 0).len()
 }
 
-/// Returns the columns with angle and edge of a number of hinges.
+/// Columns with angle and edge of a number of hinges.
 fn hinges(
     what: &str,
     sections: usize,
@@ -277,7 +277,7 @@ fn hinges(
     )
 }
 
-/// Returns the angles, in degrees from the left springing, and the edges of hinges at sections of an arch, with empty cells up to the number
+/// Angles, in degrees from the left springing, and the edges of hinges at sections of an arch, with empty cells up to the number
 /// `least`.
 fn hinge_cells(hinges: &[Hinge], least: usize) -> Vec<(Option<f64>, Option<&'static str>)> {
     let sections = hinges.iter().filter_map(|hinge| match hinge {
@@ -291,12 +291,12 @@ fn hinge_cells(hinges: &[Hinge], least: usize) -> Vec<(Option<f64>, Option<&'sta
     cells
 }
 
-/// Returns the numbers of the joints of these hinges, separated by spaces.
+/// Numbers of the joints of these hinges, separated by spaces.
 fn joint_numbers(hinges: &[Hinge]) -> String {
     joints_in_words(hinges, |joint, _| joint.to_string())
 }
 
-/// Returns the edges of these hinges, separated by spaces.
+/// Edges of these hinges, separated by spaces.
 fn joint_edges(hinges: &[Hinge]) -> String {
     joints_in_words(hinges, |_, edge| edge.map_or("both", Edge::name).to_owned())
 }

@@ -73,7 +73,7 @@ pub(super) struct WrittenFiles {
     pub outside_times_s: [Vec<f64>; 2],
 }
 
-/// Returns the words of a run, or of a comparison of several models, from its JSON. The lines about files are missing.
+/// Words of a run, or of a comparison of several models, from its JSON. The lines about files are missing.
 ///
 /// # Errors
 /// When the JSON is not a summary of a run.
@@ -111,12 +111,12 @@ struct Slip {
 type RepeatedHalfCycles<'s> = Vec<(&'s HalfCycle, &'s RepeatedHalfCycle)>;
 
 impl RunSummary {
-    /// Returns the verdict in words, as a run prints it.
+    /// Verdict in words, as a run prints it.
     pub fn verdict_line(&self) -> String {
         render(&VerdictLine { summary: self })
     }
 
-    /// Returns true if no block moved until the end of the run.
+    /// True if no block moved until the end of the run.
     fn is_unmoved(&self) -> bool {
         match self.outcome.outcome {
             OutcomeKind::NeverMoved => true,
@@ -125,13 +125,13 @@ impl RunSummary {
         }
     }
 
-    /// Returns the time since which elastic joints that still move at the end only vibrate, in s; `None` for other outcomes.
+    /// Time since which elastic joints that still move at the end only vibrate, in s; `None` for other outcomes.
     pub(super) fn vibrates_since_s(&self) -> Option<f64> {
         let moves = self.outcome.outcome == OutcomeKind::StillRocking;
         self.elastic_summary()?.vibrates_since_s.filter(|_| moves)
     }
 
-    /// Returns true if the runs of several models are printed together, and this one is among them.
+    /// True if the runs of several models are printed together, and this one is among them.
     pub(super) fn is_compared_with(&self, model: &'static ModelKind) -> bool {
         self.compared_models.contains(&model)
     }
@@ -149,7 +149,7 @@ impl RunSummary {
             .is_some_and(|sliding| sliding.largest_offsets_m.iter().any(|slip_m| *slip_m > 0.0))
     }
 
-    /// Returns Coulomb's coefficient of friction; `None` if joints cannot slip.
+    /// Coulomb's coefficient of friction; `None` if joints cannot slip.
     pub(super) fn friction_coefficient(&self) -> Option<f64> {
         self.row.as_ref()?.friction_coefficient
     }
@@ -158,7 +158,7 @@ impl RunSummary {
         self.row.as_ref()?.row.peak_potential_over_barrier
     }
 
-    /// Returns the remaining energy over the barrier that it cannot pass any more; `None` if the verdict does not depend on it.
+    /// Remaining energy over the barrier that it cannot pass any more; `None` if the verdict does not depend on it.
     fn remaining_over_barrier(&self) -> Option<f64> {
         self.mechanisms.as_ref()?.remaining_energy_over_barrier
     }
@@ -171,16 +171,18 @@ impl RunSummary {
         self.mechanisms.as_ref()?.thrust?.four_links
     }
 
-    /// Returns the half cycles with the largest peaks that are printed as nonzero, in order of time.
+    /// Half cycles with the largest peaks that are printed as nonzero, in order of time.
     fn half_cycles(&self) -> Vec<&HalfCycle> {
         let cycles = self.row.iter().flat_map(|row| &row.half_cycles);
         select_largest(cycles.collect(), |one| one.peak_rad)
     }
 
-    /// Returns the comparisons of these half cycles with the repetitions: first the certain ones, then the others.
+    /// Comparisons of these half cycles with the repetitions: first the certain ones, then the others.
     fn repeated_half_cycles(&self) -> [RepeatedHalfCycles<'_>; 2] {
-        let repeated = self.repeatability.iter();
-        let repeated = repeated.flat_map(|all| &all.repeatability.half_cycles);
+        let repeated = self
+            .repeatability
+            .iter()
+            .flat_map(|all| &all.repeatability.half_cycles);
         let cycles = || self.row.iter().flat_map(|row| &row.half_cycles);
         let pairs = repeated.filter_map(|repeated| {
             let own = cycles().find(|own| own.peak_time_s == repeated.peak_time_s)?;
@@ -191,7 +193,7 @@ impl RunSummary {
         [same, differ]
     }
 
-    /// Returns the number of the body with the largest rotation, the last one of several.
+    /// Number of the body with the largest rotation, the last one of several.
     fn largest_body(&self) -> usize {
         let mut peaks_rad = self.peak_rotations_rad.0.iter();
         let last = peaks_rad.rposition(|(_, peak)| *peak == self.largest_peak_rotation_rad);
@@ -209,7 +211,7 @@ impl RunSummary {
         by_body(&bodies, &peaks_rad)
     }
 
-    /// Returns the slips of the joints that slipped, the largest slip first.
+    /// Slips of the joints that slipped, the largest slip first.
     fn slips(&self) -> Vec<Slip> {
         let joints = self.row.iter().flat_map(|row| &row.slipped_joints);
         let slip = |joint: &usize| {
@@ -223,7 +225,7 @@ impl RunSummary {
         joints.filter_map(slip).collect()
     }
 
-    /// Returns the feet whose records end before the ground stops, with the times.
+    /// Feet whose records end before the ground stops, with the times.
     fn ended_records(&self) -> Vec<(&'static str, f64)> {
         let feet = self.row.as_ref().and_then(|row| row.feet);
         let ends_s = feet
@@ -234,19 +236,19 @@ impl RunSummary {
         feet.filter(|(_, at_s)| *at_s < self.ground.end_s).collect()
     }
 
-    /// Returns whether no push starts the structure to either side.
+    /// Whether no push starts the structure to either side.
     fn no_push_starts_it(&self) -> bool {
         let Sides { right, left } = self.incipient_acceleration_g;
         right.or(left).is_none()
     }
 
-    /// Returns the acceleration that starts the structure; `None` if it differs between the sides.
+    /// Acceleration that starts the structure; `None` if it differs between the sides.
     fn common_start_g(&self) -> Option<f64> {
         let Sides { right, left } = self.incipient_acceleration_g;
         right.filter(|right| left.is_some_and(|left| (right - left).abs() <= 1e-9 * right))
     }
 
-    /// Returns the friction that prevents sliding; `None` if joints slip, and for mechanisms that did not rock.
+    /// Friction that prevents sliding; `None` if joints slip, and for mechanisms that did not rock.
     fn reported_friction(&self) -> Option<FrictionDemand> {
         let is_reported = match &self.mechanisms {
             None => self.sliding().is_none(),
@@ -257,7 +259,7 @@ impl RunSummary {
         self.friction.filter(|_| is_reported)
     }
 
-    /// Returns the conditions of the outcome: friction that stone may not have, and properties that change the outcome.
+    /// Conditions of the outcome: friction that stone may not have, and properties that change the outcome.
     fn conditions(&self) -> Vec<Caveat<'_>> {
         let conditions = [
             self.friction_condition(),
@@ -269,22 +271,22 @@ impl RunSummary {
     }
 }
 
-/// Returns the smallest and the largest value in all repetitions.
+/// Smallest and the largest value in all repetitions.
 fn range(value: &RepeatedValue) -> String {
     range_ends([value.min, value.max], 6).join(" to ")
 }
 
-/// Returns the largest final slip of joints, in mm.
+/// Largest final slip of joints, in mm.
 fn largest_end_mm(slips: &[Slip]) -> f64 {
     slips.iter().map(|slip| slip.end_mm).fold(0.0, f64::max)
 }
 
-/// Returns the position of a point in the format of `--point`.
+/// Position of a point in the format of `--point`.
 fn place_of(point: &PointPeaks) -> String {
     format_point(Vector2::new(point.x_m, point.y_m))
 }
 
-/// Returns the ratio of a push to the push that starts the structure, in words; empty if the structure starts at zero push.
+/// Ratio of a push to the push that starts the structure, in words; empty if the structure starts at zero push.
 fn times(push_g: &f64, starts_g: &f64) -> String {
     match push_g / starts_g {
         times if times.is_finite() => format!(", {times:.2} times as much"),
@@ -293,7 +295,7 @@ fn times(push_g: &f64, starts_g: &f64) -> String {
 }
 
 impl NotableImpact {
-    /// Returns the joints that closed and opened, each with the verb.
+    /// Joints that closed and opened, each with the verb.
     fn moved_joints(&self) -> [(&[usize], &'static str); 2] {
         [
             (&self.closed_joints, "close"),
@@ -301,13 +303,13 @@ impl NotableImpact {
         ]
     }
 
-    /// Returns true if four digits of the fraction of the energy that it keeps would be "1.0000", although it takes energy.
+    /// True if four digits of the fraction of the energy that it keeps would be "1.0000", although it takes energy.
     fn takes_little(&self) -> bool {
         self.restitution < 1.0 && format!("{:.4}", self.restitution) == "1.0000"
     }
 }
 
-/// Returns the numbers of joints; consecutive joints as `3-7`.
+/// Numbers of joints; consecutive joints as `3-7`.
 fn joint_numbers(joints: &[usize]) -> String {
     let runs = joints.chunk_by(|one, next| one + 1 == *next);
     let names = runs.map(|run| match run {
@@ -319,7 +321,7 @@ fn joint_numbers(joints: &[usize]) -> String {
     names.collect::<Vec<_>>().join(", ")
 }
 
-/// Returns the values with the largest peaks that are printed as nonzero, in their order.
+/// Values with the largest peaks that are printed as nonzero, in their order.
 fn select_largest<T: Copy>(cycles: Vec<T>, peak_rad: impl Fn(T) -> f64) -> Vec<T> {
     let mut rocking: Vec<usize> = (0..cycles.len())
         .filter(|index| peak_rad(cycles[*index]) > STRAIGHT_RAD)

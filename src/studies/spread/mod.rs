@@ -43,7 +43,7 @@ impl SpringingDirection {
     /// Default directions: outwards, inwards and down.
     pub const DEFAULT_DEG: [f64; 3] = [0.0, 180.0, 90.0];
 
-    /// Returns the name of the direction in words.
+    /// Name of the direction in words.
     pub fn label(&self) -> String {
         match self.angle_deg {
             0.0 => "outwards".to_owned(),
@@ -54,7 +54,7 @@ impl SpringingDirection {
         }
     }
 
-    /// Returns the movements of both springings for a distance along this direction, in metres.
+    /// Movements of both springings for a distance along this direction, in metres.
     pub fn movements(&self, movement_m: f64) -> Movements {
         let (sin, cos) = libm::sincos(self.angle_deg.to_radians());
         // Removes rounding errors of right angles.
@@ -198,8 +198,9 @@ pub fn spread(
     let settled = scenario.motion.supports().unwrap_or_default();
     let sizes = [clear_span_m, weight_n];
     let compute = |direction: &SpringingDirection| path(&row, settled, *direction, sizes);
-    let paths = in_parallel(directions, compute).into_iter();
-    let paths = paths.collect::<Result<_, _>>();
+    let paths = in_parallel(directions, compute)
+        .into_iter()
+        .collect::<Result<_, _>>();
     Ok(SpreadSummary {
         paths: paths.map_err(StudyError::scenario)?,
         clear_span_m,
@@ -296,8 +297,9 @@ fn stage(follower: &Follower<'_>, movement_m: f64, weight_n: f64) -> Stage {
             first_g.map_err(|error| error.to_string())
         };
         let first_g = found(Push::FirstMotion, sway, first_g)?;
-        let capacity_g = follower.capacity_g(sway, first_g);
-        let capacity_g = capacity_g.map_err(|error| error.to_string());
+        let capacity_g = follower
+            .capacity_g(sway, first_g)
+            .map_err(|error| error.to_string());
         Some((first_g, found(Push::Capacity, sway, capacity_g)))
     });
     let open = |state: &HingeState| {
@@ -325,12 +327,12 @@ fn stage(follower: &Follower<'_>, movement_m: f64, weight_n: f64) -> Stage {
 }
 
 impl SpreadSummary {
-    /// Returns whether the movement is further to that of `[supports]`.
+    /// Whether the movement is further to that of `[supports]`.
     fn is_further(&self) -> bool {
         !self.scenario["supports"].is_null()
     }
 
-    /// Returns the end of a path in words.
+    /// End of a path in words.
     fn end_of(&self, path: &SpreadPath) -> String {
         let (moving, span_m) = (
             path.movement_in_words(&self.support),
@@ -370,7 +372,7 @@ impl Report for SpreadSummary {
 }
 
 impl Stage {
-    /// Returns the smaller push of both sides; `None` if no push moves the arch, or one of the pushes was not found.
+    /// Smaller push of both sides; `None` if no push moves the arch, or one of the pushes was not found.
     fn smaller_push(&self, push: Push) -> Option<f64> {
         // A capacity is not searched for if the first motion was not found.
         let mut missing = self.not_found.iter();
@@ -384,7 +386,7 @@ impl Stage {
         <[_; 2]>::from(sides).into_iter().flatten().reduce(f64::min)
     }
 
-    /// Returns the hinges as numbers of joints with the initials of their edges.
+    /// Hinges as numbers of joints with the initials of their edges.
     fn hinges_in_letters(&self) -> String {
         let letters = self.hinges.iter().map(|HingeOpening { hinge, .. }| {
             let edge = &hinge.edge.name()[..1];
@@ -395,19 +397,19 @@ impl Stage {
 }
 
 impl SpreadPath {
-    /// Returns the moving support, whose name is `support`, and its direction.
+    /// Moving support, whose name is `support`, and its direction.
     fn movement_in_words(&self, support: &str) -> String {
         let SpringingDirection { springing, .. } = self.direction;
         format!("{} {support} {}", springing.name(), self.direction.label())
     }
 
-    /// Returns the stages that words show.
+    /// Stages that words show.
     fn shown_stages(&self) -> impl Iterator<Item = &Stage> {
         let last = self.stages.len() - 1;
         PARTS.iter().map(move |part| &self.stages[*part.min(&last)])
     }
 
-    /// Returns each push that was not found, with the number of stages and the movement of the first stage.
+    /// Each push that was not found, with the number of stages and the movement of the first stage.
     fn missing_pushes(&self) -> Vec<(usize, f64, &MissingPush)> {
         let mut missing: Vec<(usize, f64, &MissingPush)> = Vec::new();
         for stage in &self.stages {
@@ -425,7 +427,7 @@ impl SpreadPath {
         missing
     }
 
-    /// Returns the largest coefficient of friction that this path needs.
+    /// Largest coefficient of friction that this path needs.
     fn friction_demand(&self) -> f64 {
         let demands = self.stages.iter().filter_map(|stage| stage.friction_demand);
         demands.fold(0.0, f64::max)

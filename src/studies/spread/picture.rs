@@ -70,9 +70,10 @@ fn draw_pushes(figure: Figure, spread: &SpreadSummary, spots: &[Spot]) -> Chart 
             (Push::Capacity, solid),
             (Push::FirstMotion, thin(stroke.color)),
         ] {
-            let points = path.stages.iter();
-            let points =
-                points.filter_map(|stage| Some((stage.movement_m, stage.smaller_push(push)?)));
+            let points = path
+                .stages
+                .iter()
+                .filter_map(|stage| Some((stage.movement_m, stage.smaller_push(push)?)));
             let name = format!("{}, {direction}", push.name());
             marks.push(Mark::curve(name, stroke, points));
         }
@@ -170,7 +171,7 @@ impl<'a> DeformedArch<'a> {
         drawing.label(below, Anchor::Middle, 0.0, text);
     }
 
-    /// Returns a point of the body with the face of a joint: the block after the joint, or the last block.
+    /// Point of the body with the face of a joint: the block after the joint, or the last block.
     fn body_point(&self, joint: usize, at_m: Vector2<f64>) -> BodyPoint {
         let body = Some(joint.min(self.stage.poses.len() - 1));
         BodyPoint { body, at_m }

@@ -65,10 +65,10 @@ pub fn report(
     Ok(results.in_order(&FILES))
 }
 
-/// Returns the keys and values of `[supports]`.
+/// Keys and values of `[supports]`.
 fn values_of(movements: Movements) -> Vec<(String, f64)> {
-    let sides = json!(movements);
-    let sides = sides.as_object().into_iter().flatten();
+    let movements = json!(movements);
+    let sides = movements.as_object().into_iter().flatten();
     let values = sides.flat_map(|(side, table)| {
         let table = table.as_object().into_iter().flatten();
         table.filter_map(move |(key, value)| {
@@ -78,7 +78,7 @@ fn values_of(movements: Movements) -> Vec<(String, f64)> {
     values.collect()
 }
 
-/// Returns all stages of all paths.
+/// All stages of all paths.
 fn rows(spread: &SpreadSummary) -> impl Iterator<Item = (&SpreadPath, &Stage)> {
     let paths = spread.paths.iter();
     paths.flat_map(|path| path.stages.iter().map(move |stage| (path, stage)))

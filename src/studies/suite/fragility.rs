@@ -144,7 +144,7 @@ pub enum NoFit {
     Undetermined,
 }
 
-/// Returns a number of cases in words, which differ for one case.
+/// Number of cases in words, which differ for one case.
 fn count_in_words(cases: usize, only: &str, several: fn(usize) -> String) -> String {
     match cases {
         1 => only.to_owned(),
@@ -153,22 +153,22 @@ fn count_in_words(cases: usize, only: &str, several: fn(usize) -> String) -> Str
 }
 
 impl Fragility {
-    /// Returns the probability that a ground motion of intensity `x` overturns the structure; zero at zero intensity.
+    /// Probability that a ground motion of intensity `x` overturns the structure; zero at zero intensity.
     pub fn probability(&self, x: f64) -> f64 {
         normal_probability(self.line.value_at(logarithm(x)))
     }
 
-    /// Returns the ends of the 95 % interval of the median, by Student's distribution for the number of records; `None` with one record.
+    /// Ends of the 95 % interval of the median, by Student's distribution for the number of records; `None` with one record.
     pub fn median_interval(&self) -> Option<[f64; 2]> {
         median_interval(self.median, self.dispersion, self.records)
     }
 
-    /// Returns the ends of the 95 % interval of the dispersion, by the chi-square distribution for the number of records; `None` with one record.
+    /// Ends of the 95 % interval of the dispersion, by the chi-square distribution for the number of records; `None` with one record.
     pub fn dispersion_interval(&self) -> Option<[f64; 2]> {
         dispersion_interval(self.dispersion, self.records)
     }
 
-    /// Returns the pointwise 95 % confidence band of the curve at intensity `x`: `Phi(eta -+ t s)`. `s` is the larger standard error of
+    /// Pointwise 95 % confidence band of the curve at intensity `x`: `Phi(eta -+ t s)`. `s` is the larger standard error of
     /// `eta`, with or without dependence within records, and `t` is Student's quantile for the number of records, 1.96 with one record.
     pub fn band(&self, x: f64) -> (f64, f64) {
         let log = logarithm(x);
@@ -226,7 +226,7 @@ impl Fragility {
     }
 }
 
-/// Returns `ln x` with `x` clamped to positive finite numbers, so that the logarithm is finite.
+/// `ln x` with `x` clamped to positive finite numbers, so that the logarithm is finite.
 fn logarithm(x: f64) -> f64 {
     libm::log(x.clamp(f64::MIN_POSITIVE, f64::MAX))
 }
@@ -243,7 +243,7 @@ pub(super) fn group_by_intensity<T: Copy>(
         .collect()
 }
 
-/// Returns the fraction of overturned cases at each intensity, the lowest first.
+/// Fraction of overturned cases at each intensity, the lowest first.
 pub fn fractions(observations: &[Observation]) -> Vec<Fraction> {
     group_by_intensity(observations.to_vec(), |case| case.intensity)
         .into_iter()
@@ -299,12 +299,12 @@ impl Fraction {
         libm::log(self.intensity)
     }
 
-    /// Returns the number of overturned cases and the number of survived cases.
+    /// Number of overturned cases and the number of survived cases.
     const fn numbers(&self) -> [f64; 2] {
         [self.overturned, self.cases as f64 - self.overturned]
     }
 
-    /// Returns the log-probability of the outcomes of the cases, at the linear predictor `eta`.
+    /// Log-probability of the outcomes of the cases, at the linear predictor `eta`.
     fn log_probability(&self, eta: f64) -> LogProbability {
         let [overturned, survived] = self.numbers();
         let [fall, survival] = [eta, -eta].map(LogProbability::at);
@@ -384,9 +384,10 @@ const SHORT: f64 = 1e-20;
 
 impl Likelihood {
     fn at(levels: &[Fraction], mut line: FittedLine) -> Self {
-        let terms = levels.iter();
-        let terms = terms.map(|level| level.log_probability(line.value_at(level.log())));
-        let terms: Vec<LogProbability> = terms.collect();
+        let terms: Vec<LogProbability> = levels
+            .iter()
+            .map(|level| level.log_probability(line.value_at(level.log())))
+            .collect();
         let information: f64 = terms.iter().map(|term| term.bend).sum();
         let lever: f64 = (levels.iter().zip(&terms))
             .map(|(level, term)| term.bend * (level.log() - line.pivot))
@@ -438,7 +439,7 @@ impl Likelihood {
     }
 }
 
-/// Returns the standard error of a quantity with this gradient by level and slope.
+/// Standard error of a quantity with this gradient by level and slope.
 fn standard_error(covariance: &Matrix2<f64>, gradient: &Vector2<f64>) -> f64 {
     let variance = gradient.dot(&(covariance * gradient));
     // With few records the matrix may be singular, and rounding errors may make the variance negative. Infinity stays infinite.
@@ -475,7 +476,7 @@ fn clustered_covariance(
     (records > 1).then(|| covariance * squares * covariance * factor)
 }
 
-/// Returns `Phi(eta)`.
+/// `Phi(eta)`.
 fn normal_probability(eta: f64) -> f64 {
     0.5 * libm::erfc(-eta * FRAC_1_SQRT_2)
 }
@@ -496,7 +497,7 @@ const TAIL: f64 = -5.0;
 const TERMS: u32 = 40;
 
 impl LogProbability {
-    /// Returns `ln Phi(eta)` with its derivatives `h = phi / Phi` and `-h (h + eta)`.
+    /// `ln Phi(eta)` with its derivatives `h = phi / Phi` and `-h (h + eta)`.
     fn at(eta: f64) -> Self {
         if eta < TAIL {
             // Laplace's continued fraction: with t = -eta, h - t = 1/(t + 2/(t + 3/(t + ...))).

@@ -68,7 +68,7 @@ impl Heading {
         }
     }
 
-    /// Returns the origin of the results, without their records.
+    /// Origin of the results, without their records.
     pub(in crate::studies) fn origin(&self) -> Origin {
         Origin::of_tables(&self.scenario)
     }
@@ -78,7 +78,7 @@ impl Heading {
         self.title.as_deref().unwrap_or(otherwise)
     }
 
-    /// Returns the axis of the intensities: its label, and the scale from a little below the lowest level to a little above the highest.
+    /// Axis of the intensities: its label, and the scale from a little below the lowest level to a little above the highest.
     pub(super) fn axis(&self, results: &SuiteFragility, figure: Figure) -> (&'static str, Scale) {
         let ends = [results.levels.first(), results.levels.last()];
         let [low, high] = ends.map(|level| level.map_or(1.0, |level| level.intensity));
@@ -112,7 +112,7 @@ impl Heading {
         first
     }
 
-    /// Returns the scenario of a case, whose text is among those of [`Heading::add_texts`].
+    /// Scenario of a case, whose text is among those of [`Heading::add_texts`].
     pub(super) fn scenario_of(&self, case: &CaseRow, first: usize) -> Option<CaseScenario> {
         let mut known = self.unit_grounds.iter();
         let record = known.position(|unit| unit.record == case.record)?;
@@ -128,7 +128,7 @@ impl Heading {
         })
     }
 
-    /// Returns the level of a case in words.
+    /// Level of a case in words.
     pub(super) fn level(&self, case: &CaseRow) -> String {
         let level = plain(case.level(self.measure));
         format!("{} {level}", self.measure.name())

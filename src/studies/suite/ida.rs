@@ -61,12 +61,14 @@ pub fn draw(figure: Figure, heading: &Heading, results: &SuiteFragility, spots: 
         .keys
         .extend(results.has_uncertain().then_some(uncertain));
     let levels = fractiles(results);
-    let fractiles = FRACTILES.into_iter().enumerate();
-    let fractiles = fractiles.map(|(which, (_, name, stroke))| {
-        let known = levels.iter();
-        let points = known.filter_map(|level| Some((level.peaks[which]?, level.intensity)));
-        Mark::curve(name, stroke, points)
-    });
+    let fractiles = FRACTILES
+        .into_iter()
+        .enumerate()
+        .map(|(which, (_, name, stroke))| {
+            let known = levels.iter();
+            let points = known.filter_map(|level| Some((level.peaks[which]?, level.intensity)));
+            Mark::curve(name, stroke, points)
+        });
     let mut chart = chart.with_named(fractiles.collect());
     if over_critical {
         chart.keys.push(Key::line("critical rotation", CRITICAL));
@@ -89,8 +91,9 @@ fn draw_record(
 ) -> Vec<Mark> {
     let level = |case: &CaseRow| case.level(results.measure);
     // Overturned cases interrupt the curve.
-    let points = cases.iter();
-    let points = points.filter_map(|case| Some((peak_or_infinity(case)?, level(case))));
+    let points = cases
+        .iter()
+        .filter_map(|case| Some((peak_or_infinity(case)?, level(case))));
     let mut marks = vec![Mark::curve(name, stroke, points)];
     let plain = Stroke::new(stroke.color, 1.0, "");
     for case in cases {
@@ -136,7 +139,7 @@ pub struct Fractiles {
     pub peaks: [Option<f64>; 3],
 }
 
-/// Returns the peak of a history over the critical rotation, or of a row of blocks in radians.
+/// Peak of a history over the critical rotation, or of a row of blocks in radians.
 fn peak(ending: &Ending) -> f64 {
     let of_row = ending.peak_rotation_rad;
     ending.peak_over_critical.unwrap_or(of_row)
@@ -165,7 +168,7 @@ pub fn fractiles(results: &SuiteFragility) -> Vec<Fractiles> {
 const CRITICAL: Stroke = Stroke::new(color::GREY, 1.4, "6 4");
 const UNCERTAIN: Stroke = Stroke::new(SpotKind::Uncertain.fill(), 1.6, "");
 
-/// Returns the largest rotation of each case, in radians, infinite if the case overturned; `None` without a complete history.
+/// Largest rotation of each case, in radians, infinite if the case overturned; `None` without a complete history.
 pub(super) fn rotations_rad(cases: &[CaseRow]) -> Vec<Option<f64>> {
     let endings = cases.iter().map(CaseRow::complete_ending);
     endings
@@ -173,14 +176,14 @@ pub(super) fn rotations_rad(cases: &[CaseRow]) -> Vec<Option<f64>> {
         .collect()
 }
 
-/// Returns the distribution of the peaks of all cases: ascending finite peaks, as in [`Fractiles`], each with the share of cases up
+/// Distribution of the peaks of all cases: ascending finite peaks, as in [`Fractiles`], each with the share of cases up
 /// to the peak. The last share is below 1 if cases overturned.
 pub fn peaks(results: &SuiteFragility) -> Vec<(f64, f64)> {
     let peaks = results.cases.iter().filter_map(peak_or_infinity);
     shares_up_to(peaks.map(|peak| [peak, 1.0]))
 }
 
-/// Returns the peak of a case with a complete history, infinite if the case overturned.
+/// Peak of a case with a complete history, infinite if the case overturned.
 fn peak_or_infinity(case: &CaseRow) -> Option<f64> {
     let ending = case.complete_ending()?;
     match ending.overturned_itself() {

@@ -70,7 +70,7 @@ pub struct CaseRow {
 }
 
 impl CaseRow {
-    /// Returns the level, in the measure of the suite.
+    /// Level, in the measure of the suite.
     pub const fn level(&self, measure: Measure) -> f64 {
         match measure {
             Measure::Scale => self.scale,
@@ -78,44 +78,44 @@ impl CaseRow {
         }
     }
 
-    /// Returns the level from which the record overturns the structure, if this is its first overturning case: `edge`, or the level without an
+    /// Level from which the record overturns the structure, if this is its first overturning case: `edge`, or the level without an
     /// edge.
     pub fn overturns_from(&self, measure: Measure) -> f64 {
         self.edge.unwrap_or_else(|| self.level(measure))
     }
 
-    /// Returns the verdict; `None` if there is no history.
+    /// Verdict; `None` if there is no history.
     pub fn verdict(&self) -> Option<Verdict> {
         self.result.as_ref().ok().map(Ending::verdict)
     }
 
-    /// Returns the probability of overturning; `None` if there is no history, or the history is incomplete.
+    /// Probability of overturning; `None` if there is no history, or the history is incomplete.
     pub fn overturning_share(&self) -> Option<f64> {
         self.result.as_ref().ok()?.overturning_share()
     }
 
-    /// Returns the ending of a complete history; `None` if there is no history, or the history is incomplete.
+    /// Ending of a complete history; `None` if there is no history, or the history is incomplete.
     pub(super) fn complete_ending(&self) -> Option<&Ending> {
         complete_ending(&self.result)
     }
 
-    /// Returns the verdict; `None` if there is no history, or the history is incomplete.
+    /// Verdict; `None` if there is no history, or the history is incomplete.
     pub fn known_verdict(&self) -> Option<Verdict> {
         self.complete_ending().map(Ending::verdict)
     }
 
-    /// Returns true if both cases apply one record with one sign.
+    /// True if both cases apply one record with one sign.
     fn has_same_record(&self, other: &Self) -> bool {
         (&self.record, self.mirrored) == (&other.record, other.mirrored)
     }
 
-    /// Returns the name of the record, with "mirrored" if the record is mirrored.
+    /// Name of the record, with "mirrored" if the record is mirrored.
     pub(super) fn record_in_words(&self) -> String {
         let mirrored = if self.mirrored { " mirrored" } else { "" };
         format!("{}{mirrored}", self.record)
     }
 
-    /// Returns true if the structure certainly survived, but had not come to rest.
+    /// True if the structure certainly survived, but had not come to rest.
     pub fn still_rocking(&self) -> bool {
         let rocking = |ending: &Ending| ending.outcome == Outcome::StillRocking;
         self.verdict() == Some(Verdict::Survives) && self.result.as_ref().is_ok_and(rocking)
@@ -142,7 +142,7 @@ impl<'a> RecordSuite<'a> {
     /// Makes the suite of a scenario, which must start from rest.
     ///
     /// # Errors
-    /// Returns the change that the scenario needs, in words.
+    /// Change that the scenario needs, in words.
     pub fn of(scenario: &'a Scenario) -> Result<Self, String> {
         scenario.check_from_rest("suite")?;
         let suite = scenario.suite.as_ref().ok_or(
@@ -185,17 +185,19 @@ impl Study for RecordSuite<'_> {
         self.suite.records.len() * self.directions.len() * self.levels.len()
     }
 
-    /// Returns the index of the record, with its sign: a level needs the result of the level below to know whether it has an edge.
+    /// Index of the record, with its sign: a level needs the result of the level below to know whether it has an edge.
     fn family(&self, index: usize) -> Option<usize> {
         Some(index / self.levels.len())
     }
 
     fn rows(&self, indices: &[usize]) -> Vec<CaseRow> {
-        let cases = indices.iter().map(|index| {
-            let (level, record, direction) = self.case_parts(*index);
-            case(self.scenario, self.suite, record, level, direction)
-        });
-        let cases: Vec<Case> = cases.collect();
+        let cases: Vec<Case> = indices
+            .iter()
+            .map(|index| {
+                let (level, record, direction) = self.case_parts(*index);
+                case(self.scenario, self.suite, record, level, direction)
+            })
+            .collect();
         let results = Ending::of_all(&*self.model, &cases);
         let overturn: Vec<Option<bool>> = results.iter().map(overturns_certainly).collect();
         let edge = |case: usize| {
@@ -250,7 +252,7 @@ impl Study for RecordSuite<'_> {
     }
 }
 
-/// Returns the directions in which each record of a suite acts: the second one only if its histories are not mirror images.
+/// Directions in which each record of a suite acts: the second one only if its histories are not mirror images.
 pub(super) fn directions(
     scenario: &Scenario,
     suite: &Suite,
@@ -267,7 +269,7 @@ pub(super) fn directions(
     }
 }
 
-/// Returns the ground motion of a case, and the request for its history.
+/// Ground motion of a case, and the request for its history.
 pub(super) fn case(
     scenario: &Scenario,
     suite: &Suite,
@@ -275,14 +277,15 @@ pub(super) fn case(
     level: f64,
     direction: Direction,
 ) -> Case {
-    let shake = suite.record_at(record, level);
-    let shake = shake.ground_motion(scenario.gravity_m_s2());
+    let shake = suite
+        .record_at(record, level)
+        .ground_motion(scenario.gravity_m_s2());
     let ground = scenario.move_both_feet_in(direction, shake);
     let request = scenario.request_on(&ground, &scenario.structure);
     (ground, request)
 }
 
-/// Returns a number of records in words.
+/// Number of records in words.
 pub(super) fn records_in_words(records: usize) -> String {
     match records {
         1 => "1 record".to_owned(),
@@ -290,13 +293,13 @@ pub(super) fn records_in_words(records: usize) -> String {
     }
 }
 
-/// Returns the ending of a complete history; `None` if there is none.
+/// Ending of a complete history; `None` if there is none.
 fn complete_ending(result: &Result<Ending, NoHistory>) -> Option<&Ending> {
     let ending = result.as_ref().ok();
     ending.filter(|ending| ending.verdict() != Verdict::Incomplete)
 }
 
-/// Returns true if a history certainly overturns; `None` without a complete history.
+/// True if a history certainly overturns; `None` without a complete history.
 fn overturns_certainly(result: &Result<Ending, NoHistory>) -> Option<bool> {
     complete_ending(result).map(|ending| ending.verdict() == Verdict::Overturns)
 }
@@ -323,7 +326,7 @@ impl RecordSuite<'_> {
         Heading::new(self.scenario, self.suite, has_both)
     }
 
-    /// Returns the level of a case, the index of its record, and the direction in which the record acts.
+    /// Level of a case, the index of its record, and the direction in which the record acts.
     fn case_parts(&self, index: usize) -> (f64, usize, Direction) {
         let (shake, level) = (index / self.levels.len(), index % self.levels.len());
         let all = self.directions.len();
@@ -334,7 +337,7 @@ impl RecordSuite<'_> {
         )
     }
 
-    /// Returns the level below that of a case; for the lowest level, that at which the structure starts to move under its record. `None` if that is
+    /// Level below that of a case; for the lowest level, that at which the structure starts to move under its record. `None` if that is
     /// unknown or higher.
     fn level_below(&self, index: usize) -> Option<f64> {
         if let Some(below) = (index % self.levels.len()).checked_sub(1) {
@@ -346,7 +349,7 @@ impl RecordSuite<'_> {
         Some(level * onset).filter(|onset| *onset < level)
     }
 
-    /// Returns the lowest edge of all records, without repetitions: below the lowest level at which one of them overturns the structure. Infinite if none
+    /// Lowest edge of all records, without repetitions: below the lowest level at which one of them overturns the structure. Infinite if none
     /// does.
     fn find_lowest_edge(&self) -> f64 {
         *self.lowest.get_or_init(|| {
@@ -383,7 +386,7 @@ impl RecordSuite<'_> {
         Ending::of(&*self.model, &ground, &request)
     }
 
-    /// Returns the level from which on a finer search goes down to the level below: a level that survives, or the safe level of the edge below one that
+    /// Level from which on a finer search goes down to the level below: a level that survives, or the safe level of the edge below one that
     /// overturns; at most the lowest edge of all records, because the quote is the least of them. `None` if there is nothing to search.
     fn search_from(
         &self,
@@ -534,20 +537,20 @@ impl Counts {
         }
     }
 
-    /// Returns the number of doubtful cases: uncertain, incomplete or failed.
+    /// Number of doubtful cases: uncertain, incomplete or failed.
     pub const fn doubtful(&self) -> usize {
         self.uncertain + self.incomplete + self.failed
     }
 }
 
 impl FragilityRow {
-    /// Returns the fraction of cases that overturned, with uncertain ones by their fractions; `None` without cases.
+    /// Fraction of cases that overturned, with uncertain ones by their fractions; `None` without cases.
     pub fn fraction(&self) -> Option<f64> {
         let cases = self.counts.cases;
         (cases > 0).then(|| self.counts.expected / cases as f64)
     }
 
-    /// Returns the fraction of cases that overturned if doubtful ones survive, and if they overturn; `None` without cases.
+    /// Fraction of cases that overturned if doubtful ones survive, and if they overturn; `None` without cases.
     pub fn fraction_ends(&self) -> Option<[f64; 2]> {
         let (cases, overturned) = (self.counts.cases, self.counts.overturned);
         let all = cases + self.counts.incomplete + self.counts.failed;
@@ -600,17 +603,19 @@ impl SuiteFragility {
             Some([fit.probability(intensity), low, high])
         };
         let levels =
-            group_by_intensity(cases.iter().collect(), |case: &CaseRow| case.level(measure));
-        let levels = levels.into_iter().map(|(intensity, cases)| {
-            let others = ends.iter().filter_map(|fit| curve(fit, intensity));
-            let widened =
-                |[at, low, high]: [f64; 3], end: [f64; 3]| [at, low.min(end[1]), high.max(end[2])];
-            FragilityRow {
-                intensity,
-                counts: Counts::of(&cases),
-                curve: curve(&fit, intensity).map(|own| others.fold(own, widened)),
-            }
-        });
+            group_by_intensity(cases.iter().collect(), |case: &CaseRow| case.level(measure))
+                .into_iter()
+                .map(|(intensity, cases)| {
+                    let others = ends.iter().filter_map(|fit| curve(fit, intensity));
+                    let widened = |[at, low, high]: [f64; 3], end: [f64; 3]| {
+                        [at, low.min(end[1]), high.max(end[2])]
+                    };
+                    FragilityRow {
+                        intensity,
+                        counts: Counts::of(&cases),
+                        curve: curve(&fit, intensity).map(|own| others.fold(own, widened)),
+                    }
+                });
         Self {
             measure,
             levels: levels.collect(),
@@ -620,27 +625,28 @@ impl SuiteFragility {
         }
     }
 
-    /// Returns true if a case that counts is uncertain.
+    /// True if a case that counts is uncertain.
     pub fn has_uncertain(&self) -> bool {
         self.levels.iter().any(|level| level.counts.uncertain > 0)
     }
 
-    /// Returns the curve, and those of both ends if a case is doubtful.
+    /// Curve, and those of both ends if a case is doubtful.
     pub(super) fn fits(&self) -> impl Iterator<Item = &Result<Fragility, NoFit>> {
         let in_doubt = self.levels.iter().any(|level| level.counts.doubtful() > 0);
         let shown = if in_doubt { 3 } else { 1 };
         [&self.fit].into_iter().chain(&self.ends).take(shown)
     }
 
-    /// Returns the cases of each record, and the intensities that the structure survives under the record; mirrored records only if their
+    /// Cases of each record, and the intensities that the structure survives under the record; mirrored records only if their
     /// results differ. The first overturning intensity is found by bisection and a finer search, the others are levels of the suite.
     pub fn survivals(&self) -> Vec<(&[CaseRow], Survival)> {
         let mut survivals: Vec<(&[CaseRow], Survival)> = Vec::new();
         for cases in self.cases_by_record() {
             let survival = self.survival(cases);
             let case = &cases[0];
-            let last = survivals.last();
-            let last = last.filter(|(other, _)| case.mirrored && other[0].record == case.record);
+            let last = survivals
+                .last()
+                .filter(|(other, _)| case.mirrored && other[0].record == case.record);
             if last.is_none_or(|(_, other)| *other != survival) {
                 survivals.push((cases, survival));
             }
@@ -648,7 +654,7 @@ impl SuiteFragility {
         survivals
     }
 
-    /// Returns the intensities that the structure survives under a record, from its cases with one sign, the weakest first.
+    /// Intensities that the structure survives under a record, from its cases with one sign, the weakest first.
     fn survival(&self, cases: &[CaseRow]) -> Survival {
         let mut survival = self.survival_of_levels(cases);
         let found = cases.iter().find_map(|case| case.found_below.as_ref());
@@ -658,13 +664,13 @@ impl SuiteFragility {
         survival
     }
 
-    /// Returns true if lower intensities than `survives_up_to` of these cases with one sign were tried at the levels only.
+    /// True if lower intensities than `survives_up_to` of these cases with one sign were tried at the levels only.
     fn is_of_levels_only(cases: &[CaseRow], survival: &Survival) -> bool {
         let searched = cases.iter().filter_map(|case| case.searched_from);
         survival.survives_up_to > searched.reduce(f64::max)
     }
 
-    /// Returns the intensities that the structure survives under a record, without those found between the levels.
+    /// Intensities that the structure survives under a record, without those found between the levels.
     fn survival_of_levels(&self, cases: &[CaseRow]) -> Survival {
         let level = |case: &CaseRow| (case.level(self.measure), case.verdict());
         let levels: Vec<_> = cases.iter().map(level).collect();
@@ -691,35 +697,36 @@ impl SuiteFragility {
             let safe = cases[first].safe_below_edge.or(survival.survives_up_to);
             survival.survives_up_to = safe;
             // If the bisection met levels without a certain verdict, they are a range of their own.
-            let doubtful = safe.filter(|safe| lowest > safe * (1.0 + 2.0 * EDGE_WIDTH));
-            let doubtful = doubtful.map(|safe| VerdictRange {
-                verdict: Some(Verdict::Uncertain),
-                from: safe,
-                to: lowest,
-            });
+            let doubtful = safe
+                .filter(|safe| lowest > safe * (1.0 + 2.0 * EDGE_WIDTH))
+                .map(|safe| VerdictRange {
+                    verdict: Some(Verdict::Uncertain),
+                    from: safe,
+                    to: lowest,
+                });
             survival.ranges.splice(1..1, doubtful);
         }
         survival
     }
 
-    /// Returns the cases, grouped by record and sign, the weakest first.
+    /// Cases, grouped by record and sign, the weakest first.
     fn cases_by_record(&self) -> impl Iterator<Item = &[CaseRow]> + Clone {
         self.cases.chunk_by(CaseRow::has_same_record)
     }
 
-    /// Returns true if records act with both signs.
+    /// True if records act with both signs.
     fn has_both_signs(&self) -> bool {
         let mut signs = self.cases.iter().map(|case| case.mirrored);
         let first = signs.next();
         signs.any(|mirrored| Some(mirrored) != first)
     }
 
-    /// Returns the number of records.
+    /// Number of records.
     pub fn record_count(&self) -> usize {
         names(&self.cases).len()
     }
 
-    /// Returns the names of the records whose cases all have this verdict.
+    /// Names of the records whose cases all have this verdict.
     pub fn records_with(&self, verdict: Verdict) -> Vec<&str> {
         let mut alike: BTreeMap<&str, bool> = BTreeMap::new();
         for case in &self.cases {
@@ -732,7 +739,7 @@ impl SuiteFragility {
     }
 }
 
-/// Returns the names of the records.
+/// Names of the records.
 fn names(cases: &[CaseRow]) -> BTreeSet<&str> {
     cases.iter().map(|case| case.record.as_str()).collect()
 }

@@ -67,14 +67,14 @@ const fn line(dashes: &'static str) -> Stroke {
     Stroke::new(color::BLUE, 2.0, dashes)
 }
 
-/// Returns the curves to draw.
+/// Curves to draw.
 fn curves(results: &SuiteFragility) -> Vec<(&Fragility, CurveStyle)> {
     let all = results.fits().zip(STYLES);
     all.filter_map(|(fit, style)| Some((fit.as_ref().ok()?, style)))
         .collect()
 }
 
-/// Returns the legend.
+/// Legend.
 fn keys(results: &SuiteFragility, curves: &[(&Fragility, CurveStyle)]) -> Vec<Key> {
     let cases = Counts::of(&results.cases.iter().collect::<Vec<_>>()).cases;
     let text = format!(
@@ -104,7 +104,7 @@ const POINTS: u32 = 200;
 /// Half width of the rise of a curve around its median, in dispersions.
 const RISES: f64 = 4.0;
 
-/// Returns positive values along an axis: evenly spaced ones, and closer ones where a curve rises.
+/// Positive values along an axis: evenly spaced ones, and closer ones where a curve rises.
 fn axis_values(scale: &Scale, curves: &[(&Fragility, CurveStyle)]) -> Vec<f64> {
     let parts = (0..=POINTS).map(|i| f64::from(i) / f64::from(POINTS));
     let even = parts.clone().map(|part| scale.at(part));

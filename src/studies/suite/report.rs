@@ -207,11 +207,13 @@ impl Heading {
         let remarks = self.remarks(&results);
         let (answer, friction_demand) = self.answer(&results);
         let friction = self.slip.condition(friction_demand, "suite FILE");
-        let incomplete = remarks.incomplete_in_words();
-        let incomplete = incomplete.map(|words| format!("{words}; {AT_ENDS}"));
-        let limits = [remarks.model.in_words("cases"), incomplete];
-        let limits = limits.into_iter().flatten();
-        let limits = limits.chain(friction.as_ref().map(ToString::to_string));
+        let incomplete = remarks
+            .incomplete_in_words()
+            .map(|words| format!("{words}; {AT_ENDS}"));
+        let limits = [remarks.model.in_words("cases"), incomplete]
+            .into_iter()
+            .flatten()
+            .chain(friction.as_ref().map(ToString::to_string));
         let is_uncertain = !self.scenario["uncertain"].is_null();
         let answer = answer
             .with_friction(friction.clone())
@@ -320,7 +322,7 @@ impl Heading {
         found.with_page("suite.html", page, &cases, (&draw, &more))
     }
 
-    /// Returns the answer that may be quoted: the largest intensity that is safe under all records. Also returns the largest friction demand of the
+    /// Answer that may be quoted: the largest intensity that is safe under all records. Also returns the largest friction demand of the
     /// surviving cases up to it.
     fn answer(&self, results: &SuiteFragility) -> (ModelAnswer, Option<f64>) {
         let survivals = results.survivals().into_iter();
@@ -356,12 +358,12 @@ impl Heading {
                 )),
             }
         });
-        let answer = ModelAnswer::new(self.model, self.is_arch, excess_ratio, answer);
-        let answer = answer.with_restitution(self.restitution.clone());
+        let answer = ModelAnswer::new(self.model, self.is_arch, excess_ratio, answer)
+            .with_restitution(self.restitution.clone());
         (answer, friction_demand)
     }
 
-    /// Returns the failed and uncertain cases with the reasons.
+    /// Failed and uncertain cases with the reasons.
     fn remarks(&self, results: &SuiteFragility) -> Remarks {
         let mut remarks = Remarks::default();
         for case in &results.cases {
@@ -371,7 +373,7 @@ impl Heading {
         remarks
     }
 
-    /// Returns the columns of `suite.csv`, one row per case.
+    /// Columns of `suite.csv`, one row per case.
     fn case_columns(&self) -> Vec<Column<'static, CaseRow>> {
         let mut all = vec![
             column("record", |case: &CaseRow| shown(&case.record)),
@@ -386,7 +388,7 @@ impl Heading {
         all
     }
 
-    /// Returns the columns of `fragility.csv`, one row per level. Missing values are empty.
+    /// Columns of `fragility.csv`, one row per level. Missing values are empty.
     fn level_columns(&self) -> Vec<Column<'static, FragilityRow>> {
         let curve = |name: &str, curve: fn(&FragilityRow) -> Option<[f64; 3]>| {
             let names = ["", "_low", "_high"].map(|end| format!("{name}{end}"));
@@ -409,12 +411,12 @@ impl Heading {
     }
 }
 
-/// Returns the sign of a record.
+/// Sign of a record.
 const fn sign(mirrored: bool) -> i64 {
     if mirrored { -1 } else { 1 }
 }
 
-/// Returns the columns of `capacities.csv`, one row per record. Missing values are empty.
+/// Columns of `capacities.csv`, one row per record. Missing values are empty.
 fn capacity_columns<'r>() -> [Column<'r, RecordCapacity<'r>>; 7] {
     let measures = MEASURES.map(|(name, _, _)| name);
     [
@@ -432,7 +434,7 @@ fn capacity_columns<'r>() -> [Column<'r, RecordCapacity<'r>>; 7] {
     ]
 }
 
-/// Returns the columns of `intensity.csv`, one row per measure of intensity, the most efficient first.
+/// Columns of `intensity.csv`, one row per measure of intensity, the most efficient first.
 fn efficiency_columns() -> Vec<Column<'static, Efficiency>> {
     let mut all = Vec::from(fields!(
         |of: &Efficiency| of => capacities, median, dispersion, dispersion_of_factor
@@ -462,7 +464,7 @@ impl Report for SuiteSummary {
 }
 
 impl SuiteSummary {
-    /// Returns the curves in words, or the reason why there is none. Before each is the treatment of doubtful cases: uncertain ones count by their
+    /// Curves in words, or the reason why there is none. Before each is the treatment of doubtful cases: uncertain ones count by their
     /// fractions, and in two more curves all count as survived and as overturned.
     fn curves(&self) -> Vec<(String, Result<String, String>)> {
         let (doubtful, uncertain) = (self.counts.doubtful(), self.counts.uncertain);
@@ -493,7 +495,7 @@ impl SuiteSummary {
         curves.into_iter().filter_map(in_words).collect()
     }
 
-    /// Returns a measure of intensity with its dispersion, in words.
+    /// Measure of intensity with its dispersion, in words.
     fn measure(&self, one: &Efficiency) -> String {
         let known = MEASURES.iter().find(|(name, ..)| *name == one.measure);
         let words = known.map_or("", |(_, words, _)| words);
@@ -507,22 +509,26 @@ impl SuiteSummary {
             }
             _ => String::new(),
         };
-        let interval = one.dispersion_of_factor_interval;
-        let interval = interval.map_or(String::new(), |[low, high]| {
-            format!(" ({low:.2} to {high:.2})")
-        });
+        let interval = one
+            .dispersion_of_factor_interval
+            .map_or(String::new(), |[low, high]| {
+                format!(" ({low:.2} to {high:.2})")
+            });
         format!("{words}{at} {:.2}{interval}", one.dispersion_of_factor)
     }
 
-    /// Returns the words after the dispersion of all capacities.
+    /// Words after the dispersion of all capacities.
     fn levels_suffix(&self) -> &'static str {
         levels_suffix(self.survivals.iter().any(|one| one.levels_only))
     }
 
-    /// Returns all measures but the best, in words.
+    /// All measures but the best, in words.
     fn other_measures(&self) -> String {
-        let others = self.intensity_measures.iter().skip(1);
-        let others = others.map(|one| self.measure(one));
+        let others = self
+            .intensity_measures
+            .iter()
+            .skip(1)
+            .map(|one| self.measure(one));
         others.collect::<Vec<_>>().join(", ")
     }
 }
@@ -534,7 +540,7 @@ impl RecordSurvival {
 }
 
 impl Curve {
-    /// Returns the curve in words, with its 95 % intervals. `None` without a curve.
+    /// Curve in words, with its 95 % intervals. `None` without a curve.
     fn in_words(&self, unit: &str) -> Option<String> {
         let interval = |ends: Option<[f64; 2]>, unit: &str| {
             let ends = ends.map(rounded_range);

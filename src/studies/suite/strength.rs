@@ -132,7 +132,7 @@ impl SuiteFragility {
 /// Number of records below which a dispersion gets a note.
 const MANY_RECORDS: usize = 30;
 
-/// Returns the error of a dispersion from this number of records, in words; `None` with many records. The relative standard deviation of the
+/// Error of a dispersion from this number of records, in words; `None` with many records. The relative standard deviation of the
 /// standard deviation of `n` normal values is `1 / sqrt(2 (n - 1))`.
 pub(in crate::studies) fn warning_of_few_records(records: usize) -> Option<String> {
     let percent = 100.0 / (2.0 * (records.max(2) - 1) as f64).sqrt();
@@ -193,8 +193,9 @@ pub fn efficiencies(capacities: &[RecordCapacity<'_>]) -> Vec<Efficiency> {
         // Both signs of a record count as one value.
         let degrees = records.len() as f64 - 1.0;
         let likeliest = dispersion_of_factor * (degrees.max(0.0) / records.len() as f64).sqrt();
-        let best = drawn.iter();
-        let best = best.filter(|draw| draw[measure].is_some() && draw[measure] == least(draw));
+        let best = drawn
+            .iter()
+            .filter(|draw| draw[measure].is_some() && draw[measure] == least(draw));
         Some(Efficiency {
             measure: MEASURES[measure].0.to_owned(),
             capacities: count,

@@ -26,7 +26,7 @@ impl Fineness {
         finest_step: 0.0005,
         reach: 0.6,
     };
-    /// Returns the steps below the edge of a threshold of a model. Blocks with free hinges have half the steps: after tens of impacts, a history
+    /// Steps below the edge of a threshold of a model. Blocks with free hinges have half the steps: after tens of impacts, a history
     /// hardly shows how close its neighbours come to overturning.
     pub fn of_threshold(model: &dyn Model) -> Self {
         let has_free_hinges = model.as_mechanisms().is_none() && model.has_impacts();
@@ -50,7 +50,7 @@ impl Fineness {
         reach: 0.0,
     };
 
-    /// Returns the expected number of histories after a halving, counted from 1, over that of this halving.
+    /// Expected number of histories after a halving, counted from 1, over that of this halving.
     fn histories_after_halving(self, halving: u32) -> f64 {
         let last = libm::ceil(libm::log2(self.step / (WIDE * self.finest_step)));
         let left = (last - f64::from(halving)).max(0.0);
@@ -79,7 +79,7 @@ impl Closeness {
     /// Closeness at an edge.
     pub const EDGE: Self = Self(1.0);
 
-    /// Returns the closeness of a history. Where the barrier is unknown, as with joints that slip, steps are not halved: all of them would be, at eight
+    /// Closeness of a history. Where the barrier is unknown, as with joints that slip, steps are not halved: all of them would be, at eight
     /// times the cost.
     fn of(
         model: &dyn Model,
@@ -154,7 +154,7 @@ impl FineHistory {
         factors.iter().zip(histories).map(of).collect()
     }
 
-    /// Returns the closer one of this history and that under the mirrored ground motion, with the larger excess and friction demand of both.
+    /// Closer one of this history and that under the mirrored ground motion, with the larger excess and friction demand of both.
     pub fn or_closer(self, mirrored: Self) -> Self {
         let larger = |one: Option<f64>, other| one.into_iter().chain(other).reduce(f64::max);
         Self {
@@ -185,13 +185,13 @@ pub struct FineSearch {
 }
 
 impl FineSearch {
-    /// Returns the index of the lowest history that does not survive; `None` if all survive.
+    /// Index of the lowest history that does not survive; `None` if all survive.
     fn lowest_index(&self) -> Option<usize> {
         let mut histories = self.histories.iter();
         histories.rposition(|history| !history.close.survives())
     }
 
-    /// Returns the lowest factor whose history does not survive, and the survived factor above those next to it that do not survive either: the ends of
+    /// Lowest factor whose history does not survive, and the survived factor above those next to it that do not survive either: the ends of
     /// a band, of which both are survived or repeated. `None` if all survive.
     pub fn upper_edge(&self) -> Option<(f64, f64)> {
         let above = &self.histories[..=self.lowest_index()?];
@@ -281,7 +281,7 @@ pub fn search_below_edge<E>(
     }
 }
 
-/// Returns the geometric middles between neighbouring factors that may hide a band. The first history is the edge or does not survive.
+/// Geometric middles between neighbouring factors that may hide a band. The first history is the edge or does not survive.
 fn middles(below: &[FineHistory], finest_step: f64) -> Vec<f64> {
     let width = |index: usize| libm::log(below[index].factor / below[index + 1].factor);
     let close = |index: usize| below[index].close.0.min(1.0);
@@ -320,7 +320,7 @@ mod tests {
         factors.iter().map(of).collect()
     }
 
-    /// Returns the lowest hit and the number of histories.
+    /// Lowest hit and the number of histories.
     fn search(from: f64, band: (f64, f64)) -> (Option<f64>, usize) {
         let (mut histories, mut expected) = (0, Vec::new());
         let edge = (1.0, Closeness::EDGE);

@@ -2,13 +2,13 @@
 
 use crate::output::range_ends;
 
-/// Returns a factor or an acceleration with four digits: the usual accuracy of an edge.
+/// Factor or an acceleration with four digits: the usual accuracy of an edge.
 pub fn format_edge(value: f64) -> String {
     let decimals = decimals(value);
     format!("{value:.decimals$}")
 }
 
-/// Returns a strength that is safe with four digits, never rounded upwards.
+/// Strength that is safe with four digits, never rounded upwards.
 pub fn rounded_down(value: f64) -> String {
     round_down(value, decimals(value))
 }
@@ -19,7 +19,7 @@ fn round_down(value: f64, decimals: usize) -> String {
     format!("{lowered:.decimals$}")
 }
 
-/// Returns both ends of a range with four digits, or with as many as needed to distinguish them.
+/// Both ends of a range with four digits, or with as many as needed to distinguish them.
 pub fn rounded_range(ends: [f64; 2]) -> [String; 2] {
     match ends.map(format_edge) {
         [from, to] if from != to => [from, to],
@@ -27,7 +27,7 @@ pub fn rounded_range(ends: [f64; 2]) -> [String; 2] {
     }
 }
 
-/// Returns a safe strength, never rounded upwards, and one that overturns, with four digits, or with as many as needed to distinguish them.
+/// Safe strength, never rounded upwards, and one that overturns, with four digits, or with as many as needed to distinguish them.
 pub fn rounded_edge(ends: [Option<f64>; 2]) -> [Option<String>; 2] {
     // More decimals than two different strengths need.
     const MOST: usize = 12;
@@ -47,7 +47,7 @@ pub fn rounded_edge(ends: [Option<f64>; 2]) -> [Option<String>; 2] {
     distinct.unwrap_or_else(|| with(0)).map(Some)
 }
 
-/// Returns the number of decimals that shows four digits.
+/// Number of decimals that shows four digits.
 fn decimals(value: f64) -> usize {
     let power = if value > 0.0 { libm::log10(value) } else { 0.0 };
     (4.0 - (power.floor() + 1.0)).max(0.0) as usize

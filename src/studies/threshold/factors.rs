@@ -24,7 +24,7 @@ pub struct Factors {
 }
 
 impl Default for Factors {
-    /// Returns factors from the onset to the first certain collapse in strides of 2 %.
+    /// Factors from the onset to the first certain collapse in strides of 2 %.
     fn default() -> Self {
         Self {
             from: None,
@@ -61,7 +61,7 @@ impl Factors {
         Ok(Self { from, to, stride })
     }
 
-    /// Returns the largest factor, for warnings about it.
+    /// Largest factor, for warnings about it.
     pub(in crate::studies) fn varied(&self) -> Varied<'static> {
         Varied {
             factor: self.to,
@@ -69,10 +69,11 @@ impl Factors {
         }
     }
 
-    /// Returns the options of a command that searches these factors, with a space before each; empty for the default.
+    /// Options of a command that searches these factors, with a space before each; empty for the default.
     pub(in crate::studies) fn options(&self) -> String {
-        let given = [("--from", self.from), ("--to", self.to)];
-        let given = given.into_iter().filter_map(|(name, at)| Some((name, at?)));
+        let given = [("--from", self.from), ("--to", self.to)]
+            .into_iter()
+            .filter_map(|(name, at)| Some((name, at?)));
         let own = Self::default().stride != self.stride;
         let stride = own.then_some(("--stride", self.stride));
         let all = given.chain(stride);
@@ -80,12 +81,12 @@ impl Factors {
             .collect()
     }
 
-    /// Returns the command that searches these factors for a scenario on standard input, without `archrock`.
+    /// Command that searches these factors for a scenario on standard input, without `archrock`.
     pub(in crate::studies) fn command(&self) -> String {
         format!("threshold -{} --out case", self.options())
     }
 
-    /// Returns the factors of a search for a structure that never moves below its [onset](onset_factor), if that is known.
+    /// Factors of a search for a structure that never moves below its [onset](onset_factor), if that is known.
     ///
     /// # Errors
     /// If no factor moves the structure, or the last factor is not above the first.
@@ -135,7 +136,7 @@ pub struct SearchedFactors {
 }
 
 impl SearchedFactors {
-    /// Returns all factors, ascending.
+    /// All factors, ascending.
     pub fn values(&self) -> Vec<f64> {
         // Drops a last step that is due to rounding errors only.
         let end = self.to * (1.0 - 1e-9);
@@ -148,7 +149,7 @@ impl SearchedFactors {
     }
 }
 
-/// Returns the factor on a ground motion below which a structure at rest never moves, in any of these directions: the largest push of the ground is
+/// Factor on a ground motion below which a structure at rest never moves, in any of these directions: the largest push of the ground is
 /// that of incipient motion. Infinity if none of its pushes moves the structure. `None` where it is unknown: with elastic joints, with vertical
 /// motion, with feet that move apart, and for a motion that does not start from rest.
 pub fn onset_factor(

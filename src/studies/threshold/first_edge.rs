@@ -83,13 +83,13 @@ pub type Treatment = fn(f64) -> f64;
 pub const TREATMENTS: [Treatment; 3] = [|share| share, f64::ceil, f64::floor];
 
 impl FirstEdge {
-    /// Returns true if the history at the edge is outside the model of four links; false for other models.
+    /// True if the history at the edge is outside the model of four links; false for other models.
     pub fn is_outside_model(&self) -> bool {
         self.thrust_excess_ratio
             .is_some_and(|ratio| ratio > MODEL_LIMIT)
     }
 
-    /// Returns the mark on a page.
+    /// Mark on a page.
     pub(in crate::studies) const fn spot_kind(&self) -> SpotKind {
         match (self.factor, self.uncertain_from) {
             (_, Some(_)) => SpotKind::Uncertain,
@@ -241,11 +241,13 @@ impl FirstEdge {
         Ok(edge.with_tried(tried.into_inner(), &fine))
     }
 
-    /// Returns the edge with the results of all tried strengths, each with its share of repetitions that overturn, and of the search below it.
+    /// Edge with the results of all tried strengths, each with its share of repetitions that overturn, and of the search below it.
     fn with_tried(mut self, tried: Vec<([f64; 2], TriedHistory)>, fine: &FineSearch) -> Self {
         // The bisection of the first doubt may meet a strength that certainly overturns below one that is uncertain.
-        let certain = tried.iter().filter(|(own, _)| own[1] == 1.0);
-        let certain = certain.map(|(own, _)| own[0]);
+        let certain = tried
+            .iter()
+            .filter(|(own, _)| own[1] == 1.0)
+            .map(|(own, _)| own[0]);
         self.factor = self.factor.into_iter().chain(certain).reduce(f64::min);
         let last = self.factor.unwrap_or(self.tried_to);
         let at = |wanted: f64| {
@@ -260,8 +262,10 @@ impl FirstEdge {
             .iter()
             .filter(|([strength, _], _)| Some(*strength) <= safe);
         let demands = up_to_safe.filter_map(|(_, found)| found.friction_demand);
-        let fine = fine.histories.iter();
-        let fine = fine.filter(|history| Some(history.factor) <= safe);
+        let fine = fine
+            .histories
+            .iter()
+            .filter(|history| Some(history.factor) <= safe);
         let demands = demands.chain(fine.filter_map(|history| history.friction_demand));
         self.friction_demand = demands.reduce(f64::max);
         let below = |[strength, share]: &[f64; 2]| *strength < self.strength() && *share < 1.0;
@@ -270,7 +274,7 @@ impl FirstEdge {
         self
     }
 
-    /// Returns the columns of an edge in a table; the name of the factor depends on the table.
+    /// Columns of an edge in a table; the name of the factor depends on the table.
     pub(in crate::studies) fn columns<'a, R: 'a>(
         factor: &'static str,
         of: impl Fn(&R) -> Option<&Self> + Copy + 'a,
@@ -288,24 +292,24 @@ impl FirstEdge {
         ]
     }
 
-    /// Returns the column of the worse direction at an edge.
+    /// Column of the worse direction at an edge.
     pub(in crate::studies) fn direction_column<'a, R: 'a>(
         of: impl Fn(&R) -> Option<&Self> + Copy + 'a,
     ) -> Column<'a, R> {
         column("direction", move |row| Some(of(row)?.direction.name()))
     }
 
-    /// Returns the largest safe factor; 0 if the smallest tried factor is not safe.
+    /// Largest safe factor; 0 if the smallest tried factor is not safe.
     pub(in crate::studies) fn safe_or_zero(&self) -> f64 {
         self.survives_up_to.unwrap_or(0.0)
     }
 
-    /// Returns the factor; infinite if no factor overturns the structure.
+    /// Factor; infinite if no factor overturns the structure.
     pub fn strength(&self) -> f64 {
         self.factor.unwrap_or(f64::INFINITY)
     }
 
-    /// Returns the distribution of the strength that first overturns the structure: strengths and their probabilities. The last strength is
+    /// Distribution of the strength that first overturns the structure: strengths and their probabilities. The last strength is
     /// infinite if no factor certainly overturns it.
     pub fn strengths(&self, treatment: Treatment) -> Vec<[f64; 2]> {
         let mut reached = 0.0;
@@ -320,7 +324,7 @@ impl FirstEdge {
         rises.filter(|[_, rise]| *rise > 0.0).collect()
     }
 
-    /// Returns the probability that the structure overturns up to this factor; `None` if the tried factors do not determine it.
+    /// Probability that the structure overturns up to this factor; `None` if the tried factors do not determine it.
     pub(in crate::studies) fn overturns_up_to(&self, factor: f64) -> Option<f64> {
         let is_known = match self.factor {
             Some(first) if first <= factor => return Some(1.0),
@@ -336,7 +340,7 @@ impl FirstEdge {
     }
 }
 
-/// Returns the verdict of a history of which this share of the repetitions overturns.
+/// Verdict of a history of which this share of the repetitions overturns.
 fn verdict_of(share: f64) -> Verdict {
     match share {
         ..=0.0 => Verdict::Survives,

@@ -46,7 +46,7 @@ pub struct FactorSample {
 }
 
 impl FactorSample {
-    /// Returns the verdict; `None` if there is no history.
+    /// Verdict; `None` if there is no history.
     pub fn verdict(&self) -> Option<Verdict> {
         self.result.as_ref().ok().map(Ending::verdict)
     }
@@ -107,18 +107,18 @@ pub struct Threshold {
 }
 
 impl Threshold {
-    /// Returns the ranges with a verdict, ascending.
+    /// Ranges with a verdict, ascending.
     pub fn ranges_with(&self, wanted: Verdict) -> Vec<FactorRange> {
         let is_wanted = |range: &FactorRange| range.verdict == Some(wanted);
         self.ranges.iter().copied().filter(is_wanted).collect()
     }
 
-    /// Returns the ranges that overturn the structure, ascending.
+    /// Ranges that overturn the structure, ascending.
     pub fn bands(&self) -> Vec<FactorRange> {
         self.ranges_with(Verdict::Overturns)
     }
 
-    /// Returns the safe ranges between bands, ascending.
+    /// Safe ranges between bands, ascending.
     pub fn gaps(&self) -> Vec<FactorRange> {
         let bands = self.bands();
         let between = |gap: &FactorRange| {
@@ -130,12 +130,12 @@ impl Threshold {
         gaps
     }
 
-    /// Returns this threshold, then that under the mirrored ground motion.
+    /// This threshold, then that under the mirrored ground motion.
     pub fn directions(&self) -> impl Iterator<Item = &Self> {
         [self].into_iter().chain(self.mirrored.as_deref())
     }
 
-    /// Returns the threshold in the direction that survives less: its safe factors end first.
+    /// Threshold in the direction that survives less: its safe factors end first.
     pub fn governing(&self) -> &Self {
         let safe = |one: &Self| Survival::of_threshold(one).survives_up_to.unwrap_or(0.0);
         let mirrored = self.mirrored.as_deref();
@@ -144,19 +144,19 @@ impl Threshold {
             .unwrap_or(self)
     }
 
-    /// Returns the largest factor up to which the structure certainly survives all sampled factors in all directions; `None` if it does not survive the
+    /// Largest factor up to which the structure certainly survives all sampled factors in all directions; `None` if it does not survive the
     /// smallest.
     pub fn survives_up_to(&self) -> Option<f64> {
         Survival::of_threshold(self.governing()).survives_up_to
     }
 
-    /// Returns the smallest factor that certainly overturns the structure in any direction; `None` if no factor does.
+    /// Smallest factor that certainly overturns the structure in any direction; `None` if no factor does.
     pub fn lowest_factor(&self) -> Option<f64> {
         let lowest = |one: &Self| one.bands().first().map(|band| band.from);
         self.directions().filter_map(lowest).reduce(f64::min)
     }
 
-    /// Returns an error if no history could be computed.
+    /// An error if no history could be computed.
     fn check_known(&self) -> Result<(), StudyError> {
         let mut results = self.samples.iter().map(|sample| &sample.result);
         match results.clone().find_map(|result| result.as_ref().err()) {
@@ -221,11 +221,14 @@ impl Threshold {
             return;
         };
         let samples = self.directions().flat_map(|one| &one.samples);
-        let up_to = samples.chain(others.iter().flat_map(|one| &one.bisected));
-        let up_to = up_to.filter(|sample| sample.factor <= safe);
+        let up_to = samples
+            .chain(others.iter().flat_map(|one| &one.bisected))
+            .filter(|sample| sample.factor <= safe);
         let endings = up_to.flat_map(|sample| &sample.result);
-        let fine = others.iter().flat_map(|one| &one.fine);
-        let fine = fine.filter(|history| history.factor <= safe);
+        let fine = others
+            .iter()
+            .flat_map(|one| &one.fine)
+            .filter(|history| history.factor <= safe);
         let of_endings = endings.map(|one| (one.thrust_excess_ratio, one.friction_demand));
         let of_fine = fine.map(|one| (one.thrust_excess_ratio, one.friction_demand));
         let (excess_ratios, demands): (Vec<_>, Vec<_>) = of_endings.chain(of_fine).unzip();
@@ -287,7 +290,7 @@ pub fn threshold(
 /// Checks that a scenario has a ground motion to scale, and starts from rest.
 ///
 /// # Errors
-/// Returns the change that the scenario needs, in words.
+/// Change that the scenario needs, in words.
 pub fn check(scenario: &Scenario) -> Result<(), String> {
     scenario.check_from_rest("threshold")?;
     scenario.ground.as_ref().ok_or(
@@ -299,7 +302,7 @@ pub fn check(scenario: &Scenario) -> Result<(), String> {
     Ok(())
 }
 
-/// Returns the largest horizontal acceleration of the ground at factor 1, in units of gravity.
+/// Largest horizontal acceleration of the ground at factor 1, in units of gravity.
 pub(super) fn peak_g(scenario: &Scenario) -> f64 {
     scenario.ground_motion().peaks_m_s2(f64::INFINITY).x / scenario.gravity_m_s2()
 }
@@ -319,8 +322,9 @@ pub fn results(
     check(scenario).map_err(StudyError::Scenario)?;
     let (ground, request) = (scenario.ground_motion(), scenario.request());
     // The search with one model may take hours, so errors of all models come first.
-    let models = scenarios.iter().map(Scenario::model);
-    let models: Vec<_> = models
+    let models: Vec<_> = scenarios
+        .iter()
+        .map(Scenario::model)
         .collect::<Result<_, _>>()
         .map_err(StudyError::scenario)?;
     let mut found = Vec::new();

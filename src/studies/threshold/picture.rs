@@ -117,7 +117,7 @@ pub(super) fn draw_marked(
     sheet.finish()
 }
 
-/// Returns the smallest and the largest factor.
+/// Smallest and the largest factor.
 fn find_range(factors: impl Iterator<Item = f64>) -> [f64; 2] {
     factors.fold([f64::INFINITY, 0.0], |[first, last], factor| {
         [first.min(factor), last.max(factor)]
@@ -125,7 +125,7 @@ fn find_range(factors: impl Iterator<Item = f64>) -> [f64; 2] {
 }
 
 impl FactorSample {
-    /// Returns the largest rotation, over the critical rotation or in radians; `None` if the history itself overturned.
+    /// Largest rotation, over the critical rotation or in radians; `None` if the history itself overturned.
     fn peak(&self, over_critical: bool) -> Option<f64> {
         let ending = self.result.as_ref().ok();
         let ending = ending.filter(|ending| !ending.overturned_itself())?;
@@ -136,7 +136,7 @@ impl FactorSample {
     }
 }
 
-/// Returns strokes for the curves of the models, in colours that no outcome has.
+/// Strokes for the curves of the models, in colours that no outcome has.
 fn curves() -> impl Iterator<Item = Stroke> {
     const CURVES: [Stroke; 3] = [
         Stroke::new(color::BLACK, 1.6, ""),
@@ -146,7 +146,7 @@ fn curves() -> impl Iterator<Item = Stroke> {
     CURVES.into_iter().cycle()
 }
 
-/// Returns the scale up to the largest rotation of a history that did not overturn.
+/// Scale up to the largest rotation of a history that did not overturn.
 fn scale(
     thresholds: &[&Threshold],
     least: f64,
@@ -157,13 +157,16 @@ fn scale(
     Scale::exactly(0.0, 1.15 * largest, 6)
 }
 
-/// Returns the edges of the bands and of the uncertain ranges, ascending.
+/// Edges of the bands and of the uncertain ranges, ascending.
 fn edges(threshold: &Threshold) -> impl Iterator<Item = f64> {
     let mut last = f64::NAN;
-    let ranges = threshold.ranges.iter();
-    let ranges = ranges.filter(|range| range.verdict != Some(Verdict::Survives));
-    let ends = ranges.flat_map(|at| [(at.from, at.from_end), (at.to, at.to_end)]);
-    let ends = ends.filter_map(|(factor, end)| (end == RangeEnd::Edge).then_some(factor));
+    let ranges = threshold
+        .ranges
+        .iter()
+        .filter(|range| range.verdict != Some(Verdict::Survives));
+    let ends = ranges
+        .flat_map(|at| [(at.from, at.from_end), (at.to, at.to_end)])
+        .filter_map(|(factor, end)| (end == RangeEnd::Edge).then_some(factor));
     // One of the two factors that enclose the edge between a band and an uncertain range is enough.
     ends.filter(move |factor| {
         let anew = factor - last > 2.0 * EDGE_WIDTH * factor || last.is_nan();
@@ -181,8 +184,9 @@ fn strip(drawing: &mut Drawing, axes: &Axes, threshold: &Threshold) {
     // The border between two colours is the edge, or without an edge the geometric mean of the factors.
     let border = |below: &FactorSample, above: &FactorSample| {
         let mut edges = edges.iter().copied();
-        let edge = edges.find(|edge| (below.factor..=above.factor).contains(edge));
-        let edge = edge.filter(|_| below.verdict() != above.verdict());
+        let edge = edges
+            .find(|edge| (below.factor..=above.factor).contains(edge))
+            .filter(|_| below.verdict() != above.verdict());
         edge.unwrap_or((below.factor * above.factor).sqrt())
     };
     let Frame { top, height, .. } = axes.frame;
@@ -190,9 +194,9 @@ fn strip(drawing: &mut Drawing, axes: &Axes, threshold: &Threshold) {
     let mut from = axes.x.low;
     let mut bands = Vec::new();
     let samples = &threshold.samples;
-    let runs = samples
-        .chunk_by(|a, b| OutcomeColor::of_result(&a.result) == OutcomeColor::of_result(&b.result));
-    let runs: Vec<_> = runs.collect();
+    let runs: Vec<_> = samples
+        .chunk_by(|a, b| OutcomeColor::of_result(&a.result) == OutcomeColor::of_result(&b.result))
+        .collect();
     for (index, run) in runs.iter().enumerate() {
         let last = &run[run.len() - 1];
         let next = runs.get(index + 1);
@@ -250,7 +254,7 @@ fn hatch(drawing: &mut Drawing, frame: &Frame) {
     });
 }
 
-/// Returns positions for labels near the given ascending positions, without overlaps between `left` and `right`; fewer if there is not enough
+/// Positions for labels near the given ascending positions, without overlaps between `left` and `right`; fewer if there is not enough
 /// space.
 fn spread(places: &[f64], left: f64, right: f64) -> Vec<f64> {
     let room = ((right - left) / LABEL_ADVANCE) as usize + 1;

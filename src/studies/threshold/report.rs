@@ -191,24 +191,27 @@ pub fn report(
     figure: Figure,
 ) -> Result<Results, OutputError> {
     let scenario = &scenarios[0];
-    let title = scenario.title.as_deref();
-    let title = title.unwrap_or("Threshold of overturning");
+    let title = scenario
+        .title
+        .as_deref()
+        .unwrap_or("Threshold of overturning");
     let peak_g = peak_g(scenario);
     let models = thresholds.iter().zip(scenarios);
     let study = format!("threshold FILE{}", factors.options());
-    let frictions = models
+    let frictions: Vec<_> = models
         .clone()
-        .map(|(one, scenario)| SlipWords::of(scenario).condition(one.friction_demand, &study));
-    let frictions: Vec<_> = frictions.collect();
+        .map(|(one, scenario)| SlipWords::of(scenario).condition(one.friction_demand, &study))
+        .collect();
     let answers = models
         .clone()
         .zip(&frictions)
         .map(|((one, scenario), friction)| {
-            let answer = one.answer(scenario, peak_g);
-            let answer = answer.unless_uncertain(scenario.uncertain.is_some());
+            let answer = one
+                .answer(scenario, peak_g)
+                .unless_uncertain(scenario.uncertain.is_some());
             answer.with_friction(friction.clone())
-        });
-    let answers = answers.collect::<Vec<_>>();
+        })
+        .collect::<Vec<_>>();
     let models: Vec<ModelSummary> = models
         .map(|(threshold, scenario)| threshold.summary(scenario, peak_g))
         .collect();
@@ -238,8 +241,10 @@ pub fn report(
         threshold.add_to(&mut cases, scenario, peak_g);
     }
     let draw = |figure| picture::draw_marked(figure, title, peak_g, thresholds, &cases.spots);
-    let searched = thresholds.iter().map(|one| one.factors.in_words());
-    let mut searched: Vec<String> = searched.collect();
+    let mut searched: Vec<String> = thresholds
+        .iter()
+        .map(|one| one.factors.in_words())
+        .collect();
     searched.dedup();
     let edges = format!(
         "{}. The edge between two neighbours with different verdicts is bisected to {} %, beside an uncertain one to {} %",
@@ -254,7 +259,7 @@ pub fn report(
     Ok(results.in_order(&FILES))
 }
 
-/// Returns true if the ground falls as fast as a free body under a factor that was tried.
+/// True if the ground falls as fast as a free body under a factor that was tried.
 fn ground_falls(thresholds: &[Threshold]) -> bool {
     let falls = |sample: &FactorSample| matches!(sample.result, Err(NoHistory::GroundFalls(_)));
     let all = thresholds.iter().flat_map(Threshold::directions);
@@ -291,7 +296,7 @@ fn table(models: &[ModelSummary]) -> Result<Table, OutputError> {
     Table::new(columns, &rows.collect::<Vec<_>>())
 }
 
-/// Returns warnings about the model and histories without a verdict, and conditions on friction.
+/// Warnings about the model and histories without a verdict, and conditions on friction.
 fn limits(models: &[ModelSummary], frictions: Vec<Option<FrictionCondition>>) -> Vec<String> {
     let of_models = models.iter().flat_map(|model| {
         let outside = model.outside_in_words();
@@ -359,7 +364,7 @@ impl Threshold {
         }
     }
 
-    /// Returns the name of the model, with "mirrored" under the mirrored ground motion.
+    /// Name of the model, with "mirrored" under the mirrored ground motion.
     pub(super) fn name(&self) -> String {
         match self.direction {
             Direction::AsGiven => self.model.clone(),
@@ -367,7 +372,7 @@ impl Threshold {
         }
     }
 
-    /// Returns [`Threshold::name`] in words.
+    /// [`Threshold::name`] in words.
     pub(super) fn name_in_words(&self) -> String {
         self.name().replace('_', " ")
     }
@@ -428,7 +433,7 @@ impl Threshold {
         }
     }
 
-    /// Returns the answer that may be quoted: the largest safe factor, with its range over other stiffness and contact.
+    /// Answer that may be quoted: the largest safe factor, with its range over other stiffness and contact.
     fn answer(&self, scenario: &Scenario, peak_g: f64) -> ModelAnswer {
         let is_known = |one: &VariedThreshold| one.factor.is_ok() && one.incomplete == 0;
         let over = match &self.varied[..] {
@@ -437,11 +442,11 @@ impl Threshold {
             varied if varied.iter().all(is_known) => " over stiffness and contact",
             _ => " over stiffness and contact, as far as they have verdicts",
         };
-        let others = self
+        let others: Vec<f64> = self
             .varied
             .iter()
-            .filter_map(VariedThreshold::survives_up_to);
-        let others: Vec<f64> = others.collect();
+            .filter_map(VariedThreshold::survives_up_to)
+            .collect();
         let answer = match self.survives_up_to() {
             Some(safe) if others.iter().all(|other| *other >= self.factors.from) => {
                 let safe = ascending(others.into_iter().chain([safe]));
@@ -473,7 +478,7 @@ impl Threshold {
             .with_restitution(restitution_in_words(scenario))
     }
 
-    /// Returns the directions of the answer, in words that follow it.
+    /// Directions of the answer, in words that follow it.
     fn directions_in_words(&self, scenario: &Scenario) -> &'static str {
         let has_horizontal = scenario.ground_motion().has_horizontal();
         match has_horizontal {
@@ -482,7 +487,7 @@ impl Threshold {
         }
     }
 
-    /// Returns the remarks on the histories.
+    /// Remarks on the histories.
     fn remarks(&self) -> Remarks {
         let mut remarks = Remarks::default();
         let samples = self.directions().flat_map(|one| &one.samples);
@@ -492,7 +497,7 @@ impl Threshold {
         remarks
     }
 
-    /// Returns true if a factor is the smallest tried factor, so that smaller ones may overturn the structure as well.
+    /// True if a factor is the smallest tried factor, so that smaller ones may overturn the structure as well.
     fn is_first(&self, factor: f64) -> bool {
         let first = self.samples.first();
         first.is_some_and(|first| first.factor == factor)
@@ -500,7 +505,7 @@ impl Threshold {
 }
 
 impl ModelSummary {
-    /// Returns the summaries of all directions.
+    /// Summaries of all directions.
     fn directions(&self) -> impl Iterator<Item = (Direction, &DirectionSummary)> {
         // Without a second direction, the only one is the governing one.
         let first = match self.mirrored {
@@ -511,7 +516,7 @@ impl ModelSummary {
         [(first, &self.given)].into_iter().chain(mirrored)
     }
 
-    /// Returns the factors that are survived, and those that are not, in words: a line for each direction, with the direction if there are two.
+    /// Factors that are survived, and those that are not, in words: a line for each direction, with the direction if there are two.
     fn strengths(&self, peak_g: &f64) -> Vec<String> {
         let in_words = |(direction, of): (Direction, &DirectionSummary)| {
             let survival = Survival::of_ranges(of.ranges.clone());
@@ -524,13 +529,13 @@ impl ModelSummary {
         self.directions().map(in_words).collect()
     }
 
-    /// Returns the samples with a history on ground that does not fall.
+    /// Samples with a history on ground that does not fall.
     fn histories(&self) -> impl Iterator<Item = &TriedFactor> {
         let samples = self.directions().flat_map(|(_, of)| &of.samples);
         samples.filter(|sample| sample.outcome != GROUND_FALLS)
     }
 
-    /// Returns the number of uncertain or failed histories, and the first of them, in words; `None` if there are none.
+    /// Number of uncertain or failed histories, and the first of them, in words; `None` if there are none.
     fn doubts(&self, what: &str, failed: bool) -> Option<String> {
         let mut reasons = self.histories().filter_map(|sample| {
             let reason = sample.reason.as_ref();
@@ -544,7 +549,7 @@ impl ModelSummary {
         ))
     }
 
-    /// Returns the number of histories that still rock at the end, and of all.
+    /// Number of histories that still rock at the end, and of all.
     fn still_rocking(&self) -> [usize; 2] {
         let rocking = |sample: &&TriedFactor| sample.outcome == Outcome::StillRocking.name();
         [
@@ -553,7 +558,7 @@ impl ModelSummary {
         ]
     }
 
-    /// Returns the number of histories outside the model of four links, and whether the first that overturns is one of them, in words; `None` if the
+    /// Number of histories outside the model of four links, and whether the first that overturns is one of them, in words; `None` if the
     /// thrust line stays almost inside.
     fn outside_in_words(&self) -> Option<String> {
         let outside = self.remarks.model.in_words("histories")?;
@@ -563,7 +568,7 @@ impl ModelSummary {
         })
     }
 
-    /// Returns true if the first history that overturns the structure is outside the model of four links.
+    /// True if the first history that overturns the structure is outside the model of four links.
     fn overturns_outside_model(&self) -> bool {
         let samples = self.histories();
         let overturned = samples.filter(|sample| sample.outcome == OVERTURNED);
@@ -574,7 +579,7 @@ impl ModelSummary {
 }
 
 impl VariedSummary {
-    /// Returns the number of histories without a verdict, in words; `None` if all have one.
+    /// Number of histories without a verdict, in words; `None` if all have one.
     fn no_verdict(&self) -> Option<String> {
         let below = self.factor.map_or("", |_| " of weaker motions");
         let count = self.incomplete;
@@ -606,7 +611,7 @@ impl TriedFactor {
     }
 }
 
-/// Returns a factor with the peak ground acceleration, in words.
+/// Factor with the peak ground acceleration, in words.
 fn factor_in_words(factor: &f64, peak_g: &f64) -> String {
     format!(
         "{} ({} g)",
@@ -616,7 +621,7 @@ fn factor_in_words(factor: &f64, peak_g: &f64) -> String {
 }
 
 impl Factors {
-    /// Returns the factors as given, in words.
+    /// Factors as given, in words.
     pub fn in_words(&self) -> String {
         let from = self.from.map_or("the onset of motion".to_owned(), plain);
         let to = self.to.map_or("the first collapse".to_owned(), plain);
@@ -625,7 +630,7 @@ impl Factors {
 }
 
 impl SearchedFactors {
-    /// Returns the factors in words.
+    /// Factors in words.
     fn in_words(&self) -> String {
         let from = match self.begins_at_onset {
             true => format!("{}, the onset of motion,", format_edge(self.from)),
@@ -638,13 +643,13 @@ impl SearchedFactors {
         sampled_in_words(&from, &to, self.stride)
     }
 
-    /// Returns the words of a quote about factors that were not tried; empty if the structure does not move under lower ones.
+    /// Words of a quote about factors that were not tried; empty if the structure does not move under lower ones.
     pub(in crate::studies) fn lower_in_words(&self) -> String {
         lower_in_words(self.lower_not_tried.then_some(self.from))
     }
 }
 
-/// Returns the words of a quote about factors below this one, which may overturn the structure; empty without it.
+/// Words of a quote about factors below this one, which may overturn the structure; empty without it.
 pub(super) fn lower_in_words(from: Option<f64>) -> String {
     from.map_or(String::new(), |from| {
         format!(", lower factors than {} not tried", plain(from))

@@ -38,7 +38,7 @@ pub(super) struct OtherHistories {
 /// Edges: neighbouring factors with different verdicts.
 type Edges = Vec<(f64, f64)>;
 
-/// Returns the step of a search after these samples.
+/// Step of a search after these samples.
 fn step_after(samples: &[FactorSample], is_open: bool) -> SearchStep {
     let survives = |sample: &&FactorSample| sample.verdict() == Some(Verdict::Survives);
     let safe = samples.iter().take_while(survives).last();
@@ -48,7 +48,7 @@ fn step_after(samples: &[FactorSample], is_open: bool) -> SearchStep {
     }
 }
 
-/// Returns a function that reports the progress of a step of a search.
+/// Function that reports the progress of a step of a search.
 fn report_step(
     step: SearchStep,
     mut watch: impl FnMut(Progress) -> ControlFlow<()>,
@@ -155,11 +155,12 @@ impl Shaking<'_> {
         watch: impl FnMut(Progress) -> ControlFlow<()>,
     ) -> Result<(Edges, Vec<FactorSample>), RunnerError> {
         let pairs = samples.windows(2).map(|pair| (&pair[0], &pair[1]));
-        let changes = pairs.filter(|(below, above)| {
-            let both = below.verdict().zip(above.verdict());
-            both.is_some_and(|(below, above)| below != above)
-        });
-        let changes: Vec<Change<'_>> = changes.collect();
+        let changes: Vec<Change<'_>> = pairs
+            .filter(|(below, above)| {
+                let both = below.verdict().zip(above.verdict());
+                both.is_some_and(|(below, above)| below != above)
+            })
+            .collect();
         let search = |index: usize| self.search(changes[index]);
         let watch = report_step(step_after(samples, false), watch);
         let found = runner.each(changes.len(), search, watch)?;

@@ -113,7 +113,7 @@ impl Survival {
     }
 }
 
-/// Returns the word before strengths with a verdict; those that are survived are gaps above others that overturn.
+/// Word before strengths with a verdict; those that are survived are gaps above others that overturn.
 const fn word(verdict: Option<Verdict>) -> &'static str {
     match verdict {
         Some(Verdict::Survives) => "gaps",
@@ -135,7 +135,7 @@ const KINDS: [Option<Verdict>; 4] = [
 /// Largest number of ranges of one verdict in a line of words.
 const LISTED: usize = 6;
 
-/// Returns the ranges of each kind in words, with `beside` between kind and ranges.
+/// Ranges of each kind in words, with `beside` between kind and ranges.
 fn listed(
     ranges: &[VerdictRange],
     kinds: &[Option<Verdict>],
@@ -159,7 +159,7 @@ fn listed(
     of_kind.collect()
 }
 
-/// Returns the line of words: `survives up to 2.113; uncertain from there; certainly overturns from 2.401 (gaps above: 2.604 to 2.871)`. The unit
+/// Line of words: `survives up to 2.113; uncertain from there; certainly overturns from 2.401 (gaps above: 2.604 to 2.871)`. The unit
 /// of strengths may be empty. For factors, `peak_g` is the peak ground acceleration at factor 1.
 pub fn survival_in_words(survival: &Survival, unit: &str, peak_g: Option<f64>) -> String {
     let both = |strength: String, in_g: String| match peak_g {
@@ -173,8 +173,9 @@ pub fn survival_in_words(survival: &Survival, unit: &str, peak_g: Option<f64>) -
     let [own, in_g] = [1.0, to_g].map(|unit| rounded_edge(ends.map(|end| Some(end? * unit))));
     let ([safe, overturns_from], [safe_g, from_g]) = (own, in_g);
     let safe = safe.zip(safe_g).map(|(own, in_g)| both(own, in_g));
-    let overturns_from = overturns_from.zip(from_g);
-    let overturns_from = overturns_from.map(|(own, in_g)| both(own, in_g));
+    let overturns_from = overturns_from
+        .zip(from_g)
+        .map(|(own, in_g)| both(own, in_g));
     let ranges = &survival.ranges[..];
     let Some(first) = ranges.first() else {
         return "no history".to_owned();

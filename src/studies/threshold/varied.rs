@@ -30,7 +30,7 @@ pub struct VariedThreshold {
 const REPEATED_FROM: f64 = 0.8;
 
 impl VariedThreshold {
-    /// Returns the largest factor that the structure with this property survives; `None` if it survives all.
+    /// Largest factor that the structure with this property survives; `None` if it survives all.
     pub fn survives_up_to(&self) -> Option<f64> {
         let lowest = self.factor.as_ref().ok().copied().flatten();
         match self.repeated {
@@ -54,8 +54,10 @@ pub fn repeat_governing(
     watch: Watch<'_>,
 ) -> Result<(), StudyError> {
     loop {
-        let known = varied.iter().enumerate();
-        let known = known.filter_map(|(index, one)| Some((index, one.survives_up_to()?)));
+        let known = varied
+            .iter()
+            .enumerate()
+            .filter_map(|(index, one)| Some((index, one.survives_up_to()?)));
         let governing = known.min_by(|(_, one), (_, other)| one.total_cmp(other));
         let Some((index, factor)) = governing.filter(|(_, factor)| *factor < safe) else {
             return Ok(());
@@ -160,8 +162,10 @@ fn lowest_factor_of(
         });
         factors.iter().copied().zip(histories).collect()
     };
-    let histories = factors.chunks(TOGETHER).flat_map(histories);
-    let histories = histories.map(|(factor, history)| (factor, falls(history)));
+    let histories = factors
+        .chunks(TOGETHER)
+        .flat_map(histories)
+        .map(|(factor, history)| (factor, falls(history)));
     find_lowest_strength(histories, EDGE_WIDTH, |factor| {
         falls(model.simulate_until(EndCondition::Safe, &case(factor)?))
     })

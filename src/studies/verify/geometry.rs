@@ -100,7 +100,7 @@ pub struct LoadAt {
 }
 
 impl Geometry {
-    /// Returns the geometry of the structure of a scenario.
+    /// Geometry of the structure of a scenario.
     pub(super) fn of(scenario: &Scenario) -> Self {
         let structure = &scenario.structure;
         let (depth_m, density_kg_m3) = structure.depth_and_density();
@@ -163,14 +163,14 @@ impl Geometry {
         geometry
     }
 
-    /// Returns true if the page prints the density of each block.
+    /// True if the page prints the density of each block.
     pub(super) fn has_densities(&self) -> bool {
         let mut blocks = self.blocks.iter();
         self.shape == "blocks" || blocks.any(|one| one.density_kg_m3 != self.density_kg_m3)
     }
 }
 
-/// Returns the blocks of a row, given as well without its loads, and without loads and fill.
+/// Blocks of a row, given as well without its loads, and without loads and fill.
 fn blocks(
     [row, filled, bare]: [Option<&Row>; 3],
     density_kg_m3: impl Fn(usize) -> f64,
@@ -180,29 +180,31 @@ fn blocks(
     };
     let outlines = row.outlines_m.iter().zip(&row.blocks);
     let blocks = outlines.zip(filled.blocks.iter().zip(&bare.blocks));
-    let placed = (0..).zip(blocks);
-    let placed = placed.map(
-        |(index, ((corners_m, whole), (filled, bare)))| PlacedBlock {
-            corners_m: corners_m.clone(),
-            density_kg_m3: density_kg_m3(index),
-            masonry_kg: bare.mass_kg,
-            fill_kg: filled.mass_kg - bare.mass_kg,
-            loads_kg: whole.mass_kg - filled.mass_kg,
-            centre_m: whole.centre_m,
-        },
-    );
+    let placed =
+        (0..).zip(blocks).map(
+            |(index, ((corners_m, whole), (filled, bare)))| PlacedBlock {
+                corners_m: corners_m.clone(),
+                density_kg_m3: density_kg_m3(index),
+                masonry_kg: bare.mass_kg,
+                fill_kg: filled.mass_kg - bare.mass_kg,
+                loads_kg: whole.mass_kg - filled.mass_kg,
+                centre_m: whole.centre_m,
+            },
+        );
     placed.collect()
 }
 
 fn loads(loads: &[PlacedLoad], places_m: &[(usize, Vector2<f64>)]) -> Vec<LoadAt> {
-    let placed = loads.iter().zip(places_m);
-    let placed = placed.map(|(load, (block, at_m))| LoadAt {
-        block: block + 1,
-        at_m: *at_m,
-        width_m: load.width_m,
-        mass_kg: load.mass_kg,
-        moves: load.moves,
-        thrust_kn: load.thrust_n / 1000.0,
-    });
+    let placed = loads
+        .iter()
+        .zip(places_m)
+        .map(|(load, (block, at_m))| LoadAt {
+            block: block + 1,
+            at_m: *at_m,
+            width_m: load.width_m,
+            mass_kg: load.mass_kg,
+            moves: load.moves,
+            thrust_kn: load.thrust_n / 1000.0,
+        });
     placed.collect()
 }

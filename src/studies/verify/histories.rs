@@ -92,7 +92,7 @@ pub struct HistorySide {
 }
 
 impl HistorySide {
-    /// Returns the allowed displacements with which the demand is compared, in metres.
+    /// Allowed displacements with which the demand is compared, in metres.
     pub(super) const fn limits_m(&self) -> [f64; 2] {
         [self.capacity_m, self.capacity_over_fc_m]
     }
@@ -145,7 +145,7 @@ pub struct Histories {
     pub sides: BTreeMap<Sway, HistorySide>,
 }
 
-/// Returns true if all sides pass. A failed side decides even if another has no verdict.
+/// True if all sides pass. A failed side decides even if another has no verdict.
 fn all_pass(
     sides: &BTreeMap<Sway, HistorySide>,
     passed: fn(&HistorySide) -> Option<bool>,
@@ -187,33 +187,36 @@ pub(super) fn histories(
         return Err(failed(why.into()));
     }
     let compute = |series: &Series| record_peaks(input, &*model, series, mechanisms);
-    let found = in_parallel(records, compute).into_iter();
-    let found: Result<Vec<RecordPeaks>, SimulationError> = found.collect();
+    let found: Result<Vec<RecordPeaks>, SimulationError> =
+        in_parallel(records, compute).into_iter().collect();
     let series = records;
     let records = found.map_err(|error| failed(error.to_string()))?;
     let model_check = ModelCheck::of(records.iter().map(|one| one.thrust_excess_ratio));
-    let results = mechanisms.iter().map(|(sway, mechanism)| {
-        let peaks: Vec<RecordPeak> = records.iter().map(|one| one.peaks[sway]).collect();
-        let d0_m = mechanism.d0_m.unwrap_or_default();
-        let capacity_m = rule.part_of_d0 * d0_m / rule.divide_displacement;
-        let side = HistorySide {
-            restitution: model.restitution_from(*sway, 1),
-            ..history_side(
-                &peaks,
-                model_check.outside.unwrap_or_default(),
-                [capacity_m, d0_m],
-                input.settings.confidence_factor,
-            )
-        };
-        (*sway, side)
-    });
-    let results = results.collect();
+    let results = mechanisms
+        .iter()
+        .map(|(sway, mechanism)| {
+            let peaks: Vec<RecordPeak> = records.iter().map(|one| one.peaks[sway]).collect();
+            let d0_m = mechanism.d0_m.unwrap_or_default();
+            let capacity_m = rule.part_of_d0 * d0_m / rule.divide_displacement;
+            let side = HistorySide {
+                restitution: model.restitution_from(*sway, 1),
+                ..history_side(
+                    &peaks,
+                    model_check.outside.unwrap_or_default(),
+                    [capacity_m, d0_m],
+                    input.settings.confidence_factor,
+                )
+            };
+            (*sway, side)
+        })
+        .collect();
     let reached = sides.values().filter_map(|side| side.displacement);
     let to_s = reached.map(|reached| reached.period_s);
     let [from_s, to_s] = [FROM_S, to_s.fold(2.0 * FROM_S, f64::max)];
-    let samples = series.iter();
-    let samples = samples.map(|series| series.accelerations_m_s2(gravity_m_s2));
-    let samples: Vec<_> = samples.collect();
+    let samples: Vec<_> = series
+        .iter()
+        .map(|series| series.accelerations_m_s2(gravity_m_s2))
+        .collect();
     let ratios = spectrum_ratios(&samples, spectrum, [from_s, to_s], gravity_m_s2);
     let [least, largest] = SPECTRUM_MARGIN;
     let is_incomplete = |one: &&RecordPeaks| one.peaks.values().any(|peak| peak.incomplete);
@@ -254,9 +257,9 @@ fn record_peaks(
             ..request
         };
         peaks(model, &ground, &request, mechanisms)
-    });
-    let both = both.into_iter();
-    let both = both.collect::<Result<Vec<(Sides<RecordPeak>, Option<f64>)>, _>>()?;
+    })
+    .into_iter()
+    .collect::<Result<Vec<(Sides<RecordPeak>, Option<f64>)>, _>>()?;
     let larger = |sway: Sway| {
         let (one, other) = (both[0].0.get(sway), both[1].0.get(sway));
         let overturned = one.overturned || other.overturned;
@@ -370,8 +373,9 @@ fn spectrum_ratios(
         let circular = 2.0 * std::f64::consts::PI / period_s;
         let demand_g = spectrum.acceleration_g(period_s, 5.0).ok()?;
         Some(mean_m * circular * circular / gravity_m_s2 / demand_g)
-    });
-    let ratios = ratios.into_iter().collect::<Option<Vec<f64>>>()?;
+    })
+    .into_iter()
+    .collect::<Option<Vec<f64>>>()?;
     let least = ratios.iter().copied().fold(f64::INFINITY, f64::min);
     Some([least, ratios.into_iter().fold(0.0, f64::max)])
 }

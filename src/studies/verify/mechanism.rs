@@ -83,7 +83,7 @@ pub struct ConstantForce {
 }
 
 impl ConstantForce {
-    /// Returns a force with the displacement of its point, multiplied by `scale`.
+    /// Force with the displacement of its point, multiplied by `scale`.
     fn new(force: &MovingForce, scale: f64, gravity_m_s2: f64) -> Self {
         let force_kn = force.force_kg * (gravity_m_s2 / 1000.0);
         Self {
@@ -220,7 +220,7 @@ pub enum NoCurve {
 }
 
 impl NoCurve {
-    /// Returns the reason as a sentence. In Italian all reasons of [`NoCurve::Moves`] have one sentence.
+    /// Reason as a sentence. In Italian all reasons of [`NoCurve::Moves`] have one sentence.
     pub(super) fn in_words(&self, language: Language) -> String {
         let [english, italian] = match self {
             Self::Slides => [
@@ -253,8 +253,7 @@ impl From<NoCurve> for String {
 impl From<String> for NoCurve {
     fn from(text: String) -> Self {
         let [right, left] = [Sway::Right, Sway::Left].map(Self::Locks);
-        let known = [Self::Slides, Self::Ties, right, left];
-        let mut known = known.into_iter();
+        let mut known = [Self::Slides, Self::Ties, right, left].into_iter();
         let found = known.find(|why| why.in_words(Language::English) == text);
         found.unwrap_or(Self::Moves(text))
     }
@@ -299,11 +298,14 @@ impl CapacityCurves {
         input: &CheckInput<'_>,
     ) -> Result<Self, NoCurve> {
         let gravity_m_s2 = input.gravity_m_s2;
-        let masses = (0..).map(Some).zip(bodies).map(|(body, own)| {
-            let at_m = own.centre_m;
-            (own.mass_kg, BodyPoint { at_m, body })
-        });
-        let masses: Vec<(f64, BodyPoint)> = masses.collect();
+        let masses: Vec<(f64, BodyPoint)> = (0..)
+            .map(Some)
+            .zip(bodies)
+            .map(|(body, own)| {
+                let at_m = own.centre_m;
+                (own.mass_kg, BodyPoint { at_m, body })
+            })
+            .collect();
         let curve = |control| Capacity::new(sway, &displaced, &masses, control, gravity_m_s2);
         let centre = curve(Control::centre_of(&masses))?;
         let mut parts: Vec<f64> = input.parts_of_d0().chain(PRINTED_PARTS).collect();
@@ -312,13 +314,18 @@ impl CapacityCurves {
         let end_m = centre.end().oscillator_displacement_m;
         let whole_kg: f64 = bodies.iter().map(|body| body.mass_kg).sum();
         let centres_m = |at: &Displaced| {
-            let centres = at.poses.iter().zip(bodies);
-            let centres = centres.map(|(pose, body)| pose.current_position(body.centre_m));
+            let centres = at
+                .poses
+                .iter()
+                .zip(bodies)
+                .map(|(pose, body)| pose.current_position(body.centre_m));
             centres.collect::<Vec<_>>()
         };
         let oscillator_m = |at: &Displaced| {
-            let shifts_m = centres_m(at).into_iter().zip(bodies);
-            let shifts_m = shifts_m.map(|(at_m, body)| (at_m - body.centre_m).x * body.mass_kg);
+            let shifts_m = centres_m(at)
+                .into_iter()
+                .zip(bodies)
+                .map(|(at_m, body)| (at_m - body.centre_m).x * body.mass_kg);
             sway.sign() * shifts_m.sum::<f64>() / whole_kg * centre.to_oscillator
         };
         let positions = parts.iter().map(|part| {
@@ -347,15 +354,17 @@ impl CapacityCurves {
         })
     }
 
-    /// Returns displacements in metres and accelerations in g of the oscillator.
+    /// Displacements in metres and accelerations in g of the oscillator.
     fn points_m_g(&self) -> Vec<[f64; 2]> {
-        let points = self.centre.curve.iter();
-        let points =
-            points.map(|one| (one.oscillator_displacement_m, one.oscillator_acceleration_g));
+        let points = self
+            .centre
+            .curve
+            .iter()
+            .map(|one| (one.oscillator_displacement_m, one.oscillator_acceleration_g));
         points.map(Into::into).collect()
     }
 
-    /// Returns the largest friction coefficient needed up to a fraction of the ultimate displacement.
+    /// Largest friction coefficient needed up to a fraction of the ultimate displacement.
     pub fn friction_up_to(&self, part: f64) -> f64 {
         let end_m = part * self.centre.end().oscillator_displacement_m;
         let points = self.centre.curve.iter();
@@ -455,13 +464,13 @@ impl VirtualMechanism {
         load_multiplier(&self.bodies, &self.ties, &self.forces)
     }
 
-    /// Returns `a_0 / FC` with the loads at points as separate weights, in g; `None` if no body carries such a load.
+    /// `a_0 / FC` with the loads at points as separate weights, in g; `None` if no body carries such a load.
     fn a0_with_separate_loads_over_fc_g(&self, input: &CheckInput<'_>) -> Option<f64> {
         let fraction = self.fraction_with_separate_loads(&input.scenario.structure)?;
         Some(self.alpha0() / (fraction * input.settings.confidence_factor))
     }
 
-    /// Returns `e*` with the loads at points as separate weights [C8.7.1.5, with n + m weights]; `None` if no body carries such a load.
+    /// `e*` with the loads at points as separate weights [C8.7.1.5, with n + m weights]; `None` if no body carries such a load.
     fn fraction_with_separate_loads(&self, structure: &Structure) -> Option<f64> {
         let (outlines, loads) = structure.fill_and_loads();
         let carried = outlines.loads_m.iter().zip(loads);
@@ -492,7 +501,7 @@ impl VirtualMechanism {
             .then(|| Participation::of(all()).mass_fraction)
     }
 
-    /// Returns the numbers of the first and the last block of a body, from 1; `None` for a ring.
+    /// Numbers of the first and the last block of a body, from 1; `None` for a ring.
     fn blocks_of(&self, body: usize) -> Option<[usize; 2]> {
         let of_body = |of: &Option<usize>| *of == Some(body);
         if let Some(first) = self.body_of_block.iter().position(of_body) {
@@ -640,8 +649,10 @@ fn find_slide(row: &Row, coefficient: f64, sway: Sway, alpha0: f64) -> Option<Sl
 
 /// Gives both sides the larger of two bounds that differ only by the tolerance of the linear program.
 fn equalise(mechanisms: &mut BTreeMap<Sway, CheckedMechanism>) {
-    let slides = mechanisms.values_mut();
-    let mut slides: Vec<&mut Slide> = slides.filter_map(|one| one.sliding.as_mut()).collect();
+    let mut slides: Vec<&mut Slide> = mechanisms
+        .values_mut()
+        .filter_map(|one| one.sliding.as_mut())
+        .collect();
     if let [one, other] = &mut slides[..] {
         let larger_g = one.bound_g.max(other.bound_g);
         if (one.bound_g - other.bound_g).abs() <= BOUND_TOLERANCE * larger_g {
@@ -679,9 +690,9 @@ pub(super) fn mechanisms(
                 .ok_or_else(|| none(sway))?
         } else {
             let row = row.as_ref().map_err(VerifyError::clone)?;
-            let found =
-                onset(row, sway).map_err(|error| VerifyError::NoMechanism(error.to_string()))?;
-            let found = found.ok_or_else(|| none(sway))?;
+            let found = onset(row, sway)
+                .map_err(|error| VerifyError::NoMechanism(error.to_string()))?
+                .ok_or_else(|| none(sway))?;
             VirtualMechanism::of_onset(row, sway, &found, input)
         };
         let joints = row.as_ref().ok().or(cut.as_ref());
@@ -693,9 +704,11 @@ pub(super) fn mechanisms(
         CheckedSides::Right => &[Sway::Right],
         CheckedSides::Left => &[Sway::Left],
     };
-    let mechanisms = checked.iter().copied().map(of);
-    let mut mechanisms =
-        mechanisms.collect::<Result<BTreeMap<Sway, CheckedMechanism>, VerifyError>>()?;
+    let mut mechanisms = checked
+        .iter()
+        .copied()
+        .map(of)
+        .collect::<Result<BTreeMap<Sway, CheckedMechanism>, VerifyError>>()?;
     equalise(&mut mechanisms);
     Ok(mechanisms)
 }

@@ -1,6 +1,6 @@
 //! A check of local mechanisms by the Circolare 7/2019, C8.7.1.2.1, with the spectra of NTC 2018.
 //!
-//! The mechanism that starts to one side is a chain of rigid bodies ([`Mechanism`]). Its load multiplier, participating mass and capacity curve
+//! The mechanism that starts to one side is a chain of rigid bodies ([`CheckedMechanism`]). Its load multiplier, participating mass and capacity curve
 //! are compared with a spectrum ([`Spectrum`]) at each limit state. The [`VerifySummary`] has every number and verdict; words, notes and the printed
 //! page are templates that read the summary. Where the text of the Circolare leaves a choice, the notes state the decision.
 
@@ -292,13 +292,15 @@ pub fn verify(scenario: &Scenario) -> Result<VerifySummary, VerifyError> {
     Ok(summary)
 }
 
-/// Returns the sides that are checked: those of the scenario to which the structure can move.
+/// Sides that are checked: those of the scenario to which the structure can move.
 ///
 /// # Errors
 /// When the scenario chooses the side of a wall behind a column.
 fn checked_sides(scenario: &Scenario) -> Result<CheckedSides, VerifyError> {
-    let chosen = scenario.verify.as_ref();
-    let chosen = chosen.map_or(CheckedSides::Both, |verify| verify.sides);
+    let chosen = scenario
+        .verify
+        .as_ref()
+        .map_or(CheckedSides::Both, |verify| verify.sides);
     let Some(wall) = scenario.structure.wall_behind() else {
         return Ok(chosen);
     };
@@ -317,7 +319,7 @@ fn checked_sides(scenario: &Scenario) -> Result<CheckedSides, VerifyError> {
 }
 
 impl CheckInput<'_> {
-    /// Returns the rule of a limit state; `None` for SLD.
+    /// Rule of a limit state; `None` for SLD.
     fn rule(&self, state: LimitState) -> Option<StateRule> {
         match &self.demand {
             Demand::Points(points) => points.get(&state)?.state,
@@ -325,7 +327,7 @@ impl CheckInput<'_> {
         }
     }
 
-    /// Returns the fractions of the ultimate displacement that the limit states allow.
+    /// Fractions of the ultimate displacement that the limit states allow.
     fn parts_of_d0(&self) -> impl Iterator<Item = f64> {
         let rules = self
             .demand
@@ -342,45 +344,48 @@ impl CheckInput<'_> {
         sld: Option<&StateCheck>,
     ) -> Result<StateCheck, VerifyError> {
         let rule = self.rule(state);
-        let spectrum = Spectrum::of(&self.demand, state, rule.as_ref(), self.gravity_m_s2);
-        let spectrum = spectrum.expect("the demand has this state");
-        let sides = mechanisms.iter().map(|(sway, mechanism)| {
-            if let Some(sliding) = mechanism.sliding {
-                let demand_g = self.onset_demand_g(&spectrum)?;
-                let side = SideCheck {
-                    sliding: Some(SlidingCheck::new(sliding.bound_g, demand_g)),
-                    ..SideCheck::default()
-                };
-                return Ok((*sway, side));
-            }
-            let start_ag_g = sld.and_then(|sld| sld.sides[sway].activation?.margin.ag_capacity_g);
-            let activation = match state {
-                LimitState::Sld => Some(self.activation(mechanism, &spectrum)?),
-                LimitState::Slv | LimitState::Slc => None,
-            };
-            let displacement = match (&mechanism.curves, &rule) {
-                (Some(curves), Some(rule)) => {
-                    Some(self.check_displacement(curves, start_ag_g, &spectrum, rule)?)
+        let spectrum = Spectrum::of(&self.demand, state, rule.as_ref(), self.gravity_m_s2)
+            .expect("the demand has this state");
+        let sides = mechanisms
+            .iter()
+            .map(|(sway, mechanism)| {
+                if let Some(sliding) = mechanism.sliding {
+                    let demand_g = self.onset_demand_g(&spectrum)?;
+                    let side = SideCheck {
+                        sliding: Some(SlidingCheck::new(sliding.bound_g, demand_g)),
+                        ..SideCheck::default()
+                    };
+                    return Ok((*sway, side));
                 }
-                _ => None,
-            };
-            let both_g = match (state, &self.demand) {
-                (LimitState::Slv, Demand::Code(_)) => start_ag_g.zip(spectrum.ag_g()),
-                _ => None,
-            };
-            let mut side = SideCheck {
-                zeta_e: None,
-                sliding: None,
-                floor: self.floor(&spectrum, displacement.as_ref(), rule.as_ref()),
-                activation,
-                simplified: both_g.map(|(start_g, ag_g)| self.check_simplified(start_g, ag_g)),
-                displacement,
-            };
-            side.zeta_e = side.governing_result().map(|(_, margin)| margin.zeta_e);
-            Ok((*sway, side))
-        });
-        let sides = sides.collect::<Result<BTreeMap<Sway, SideCheck>, PeriodOutOfRange>>();
-        let sides = sides.map_err(|error| VerifyError::PeriodOutOfRange { state, error })?;
+                let start_ag_g =
+                    sld.and_then(|sld| sld.sides[sway].activation?.margin.ag_capacity_g);
+                let activation = match state {
+                    LimitState::Sld => Some(self.activation(mechanism, &spectrum)?),
+                    LimitState::Slv | LimitState::Slc => None,
+                };
+                let displacement = match (&mechanism.curves, &rule) {
+                    (Some(curves), Some(rule)) => {
+                        Some(self.check_displacement(curves, start_ag_g, &spectrum, rule)?)
+                    }
+                    _ => None,
+                };
+                let both_g = match (state, &self.demand) {
+                    (LimitState::Slv, Demand::Code(_)) => start_ag_g.zip(spectrum.ag_g()),
+                    _ => None,
+                };
+                let mut side = SideCheck {
+                    zeta_e: None,
+                    sliding: None,
+                    floor: self.floor(&spectrum, displacement.as_ref(), rule.as_ref()),
+                    activation,
+                    simplified: both_g.map(|(start_g, ag_g)| self.check_simplified(start_g, ag_g)),
+                    displacement,
+                };
+                side.zeta_e = side.governing_result().map(|(_, margin)| margin.zeta_e);
+                Ok((*sway, side))
+            })
+            .collect::<Result<BTreeMap<Sway, SideCheck>, PeriodOutOfRange>>()
+            .map_err(|error| VerifyError::PeriodOutOfRange { state, error })?;
         let histories = match &rule {
             Some(rule) => histories::histories(self, (state, rule, &spectrum), mechanisms, &sides)?,
             None => None,
@@ -400,7 +405,7 @@ impl CheckInput<'_> {
         })
     }
 
-    /// Returns the ordinates of the spectrum at a height that a check uses: at the period of the mechanism, and at that of the building beyond
+    /// Ordinates of the spectrum at a height that a check uses: at the period of the mechanism, and at that of the building beyond
     /// resonance; for SLD of a structure that is free to vibrate, at its period.
     fn floor(
         &self,
@@ -434,7 +439,7 @@ impl CheckInput<'_> {
         })
     }
 
-    /// Returns the acceleration with which the onset of motion is compared, in g: the peak if walls hold the structure, and the spectral
+    /// Acceleration with which the onset of motion is compared, in g: the peak if walls hold the structure, and the spectral
     /// acceleration at its period if it is free to vibrate.
     fn onset_demand_g(&self, spectrum: &Spectrum) -> Result<f64, PeriodOutOfRange> {
         match self.t0_s {
@@ -505,7 +510,7 @@ impl CheckInput<'_> {
         })
     }
 
-    /// Returns the allowed displacement on a curve, in metres; the divided acceleration there, in g; the period, in s; and the displacement
+    /// Allowed displacement on a curve, in metres; the divided acceleration there, in g; the period, in s; and the displacement
     /// demand, in metres.
     fn allowed_displacement(
         &self,
@@ -527,7 +532,7 @@ impl CheckInput<'_> {
         Ok((capacity_m, acceleration_g, period_s, demand_m))
     }
 
-    /// Returns the acceleration of the elastic branch, in g; `None` if walls hold the structure.
+    /// Acceleration of the elastic branch, in g; `None` if walls hold the structure.
     fn elastic_g(&self, displacement_m: f64) -> Option<f64> {
         let circular = self.t0_s? / (2.0 * PI);
         Some(displacement_m / (circular * circular * self.gravity_m_s2))
@@ -547,7 +552,7 @@ impl CheckInput<'_> {
     }
 }
 
-/// Returns the governing side with its outcome. `None` if a side cannot be checked, unless joints slide first to the other side.
+/// Governing side with its outcome. `None` if a side cannot be checked, unless joints slide first to the other side.
 fn find_governing_side(sides: &BTreeMap<Sway, SideCheck>) -> Option<(GoverningSide, SideOutcome)> {
     let checked = sides
         .iter()

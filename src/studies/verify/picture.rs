@@ -56,11 +56,14 @@ fn draw_mechanism(
 ) {
     let px = |point_m: Vector2<f64>| place.px(point_m);
     let [low, high] = scene.frame_m();
-    let hinges = mechanism.hinges.iter().map(|placed| OpenHinge {
-        hinge: placed.hinge,
-        position_m: Vector2::new(placed.x_m, placed.y_m),
-    });
-    let hinges: Vec<OpenHinge> = hinges.collect();
+    let hinges: Vec<OpenHinge> = mechanism
+        .hinges
+        .iter()
+        .map(|placed| OpenHinge {
+            hinge: placed.hinge,
+            position_m: Vector2::new(placed.x_m, placed.y_m),
+        })
+        .collect();
     let view = View {
         outline: Stroke::new("#777777", 0.6, ""),
         ..View::new(scene, place, &[], &hinges)
@@ -76,8 +79,11 @@ fn draw_mechanism(
     view.draw_loads(drawing, None, false);
     view.draw_ties(drawing);
     let moves = |body: &MechanismBody| Vector2::new(sway.sign() * body.delta_x, -body.delta_y);
-    let fastest = mechanism.bodies.iter().map(|body| moves(body).norm());
-    let fastest = fastest.fold(f64::MIN_POSITIVE, f64::max);
+    let fastest = mechanism
+        .bodies
+        .iter()
+        .map(|body| moves(body).norm())
+        .fold(f64::MIN_POSITIVE, f64::max);
     let arrow = Stroke::new(color::BLUE, 1.6, "");
     for (number, body) in (1..).zip(&mechanism.bodies) {
         let at = px(Vector2::new(body.x_m, body.y_m));
@@ -119,11 +125,15 @@ pub(super) fn capacity(
     let (curve, end_m) = (mechanism.curve_m_g.as_ref()?, mechanism.d0_m?);
     let divided = |[d_m, a_g]: &[f64; 2]| (*d_m, a_g / check.confidence_factor);
     let curve: Vec<(f64, f64)> = curve.iter().map(divided).collect();
-    let sides = check.states.iter().filter_map(|(state, one)| {
-        let side = one.sides.get(&sway)?;
-        Some(((state, one), side.displacement?, one.rule?))
-    });
-    let sides: Vec<_> = sides.zip(&CURVES[1..]).collect();
+    let sides: Vec<_> = check
+        .states
+        .iter()
+        .filter_map(|(state, one)| {
+            let side = one.sides.get(&sway)?;
+            Some(((state, one), side.displacement?, one.rule?))
+        })
+        .zip(&CURVES[1..])
+        .collect();
     let demands = || sides.iter().map(|((_, side, _), _)| side);
     let farthest_m = demands().map(|side| 1.15 * side.demand_m);
     let x = farthest_m.chain([0.0, 1.05 * end_m]);

@@ -46,7 +46,7 @@ pub fn report(scenario: &Scenario, check: &VerifySummary) -> Result<Results, Out
     Ok(results.in_order(&FILES))
 }
 
-/// Returns the verdict in a sentence, then the result for each limit state, with the governing side.
+/// Verdict in a sentence, then the result for each limit state, with the governing side.
 pub fn words(check: &VerifySummary) -> String {
     render(check)
 }
@@ -131,19 +131,19 @@ impl VerifyPage {
         }
     }
 
-    /// Returns the page as HTML.
+    /// Page as HTML.
     pub fn html(&self) -> String {
         render_in(self, self.check.language)
     }
 
-    /// Returns the category of the subsoil; empty without spectra of the code.
+    /// Category of the subsoil; empty without spectra of the code.
     fn soil(&self) -> &'static str {
         let mut grounds = self.check.states.values();
         let ground = grounds.find_map(|one| one.demand.ground());
         ground.map_or("", |ground| ground.spectrum.soil.name())
     }
 
-    /// Returns the modes of the building with their ordinates.
+    /// Modes of the building with their ordinates.
     fn modes<'a>(
         &self,
         state: &'a StateCheck,
@@ -156,7 +156,7 @@ impl VerifyPage {
         modes.iter().zip(&at.modes_g)
     }
 
-    /// Returns every fifth point of a capacity curve in rows of three, which continue downwards.
+    /// Every fifth point of a capacity curve in rows of three, which continue downwards.
     fn curve_rows(&self, one: &CheckedMechanism) -> Vec<Vec<[f64; 2]>> {
         let points: Vec<[f64; 2]> = one.curve_m_g.iter().flatten().step_by(5).copied().collect();
         let rows = points.len().div_ceil(3).max(1);
@@ -164,7 +164,7 @@ impl VerifyPage {
         (0..rows).map(row).collect()
     }
 
-    /// Returns the hinges with their letters on the picture.
+    /// Hinges with their letters on the picture.
     fn hinge_letters<'a>(
         &self,
         one: &'a CheckedMechanism,
@@ -172,7 +172,7 @@ impl VerifyPage {
         ('A'..='Z').zip(&one.hinges)
     }
 
-    /// Returns the factor for the damping of a mechanism.
+    /// Factor for the damping of a mechanism.
     fn eta(&self, rule: &StateRule) -> f64 {
         damping_factor(rule.damping_percent)
     }
@@ -184,13 +184,13 @@ impl VerifyPage {
 }
 
 impl StateCheck {
-    /// Returns true if the result of this method to this side governs: the page prints it in bold.
+    /// True if the result of this method to this side governs: the page prints it in bold.
     fn governs(&self, sway: &Sway, method: &Method) -> bool {
         let side = self.side.map_or("", super::GoverningSide::name);
         self.method.as_ref() == Some(method) && ["either", sway.name()].contains(&side)
     }
 
-    /// Returns the comparison with the slide of joints, if it governs.
+    /// Comparison with the slide of joints, if it governs.
     fn governing_slide(&self) -> Option<SlidingCheck> {
         let mut sides = self.sides.iter();
         let governs = |(sway, _): &(&Sway, _)| self.governs(sway, &Method::Sliding);
@@ -218,7 +218,7 @@ struct Words<'a> {
 }
 
 impl Words<'_> {
-    /// Returns the side in a column of equal width.
+    /// Side in a column of equal width.
     fn padded_side(&self, sway: &Sway) -> String {
         let to = self.check.language.choose("to the", "verso");
         let width = match self.check.language {
@@ -230,12 +230,12 @@ impl Words<'_> {
 }
 
 impl VerifySummary {
-    /// Returns the words of the check.
+    /// Words of the check.
     pub(super) fn words(&self) -> String {
         render_in(&Words { check: self }, self.language)
     }
 
-    /// Returns a word of [`WORDS`] in the language of the check, and any other text unchanged.
+    /// Word of [`WORDS`] in the language of the check, and any other text unchanged.
     fn word<'a>(&self, english: &'a str) -> &'a str {
         let known = WORDS.iter().find(|[word, _]| *word == english);
         known.map_or(english, |[_, italian]| {
@@ -243,7 +243,7 @@ impl VerifySummary {
         })
     }
 
-    /// Returns the number of printed sides.
+    /// Number of printed sides.
     fn printed_sides(&self) -> usize {
         if self.is_symmetric {
             1
@@ -252,25 +252,25 @@ impl VerifySummary {
         }
     }
 
-    /// Returns the printed sides to which joints slide first.
+    /// Printed sides to which joints slide first.
     pub(super) fn sliding_sides(&self) -> Vec<(&Sway, &CheckedMechanism)> {
         let printed = self.mechanisms.iter().take(self.printed_sides());
         printed.filter(|(_, one)| one.sliding.is_some()).collect()
     }
 
-    /// Returns the limit states with this verdict.
+    /// Limit states with this verdict.
     pub(super) fn states_with(&self, verdict: CheckVerdict) -> Vec<(&LimitState, &StateCheck)> {
         let states = self.states.iter();
         states.filter(|(_, one)| one.verdict == verdict).collect()
     }
 
-    /// Returns the limit states with a result.
+    /// Limit states with a result.
     pub(super) fn checked(&self) -> Vec<(&LimitState, &StateCheck)> {
         let states = self.states.iter();
         states.filter(|(_, one)| one.zeta_e.is_some()).collect()
     }
 
-    /// Returns the clause of a formula; empty if clauses are not cited.
+    /// Clause of a formula; empty if clauses are not cited.
     fn clause(&self, clause: &str) -> Safe<String> {
         let cited = format!(" <span class=\"clause\">[{clause}]</span>");
         Safe(self.formulas.as_ref().map_or_else(String::new, |_| cited))
@@ -352,7 +352,7 @@ pub(super) fn add_notes(check: &mut VerifySummary, unused_records: &[&'static st
     check.warnings.extend(part());
 }
 
-/// Returns true if the left side is the mirror image of the right one, including all numbers.
+/// True if the left side is the mirror image of the right one, including all numbers.
 pub(super) fn are_mirrored(
     mechanisms: &BTreeMap<Sway, CheckedMechanism>,
     states: &BTreeMap<LimitState, StateCheck>,
@@ -388,7 +388,7 @@ pub(super) fn are_mirrored(
     states && are_alike(&own, &mirrored)
 }
 
-/// Returns true if two results have the same numbers, up to rounding errors. Texts may differ: they may name a side.
+/// True if two results have the same numbers, up to rounding errors. Texts may differ: they may name a side.
 fn are_alike<T: Serialize>(a: &T, b: &T) -> bool {
     fn alike_values(a: &Value, b: &Value) -> bool {
         match (a, b) {
@@ -409,7 +409,7 @@ fn are_alike<T: Serialize>(a: &T, b: &T) -> bool {
     alike_values(&json!(a), &json!(b))
 }
 
-/// Returns the date a number of days after 1 January 1970, such as 2025-01-31.
+/// Date a number of days after 1 January 1970, such as 2025-01-31.
 fn date_of(days: u64) -> String {
     // Years that begin in March end with the leap day (Hinnant, chrono-Compatible Low-Level Date Algorithms).
     let days = days + 719_468;

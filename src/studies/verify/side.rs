@@ -94,7 +94,7 @@ pub struct DisplacementCheck {
 }
 
 impl DisplacementCheck {
-    /// Returns the ratio of displacement capacity to demand.
+    /// Ratio of displacement capacity to demand.
     pub fn zeta_e_by_displacement(&self) -> f64 {
         self.capacity_m / self.demand_m
     }
@@ -164,7 +164,7 @@ named! {
 pub(super) type MethodResult = (Method, Margin, Option<([f64; 2], &'static str)>);
 
 impl SideCheck {
-    /// Returns the results, the governing one first: by displacements if there is a curve, or the activation if it governs, before the
+    /// Results, the governing one first: by displacements if there is a curve, or the activation if it governs, before the
     /// displacements.
     pub(super) fn results(&self) -> impl Iterator<Item = MethodResult> {
         let displacement = self.displacement.map(|one| {
@@ -176,8 +176,9 @@ impl SideCheck {
             let compared = (one.activation_ag_g?, one.margin.ag_g?).into();
             Some((Method::Activation, one.margin, Some((compared, "g"))))
         });
-        let simplified = self.simplified;
-        let simplified = simplified.map(|one| (Method::Simplified, one.margin, None));
+        let simplified = self
+            .simplified
+            .map(|one| (Method::Simplified, one.margin, None));
         let activation = self.activation.map(|one| {
             let compared = ([one.capacity_g, one.demand_g], "g");
             (Method::Activation, one.margin, Some(compared))
@@ -186,19 +187,19 @@ impl SideCheck {
         results.into_iter().flatten()
     }
 
-    /// Returns the governing method and result; `None` if the side cannot be checked, or joints slide first.
+    /// Governing method and result; `None` if the side cannot be checked, or joints slide first.
     pub fn governing_result(&self) -> Option<(Method, Margin)> {
         let (method, margin, _) = self.results().next()?;
         Some((method, margin))
     }
 
-    /// Returns the verdict to this side.
+    /// Verdict to this side.
     pub fn verdict(&self) -> CheckVerdict {
         self.outcome()
             .map_or(CheckVerdict::NotChecked, |outcome| outcome.verdict)
     }
 
-    /// Returns the governing method with its verdict; `None` if the side cannot be checked.
+    /// Governing method with its verdict; `None` if the side cannot be checked.
     pub(super) fn outcome(&self) -> Option<SideOutcome> {
         if let Some(sliding) = self.sliding {
             return Some(SideOutcome {
@@ -229,7 +230,7 @@ pub(super) struct SideOutcome {
 }
 
 impl SideOutcome {
-    /// Returns true if this side decides rather than another: a side that fails, then a side without an answer, then the smaller ratio.
+    /// True if this side decides rather than another: a side that fails, then a side without an answer, then the smaller ratio.
     pub(super) fn is_worse_than(&self, other: &Self) -> bool {
         let severity = |verdict| match verdict {
             CheckVerdict::NotPassed => 3,
@@ -270,7 +271,7 @@ named! {
     }
 }
 
-/// Returns true if two numbers of mirrored sides differ by rounding errors only.
+/// True if two numbers of mirrored sides differ by rounding errors only.
 pub(super) fn equal_numbers(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-9 * (a.abs() + b.abs()).max(1e-6)
 }

@@ -76,7 +76,7 @@ fn floor_spectrum(ground: &SpectrumGround, modes: &[FloorMode]) -> FloorSpectrum
     }
 }
 
-/// Returns the first period at which a displacement of points counts, in seconds.
+/// First period at which a displacement of points counts, in seconds.
 fn points_from_s(points: &PointSpectrum, from_s: Option<f64>, period_s: f64) -> f64 {
     from_s.unwrap_or(points.range_s()[0]).min(period_s)
 }
@@ -128,7 +128,7 @@ impl Spectrum {
         })
     }
 
-    /// Returns the spectrum of the ground; `None` for points.
+    /// Spectrum of the ground; `None` for points.
     pub const fn ground(&self) -> Option<&SpectrumGround> {
         match self {
             Self::Ground(ground) | Self::Floor { ground, .. } => Some(ground),
@@ -136,7 +136,7 @@ impl Spectrum {
         }
     }
 
-    /// Returns the acceleration `a_g` of the hazard, in g. For points it is their peak; `None` if they do not begin at period zero.
+    /// Acceleration `a_g` of the hazard, in g. For points it is their peak; `None` if they do not begin at period zero.
     pub fn ag_g(&self) -> Option<f64> {
         match self {
             Self::Ground(ground) | Self::Floor { ground, .. } => Some(ground.spectrum.hazard.ag_g),
@@ -144,7 +144,7 @@ impl Spectrum {
         }
     }
 
-    /// Returns the peak acceleration of the ground, or of the floor that carries the mechanism, in g.
+    /// Peak acceleration of the ground, or of the floor that carries the mechanism, in g.
     ///
     /// # Errors
     /// When the points do not begin at period zero.
@@ -156,7 +156,7 @@ impl Spectrum {
         }
     }
 
-    /// Returns the spectral acceleration at a period and a damping, in g.
+    /// Spectral acceleration at a period and a damping, in g.
     ///
     /// # Errors
     /// When the period is outside the points.
@@ -175,7 +175,7 @@ impl Spectrum {
         }
     }
 
-    /// Returns the longest period of the building, in seconds; `None` on the ground.
+    /// Longest period of the building, in seconds; `None` on the ground.
     pub(super) fn first_period_s(&self) -> Option<f64> {
         let Self::Floor { ground, modes, .. } = self else {
             return None;
@@ -183,14 +183,15 @@ impl Spectrum {
         Some(floor_spectrum(ground, modes).first_period_s())
     }
 
-    /// Returns the ordinates of the modes at a period and a damping; `None` on the ground.
+    /// Ordinates of the modes at a period and a damping; `None` on the ground.
     pub(super) fn ordinates(&self, period_s: f64, percent: f64) -> Option<FloorOrdinates> {
         let Self::Floor { ground, modes, .. } = self else {
             return None;
         };
         let spectrum = &ground.spectrum;
-        let modes_g = modes.iter();
-        let modes_g = modes_g.map(|one| one.mode.acceleration_g(spectrum, period_s, percent));
+        let modes_g = modes
+            .iter()
+            .map(|one| one.mode.acceleration_g(spectrum, period_s, percent));
         Some(FloorOrdinates {
             period_s,
             modes_g: modes_g.collect(),
@@ -199,7 +200,7 @@ impl Spectrum {
         })
     }
 
-    /// Returns the smallest displacement demand, in metres, on a floor at a period beyond resonance with the building; `None` below it and on
+    /// Smallest displacement demand, in metres, on a floor at a period beyond resonance with the building; `None` below it and on
     /// the ground.
     pub(super) fn resonance_m(
         &self,
@@ -215,7 +216,7 @@ impl Spectrum {
         is_beyond.then(|| floor.resonance_m(damping_percent, gravity_m_s2))
     }
 
-    /// Returns the period of the largest displacement of points up to a period, in seconds (see [`Self::displacement_m`]); `None` for spectra by NTC 2018.
+    /// Period of the largest displacement of points up to a period, in seconds (see [`Self::displacement_m`]); `None` for spectra by NTC 2018.
     pub(super) fn demand_period_s(
         &self,
         period_s: f64,

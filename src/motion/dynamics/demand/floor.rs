@@ -25,7 +25,7 @@ pub struct Mode {
 }
 
 impl Mode {
-    /// Returns the largest acceleration of the floor in this mode, [C7.2.7], in g.
+    /// Largest acceleration of the floor in this mode, [C7.2.7], in g.
     pub fn peak_g(&self, ground: &GroundSpectrum) -> f64 {
         let damping = self.damping_percent;
         ground.acceleration_g(self.t_s, damping)
@@ -33,13 +33,13 @@ impl Mode {
             * (1.0 + 0.0004 * damping * damping).sqrt()
     }
 
-    /// Returns the ratio of an oscillator of this damping, in resonance with the mode, to the floor, [C7.2.6]. The damping of the mode counts as a
+    /// Ratio of an oscillator of this damping, in resonance with the mode, to the floor, [C7.2.6]. The damping of the mode counts as a
     /// fraction here, as in the transfer of a harmonic motion; in per cent there would be no amplification.
     pub fn amplification(&self, damping_percent: f64) -> f64 {
         1.1 * damping_factor(damping_percent) / (self.damping_percent / 100.0).sqrt()
     }
 
-    /// Returns the ordinate of the mode, [C7.2.6], in g.
+    /// Ordinate of the mode, [C7.2.6], in g.
     pub fn acceleration_g(
         &self,
         ground: &GroundSpectrum,
@@ -69,42 +69,42 @@ pub struct FloorSpectrum {
 }
 
 impl FloorSpectrum {
-    /// Returns the spectrum in a building on that ground; `None` without modes.
+    /// Spectrum in a building on that ground; `None` without modes.
     pub fn new(ground: GroundSpectrum, modes: Vec<Mode>) -> Option<Self> {
         (!modes.is_empty()).then_some(Self { ground, modes })
     }
 
-    /// Returns the longest period of the building, `T_1`, in seconds.
+    /// Longest period of the building, `T_1`, in seconds.
     pub fn first_period_s(&self) -> f64 {
         let periods = self.modes.iter().map(|mode| mode.t_s);
         periods.fold(0.0, f64::max)
     }
 
-    /// Returns the largest acceleration of the floor, [C7.2.8], and at least that of the ground, in g.
+    /// Largest acceleration of the floor, [C7.2.8], and at least that of the ground, in g.
     pub fn peak_g(&self) -> f64 {
         let modes = self.modes.iter().map(|mode| mode.peak_g(&self.ground));
         root_of_squares(modes).max(self.ground.peak_g)
     }
 
-    /// Returns the spectral acceleration `S_eZ`, [C7.2.5], and at least that of the ground at every period, in g.
+    /// Spectral acceleration `S_eZ`, [C7.2.5], and at least that of the ground at every period, in g.
     pub fn acceleration_g(&self, period_s: f64, damping_percent: f64) -> f64 {
         let modes = self.modes.iter();
         let floor = modes.map(|mode| mode.acceleration_g(&self.ground, period_s, damping_percent));
         root_of_squares(floor).max(self.ground.acceleration_g(period_s, damping_percent))
     }
 
-    /// Returns the period up to which a mechanism is in resonance with the first mode, in seconds.
+    /// Period up to which a mechanism is in resonance with the first mode, in seconds.
     pub fn resonance_s(&self) -> f64 {
         PLATEAU[1] * self.first_period_s()
     }
 
-    /// Returns the displacement demand at the period [`Self::resonance_s`], in metres.
+    /// Displacement demand at the period [`Self::resonance_s`], in metres.
     pub fn resonance_m(&self, damping_percent: f64, gravity_m_s2: f64) -> f64 {
         let acceleration_g = self.acceleration_g(self.first_period_s(), damping_percent);
         displacement_m(acceleration_g, self.resonance_s(), gravity_m_s2)
     }
 
-    /// Returns the displacement demand on a mechanism, [C8.7.1.12], in metres: `S_eZ T^2 / (4 pi^2)`. Beyond the resonance with the first mode it is
+    /// Displacement demand on a mechanism, [C8.7.1.12], in metres: `S_eZ T^2 / (4 pi^2)`. Beyond the resonance with the first mode it is
     /// at least that at resonance.
     pub fn displacement_m(&self, period_s: f64, damping_percent: f64, gravity_m_s2: f64) -> f64 {
         let acceleration_g = self.acceleration_g(period_s, damping_percent);
@@ -116,7 +116,7 @@ impl FloorSpectrum {
     }
 }
 
-/// Returns the square root of the sum of the squares.
+/// Square root of the sum of the squares.
 fn root_of_squares(values: impl Iterator<Item = f64>) -> f64 {
     values.map(|value| value * value).sum::<f64>().sqrt()
 }

@@ -24,7 +24,7 @@ named! {
 }
 
 impl Soil {
-    /// Returns the coefficient `S_S` (Tab. 3.2.IV) for `x = F_o a_g / g`.
+    /// Coefficient `S_S` (Tab. 3.2.IV) for `x = F_o a_g / g`.
     pub fn amplification(self, x: f64) -> f64 {
         let (most, slope, range) = match self {
             Self::A => return 1.0,
@@ -36,7 +36,7 @@ impl Soil {
         (most - slope * x).clamp(range.0, range.1)
     }
 
-    /// Returns the coefficient `C_C` (Tab. 3.2.IV) for `T_C*` in seconds.
+    /// Coefficient `C_C` (Tab. 3.2.IV) for `T_C*` in seconds.
     pub fn period_coefficient(self, tc_star_s: f64) -> f64 {
         match self {
             Self::A => 1.0,
@@ -47,7 +47,7 @@ impl Soil {
         }
     }
 
-    /// Returns the period `T_E` (Tab. 3.2.VII), in seconds.
+    /// Period `T_E` (Tab. 3.2.VII), in seconds.
     pub const fn t_e_s(self) -> f64 {
         match self {
             Self::A => 4.5,
@@ -75,7 +75,7 @@ named! {
 }
 
 impl Topography {
-    /// Returns the largest coefficient `S_T` of the category (Tab. 3.2.V), that at the top.
+    /// Largest coefficient `S_T` of the category (Tab. 3.2.V), that at the top.
     pub const fn factor(self) -> f64 {
         match self {
             Self::T1 => 1.0,
@@ -134,7 +134,7 @@ pub struct GroundSpectrum {
 }
 
 impl GroundSpectrum {
-    /// Returns the spectrum of a hazard on a site.
+    /// Spectrum of a hazard on a site.
     ///
     /// # Errors
     /// When a parameter is out of the range of the code: `F_o` below 2.2, or corner periods out of order.
@@ -180,7 +180,7 @@ impl GroundSpectrum {
         })
     }
 
-    /// Returns the spectral acceleration `S_e` [3.2.2] at a period and a damping, in g.
+    /// Spectral acceleration `S_e` [3.2.2] at a period and a damping, in g.
     pub fn acceleration_g(&self, period_s: f64, damping_percent: f64) -> f64 {
         let (t, amplified) = (period_s, damping_factor(damping_percent) * self.hazard.f0);
         let shape = if t < self.t_b_s {
@@ -196,7 +196,7 @@ impl GroundSpectrum {
         self.peak_g * amplified * shape
     }
 
-    /// Returns the spectral displacement `S_De` (§ 3.2.3.2.3) at a period and a damping, in metres.
+    /// Spectral displacement `S_De` (§ 3.2.3.2.3) at a period and a damping, in metres.
     pub fn displacement_m(&self, period_s: f64, damping_percent: f64, gravity_m_s2: f64) -> f64 {
         if period_s <= self.t_e_s {
             let acceleration_g = self.acceleration_g(period_s, damping_percent);
@@ -207,12 +207,12 @@ impl GroundSpectrum {
         self.peak_displacement_m(gravity_m_s2) * (amplified + (1.0 - amplified) * part)
     }
 
-    /// Returns the peak displacement of the ground, `d_g = 0.025 a_g S T_C T_D`, in metres.
+    /// Peak displacement of the ground, `d_g = 0.025 a_g S T_C T_D`, in metres.
     pub fn peak_displacement_m(&self, gravity_m_s2: f64) -> f64 {
         0.025 * self.peak_g * gravity_m_s2 * self.t_c_s * self.t_d_s
     }
 
-    /// Returns the largest spectral displacement up to a period, in metres. The displacement decreases beyond `T_E`, and a structure that softens
+    /// Largest spectral displacement up to a period, in metres. The displacement decreases beyond `T_E`, and a structure that softens
     /// passes this period.
     pub fn largest_displacement_m(
         &self,

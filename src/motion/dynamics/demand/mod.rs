@@ -16,12 +16,12 @@ pub use ground::{GroundSpectrum, Hazard, Site, Soil, Topography};
 pub use oscillator::peak_displacement;
 pub use points::{PeriodOutOfRange, PointError, PointSpectrum};
 
-/// Returns the factor from ordinates at 5 % damping to those at another damping: `sqrt(10 / (5 + xi))`, at least 0.55 (§ 3.2.3.2.1).
+/// Factor from ordinates at 5 % damping to those at another damping: `sqrt(10 / (5 + xi))`, at least 0.55 (§ 3.2.3.2.1).
 pub fn damping_factor(damping_percent: f64) -> f64 {
     (10.0 / (5.0 + damping_percent)).sqrt().max(0.55)
 }
 
-/// Returns the spectral displacement, in metres, that corresponds to a spectral acceleration, in g, at a period: `S T^2 / (4 pi^2)`.
+/// Spectral displacement, in metres, that corresponds to a spectral acceleration, in g, at a period: `S T^2 / (4 pi^2)`.
 pub fn displacement_m(acceleration_g: f64, period_s: f64, gravity_m_s2: f64) -> f64 {
     let circular = period_s / (2.0 * PI);
     acceleration_g * gravity_m_s2 * circular * circular

@@ -36,7 +36,7 @@ pub struct PeriodOutOfRange {
 }
 
 impl PointSpectrum {
-    /// Returns the spectrum through points: period in seconds, acceleration in g, at a damping in per cent.
+    /// Spectrum through points: period in seconds, acceleration in g, at a damping in per cent.
     ///
     /// # Errors
     /// When there are fewer than two points, periods do not rise, or a number is not allowed.
@@ -68,7 +68,7 @@ impl PointSpectrum {
         })
     }
 
-    /// Returns the peak acceleration: that at the period zero, in g.
+    /// Peak acceleration: that at the period zero, in g.
     ///
     /// # Errors
     /// When there is no row for it.
@@ -77,7 +77,7 @@ impl PointSpectrum {
         self.acceleration_g(0.0, self.damping_percent)
     }
 
-    /// Returns the spectral acceleration at a period and a damping, in g.
+    /// Spectral acceleration at a period and a damping, in g.
     ///
     /// # Errors
     /// When the period is not within the rows.
@@ -93,14 +93,16 @@ impl PointSpectrum {
                 given_s: [from_s, to_s],
             });
         }
-        let after = self.points.partition_point(|point| point.0 < period_s);
-        let after = after.clamp(1, self.points.len() - 1);
+        let after = self
+            .points
+            .partition_point(|point| point.0 < period_s)
+            .clamp(1, self.points.len() - 1);
         let (low, high) = (self.points[after - 1], self.points[after]);
         let part = (period_s - low.0) / (high.0 - low.0);
         Ok(self.scale(damping_percent) * (low.1 + part * (high.1 - low.1)))
     }
 
-    /// Returns the largest spectral displacement between two periods, in metres, and the period where it is: at an end, at a row, or where between
+    /// Largest spectral displacement between two periods, in metres, and the period where it is: at an end, at a row, or where between
     /// two rows the acceleration `p + s T` makes `p T^2 + s T^3` largest, at `T = -2 p / (3 s)`.
     ///
     /// # Errors
@@ -132,7 +134,7 @@ impl PointSpectrum {
         Ok(largest)
     }
 
-    /// Returns the first and last period, in seconds.
+    /// First and last period, in seconds.
     pub fn range_s(&self) -> [f64; 2] {
         [self.points[0].0, self.points[self.points.len() - 1].0]
     }

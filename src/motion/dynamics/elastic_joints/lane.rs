@@ -139,7 +139,7 @@ impl<'a> Lane<'a> {
         step
     }
 
-    /// Returns a kick up to `to_s`, and the ground velocity at this time, which is constant once the ground is quiet.
+    /// Kick up to `to_s`, and the ground velocity at this time, which is constant once the ground is quiet.
     pub fn kick(&self, to_s: f64) -> (ElasticStep<Lanes<1>>, Vector2<f64>) {
         let ground_m_s = if self.is_shaken() {
             self.velocity.velocity_at(to_s)
@@ -167,7 +167,7 @@ impl<'a> Lane<'a> {
         self.ends_stride() || self.observer.time >= self.until_s
     }
 
-    /// Returns whether a joint is open beyond its state at rest, by more than the largest penetration under self-weight.
+    /// Whether a joint is open beyond its state at rest, by more than the largest penetration under self-weight.
     fn is_open(&mut self, penetrations_m: impl Iterator<Item = [f64; 2]>) -> bool {
         if self.monitor.opening_m.is_empty() {
             let at_rest: Vec<[f64; 2]> = penetrations_m.collect();
@@ -189,8 +189,11 @@ impl<'a> Lane<'a> {
         supports: &[SlidingSupport],
     ) -> f64 {
         if self.observer.has_rocked != Some(true) {
-            let edges = motion.memories.iter().map(|edges| edges.penetrations_m);
-            let edges = edges.take(motion.structure.row_joints().len());
+            let edges = motion
+                .memories
+                .iter()
+                .map(|edges| edges.penetrations_m)
+                .take(motion.structure.row_joints().len());
             let is_open = self.is_open(edges.map(|ends| ends.map(|end| end.0[index])));
             let slips =
                 self.observer.elastic.friction_j > REST_ENERGY_RATIO * self.observer.energy_unit;
@@ -231,7 +234,7 @@ impl<'a> Lane<'a> {
         self.observer.elastic.vibrates_since_s = self.lasts(since_s).then_some(since_s);
     }
 
-    /// Returns whether the row has been in a state since this time for long enough, on quiet ground.
+    /// Whether the row has been in a state since this time for long enough, on quiet ground.
     fn lasts(&self, since_s: f64) -> bool {
         self.observer.is_quiet(since_s.max(self.quiet_from_s))
     }
@@ -286,7 +289,7 @@ impl<'a> Lane<'a> {
         }
     }
 
-    /// Returns whether the motion ends because the row has only vibrated for some time, if its barrier is that of the row before.
+    /// Whether the motion ends because the row has only vibrated for some time, if its barrier is that of the row before.
     fn is_calm(&self) -> bool {
         let ends = self.until != EndCondition::End || self.observer.input.settings.ends_calm();
         let calm_s = CALM_RESTS * self.observer.rest_time_s();
@@ -297,7 +300,7 @@ impl<'a> Lane<'a> {
         ends && has_lasted && !is_low && self.feet.is_none() && self.at_rest_since_s().is_none()
     }
 
-    /// Returns whether crushing and slip have hardly changed the barrier. A row that has crushed may continue to crush, and fall without much energy.
+    /// Whether crushing and slip have hardly changed the barrier. A row that has crushed may continue to crush, and fall without much energy.
     fn keeps_barrier(&self, barrier_j: f64) -> bool {
         let (row, summary) = (self.observer.input.row, &self.observer.row_summary);
         let slips_little = |sliding: &Sliding| sliding.largest_m() < comparable_slip_m(row);

@@ -84,7 +84,7 @@ impl ElasticJoints {
     /// Maximum number of steps of a motion: some hours of computing.
     pub const MOST_STEPS: f64 = 1e9;
 
-    /// Returns the model of a stable row with elastic joints.
+    /// Model of a stable row with elastic joints.
     ///
     /// # Errors
     /// If a property is out of range, or the row does not carry its own weight; with the reason.
@@ -92,7 +92,7 @@ impl ElasticJoints {
         Self::under(GRAVITY_M_S2, row, properties)
     }
 
-    /// Returns the model of a row with elastic joints that is stable under this gravity, in m/s2. Under less gravity joints bend less.
+    /// Model of a row with elastic joints that is stable under this gravity, in m/s2. Under less gravity joints bend less.
     ///
     /// # Errors
     /// As [`ElasticJoints::new`].
@@ -104,7 +104,7 @@ impl ElasticJoints {
         Self::with_wall(None, gravity_m_s2, row, properties)
     }
 
-    /// Returns the model of a column under this gravity, in m/s2, with the wall behind it. Contacts with the wall push, without friction; their stiffness
+    /// Model of a column under this gravity, in m/s2, with the wall behind it. Contacts with the wall push, without friction; their stiffness
     /// per area and their damping are those of the joints.
     ///
     /// # Errors
@@ -125,10 +125,11 @@ impl ElasticJoints {
         row: Row,
         properties: ElasticProperties,
     ) -> Result<Self, RowModelError> {
-        let structure = ElasticStructure::of_row(&row, &properties)?;
-        let structure = structure.with_wall(&row, wall, &properties)?;
-        let rigid = RigidRow::new(row)?.with_friction(properties.friction_coefficient)?;
-        let rigid = rigid.before_wall(wall.map(|(side, _)| side));
+        let structure =
+            ElasticStructure::of_row(&row, &properties)?.with_wall(&row, wall, &properties)?;
+        let rigid = RigidRow::new(row)?
+            .with_friction(properties.friction_coefficient)?
+            .before_wall(wall.map(|(side, _)| side));
         Self::standing(rigid, properties, structure, gravity_m_s2)
     }
 
@@ -152,7 +153,7 @@ impl ElasticJoints {
         })
     }
 
-    /// Returns this model on supports that moved slowly before time zero.
+    /// This model on supports that moved slowly before time zero.
     ///
     /// # Errors
     /// If the row falls during the movement, with these joints or with rigid ones.
@@ -169,7 +170,7 @@ impl ElasticJoints {
         })
     }
 
-    /// Returns this model with this longest step, in seconds. The default is a quarter (undamped) to a half of the largest step that is proved
+    /// This model with this longest step, in seconds. The default is a quarter (undamped) to a half of the largest step that is proved
     /// to be stable.
     ///
     /// # Errors
@@ -179,19 +180,19 @@ impl ElasticJoints {
         Ok(self)
     }
 
-    /// Returns this model for a study of many cases, with longer default steps. Few results change, and those that do differ between repetitions.
+    /// This model for a study of many cases, with longer default steps. Few results change, and those that do differ between repetitions.
     #[must_use]
     pub const fn for_many_cases(mut self) -> Self {
         self.many_cases = true;
         self
     }
 
-    /// Returns the row of blocks.
+    /// Row of blocks.
     pub const fn row(&self) -> &Row {
         &self.rigid.row
     }
 
-    /// Returns the equilibrium under this gravity.
+    /// Equilibrium under this gravity.
     ///
     /// # Errors
     /// If there is no equilibrium, with the reason.
@@ -203,12 +204,12 @@ impl ElasticJoints {
         Ok(self.structure.rest([0.0, -gravity_m_s2])?)
     }
 
-    /// Returns the energy in J that the first mechanism of the row with rigid joints needs to overturn; `None` if unknown.
+    /// Energy in J that the first mechanism of the row with rigid joints needs to overturn; `None` if unknown.
     pub fn barrier_j(&self, gravity_m_s2: f64) -> Option<f64> {
         self.rigid.barrier_j(gravity_m_s2)
     }
 
-    /// Returns the longest step of a motion, in seconds.
+    /// Longest step of a motion, in seconds.
     pub fn longest_step_s(&self) -> f64 {
         let mut default_s = Self::default_step_s(&self.structure);
         if self.many_cases {
@@ -217,7 +218,7 @@ impl ElasticJoints {
         self.steps_times * self.given_step_s.unwrap_or(default_s)
     }
 
-    /// Returns the default of the longest step, in seconds.
+    /// Default of the longest step, in seconds.
     pub fn default_step_s(structure: &ElasticStructure) -> f64 {
         let frequency = structure.frequency_bound_rad_s();
         let damped = 0.5 * structure.damping_time_s * frequency / DAMPED;
@@ -229,7 +230,7 @@ impl ElasticJoints {
         ratio * structure.stable_step_s()
     }
 
-    /// Returns copies with other steps, for repetitions. In studies of many cases those with longer steps come first.
+    /// Copies with other steps, for repetitions. In studies of many cases those with longer steps come first.
     fn other_steps(&self) -> [(&'static str, Self); 6] {
         let mut others = OTHER_STEPS;
         if self.many_cases {
@@ -242,7 +243,7 @@ impl ElasticJoints {
         })
     }
 
-    /// Returns copies with other plausible properties: lower stiffness, higher stiffness, and another integration of the stress.
+    /// Copies with other plausible properties: lower stiffness, higher stiffness, and another integration of the stress.
     pub fn variations(&self) -> Vec<Variation> {
         let stiffness = |power: i32| {
             let factor = libm::pow(10.0, f64::from(power) / STIFFNESSES_PER_DECADE);
@@ -265,8 +266,9 @@ impl ElasticJoints {
         };
         let mut summed_otherwise = self.properties;
         summed_otherwise.contact = contact;
-        let others = MOST_POWERS.filter_map(stiffness);
-        let others = others.chain([(words.to_owned(), summed_otherwise)]);
+        let others = MOST_POWERS
+            .filter_map(stiffness)
+            .chain([(words.to_owned(), summed_otherwise)]);
         let variation = |(name, properties): (String, ElasticProperties)| Variation {
             name,
             model: match self.varied(properties) {
@@ -284,15 +286,18 @@ impl ElasticJoints {
         Self::standing(self.rigid.clone(), properties, structure, self.rest.0)
     }
 
-    /// Returns the input of a motion, and the initial velocities of the blocks; empty at rest.
+    /// Input of a motion, and the initial velocities of the blocks; empty at rest.
     fn input<'a>(
         &'a self,
         ground: &'a GroundMotion,
         request: &Request,
     ) -> Result<(MotionInput<'a>, Vec<Vector3<f64>>), SimulationError> {
         check(ground, request)?;
-        let velocities = request.initial.map(|initial| self.velocities(initial));
-        let velocities = velocities.transpose()?.unwrap_or_default();
+        let velocities = request
+            .initial
+            .map(|initial| self.velocities(initial))
+            .transpose()?
+            .unwrap_or_default();
         let (step_s, longest_s) = (self.longest_step_s(), self.structure.stable_step_s());
         if step_s > longest_s {
             let why = format!(
@@ -315,7 +320,7 @@ impl ElasticJoints {
         Ok((input, velocities))
     }
 
-    /// Returns the velocities (m/s) and rotation rates of the blocks if the row starts with a rate in the first mechanism of rigid joints.
+    /// Velocities (m/s) and rotation rates of the blocks if the row starts with a rate in the first mechanism of rigid joints.
     ///
     /// # Errors
     /// If the row is rotated: elastic joints have no hinges about which blocks turn.
@@ -410,7 +415,7 @@ impl ElasticJoints {
         }
     }
 
-    /// Returns the summary of a motion with the largest eccentricity at rest.
+    /// Summary of a motion with the largest eccentricity at rest.
     ///
     /// # Errors
     /// If the energy balance is wrong.

@@ -32,7 +32,7 @@ impl<R: Real> BodyState<R> {
     }
 }
 
-/// Returns the indices of the bodies of a joint; the supports are the last two bodies.
+/// Indices of the bodies of a joint; the supports are the last two bodies.
 #[inline(always)]
 pub fn joint_bodies(structure: &ElasticStructure, joint: &ElasticJoint) -> [usize; 2] {
     let right = structure.bodies.len() + 1;
@@ -161,8 +161,10 @@ remembered!(Observation {
 impl<'a, const L: usize> ElasticMotion<'a, L> {
     pub fn new(structure: &'a ElasticStructure, gravity_m_s2: f64) -> Self {
         let joints = structure.joints.len();
-        let ties = structure.ties.iter();
-        let ties = ties.map(|bound| TieMemory::undeformed(&bound.tie));
+        let ties = structure
+            .ties
+            .iter()
+            .map(|bound| TieMemory::undeformed(&bound.tie));
         let inverse = |body: &Block| [1.0 / body.mass_kg, 1.0 / body.inertia_kg_m2];
         Self {
             structure,
@@ -433,7 +435,7 @@ impl<'a, const L: usize> ElasticMotion<'a, L> {
         observation
     }
 
-    /// Returns the displacement of a support (0 left, 1 right) since the start, in m.
+    /// Displacement of a support (0 left, 1 right) since the start, in m.
     #[inline(always)]
     fn support_displacement_m(&self, support: usize) -> [Lanes<L>; 2] {
         let body = &self.bodies[self.structure.bodies.len() + support];
@@ -441,7 +443,7 @@ impl<'a, const L: usize> ElasticMotion<'a, L> {
         both!(i: body.place.moved_m[i] - Lanes([rest[i]; L]))
     }
 
-    /// Returns the velocity and the rotation rate of a body after another half kick.
+    /// Velocity and the rotation rate of a body after another half kick.
     #[inline(always)]
     pub fn velocity(&self, body: usize, half: &ElasticStep<Lanes<L>>) -> [Lanes<L>; 3] {
         let [per_kg, per_kg_m2] = self.inverses[body];
@@ -455,14 +457,14 @@ impl<'a, const L: usize> ElasticMotion<'a, L> {
         [x, y, moving.rate_rad_s + turning]
     }
 
-    /// Returns the rotations in a lane relative to the reference, and their rates half a step before.
+    /// Rotations in a lane relative to the reference, and their rates half a step before.
     pub fn rotations_and_rates(&self, lane: usize) -> impl Iterator<Item = (f64, f64)> + Clone {
         let bodies = self.bodies.iter().zip(&self.datum);
         bodies
             .map(move |(body, datum)| (body.angle_rad.0[lane] - datum[2], body.rate_rad_s.0[lane]))
     }
 
-    /// Returns the momentum of a lane half a step before, in kg m/s.
+    /// Momentum of a lane half a step before, in kg m/s.
     pub fn momentum(&self, lane: usize) -> [f64; 2] {
         let bodies = self.structure.bodies.iter().zip(&self.bodies);
         bodies.fold([0.0; 2], |sum, (constants, body)| {
@@ -470,7 +472,7 @@ impl<'a, const L: usize> ElasticMotion<'a, L> {
         })
     }
 
-    /// Returns the states of crushing along a joint in a lane.
+    /// States of crushing along a joint in a lane.
     pub fn fibres(&self, joint: usize, lane: usize) -> impl Iterator<Item = Fibre<Lanes<1>>> {
         let each = self.structure.fibres();
         let own = &self.fibres[joint * each..(joint + 1) * each];

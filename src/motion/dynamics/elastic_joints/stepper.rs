@@ -102,7 +102,7 @@ impl<'a, const L: usize> Group<'a, L> {
         self.record_lane(lane, &observation);
     }
 
-    /// Returns whether motions may start: where all other lanes are between strides. Most lanes are then observed at the same steps.
+    /// Whether motions may start: where all other lanes are between strides. Most lanes are then observed at the same steps.
     pub fn may_begin(&self) -> bool {
         let mut lanes = self.lanes.iter().flatten();
         lanes.all(Lane::ends_stride)
@@ -138,7 +138,7 @@ impl<'a, const L: usize> Group<'a, L> {
         }
     }
 
-    /// Returns the half kick from the velocities to the positions.
+    /// Half kick from the velocities to the positions.
     fn half_kick(&self) -> ElasticStep<Lanes<L>> {
         let mut half = ElasticStep::none();
         for (index, lane) in self.lanes.iter().enumerate() {
@@ -275,7 +275,7 @@ impl<'a> Group<'a, 1> {
         Pose::about(centre_m, centre_m + moved_m, body.angle_rad.0[0])
     }
 
-    /// Returns the friction coefficient without which joints would slide at this instant.
+    /// Friction coefficient without which joints would slide at this instant.
     fn friction_demand(&self) -> f64 {
         let least_n = self.observer().least_load_n();
         let pressures = (0..self.structure.row_joints().len()).map(|joint| self.pressure(joint));
@@ -284,7 +284,7 @@ impl<'a> Group<'a, 1> {
         needed.fold(0.0, f64::max)
     }
 
-    /// Returns the elastic forces and stresses of a joint.
+    /// Elastic forces and stresses of a joint.
     fn pressure(&self, index: usize) -> JointPressure {
         let structure = self.structure;
         let joint = &structure.joints[index];
@@ -364,9 +364,13 @@ impl<'a> Stepper<'a> for Group<'a, 1> {
             sample.pressures.push(pressure);
         }
         sample.demand.friction = self.friction_demand();
-        let ties = self.structure.ties.iter().zip(&motion.ties);
-        let ties = ties.filter(|(bound, _)| !bound.tie.is_constant_force());
-        let ties = ties.map(|(bound, memory)| TieSample::of(&bound.tie, memory));
+        let ties = self
+            .structure
+            .ties
+            .iter()
+            .zip(&motion.ties)
+            .filter(|(bound, _)| !bound.tie.is_constant_force())
+            .map(|(bound, memory)| TieSample::of(&bound.tie, memory));
         sample.ties.extend(ties);
         if let Some(sliding) = &self.observer().row_summary.sliding {
             sample.offsets_m.extend(&sliding.offsets_m);
@@ -387,7 +391,7 @@ impl<'a> Stepper<'a> for Group<'a, 1> {
         memory.penetrations_m.map(|end| (-end.0[0]).max(0.0))
     }
 
-    /// Returns a joint that is in contact on less than half of its length as a hinge; `None` for other joints.
+    /// Joint that is in contact on less than half of its length as a hinge; `None` for other joints.
     fn hinge(&self, joint: usize) -> Option<Hinge> {
         let hinge = open_hinge(joint, self.gaps(joint));
         hinge.filter(|_| self.pressure(joint).contact_ratio < HINGE_RATIO)

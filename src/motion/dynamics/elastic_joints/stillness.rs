@@ -16,7 +16,7 @@ pub(super) struct Stillness {
 }
 
 impl Stillness {
-    /// Returns the observer of a row with this energy barrier. Energies below `least_j` always count as none.
+    /// Observer of a row with this energy barrier. Energies below `least_j` always count as none.
     pub fn new(barrier_j: f64, least_j: f64) -> Self {
         Self {
             since_s: f64::NEG_INFINITY,

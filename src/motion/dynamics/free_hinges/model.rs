@@ -103,7 +103,7 @@ const MOST_TIE_WORK: f64 = 5e8;
 pub const DOUBTFUL_ENERGY_ERROR: f64 = 1e-3;
 
 impl FreeHinges {
-    /// Returns the model of a stable row.
+    /// Model of a stable row.
     ///
     /// # Errors
     /// When the row cannot carry its own weight.
@@ -118,7 +118,7 @@ impl FreeHinges {
         })
     }
 
-    /// Returns the model of an arch of voussoirs.
+    /// Model of an arch of voussoirs.
     ///
     /// # Errors
     /// When the arch has no voussoirs, or cannot carry its own weight.
@@ -126,7 +126,7 @@ impl FreeHinges {
         Self::new(arch.row()?)
     }
 
-    /// Returns the model of a column of drums.
+    /// Model of a column of drums.
     ///
     /// # Errors
     /// When the drums do not make a row, or the column cannot carry its own weight.
@@ -134,7 +134,7 @@ impl FreeHinges {
         Self::new(column.row()?)
     }
 
-    /// Returns this model on supports that moved slowly before time zero. The motion starts on the hinges that this movement opened; displacements
+    /// This model on supports that moved slowly before time zero. The motion starts on the hinges that this movement opened; displacements
     /// and rotations are relative to that position.
     ///
     /// # Errors
@@ -143,12 +143,14 @@ impl FreeHinges {
         if movements.is_none() {
             return Ok(self);
         }
-        let rigid = self.rigid.on_supports(movements)?;
-        let rigid = rigid.with_friction(self.options.friction_coefficient)?;
+        let rigid = self
+            .rigid
+            .on_supports(movements)?
+            .with_friction(self.options.friction_coefficient)?;
         Ok(Self { rigid, ..self })
     }
 
-    /// Returns this model with other options.
+    /// This model with other options.
     ///
     /// # Errors
     /// When a step or the coefficient is out of range, the longest step is shorter than the shortest, a
@@ -163,7 +165,7 @@ impl FreeHinges {
         })
     }
 
-    /// Returns this model for a study of many cases: without slip, default steps are longer. Few results change, and those that do differ between
+    /// This model for a study of many cases: without slip, default steps are longer. Few results change, and those that do differ between
     /// repetitions.
     #[must_use]
     pub const fn for_many_cases(mut self) -> Self {
@@ -171,27 +173,27 @@ impl FreeHinges {
         self
     }
 
-    /// Returns Coulomb's coefficient of friction; `None` if joints do not slip.
+    /// Coulomb's coefficient of friction; `None` if joints do not slip.
     pub const fn friction_coefficient(&self) -> Option<f64> {
         self.options.friction_coefficient
     }
 
-    /// Returns the row of blocks.
+    /// Row of blocks.
     pub const fn row(&self) -> &Row {
         &self.rigid.row
     }
 
-    /// Returns the energy in J that the first mechanism needs to overturn, to the weaker side; `None` if unknown.
+    /// Energy in J that the first mechanism needs to overturn, to the weaker side; `None` if unknown.
     pub fn barrier_j(&self, gravity_m_s2: f64) -> Option<f64> {
         self.rigid.barrier_j(gravity_m_s2)
     }
 
-    /// Returns the longest step of a history, in seconds.
+    /// Longest step of a history, in seconds.
     pub fn longest_step_s(&self, request: &Request) -> f64 {
         self.settings(request).longest_step_s
     }
 
-    /// Returns the numerical settings of a motion.
+    /// Numerical settings of a motion.
     fn settings(&self, request: &Request) -> Settings {
         let (row, gravity_m_s2, end_s) = (self.row(), request.gravity_m_s2, request.end_s);
         let mut settings = match self.options.friction_coefficient {

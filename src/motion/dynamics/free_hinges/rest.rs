@@ -24,17 +24,17 @@ impl<'a> InitialPosition<'a> {
         }
     }
 
-    /// Returns whether joints are open in this position.
+    /// Whether joints are open in this position.
     pub fn is_on_hinges(&self) -> bool {
         self.placement.open_corners() > 0
     }
 
-    /// Returns whether a row with these gaps is in this position, by its contacts: three hinges determine the position.
+    /// Whether a row with these gaps is in this position, by its contacts: three hinges determine the position.
     pub fn has_contacts(&self, gaps_m: &[[f64; 2]]) -> bool {
         touching_corners(gaps_m).eq(self.touching.iter().copied())
     }
 
-    /// Returns the rotations of the blocks relative to this position.
+    /// Rotations of the blocks relative to this position.
     pub fn relative_rotations_rad(
         &self,
         poses: impl Iterator<Item = f64>,
@@ -43,7 +43,7 @@ impl<'a> InitialPosition<'a> {
         poses.zip(stood).map(|(now, stood)| now - stood)
     }
 
-    /// Returns the sum of displacements of the blocks from this position times their masses, in kg m, for given centres.
+    /// Sum of displacements of the blocks from this position times their masses, in kg m, for given centres.
     pub fn mass_displacement_kg_m(&self, centres_m: &[Vector2<f64>]) -> Vector2<f64> {
         let stood = self.placement.centres_m.iter();
         let blocks = self.row.blocks.iter().zip(centres_m.iter().zip(stood));
@@ -51,7 +51,7 @@ impl<'a> InitialPosition<'a> {
         moved.sum()
     }
 
-    /// Returns whether a block has turned too far, or is too far from its initial positions relative to both feet. `feet_m` are the displacements of
+    /// Whether a block has turned too far, or is too far from its initial positions relative to both feet. `feet_m` are the displacements of
     /// the feet.
     pub fn has_left(
         &self,
@@ -70,7 +70,7 @@ impl<'a> InitialPosition<'a> {
     }
 }
 
-/// Returns the corners in contact, for given gaps of the joints.
+/// Corners in contact, for given gaps of the joints.
 pub(super) fn touching_corners(gaps_m: &[[f64; 2]]) -> impl Iterator<Item = Corners> {
     gaps_m.iter().map(|gaps| gaps.map(|gap| gap == 0.0))
 }

@@ -32,12 +32,12 @@ impl<'a> RightSupport<'a> {
         }
     }
 
-    /// Returns whether the right support ever moves relative to the left one.
+    /// Whether the right support ever moves relative to the left one.
     pub const fn moves(&self) -> bool {
         self.feet.is_some()
     }
 
-    /// Returns the current poses of both supports for given initial poses.
+    /// Current poses of both supports for given initial poses.
     pub fn poses(&self, stood: &[Pose; 2]) -> [Pose; 2] {
         let [left, mut right] = *stood;
         right.translation += self.displacement_m;
@@ -59,7 +59,7 @@ impl<'a> RightSupport<'a> {
         }
     }
 
-    /// Returns the mean of the velocities in the last step and in the current solution.
+    /// Mean of the velocities in the last step and in the current solution.
     pub fn mean_m_s(&self) -> Vector2<f64> {
         (self.velocity_m_s + self.solution_m_s) * 0.5
     }

@@ -18,7 +18,7 @@ const MERGED_RATIO: f64 = 4.0;
 const TIE_STEP_RATIO: f64 = 0.2;
 
 impl Settings {
-    /// Returns settings for steps that end at landings: at most about 0.35 ms for a size of 10 m. For other sizes the step is proportional to the
+    /// Settings for steps that end at landings: at most about 0.35 ms for a size of 10 m. For other sizes the step is proportional to the
     /// square root of size over gravity. The shortest step is a thirtieth of the longest.
     pub fn to_landings(row: &Row, gravity_m_s2: f64, end_s: f64) -> Self {
         let longest_step_s = 3.4e-4 * (row.size_m / gravity_m_s2).sqrt();
@@ -31,7 +31,7 @@ impl Settings {
         }
     }
 
-    /// Returns settings for equal steps, for joints that slip: 0.1 ms for a size of 10 m.
+    /// Settings for equal steps, for joints that slip: 0.1 ms for a size of 10 m.
     pub fn equal(row: &Row, gravity_m_s2: f64, end_s: f64) -> Self {
         let step_s = 1e-4 * (row.size_m / gravity_m_s2).sqrt();
         Self {
@@ -41,7 +41,7 @@ impl Settings {
         }
     }
 
-    /// Returns these settings with steps short enough for the vibration of blocks on the ties of the row.
+    /// These settings with steps short enough for the vibration of blocks on the ties of the row.
     pub(super) fn for_ties(self, row: &Row) -> Self {
         let square = square_frequency(&row.ties, &row.blocks);
         if square == 0.0 {
@@ -51,7 +51,7 @@ impl Settings {
         self.times((longest_s / self.longest_step_s).min(1.0))
     }
 
-    /// Returns these settings with all steps multiplied by a factor.
+    /// These settings with all steps multiplied by a factor.
     pub fn times(&self, factor: f64) -> Self {
         Self {
             longest_step_s: self.longest_step_s * factor,
@@ -60,7 +60,7 @@ impl Settings {
         }
     }
 
-    /// Returns these settings with the actual steps multiplied by a factor. Steps also end at output times; if output times limit the steps, the
+    /// These settings with the actual steps multiplied by a factor. Steps also end at output times; if output times limit the steps, the
     /// output step is multiplied as well.
     pub(super) fn with_steps_times(&self, factor: f64) -> Self {
         let limits = |step_s: f64| step_s < 2.0 * self.longest_step_s;
@@ -72,14 +72,14 @@ impl Settings {
         }
     }
 
-    /// Returns the shortest time, in seconds, over which forces are the means of impulses. In a shorter time the rounding errors of the velocities exceed
+    /// Shortest time, in seconds, over which forces are the means of impulses. In a shorter time the rounding errors of the velocities exceed
     /// the effect of the forces. Steps also end at output times.
     pub(super) fn shortest_mean_s(&self) -> f64 {
         let output_s = self.output_step_s.unwrap_or(f64::INFINITY);
         self.shortest_step_s.min(SHORTEST_STEP_RATIO * output_s)
     }
 
-    /// Returns these settings with landings merged within four shortest steps after an impact. Real impacts take time, and the order of landings in
+    /// These settings with landings merged within four shortest steps after an impact. Real impacts take time, and the order of landings in
     /// that time is unknown.
     pub(super) fn with_landings_merged(&self) -> Self {
         Self {

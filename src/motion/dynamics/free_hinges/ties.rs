@@ -19,7 +19,7 @@ pub(super) struct Ties<'a> {
 }
 
 impl<'a> Ties<'a> {
-    /// Returns the ties of a row whose motion starts from a given state.
+    /// Ties of a row whose motion starts from a given state.
     pub fn new(row: &'a Row, standing: &RowState) -> Self {
         let mut ties = Self {
             row,
@@ -36,16 +36,19 @@ impl<'a> Ties<'a> {
         self.memories.is_empty()
     }
 
-    /// Returns the force of the ties on the right support, in N.
+    /// Force of the ties on the right support, in N.
     pub fn right_support_force_n(&self) -> Vector2<f64> {
         let feet_m = self.row.feet_m();
-        let ends = self.memories().zip(&self.lines);
-        let ends = ends.filter(|((tie, _), _)| !tie.is_constant_force());
-        let ends = ends.flat_map(|((tie, memory), line)| {
-            let force = line.direction * memory.force_n.0[0];
-            tie.ends.into_iter().zip([force, -force])
-        });
-        let ends = ends.filter(|(end, _)| end.block.is_none() && end.support(feet_m) == 1);
+        let ends = self
+            .memories()
+            .zip(&self.lines)
+            .filter(|((tie, _), _)| !tie.is_constant_force());
+        let ends = ends
+            .flat_map(|((tie, memory), line)| {
+                let force = line.direction * memory.force_n.0[0];
+                tie.ends.into_iter().zip([force, -force])
+            })
+            .filter(|(end, _)| end.block.is_none() && end.support(feet_m) == 1);
         ends.map(|(_, force)| force).sum()
     }
 
@@ -73,19 +76,19 @@ impl<'a> Ties<'a> {
         }
     }
 
-    /// Returns the elastic energy of the ties above that in the initial position, in J.
+    /// Elastic energy of the ties above that in the initial position, in J.
     pub fn energy_j(&self) -> f64 {
         let memories = self.memories();
         let each_j = memories.map(|(tie, memory)| memory.energy_j(tie).0[0]);
         each_j.sum::<f64>() - self.at_rest_j
     }
 
-    /// Returns the energy dissipated by yield and break of the ties, in J.
+    /// Energy dissipated by yield and break of the ties, in J.
     pub fn taken_j(&self) -> f64 {
         self.memories.iter().map(|memory| memory.taken_j.0[0]).sum()
     }
 
-    /// Returns the ties with their states.
+    /// Ties with their states.
     pub fn memories(&self) -> impl Iterator<Item = (&Tie, TieMemory<Lanes<1>>)> {
         self.row.ties.iter().zip(self.memories.iter().copied())
     }

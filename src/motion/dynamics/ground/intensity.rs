@@ -66,7 +66,7 @@ impl Intensity {
         intensity
     }
 
-    /// Returns the duration from 5 % to 95 % of the Arias intensity, in s.
+    /// Duration from 5 % to 95 % of the Arias intensity, in s.
     pub fn significant_duration_s(&self) -> f64 {
         let [from_s, to_s] = self.significant_s;
         to_s - from_s
@@ -108,7 +108,7 @@ impl LinearPiece {
         }
     }
 
-    /// Returns velocity, displacement and the integral of the squared acceleration `after_s` after the given values at its start.
+    /// Velocity, displacement and the integral of the squared acceleration `after_s` after the given values at its start.
     fn advance(&self, [velocity, displacement, squares]: [f64; 3], after_s: f64) -> [f64; 3] {
         let (s, a, m) = (after_s, self.acceleration, self.slope);
         [
@@ -118,14 +118,14 @@ impl LinearPiece {
         ]
     }
 
-    /// Returns the time at which the integral of the squared acceleration reaches `target`.
+    /// Time at which the integral of the squared acceleration reaches `target`.
     fn time_of_squares(&self, target: f64) -> f64 {
         let reached = |after_s: f64| self.advance([0.0; 3], after_s)[2] >= target;
         bisect(0.0, self.duration_s, Width::Rounding, reached).1
     }
 }
 
-/// Returns the real roots of c + b x + a x^2; none for a constant.
+/// Real roots of c + b x + a x^2; none for a constant.
 fn roots([c, b, a]: [f64; 3]) -> Vec<f64> {
     if a == 0.0 {
         return if b == 0.0 { Vec::new() } else { vec![-c / b] };

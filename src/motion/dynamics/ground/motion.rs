@@ -25,23 +25,25 @@ pub struct GroundMotion {
 }
 
 impl GroundMotion {
-    /// Returns ground without motion.
+    /// Ground without motion.
     pub fn still() -> Self {
         Self::from_pieces(0.0, Vec::new())
     }
 
-    /// Returns the motion of pieces given by their ends and formulas, both in the time since `start_s`.
+    /// Motion of pieces given by their ends and formulas, both in the time since `start_s`.
     pub(super) fn from_pieces(start_s: f64, formulas: Vec<(f64, Formula)>) -> Self {
         let placed = |(end, formula)| (start_s + end, start_s, formula);
         Self::join(start_s, formulas.into_iter().map(placed))
     }
 
-    /// Returns the motion of pieces given by end, origin and formula. The ground is quiet before `start_s` (from time zero, or from `start_s` if
+    /// Motion of pieces given by end, origin and formula. The ground is quiet before `start_s` (from time zero, or from `start_s` if
     /// negative) and after the last piece.
     pub(super) fn join(start_s: f64, moving: impl Iterator<Item = (f64, f64, Formula)>) -> Self {
         let quiet = |end_s: f64| (end_s, start_s, Formula::constant(Vector2::zeros()));
-        let all = [quiet(start_s)].into_iter().chain(moving);
-        let all = all.chain([quiet(f64::INFINITY)]);
+        let all = [quiet(start_s)]
+            .into_iter()
+            .chain(moving)
+            .chain([quiet(f64::INFINITY)]);
         let mut pieces = Vec::new();
         let mut piece_start_s = start_s.min(0.0);
         for (end_s, origin_s, formula) in all {
@@ -63,7 +65,7 @@ impl GroundMotion {
         }
     }
 
-    /// Returns a motion of two feet: this motion under the left foot, `right` under the right foot. Both start from rest at the earlier one of their
+    /// Motion of two feet: this motion under the left foot, `right` under the right foot. Both start from rest at the earlier one of their
     /// starts. The distance between the feet is constant after the later one of their ends.
     #[must_use]
     pub fn with_right_foot(self, right: Self) -> Self {
@@ -74,7 +76,7 @@ impl GroundMotion {
         }
     }
 
-    /// Returns a motion of two feet: this motion under the left foot, and the same motion with a delay under the right foot. The delay is in seconds,
+    /// Motion of two feet: this motion under the left foot, and the same motion with a delay under the right foot. The delay is in seconds,
     /// from -1e9 to 1e9. With a negative delay the right foot starts earlier. If its acceleration then begins before time zero, the motion of both
     /// feet [starts](Self::start_s) at this negative time. The times of the left foot do not change.
     ///
@@ -90,12 +92,12 @@ impl GroundMotion {
         Ok(self.with_right_foot(right))
     }
 
-    /// Returns the time at which the motion begins, in seconds: zero, or negative if the right foot accelerates before time zero.
+    /// Time at which the motion begins, in seconds: zero, or negative if the right foot accelerates before time zero.
     pub fn start_s(&self) -> f64 {
         self.pieces.first().map_or(0.0, |piece| piece.start_s)
     }
 
-    /// Returns the index of the piece at a time not before the start; at a corner, of the later piece.
+    /// Index of the piece at a time not before the start; at a corner, of the later piece.
     pub(in crate::dynamics) fn piece_at(&self, time_s: f64) -> usize {
         let starts = |piece: &GroundPiece| piece.start_s <= time_s;
         self.pieces.partition_point(starts).max(1) - 1
@@ -119,25 +121,25 @@ impl GroundMotion {
         self
     }
 
-    /// Returns the motion under the right foot; `None` if both feet move alike.
+    /// Motion under the right foot; `None` if both feet move alike.
     pub fn right_foot(&self) -> Option<&Self> {
         self.right.as_deref()
     }
 
-    /// Returns the motion under the right foot of a row; `None` if both feet move alike, or for a stack, which has only a left foot.
+    /// Motion under the right foot of a row; `None` if both feet move alike, or for a stack, which has only a left foot.
     pub(in crate::dynamics) fn right_foot_of(&self, row: &Row) -> Option<&Self> {
         let right = self.right_foot();
         right.filter(|_| row.supports == Supports::Both)
     }
 
-    /// Returns this motion for a structure whose feet move differently: the ground stops at its end, at any velocity.
+    /// This motion for a structure whose feet move differently: the ground stops at its end, at any velocity.
     #[must_use]
     pub fn stopping(mut self) -> Self {
         self.stops = true;
         self
     }
 
-    /// Returns this motion with both feet delayed by a time in seconds, from 0 to 1e9.
+    /// This motion with both feet delayed by a time in seconds, from 0 to 1e9.
     ///
     /// # Errors
     /// When the delay is out of range.
@@ -149,13 +151,13 @@ impl GroundMotion {
         Ok(delayed)
     }
 
-    /// Returns the motion of this foot, earlier by a time in seconds. The motion starts at its first acceleration if this is before time zero.
+    /// Motion of this foot, earlier by a time in seconds. The motion starts at its first acceleration if this is before time zero.
     fn advanced_by(&self, lead_s: f64) -> Self {
         let begins = self.pieces.iter().find(|piece| !piece.is_quiet());
         self.shifted_by(-lead_s, begins.map_or(lead_s, |piece| piece.start_s))
     }
 
-    /// Returns the pieces from `from_s` on, with all times changed by a delay.
+    /// Pieces from `from_s` on, with all times changed by a delay.
     fn shifted_by(&self, delay_s: f64, from_s: f64) -> Self {
         let pieces = self.pieces.iter();
         let moving = pieces.filter(|piece| !piece.stays_still() && piece.start_s >= from_s);
@@ -169,14 +171,14 @@ impl GroundMotion {
         }
     }
 
-    /// Returns the largest horizontal and vertical acceleration up to a time, without sign, in m/s2. Pieces are monotone, so the largest values are
+    /// Largest horizontal and vertical acceleration up to a time, without sign, in m/s2. Pieces are monotone, so the largest values are
     /// at ends of pieces, or at that time.
     pub fn peaks_m_s2(&self, until_s: f64) -> Vector2<f64> {
         let ends = self.ends_until_m_s2(until_s);
         ends.fold(Vector2::zeros(), |peaks, at| peaks.sup(&at.abs()))
     }
 
-    /// Returns the largest accelerations up to a time that push a structure to the right and to the left, in m/s2: those of the ground to the left
+    /// Largest accelerations up to a time that push a structure to the right and to the left, in m/s2: those of the ground to the left
     /// and to the right.
     pub fn pushes_m_s2(&self, until_s: f64) -> [f64; 2] {
         let ends = self.ends_until_m_s2(until_s);
@@ -185,7 +187,7 @@ impl GroundMotion {
         })
     }
 
-    /// Returns the accelerations at the ends of the pieces that begin before a time, and at that time.
+    /// Accelerations at the ends of the pieces that begin before a time, and at that time.
     fn ends_until_m_s2(&self, until_s: f64) -> impl Iterator<Item = Vector2<f64>> {
         let pieces = self.pieces.iter();
         let moving = pieces.filter(move |piece| piece.start_s < until_s && !piece.stays_still());
@@ -195,31 +197,31 @@ impl GroundMotion {
         })
     }
 
-    /// Returns the end of the ground motion, in seconds; afterwards the acceleration is zero under both feet.
+    /// End of the ground motion, in seconds; afterwards the acceleration is zero under both feet.
     pub fn end_s(&self) -> f64 {
         let [left_s, right_s] = self.ends_s();
         left_s.max(right_s)
     }
 
-    /// Returns the ends of the motion of the left and of the right foot, in seconds.
+    /// Ends of the motion of the left and of the right foot, in seconds.
     pub fn ends_s(&self) -> [f64; 2] {
         let own_s = self.pieces.last().map_or(0.0, |piece| piece.start_s);
         [own_s, self.right_foot().map_or(own_s, Self::end_s)]
     }
 
-    /// Returns whether the ground ever moves vertically, under either foot.
+    /// Whether the ground ever moves vertically, under either foot.
     pub fn has_vertical(&self) -> bool {
         let mut ends = self.pieces.iter().flat_map(GroundPiece::ends_m_s2);
         ends.any(|end| end.y != 0.0) || self.right_foot().is_some_and(Self::has_vertical)
     }
 
-    /// Returns whether the ground ever moves horizontally, under either foot.
+    /// Whether the ground ever moves horizontally, under either foot.
     pub fn has_horizontal(&self) -> bool {
         let mut ends = self.pieces.iter().flat_map(GroundPiece::ends_m_s2);
         ends.any(|end| end.x != 0.0) || self.right_foot().is_some_and(Self::has_horizontal)
     }
 
-    /// Returns the first time at which the ground accelerates downwards as fast as a free body, `g + a_v <= 0`, so that it no longer carries a
+    /// First time at which the ground accelerates downwards as fast as a free body, `g + a_v <= 0`, so that it no longer carries a
     /// structure; `None` if that does not happen. With two feet, the first time of either foot.
     pub fn free_fall_s(&self, gravity_m_s2: f64) -> Option<f64> {
         let right = self.right_foot();
@@ -241,7 +243,7 @@ impl GroundMotion {
         Some(middle(before_s, after_s))
     }
 
-    /// Returns the factor on this motion from which the ground falls as fast as a free body at some time, under either foot; `None` if it never
+    /// Factor on this motion from which the ground falls as fast as a free body at some time, under either foot; `None` if it never
     /// accelerates downwards.
     pub fn free_fall_factor(&self, gravity_m_s2: f64) -> Option<f64> {
         let ends = self.pieces.iter().flat_map(GroundPiece::ends_m_s2);
@@ -252,7 +254,7 @@ impl GroundMotion {
         own.into_iter().chain(right).reduce(f64::min)
     }
 
-    /// Returns this motion with all accelerations multiplied by a factor, from -1e9 to 1e9, under both feet.
+    /// This motion with all accelerations multiplied by a factor, from -1e9 to 1e9, under both feet.
     ///
     /// # Errors
     /// When the factor is outside that range.
@@ -270,7 +272,7 @@ impl GroundMotion {
         })
     }
 
-    /// Returns the mirror image of this motion: the horizontal accelerations of both feet change sign. Vertical accelerations and delays stay.
+    /// Mirror image of this motion: the horizontal accelerations of both feet change sign. Vertical accelerations and delays stay.
     #[must_use]
     pub fn mirrored(&self) -> Self {
         let pieces = self.pieces.iter().map(|piece| GroundPiece {
@@ -284,7 +286,7 @@ impl GroundMotion {
         }
     }
 
-    /// Returns this motion with additional corners at given times, where the integration begins a new step.
+    /// This motion with additional corners at given times, where the integration begins a new step.
     pub fn cut_at(&self, times_s: &[f64]) -> Self {
         let mut cut = self.clone();
         for time_s in times_s {

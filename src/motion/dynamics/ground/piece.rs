@@ -19,7 +19,7 @@ impl Formula {
         Self::Linear(acceleration, Vector2::zeros())
     }
 
-    /// Returns the formula times a factor.
+    /// Formula times a factor.
     pub fn scaled(self, factor: f64) -> Self {
         match self {
             Self::Linear(at_origin, slope) => Self::Linear(at_origin * factor, slope * factor),
@@ -27,7 +27,7 @@ impl Formula {
         }
     }
 
-    /// Returns the formula with the opposite horizontal acceleration.
+    /// Formula with the opposite horizontal acceleration.
     pub fn mirrored(self) -> Self {
         match self {
             Self::Linear(at_origin, slope) => Self::Linear(mirrored(at_origin), mirrored(slope)),
@@ -35,7 +35,7 @@ impl Formula {
         }
     }
 
-    /// Returns the acceleration and its rate of change.
+    /// Acceleration and its rate of change.
     pub fn acceleration_and_rate(&self, since_s: f64) -> (Vector2<f64>, Vector2<f64>) {
         match *self {
             Self::Linear(at_origin, slope) => (at_origin + slope * since_s, slope),
@@ -46,7 +46,7 @@ impl Formula {
         }
     }
 
-    /// Returns the integral of the acceleration between two times.
+    /// Integral of the acceleration between two times.
     fn integral(&self, from_s: f64, to_s: f64) -> Vector2<f64> {
         match *self {
             Self::Linear(at_origin, slope) => {
@@ -70,34 +70,34 @@ pub struct GroundPiece {
 }
 
 impl GroundPiece {
-    /// Returns the change of the ground velocity from the start of the piece to a time in it, in m/s.
+    /// Change of the ground velocity from the start of the piece to a time in it, in m/s.
     pub(crate) fn velocity_gained_m_s(&self, time_s: f64) -> Vector2<f64> {
         let (from_s, to_s) = (self.start_s - self.origin_s, time_s - self.origin_s);
         self.formula.integral(from_s, to_s)
     }
 
-    /// Returns the acceleration in m/s2 and its rate of change in m/s3, horizontal and vertical (positive to the right and upwards), at a time in the
+    /// Acceleration in m/s2 and its rate of change in m/s3, horizontal and vertical (positive to the right and upwards), at a time in the
     /// piece. At its ends the values are limits from inside.
     pub fn acceleration_and_rate(&self, time_s: f64) -> (Vector2<f64>, Vector2<f64>) {
         self.formula.acceleration_and_rate(time_s - self.origin_s)
     }
 
-    /// Returns the horizontal acceleration in m/s2, as [`GroundPiece::acceleration_and_rate`].
+    /// Horizontal acceleration in m/s2, as [`GroundPiece::acceleration_and_rate`].
     pub fn acceleration_m_s2(&self, time_s: f64) -> f64 {
         self.acceleration_and_rate(time_s).0.x
     }
 
-    /// Returns whether the piece is the last one, with zero acceleration from here on.
+    /// Whether the piece is the last one, with zero acceleration from here on.
     pub fn stays_still(&self) -> bool {
         self.end_s == f64::INFINITY
     }
 
-    /// Returns whether the acceleration is zero in the whole piece.
+    /// Whether the acceleration is zero in the whole piece.
     pub(crate) fn is_quiet(&self) -> bool {
         self.ends_m_s2() == [Vector2::zeros(); 2]
     }
 
-    /// Returns the longest step that resolves the shape of the piece, in seconds.
+    /// Longest step that resolves the shape of the piece, in seconds.
     pub fn longest_step_s(&self) -> f64 {
         match self.formula {
             Formula::Linear(..) => f64::INFINITY,
@@ -105,7 +105,7 @@ impl GroundPiece {
         }
     }
 
-    /// Returns the accelerations at both ends, which bound those in between.
+    /// Accelerations at both ends, which bound those in between.
     pub(crate) fn ends_m_s2(&self) -> [Vector2<f64>; 2] {
         if self.stays_still() {
             [Vector2::zeros(); 2]

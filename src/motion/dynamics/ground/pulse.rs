@@ -57,7 +57,7 @@ named! {
 }
 
 impl Pulse {
-    /// Returns whether the pulse pushes to one side only.
+    /// Whether the pulse pushes to one side only.
     pub const fn is_one_sided(self) -> bool {
         match self {
             Self::Rectangular | Self::HalfSine | Self::Triangular => true,
@@ -67,7 +67,7 @@ impl Pulse {
         }
     }
 
-    /// Returns whether the shape depends on a [`WaveTrain`].
+    /// Whether the shape depends on a [`WaveTrain`].
     pub const fn is_wave_train(self) -> bool {
         match self {
             Self::MavroeidisPapageorgiou | Self::Gabor | Self::WindowedSine => true,
@@ -77,7 +77,7 @@ impl Pulse {
         }
     }
 
-    /// Returns a pulse with duration `duration_s` (1e-12 to 1e9) that starts at time zero. A wave train has [`WaveTrain::default`].
+    /// Pulse with duration `duration_s` (1e-12 to 1e9) that starts at time zero. A wave train has [`WaveTrain::default`].
     pub fn lasting_s(self, duration_s: f64) -> PulseShape {
         PulseShape {
             pulse: self,
@@ -122,20 +122,20 @@ struct CutTrain {
 }
 
 impl PulseShape {
-    /// Returns this pulse with the start `start_s` (0 to 1e9).
+    /// This pulse with the start `start_s` (0 to 1e9).
     #[must_use]
     pub fn starting_at_s(self, start_s: f64) -> Self {
         Self { start_s, ..self }
     }
 
-    /// Returns this pulse with another wave train; without effect for pulses that are no wave trains.
+    /// This pulse with another wave train; without effect for pulses that are no wave trains.
     #[must_use]
     pub fn with_train(self, train: WaveTrain) -> Self {
         let cut = OnceLock::new();
         Self { train, cut, ..self }
     }
 
-    /// Returns the ground motion with this horizontal peak acceleration (at most 1e12 in magnitude, positive to the right).
+    /// Ground motion with this horizontal peak acceleration (at most 1e12 in magnitude, positive to the right).
     ///
     /// # Errors
     /// When a number of the pulse is outside its range.
@@ -143,7 +143,7 @@ impl PulseShape {
         self.inclined_m_s2(Vector2::new(amplitude_m_s2, 0.0))
     }
 
-    /// Returns the ground motion with these horizontal and vertical peak accelerations (at most 1e12 in magnitude), of a common shape.
+    /// Ground motion with these horizontal and vertical peak accelerations (at most 1e12 in magnitude), of a common shape.
     ///
     /// # Errors
     /// When a number of the pulse is outside its range.
@@ -160,14 +160,14 @@ impl PulseShape {
         Ok(GroundMotion::from_pieces(self.start_s, pieces))
     }
 
-    /// Returns the wave train of this shape, cut when it is first needed.
+    /// Wave train of this shape, cut when it is first needed.
     fn cut_train(&self, shape: TrainShape) -> &CutTrain {
         let period_s = self.duration_s;
         let cut = || CutTrain::new(shape(period_s, self.train), period_s);
         self.cut.get_or_init(cut)
     }
 
-    /// Returns the pieces: ends in the time since the start, and formulas.
+    /// Pieces: ends in the time since the start, and formulas.
     fn pieces(&self, amplitude_m_s2: Vector2<f64>) -> Vec<(f64, Formula)> {
         let (a, t) = (amplitude_m_s2, self.duration_s);
         let sine = |periods: f64, phase_rad: f64| {
@@ -244,7 +244,7 @@ fn windowed_sine(period_s: f64, train: WaveTrain) -> (Waveform, f64) {
     (beat(terms, period_s, train, 0.0), train.cycles * period_s)
 }
 
-/// Returns a sum of sines of these amplitudes and numbers of periods, with the phase of the train at a time.
+/// Sum of sines of these amplitudes and numbers of periods, with the phase of the train at a time.
 fn beat(terms: [(f64, f64); 3], period_s: f64, train: WaveTrain, middle_s: f64) -> Waveform {
     Waveform::Beat(terms.map(|(amplitude, periods)| {
         let frequency_rad_s = periods * 2.0 * PI / period_s;
@@ -271,7 +271,7 @@ impl CutTrain {
         }
     }
 
-    /// Returns its pieces, scaled so that the largest extremum is the amplitude.
+    /// Pieces, scaled so that the largest extremum is the amplitude.
     fn pieces(&self, amplitude: Vector2<f64>) -> Vec<(f64, Formula)> {
         let formula = Formula::Shaped(amplitude / self.peak, self.shape);
         self.ends_s.iter().map(|end| (*end, formula)).collect()
@@ -283,7 +283,7 @@ mod tests {
     use super::super::GroundPiece;
     use super::*;
 
-    /// Returns wave trains with various numbers of cycles and phases.
+    /// Wave trains with various numbers of cycles and phases.
     fn trains() -> impl Iterator<Item = (Pulse, WaveTrain)> {
         let kinds = Pulse::ALL.iter().copied().filter(|p| p.is_wave_train());
         kinds.flat_map(|pulse| {

@@ -13,7 +13,7 @@ const MIN_STEP_S: f64 = 1e-8;
 const MIN_CORNER_SPACING_S: f64 = 1e-9;
 
 impl GroundMotion {
-    /// Returns the motion of horizontal accelerations in m/s2, one every `step_s` (1e-8 to 1e9) from time zero on; linear between samples, zero after
+    /// Motion of horizontal accelerations in m/s2, one every `step_s` (1e-8 to 1e9) from time zero on; linear between samples, zero after
     /// the last.
     ///
     /// ```
@@ -29,14 +29,16 @@ impl GroundMotion {
     /// When there are fewer than two samples, or a number is outside its range.
     pub fn from_samples(step_s: f64, horizontal_m_s2: &[f64]) -> Result<Self, GroundError> {
         require_within("step_s", step_s, MIN_STEP_S..=1e9)?;
-        let samples = horizontal_m_s2.iter().enumerate();
-        let samples = samples.map(|(index, acceleration)| (index as f64 * step_s, *acceleration));
-        let samples: Vec<_> = samples.collect();
+        let samples: Vec<_> = horizontal_m_s2
+            .iter()
+            .enumerate()
+            .map(|(index, acceleration)| (index as f64 * step_s, *acceleration))
+            .collect();
         check("horizontal_m_s2", &samples)?;
         Ok(Self::polylines(&samples, &[], 0.0))
     }
 
-    /// Returns a recorded motion, linear between samples `(time in s, acceleration in m/s2)`, zero before the first and after the last. One of the
+    /// Recorded motion, linear between samples `(time in s, acceleration in m/s2)`, zero before the first and after the last. One of the
     /// two components may be empty.
     ///
     /// Times count from `start_s` (0 to 1e9); they rise by at least 1e-8 s, and none falls before time zero.
@@ -66,7 +68,7 @@ impl GroundMotion {
         Ok(Self::polylines(horizontal, vertical, start_s))
     }
 
-    /// Returns the recorded motion of samples that are known to be in bounds. At a jump of the acceleration two samples have the same time.
+    /// Recorded motion of samples that are known to be in bounds. At a jump of the acceleration two samples have the same time.
     pub fn polylines(horizontal: &[(f64, f64)], vertical: &[(f64, f64)], start_s: f64) -> Self {
         let mut corners: Vec<f64> = horizontal.iter().chain(vertical).map(|s| s.0).collect();
         corners.sort_unstable_by(f64::total_cmp);
@@ -112,7 +114,7 @@ fn check(argument: &'static str, samples: &[(f64, f64)]) -> Result<(), GroundErr
     Ok(())
 }
 
-/// Returns the value at the first of two times, and the slope; no sample lies between the two times. Drops earlier samples.
+/// Value at the first of two times, and the slope; no sample lies between the two times. Drops earlier samples.
 fn line(samples: &mut &[(f64, f64)], ends: &[f64]) -> (f64, f64) {
     let middle = 0.5 * (ends[0] + ends[1]);
     while samples.len() > 1 && samples[1].0 <= middle {

@@ -37,7 +37,7 @@ impl Sine {
         (self.amplitude * sin, rate)
     }
 
-    /// Returns the integral between two times, by the chord of the unit circle: exact at any frequency, zero included.
+    /// Integral between two times, by the chord of the unit circle: exact at any frequency, zero included.
     fn integral(&self, from_s: f64, to_s: f64) -> f64 {
         let half_angle = 0.5 * self.frequency_rad_s * (to_s - from_s);
         let per_angle = if half_angle == 0.0 {
@@ -59,7 +59,7 @@ pub struct Gabor {
 }
 
 impl Gabor {
-    /// Returns the angle of the oscillation from the middle of the bell, and sine and cosine of this angle plus the phase.
+    /// Angle of the oscillation from the middle of the bell, and sine and cosine of this angle plus the phase.
     fn angle(&self, since_s: f64) -> (f64, (f64, f64)) {
         let angle = self.frequency_rad_s * (since_s - self.centre_s);
         (angle, libm::sincos(angle + self.train.phase_rad))
@@ -89,7 +89,7 @@ pub enum Waveform {
 }
 
 impl Waveform {
-    /// Returns the value and its rate of change.
+    /// Value and its rate of change.
     pub fn value_and_rate(&self, since_s: f64) -> (f64, f64) {
         match *self {
             Self::Sine(sine) => sine.value_and_rate(since_s),
@@ -123,7 +123,7 @@ impl Waveform {
         }
     }
 
-    /// Returns the integral over a piece, or over a part of it.
+    /// Integral over a piece, or over a part of it.
     pub fn integral(&self, from_s: f64, to_s: f64) -> f64 {
         match *self {
             Self::Sine(sine) => sine.integral(from_s, to_s),
@@ -163,7 +163,7 @@ impl Waveform {
         }
     }
 
-    /// Returns the times of the extrema of a wave train with a given length and period.
+    /// Times of the extrema of a wave train with a given length and period.
     pub fn extrema_s(&self, length_s: f64, period_s: f64) -> Vec<f64> {
         // Rate of change up to a positive factor, and a bound of the slope of this function.
         let (zero_with_rate, steepest): (Box<dyn Fn(f64) -> f64>, f64) = match *self {
@@ -193,7 +193,7 @@ impl Waveform {
     }
 }
 
-/// Returns the zeros of `function` between 0 and `end` at which its sign changes, in order, within rounding error. `steepest` bounds the magnitude of
+/// Zeros of `function` between 0 and `end` at which its sign changes, in order, within rounding error. `steepest` bounds the magnitude of
 /// its slope.
 ///
 /// A part has no zero if the function in its middle is farther from zero than the slope allows over the length of the part. Other parts are halved.

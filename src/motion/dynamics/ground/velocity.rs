@@ -18,7 +18,7 @@ pub struct GroundVelocity<'a> {
 }
 
 impl<'a> GroundVelocity<'a> {
-    /// Returns the velocity of a ground motion.
+    /// Velocity of a ground motion.
     pub fn new(ground: &'a GroundMotion) -> Self {
         let (mut velocity_m_s, mut at_starts_m_s) = (Vector2::zeros(), Vec::new());
         for piece in &ground.pieces {
@@ -37,7 +37,7 @@ impl<'a> GroundVelocity<'a> {
         }
     }
 
-    /// Returns the velocity in m/s, horizontal and vertical (positive to the right and upwards), at a time not before the start. For feet that move
+    /// Velocity in m/s, horizontal and vertical (positive to the right and upwards), at a time not before the start. For feet that move
     /// differently it is that of the left foot.
     pub fn velocity_at(&self, time_s: f64) -> Vector2<f64> {
         let last = self.last.get();
@@ -52,7 +52,7 @@ impl<'a> GroundVelocity<'a> {
         self.at_starts_m_s[index] + self.ground.pieces[index].velocity_gained_m_s(time_s)
     }
 
-    /// Returns the displacements of the ground at ascending times from the start on, in m from its position at the start. Simpson's rule is applied
+    /// Displacements of the ground at ascending times from the start on, in m from its position at the start. Simpson's rule is applied
     /// between times and corners; it is exact for records and constant accelerations.
     pub fn displacements_m(&self, times_s: &[f64]) -> Vec<Vector2<f64>> {
         let mut path = Path::new(self.clone());
@@ -64,7 +64,7 @@ impl<'a> GroundVelocity<'a> {
 }
 
 impl GroundMotion {
-    /// Returns the displacement of the right foot relative to the left one, to the right and upwards in m, at ascending times from the start on; zero
+    /// Displacement of the right foot relative to the left one, to the right and upwards in m, at ascending times from the start on; zero
     /// if both feet move alike.
     pub fn feet_apart_m(&self, times_s: &[f64]) -> Vec<Vector2<f64>> {
         let Some(right) = self.right_foot() else {
@@ -105,7 +105,7 @@ impl<'a> Path<'a> {
         self.at_m
     }
 
-    /// Returns the position of the ground at a later time, and the piece of that time.
+    /// Position of the ground at a later time, and the piece of that time.
     fn position_and_piece_at(&self, time_s: f64) -> (usize, Vector2<f64>) {
         let pieces = &self.velocity.ground.pieces;
         let (mut index, mut from_s, mut at_m) = (self.piece, self.time_s, self.at_m);
@@ -134,13 +134,13 @@ pub(in crate::dynamics) struct FeetApart<'a> {
 }
 
 impl<'a> FeetApart<'a> {
-    /// Returns the relative motion of the feet of a row; `None` if both feet move alike, or the row has only one.
+    /// Relative motion of the feet of a row; `None` if both feet move alike, or the row has only one.
     pub(in crate::dynamics) fn of(row: &Row, ground: &'a GroundMotion) -> Option<Self> {
         let right = ground.right_foot_of(row)?;
         Some(Self::between([ground, right]))
     }
 
-    /// Returns the relative motion of feet with given motions, left and right.
+    /// Relative motion of feet with given motions, left and right.
     fn between(feet: [&'a GroundMotion; 2]) -> Self {
         let [left_s, right_s] = feet.map(GroundMotion::end_s);
         Self {
@@ -149,14 +149,14 @@ impl<'a> FeetApart<'a> {
         }
     }
 
-    /// Returns the displacement at a time not before the last one, to the right and upwards, in m.
+    /// Displacement at a time not before the last one, to the right and upwards, in m.
     pub(in crate::dynamics) fn advance_to(&mut self, time_s: f64) -> Vector2<f64> {
         let [left, right] = &mut self.paths;
         let time_s = time_s.min(self.end_s);
         right.advance_to(time_s) - left.advance_to(time_s)
     }
 
-    /// Returns the displacement at a later time, in m, without advancing.
+    /// Displacement at a later time, in m, without advancing.
     pub(in crate::dynamics) fn displacement_at(&self, time_s: f64) -> Vector2<f64> {
         let time_s = time_s.min(self.end_s);
         let [left_m, right_m] = self
@@ -166,7 +166,7 @@ impl<'a> FeetApart<'a> {
         right_m - left_m
     }
 
-    /// Returns the velocity of the right foot relative to the left one at a time, in m/s.
+    /// Velocity of the right foot relative to the left one at a time, in m/s.
     pub(in crate::dynamics) fn velocity_m_s(&self, time_s: f64) -> Vector2<f64> {
         if time_s >= self.end_s {
             return Vector2::zeros();

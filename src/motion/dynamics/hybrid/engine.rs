@@ -24,7 +24,7 @@ pub struct SystemState<M, const N: usize> {
 }
 
 impl<M: Copy, const N: usize> SystemState<M, N> {
-    /// Returns the state at time zero, at the start of a motion.
+    /// State at time zero, at the start of a motion.
     pub const fn start(mode: M, state: State<N>) -> Self {
         let (time_s, piece) = (0.0, 0);
         Self {
@@ -35,7 +35,7 @@ impl<M: Copy, const N: usize> SystemState<M, N> {
         }
     }
 
-    /// Returns another time and state in the same mode and on the same piece.
+    /// Another time and state in the same mode and on the same piece.
     pub const fn at(&self, time_s: f64, state: &State<N>) -> Self {
         Self {
             time_s,
@@ -54,39 +54,39 @@ pub trait HybridSystem<const N: usize> {
     /// Name of an event.
     type Guard: Copy + 'static;
 
-    /// Returns the end of a piece of the forcing, in seconds; infinite for the last.
+    /// End of a piece of the forcing, in seconds; infinite for the last.
     fn piece_end_s(&self, piece: usize) -> f64;
 
-    /// Returns whether no guard of this mode can fire from this piece on.
+    /// Whether no guard of this mode can fire from this piece on.
     fn is_over(&self, mode: Self::Mode, piece: usize) -> bool;
 
-    /// Returns whether the state is constant in this mode.
+    /// Whether the state is constant in this mode.
     fn is_still(&self, mode: Self::Mode) -> bool;
 
-    /// Returns the rate of change of the state, per second. Times are in the piece, its ends included.
+    /// Rate of change of the state, per second. Times are in the piece, its ends included.
     fn slope(&self, now: &SystemState<Self::Mode, N>) -> State<N>;
 
-    /// Returns the state within a step by interpolation. Near the end of the step it is as accurate as the end; elsewhere it serves to find
+    /// State within a step by interpolation. Near the end of the step it is as accurate as the end; elsewhere it serves to find
     /// events.
     fn interpolate(&self, step: &IntegratorStep<N>, time_s: f64) -> State<N>;
 
-    /// Returns the scales of the state's components in the future motion, to which tolerances refer.
+    /// Scales of the state's components in the future motion, to which tolerances refer.
     fn scale(&self, now: &SystemState<Self::Mode, N>) -> State<N>;
 
-    /// Returns a suitable first step in seconds, and the longest one for which the search for guards is reliable.
+    /// Suitable first step in seconds, and the longest one for which the search for guards is reliable.
     fn step_sizes_s(&self, now: &SystemState<Self::Mode, N>, relative_tolerance: f64)
     -> (f64, f64);
 
-    /// Returns the guards of a mode.
+    /// Guards of a mode.
     fn guards(&self, mode: Self::Mode) -> &'static [Self::Guard];
 
-    /// Returns the value of a guard, which fires when it falls below zero, and its rate of change, per second.
+    /// Value of a guard, which fires when it falls below zero, and its rate of change, per second.
     fn guard_value(&self, guard: Self::Guard, now: &SystemState<Self::Mode, N>) -> (f64, f64);
 
-    /// Returns the guard that has already fired at the start of a piece or mode, if any.
+    /// Guard that has already fired at the start of a piece or mode, if any.
     fn fired_at_once(&self, now: &SystemState<Self::Mode, N>) -> Option<Self::Guard>;
 
-    /// Returns the mode and state after the event of a guard.
+    /// Mode and state after the event of a guard.
     fn reset(&self, guard: Self::Guard, now: &SystemState<Self::Mode, N>)
     -> (Self::Mode, State<N>);
 }
@@ -279,7 +279,7 @@ fn advance<S: HybridSystem<N>, const N: usize>(
     Ok(Some(guard))
 }
 
-/// Returns the integration task from a moment in its mode and on its piece, up to a time.
+/// Integration task from a moment in its mode and on its piece, up to a time.
 pub(super) fn task<S: HybridSystem<N>, const N: usize>(
     system: &S,
     from: &SystemState<S::Mode, N>,
@@ -299,7 +299,7 @@ pub(super) fn task<S: HybridSystem<N>, const N: usize>(
     }
 }
 
-/// Returns the step shortened to the time at which the guard fires.
+/// Step shortened to the time at which the guard fires.
 ///
 /// Near the end of the step, interpolation is as accurate as the end. Elsewhere the interpolated time is approximate: the integration up to it gives
 /// the state as accurately as any other step, and a last step along the tangent brings the guard to zero. This step is so short (`d`, about 1e-10 of
@@ -360,7 +360,7 @@ const CLOSED_BY_TANGENT: f64 = 1e-4;
 /// Time, with the value of a guard and its rate of change.
 type Point = (f64, (f64, f64));
 
-/// Returns the first guard to fire within a step, and its time.
+/// First guard to fire within a step, and its time.
 fn first_event<S: HybridSystem<N>, const N: usize>(
     system: &S,
     from: &SystemState<S::Mode, N>,
@@ -388,7 +388,7 @@ fn first_event<S: HybridSystem<N>, const N: usize>(
 /// are missed.
 const HALVINGS: u32 = 20;
 
-/// Returns the first time after `start`, up to `end`, at which a guard falls below zero.
+/// First time after `start`, up to `end`, at which a guard falls below zero.
 ///
 /// Between two points the guard is approximated by the cubic polynomial with their values and rates. The polynomial lies within the range of its
 /// Bernstein coefficients, and is monotone if they are. In most cases they show that the guard does not fire, or only falls. Otherwise the interval
@@ -416,7 +416,7 @@ fn first_crossing(
         .or_else(|| first_crossing(middle, end, halvings - 1, at))
 }
 
-/// Returns the zero of a falling guard that is negative at the end and not at the start: Newton's method from the end, safeguarded by bisection.
+/// Zero of a falling guard that is negative at the end and not at the start: Newton's method from the end, safeguarded by bisection.
 pub(crate) fn falling_root(start_s: f64, end_s: f64, guard: impl Fn(f64) -> (f64, f64)) -> f64 {
     let (mut positive_s, mut negative_s) = (start_s, end_s);
     let mut guess_s = end_s;

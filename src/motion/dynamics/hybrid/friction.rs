@@ -75,7 +75,7 @@ impl<'a, C: MechanismChain> FrictionCollector<'a, C> {
         self.peak = 0.0;
     }
 
-    /// Returns the record of a motion that ends in this state, with this outcome.
+    /// Record of a motion that ends in this state, with this outcome.
     pub(super) fn record(
         &mut self,
         rocking: &Rocking<'a, C>,

@@ -10,7 +10,7 @@ pub(super) type Rotations<C> = <<C as MechanismChain>::Mechanism as Mechanism>::
 /// State of a structure on moving ground at one time.
 pub(super) type StructureState<'a, C> = SystemState<'a, <C as MechanismChain>::Mechanism>;
 
-/// Returns the rotations (or rates) of a mechanism in its own frame, times `factor`, in the frame of the ground. A sway to the left is reflected,
+/// Rotations (or rates) of a mechanism in its own frame, times `factor`, in the frame of the ground. A sway to the left is reflected,
 /// which reverses the order of the bodies and the sign of their rotations.
 pub(super) fn seen_from_ground<C: MechanismChain>(
     sway: Sway,
@@ -27,7 +27,7 @@ pub(super) fn seen_from_ground<C: MechanismChain>(
     rotations
 }
 
-/// Returns the rotations of the bodies and their rates, in the frame of the ground.
+/// Rotations of the bodies and their rates, in the frame of the ground.
 pub(super) fn posture<C: MechanismChain>(
     rocking: &Rocking<'_, C>,
     mode: Mode<'_, C::Mechanism>,
@@ -43,14 +43,15 @@ pub(super) fn posture<C: MechanismChain>(
         Some(Swing { sway, link, .. }) => seen(sway, link, state[0], 1.0, state[1]),
         None => {
             let mut first = [Sway::Right, Sway::Left].into_iter();
-            let link = first.find_map(|side| rocking.chain.link_from(side, 0));
-            let link = link.expect("a structure has its first mechanism");
+            let link = first
+                .find_map(|side| rocking.chain.link_from(side, 0))
+                .expect("a structure has its first mechanism");
             seen(Sway::Right, link, 0.0, 0.0, 0.0)
         }
     }
 }
 
-/// Returns the state of motion in a mode.
+/// State of motion in a mode.
 pub(super) fn state<M>(mode: Mode<'_, M>) -> State {
     match mode {
         Phase::Rest => State::Rest,

@@ -49,7 +49,7 @@ pub struct SwingOf<L> {
 }
 
 impl<S: Copy> Phase<S> {
-    /// Returns the current or last mechanism; `None` at rest.
+    /// Current or last mechanism; `None` at rest.
     pub const fn swing(self) -> Option<S> {
         match self {
             Self::Rest => None,
@@ -101,7 +101,7 @@ pub struct Rocking<'a, C: MechanismChain> {
 }
 
 impl<'a, C: MechanismChain> Rocking<'a, C> {
-    /// Returns the structure on the given ground. The structure comes to rest if an impact leaves less than `rest_energy_ratio` of the energy barrier
+    /// Structure on the given ground. The structure comes to rest if an impact leaves less than `rest_energy_ratio` of the energy barrier
     /// of its first mechanism.
     ///
     /// The ground must press on the structure at all times: see [`GroundMotion::free_fall_s`].
@@ -131,20 +131,22 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
         rocking
     }
 
-    /// Returns the energy that a mechanism needs to overturn under gravity alone.
+    /// Energy that a mechanism needs to overturn under gravity alone.
     pub fn barrier_of(&self, link: &Link<C::Mechanism>) -> f64 {
         self.gravity_m_s2 / self.chain.length_m() * link.barrier
     }
 
-    /// Returns the smaller of the energy barriers of this mechanism and of the one after its impact.
+    /// Smaller of the energy barriers of this mechanism and of the one after its impact.
     pub fn barrier_ahead(&self, swing: Swing<'a, C::Mechanism>) -> f64 {
         let first = self.chain.sway_after(swing.sway, swing.impacts);
-        let next = self.chain.link_from(first, swing.impacts + 1);
-        let next = next.map_or(f64::INFINITY, |link| self.barrier_of(link));
+        let next = self
+            .chain
+            .link_from(first, swing.impacts + 1)
+            .map_or(f64::INFINITY, |link| self.barrier_of(link));
         self.barrier_of(swing.link).min(next)
     }
 
-    /// Returns the energy on quiet ground over the least energy barrier of the moving mechanism and of all that may follow it; below 1 the structure cannot
+    /// Energy on quiet ground over the least energy barrier of the moving mechanism and of all that may follow it; below 1 the structure cannot
     /// overturn ([`MechanismChain::least_barrier_from`]). `defect` is the largest error of the energy up to now, which counts as energy. `None` if
     /// barriers do not decide, or if the moving mechanism is beyond its unstable equilibrium, or has the energy to pass it.
     pub fn energy_over_barriers(
@@ -162,14 +164,14 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
         Some(energy / (self.gravity_m_s2 / self.chain.length_m() * least))
     }
 
-    /// Returns the sum of kinetic and potential energy of a mechanism.
+    /// Sum of kinetic and potential energy of a mechanism.
     pub fn energy(&self, link: &Link<C::Mechanism>, state: &RockingState) -> f64 {
         let kinetic = 0.5 * link.mechanism.coefficients(state[0]).inertia * state[1] * state[1];
         let rise = link.mechanism.potential(state[0]);
         kinetic + self.gravity_m_s2 / self.chain.length_m() * rise
     }
 
-    /// Returns the mode of a structure released on one side.
+    /// Mode of a structure released on one side.
     pub fn released_mode(&self, sway: Sway) -> Mode<'a, C::Mechanism> {
         let link = self.chain.link_from(sway, 0);
         let swing = |link| Swing {
@@ -184,14 +186,14 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
         &self.ground.pieces[piece]
     }
 
-    /// Returns the ground acceleration in the frame of a mechanism with this sway.
+    /// Ground acceleration in the frame of a mechanism with this sway.
     fn ground_m_s2(&self, sway: Sway, now: &SystemState<'a, C::Mechanism>) -> Vector2<f64> {
         let mut ground_m_s2 = self.piece(now.piece).acceleration_and_rate(now.time_s).0;
         ground_m_s2.x *= sway.sign();
         ground_m_s2
     }
 
-    /// Returns `q''` under gravity and a ground acceleration in the mechanism's own frame. An upward acceleration of the ground adds to gravity.
+    /// `q''` under gravity and a ground acceleration in the mechanism's own frame. An upward acceleration of the ground adds to gravity.
     fn acceleration(
         &self,
         coefficients: &Coefficients,
@@ -206,7 +208,7 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
         -(force + length_m * inertial) / (length_m * coefficients.inertia)
     }
 
-    /// Returns the thrust excess and friction demand.
+    /// Thrust excess and friction demand.
     pub fn demand(&self, now: &SystemState<'a, C::Mechanism>) -> Demand {
         let Some(swing) = now.mode.swing() else {
             let body_force_g = self.body_force_g(Sway::Right, now);
@@ -216,7 +218,7 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
         self.chain.demand(&swing.link.mechanism, &motion)
     }
 
-    /// Returns thrust excess and friction demand of a moving mechanism: see [`MechanismChain::demand_at_sections`].
+    /// Thrust excess and friction demand of a moving mechanism: see [`MechanismChain::demand_at_sections`].
     pub fn demand_at_sections(
         &self,
         swing: Swing<'a, C::Mechanism>,
@@ -228,13 +230,13 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
         (self.chain).demand_at_sections(first, swing.impacts, mechanism, &motion)
     }
 
-    /// Returns the push of the ground to the right on a structure at rest, over gravity plus the vertical acceleration.
+    /// Push of the ground to the right on a structure at rest, over gravity plus the vertical acceleration.
     pub fn push_at_rest(&self, now: &SystemState<'a, C::Mechanism>) -> f64 {
         let force_g = self.body_force_g(Sway::Right, now);
         force_g.x / -force_g.y
     }
 
-    /// Returns whether a motion on quiet ground has too little energy for a rotation of more than this multiple of the critical one.
+    /// Whether a motion on quiet ground has too little energy for a rotation of more than this multiple of the critical one.
     pub fn stays_below(
         &self,
         over_critical: f64,
@@ -248,7 +250,7 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
             && self.energy(link, &now.state) <= self.energy(link, &turned)
     }
 
-    /// Returns the thrust line over the sections from left to right: see [`MechanismChain::eccentricity_ratios`].
+    /// Thrust line over the sections from left to right: see [`MechanismChain::eccentricity_ratios`].
     pub fn eccentricity_ratios(&self, now: &SystemState<'a, C::Mechanism>) -> Vec<Option<f64>> {
         let Some(swing) = now.mode.swing() else {
             let body_force_g = self.body_force_g(Sway::Right, now);
@@ -262,12 +264,12 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
         }
     }
 
-    /// Returns gravity minus the ground acceleration in the frame of a mechanism with this sway, in multiples of gravity.
+    /// Gravity minus the ground acceleration in the frame of a mechanism with this sway, in multiples of gravity.
     fn body_force_g(&self, sway: Sway, now: &SystemState<'a, C::Mechanism>) -> Vector2<f64> {
         -self.ground_m_s2(sway, now) / self.gravity_m_s2 - Vector2::new(0.0, 1.0)
     }
 
-    /// Returns the state of a mechanism.
+    /// State of a mechanism.
     fn motion(
         &self,
         swing: Swing<'a, C::Mechanism>,
@@ -286,17 +288,17 @@ impl<'a, C: MechanismChain> Rocking<'a, C> {
         }
     }
 
-    /// Returns the time scale of a fall from `q = 0`: `1/p`, `p^2 = g (S_y + S_f) / (L M q_c)` with the coefficients at zero.
+    /// Time scale of a fall from `q = 0`: `1/p`, `p^2 = g (S_y + S_f) / (L M q_c)` with the coefficients at zero.
     pub(super) fn fall_s(&self, link: &Link<C::Mechanism>) -> f64 {
         (link.at_zero.inertia * link.critical_rad / self.potential_slope(link)).sqrt()
     }
 
-    /// Returns the slope of the potential energy at `q = 0`.
+    /// Slope of the potential energy at `q = 0`.
     fn potential_slope(&self, link: &Link<C::Mechanism>) -> f64 {
         self.gravity_m_s2 * link.at_zero.potential_slope() / self.chain.length_m()
     }
 
-    /// Returns the largest `q` and rate that the energy of `state` can reach, as orders of magnitude: with the inertia of `q = 0` and the parabola of
+    /// Largest `q` and rate that the energy of `state` can reach, as orders of magnitude: with the inertia of `q = 0` and the parabola of
     /// its weight for the potential energy.
     fn attainable_state(&self, link: &Link<C::Mechanism>, state: &RockingState) -> (f64, f64) {
         let (q, rate) = (state[0], state[1]);

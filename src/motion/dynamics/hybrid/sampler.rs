@@ -37,7 +37,7 @@ pub(super) struct Sampler<'r, 'a, C: MechanismChain> {
     pub(super) recorder: &'r mut dyn Recorder,
 }
 
-/// Returns the instants within a step at which the demand is computed; its ends are not among them.
+/// Instants within a step at which the demand is computed; its ends are not among them.
 pub(super) fn instants<'a, C: MechanismChain>(
     rocking: &Rocking<'a, C>,
     swing: Swing<'a, C::Mechanism>,

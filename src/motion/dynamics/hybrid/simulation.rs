@@ -199,7 +199,7 @@ fn history_of<C: MechanismChain + MechanismModel>(
     })
 }
 
-/// Returns the outcome of a motion that ends in this mode.
+/// Outcome of a motion that ends in this mode.
 const fn outcome_of<M>(mode: Mode<'_, M>, is_incomplete: bool, has_rested: bool) -> Outcome {
     match mode {
         Phase::Overturned(swing) => Outcome::Overturned(swing.sway),
@@ -238,7 +238,7 @@ fn simulate_lengthened<'a, C: MechanismChain>(
 /// forty of its time scales.
 const AFTER_S: f64 = 1e6;
 
-/// Returns the side to which a structure at rest overturns before its hinges close for the first time; `None` if it does not. The result does not
+/// Side to which a structure at rest overturns before its hinges close for the first time; `None` if it does not. The result does not
 /// depend on the impact model.
 fn first_fall<C: MechanismChain + MechanismModel>(
     chain: &C,
@@ -272,7 +272,7 @@ impl<'a, C: MechanismChain> Observer<Rocking<'a, C>, 3> for FirstFall {
     }
 }
 
-/// Returns the structure on its ground.
+/// Structure on its ground.
 ///
 /// # Errors
 /// If the request is not valid, or the feet move differently.
@@ -306,7 +306,7 @@ struct Closing<'a, C: MechanismChain> {
 }
 
 impl<'a, C: MechanismChain> Closing<'a, C> {
-    /// Returns the closing of a transition; `None` for other transitions.
+    /// Closing of a transition; `None` for other transitions.
     fn of(chain: &'a C, transition: &RockingTransition<'a, C>) -> Option<Self> {
         let (Guard::Closing, Phase::Rocking(before)) = (transition.guard, transition.from) else {
             return None;
@@ -322,7 +322,7 @@ impl<'a, C: MechanismChain> Closing<'a, C> {
         })
     }
 
-    /// Returns the kinetic energies before and after, in the unit of [`Rocking::barrier`].
+    /// Kinetic energies before and after, in the unit of [`Rocking::barrier`].
     fn energies(&self) -> (f64, f64) {
         let kinetic =
             |link: &Link<C::Mechanism>, rate: f64| 0.5 * link.at_zero.inertia * rate * rate;
@@ -412,7 +412,7 @@ impl<'a, C: MechanismChain> SummaryCollector<'_, 'a, C> {
         }
     }
 
-    /// Returns the largest excess of the thrust line up to overturning, or else up to the largest rotation.
+    /// Largest excess of the thrust line up to overturning, or else up to the largest rotation.
     const fn excess_of(&self, outcome: Outcome) -> f64 {
         match outcome {
             Outcome::Overturned(_) => self.excess_ratio,
@@ -420,7 +420,7 @@ impl<'a, C: MechanismChain> SummaryCollector<'_, 'a, C> {
         }
     }
 
-    /// Returns the mechanism of a structure that rocks with more than a quarter of the energy barrier, or beyond its unstable equilibrium.
+    /// Mechanism of a structure that rocks with more than a quarter of the energy barrier, or beyond its unstable equilibrium.
     fn energetic_swing(&self, now: &StructureState<'a, C>) -> Option<Swing<'a, C::Mechanism>> {
         let rocking = self.rocking;
         let rocks = |swing: &Swing<'a, C::Mechanism>| {
@@ -433,13 +433,13 @@ impl<'a, C: MechanismChain> SummaryCollector<'_, 'a, C> {
         }
     }
 
-    /// Returns [`Rocking::energy_over_barriers`] of a structure that rocks with more than a quarter of the energy barrier.
+    /// [`Rocking::energy_over_barriers`] of a structure that rocks with more than a quarter of the energy barrier.
     fn remaining_over_barrier(&self, now: &StructureState<'a, C>) -> Option<f64> {
         let (swing, defect) = (self.energetic_swing(now)?, self.largest_defect);
         self.rocking.energy_over_barriers(swing, &now.state, defect)
     }
 
-    /// Returns whether a structure may still overturn on quiet ground: it rocks with more than a quarter of the energy barrier, and the barriers of
+    /// Whether a structure may still overturn on quiet ground: it rocks with more than a quarter of the energy barrier, and the barriers of
     /// the mechanisms that may follow do not prevent it.
     fn may_overturn(&self, now: &StructureState<'a, C>) -> bool {
         let remaining = || self.remaining_over_barrier(now);

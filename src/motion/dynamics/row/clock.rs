@@ -28,12 +28,12 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// Returns whether a motion ends once elastic joints only vibrate: if its end is not given.
+    /// Whether a motion ends once elastic joints only vibrate: if its end is not given.
     pub const fn ends_calm(&self) -> bool {
         self.outcome_by_s.is_some()
     }
 
-    /// Returns these settings.
+    /// These settings.
     ///
     /// # Errors
     /// If a motion takes more than `most_steps` steps; `remedy` is part of the message.
@@ -67,7 +67,7 @@ impl Marks {
         }
     }
 
-    /// Returns the sample times of a fall from `from_s` on.
+    /// Sample times of a fall from `from_s` on.
     pub(super) fn of_fall(settings: Settings, from_s: f64) -> Self {
         let given_s = settings.output_step_s.unwrap_or(f64::INFINITY);
         let step_s = given_s.min(fall::SAMPLED_S);
@@ -95,7 +95,7 @@ impl Marks {
         }
     }
 
-    /// Returns whether a sample is due.
+    /// Whether a sample is due.
     pub fn is_due(&self, time_s: f64) -> bool {
         time_s >= self.mark_s() - 1e-9 * self.settings.shortest_step_s
     }
@@ -104,7 +104,7 @@ impl Marks {
         self.passed += 1.0;
     }
 
-    /// Returns the time at which the next step must end.
+    /// Time at which the next step must end.
     pub fn next_s(&self) -> f64 {
         self.mark_s().min(self.settings.end_s)
     }

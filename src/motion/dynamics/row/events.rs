@@ -30,7 +30,7 @@ impl EventLog {
         self.late_impacts_s.push(time_s);
     }
 
-    /// Returns the number of impacts.
+    /// Number of impacts.
     pub const fn impacts(&self) -> usize {
         self.settled_impacts + self.late_impacts_s.len()
     }

@@ -21,7 +21,7 @@ pub struct MotionInput<'a> {
 }
 
 impl<'a> MotionInput<'a> {
-    /// Returns the input with energy scales from the blocks alone.
+    /// Input with energy scales from the blocks alone.
     pub fn new(
         row: &'a Row,
         ground: &'a GroundMotion,
@@ -43,7 +43,7 @@ impl<'a> MotionInput<'a> {
 /// Estimated energy barrier of an arch, over weight times size.
 const BARRIER_RATIO: f64 = 1e-3;
 
-/// Returns an estimate of the energy barrier of a row without ties, in J. For a stack: the least energy to overturn the part above one of its joints
+/// Estimate of the energy barrier of a row without ties, in J. For a stack: the least energy to overturn the part above one of its joints
 /// as one block.
 fn estimated_barrier_j(row: &Row, gravity_m_s2: f64) -> f64 {
     if row.supports == Supports::Both {
@@ -60,7 +60,7 @@ fn estimated_barrier_j(row: &Row, gravity_m_s2: f64) -> f64 {
     joints.map(above).fold(f64::INFINITY, f64::min)
 }
 
-/// Returns the rise of a centre of gravity, in m, to the position above the nearest of these edges of the joint about which its block turns.
+/// Rise of a centre of gravity, in m, to the position above the nearest of these edges of the joint about which its block turns.
 pub(super) fn rise_to_overturn_m(centre_m: Vector2<f64>, joint: &Joint, edges: &[Edge]) -> f64 {
     let rises = edges.iter().map(|edge| {
         let arm_m = centre_m - joint.corner_m(*edge);

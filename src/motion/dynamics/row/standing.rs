@@ -28,7 +28,7 @@ pub struct RigidRow {
 }
 
 impl RigidRow {
-    /// Returns the model of a stable row.
+    /// Model of a stable row.
     ///
     /// # Errors
     /// If the row does not carry its own weight.
@@ -49,7 +49,7 @@ impl RigidRow {
         })
     }
 
-    /// Returns this stack with a wall behind it on this side.
+    /// This stack with a wall behind it on this side.
     #[must_use]
     pub fn before_wall(self, side: Option<Sway>) -> Self {
         Self {
@@ -58,24 +58,24 @@ impl RigidRow {
         }
     }
 
-    /// Returns whether the row is its own mirror image, without moved supports and without a wall.
+    /// Whether the row is its own mirror image, without moved supports and without a wall.
     pub fn is_symmetric(&self) -> bool {
         self.wall_behind.is_none() && !self.is_on_hinges() && self.row.is_symmetric()
     }
 
-    /// Returns the names of the blocks.
+    /// Names of the blocks.
     pub fn bodies(&self) -> Vec<String> {
         let blocks = 1..=self.row.blocks.len();
         blocks.map(|block| block.to_string()).collect()
     }
 
-    /// Returns the push of the first motion to a side, in multiples of gravity; `None` if no push moves the row.
+    /// Push of the first motion to a side, in multiples of gravity; `None` if no push moves the row.
     pub fn incipient_acceleration_g(&self, sway: Sway) -> Option<f64> {
         let start_g = *self.with_friction_g.unwrap_or(self.incipient_g).get(sway);
         start_g.filter(|_| self.wall_behind != Some(sway))
     }
 
-    /// Returns this row with sliding joints; limit analysis gives the push of the first motion to either side.
+    /// This row with sliding joints; limit analysis gives the push of the first motion to either side.
     ///
     /// # Errors
     /// If the row slides apart under its own weight, or this was not determined.
@@ -95,7 +95,7 @@ impl RigidRow {
         Ok(self)
     }
 
-    /// Returns this row on moved supports. The first motion is then a snap of the hinges. On hinges the first mechanism has no single degree of
+    /// This row on moved supports. The first motion is then a snap of the hinges. On hinges the first mechanism has no single degree of
     /// freedom with a known barrier.
     ///
     /// # Errors
@@ -121,7 +121,7 @@ impl RigidRow {
         })
     }
 
-    /// Returns the energy in J that the first mechanism needs to overturn, to the weaker side; `None` if unknown.
+    /// Energy in J that the first mechanism needs to overturn, to the weaker side; `None` if unknown.
     pub fn barrier_j(&self, gravity_m_s2: f64) -> Option<f64> {
         if self.is_on_hinges() || !self.row.ties.is_empty() {
             return None;
@@ -129,7 +129,7 @@ impl RigidRow {
         self.undeformed_barrier_j(gravity_m_s2)
     }
 
-    /// Returns the input to compute the motion on a ground motion. Its scale of energies is the barrier, in J, of the undeformed row without ties:
+    /// Input to compute the motion on a ground motion. Its scale of energies is the barrier, in J, of the undeformed row without ties:
     /// with open hinges, even a small push causes a motion with almost no energy.
     pub fn input<'a>(
         &'a self,
@@ -150,7 +150,7 @@ impl RigidRow {
         }
     }
 
-    /// Returns whether the row stands on hinges of moved supports.
+    /// Whether the row stands on hinges of moved supports.
     fn is_on_hinges(&self) -> bool {
         self.standing.placement.open_corners() > 0
     }
@@ -179,7 +179,7 @@ impl RigidRow {
         }
     }
 
-    /// Returns rotations and rates of the blocks at a given opening of the first mechanism.
+    /// Rotations and rates of the blocks at a given opening of the first mechanism.
     ///
     /// # Errors
     /// If the rotation is too large, or the row does not start with a mechanism of one degree of freedom.
@@ -238,7 +238,7 @@ pub struct Release {
 }
 
 impl Release {
-    /// Returns whether blocks have a rate.
+    /// Whether blocks have a rate.
     pub fn has_rate(&self) -> bool {
         self.rates_rad_s.iter().any(|rate| *rate != 0.0)
     }

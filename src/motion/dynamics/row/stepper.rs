@@ -23,37 +23,37 @@ pub trait Stepper<'a>: Sized {
     /// Writes the current state into a blank sample: rates at this time, offsets, friction demand and, on request, the thrust line. Returns
     /// the kinetic energy in J.
     fn write(&mut self, sample: &mut Sample, thrust_line: bool) -> Result<f64, RowMotionError>;
-    /// Returns the rotations of the blocks, and their rates after the last step.
+    /// Rotations of the blocks, and their rates after the last step.
     fn rotations_and_rates(&self) -> impl Iterator<Item = (f64, f64)>;
-    /// Returns the poses of the blocks.
+    /// Poses of the blocks.
     fn poses(&self) -> impl Iterator<Item = Pose>;
-    /// Returns the gaps of a joint at intrados and extrados, in metres.
+    /// Gaps of a joint at intrados and extrados, in metres.
     fn gaps(&self, joint: usize) -> [f64; 2];
-    /// Returns the current or last position of contact of a joint at an edge, in metres.
+    /// Current or last position of contact of a joint at an edge, in metres.
     fn corner(&self, joint: usize, edge: Edge) -> Vector2<f64>;
     fn momentum(&self) -> Vector2<f64>;
-    /// Returns a joint as a hinge; `None` if it is closed.
+    /// Joint as a hinge; `None` if it is closed.
     fn hinge(&self, joint: usize) -> Option<Hinge> {
         open_hinge(joint, self.gaps(joint))
     }
-    /// Returns whether a row with the hinges and rotations of a sample rests.
+    /// Whether a row with the hinges and rotations of a sample rests.
     fn stands(&self, sample: &Sample) -> bool;
-    /// Returns the time since which the row rests, once the ground is quiet; `None` if it moves.
+    /// Time since which the row rests, once the ground is quiet; `None` if it moves.
     fn at_rest_since_s(&self) -> Option<f64>;
-    /// Returns the last time at which the row could still return, once it has overturned; `None` before.
+    /// Last time at which the row could still return, once it has overturned; `None` before.
     fn overturned_s(&self) -> Option<f64> {
         self.observer().overturned_s()
     }
     /// Completes the summaries at the end of the motion.
     fn complete_summaries(&mut self) {}
 
-    /// Returns the side of the centre of gravity; in its undeformed position, the direction of its velocity.
+    /// Side of the centre of gravity; in its undeformed position, the direction of its velocity.
     fn heading(&self) -> Sway {
         let sway = self.observer().sway;
         side_of(if sway == 0.0 { self.momentum().x } else { sway })
     }
 
-    /// Returns the state of a row in motion.
+    /// State of a row in motion.
     fn moving_state(&self) -> State {
         match self.overturned_s() {
             Some(_) => State::Overturned(self.heading()),
@@ -143,7 +143,7 @@ pub trait Stepper<'a>: Sized {
         }
     }
 
-    /// Returns an event at the current time; `moves` is false if the row rests.
+    /// Event at the current time; `moves` is false if the row rests.
     fn event(&self, kind: EventKind, moves: bool) -> Event {
         let observer = self.observer();
         let (rotations_rad, rates_rad_s) = self.rotations_and_rates().unzip();
@@ -299,24 +299,24 @@ fn step_fall<'a, S: Stepper<'a>>(
     Ok(FallEnd::Slow)
 }
 
-/// Returns the length of the next leapfrog step: equal steps up to `until`.
+/// Length of the next leapfrog step: equal steps up to `until`.
 pub fn equal_step(time: f64, until: f64, longest: f64) -> f64 {
     let left = until - time;
     left / (left / longest - 1e-9).ceil().max(1.0)
 }
 
-/// Returns the edge about which a joint with these gaps turns; `None` for parted and closed joints.
+/// Edge about which a joint with these gaps turns; `None` for parted and closed joints.
 fn turning(gaps: [f64; 2]) -> Option<Edge> {
     Edge::only(gaps.map(|gap| gap == 0.0))
 }
 
-/// Returns a joint with these gaps as a hinge; `None` if it is closed.
+/// Joint with these gaps as a hinge; `None` if it is closed.
 pub fn open_hinge(joint: usize, gaps: [f64; 2]) -> Option<Hinge> {
     let edge = turning(gaps);
     (gaps != [0.0; 2]).then_some(Hinge::Joint { joint, edge })
 }
 
-/// Returns the eccentricity of the thrust at a joint, towards the extrados, over the thickness, from the impulses at its corners. Tensile impulses
+/// Eccentricity of the thrust at a joint, towards the extrados, over the thickness, from the impulses at its corners. Tensile impulses
 /// within the solver's tolerance count as zero. `None` if neither impulse is compressive.
 pub fn eccentricity_ratio(corner_impulses: [f64; 2]) -> Option<f64> {
     let [intrados, extrados] = corner_impulses.map(|impulse| impulse.max(0.0));

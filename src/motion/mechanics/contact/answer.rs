@@ -16,7 +16,7 @@ pub(super) struct BodyVelocity {
 }
 
 impl BodyVelocity {
-    /// Returns the velocities of a body with a given momentum.
+    /// Velocities of a body with a given momentum.
     fn with(body: &RigidRun, momentum: &Momentum) -> Self {
         Self {
             centre: body.centre,
@@ -25,7 +25,7 @@ impl BodyVelocity {
         }
     }
 
-    /// Returns the velocities of a body fixed to a support.
+    /// Velocities of a body fixed to a support.
     fn held(twist: Twist) -> Self {
         Self {
             centre: Vector2::zeros(),
@@ -53,7 +53,7 @@ impl BodyVelocity {
 }
 
 impl OpenPin {
-    /// Returns the velocity of the right body relative to the left one at the pin, along and normal to the joint.
+    /// Velocity of the right body relative to the left one at the pin, along and normal to the joint.
     fn rate(&self, left: &BodyVelocity, right: &BodyVelocity) -> Vector2<f64> {
         let apart = right.velocity - left.velocity;
         let [on_left, on_right] = self.turns;
@@ -63,7 +63,7 @@ impl OpenPin {
         Vector2::new(rate(0), rate(1))
     }
 
-    /// Returns the impulse vector with given components along and normal to the joint.
+    /// Impulse vector with given components along and normal to the joint.
     fn impulse(&self, shares: &Vector2<f64>) -> Vector2<f64> {
         self.axes[0] * shares.x + self.axes[1] * shares.y
     }
@@ -252,7 +252,7 @@ impl PinSolution {
         }
     }
 
-    /// Returns the resultant impulse at a joint of a body plus the change of momentum before that joint. This sum is constant along the body. A hinge
+    /// Resultant impulse at a joint of a body plus the change of momentum before that joint. This sum is constant along the body. A hinge
     /// or the free end gives its value.
     fn starting_impulse(
         &self,

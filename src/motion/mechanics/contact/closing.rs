@@ -17,7 +17,7 @@ pub struct ClosureSolver {
 }
 
 impl ClosureSolver {
-    /// Returns a solver for placements of a row.
+    /// Solver for placements of a row.
     pub fn new(row: &Row) -> Self {
         let thicknesses = row.joints.iter().map(|joint| joint.thickness_m());
         Self {
@@ -61,7 +61,7 @@ impl ClosureSolver {
 pub(in crate::mechanics) type FirstShut = (f64, Option<(usize, usize)>);
 
 impl ContactProgram {
-    /// Returns the time until the first corner closes with the last velocities, at most `longest`, and that corner.
+    /// Time until the first corner closes with the last velocities, at most `longest`, and that corner.
     pub(in crate::mechanics) fn first_shut(
         &self,
         placement: &Placement,

@@ -75,7 +75,7 @@ impl ContactProgram {
         !self.wrong.is_empty()
     }
 
-    /// Returns pin and edge of the corner that closes fastest; `None` if all closing rates are within the tolerance.
+    /// Pin and edge of the corner that closes fastest; `None` if all closing rates are within the tolerance.
     fn fastest_closing(&self, touching: &[Corners], tolerance: f64) -> Option<(usize, usize)> {
         let mut fastest = None;
         let mut least = -tolerance;
@@ -143,7 +143,7 @@ impl ContactProgram {
         }
     }
 
-    /// Returns the impulse at which the first active corner becomes tensile, and that corner.
+    /// Impulse at which the first active corner becomes tensile, and that corner.
     fn first_to_pull(&self) -> (f64, Option<(usize, usize)>) {
         let mut first = (f64::INFINITY, None);
         for (joint, active) in self.active.iter().enumerate() {

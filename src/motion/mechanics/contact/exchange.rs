@@ -153,7 +153,7 @@ impl ContactProgram {
         }
     }
 
-    /// Returns the limit below which an impulse counts as tension.
+    /// Limit below which an impulse counts as tension.
     pub(super) fn pull_limit(&self) -> f64 {
         // Two independent maxima are faster than one.
         let corners = self.answer.corners.iter();

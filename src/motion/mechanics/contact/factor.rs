@@ -198,19 +198,19 @@ impl Factor {
         }
     }
 
-    /// Returns the open joints at the two ends of a body; `None` at a support or a free end.
+    /// Open joints at the two ends of a body; `None` at a support or a free end.
     fn open_ends(&self, body: usize) -> [Option<usize>; 2] {
         let pin = |pin: usize| Some(self.pins.get(pin)?.joint);
         [body.checked_sub(1).and_then(pin), pin(body)]
     }
 
-    /// Returns the closed joints inside a body.
+    /// Closed joints inside a body.
     pub(crate) fn shut_joints(&self, body: usize) -> Range<usize> {
         let [first, last] = self.open_ends(body);
         first.map_or(0, |joint| joint + 1)..last.unwrap_or(self.active.len())
     }
 
-    /// Returns the blocks of a body.
+    /// Blocks of a body.
     pub fn blocks(&self, body: usize) -> Range<usize> {
         let [first, last] = self.open_ends(body);
         first.unwrap_or(0)..last.unwrap_or(self.row.own.len())

@@ -81,7 +81,7 @@ pub struct Load {
 }
 
 impl Load {
-    /// Returns the zero load of a row with all joints closed.
+    /// Zero load of a row with all joints closed.
     pub fn none(row: &Row) -> Self {
         let (blocks, joints) = (row.blocks.len(), row.joints.len());
         Self {
@@ -128,7 +128,7 @@ pub struct ContactProgram {
 }
 
 impl ContactProgram {
-    /// Returns a program for the undeformed row. The initial active set has all joints of a stack closed, or three pins in an arch.
+    /// Program for the undeformed row. The initial active set has all joints of a stack closed, or three pins in an arch.
     pub fn new(row: &Row) -> Self {
         let (blocks, joints) = (row.blocks.len(), row.joints.len());
         let mut program = Self {
@@ -176,19 +176,19 @@ impl ContactProgram {
         self.active[joint][edge] = true;
     }
 
-    /// Returns the mass moments about the origin of all blocks before each joint.
+    /// Mass moments about the origin of all blocks before each joint.
     pub fn moments(&self) -> &[MassMoments] {
         &self.factor.row.moments
     }
 
-    /// Returns the open joints of the last solution, with the rates of their gaps in m/s beyond the prescribed ones. Active corners have the rate
+    /// Open joints of the last solution, with the rates of their gaps in m/s beyond the prescribed ones. Active corners have the rate
     /// zero.
     pub fn open_joints(&self) -> impl Iterator<Item = (usize, [f64; 2])> {
         let joints = self.factor.pins.iter().map(|pin| pin.joint);
         joints.zip(self.answer.rates.iter().copied())
     }
 
-    /// Returns the impulses in N s at the corners of every joint: intrados, extrados.
+    /// Impulses in N s at the corners of every joint: intrados, extrados.
     pub(crate) fn corner_impulses(&self) -> &[[f64; 2]] {
         &self.answer.corners
     }
@@ -226,7 +226,7 @@ impl ContactProgram {
         found.ok_or(ContactError::Unsolved(iterations))
     }
 
-    /// Returns the largest velocity in m/s under a load: of a block's centre, or of a block's rotation times the size of the row.
+    /// Largest velocity in m/s under a load: of a block's centre, or of a block's rotation times the size of the row.
     ///
     /// # Errors
     /// If the active set is not found.
@@ -252,7 +252,7 @@ impl ContactProgram {
         self.set_velocities();
     }
 
-    /// Returns the number of degrees of freedom under the active constraints.
+    /// Number of degrees of freedom under the active constraints.
     pub(crate) fn freedom(&self) -> usize {
         let moving = self.factor.bodies.iter().filter(|body| !body.is_held());
         let pressed = self.factor.pins.iter().filter(|pin| !pin.parted);
@@ -303,17 +303,17 @@ impl ContactProgram {
     }
 }
 
-/// Returns whether a pivot exceeds a limit; false for NaN.
+/// Whether a pivot exceeds a limit; false for NaN.
 fn pivot_exceeds(pivot: f64, least: f64) -> bool {
     pivot > least
 }
 
-/// Returns the lower of two numbers; the second one if either is NaN.
+/// Lower of two numbers; the second one if either is NaN.
 pub(super) fn lower(one: f64, other: f64) -> f64 {
     if one <= other { one } else { other }
 }
 
-/// Returns the higher of two numbers; the first one if either is NaN.
+/// Higher of two numbers; the first one if either is NaN.
 fn higher_number(one: f64, other: f64) -> f64 {
     if other > one { other } else { one }
 }

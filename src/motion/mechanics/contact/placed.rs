@@ -72,7 +72,7 @@ impl Placed {
         (largest, total)
     }
 
-    /// Returns the change of momentum of all blocks before a joint if they move together with this velocity.
+    /// Change of momentum of all blocks before a joint if they move together with this velocity.
     pub fn momentum_change(&self, twist: &Twist, joint: usize, loaded: bool) -> Momentum {
         let change = twist.momentum(&self.moments[joint]);
         if loaded {

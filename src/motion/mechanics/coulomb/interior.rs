@@ -48,7 +48,7 @@ struct Eliminated {
 }
 
 impl Pairs {
-    /// Returns the residuals of the equations between the variables, for given rates of the joint.
+    /// Residuals of the equations between the variables, for given rates of the joint.
     fn errors(&self, rate: &Vector3<f64>, coefficient: f64) -> [f64; 5] {
         let ([intrados, extrados, plus, minus, speed], other) = (self.own, self.other);
         [
@@ -65,7 +65,7 @@ impl Pairs {
         pairs.map(|(own, other)| own * other)
     }
 
-    /// Returns the Newton equations for the three impulses of the joint, to be added to its compliance: matrix, right-hand side, and the data to
+    /// Newton equations for the three impulses of the joint, to be added to its compliance: matrix, right-hand side, and the data to
     /// recover the eliminated unknowns.
     fn newton_equations(
         &self,
@@ -100,7 +100,7 @@ impl Pairs {
         (matrix, right, rest)
     }
 
-    /// Returns the changes of all variables for given changes of the impulses and of the rate along the joint.
+    /// Changes of all variables for given changes of the impulses and of the rate along the joint.
     fn changes(
         &self,
         rest: &Eliminated,
@@ -129,7 +129,7 @@ impl Pairs {
         }
     }
 
-    /// Returns the largest fraction of a change that keeps all variables positive.
+    /// Largest fraction of a change that keeps all variables positive.
     fn largest_part(&self, change: &Self) -> f64 {
         let own = self.own.iter().zip(&change.own);
         let pairs = own.chain(self.other.iter().zip(&change.other));
@@ -149,7 +149,7 @@ impl Pairs {
         Vector3::new(self.own[0], self.own[1], self.own[2] - self.own[3])
     }
 
-    /// Returns the mode of the joint. The compliance converts impulses to rates for the comparison.
+    /// Mode of the joint. The compliance converts impulses to rates for the comparison.
     fn mode(&self, compliance: &Vector3<f64>) -> JointMode {
         let (own, other) = (self.own, self.other);
         let pressed = [0, 1].map(|end| own[end] * compliance[end] > other[end]);
@@ -246,9 +246,9 @@ impl SlipProgram {
     fn step_towards(&mut self, target: f64, errors: &[[f64; 5]], pairs: &mut [Pairs]) -> f64 {
         let coefficient = self.coefficient;
         let joints = pairs.iter().zip(errors);
-        let eliminated =
-            joints.map(|(pairs, errors)| pairs.newton_equations(errors, target, coefficient));
-        let eliminated: Vec<_> = eliminated.collect();
+        let eliminated: Vec<_> = joints
+            .map(|(pairs, errors)| pairs.newton_equations(errors, target, coefficient))
+            .collect();
         self.sweep(|program, joint| {
             let (matrix, right, _) = &eliminated[joint];
             let mut matrix = program.own[joint] + matrix;
@@ -271,8 +271,10 @@ impl SlipProgram {
             pairs[joint].changes(rest, &errors[joint], target, coefficient, (change, slip))
         });
         let changes: Vec<Pairs> = changes.collect();
-        let parts = pairs.iter().zip(&changes);
-        let parts = parts.map(|(pairs, change)| REACH * pairs.largest_part(change));
+        let parts = pairs
+            .iter()
+            .zip(&changes)
+            .map(|(pairs, change)| REACH * pairs.largest_part(change));
         let part = parts.fold(1.0, f64::min);
         for (pairs, change) in pairs.iter_mut().zip(&changes) {
             pairs.advance(change, part);
@@ -310,7 +312,7 @@ mod tests {
     use crate::mechanics::geometry::ring::Ring;
     use crate::mechanics::slip::{FaceContact, Faces, Position};
 
-    /// Returns the largest violation of Coulomb's law, as a rate; impulses count as the rates that they cause.
+    /// Largest violation of Coulomb's law, as a rate; impulses count as the rates that they cause.
     fn largest_violation(program: &SlipProgram) -> f64 {
         let joints = program
             .impulses

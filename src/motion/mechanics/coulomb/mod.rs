@@ -71,7 +71,7 @@ impl JointMode {
         tangential: TangentialMode::Stick,
     };
 
-    /// Returns a consistent mode: a joint without contact has no friction, and a new contact sticks at first.
+    /// Consistent mode: a joint without contact has no friction, and a new contact sticks at first.
     fn settled(mut self) -> Self {
         if self.pressed == [false; 2] {
             self.tangential = TangentialMode::Free;
@@ -145,7 +145,7 @@ pub struct SlipProgram {
 }
 
 impl SlipProgram {
-    /// Returns a problem for a row with all joints closed and zero impulses.
+    /// Problem for a row with all joints closed and zero impulses.
     pub fn new(row: &Row, coefficient: f64) -> Self {
         let (blocks, joints) = (row.blocks.len(), row.joints.len());
         let roots = row.blocks.iter().map(|block| {
@@ -182,12 +182,12 @@ impl SlipProgram {
         }
     }
 
-    /// Returns the velocity (x, y) in m/s and the rotation rate in rad/s of a block in the last solution.
+    /// Velocity (x, y) in m/s and the rotation rate in rad/s of a block in the last solution.
     pub fn velocity(&self, block: usize) -> Vector3<f64> {
         self.velocities[block].component_div(&self.roots[block])
     }
 
-    /// Returns twice the kinetic energy of the last solution, in J.
+    /// Twice the kinetic energy of the last solution, in J.
     pub(crate) fn twice_kinetic_j(&self) -> f64 {
         self.velocities.iter().map(Vector3::norm_squared).sum()
     }
@@ -243,7 +243,7 @@ impl SlipProgram {
         }
     }
 
-    /// Returns the rates of the coordinates of a joint for scaled velocities of the blocks.
+    /// Rates of the coordinates of a joint for scaled velocities of the blocks.
     fn rate(&self, joint: usize, velocities: &[Vector3<f64>]) -> Vector3<f64> {
         let mut rate = Vector3::zeros();
         if let Some(left) = joint.checked_sub(1) {
@@ -255,7 +255,7 @@ impl SlipProgram {
         rate
     }
 
-    /// Returns the rates of the coordinates of a joint in the last solution, in m/s.
+    /// Rates of the coordinates of a joint in the last solution, in m/s.
     pub fn joint_rate(&self, joint: usize) -> Vector3<f64> {
         self.rate(joint, &self.velocities)
     }
@@ -426,13 +426,13 @@ impl SlipProgram {
         }
     }
 
-    /// Returns the compliance between a joint and the one before it.
+    /// Compliance between a joint and the one before it.
     fn coupling(&self, joint: usize) -> Matrix3<f64> {
         let before = joint.checked_sub(1);
         before.map_or(Matrix3::zeros(), |before| self.next[before].transpose())
     }
 
-    /// Returns the proximal term that is added to the compliance of one coordinate of a joint.
+    /// Proximal term that is added to the compliance of one coordinate of a joint.
     fn proximal_term(&self, joint: usize, row: usize) -> f64 {
         PROXIMAL * self.own[joint][(row, row)]
     }
@@ -455,7 +455,7 @@ impl SlipProgram {
         }
     }
 
-    /// Returns the rates of a joint due to impulses alone.
+    /// Rates of a joint due to impulses alone.
     fn response(&self, joint: usize, impulses: &[Vector3<f64>]) -> Vector3<f64> {
         let mut rate = self.own[joint] * impulses[joint];
         if let Some(before) = joint.checked_sub(1) {
@@ -467,7 +467,7 @@ impl SlipProgram {
         rate
     }
 
-    /// Returns the rates of a joint due to the proximal term.
+    /// Rates of a joint due to the proximal term.
     fn proximal_rates(&self, joint: usize) -> Vector3<f64> {
         let change = self.impulses[joint] - self.before[joint];
         self.own[joint].diagonal().component_mul(&change) * PROXIMAL
@@ -508,7 +508,7 @@ impl SlipProgram {
         error
     }
 
-    /// Returns the largest error of a bound, relative to the largest bound.
+    /// Largest error of a bound, relative to the largest bound.
     fn bound_error(&self) -> f64 {
         let (mut largest, mut error) = (f64::MIN_POSITIVE, 0.0_f64);
         for (bound, impulse) in self.bounds.iter().zip(&self.impulses) {
@@ -535,7 +535,7 @@ impl SlipProgram {
         }
     }
 
-    /// Returns the lower and upper limits of the impulses of a joint for fixed bounds.
+    /// Lower and upper limits of the impulses of a joint for fixed bounds.
     fn limits(&self, joint: usize) -> [(f64, f64); 3] {
         let (pressed, bound) = ((0.0, f64::INFINITY), self.bounds[joint]);
         [pressed, pressed, (-bound, bound)]
@@ -605,7 +605,7 @@ impl SlipProgram {
     }
 }
 
-/// Returns the inverse of a matrix by cofactors.
+/// Inverse of a matrix by cofactors.
 fn inverse(m: &Matrix3<f64>) -> Matrix3<f64> {
     let cofactor = |a: f64, b: f64, c: f64, d: f64| a * d - b * c;
     let (c11, c12, c13) = (

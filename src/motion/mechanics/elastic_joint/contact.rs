@@ -53,7 +53,7 @@ impl ContactSection {
         }
     }
 
-    /// Returns the number of positions with a state of crushing.
+    /// Number of positions with a state of crushing.
     pub(super) fn fibres(&self) -> usize {
         match self {
             Self::Whole => 0,
@@ -62,7 +62,7 @@ impl ContactSection {
         }
     }
 
-    /// Returns the rotational stiffness of the closed joint, over its normal stiffness times its length squared; 1/12 for continuous contact.
+    /// Rotational stiffness of the closed joint, over its normal stiffness times its length squared; 1/12 for continuous contact.
     pub(super) fn second_moment(&self) -> f64 {
         match self {
             Self::Whole | Self::Cells(_) => 1.0 / 12.0,
@@ -73,13 +73,13 @@ impl ContactSection {
         }
     }
 
-    /// Returns the edge forces of a joint with tensile strength, per stiffness.
+    /// Edge forces of a joint with tensile strength, per stiffness.
     pub(super) fn bonded_forces<R: Real>(&self, p: [R; 2]) -> [R; 2] {
         let [mean, half] = [(p[0] + p[1]) * 0.5, (p[1] - p[0]) * self.second_moment()];
         [mean * 0.5 - half, mean * 0.5 + half]
     }
 
-    /// Returns the elastic energy of compression, per stiffness.
+    /// Elastic energy of compression, per stiffness.
     #[inline(always)]
     pub(super) fn energy<R: Real>(&self, p: [R; 2], fibres: &[Fibre<R>]) -> R {
         let at = |part: f64| p[0] + (p[1] - p[0]) * part;
@@ -398,7 +398,7 @@ fn sum_in_cells<R: Real>(
     (elastic_sum, total_sum, crushed)
 }
 
-/// Returns the interval in which a linear function with given end values is positive, as fractions of the length; empty if it is positive nowhere.
+/// Interval in which a linear function with given end values is positive, as fractions of the length; empty if it is positive nowhere.
 #[inline(always)]
 fn positive_part<R: Real>(ends: [R; 2]) -> [R; 2] {
     let (zero, one) = (R::of(0.0), R::of(1.0));
@@ -409,7 +409,7 @@ fn positive_part<R: Real>(ends: [R; 2]) -> [R; 2] {
     ]
 }
 
-/// Returns six times the end forces that are equivalent to a stress on a part of the length, linear between the values `low` and `high`.
+/// Six times the end forces that are equivalent to a stress on a part of the length, linear between the values `low` and `high`.
 #[inline(always)]
 fn end_forces<R: Real>([from, to]: [R; 2], [low, high]: [R; 2]) -> [R; 2] {
     let (part, sum) = (to - from, from + to);
@@ -418,14 +418,14 @@ fn end_forces<R: Real>([from, to]: [R; 2], [low, high]: [R; 2]) -> [R; 2] {
     [part * (whole - at_one), part * at_one]
 }
 
-/// Returns six times the end forces of the compressive part of a stress that is linear between the ends.
+/// Six times the end forces of the compressive part of a stress that is linear between the ends.
 #[inline(always)]
 fn compressive_forces<R: Real>(ends: [R; 2]) -> [R; 2] {
     let zero = R::of(0.0);
     end_forces(positive_part(ends), both!(end: ends[end].max(zero)))
 }
 
-/// Returns six times the end forces of a second linear stress, over the part where both stresses are compressive.
+/// Six times the end forces of a second linear stress, over the part where both stresses are compressive.
 #[inline(always)]
 fn damped_compressive_forces<R: Real>(ends: [R; 2], stress: [R; 2]) -> [R; 2] {
     let (touching, pressing) = (positive_part(ends), positive_part(stress));
@@ -436,7 +436,7 @@ fn damped_compressive_forces<R: Real>(ends: [R; 2], stress: [R; 2]) -> [R; 2] {
     end_forces(ends, presses)
 }
 
-/// Returns the energy of the compressive part.
+/// Energy of the compressive part.
 #[inline(always)]
 fn energy<R: Real>(ends: [R; 2]) -> R {
     let [from, to] = positive_part(ends);

@@ -15,7 +15,7 @@ pub struct BodyPosition<R> {
 remembered!(BodyPosition { ; moved_m, half_turn });
 
 impl<R: Real> BodyPosition<R> {
-    /// Returns the position for displacements in m and a rotation in rad.
+    /// Position for displacements in m and a rotation in rad.
     pub fn at(moved: &[f64; 3]) -> Self {
         let quarter = libm::sin(0.25 * moved[2]);
         let half_turn = [-2.0 * quarter * quarter, libm::sin(0.5 * moved[2])];
@@ -25,7 +25,7 @@ impl<R: Real> BodyPosition<R> {
         }
     }
 
-    /// Returns the displacement of the end of an arm relative to the centre, due to the rotation.
+    /// Displacement of the end of an arm relative to the centre, due to the rotation.
     #[inline(always)]
     pub(super) fn swing(&self, arm_m: [f64; 2]) -> [R; 2] {
         let [half_cos, half_sin] = self.half_turn;
@@ -85,7 +85,7 @@ pub struct Action<R> {
 remembered!(Gap { slip_m, rise_m; penetrations_m, apart_m, tangent, half });
 
 impl JointGeometry {
-    /// Returns a joint between the bodies with these indices.
+    /// Joint between the bodies with these indices.
     ///
     /// - `arms_m`: vectors from the centres of the bodies to the middle of the joint, in m.
     /// - `tangent`: unit vector along the joint, from edge 0 (intrados) to edge 1 (extrados).
@@ -112,7 +112,7 @@ impl JointGeometry {
         }
     }
 
-    /// Returns the relative position of the faces for given positions of the bodies.
+    /// Relative position of the faces for given positions of the bodies.
     ///
     /// Let `e_a`, `e_b` be the directions of the faces, `e` the mean direction and `n` its normal. `e_b - e_a` is parallel to `n` at any angle. The
     /// gap is therefore linear along the joint, and the slip is constant.
@@ -152,7 +152,7 @@ impl JointGeometry {
         }
     }
 
-    /// Returns the forces of the joint on its bodies for a gap, compressive edge forces, and a shear force that resists slip. The work of these
+    /// Forces of the joint on its bodies for a gap, compressive edge forces, and a shear force that resists slip. The work of these
     /// forces equals the work of the edge forces on the penetrations plus that of the shear force on the slip.
     ///
     /// The force acts midway between the middles of the faces, because both bodies contribute equally to the mean direction.

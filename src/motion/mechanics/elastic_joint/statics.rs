@@ -87,12 +87,12 @@ const RAISED: f64 = 3.162_277_660_168_379_5;
 const FIRST_STIFFNESS: [f64; 4] = [0.1, 1e-2, 1e-3, 1e-4];
 
 impl Equilibrium {
-    /// Returns the index of the first broken tie.
+    /// Index of the first broken tie.
     fn broken_tie(&self) -> Option<usize> {
         self.ties.iter().position(TieMemory::is_broken)
     }
 
-    /// Returns the joint with the largest eccentricity of the thrust, and this eccentricity over the length of the joint.
+    /// Joint with the largest eccentricity of the thrust, and this eccentricity over the length of the joint.
     pub(crate) fn largest_eccentricity(&self, structure: &ElasticStructure) -> (usize, f64) {
         let each = structure.fibres();
         let moved = |body: usize| self.moved.get(body).unwrap_or(structure.support(body));
@@ -240,7 +240,7 @@ impl ElasticStructure {
         })
     }
 
-    /// Returns a lower bound, in J, of the energy above that at rest that the structure needs to overturn without slip. `None` if the bound is not
+    /// Lower bound, in J, of the energy above that at rest that the structure needs to overturn without slip. `None` if the bound is not
     /// found, or if a joint crushes on the path. With slip, less energy may suffice.
     ///
     /// The structure is pushed over slowly. This path may be lost if the joints are too stiff or have contact points. The path of softer joints with
@@ -271,13 +271,13 @@ impl ElasticStructure {
         })
     }
 
-    /// Returns the energy in J, above that of the undeformed structure, at the top of the lower one of the paths to the right and to the left.
+    /// Energy in J, above that of the undeformed structure, at the top of the lower one of the paths to the right and to the left.
     fn summit_j(&self, rest: &Equilibrium, gravity_m_s2: f64) -> Option<f64> {
         let to = |sense| self.summit_towards_j(rest, gravity_m_s2, sense);
         Some(to(1.0)?.min(to(-1.0)?))
     }
 
-    /// Returns the energy in J at the top of the path to the right (`sense` 1) or to the left (-1): there the structure falls without a push. The
+    /// Energy in J at the top of the path to the right (`sense` 1) or to the left (-1): there the structure falls without a push. The
     /// horizontal position of the centre of gravity is prescribed. Everything else is in equilibrium without slip, and the push does the work. `None`
     /// if the path is lost, or if a joint crushes on the path.
     ///
@@ -394,7 +394,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Returns the search with given states of the ties.
+    /// Search with given states of the ties.
     fn with_ties(mut self, ties: &[TieMemory<SingleLane>]) -> Self {
         self.yielded_m = ties.iter().map(|tie| tie.yielded_m.0[0]).collect();
         self
@@ -488,12 +488,12 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Returns the position of a body or a support.
+    /// Position of a body or a support.
     fn body_position(&self, moved: &[[f64; 3]], body: usize) -> BodyPosition<SingleLane> {
         BodyPosition::at(moved.get(body).unwrap_or(self.structure.support(body)))
     }
 
-    /// Returns the position of the first or second body of a pair, with the derivatives by the coordinates of both.
+    /// Position of the first or second body of a pair, with the derivatives by the coordinates of both.
     fn variable(&self, moved: &[[f64; 3]], body: usize, end: usize) -> BodyPosition<Dual<6>> {
         let Some(at) = moved.get(body) else {
             return BodyPosition::at(self.structure.support(body));
@@ -562,7 +562,7 @@ impl<'a> Search<'a> {
         (norm < BALANCED).then(|| self.equilibrium_at(moved, norm, steps_before + steps))
     }
 
-    /// Returns the displacement of the centre of gravity to the right.
+    /// Displacement of the centre of gravity to the right.
     fn sway_m(&self, moved: &[[f64; 3]]) -> f64 {
         let bodies = self.structure.bodies.iter().zip(moved);
         let moments: f64 = bodies.map(|(body, moved)| body.mass_kg * moved[0]).sum();
@@ -640,7 +640,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Returns the elastic and potential energy, in J.
+    /// Elastic and potential energy, in J.
     fn energy_j(&self, rest: &Equilibrium) -> f64 {
         let bodies = self.structure.bodies.iter().zip(&rest.moved);
         let lifted = bodies.map(|(body, moved)| -self.load_m_s2[1] * body.mass_kg * moved[1]);
@@ -659,13 +659,17 @@ impl<'a> Search<'a> {
         let mut memories = vec![Memory::none(); joints.len()];
         let mut fibres = vec![Fibre::none(); joints.len() * each];
         let place = |body: usize| self.body_position(&moved, body);
-        let ties = self.structure.ties.iter().zip(&self.yielded_m);
-        let ties = ties.map(|(bound, yielded_m)| {
-            let [first, second] = bound.bodies.map(place);
-            let stretch_m = bound.span([&first, &second]).stretch_m;
-            TieMemory::stretched(&bound.tie, *yielded_m, stretch_m)
-        });
-        let ties = ties.collect();
+        let ties = self
+            .structure
+            .ties
+            .iter()
+            .zip(&self.yielded_m)
+            .map(|(bound, yielded_m)| {
+                let [first, second] = bound.bodies.map(place);
+                let stretch_m = bound.span([&first, &second]).stretch_m;
+                TieMemory::stretched(&bound.tie, *yielded_m, stretch_m)
+            })
+            .collect();
         for (index, joint) in joints.iter().enumerate() {
             let [one, other] = joint.geometry.bodies.map(place);
             let fibres = &mut fibres[index * each..(index + 1) * each];

@@ -79,7 +79,7 @@ impl ElasticProperties {
     /// Range of the number of contact points; a single point does not support a block.
     pub const CONTACT_POINTS: RangeInclusive<usize> = 2..=100;
 
-    /// Returns joints with this normal stiffness and default properties: shear stiffness 0.4 of it (shear modulus over Young's modulus), friction
+    /// Joints with this normal stiffness and default properties: shear stiffness 0.4 of it (shear modulus over Young's modulus), friction
     /// coefficient 0.7, damping time 0.1 ms, continuous contact, no crushing, depth 1 m.
     pub const fn of_stiffness(normal_pa_m: f64) -> Self {
         Self {
@@ -95,7 +95,7 @@ impl ElasticProperties {
         }
     }
 
-    /// Returns an error if a property is out of range. The stiffness is checked for each joint later.
+    /// An error if a property is out of range. The stiffness is checked for each joint later.
     fn check(&self) -> Result<(), ArgumentError> {
         if let Stiffness::Materials(materials) = self.stiffness {
             let modulus_pa = materials.stone_modulus_pa;
@@ -123,7 +123,7 @@ impl ElasticProperties {
         Ok(())
     }
 
-    /// Returns these properties with all stiffnesses multiplied by a factor.
+    /// These properties with all stiffnesses multiplied by a factor.
     #[must_use]
     pub(crate) fn stiffness_times(mut self, factor: f64) -> Self {
         match &mut self.stiffness {
@@ -141,7 +141,7 @@ impl ElasticProperties {
         self
     }
 
-    /// Returns a joint of this geometry, with a length of stone in metres between the centres of its bodies.
+    /// Joint of this geometry, with a length of stone in metres between the centres of its bodies.
     fn joint(&self, geometry: JointGeometry, stone_m: f64) -> Result<ElasticJoint, ArgumentError> {
         let stiffness = match self.stiffness {
             Stiffness::Uniform(stiffness) => stiffness,
@@ -194,7 +194,7 @@ pub struct ElasticStructure {
 }
 
 impl ElasticStructure {
-    /// Returns the structure of a row of blocks.
+    /// Structure of a row of blocks.
     ///
     /// # Errors
     /// If a property is out of range.
@@ -222,8 +222,10 @@ impl ElasticStructure {
         debug_assert!(row.supports == Supports::Both || row.joints.len() == ground);
         let joints: Result<_, ArgumentError> = row.joints.iter().enumerate().map(joint).collect();
         let feet_m = row.feet_m();
-        let ties = row.ties.iter();
-        let ties = ties.map(|tie| BoundTie::new(*tie, blocks, feet_m));
+        let ties = row
+            .ties
+            .iter()
+            .map(|tie| BoundTie::new(*tie, blocks, feet_m));
         Ok(Self {
             ties: ties.collect(),
             ties_square_frequency: square_frequency(&row.ties, blocks),
@@ -231,7 +233,7 @@ impl ElasticStructure {
         })
     }
 
-    /// Returns this structure of a column with the wall behind it: its side, and its height in metres above the base; `None` without a wall. Each drum
+    /// This structure of a column with the wall behind it: its side, and its height in metres above the base; `None` without a wall. Each drum
     /// touches the wall with its face, without friction. The contact has the stiffness per area of a joint with half the width of the drum as stone.
     ///
     /// # Errors
@@ -269,12 +271,12 @@ impl ElasticStructure {
         Ok(self)
     }
 
-    /// Returns the joints between the blocks, and between blocks and supports, without contacts with a wall.
+    /// Joints between the blocks, and between blocks and supports, without contacts with a wall.
     pub fn row_joints(&self) -> &[ElasticJoint] {
         &self.joints[..self.joints.len() - self.wall_contacts]
     }
 
-    /// Returns a structure of given bodies and joints, without ties.
+    /// Structure of given bodies and joints, without ties.
     pub fn new(
         bodies: Vec<Block>,
         joints: Vec<ElasticJoint>,
@@ -302,7 +304,7 @@ impl ElasticStructure {
         }
     }
 
-    /// Returns this structure on supports with given displacements (m) and rotations (rad). In a row, supports rotate about the middle of the first
+    /// This structure on supports with given displacements (m) and rotations (rad). In a row, supports rotate about the middle of the first
     /// and the last joint.
     #[must_use]
     pub const fn on_supports(mut self, moved: [[f64; 3]; 2]) -> Self {
@@ -310,23 +312,23 @@ impl ElasticStructure {
         self
     }
 
-    /// Returns the displacements (m) and the rotation (rad) of the support with an index as in joints.
+    /// Displacements (m) and the rotation (rad) of the support with an index as in joints.
     pub fn support(&self, body: usize) -> &[f64; 3] {
         &self.supports[usize::from(body > self.bodies.len())]
     }
 
-    /// Returns whether a support has moved.
+    /// Whether a support has moved.
     pub fn has_settled(&self) -> bool {
         self.supports != [[0.0; 3]; 2]
     }
 
-    /// Returns the displacement of the left support, in m, and this structure with both supports displaced by it, without rotation.
+    /// Displacement of the left support, in m, and this structure with both supports displaced by it, without rotation.
     pub(super) fn moved_along(&self) -> ([f64; 2], Self) {
         let [x, y, _] = self.supports[0];
         ([x, y], self.clone().on_supports([[x, y, 0.0]; 2]))
     }
 
-    /// Returns this structure with the supports at a fraction of their movement, which starts at the common displacement of [`Self::moved_along`].
+    /// This structure with the supports at a fraction of their movement, which starts at the common displacement of [`Self::moved_along`].
     pub(super) fn at_movement_fraction(&self, part: f64) -> Self {
         let from = self.moved_along().1.supports;
         let between = |from: f64, to: f64| to - (1.0 - part) * (to - from);
@@ -335,43 +337,43 @@ impl ElasticStructure {
         (self.clone()).on_supports([0, 1].map(|side| [0, 1, 2].map(|axis| on_way(side, axis))))
     }
 
-    /// Returns whether joints may slip permanently.
+    /// Whether joints may slip permanently.
     pub const fn slips(&self) -> bool {
         self.law.friction[1] == 0.0
     }
 
-    /// Returns the mass of all bodies, in kg.
+    /// Mass of all bodies, in kg.
     pub fn mass_kg(&self) -> f64 {
         self.bodies.iter().map(|body| body.mass_kg).sum()
     }
 
-    /// Returns the number of positions along each joint with a state of crushing.
+    /// Number of positions along each joint with a state of crushing.
     pub fn fibres(&self) -> usize {
         self.law.section.fibres()
     }
 
-    /// Returns this structure with unlimited friction.
+    /// This structure with unlimited friction.
     pub(super) fn without_slip(&self) -> Self {
         let mut other = self.clone();
         other.law.friction = [0.0, f64::INFINITY];
         other
     }
 
-    /// Returns this structure without crushing.
+    /// This structure without crushing.
     pub(super) fn without_crushing(&self) -> Self {
         let mut other = self.clone();
         other.law.crushes = false;
         other
     }
 
-    /// Returns this structure with continuous contact, without crushing.
+    /// This structure with continuous contact, without crushing.
     pub(super) fn continuous(&self) -> Self {
         let mut other = self.without_crushing();
         other.law.section = ContactSection::Whole;
         other
     }
 
-    /// Returns this structure with all stiffnesses multiplied by a factor. The strength of the joints stays the same.
+    /// This structure with all stiffnesses multiplied by a factor. The strength of the joints stays the same.
     pub(super) fn stiffness_times(&self, factor: f64) -> Self {
         let mut other = self.clone();
         for joint in &mut other.joints {
@@ -405,7 +407,7 @@ impl ElasticStructure {
         (action, normal, shear)
     }
 
-    /// Returns the elastic forces of a joint at rest: the normal forces at its edges and the shear force, in N.
+    /// Elastic forces of a joint at rest: the normal forces at its edges and the shear force, in N.
     pub(crate) fn elastic_n(
         &self,
         joint: &ElasticJoint,
@@ -417,7 +419,7 @@ impl ElasticStructure {
         (normal.edges_n.map(|edge| edge.0[0]), shear.shear_n.0[0])
     }
 
-    /// Returns the elastic energy of a joint, in J.
+    /// Elastic energy of a joint, in J.
     #[inline(always)]
     pub fn energy_j<R: Real>(
         &self,
@@ -433,7 +435,7 @@ impl ElasticStructure {
         pressing_j + memory.shear_n * memory.shear_n * (0.5 / joint.shear_n_m)
     }
 
-    /// Returns an upper bound of the highest angular frequency, in rad/s, for any set of closed joints.
+    /// Upper bound of the highest angular frequency, in rad/s, for any set of closed joints.
     ///
     /// Each joint gets a part of the mass of its bodies, in proportion to its stiffness. By Rayleigh's quotient, the highest frequency of such a
     /// joint with its mass is not below the highest frequency of the structure (Irons and Treharne, "A bound theorem in eigenvalues and its practical
@@ -476,7 +478,7 @@ impl ElasticStructure {
         (squares.fold(0.0, f64::max) + self.ties_square_frequency).sqrt()
     }
 
-    /// Returns the longest step, in s, for which central differences are stable, with damping that lags by half a step.
+    /// Longest step, in s, for which central differences are stable, with damping that lags by half a step.
     ///
     /// By Jury's criterion this is `2/w (sqrt(1 + z^2) - z)` for the frequency `w` and `z = beta w/2`, with the damping time `beta`; it decreases
     /// with `w`.
@@ -488,10 +490,11 @@ impl ElasticStructure {
     }
 }
 
-/// Returns the stiffness of mortar and a length of stone in series.
+/// Stiffness of mortar and a length of stone in series.
 fn in_series(materials: &Materials, length_m: f64) -> JointStiffness {
-    let mortar = materials.mortar;
-    let mortar = mortar.map_or(0.0, |[modulus, thickness]| thickness / modulus);
+    let mortar = materials
+        .mortar
+        .map_or(0.0, |[modulus, thickness]| thickness / modulus);
     let normal_pa_m = 1.0 / (mortar + length_m / materials.stone_modulus_pa);
     JointStiffness {
         normal_pa_m,

@@ -19,7 +19,7 @@ pub struct BoundTie {
 }
 
 impl BoundTie {
-    /// Returns the tie of a row with given feet. An end in the ground moves with the nearer support.
+    /// Tie of a row with given feet. An end in the ground moves with the nearer support.
     pub(super) fn new(tie: Tie, blocks: &[Block], feet_m: [Vector2<f64>; 2]) -> Self {
         let body = |end: usize| {
             let anchor = &tie.ends[end];
@@ -47,7 +47,7 @@ impl BoundTie {
         }
     }
 
-    /// Returns length, stretch and direction of the tie for given positions of its bodies.
+    /// Length, stretch and direction of the tie for given positions of its bodies.
     #[inline(always)]
     pub fn span<R: Real>(&self, places: [&BodyPosition<R>; 2]) -> TieSpan<R> {
         let swings = both!(end: places[end].swing(self.arms_m[end]));
@@ -56,7 +56,7 @@ impl BoundTie {
         self.tie.span([first, second])
     }
 
-    /// Returns the forces of the tie on its bodies for a given tie force.
+    /// Forces of the tie on its bodies for a given tie force.
     #[inline(always)]
     pub fn action<R: Real>(
         &self,

@@ -32,7 +32,7 @@ pub struct Projection {
 }
 
 impl Projection {
-    /// Returns the joints that open: index, edge about which the joint opens, and rotation rate. Rotations below 0.1 % of the largest one are
+    /// Joints that open: index, edge about which the joint opens, and rotation rate. Rotations below 0.1 % of the largest one are
     /// omitted.
     ///
     /// In a continuous ring whole zones open, where the impulse line follows an edge.
@@ -75,7 +75,7 @@ pub struct ProjectionError {
     reason: SolverStatus,
 }
 
-/// Returns the joints at which the projection may open the ring: those of the voussoirs, or the springings and the sections between `count` equal
+/// Joints at which the projection may open the ring: those of the voussoirs, or the springings and the sections between `count` equal
 /// parts.
 ///
 /// In a continuous ring the hinges of `mechanism`, if given, replace the joints nearest to them. The cone then contains this mechanism, and bounds
@@ -105,7 +105,7 @@ pub fn joints_rad(
     }
 }
 
-/// Returns the field nearest to `before` among those that open the given joints and never close them.
+/// Field nearest to `before` among those that open the given joints and never close them.
 ///
 /// The variables are the motions of the bodies between the joints, in axes in which their kinetic energy is half a sum of squares. The solution is
 /// the point of a polyhedral cone nearest to a given point. Each joint couples two neighbours only, so the effort is proportional to the number of
@@ -125,8 +125,9 @@ pub fn project(
     let energy_before = before.product(before, profile);
     let scale = energy_before.sqrt();
     let parts = joints_rad.windows(2);
-    let bodies = parts.map(|ends| orthonormal_twists(profile, ends[0], ends[1]));
-    let bodies: Vec<[Twist; 3]> = bodies.collect();
+    let bodies: Vec<[Twist; 3]> = parts
+        .map(|ends| orthonormal_twists(profile, ends[0], ends[1]))
+        .collect();
     let target = components(before, profile, joints_rad, &bodies, scale);
 
     // Rows: no sliding at each joint, then for each joint the gap at the intrados and at the extrados.
@@ -194,7 +195,7 @@ pub fn project(
     })
 }
 
-/// Returns the components of a field, divided by `scale`, along the motions of the bodies between the joints.
+/// Components of a field, divided by `scale`, along the motions of the bodies between the joints.
 fn components(
     field: &Field,
     profile: &dyn Profile,
@@ -213,7 +214,7 @@ fn components(
     components.collect()
 }
 
-/// Returns motions of the part between two sections, orthogonal to each other and each with a kinetic energy of one half: two translations and the
+/// Motions of the part between two sections, orthogonal to each other and each with a kinetic energy of one half: two translations and the
 /// rotation about its centre of gravity.
 fn orthonormal_twists(profile: &dyn Profile, from_rad: f64, to_rad: f64) -> [Twist; 3] {
     let moments = profile.sector(from_rad, to_rad);
@@ -225,7 +226,7 @@ fn orthonormal_twists(profile: &dyn Profile, from_rad: f64, to_rad: f64) -> [Twi
     ]
 }
 
-/// Returns the tolerances: the unknown is of unit length, so that they are errors of `r`. With thousands of joints rounding may leave only the
+/// Tolerances: the unknown is of unit length, so that they are errors of `r`. With thousands of joints rounding may leave only the
 /// reduced ones.
 fn settings() -> DefaultSettings<f64> {
     DefaultSettings {

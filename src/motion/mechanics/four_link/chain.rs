@@ -69,7 +69,7 @@ pub struct Chain {
 }
 
 impl Chain {
-    /// Returns the sequence of mechanisms of a profile and its mirror image under an impact law, from its onset by
+    /// Sequence of mechanisms of a profile and its mirror image under an impact law, from its onset by
     /// [`incipient`](super::limit::incipient_of).
     pub(crate) fn new(
         profiles: [Arc<dyn Profile>; 2],
@@ -77,8 +77,9 @@ impl Chain {
         incipient: Incipient,
         law: ImpactLaw,
     ) -> Self {
-        let sections = profiles.each_ref();
-        let sections = sections.map(|profile| ProfileSection::all(&**profile, sites));
+        let sections = profiles
+            .each_ref()
+            .map(|profile| ProfileSection::all(&**profile, sites));
         Self {
             profiles,
             sections,
@@ -90,22 +91,22 @@ impl Chain {
         }
     }
 
-    /// Returns the profile in the frame in which the mechanism after `impacts` impacts sways right.
+    /// Profile in the frame in which the mechanism after `impacts` impacts sways right.
     pub fn profile(&self, impacts: usize) -> &dyn Profile {
         &*self.profiles[impacts % 2]
     }
 
-    /// Returns the sections of that profile at which the excess of thrust lines is computed.
+    /// Sections of that profile at which the excess of thrust lines is computed.
     pub(crate) fn sections(&self, impacts: usize) -> &[ProfileSection] {
         &self.sections[impacts % 2]
     }
 
-    /// Returns the index of the first link of the pair that repeats; `None` while it is not known.
+    /// Index of the first link of the pair that repeats; `None` while it is not known.
     pub fn repeats_from(&self) -> Option<usize> {
         self.pair.get().copied()
     }
 
-    /// Returns the mechanism after `index` impacts. `None` if an earlier impact stops the ring, because no admissible mechanism can follow.
+    /// Mechanism after `index` impacts. `None` if an earlier impact stops the ring, because no admissible mechanism can follow.
     pub fn link(&self, index: usize) -> Option<&ArchLink> {
         for known in 0..MAX_CHAIN_LENGTH {
             let wanted = match self.pair.get() {

@@ -55,7 +55,7 @@ impl ImpactModel {
         Ok(())
     }
 
-    /// Returns whether the restitution coefficient is prescribed, so that the momentum theorems do not hold.
+    /// Whether the restitution coefficient is prescribed, so that the momentum theorems do not hold.
     pub const fn is_prescribed(self) -> bool {
         matches!(self, Self::Prescribed { .. })
     }
@@ -88,7 +88,7 @@ impl ImpactLaw {
         require_within("restitution_factor", self.restitution_factor, 0.0..=100.0).map(|_| ())
     }
 
-    /// Returns rate and restitution coefficient of an impact by this law, from those of its model.
+    /// Rate and restitution coefficient of an impact by this law, from those of its model.
     pub(crate) fn rate_and_restitution(self, rate_ratio: f64, restitution: f64) -> (f64, f64) {
         if self.is_theory() || restitution <= 0.0 {
             return (rate_ratio, restitution);
@@ -97,7 +97,7 @@ impl ImpactLaw {
         (rate_ratio * (measured / restitution).sqrt(), measured)
     }
 
-    /// Returns whether the factor is one, so that the momentum theorems hold.
+    /// Whether the factor is one, so that the momentum theorems hold.
     pub fn is_theory(self) -> bool {
         self.restitution_factor == 1.0
     }
@@ -120,12 +120,12 @@ pub struct Impact {
     pub impulse_line: Option<ImpulseLine>,
 }
 
-/// Returns the velocity field of the ring when `mechanism` closes at unit rate, in the frame of the mechanism that follows.
+/// Velocity field of the ring when `mechanism` closes at unit rate, in the frame of the mechanism that follows.
 pub fn closing_field(mechanism: &FourLink, profile: &dyn Profile) -> Field {
     mechanism.field().scaled(-1.0).mirrored(profile)
 }
 
-/// Returns the impact when `mechanism` closes, by the given model; `None` when no admissible mechanism can follow. The profile is given in the frame
+/// The impact when `mechanism` closes, by the given model; `None` when no admissible mechanism can follow. The profile is given in the frame
 /// of the mechanism that follows: the mirrored one, for a structure that is not its own mirror image.
 pub fn impact(
     mechanism: &FourLink,
@@ -149,7 +149,7 @@ pub fn impact(
     impact_onto(next, mechanism, profile, model)
 }
 
-/// Returns the impact of a closing `mechanism` if `next` follows; `None` if `next` would have to move backwards.
+/// Impact of a closing `mechanism` if `next` follows; `None` if `next` would have to move backwards.
 pub(crate) fn impact_onto(
     next: FourLink,
     mechanism: &FourLink,
@@ -172,7 +172,7 @@ pub(crate) fn impact_onto(
     })
 }
 
-/// Returns the rate of `mechanism` after the impact and restitution coefficient, as the orthogonal projection of the velocity field `before` onto the
+/// Rate of `mechanism` after the impact and restitution coefficient, as the orthogonal projection of the velocity field `before` onto the
 /// mechanism in the kinetic-energy metric.
 ///
 /// The impulses act at hinges of the new mechanism and so do no work on it: `<u', u' q'> = <u', before>`.
@@ -184,7 +184,7 @@ pub fn projection(mechanism: &FourLink, before: &Field, profile: &dyn Profile) -
     (shared / own, kept)
 }
 
-/// Returns the admissible mechanism with the largest retained part of the kinetic energy of `before`.
+/// Admissible mechanism with the largest retained part of the kinetic energy of `before`.
 fn most_energetic(before: &Field, profile: &dyn Profile, sites: HingeSites) -> Option<FourLink> {
     let lattice = Lattice::new(profile, sites);
     let table = ProductTable::new(&lattice, before, profile);
@@ -202,7 +202,7 @@ struct RetainedEnergy<'a> {
 }
 
 impl RetainedEnergy<'_> {
-    /// Returns the retained energy and the rate of the mechanism.
+    /// Retained energy and the rate of the mechanism.
     fn energy_and_rate(&self, mechanism: &FourLink) -> (f64, f64) {
         let field = mechanism.field();
         let shared = field.product(self.before, self.profile);
@@ -217,7 +217,7 @@ impl Objective for RetainedEnergy<'_> {
         &self.before.cuts_rad
     }
 
-    /// Returns the retained energy and its derivatives. The energy is the maximum over the rate `s` of `2 s <u', before> - s^2 <u', u'>`, so its
+    /// Retained energy and its derivatives. The energy is the maximum over the rate `s` of `2 s <u', before> - s^2 <u', u'>`, so its
     /// derivative is `2 s` times that of the power of the load `before - s u'`: the moments of the impulse line. At a hinge the new field counts with
     /// the mean of both sides.
     fn evaluate(&self, mechanism: &FourLink, above: [bool; 4]) -> (f64, [f64; 4]) {
@@ -251,12 +251,15 @@ impl ProductTable {
     fn new(lattice: &Lattice, before: &Field, profile: &dyn Profile) -> Self {
         let end = profile.end();
         let whole = before.momentum_to(profile, end);
-        let rotations = lattice.sections_rad.iter().flat_map(|angle| {
-            let moments = profile.sector(*angle, end);
-            let momentum = whole - before.momentum_to(profile, *angle);
-            [EDGES[0], EDGES[1]].map(|edge| (profile.point(*angle, edge), moments, momentum))
-        });
-        let rotations: Vec<_> = rotations.collect();
+        let rotations: Vec<_> = lattice
+            .sections_rad
+            .iter()
+            .flat_map(|angle| {
+                let moments = profile.sector(*angle, end);
+                let momentum = whole - before.momentum_to(profile, *angle);
+                [EDGES[0], EDGES[1]].map(|edge| (profile.point(*angle, edge), moments, momentum))
+            })
+            .collect();
         let shares = rotations
             .iter()
             .map(|(point, _, momentum)| momentum.moment_about(*point));
@@ -277,7 +280,7 @@ impl ProductTable {
         }
     }
 
-    /// Returns twice the kinetic energy that the mechanism keeps.
+    /// Twice the kinetic energy that the mechanism keeps.
     fn twice_retained_energy(&self, rotations: &[f64; 4], quadruple: &Quadruple) -> f64 {
         let size = self.with_before.len();
         let index: [usize; 4] = std::array::from_fn(|i| 2 * quadruple[i] + EDGES[i] as usize);

@@ -23,7 +23,7 @@ pub struct ImpulseLine {
 }
 
 impl ImpulseLine {
-    /// Returns the impulses that turn the velocity field `before` into `after`, a motion of `mechanism`.
+    /// Impulses that turn the velocity field `before` into `after`, a motion of `mechanism`.
     ///
     /// `after` has to be the projection of `before` onto the mechanism ([`super::impact::projection`]); the line
     /// then passes through all four hinges.
@@ -34,7 +34,7 @@ impl ImpulseLine {
         }
     }
 
-    /// Returns the impulses at the hinges A, B, C, D on the part towards the crown. At A and D the ground acts on the left and the right body; at B
+    /// Impulses at the hinges A, B, C, D on the part towards the crown. At A and D the ground acts on the left and the right body; at B
     /// and C these bodies act on the middle one.
     ///
     /// The outer two are the unknowns `F' dt` of Eqs. (7)-(10) of the paper.
@@ -44,7 +44,7 @@ impl ImpulseLine {
         std::array::from_fn(|i| self.resultants.resultant_at(hinges[i]).linear * sides[i])
     }
 
-    /// Returns [`Self::hinge_impulses`] at the hinges from left to right, in the frame of the ground, when the new mechanism sways to the given side.
+    /// [`Self::hinge_impulses`] at the hinges from left to right, in the frame of the ground, when the new mechanism sways to the given side.
     pub fn hinge_impulses_from_left(&self, sway: Sway) -> [Vector2<f64>; 4] {
         let mut impulses = self.hinge_impulses();
         if sway == Sway::Left {
@@ -56,7 +56,7 @@ impl ImpulseLine {
         impulses
     }
 
-    /// Returns the resultant at a section, by its angle from the left springing, when the new mechanism sways to the given side.
+    /// Resultant at a section, by its angle from the left springing, when the new mechanism sways to the given side.
     pub fn section_from_left(&self, angle_rad: f64, sway: Sway) -> SectionResultant {
         let angle_rad = sway.convert_section(&*self.resultants.profile, angle_rad);
         let mut section = self.resultants.section(angle_rad);
@@ -65,7 +65,7 @@ impl ImpulseLine {
         section
     }
 
-    /// Returns [`ResultantLine::extremes`], with angles from the left springing when the new mechanism sways to the given side.
+    /// [`ResultantLine::extremes`], with angles from the left springing when the new mechanism sways to the given side.
     pub fn extremes_from_left(&self, sites: HingeSites, sway: Sway) -> Extremes {
         let mut extremes = self.resultants.extremes(sites);
         for extremum in [

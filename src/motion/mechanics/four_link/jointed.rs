@@ -16,7 +16,7 @@ pub struct JointedProfile {
 }
 
 impl JointedProfile {
-    /// Returns the profile of a row; `None` for a stack, which has no right support.
+    /// Profile of a row; `None` for a stack, which has no right support.
     pub fn new(row: &Row) -> Option<Self> {
         if row.supports == Supports::Left {
             return None;
@@ -36,9 +36,10 @@ impl JointedProfile {
             intrados_m: joint.intrados_m * per_m,
             extrados_m: joint.extrados_m * per_m,
         });
-        let outlines = row.outlines_m.iter();
-        let outlines =
-            outlines.map(|outline| outline.iter().map(|corner| corner * per_m).collect());
+        let outlines = row
+            .outlines_m
+            .iter()
+            .map(|outline| outline.iter().map(|corner| corner * per_m).collect());
         Some(Self {
             joints: joints.collect(),
             moments,
@@ -46,7 +47,7 @@ impl JointedProfile {
         })
     }
 
-    /// Returns the joint at a section.
+    /// Joint at a section.
     fn index(&self, section: f64) -> usize {
         (section.round().max(0.0) as usize).min(self.joints.len() - 1)
     }

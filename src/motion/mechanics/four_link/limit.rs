@@ -79,7 +79,7 @@ pub(crate) fn incipient_of(
     })
 }
 
-/// Returns the smallest thickness ratio at which a ring of this embrace angle is stable under its own weight. The result exceeds the exact value by
+/// Smallest thickness ratio at which a ring of this embrace angle is stable under its own weight. The result exceeds the exact value by
 /// at most `accuracy`.
 ///
 /// The result is below 0.11: a semicircle needs 0.1075 (Milankovitch), and any other ring less. Thicker rings are stable too.
@@ -99,7 +99,7 @@ pub fn least_thickness_ratio(
     Ok(least)
 }
 
-/// Returns gravity and a push of `acceleration_g` to the right, as load per unit mass.
+/// Gravity and a push of `acceleration_g` to the right, as load per unit mass.
 fn push(acceleration_g: f64) -> Field {
     Field::uniform(Twist::translation(Vector2::new(acceleration_g, -1.0)))
 }
@@ -111,12 +111,15 @@ fn push(acceleration_g: f64) -> Field {
 fn least_acceleration(profile: &dyn Profile, sites: HingeSites) -> Option<(f64, FourLink)> {
     let lattice = Lattice::new(profile, sites);
     // Moments of the area before each section about both edge points, for a unit load along x and y.
-    let moments = lattice.sections_rad.iter().map(|angle| {
-        let part = profile.moments_to(*angle);
-        let arm = |edge| part.first - profile.point(*angle, edge) * part.mass;
-        [Edge::Intrados, Edge::Extrados].map(|edge| quarter_turn(arm(edge)))
-    });
-    let moments: Vec<[Vector2<f64>; 2]> = moments.collect();
+    let moments: Vec<[Vector2<f64>; 2]> = lattice
+        .sections_rad
+        .iter()
+        .map(|angle| {
+            let part = profile.moments_to(*angle);
+            let arm = |edge| part.first - profile.point(*angle, edge) * part.mass;
+            [Edge::Intrados, Edge::Extrados].map(|edge| quarter_turn(arm(edge)))
+        })
+        .collect();
     let score = |rotations: &[f64; 4], quadruple: &Quadruple| {
         let mut power = Vector2::zeros();
         for i in 0..4 {
@@ -157,12 +160,12 @@ impl Objective for LeastAcceleration<'_> {
     }
 }
 
-/// Returns a unit push to the right without gravity.
+/// Unit push to the right without gravity.
 fn push_only() -> Field {
     Field::uniform(Twist::translation(Vector2::new(1.0, 0.0)))
 }
 
-/// Returns the push, in multiples of gravity, at which `mechanism` starts to move.
+/// Push, in multiples of gravity, at which `mechanism` starts to move.
 pub fn acceleration_g(mechanism: &FourLink, profile: &dyn Profile) -> f64 {
     let field = mechanism.field();
     let up = Twist::translation(Vector2::new(0.0, 1.0));

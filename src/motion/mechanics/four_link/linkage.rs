@@ -39,7 +39,7 @@ impl LinkageBody {
         }
     }
 
-    /// Returns the body with a point mass at the end of the bar.
+    /// Body with a point mass at the end of the bar.
     fn loaded(self, mass: f64) -> Self {
         Self {
             first_per_bar: self.first_per_bar + Vector2::new(mass, 0.0),
@@ -48,7 +48,7 @@ impl LinkageBody {
         }
     }
 
-    /// Returns the first mass moment when the bar is `bar`.
+    /// First mass moment when the bar is `bar`.
     fn first(&self, bar: Vector2<f64>) -> Vector2<f64> {
         product(bar, self.first_per_bar)
     }
@@ -80,7 +80,7 @@ struct Bars {
     per_cross: f64,
 }
 
-/// Returns the unit complex number that turns `from` into `to`, vectors of equal length.
+/// Unit complex number that turns `from` into `to`, vectors of equal length.
 fn turn_between(from: Vector2<f64>, to: Vector2<f64>) -> Vector2<f64> {
     Vector2::new(from.dot(&to), from.perp(&to)) / from.norm_squared()
 }
@@ -90,13 +90,13 @@ fn rotate_back(turn: Vector2<f64>, v: Vector2<f64>) -> Vector2<f64> {
     product(Vector2::new(turn.x, -turn.y), v)
 }
 
-/// Returns the angle from the direction of `from` to that of `to`.
+/// Angle from the direction of `from` to that of `to`.
 fn angle_between(from: Vector2<f64>, to: Vector2<f64>) -> f64 {
     libm::atan2(from.perp(&to), from.dot(&to))
 }
 
 impl Linkage {
-    /// Returns the linkage of `mechanism`.
+    /// Linkage of `mechanism`.
     pub fn new(profile: &dyn Profile, mechanism: &FourLink) -> Self {
         let [point_a, point_b, point_c, point_d] = mechanism.points;
         let [left, middle, right] = Self::sectors(&mechanism.before);
@@ -110,7 +110,7 @@ impl Linkage {
         }
     }
 
-    /// Returns the mass moments of the three bodies.
+    /// Mass moments of the three bodies.
     fn sectors(before: &[MassMoments; 4]) -> [MassMoments; 3] {
         std::array::from_fn(|body| before[body + 1] - before[body])
     }
@@ -138,14 +138,14 @@ impl Linkage {
         }
     }
 
-    /// Returns the rotation rates of the middle and the right body per unit `q'`; that of the left body is -1. They satisfy the closure of
+    /// Rotation rates of the middle and the right body per unit `q'`; that of the left body is -1. They satisfy the closure of
     /// velocities.
     fn rates(bars: &Bars) -> (f64, f64) {
         let [middle, right] = [bars.right, bars.middle].map(|bar| bars.left.perp(&bar));
         (middle * bars.per_cross, right * bars.per_cross)
     }
 
-    /// Returns the derivatives by `q` of the rates of the middle and the right body. They satisfy the closure of accelerations, with known
+    /// Derivatives by `q` of the rates of the middle and the right body. They satisfy the closure of accelerations, with known
     /// accelerations along the bars.
     fn slopes(bars: &Bars, middle_rate: f64, right_rate: f64) -> (f64, f64) {
         let inward = bars.left + bars.middle * (middle_rate * middle_rate)
@@ -154,7 +154,7 @@ impl Linkage {
         (middle * bars.per_cross, right * bars.per_cross)
     }
 
-    /// Returns the thrust line in motion, from the dynamic equilibrium of the three bodies.
+    /// Thrust line in motion, from the dynamic equilibrium of the three bodies.
     ///
     /// The moments of the right body about D and of the middle body about B give the force at C, and the
     /// equilibrium of forces the others. `B-C` and `C-D` are never on one line before the limit position.
@@ -163,7 +163,7 @@ impl Linkage {
         ThrustLine::new(&*self.profile, self.parts(motion).to_vec())
     }
 
-    /// Returns thrust excess and friction demand in motion at these sections of the profile.
+    /// Thrust excess and friction demand in motion at these sections of the profile.
     pub(crate) fn demand_at_sections(
         &self,
         motion: &MechanismState,
@@ -172,7 +172,7 @@ impl Linkage {
         demand_at_sections(&self.parts(motion), sections)
     }
 
-    /// Returns the parts of the thrust line in motion.
+    /// Parts of the thrust line in motion.
     fn parts(&self, motion: &MechanismState) -> [ThrustPart; 5] {
         let bars = self.bars(motion.q_rad);
         let (middle_rate, right_rate) = Self::rates(&bars);
@@ -225,7 +225,7 @@ impl Linkage {
         ]
     }
 
-    /// Returns the limit position: the smallest `q` at which A, B, C, or else C, D, A, are on one line, so that the right body or the ground bar
+    /// Limit position: the smallest `q` at which A, B, C, or else C, D, A, are on one line, so that the right body or the ground bar
     /// cannot move further.
     pub fn limit_rad(&self) -> f64 {
         let [left, middle, right, base] =
@@ -253,7 +253,7 @@ impl Mechanism for Linkage {
         Self::sectors(&self.mechanism.before).to_vec()
     }
 
-    /// Returns the coefficients of the equation of motion at `q`, masses in `rho d R^2`, lengths in `R`.
+    /// Coefficients of the equation of motion at `q`, masses in `rho d R^2`, lengths in `R`.
     fn coefficients(&self, q_rad: f64) -> Coefficients {
         let bars = self.bars(q_rad);
         let (middle_rate, right_rate) = Self::rates(&bars);
@@ -281,7 +281,7 @@ impl Mechanism for Linkage {
         }
     }
 
-    /// Returns the mass times the displacement of the common centre of gravity at `q`: the integrals of `S_x` and `S_y` from zero. The second one
+    /// Mass times the displacement of the common centre of gravity at `q`: the integrals of `S_x` and `S_y` from zero. The second one
     /// times gravity is the potential energy.
     fn displacement(&self, q_rad: f64) -> Vector2<f64> {
         let bars = self.bars(q_rad);
@@ -290,14 +290,14 @@ impl Mechanism for Linkage {
             + self.right.first(bars.right - self.right.bar)
     }
 
-    /// Returns the rotations of the three bodies at `q`.
+    /// Rotations of the three bodies at `q`.
     fn rotations(&self, q_rad: f64) -> [f64; 3] {
         let bars = self.bars(q_rad);
         let middle = angle_between(self.middle.bar, bars.middle);
         [-q_rad, middle, angle_between(self.right.bar, bars.right)]
     }
 
-    /// Returns the rotation rates of the three bodies at `q` for `q' = 1`.
+    /// Rotation rates of the three bodies at `q` for `q' = 1`.
     fn rotation_rates(&self, q_rad: f64) -> [f64; 3] {
         let (middle, right) = Self::rates(&self.bars(q_rad));
         [-1.0, middle, right]

@@ -15,7 +15,7 @@ pub const EDGES: [Edge; 4] = [
     Edge::Extrados,
 ];
 
-/// Returns the relative rotations at four hinges that leave both ends of the ring at rest, up to a common factor; `None` unless every hinge opens.
+/// Relative rotations at four hinges that leave both ends of the ring at rest, up to a common factor; `None` unless every hinge opens.
 ///
 /// The closure `sum rho_i (1, x_i, y_i) = 0` is solved by the signed areas of the triangles of the
 /// other three hinges. Hinges that alternate between the edges as in [`EDGES`] open when their
@@ -54,7 +54,7 @@ pub struct FourLink {
 }
 
 impl FourLink {
-    /// Returns the mechanism with hinges at the given sections, in radians from the left springing.
+    /// Mechanism with hinges at the given sections, in radians from the left springing.
     ///
     /// `None` when the sections are not in ascending order within the ring, or when a hinge would
     /// have to close.
@@ -73,7 +73,7 @@ impl FourLink {
         })
     }
 
-    /// Returns the sections (in radians from the left springing) and edges of the hinges from left to right, as seen when the mechanism sways to the
+    /// Sections (in radians from the left springing) and edges of the hinges from left to right, as seen when the mechanism sways to the
     /// given side.
     pub fn hinges_from_left(&self, profile: &dyn Profile, sway: Sway) -> [(f64, Edge); 4] {
         std::array::from_fn(|i| match sway {
@@ -85,7 +85,7 @@ impl FourLink {
         })
     }
 
-    /// Returns the hinges from left to right with the names of their sections: angles of a ring, joints of a row.
+    /// Hinges from left to right with the names of their sections: angles of a ring, joints of a row.
     pub fn named_hinges_from_left(&self, profile: &dyn Profile, sway: Sway) -> [Hinge; 4] {
         self.hinges_from_left(profile, sway)
             .map(|(section, edge)| match profile.joint(section) {
@@ -100,7 +100,7 @@ impl FourLink {
             })
     }
 
-    /// Returns the velocity field at `q' = 1`.
+    /// Velocity field at `q' = 1`.
     ///
     /// Every hinge adds a rotation about itself to the motion of all that lies to its right; this
     /// needs no division by distances between centres, unlike Eq. (2) of the paper.

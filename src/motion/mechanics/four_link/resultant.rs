@@ -39,7 +39,7 @@ pub struct SectionResultant {
 }
 
 impl SectionResultant {
-    /// Returns components and position, at a section, of a force with its moment about the centre of the ring.
+    /// Components and position, at a section, of a force with its moment about the centre of the ring.
     pub fn new(profile: &dyn Profile, angle_rad: f64, resultant: &Momentum) -> Self {
         let normal = resultant.linear.dot(&profile.onward_normal(angle_rad));
         // A force N at distance e outwards from the axis has the moment -e N about its point there.
@@ -76,14 +76,14 @@ pub struct Extremes {
 }
 
 impl Extremes {
-    /// Returns whether the line is compressive and stays inside the ring, to `EDGE_TOLERANCE`.
+    /// Whether the line is compressive and stays inside the ring, to `EDGE_TOLERANCE`.
     pub fn is_admissible(&self) -> bool {
         self.normal.value > 0.0 && self.eccentricity_ratio.value <= 0.5 + EDGE_TOLERANCE
     }
 }
 
 impl ResultantLine {
-    /// Returns the line through three hinges of `mechanism` (A, B and D), under `load`.
+    /// Line through three hinges of `mechanism` (A, B and D), under `load`.
     ///
     /// A mechanism makes the ring statically determinate except for one number: the line passes through C
     /// as well when the load does no work on the mechanism.
@@ -99,8 +99,10 @@ impl ResultantLine {
             load.momentum_to(profile, mechanism.hinges_rad[hinge])
                 .moment_about(points[hinge])
         });
-        let start = matrix.lu().solve(&moments);
-        let start = start.expect("three hinges of an admissible mechanism are not on one line");
+        let start = matrix
+            .lu()
+            .solve(&moments)
+            .expect("three hinges of an admissible mechanism are not on one line");
         let (linear, angular) = (start.xy(), start.z);
         Self {
             profile: profile.to_shared(),
@@ -109,17 +111,17 @@ impl ResultantLine {
         }
     }
 
-    /// Returns the force (impulse) at a section, with its moment about the centre of the ring.
+    /// Force (impulse) at a section, with its moment about the centre of the ring.
     pub fn resultant_at(&self, angle_rad: f64) -> Momentum {
         self.start + self.load.momentum_to(&*self.profile, angle_rad)
     }
 
-    /// Returns components and position of the resultant at a section.
+    /// Components and position of the resultant at a section.
     pub fn section(&self, angle_rad: f64) -> SectionResultant {
         SectionResultant::new(&*self.profile, angle_rad, &self.resultant_at(angle_rad))
     }
 
-    /// Returns the extremes over all sections where hinges may form anywhere, or over the joints of voussoirs, which are rigid: there the line may
+    /// Extremes over all sections where hinges may form anywhere, or over the joints of voussoirs, which are rigid: there the line may
     /// leave the ring between joints.
     pub fn extremes(&self, sites: HingeSites) -> Extremes {
         let mut normal = self.find_largest(sites, &|section| -section.normal);
@@ -138,7 +140,7 @@ impl ResultantLine {
         }
     }
 
-    /// Returns the largest value of a quantity. The quantity is smooth where the load is rigid: it is sampled, then every maximum is refined.
+    /// Largest value of a quantity. The quantity is smooth where the load is rigid: it is sampled, then every maximum is refined.
     fn find_largest(&self, sites: HingeSites, of: &dyn Fn(&SectionResultant) -> f64) -> Extremum {
         let at = |angle_rad: f64| Extremum {
             value: of(&self.section(angle_rad)),
@@ -169,7 +171,7 @@ impl ResultantLine {
         top(refined.chain(samples.iter().copied()))
     }
 
-    /// Returns the derivative with respect to the angle of the moment about a hinge, where the load is `local`. Zero where the line touches the edge.
+    /// Derivative with respect to the angle of the moment about a hinge, where the load is `local`. Zero where the line touches the edge.
     fn edge_moment_slope(&self, mechanism: &FourLink, hinge: usize, local: Twist) -> f64 {
         let angle_rad = mechanism.hinges_rad[hinge];
         let slice = local.momentum(&self.profile.slice(angle_rad));
@@ -178,7 +180,7 @@ impl ResultantLine {
             - along_edge.perp(&self.resultant_at(angle_rad).linear)
     }
 
-    /// Returns the derivatives of the power of the load on `mechanism` (at `q' = 1`) by the sections of its hinges. The rotations change so that the
+    /// Derivatives of the power of the load on `mechanism` (at `q' = 1`) by the sections of its hinges. The rotations change so that the
     /// mechanism stays closed.
     ///
     /// A moved hinge changes the rotations at all four hinges, but the line has no moment there. Only the moment about the moved point itself
@@ -196,13 +198,13 @@ const SAMPLES: usize = 720;
 /// Accuracy of the section of a maximum, in radians; the error of the value is of the order of its square.
 const TOP_ACCURACY_RAD: f64 = 1e-9;
 
-/// Returns the largest value.
+/// Largest value.
 fn top(values: impl Iterator<Item = Extremum>) -> Extremum {
     let largest = values.max_by(|a, b| a.value.total_cmp(&b.value));
     largest.expect("a ring has sections")
 }
 
-/// Returns the maximum of a smooth quantity with one maximum between two sections, to `accuracy_rad` of its section, by golden section.
+/// Maximum of a smooth quantity with one maximum between two sections, to `accuracy_rad` of its section, by golden section.
 pub(super) fn find_maximum(
     mut from: f64,
     mut to: f64,

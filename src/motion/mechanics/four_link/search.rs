@@ -37,7 +37,7 @@ pub(crate) trait Score: Fn(&[f64; 4], &Quadruple) -> f64 {}
 impl<F: Fn(&[f64; 4], &Quadruple) -> f64> Score for F {}
 
 impl Lattice {
-    /// Returns the lattice for the given sites: a fixed number of equal intervals, or the joints.
+    /// Lattice for the given sites: a fixed number of equal intervals, or the joints.
     pub fn new(profile: &dyn Profile, sites: HingeSites) -> Self {
         let (intervals, stride) = match sites {
             HingeSites::Anywhere => (LATTICE_INTERVALS, 1),
@@ -64,7 +64,7 @@ impl Lattice {
         std::array::from_fn(|i| self.points[quadruple[i]][EDGES[i] as usize])
     }
 
-    /// Returns the local maxima of `score`, best first.
+    /// Local maxima of `score`, best first.
     pub(crate) fn maxima(&self, score: &impl Score) -> Vec<Quadruple> {
         let last = self.points.len() - 1;
         let mut coarse: Vec<usize> = (0..last).step_by(self.stride).collect();
@@ -140,16 +140,16 @@ impl Lattice {
 
 /// Function of a mechanism, to be maximised.
 pub(crate) trait Objective {
-    /// Returns the sections where the gradient may jump, in radians.
+    /// Sections where the gradient may jump, in radians.
     fn kinks_rad(&self) -> &[f64] {
         &[]
     }
-    /// Returns the value and its derivatives by the sections of the hinges. If left and right derivatives differ, `above` selects for each hinge the
+    /// Value and its derivatives by the sections of the hinges. If left and right derivatives differ, `above` selects for each hinge the
     /// derivative towards larger angles.
     fn evaluate(&self, mechanism: &FourLink, above: [bool; 4]) -> (f64, [f64; 4]);
 }
 
-/// Returns the mechanism with the largest value of `objective`. `score` gives the value of the mechanisms of `lattice`. `None` if there is no
+/// Mechanism with the largest value of `objective`. `score` gives the value of the mechanisms of `lattice`. `None` if there is no
 /// mechanism.
 pub(crate) fn best_mechanism(
     profile: &dyn Profile,
@@ -256,7 +256,7 @@ impl SearchCell {
         Self::new(ends, after.clamp(1, ends.len() - 1) - 1)
     }
 
-    /// Returns whether an end of the cell stops a hinge at `angle` that moves along `slope`.
+    /// Whether an end of the cell stops a hinge at `angle` that moves along `slope`.
     fn stops_hinge(&self, angle: f64, slope: f64) -> bool {
         (angle <= self.low && slope < 0.0) || (angle >= self.high && slope > 0.0)
     }
@@ -277,7 +277,7 @@ impl<O: Objective> Ascent<'_, O> {
         self.objective.evaluate(mechanism, above)
     }
 
-    /// Returns the interval in which a hinge may move while the others stay: within its cell, and between its neighbours.
+    /// Interval in which a hinge may move while the others stay: within its cell, and between its neighbours.
     fn range(&self, angles: &[f64; 4], i: usize) -> (f64, f64) {
         let (cell, before, after) = (self.cells[i], i.checked_sub(1), angles.get(i + 1));
         let low = before.map_or(cell.low, |before| angles[before] + MIN_BODY_RAD);
@@ -285,13 +285,13 @@ impl<O: Objective> Ascent<'_, O> {
         (cell.low.max(low), cell.high.min(high))
     }
 
-    /// Returns whether a hinge that moves along `slope` is stopped by an end of its cell, or by merging with a neighbour.
+    /// Whether a hinge that moves along `slope` is stopped by an end of its cell, or by merging with a neighbour.
     fn is_stopped(&self, angles: &[f64; 4], i: usize, slope: f64) -> bool {
         let (low, high) = self.range(angles, i);
         (angles[i] <= low && slope < 0.0) || (angles[i] >= high && slope > 0.0)
     }
 
-    /// Returns the mechanism after a Newton step of the free hinges; `None` if no step improves the objective.
+    /// Mechanism after a Newton step of the free hinges; `None` if no step improves the objective.
     fn step(&self, mechanism: &FourLink) -> Option<FourLink> {
         let angles = mechanism.hinges_rad;
         let (value, gradient) = self.evaluate(mechanism);
@@ -339,7 +339,7 @@ impl<O: Objective> Ascent<'_, O> {
         None
     }
 
-    /// Returns the second derivatives for the free hinges, by differences of the exact gradient inside the cells.
+    /// Second derivatives for the free hinges, by differences of the exact gradient inside the cells.
     fn curvature(&self, mechanism: &FourLink, free: &[usize]) -> Option<DMatrix<f64>> {
         let angles = mechanism.hinges_rad;
         let mut matrix = DMatrix::zeros(free.len(), free.len());

@@ -26,7 +26,7 @@ use super::mechanism::HingeSites;
 use crate::bisection::{Width, bisect};
 use crate::mechanics::{Edge, Ring};
 
-/// Returns whether the ring is stable under its own weight.
+/// Whether the ring is stable under its own weight.
 pub fn carries_its_weight(ring: &Ring, sites: HingeSites) -> bool {
     let margin = SymmetricLines::new(ring, sites).largest_margin();
     margin.is_none_or(|margin| margin > 0.0)
@@ -67,7 +67,7 @@ impl SymmetricLines {
         }
     }
 
-    /// Returns the `k` for which the thrust line with thrust `h` meets an edge at a section.
+    /// `k` for which the thrust line with thrust `h` meets an edge at a section.
     fn touching_k(&self, edge: Edge, h: f64, angle_rad: f64) -> Bound {
         let (sin, cos) = libm::sincos(angle_rad);
         // This form of 1 - cos phi avoids cancellation in shallow rings.
@@ -79,7 +79,7 @@ impl SymmetricLines {
         }
     }
 
-    /// Returns the smallest `k` of a thrust line with thrust `h` that is nowhere below the intrados.
+    /// Smallest `k` of a thrust line with thrust `h` that is nowhere below the intrados.
     fn least_k(&self, h: f64) -> Bound {
         let inside = match self.sites {
             HingeSites::Anywhere => Some(self.haunch_rad(h)),
@@ -91,7 +91,7 @@ impl SymmetricLines {
         least.expect("a ring has a springing")
     }
 
-    /// Returns the largest `k` of a thrust line with thrust `h` that is nowhere above the extrados.
+    /// Largest `k` of a thrust line with thrust `h` that is nowhere above the extrados.
     ///
     /// From crown to springing [`Self::touching_k`] may first increase, and then decreases (see [`Self::haunch_rad`]): its minimum is at one of the
     /// two.
@@ -102,7 +102,7 @@ impl SymmetricLines {
         largest.expect("a ring has a springing")
     }
 
-    /// Returns the section of a continuous ring at which a thrust line with thrust `h` above the intrados touches the intrados: where
+    /// Section of a continuous ring at which a thrust line with thrust `h` above the intrados touches the intrados: where
     /// [`Self::touching_k`] is largest.
     ///
     /// Its slope is zero where `tan phi / phi = r / (r (h - 1) + c)`. The left-hand side increases from 1 to infinity between crown and 90 degrees.
@@ -116,7 +116,7 @@ impl SymmetricLines {
         find_last(0.0, 0.5 * self.ring.embrace_rad, rises)
     }
 
-    /// Returns the largest interval of `k` over all thrusts: positive if the ring is stable. `None` if it is unbounded, because a straight line fits
+    /// Largest interval of `k` over all thrusts: positive if the ring is stable. `None` if it is unbounded, because a straight line fits
     /// into the ring.
     fn largest_margin(&self) -> Option<f64> {
         let (first, springing) = (self.sections_rad[0], 0.5 * self.ring.embrace_rad);
@@ -134,7 +134,7 @@ impl SymmetricLines {
     }
 }
 
-/// Returns the last number, within rounding error, at which a condition holds that also holds for all smaller numbers.
+/// Last number, within rounding error, at which a condition holds that also holds for all smaller numbers.
 fn find_last(low: f64, high: f64, holds: impl Fn(f64) -> bool) -> f64 {
     bisect(low, high, Width::Rounding, |at| !holds(at)).0
 }

@@ -31,7 +31,7 @@ const TOP_ACCURACY_RAD: f64 = 1e-6;
 const ROUNDING: f64 = 1e-9;
 
 impl Demand {
-    /// Returns the demand of resultants at their sections; `weight` is that of the whole structure, in the unit of the resultants.
+    /// Demand of resultants at their sections; `weight` is that of the whole structure, in the unit of the resultants.
     ///
     /// The excess is `|M| / (N t) - 1/2` and the friction `|V| / N`, with the moment `M` about the axis and the components `N` and `V`. For
     /// `N < 0.01 weight` (`LEAST_LOAD`) the line is hardly ever inside. The excess is then `(|M| - N t / 2) / (0.01 weight t)`. This is a
@@ -42,7 +42,7 @@ impl Demand {
         })
     }
 
-    /// Returns the demand of one section; a negative excess is the distance inside.
+    /// Demand of one section; a negative excess is the distance inside.
     fn of_section(section: &SectionResultant, weight: f64) -> Self {
         let least = LEAST_LOAD * weight;
         let SectionResultant { normal, moment, .. } = *section;
@@ -53,7 +53,7 @@ impl Demand {
         }
     }
 
-    /// Returns the larger value of both demands; excesses within rounding error do not count.
+    /// Larger value of both demands; excesses within rounding error do not count.
     fn max(self, other: Self) -> Self {
         let mut larger = self;
         larger.friction = self.friction.max(other.friction);
@@ -64,7 +64,7 @@ impl Demand {
     }
 }
 
-/// Returns the excess of a normal force and its moment about the axis, as in [`Demand::of_sections`]; negative inside.
+/// Excess of a normal force and its moment about the axis, as in [`Demand::of_sections`]; negative inside.
 fn excess_ratio(normal: f64, moment: f64, thickness: f64, least: f64) -> f64 {
     let beyond = moment.abs() - 0.5 * normal * thickness;
     beyond / (normal.max(least) * thickness)
@@ -84,7 +84,7 @@ pub struct ProfileSection {
 const EXCESS_PARTS: usize = 48;
 
 impl ProfileSection {
-    /// Returns the joints of a profile, or equidistant sections of a continuous ring. Between these the excess exceeds the largest of them by some
+    /// Joints of a profile, or equidistant sections of a continuous ring. Between these the excess exceeds the largest of them by some
     /// per cent of its value at most.
     pub(crate) fn all(profile: &dyn Profile, sites: HingeSites) -> Vec<Self> {
         let parts = match sites {
@@ -102,7 +102,7 @@ impl ProfileSection {
     }
 }
 
-/// Returns thrust excess and friction demand over these parts, at sections in ascending order.
+/// Thrust excess and friction demand over these parts, at sections in ascending order.
 pub(crate) fn demand_at_sections(parts: &[ThrustPart], sections: &[ProfileSection]) -> Demand {
     let weight = sections.last().map_or(0.0, |section| section.before.mass);
     let least = LEAST_LOAD * weight;
@@ -143,7 +143,7 @@ pub struct PartLoad {
 }
 
 impl PartLoad {
-    /// Returns the load of one force per unit mass everywhere.
+    /// Load of one force per unit mass everywhere.
     pub const fn uniform(force: Vector2<f64>) -> Self {
         Self {
             turning: Twist::translation(force),
@@ -151,7 +151,7 @@ impl PartLoad {
         }
     }
 
-    /// Returns the body force minus the inertia force of a rotating body: `at_pole` is the body force minus the acceleration of the body's point
+    /// Body force minus the inertia force of a rotating body: `at_pole` is the body force minus the acceleration of the body's point
     /// `pole`, `(alpha, omega^2)` its angular acceleration and squared rate.
     pub(crate) fn of_body(
         pole: Vector2<f64>,
@@ -167,7 +167,7 @@ impl PartLoad {
         }
     }
 
-    /// Returns the resultant on a body of the given moments.
+    /// Resultant on a body of the given moments.
     pub fn resultant(&self, body: &MassMoments) -> Momentum {
         let mut resultant = self.turning.momentum(body);
         resultant.linear += body.first * self.centrifugal;
@@ -186,7 +186,7 @@ pub struct ThrustPart {
 }
 
 impl ThrustPart {
-    /// Returns the part that ends at `end_rad`, under `load`, with the resultant `known` at the section `known_rad`.
+    /// Part that ends at `end_rad`, under `load`, with the resultant `known` at the section `known_rad`.
     pub fn new(
         profile: &dyn Profile,
         end_rad: f64,
@@ -196,7 +196,7 @@ impl ThrustPart {
         Self::after(&profile.moments_to(known_rad), end_rad, load, known)
     }
 
-    /// Returns the part that ends at `end_rad`, under `load`, with the resultant `known` at the section behind a part of these mass moments.
+    /// Part that ends at `end_rad`, under `load`, with the resultant `known` at the section behind a part of these mass moments.
     pub(crate) fn after(
         before: &MassMoments,
         end_rad: f64,
@@ -211,7 +211,7 @@ impl ThrustPart {
         }
     }
 
-    /// Returns the resultant at a section.
+    /// Resultant at a section.
     pub fn resultant_at(&self, profile: &dyn Profile, angle_rad: f64) -> Momentum {
         self.start + self.load.resultant(&profile.moments_to(angle_rad))
     }
@@ -228,7 +228,7 @@ pub struct ThrustLine {
 }
 
 impl ThrustLine {
-    /// Returns the line over consecutive parts, from the left springing to the right one.
+    /// Line over consecutive parts, from the left springing to the right one.
     pub(crate) fn new(profile: &dyn Profile, parts: Vec<ThrustPart>) -> Self {
         Self {
             profile: profile.to_shared(),
@@ -236,7 +236,7 @@ impl ThrustLine {
         }
     }
 
-    /// Returns an admissible thrust line of the structure at rest under a force per unit mass, in multiples of gravity.
+    /// Admissible thrust line of the structure at rest under a force per unit mass, in multiples of gravity.
     ///
     /// The structure at rest is statically indeterminate, and one admissible line proves that it can stay at rest. This line is the weighted mean of
     /// the two limit lines, at `A_L` to the right and to the left (the latter as its mirror image, which sways right). The weights are such that the
@@ -261,7 +261,7 @@ impl ThrustLine {
         Self::new(profile, vec![part])
     }
 
-    /// Returns the resultant at a section; at the end of a part, that of the part before.
+    /// Resultant at a section; at the end of a part, that of the part before.
     pub fn resultant_at(&self, angle_rad: f64) -> Momentum {
         let index = self.parts.partition_point(|part| part.end_rad < angle_rad);
         self.parts[index.min(self.parts.len() - 1)].resultant_at(&*self.profile, angle_rad)
@@ -272,7 +272,7 @@ impl ThrustLine {
         SectionResultant::new(&*self.profile, angle_rad, &self.resultant_at(angle_rad))
     }
 
-    /// Returns the crossings of the line with these sections, outwards from the axis over the thickness: -0.5 to 0.5 inside the ring. `None` for a
+    /// Crossings of the line with these sections, outwards from the axis over the thickness: -0.5 to 0.5 inside the ring. `None` for a
     /// section without compression.
     pub fn eccentricity_ratios(&self, sections_rad: &[f64]) -> Vec<Option<f64>> {
         let sections = sections_rad
@@ -283,7 +283,7 @@ impl ThrustLine {
         pressed.collect()
     }
 
-    /// Returns the largest demands over the joints, or over all sections of a continuous ring.
+    /// Largest demands over the joints, or over all sections of a continuous ring.
     pub fn demand(&self, sites: HingeSites) -> Demand {
         let weight = self.profile.moments_to(self.profile.end()).mass;
         match sites {
@@ -310,7 +310,7 @@ impl ThrustLine {
     }
 }
 
-/// Returns the largest of `known` and of the demands at all sections of a rigid part, over which they are smooth except for a few kinks.
+/// Largest of `known` and of the demands at all sections of a rigid part, over which they are smooth except for a few kinks.
 fn find_largest_demand(
     known: Demand,
     start_rad: f64,
@@ -321,8 +321,9 @@ fn find_largest_demand(
         .ceil()
         .max(4.0);
     let part = |i: u32| start_rad + (end_rad - start_rad) * (f64::from(i) / intervals);
-    let samples = (0..=intervals as u32).map(|i| (part(i), at(part(i))));
-    let samples: Vec<(f64, Demand)> = samples.collect();
+    let samples: Vec<(f64, Demand)> = (0..=intervals as u32)
+        .map(|i| (part(i), at(part(i))))
+        .collect();
     let demands = samples.iter().map(|(_, sample)| *sample);
     let mut demand = demands.fold(known, Demand::max);
     for i in 0..samples.len() {
@@ -340,7 +341,7 @@ fn find_largest_demand(
     demand
 }
 
-/// Returns the friction at the section between two samples where the normal force reaches `LEAST_LOAD`; zero if both samples count, or neither.
+/// Friction at the section between two samples where the normal force reaches `LEAST_LOAD`; zero if both samples count, or neither.
 fn load_edge(
     (from_rad, from): &(f64, Demand),
     (to_rad, to): &(f64, Demand),
@@ -355,7 +356,7 @@ fn load_edge(
     at(if counts { before } else { after }).friction
 }
 
-/// Returns the maximum of a quantity between the neighbours of a sample; `None` if it cannot exceed `floor`.
+/// Maximum of a quantity between the neighbours of a sample; `None` if it cannot exceed `floor`.
 fn top_near(
     i: usize,
     samples: &[(f64, Demand)],

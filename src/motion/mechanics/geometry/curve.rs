@@ -60,7 +60,7 @@ impl Curve {
         Self::Line { from, to }
     }
 
-    /// Returns the point at a parameter from 0 to 1, and its derivative by the parameter.
+    /// Point at a parameter from 0 to 1, and its derivative by the parameter.
     pub fn point_and_derivative(&self, part: f64) -> (Vector2<f64>, Vector2<f64>) {
         match *self {
             Self::Line { from, to } => (from + (to - from) * part, to - from),
@@ -93,12 +93,12 @@ impl Curve {
         }
     }
 
-    /// Returns the point at a parameter from 0 to 1.
+    /// Point at a parameter from 0 to 1.
     pub fn point(&self, part: f64) -> Vector2<f64> {
         self.point_and_derivative(part).0
     }
 
-    /// Returns the piece between two parameters; reversed if the first one is larger.
+    /// Piece between two parameters; reversed if the first one is larger.
     pub fn between(&self, from: f64, to: f64) -> Self {
         let mut piece = *self;
         match &mut piece {
@@ -111,12 +111,12 @@ impl Curve {
         piece
     }
 
-    /// Returns the curve with reversed direction.
+    /// Curve with reversed direction.
     pub fn reversed(&self) -> Self {
         self.between(1.0, 0.0)
     }
 
-    /// Returns the mirror image about the y axis with reversed direction, so that a curve from left to right stays one.
+    /// Mirror image about the y axis with reversed direction, so that a curve from left to right stays one.
     pub fn mirrored(&self) -> Self {
         let mut image = self.reversed();
         match &mut image {
@@ -131,7 +131,7 @@ impl Curve {
         image
     }
 
-    /// Returns the integral over the curve of a function of the point and the derivative.
+    /// Integral over the curve of a function of the point and the derivative.
     pub(crate) fn integral<T>(&self, of: impl Fn(Vector2<f64>, Vector2<f64>) -> T) -> T
     where
         T: std::ops::Add<Output = T> + std::ops::Mul<f64, Output = T>,
@@ -152,7 +152,7 @@ impl Curve {
         (1..PANELS).fold(panel(0), |sum, next| sum + panel(next))
     }
 
-    /// Returns its length.
+    /// Length.
     pub fn length(&self) -> f64 {
         match self {
             Self::Line { from, to } => (to - from).norm(),
@@ -165,7 +165,7 @@ impl Curve {
         }
     }
 
-    /// Returns the parameter at which the curve has reached a length.
+    /// Parameter at which the curve has reached a length.
     pub(crate) fn part_at(&self, length: f64) -> f64 {
         match self {
             Self::Line { .. } | Self::Arc { .. } => length / self.length(),
@@ -173,13 +173,13 @@ impl Curve {
         }
     }
 
-    /// Returns the parameter from which on a condition holds.
+    /// Parameter from which on a condition holds.
     pub(crate) fn first(&self, holds: impl Fn(f64) -> bool) -> f64 {
         let (low, high) = bisect(0.0, 1.0, Width::Absolute(1e-16), holds);
         middle(low, high)
     }
 
-    /// Returns the moments, about a pole, of the area swept by the line from the pole to the point on the curve; positive if the line rotates
+    /// Moments, about a pole, of the area swept by the line from the pole to the point on the curve; positive if the line rotates
     /// anticlockwise.
     pub(crate) fn swept_moments(&self, pole: Vector2<f64>) -> MassMoments {
         if let Self::Line { from, to } = self {
@@ -204,18 +204,18 @@ impl Curve {
     }
 }
 
-/// Returns straight lines from corner to corner and back to the first.
+/// Straight lines from corner to corner and back to the first.
 pub fn polygon(corners: &[Vector2<f64>]) -> impl Iterator<Item = Curve> {
     sides(corners).map(|[from, to]| Curve::Line { from, to })
 }
 
-/// Returns the sides of a polygon, the last one back to the first corner.
+/// Sides of a polygon, the last one back to the first corner.
 pub(crate) fn sides(corners: &[Vector2<f64>]) -> impl Iterator<Item = [Vector2<f64>; 2]> {
     let next = corners.iter().cycle().skip(1);
     corners.iter().zip(next).map(|(from, to)| [*from, *to])
 }
 
-/// Returns the distance of a point from a side.
+/// Distance of a point from a side.
 pub(crate) fn distance([from, to]: [Vector2<f64>; 2], point: Vector2<f64>) -> f64 {
     let (direction, arm) = (to - from, point - from);
     let part = (arm.dot(&direction) / direction.norm_squared()).clamp(0.0, 1.0);

@@ -32,7 +32,7 @@ pub struct Field {
 }
 
 impl Field {
-    /// Returns a field with the same motion everywhere.
+    /// Field with the same motion everywhere.
     pub fn uniform(twist: Twist) -> Self {
         Self {
             cuts_rad: Vec::new(),
@@ -41,13 +41,13 @@ impl Field {
         }
     }
 
-    /// Returns a field that jumps by `jumps[i].1` at section `jumps[i].0` (angles ascending) and is zero before the first of them.
+    /// Field that jumps by `jumps[i].1` at section `jumps[i].0` (angles ascending) and is zero before the first of them.
     pub fn from_jumps(profile: &dyn Profile, jumps: &[(f64, Twist)]) -> Self {
         let before = jumps.iter().map(|(angle, _)| profile.moments_to(*angle));
         Self::with_moments(before.collect(), jumps)
     }
 
-    /// Returns [`Self::from_jumps`], given the mass moments before each jump.
+    /// [`Self::from_jumps`], given the mass moments before each jump.
     pub(crate) fn with_moments(before: Vec<MassMoments>, jumps: &[(f64, Twist)]) -> Self {
         let mut twist = Twist::ZERO;
         let mut twists = vec![twist];
@@ -62,7 +62,7 @@ impl Field {
         }
     }
 
-    /// Returns the motion at a section.
+    /// Motion at a section.
     pub fn twist_at(&self, angle_rad: f64, side: Side) -> Twist {
         let index = self.cuts_rad.partition_point(|cut| match side {
             Side::Before => *cut < angle_rad,
@@ -71,7 +71,7 @@ impl Field {
         self.twists[index]
     }
 
-    /// Returns this field times `factor`.
+    /// This field times `factor`.
     pub fn scaled(&self, factor: f64) -> Self {
         Self {
             cuts_rad: self.cuts_rad.clone(),
@@ -80,10 +80,14 @@ impl Field {
         }
     }
 
-    /// Returns the mirror image about the vertical axis of the profile.
+    /// Mirror image about the vertical axis of the profile.
     pub fn mirrored(&self, profile: &dyn Profile) -> Self {
-        let cuts_rad = self.cuts_rad.iter().rev().map(|cut| profile.end() - cut);
-        let cuts_rad: Vec<f64> = cuts_rad.collect();
+        let cuts_rad: Vec<f64> = self
+            .cuts_rad
+            .iter()
+            .rev()
+            .map(|cut| profile.end() - cut)
+            .collect();
         let before = cuts_rad.iter().map(|cut| profile.moments_to(*cut));
         Self {
             before: before.collect(),
@@ -92,10 +96,11 @@ impl Field {
         }
     }
 
-    /// Returns this field minus another: rigid on the sectors between the cuts of both.
+    /// This field minus another: rigid on the sectors between the cuts of both.
     pub fn minus(&self, other: &Self) -> Self {
-        let cuts = zip(&self.cuts_rad, &self.before);
-        let mut cuts: Vec<_> = cuts.chain(zip(&other.cuts_rad, &other.before)).collect();
+        let mut cuts: Vec<_> = zip(&self.cuts_rad, &self.before)
+            .chain(zip(&other.cuts_rad, &other.before))
+            .collect();
         cuts.sort_by(|a, b| a.0.total_cmp(b.0));
         cuts.dedup_by_key(|cut| *cut.0);
         let (cuts_rad, before): (Vec<f64>, Vec<MassMoments>) = cuts.into_iter().unzip();
@@ -109,7 +114,7 @@ impl Field {
         }
     }
 
-    /// Returns the rigid sectors: bounds and motion of each.
+    /// Rigid sectors: bounds and motion of each.
     fn sectors(&self, end: f64) -> impl Iterator<Item = (f64, f64, Twist)> {
         let starts = std::iter::once(0.0).chain(self.cuts_rad.iter().copied());
         let ends = self.cuts_rad.iter().copied().chain(std::iter::once(end));
@@ -117,13 +122,13 @@ impl Field {
         sectors.map(|((start, end), twist)| (start, end, *twist))
     }
 
-    /// Returns the mass moments before the end of a sector.
+    /// Mass moments before the end of a sector.
     fn moments_to_end(&self, sector: usize, profile: &dyn Profile) -> MassMoments {
         let known = self.before.get(sector).copied();
         known.unwrap_or_else(|| profile.moments_to(profile.end()))
     }
 
-    /// Returns the momentum of the part of the profile from the left springing to `angle_rad`.
+    /// Momentum of the part of the profile from the left springing to `angle_rad`.
     pub fn momentum_to(&self, profile: &dyn Profile, angle_rad: f64) -> Momentum {
         let sectors = self.sectors(profile.end());
         let before = sectors.take_while(|(start, ..)| *start < angle_rad);
@@ -139,7 +144,7 @@ impl Field {
         momenta.fold(Momentum::ZERO, Add::add)
     }
 
-    /// Returns the scalar product with another field: the integral of `rho v . w` over the ring. The sum runs over the sectors between the sections
+    /// Scalar product with another field: the integral of `rho v . w` over the ring. The sum runs over the sectors between the sections
     /// of both fields.
     pub fn product(&self, other: &Self, profile: &dyn Profile) -> f64 {
         let end_of =

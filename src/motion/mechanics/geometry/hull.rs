@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 
 use super::field::quarter_turn;
 
-/// Returns whether the convex hulls of two sets of points are further apart than a length. A line between two polygons can be turned until it is
+/// Whether the convex hulls of two sets of points are further apart than a length. A line between two polygons can be turned until it is
 /// parallel to an edge of one of them, so the edges of both are tried.
 pub fn are_apart(sets: [&[Vector2<f64>]; 2], length: f64) -> bool {
     let edges = sets.into_iter().flat_map(edges);
@@ -19,7 +19,7 @@ pub fn are_apart(sets: [&[Vector2<f64>]; 2], length: f64) -> bool {
     })
 }
 
-/// Returns the edges of the convex hull of points as vectors (A. M. Andrew, "Another efficient algorithm for convex hulls in two dimensions",
+/// Edges of the convex hull of points as vectors (A. M. Andrew, "Another efficient algorithm for convex hulls in two dimensions",
 /// Information Processing Letters 9, 1979).
 fn edges(points: &[Vector2<f64>]) -> Vec<Vector2<f64>> {
     let mut points = points.to_vec();

@@ -22,7 +22,7 @@ impl Pose {
         translation: Vector2::new(0.0, 0.0),
     };
 
-    /// Returns the pose after a rotation by `rotation_rad` about the origin and a displacement.
+    /// Pose after a rotation by `rotation_rad` about the origin and a displacement.
     pub fn new(rotation_rad: f64, translation: Vector2<f64>) -> Self {
         Self {
             rotation_rad,
@@ -31,7 +31,7 @@ impl Pose {
         }
     }
 
-    /// Returns the pose after a rotation by `rotation_rad` about the point `pole` of the body, which moves to `moved`.
+    /// Pose after a rotation by `rotation_rad` about the point `pole` of the body, which moves to `moved`.
     pub fn about(pole: Vector2<f64>, moved: Vector2<f64>, rotation_rad: f64) -> Self {
         // Adding zero makes a negative zero positive.
         let turned = Self::new(rotation_rad + 0.0, Vector2::zeros());
@@ -41,22 +41,22 @@ impl Pose {
         }
     }
 
-    /// Returns the rotation in radians, positive anticlockwise.
+    /// Rotation in radians, positive anticlockwise.
     pub const fn rotation_rad(&self) -> f64 {
         self.rotation_rad
     }
 
-    /// Returns the present position of a point of the undeformed body.
+    /// Present position of a point of the undeformed body.
     pub fn current_position(&self, point: Vector2<f64>) -> Vector2<f64> {
         self.current_direction(point) + self.translation
     }
 
-    /// Returns the present direction of a vector of the undeformed body.
+    /// Present direction of a vector of the undeformed body.
     pub fn current_direction(&self, vector: Vector2<f64>) -> Vector2<f64> {
         product(self.turn, vector)
     }
 
-    /// Returns this pose with lengths in a unit `per_unit` times smaller.
+    /// This pose with lengths in a unit `per_unit` times smaller.
     pub fn scaled(&self, per_unit: f64) -> Self {
         Self {
             translation: self.translation * per_unit,
@@ -64,7 +64,7 @@ impl Pose {
         }
     }
 
-    /// Returns the mirror image about the vertical through the origin.
+    /// Mirror image about the vertical through the origin.
     pub fn mirrored(&self) -> Self {
         // Adding zero makes a negative zero positive.
         Self {
@@ -75,13 +75,13 @@ impl Pose {
     }
 }
 
-/// Returns the unit vector at an angle from the x axis.
+/// Unit vector at an angle from the x axis.
 pub(crate) fn unit(angle_rad: f64) -> Vector2<f64> {
     let (sin, cos) = libm::sincos(angle_rad);
     Vector2::new(cos, sin)
 }
 
-/// Returns a vector rotated by the angle of a unit vector: a product of complex numbers.
+/// Vector rotated by the angle of a unit vector: a product of complex numbers.
 pub(crate) fn product(unit: Vector2<f64>, vector: Vector2<f64>) -> Vector2<f64> {
     Vector2::new(
         unit.x * vector.x - unit.y * vector.y,
@@ -99,7 +99,7 @@ pub struct BodyPoint {
 }
 
 impl BodyPoint {
-    /// Returns the current position of the point, with its displacement multiplied by `exaggeration`. At any exaggeration, coincident points
+    /// Current position of the point, with its displacement multiplied by `exaggeration`. At any exaggeration, coincident points
     /// stay coincident and closed joints stay closed; in return, bodies grow with the square of their rotation.
     pub fn current_position(&self, poses: &[Pose], exaggeration: f64) -> Vector2<f64> {
         let (pose, at_m) = (self.body.and_then(|body| poses.get(body)), self.at_m);

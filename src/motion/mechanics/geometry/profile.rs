@@ -15,60 +15,60 @@ use crate::mechanics::{Edge, Ring};
 ///
 /// Lengths are in the size of the structure, masses in a unit of its own.
 pub trait Profile: Debug + Send + Sync {
-    /// Returns the last section; the first one is zero.
+    /// Last section; the first one is zero.
     fn end(&self) -> f64;
 
-    /// Returns the point of a section on an edge.
+    /// Point of a section on an edge.
     fn point(&self, section: f64, edge: Edge) -> Vector2<f64>;
 
-    /// Returns the middle of a section.
+    /// Middle of a section.
     fn middle(&self, section: f64) -> Vector2<f64> {
         (self.point(section, Edge::Intrados) + self.point(section, Edge::Extrados)) * 0.5
     }
 
-    /// Returns the unit vector from the intrados to the extrados.
+    /// Unit vector from the intrados to the extrados.
     fn outward_direction(&self, section: f64) -> Vector2<f64>;
 
-    /// Returns the unit normal of a section towards the right support.
+    /// Unit normal of a section towards the right support.
     fn onward_normal(&self, section: f64) -> Vector2<f64> {
         -quarter_turn(self.outward_direction(section))
     }
 
-    /// Returns the distance of the edges at a section.
+    /// Distance of the edges at a section.
     fn thickness(&self, section: f64) -> f64;
 
-    /// Returns the mass moments of the part before a section.
+    /// Mass moments of the part before a section.
     fn moments_to(&self, section: f64) -> MassMoments;
 
-    /// Returns the mass moments between two sections.
+    /// Mass moments between two sections.
     fn sector(&self, from: f64, to: f64) -> MassMoments {
         self.moments_to(to) - self.moments_to(from)
     }
 
-    /// Returns the mass moments per unit of the section's number; zero if hinges are possible at joints only.
+    /// Mass moments per unit of the section's number; zero if hinges are possible at joints only.
     fn slice(&self, _section: f64) -> MassMoments {
         MassMoments::default()
     }
 
-    /// Returns the derivative of the point on an edge by the section's number; zero if hinges are possible at joints only.
+    /// Derivative of the point on an edge by the section's number; zero if hinges are possible at joints only.
     fn edge_slope(&self, _section: f64, _edge: Edge) -> Vector2<f64> {
         Vector2::zeros()
     }
 
-    /// Returns the sections that divide the profile into equal parts, including the supports. A row returns its joints for any number of parts.
+    /// Sections that divide the profile into equal parts, including the supports. A row returns its joints for any number of parts.
     fn sections(&self, parts: usize) -> Vec<f64>;
 
-    /// Returns the joint at a section; `None` if sections are angles.
+    /// Joint at a section; `None` if sections are angles.
     fn joint(&self, _section: f64) -> Option<usize> {
         None
     }
 
-    /// Returns the closed polygons to draw between two sections, one for each block; `None` if the edges are arcs about the origin.
+    /// Closed polygons to draw between two sections, one for each block; `None` if the edges are arcs about the origin.
     fn outlines(&self, _from: f64, _to: f64) -> Option<&[Vec<Vector2<f64>>]> {
         None
     }
 
-    /// Returns this profile with shared ownership.
+    /// This profile with shared ownership.
     fn to_shared(&self) -> Arc<dyn Profile>;
 }
 

@@ -29,12 +29,12 @@ macro_rules! linear {
 }
 pub(crate) use linear;
 
-/// Returns `k x v`: `v` turned by a right angle anticlockwise.
+/// `k x v`: `v` turned by a right angle anticlockwise.
 pub fn quarter_turn(v: Vector2<f64>) -> Vector2<f64> {
     Vector2::new(-v.y, v.x)
 }
 
-/// Returns the mirror image of `v` about the y axis.
+/// Mirror image of `v` about the y axis.
 pub(crate) fn mirrored(v: Vector2<f64>) -> Vector2<f64> {
     Vector2::new(-v.x, v.y)
 }
@@ -56,7 +56,7 @@ impl Twist {
         rate: 0.0,
     };
 
-    /// Returns a rotation at `rate` about `pole`.
+    /// Rotation at `rate` about `pole`.
     pub fn rotation(pole: Vector2<f64>, rate: f64) -> Self {
         Self {
             at_center: -quarter_turn(pole) * rate,
@@ -64,7 +64,7 @@ impl Twist {
         }
     }
 
-    /// Returns a translation, with the same velocity everywhere.
+    /// Translation, with the same velocity everywhere.
     pub const fn translation(velocity: Vector2<f64>) -> Self {
         Self {
             at_center: velocity,
@@ -72,12 +72,12 @@ impl Twist {
         }
     }
 
-    /// Returns the velocity at `point`.
+    /// Velocity at `point`.
     pub fn velocity_at(&self, point: Vector2<f64>) -> Vector2<f64> {
         self.at_center + quarter_turn(point) * self.rate
     }
 
-    /// Returns the momentum of a body of the given moments that moves with this twist.
+    /// Momentum of a body of the given moments that moves with this twist.
     pub fn momentum(&self, body: &MassMoments) -> Momentum {
         Momentum {
             linear: self.at_center * body.mass + quarter_turn(body.first) * self.rate,
@@ -85,12 +85,12 @@ impl Twist {
         }
     }
 
-    /// Returns the power of `momentum` (or of a wrench) on this motion.
+    /// Power of `momentum` (or of a wrench) on this motion.
     pub fn power(&self, momentum: &Momentum) -> f64 {
         self.at_center.dot(&momentum.linear) + self.rate * momentum.angular
     }
 
-    /// Returns the mirror image about the y axis.
+    /// Mirror image about the y axis.
     pub(super) fn mirrored(&self) -> Self {
         Self {
             at_center: mirrored(self.at_center),
@@ -118,7 +118,7 @@ impl Momentum {
         angular: 0.0,
     };
 
-    /// Returns the force `linear` applied at `point`.
+    /// Force `linear` applied at `point`.
     pub fn applied_at(point: Vector2<f64>, linear: Vector2<f64>) -> Self {
         Self {
             linear,
@@ -126,7 +126,7 @@ impl Momentum {
         }
     }
 
-    /// Returns the angular momentum (moment) about `pole`.
+    /// Angular momentum (moment) about `pole`.
     pub fn moment_about(&self, pole: Vector2<f64>) -> f64 {
         self.angular - pole.perp(&self.linear)
     }
@@ -146,7 +146,7 @@ pub struct MassMoments {
 }
 
 impl MassMoments {
-    /// Returns the moments of a body from its mass, its centre of gravity and its polar moment about that centre (Steiner).
+    /// Moments of a body from its mass, its centre of gravity and its polar moment about that centre (Steiner).
     pub(crate) fn of_body(mass: f64, centre: Vector2<f64>, central_polar: f64) -> Self {
         Self {
             mass,
@@ -155,12 +155,12 @@ impl MassMoments {
         }
     }
 
-    /// Returns the centre of gravity.
+    /// Centre of gravity.
     pub fn centroid(&self) -> Vector2<f64> {
         self.first / self.mass
     }
 
-    /// Returns the polar moment of inertia about the centre of gravity (Steiner).
+    /// Polar moment of inertia about the centre of gravity (Steiner).
     pub fn central_polar(&self) -> f64 {
         self.polar - self.first.norm_squared() / self.mass
     }

@@ -23,7 +23,7 @@ named! {
 }
 
 impl Edge {
-    /// Returns the opposite edge.
+    /// Opposite edge.
     pub const fn opposite(self) -> Self {
         match self {
             Self::Intrados => Self::Extrados,
@@ -31,7 +31,7 @@ impl Edge {
         }
     }
 
-    /// Returns the only edge, intrados or extrados, with the value true; `None` if none or both are true.
+    /// The only edge, intrados or extrados, with the value true; `None` if none or both are true.
     pub const fn only(edges: [bool; 2]) -> Option<Self> {
         match edges {
             [true, false] => Some(Self::Intrados),
@@ -60,7 +60,7 @@ pub struct Ring {
 }
 
 impl Ring {
-    /// Returns the ring of thickness `thickness_ratio` (in mean radii) and embrace angle `embrace_rad`.
+    /// Ring of thickness `thickness_ratio` (in mean radii) and embrace angle `embrace_rad`.
     ///
     /// # Errors
     /// When the thickness is not in `(0, 2)`, so that it leaves a hole, or the angle not in `(0, pi]`.
@@ -84,23 +84,23 @@ impl Ring {
         }
     }
 
-    /// Returns the unit vector from the centre through the section at `angle_rad`.
+    /// Unit vector from the centre through the section at `angle_rad`.
     pub fn radial_direction(&self, angle_rad: f64) -> Vector2<f64> {
         let (sin, cos) = libm::sincos(angle_rad - 0.5 * self.embrace_rad);
         Vector2::new(sin, cos)
     }
 
-    /// Returns the unit vector along the axis at `angle_rad`, towards the right springing.
+    /// Unit vector along the axis at `angle_rad`, towards the right springing.
     pub fn tangent(&self, angle_rad: f64) -> Vector2<f64> {
         -quarter_turn(self.radial_direction(angle_rad))
     }
 
-    /// Returns the point of the section at `angle_rad` on `edge`.
+    /// Point of the section at `angle_rad` on `edge`.
     pub fn point(&self, angle_rad: f64, edge: Edge) -> Vector2<f64> {
         self.radial_direction(angle_rad) * self.radius(edge)
     }
 
-    /// Returns the corners of the sector between two sections, from the first section outwards; its arcs as straight lines of 3 degrees at most.
+    /// Corners of the sector between two sections, from the first section outwards; its arcs as straight lines of 3 degrees at most.
     pub fn sector_outline(&self, start_rad: f64, end_rad: f64) -> Vec<Vector2<f64>> {
         let lines = ((end_rad - start_rad) / OUTLINE_STEP_RAD).ceil().max(1.0);
         let count = lines as u32;
@@ -113,7 +113,7 @@ impl Ring {
         out.chain(back).collect()
     }
 
-    /// Returns the sections that cut the ring into `parts` equal parts, springings included, in radians.
+    /// Sections that cut the ring into `parts` equal parts, springings included, in radians.
     pub fn sections(&self, parts: usize) -> Vec<f64> {
         let part = |i: usize| i as f64 / parts as f64;
         (0..=parts).map(|i| self.embrace_rad * part(i)).collect()

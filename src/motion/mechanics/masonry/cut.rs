@@ -25,12 +25,12 @@ pub(super) struct CutArch {
 }
 
 impl CutArch {
-    /// Returns the number of voussoirs.
+    /// Number of voussoirs.
     pub fn voussoirs(&self) -> usize {
         self.joints.len() - 1
     }
 
-    /// Returns its joints, springings included.
+    /// Joints, springings included.
     pub fn joints(&self) -> Vec<Joint> {
         let point = |edge: &[Curve], place: EdgePosition| edge[place.piece].point(place.part);
         let joints = self.joints.iter().map(|[intrados, extrados]| Joint {
@@ -40,13 +40,13 @@ impl CutArch {
         joints.collect()
     }
 
-    /// Returns the extrados of a voussoir from left to right.
+    /// Extrados of a voussoir from left to right.
     pub(crate) fn extrados_of(&self, voussoir: usize) -> Vec<Curve> {
         let ends = [self.joints[voussoir][1], self.joints[voussoir + 1][1]];
         pieces_between(&self.extrados, ends)
     }
 
-    /// Returns the height of the highest point of the extrados, at or between joints, in metres.
+    /// Height of the highest point of the extrados, at or between joints, in metres.
     pub fn crown_m(&self) -> f64 {
         let pieces = (0..self.voussoirs()).flat_map(|voussoir| self.extrados_of(voussoir));
         let tops = pieces.map(|piece| piece.point(top(&piece)).y);
@@ -67,7 +67,7 @@ impl CutArch {
         outline
     }
 
-    /// Returns its voussoirs as rigid blocks.
+    /// Voussoirs as rigid blocks.
     pub fn blocks(&self, material: Material) -> Vec<Block> {
         let joints = self.joints();
         let block = |voussoir: usize| {
@@ -77,7 +77,7 @@ impl CutArch {
         (0..self.voussoirs()).map(block).collect()
     }
 
-    /// Returns the corners of polygons to draw the voussoirs.
+    /// Corners of polygons to draw the voussoirs.
     pub(crate) fn outlines_for_drawing(&self) -> Vec<Vec<Vector2<f64>>> {
         let drawn = |curve: &Curve| {
             let points = match curve {
@@ -93,7 +93,7 @@ impl CutArch {
     }
 }
 
-/// Returns the parameter (0 to 1) of the highest point of a piece of an extrados: one of its ends, or where its slope is zero.
+/// Parameter (0 to 1) of the highest point of a piece of an extrados: one of its ends, or where its slope is zero.
 pub(super) fn top(piece: &Curve) -> f64 {
     let falls = |part: f64| piece.point_and_derivative(part).1.y <= 0.0;
     match (falls(0.0), falls(1.0)) {

@@ -43,8 +43,10 @@ impl Fill {
         require_within("density_kg_m3", self.density_kg_m3, MAGNITUDE)?;
         let level_m = self.level_m(arch)?;
         for (voussoir, extra) in extra.iter_mut().enumerate() {
-            let pieces = arch.extrados_of(voussoir).into_iter();
-            let pieces = pieces.flat_map(|piece| parts_below(&piece, level_m));
+            let pieces = arch
+                .extrados_of(voussoir)
+                .into_iter()
+                .flat_map(|piece| parts_below(&piece, level_m));
             let columns = pieces.map(|piece| {
                 let (from, to) = (piece.point(0.0), piece.point(1.0));
                 let corners = [to.x, from.x].map(|x| Vector2::new(x, level_m));
@@ -62,7 +64,7 @@ impl Fill {
         Ok(())
     }
 
-    /// Returns the height of its top, in metres.
+    /// Height of its top, in metres.
     fn level_m(&self, arch: &CutArch) -> Result<f64, ArgumentError> {
         match self.level {
             FillLevel::AboveSpringing(height_m) => {
@@ -76,7 +78,7 @@ impl Fill {
         }
     }
 
-    /// Returns the fill above each voussoir: index of the voussoir, and corners of a polygon to draw the fill.
+    /// Fill above each voussoir: index of the voussoir, and corners of a polygon to draw the fill.
     pub(super) fn outlines_for_drawing(
         &self,
         arch: &CutArch,
@@ -104,7 +106,7 @@ pub type FillColumn = (usize, Vec<Vector2<f64>>);
 /// Number of segments to draw the curved side of a column of fill.
 const DRAWN_POINTS: u32 = 4;
 
-/// Returns the parts of a piece of the extrados that lie below a level.
+/// Parts of a piece of the extrados that lie below a level.
 fn parts_below(piece: &Curve, level_m: f64) -> Vec<Curve> {
     let top = top(piece);
     let under = |part: f64| piece.point(part).y < level_m;

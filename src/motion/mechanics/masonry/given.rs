@@ -136,7 +136,7 @@ impl GivenBlocks {
         Ok(())
     }
 
-    /// Returns the outline of every block.
+    /// Outline of every block.
     pub(super) fn outlines_m(&self) -> Vec<Vec<Vector2<f64>>> {
         let pairs = self.joints.windows(2);
         let between = pairs.map(|pair| pair[0].outline_m(&pair[1]).to_vec());
@@ -181,7 +181,7 @@ impl GivenBlocks {
         }
     }
 
-    /// Returns whether the left and the right support are ground that extends beyond the joint: the joint is level, and no corner is lower.
+    /// Whether the left and the right support are ground that extends beyond the joint: the joint is level, and no corner is lower.
     pub(super) fn ground_supports(&self) -> [bool; 2] {
         let corners = self.outlines_m().into_iter().flatten();
         let lowest_m = corners.map(|corner| corner.y).fold(f64::INFINITY, f64::min);
@@ -193,7 +193,7 @@ impl GivenBlocks {
         })
     }
 
-    /// Returns half the diagonal of the rectangle around the joints, in metres.
+    /// Half the diagonal of the rectangle around the joints, in metres.
     pub(super) fn size_m(&self) -> f64 {
         let corners = || {
             let joints = self.joints.iter();
@@ -206,7 +206,7 @@ impl GivenBlocks {
         0.5 * libm::hypot(extent(|corner| corner.x), extent(|corner| corner.y))
     }
 
-    /// Returns the index, from 0, of the block or joint of an error, as a line of the file of joints; `None` for other errors.
+    /// Index, from 0, of the block or joint of an error, as a line of the file of joints; `None` for other errors.
     pub fn joint_of(error: &RowError) -> Option<usize> {
         match error {
             RowError::Crossing(joint) => Some(joint + 1),
@@ -221,7 +221,7 @@ fn is_on_outline(corners: &[Vector2<f64>], point: Vector2<f64>) -> bool {
     sides(corners).any(|side| distance(side, point) <= 1e-6 * (side[1] - side[0]).norm())
 }
 
-/// Returns the indices of two sides of a polygon that cross; `None` if no sides cross.
+/// Indices of two sides of a polygon that cross; `None` if no sides cross.
 fn crossing_sides(corners: &[Vector2<f64>]) -> Option<(usize, usize)> {
     let sides: Vec<_> = sides(corners).collect();
     let turns =

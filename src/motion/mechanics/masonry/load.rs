@@ -69,7 +69,7 @@ impl PlacedLoad {
         require(all_stands, "x_m", self.x_m, allowed).map(|_| ())
     }
 
-    /// Returns the block of the pier that carries this load (at a joint, the lower one), and its point in metres.
+    /// Block of the pier that carries this load (at a joint, the lower one), and its point in metres.
     pub(super) fn place_on_pier_m(
         &self,
         side: Sway,
@@ -92,7 +92,7 @@ impl PlacedLoad {
         Ok((block, foot.middle_m() + Vector2::new(self.x_m, height_m)))
     }
 
-    /// Returns the voussoir under its middle, and the point on its extrados, in metres.
+    /// Voussoir under its middle, and the point on its extrados, in metres.
     pub(super) fn place_m(&self, arch: &CutArch) -> Option<(usize, Vector2<f64>)> {
         (0..arch.voussoirs()).find_map(|voussoir| {
             arch.extrados_of(voussoir).into_iter().find_map(|piece| {

@@ -68,7 +68,7 @@ pub struct CircularArch {
 }
 
 impl CircularArch {
-    /// Returns the arch with its equal voussoirs, or with joints at these angles.
+    /// Arch with its equal voussoirs, or with joints at these angles.
     ///
     /// # Errors
     /// If it has neither, or both, or if the angles do not increase from zero to the embrace angle.

@@ -44,7 +44,7 @@ pub struct Material {
 }
 
 impl Default for Material {
-    /// Returns the default material: 1 m deep, of 2000 kg/m3.
+    /// Default material: 1 m deep, of 2000 kg/m3.
     fn default() -> Self {
         Self {
             depth_m: DEPTH_M,
@@ -113,7 +113,7 @@ pub enum MasonryShape {
 }
 
 impl MasonryShape {
-    /// Returns its name in scenarios and results.
+    /// Name in scenarios and results.
     pub const fn name(&self) -> &'static str {
         match self {
             Self::Circular(_) => "arch",
@@ -124,7 +124,7 @@ impl MasonryShape {
         }
     }
 
-    /// Returns its material; for blocks with individual densities, that of the first block.
+    /// Material; for blocks with individual densities, that of the first block.
     pub fn material(&self) -> Material {
         match self {
             Self::Circular(arch) => arch.material(),
@@ -154,7 +154,7 @@ impl MasonryShape {
         })
     }
 
-    /// Returns the length that scales energies and steps: the mean radius of a circle, otherwise half the span; for blocks half the diagonal of the
+    /// Length that scales energies and steps: the mean radius of a circle, otherwise half the span; for blocks half the diagonal of the
     /// rectangle around their joints.
     fn size_m(&self) -> f64 {
         match self {
@@ -264,7 +264,7 @@ pub enum MasonryError {
 }
 
 impl Masonry {
-    /// Returns the arch on its piers, with fill and loads. Its stability is not checked: see [`Masonry::stands`].
+    /// Arch on its piers, with fill and loads. Its stability is not checked: see [`Masonry::stands`].
     ///
     /// # Errors
     /// If a number is out of range, or the blocks do not form a row.
@@ -342,13 +342,13 @@ impl Masonry {
         })
     }
 
-    /// Returns the joints at the springings of the arch; `None` for given blocks, whose springings are unknown.
+    /// Joints at the springings of the arch; `None` for given blocks, whose springings are unknown.
     pub fn springings(&self) -> Option<[Joint; 2]> {
         let joints = self.springing_joints()?;
         Some(joints.map(|joint| self.row.joints[joint]))
     }
 
-    /// Returns whether the masonry is stable under its own weight.
+    /// Whether the masonry is stable under its own weight.
     ///
     /// # Errors
     /// If the velocities under the weight are not found.
@@ -356,7 +356,7 @@ impl Masonry {
         Ok(collapse_mechanism(&self.row)?.is_none())
     }
 
-    /// Returns the indices of the joints at the left and the right springing; `None` for given blocks, whose springings are unknown.
+    /// Indices of the joints at the left and the right springing; `None` for given blocks, whose springings are unknown.
     pub fn springing_joints(&self) -> Option<[usize; 2]> {
         if matches!(self.shape, MasonryShape::Blocks(_)) {
             return None;
@@ -366,18 +366,18 @@ impl Masonry {
         Some([courses[0], self.row.joints.len() - 1 - courses[1]])
     }
 
-    /// Returns this masonry with the constant forces of its loads in place of ties, under this gravity.
+    /// This masonry with the constant forces of its loads in place of ties, under this gravity.
     #[must_use]
     pub fn with_constant_forces(mut self, gravity_m_s2: f64) -> Self {
         let loads = self.loads.iter().zip(&self.load_outlines.loads_m);
-        let forces =
-            loads.map(|(load, (block, at_m))| (*block, *at_m, load.constant_force_n(gravity_m_s2)));
-        let forces: Vec<_> = forces.collect();
+        let forces: Vec<_> = loads
+            .map(|(load, (block, at_m))| (*block, *at_m, load.constant_force_n(gravity_m_s2)))
+            .collect();
         self.row = self.row.with_constant_forces(forces, gravity_m_s2);
         self
     }
 
-    /// Returns this masonry with these ties in place of its own, under this gravity.
+    /// This masonry with these ties in place of its own, under this gravity.
     ///
     /// # Errors
     /// If a tie is not valid, with its index.

@@ -19,7 +19,7 @@ pub struct Piers {
 }
 
 impl Piers {
-    /// Returns whether there is no pier.
+    /// Whether there is no pier.
     pub const fn are_none(&self) -> bool {
         self.left.is_none() && self.right.is_none()
     }
@@ -66,8 +66,9 @@ impl Courses {
             Sway::Right => self.joints.last(),
         };
         let springing = springing.ok_or(RowError::Count(0))?;
-        let courses = pier.courses(springing, side, material);
-        let courses = courses.map_err(|error| MasonryError::Pier(side, error))?;
+        let courses = pier
+            .courses(springing, side, material)
+            .map_err(|error| MasonryError::Pier(side, error))?;
         let count = self.blocks.len() + courses.blocks.len();
         if count > MAX_BLOCKS {
             return Err(MasonryError::Count(count));
@@ -94,7 +95,7 @@ impl Pier {
         require(fits, "width_m", self.width_m, allowed).map(|_| ())
     }
 
-    /// Returns its blocks and all joints except the springing: upwards on the left, downwards on the right.
+    /// Blocks and all joints except the springing: upwards on the left, downwards on the right.
     fn courses(
         &self,
         springing: &Joint,

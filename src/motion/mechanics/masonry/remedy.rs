@@ -16,7 +16,7 @@ pub enum Remedy {
 }
 
 impl Masonry {
-    /// Returns the change that makes masonry stable that falls under its own weight.
+    /// Change that makes masonry stable that falls under its own weight.
     pub fn remedy(&self) -> Remedy {
         let arch_stands = || self.is_stable_with(self.shape.clone(), Piers::default());
         if !self.piers.are_none() && arch_stands() == Some(true) {
@@ -37,8 +37,11 @@ impl Masonry {
 
     fn is_stable_with(&self, shape: MasonryShape, piers: Piers) -> Option<bool> {
         // Loads on piers are neglected for an arch on rigid ground.
-        let loads = self.loads.iter().copied();
-        let loads = loads.filter(|load| load.pier.is_none() || !piers.are_none());
+        let loads = self
+            .loads
+            .iter()
+            .copied()
+            .filter(|load| load.pier.is_none() || !piers.are_none());
         let masonry = Self::new(shape, piers, self.fill, loads.collect()).ok()?;
         let gravity_m_s2 = self.row.gravity_m_s2;
         masonry.with_constant_forces(gravity_m_s2).stands().ok()
@@ -59,7 +62,7 @@ impl Piers {
 }
 
 impl MasonryShape {
-    /// Returns the shape with the thickness of the arch multiplied by a factor; `None` for blocks, whose thickness is given.
+    /// Shape with the thickness of the arch multiplied by a factor; `None` for blocks, whose thickness is given.
     fn thickened(&self, factor: f64) -> Option<Self> {
         let mut thicker = self.clone();
         match &mut thicker {
@@ -76,7 +79,7 @@ impl MasonryShape {
     }
 }
 
-/// Returns the least factor for which the masonry is stable, rounded up to four decimals; `None` if it is above four.
+/// Least factor for which the masonry is stable, rounded up to four decimals; `None` if it is above four.
 fn least_factor(stands: impl Fn(f64) -> Option<bool>) -> Option<f64> {
     let mut factors = [1.25, 1.5, 2.0, 3.0, 4.0].into_iter();
     let high = factors.find(|factor| stands(*factor) == Some(true))?;

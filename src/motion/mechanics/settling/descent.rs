@@ -165,8 +165,10 @@ impl<'a> Descent<'a> {
             longest = (0.9 * farthest_m / fastest).min(allowed);
             let centres = start_m.iter().zip(&stance.placement.centres_m);
             let moved = centres.map(|(start, now)| (now - start).norm() / size_m);
-            let turned = start_rad.iter().zip(turns(stance));
-            let turned = turned.map(|(start, now)| (now - start).abs());
+            let turned = start_rad
+                .iter()
+                .zip(turns(stance))
+                .map(|(start, now)| (now - start).abs());
             let gone = moved.chain(turned).fold(0.0, f64::max);
             if gone > FALLEN || stance.placement.closure_error() > PARTED * size_m {
                 return Ok(false);
@@ -181,7 +183,7 @@ impl<'a> Descent<'a> {
         Ok(false)
     }
 
-    /// Returns true if ties hold the row on these hinges in an equilibrium near by. Without ties the descent ends by itself.
+    /// True if ties hold the row on these hinges in an equilibrium near by. Without ties the descent ends by itself.
     fn is_near_equilibrium(&self, pins: &Pins, stance: &RowState, condition: &Condition) -> bool {
         let state = pins.state(self.row, condition, stance);
         state.is_some_and(|state| {
@@ -240,7 +242,7 @@ impl<'a> Descent<'a> {
         self.program.fastest(&self.load, self.row, placement)
     }
 
-    /// Returns the largest velocity with the tie forces at the end of the step. Shortens the step until no point moves farther than
+    /// Largest velocity with the tie forces at the end of the step. Shortens the step until no point moves farther than
     /// `farthest_m`.
     fn solve_with_ties(
         &mut self,
@@ -320,7 +322,7 @@ impl<'a> Descent<'a> {
         DVector::from_iterator(self.ties_kg.len(), residuals_m)
     }
 
-    /// Returns the Newton step of the tie forces, over gravity, for the present set of closed corners. Forces at a bound stay there if the
+    /// Newton step of the tie forces, over gravity, for the present set of closed corners. Forces at a bound stay there if the
     /// step would exceed it. `None` if the step is not determined.
     ///
     /// The unknowns are the speeds of the few degrees of freedom of the row. The forces of many ties follow from them.
@@ -362,7 +364,7 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Returns true if the bounds of the force of a tie allow this change.
+    /// True if the bounds of the force of a tie allow this change.
     fn may_change(&self, step: &DescentStep<'_>, tie: usize, change: f64) -> bool {
         let end_kg = step.bounds_kg[tie][usize::from(change > 0.0)];
         (end_kg - self.ties_kg[tie]) * change > 0.0 || change == 0.0
@@ -429,8 +431,11 @@ impl<'a> Descent<'a> {
 
     /// Computes the response of the row to tie forces alone, over gravity, for the present set of closed corners.
     fn respond(&mut self, step: &DescentStep<'_>, mut kg: impl FnMut(usize) -> f64) {
-        let ties = step.lines.iter().enumerate();
-        let ties = ties.map(|(tie, line)| (line, kg(tie)));
+        let ties = step
+            .lines
+            .iter()
+            .enumerate()
+            .map(|(tie, line)| (line, kg(tie)));
         (self.load).push(self.row, &step.stance.placement, Vector2::zeros(), ties);
         self.program.solve_with_last_corners(&self.load);
     }
@@ -446,14 +451,15 @@ impl<'a> Descent<'a> {
         let from_kg = self.ties_kg.clone();
         // Part of the way at which the force of each tie reaches its bound.
         let bounds = from_kg.iter().zip(newton_step_kg).zip(&step.bounds_kg);
-        let ends = bounds.map(|((kg, change_kg), bounds_kg)| {
-            let end_kg = bounds_kg[usize::from(*change_kg > 0.0)];
-            match *change_kg {
-                0.0 => f64::INFINITY,
-                change_kg => (end_kg - kg) / change_kg,
-            }
-        });
-        let ends: Vec<f64> = ends.collect();
+        let ends: Vec<f64> = bounds
+            .map(|((kg, change_kg), bounds_kg)| {
+                let end_kg = bounds_kg[usize::from(*change_kg > 0.0)];
+                match *change_kg {
+                    0.0 => f64::INFINITY,
+                    change_kg => (end_kg - kg) / change_kg,
+                }
+            })
+            .collect();
         // Up to here no force reaches its bound.
         let all = ends.iter().copied().fold(1.0, f64::min);
         let (mut part, mut near, mut far) = (1.0, 0.0, all);
@@ -468,8 +474,10 @@ impl<'a> Descent<'a> {
             let fastest = self.solve(step.stance, step.lines, step.force_g, 1.0)?;
             let falls_on = self.residuals_m(step).component_mul(newton_step_kg);
             // A force at its bound stays there, unless the slope points inwards.
-            let goes = falls_on.iter().zip(&ends);
-            let goes = goes.filter(|(falls, end)| part <= **end || **falls < 0.0);
+            let goes = falls_on
+                .iter()
+                .zip(&ends)
+                .filter(|(falls, end)| part <= **end || **falls < 0.0);
             let left: f64 = goes.map(|(falls, _)| falls).sum();
             if left.abs() <= LINE_SEARCH_SLOPE * falls || (part >= all && left > 0.0) {
                 return Ok(fastest);
@@ -485,8 +493,12 @@ impl<'a> Descent<'a> {
             }
             // Newton's method: the slope changes abruptly near forces at which the row stands still.
             self.update_elongation_rates(step);
-            let elastic = self.ties_m_kg.iter().zip(newton_step_kg);
-            let elastic: f64 = elastic.map(|(m_kg, kg)| kg * kg * m_kg).sum();
+            let elastic: f64 = self
+                .ties_m_kg
+                .iter()
+                .zip(newton_step_kg)
+                .map(|(m_kg, kg)| kg * kg * m_kg)
+                .sum();
             let slope =
                 elastic + step.length * step.elongation_rates.tr_mul(newton_step_kg).norm_squared();
             let next = part + left / slope;

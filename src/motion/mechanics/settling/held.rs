@@ -99,7 +99,7 @@ impl<'a> Held<'a> {
         })
     }
 
-    /// Returns the number of moving bodies.
+    /// Number of moving bodies.
     pub fn bodies(&self) -> usize {
         match self.row.supports {
             Supports::Left => 1,
@@ -107,7 +107,7 @@ impl<'a> Held<'a> {
         }
     }
 
-    /// Returns the mechanism at a fraction `part` of its ultimate rotation.
+    /// Mechanism at a fraction `part` of its ultimate rotation.
     ///
     /// # Panics
     /// Never: the bodies meet at all displacements of the mechanism.
@@ -139,7 +139,7 @@ impl<'a> Held<'a> {
         }
     }
 
-    /// Returns the fractions of the ultimate rotation at which each tie yields and breaks. Yielding after the break does not count.
+    /// Fractions of the ultimate rotation at which each tie yields and breaks. Yielding after the break does not count.
     pub fn tie_event_fractions(&self) -> Vec<TieEventFractions> {
         let ties = self.row.bars().iter().enumerate().map(|(index, tie)| {
             let yields_m = tie.yield_force_n / tie.stiffness_n_m;
@@ -155,7 +155,7 @@ impl<'a> Held<'a> {
         ties.collect()
     }
 
-    /// Returns the interval of fractions of the ultimate rotation in which an irreversible event of a tie happens: neighbouring numbers, or twice
+    /// Interval of fractions of the ultimate rotation in which an irreversible event of a tie happens: neighbouring numbers, or twice
     /// zero if it has happened at the start; `None` if it never happens.
     fn first(&self, tie: usize, does: impl Fn(&TieMemory<Lanes<1>>) -> bool) -> Option<[f64; 2]> {
         let does_at = |part: f64| {
@@ -169,7 +169,7 @@ impl<'a> Held<'a> {
         }
     }
 
-    /// Returns the poses of the parts: before the first hinge, between hinges, after the last hinge; `None` if the bodies cannot meet.
+    /// Poses of the parts: before the first hinge, between hinges, after the last hinge; `None` if the bodies cannot meet.
     fn poses(&self, q_rad: f64) -> Option<Vec<Pose>> {
         let built = Pose::UNDEFORMED;
         let pins_m = &self.pins.pins_m;
@@ -184,26 +184,26 @@ impl<'a> Held<'a> {
         }
     }
 
-    /// Returns the states of the ties at a rotation of the first body.
+    /// States of the ties at a rotation of the first body.
     fn ties_at(&self, q_rad: f64) -> Option<Vec<TieMemory<Lanes<1>>>> {
         let poses = self.poses(q_rad)?;
         Some(self.pulls(q_rad, &poses).0)
     }
 
-    /// Returns the states, forces and lines of the ties at a rotation of the first body.
+    /// States, forces and lines of the ties at a rotation of the first body.
     fn pulls(&self, q_rad: f64, poses: &[Pose]) -> TieLoads {
         let built = [Pose::UNDEFORMED; 2];
         self.pins
             .pulls(self.row, &built, poses, self.tie_states_before(q_rad))
     }
 
-    /// Returns the states of the ties at the last step before a rotation of the first body.
+    /// States of the ties at the last step before a rotation of the first body.
     fn tie_states_before(&self, q_rad: f64) -> &[TieMemory<Lanes<1>>] {
         let step = (q_rad / STEP_RAD).max(0.0) as usize;
         &self.ties[step.min(self.ties.len() - 1)]
     }
 
-    /// Returns the push in equilibrium with weight and ties, in multiples of gravity: the loads then have no moment about any pin.
+    /// Push in equilibrium with weight and ties, in multiples of gravity: the loads then have no moment about any pin.
     fn equilibrium_push_g(&self, q_rad: f64) -> Option<f64> {
         let (row, poses) = (self.row, self.poses(q_rad)?);
         let (_, pulls) = self.pulls(q_rad, &poses);
@@ -232,16 +232,19 @@ impl<'a> Held<'a> {
     }
 }
 
-/// Returns the hinges that a push opens.
+/// Hinges that a push opens.
 ///
 /// # Errors
 /// If the hinges are no mechanism of one degree of freedom.
 fn pins(row: &Row, sway: Sway, onset: &RowOnset) -> Result<Pins, HeldError> {
-    let hinges = onset.openings.iter().filter_map(|opening| {
-        let (joint, edge) = (opening.joint, opening.hinge?);
-        Some(Pin { joint, edge })
-    });
-    let hinges: Vec<Pin> = hinges.collect();
+    let hinges: Vec<Pin> = onset
+        .openings
+        .iter()
+        .filter_map(|opening| {
+            let (joint, edge) = (opening.joint, opening.hinge?);
+            Some(Pin { joint, edge })
+        })
+        .collect();
     let due = match row.supports {
         Supports::Left => 1,
         Supports::Both => 4,

@@ -64,7 +64,7 @@ linear!(Movement {
 });
 
 impl Movement {
-    /// Returns the displacement over the size of the row plus the rotation in radians.
+    /// Displacement over the size of the row plus the rotation in radians.
     fn extent(&self, size_m: f64) -> f64 {
         libm::hypot(self.spread_m, self.settlement_m) / size_m + self.rotation_rad.abs()
     }
@@ -82,12 +82,12 @@ pub struct Movements {
 linear!(Movements { left, right });
 
 impl Movements {
-    /// Returns whether neither support has moved.
+    /// Whether neither support has moved.
     pub fn is_none(&self) -> bool {
         *self == Self::default()
     }
 
-    /// Returns whether both supports have moved as one rigid body, within rounding error.
+    /// Whether both supports have moved as one rigid body, within rounding error.
     fn are_rigid_motion(&self, row: &Row) -> bool {
         let [left, right] = self.poses(row);
         let moved_m = left.translation.norm().max(row.size_m);
@@ -95,7 +95,7 @@ impl Movements {
             && (left.rotation_rad() - right.rotation_rad()).abs() <= ROUNDING
     }
 
-    /// Returns the displacements of the left and the right support: to the right and upwards in metres, and anticlockwise in radians.
+    /// Displacements of the left and the right support: to the right and upwards in metres, and anticlockwise in radians.
     pub fn displacements(&self) -> [[f64; 3]; 2] {
         [(-1.0, self.left), (1.0, self.right)].map(|(outwards, moved)| {
             let outwards_m = outwards * moved.spread_m;
@@ -103,7 +103,7 @@ impl Movements {
         })
     }
 
-    /// Returns the poses of the left and the right support of a row after these movements.
+    /// Poses of the left and the right support of a row after these movements.
     pub fn poses(&self, row: &Row) -> [Pose; 2] {
         let joints = &row.joints;
         let pose = |joint: usize, [x, y, rotation_rad]: [f64; 3]| {
@@ -184,7 +184,7 @@ pub enum SettlingError {
 }
 
 impl SettlingError {
-    /// Returns the position along the path at which the row was lost; `None` if unknown.
+    /// Position along the path at which the row was lost; `None` if unknown.
     pub const fn path_position(&self) -> Option<f64> {
         match self {
             Self::NoEquilibrium(at) | Self::Parted { at, .. } => Some(*at),
@@ -216,7 +216,7 @@ pub struct Follower<'a> {
 }
 
 impl<'a> Follower<'a> {
-    /// Returns a follower of the undeformed row.
+    /// Follower of the undeformed row.
     ///
     /// # Errors
     /// If the row is a stack, carries constant forces, or is not stable.
@@ -244,18 +244,18 @@ impl<'a> Follower<'a> {
         })
     }
 
-    /// Returns whether the row stands on more than three hinges, which is only possible with ties.
+    /// Whether the row stands on more than three hinges, which is only possible with ties.
     pub fn is_held_by_ties(&self) -> bool {
         let hinges = self.hinges.as_ref();
         hinges.is_some_and(|pins| pins.hinges.len() > 3)
     }
 
-    /// Returns the present forces and rotations; `None` while the row is undeformed, where the forces are indeterminate.
+    /// Present forces and rotations; `None` while the row is undeformed, where the forces are indeterminate.
     pub fn state(&self) -> Option<HingeState> {
         self.state_in(&self.condition)
     }
 
-    /// Returns forces and rotations under another loading, on the present hinges.
+    /// Forces and rotations under another loading, on the present hinges.
     fn state_in(&self, condition: &Condition) -> Option<HingeState> {
         let hinges = self.hinges.as_ref()?;
         hinges.state(self.row, condition, &self.stance)
@@ -312,7 +312,7 @@ impl<'a> Follower<'a> {
         Ok(None)
     }
 
-    /// Returns the push to a side, in multiples of gravity, that starts a motion of the present state; `None` if no push does. The push is zero if
+    /// Push to a side, in multiples of gravity, that starts a motion of the present state; `None` if no push does. The push is zero if
     /// ties hold the row on more than three hinges.
     ///
     /// # Errors
@@ -329,7 +329,7 @@ impl<'a> Follower<'a> {
         }
     }
 
-    /// Returns the push to a side, in multiples of gravity, at which the row falls; `None` if it does not fall below 100 times gravity. `first_g` is
+    /// Push to a side, in multiples of gravity, at which the row falls; `None` if it does not fall below 100 times gravity. `first_g` is
     /// the push of the first motion. The row itself stays in its present state.
     ///
     /// # Errors
@@ -412,14 +412,14 @@ impl<'a> Follower<'a> {
         Ok(None)
     }
 
-    /// Returns the rotation rates of the blocks between here and another state, over `distance` along the path.
+    /// Rotation rates of the blocks between here and another state, over `distance` along the path.
     fn rates(&self, there: &HingeState, distance: f64) -> impl Iterator<Item = f64> {
         let here = self.stance.placement.poses.iter();
         let turns = there.rotations_rad.iter().zip(here);
         turns.map(move |(there_rad, here)| (there_rad - here.rotation_rad()) / distance)
     }
 
-    /// Returns whether all blocks turn as fast as in the step `before`, and no tie yields or breaks. Returns false without a step before, as without
+    /// Whether all blocks turn as fast as in the step `before`, and no tie yields or breaks. Returns false without a step before, as without
     /// ties.
     fn is_steady(&self, there: &HingeState, before: &[f64], distance: f64) -> bool {
         let most = before.iter().map(|rate| rate.abs()).fold(0.0, f64::max);
@@ -431,7 +431,7 @@ impl<'a> Follower<'a> {
         !before.is_empty() && before_and_now.all(alike) && ties.eq(there.ties.iter().map(yielded))
     }
 
-    /// Returns the margin of a state plus the tolerance; NaN without a state.
+    /// Margin of a state plus the tolerance; NaN without a state.
     fn margin(&self, state: Option<&HingeState>) -> f64 {
         state.map_or(f64::NAN, |state| state.margin() + self.slack)
     }
@@ -451,7 +451,7 @@ impl<'a> Follower<'a> {
         self.stance.ties = state.ties;
     }
 
-    /// Returns other hinges, and their state, that carry a loading beyond the present one. Inadmissible joints become hinges and closing hinges
+    /// Other hinges, and their state, that carry a loading beyond the present one. Inadmissible joints become hinges and closing hinges
     /// leave, as is possible only with ties; `None` without ties, or if no such hinges are found.
     fn find_other_hinges(&self, condition: &Condition) -> Option<(Pins, HingeState)> {
         if self.row.ties.is_empty() {

@@ -73,7 +73,7 @@ pub struct HingeState {
 }
 
 impl HingeState {
-    /// Returns the safety margin of the hinges: the least of all openings in radians and of all normal forces over the weight. A state is admissible
+    /// Safety margin of the hinges: the least of all openings in radians and of all normal forces over the weight. A state is admissible
     /// if the margin is not negative.
     pub fn margin(&self) -> f64 {
         let forces = self.compressive_forces().map(|(_, force)| force);
@@ -86,12 +86,12 @@ impl HingeState {
         openings.chain(forces).fold(f64::INFINITY, lower)
     }
 
-    /// Returns whether the state is admissible within a tolerance.
+    /// Whether the state is admissible within a tolerance.
     pub(super) fn is_admissible(&self, slack: f64) -> bool {
         self.margin() >= -slack
     }
 
-    /// Returns the joints with less than this margin: those where the thrust line leaves the joint, with the edge there, and hinges that close.
+    /// Joints with less than this margin: those where the thrust line leaves the joint, with the edge there, and hinges that close.
     pub(crate) fn pins_below_margin(&self, margin: f64) -> Vec<Pin> {
         let pull = self
             .compressive_forces()
@@ -106,7 +106,7 @@ impl HingeState {
         pull.chain(shut.map(|(hinge, _)| *hinge)).collect()
     }
 
-    /// Returns all normal forces that must be compressive, with their corners.
+    /// All normal forces that must be compressive, with their corners.
     fn compressive_forces(&self) -> impl Iterator<Item = (Pin, f64)> + '_ {
         let corners = self.corners.iter().enumerate();
         corners.flat_map(|(joint, forces)| {
@@ -121,7 +121,7 @@ impl HingeState {
 }
 
 impl Pins {
-    /// Returns hinges of a row, given from left to right; three or more between two supports.
+    /// Hinges of a row, given from left to right; three or more between two supports.
     pub fn new(row: &Row, hinges: Vec<Pin>) -> Self {
         let pin_m = |hinge: &Pin| row.joints[hinge.joint].corner_m(hinge.edge);
         Self {
@@ -130,7 +130,7 @@ impl Pins {
         }
     }
 
-    /// Returns the open joints of a placement as hinges; `None` if these are fewer than three, or if a joint is open at both edges.
+    /// Open joints of a placement as hinges; `None` if these are fewer than three, or if a joint is open at both edges.
     pub fn of(row: &Row, placement: &Placement) -> Option<Self> {
         let open = placement.gaps_m.iter().enumerate();
         let mut hinges = Vec::with_capacity(3);
@@ -141,7 +141,7 @@ impl Pins {
         (hinges.len() >= 3).then(|| Self::new(row, hinges))
     }
 
-    /// Returns these hinges exchanged with others: hinges present in both sets leave, new ones are added. `None` if fewer than three remain, or if a
+    /// These hinges exchanged with others: hinges present in both sets leave, new ones are added. `None` if fewer than three remain, or if a
     /// joint would be open at both edges.
     pub(super) fn exchanged(&self, row: &Row, others: &[Pin]) -> Option<Self> {
         let stay = self.hinges.iter().filter(|hinge| !others.contains(hinge));
@@ -152,7 +152,7 @@ impl Pins {
         (hinges.len() >= 3 && apart).then(|| Self::new(row, hinges))
     }
 
-    /// Returns the poses of the bodies between the pins, for a row that comes from the state `before`; `None` if the pins cannot meet, or no stable
+    /// Poses of the bodies between the pins, for a row that comes from the state `before`; `None` if the pins cannot meet, or no stable
     /// equilibrium is found.
     fn bodies(&self, row: &Row, condition: &Condition, before: &RowState) -> Option<Vec<Pose>> {
         match self.pins_m[..] {
@@ -165,7 +165,7 @@ impl Pins {
         }
     }
 
-    /// Returns the positions of the pins in a given state of the row, in metres.
+    /// Positions of the pins in a given state of the row, in metres.
     fn pins_in(&self, stance: &RowState) -> Vec<Vector2<f64>> {
         let placement = &stance.placement;
         let last = &placement.support_poses[1];
@@ -180,7 +180,7 @@ impl Pins {
         .collect()
     }
 
-    /// Returns positions and forces of a row on these hinges that comes from the state `before`. `None` if the pins cannot meet, the equilibrium
+    /// Positions and forces of a row on these hinges that comes from the state `before`. `None` if the pins cannot meet, the equilibrium
     /// equations are singular, or no stable equilibrium is found.
     pub fn state(&self, row: &Row, condition: &Condition, before: &RowState) -> Option<HingeState> {
         let mut poses = vec![condition.supports[0]];
@@ -189,25 +189,25 @@ impl Pins {
         self.state_at(row, condition, &poses, &before.ties)
     }
 
-    /// Returns the positions of the pins, in metres, for given poses of the parts before, between and after the pins.
+    /// Positions of the pins, in metres, for given poses of the parts before, between and after the pins.
     pub(super) fn positions_m(&self, poses: &[Pose]) -> Vec<Vector2<f64>> {
         let pins = self.pins_m.iter().zip(&poses[1..]);
         pins.map(|(pin_m, pose)| pose.current_position(*pin_m))
             .collect()
     }
 
-    /// Returns the number of hinges before each block.
+    /// Number of hinges before each block.
     fn parts(&self, row: &Row) -> impl Iterator<Item = usize> {
         (0..row.blocks.len()).map(|block| self.part_of(block))
     }
 
-    /// Returns the number of hinges before a block.
+    /// Number of hinges before a block.
     pub(super) fn part_of(&self, block: usize) -> usize {
         let before = self.hinges.iter().filter(|hinge| hinge.joint <= block);
         before.count()
     }
 
-    /// Returns the forces of a row for given poses of the parts before, between and after the hinges. `before` are the states of the ties in the step
+    /// Forces of a row for given poses of the parts before, between and after the hinges. `before` are the states of the ties in the step
     /// before. `None` if the equilibrium equations are singular.
     pub(super) fn state_at(
         &self,
@@ -283,7 +283,7 @@ impl Pins {
         })
     }
 
-    /// Returns states, forces and lines of the ties for given poses of the parts.
+    /// States, forces and lines of the ties for given poses of the parts.
     pub(super) fn pulls(
         &self,
         row: &Row,
@@ -293,15 +293,19 @@ impl Pins {
     ) -> TieLoads {
         let parts: Vec<usize> = self.parts(row).collect();
         let lines = lines(row, supports, |block| poses[parts[block]]);
-        let ties = row.ties.iter().zip(lines).zip(before);
-        let ties = ties.map(|((tie, line), memory)| {
-            let memory = memory.then(tie, line.stretch_m);
-            (memory, (line, memory.force_n.0[0]))
-        });
+        let ties = row
+            .ties
+            .iter()
+            .zip(lines)
+            .zip(before)
+            .map(|((tie, line), memory)| {
+                let memory = memory.then(tie, line.stretch_m);
+                (memory, (line, memory.force_n.0[0]))
+            });
         ties.unzip()
     }
 
-    /// Returns the sums of the loads on all blocks before each joint, then on all blocks, over the weight. Loads are a force on a unit of mass, in
+    /// Sums of the loads on all blocks before each joint, then on all blocks, over the weight. Loads are a force on a unit of mass, in
     /// multiples of gravity, and tie forces in N.
     pub(super) fn loads(
         &self,
@@ -316,8 +320,9 @@ impl Pins {
             Momentum::applied_at(centre, force_g * (body.mass_kg * weight))
         });
         let per_weight = weight / row.gravity_m_s2;
-        let pulls = pulls.iter();
-        let pulls = pulls.map(|(line, force_n)| (line, force_n * per_weight));
+        let pulls = pulls
+            .iter()
+            .map(|(line, force_n)| (line, force_n * per_weight));
         let pulls = sum_pulls(row.blocks.len(), pulls);
         let mut loads = vec![Momentum::ZERO];
         loads.extend(own.zip(pulls).scan(Momentum::ZERO, |sum, (own, pull)| {
@@ -328,13 +333,13 @@ impl Pins {
     }
 }
 
-/// Returns 1 if the middle one of three pins is left of the line from the first to the last, -1 if it is right.
+/// 1 if the middle one of three pins is left of the line from the first to the last, -1 if it is right.
 pub(super) fn side(pins_m: &[Vector2<f64>]) -> f64 {
     let [left, middle, right] = [0, 1, 2].map(|pin| pins_m[pin]);
     (right - left).perp(&(middle - left)).signum()
 }
 
-/// Returns the poses of two bodies between three pins, with the middle pin on the given side of the outer pins. `None` if the outer pins are too far
+/// Poses of two bodies between three pins, with the middle pin on the given side of the outer pins. `None` if the outer pins are too far
 /// apart.
 pub(super) fn two_bodies(
     [left, middle, right]: [Vector2<f64>; 3],
@@ -516,8 +521,11 @@ impl<'a> Chain<'a> {
             None => anchor.support(row.feet_m()) * (count + 1),
         };
         let weight_n = row.mass_kg() * row.gravity_m_s2;
-        let ties = row.ties.iter().zip(&before.ties);
-        let ties = ties.filter(|(_, memory)| !memory.is_broken());
+        let ties = row
+            .ties
+            .iter()
+            .zip(&before.ties)
+            .filter(|(_, memory)| !memory.is_broken());
         let bars = ties.map(|(tie, memory)| {
             let yielded_m = memory.yielded_m.0[0];
             Bar::new(tie, tie.ends.map(part), yielded_m, weight_n)
@@ -534,7 +542,7 @@ impl<'a> Chain<'a> {
         }
     }
 
-    /// Returns the poses of the bodies.
+    /// Poses of the bodies.
     fn poses(&self) -> Vec<Pose> {
         let mut at = self.condition.supports[0].current_position(self.pins.pins_m[0]);
         let bodies = self.rotations_rad.iter().enumerate();
@@ -546,7 +554,7 @@ impl<'a> Chain<'a> {
         poses.collect()
     }
 
-    /// Returns gradient and Hessian of the energy, without the force of the right support.
+    /// Gradient and Hessian of the energy, without the force of the right support.
     fn residuals(&self) -> Residuals {
         let count = self.rotations_rad.len();
         let poses = self.poses();
@@ -700,8 +708,12 @@ mod tests {
             tie([foot, end(3)], 0.5),
         ];
         let row = row.with_ties(ties, 9.81).unwrap();
-        let hinges = Edge::ALL.iter().copied().cycle().zip([0, 2, 4, 6, 8]);
-        let hinges = hinges.map(|(edge, joint)| Pin { joint, edge });
+        let hinges = Edge::ALL
+            .iter()
+            .copied()
+            .cycle()
+            .zip([0, 2, 4, 6, 8])
+            .map(|(edge, joint)| Pin { joint, edge });
         let pins = Pins::new(&row, hinges.collect());
         let condition = Condition {
             supports: [Pose::UNDEFORMED; 2],

@@ -29,7 +29,7 @@ const PARTS: f64 = 210.0;
 /// Added to the index of the outcome of a history under the mirrored ground motion.
 const MIRRORED: u8 = 50;
 
-/// Returns the index of the outcome of a history, without its additions.
+/// Index of the outcome of a history, without its additions.
 const fn outcome_of(place: u8) -> usize {
     (place % MIRRORED) as usize
 }
@@ -76,7 +76,7 @@ impl<'a> CellsOfSamples<'a> {
     /// Makes the study of a scenario with a map and a table `[uncertain]`.
     ///
     /// # Errors
-    /// Returns the change that the scenario needs, in words.
+    /// Change that the scenario needs, in words.
     pub fn of(scenario: &'a Scenario) -> Result<Self, String> {
         let map = OverturningMap::of(scenario)?;
         let samples = SampleCases::of(scenario)?;
@@ -106,7 +106,7 @@ impl<'a> CellsOfSamples<'a> {
         })
     }
 
-    /// Returns the map of a sample, counted from 1; 0 is the scenario itself. The map is computed at first use.
+    /// Map of a sample, counted from 1; 0 is the scenario itself. The map is computed at first use.
     fn map_of_sample(&self, sample: usize) -> Arc<OnceLock<OfSample<'a>>> {
         let found = {
             // The cache is valid even after a panic of another thread.
@@ -127,7 +127,7 @@ impl<'a> CellsOfSamples<'a> {
         found
     }
 
-    /// Returns the number of the sample and the index of the cell within its map.
+    /// Number of the sample and the index of the cell within its map.
     fn sample_and_cell(&self, index: usize) -> [usize; 2] {
         let cells = self.map.count();
         [index / cells, index % cells]
@@ -149,7 +149,7 @@ impl Study for CellsOfSamples<'_> {
         self.map.count() * self.samples.count()
     }
 
-    /// Returns the family of cells of one sample with one structure.
+    /// Family of cells of one sample with one structure.
     fn family(&self, index: usize) -> Option<usize> {
         let [sample, cell] = self.sample_and_cell(index);
         let family = self.map.family(cell)?;
@@ -222,17 +222,17 @@ impl CellCounts {
         }
     }
 
-    /// Returns true if most samples have a history outside the model of four links.
+    /// True if most samples have a history outside the model of four links.
     const fn is_outside_model(&self) -> bool {
         self.without.outside > self.samples
     }
 
-    /// Returns the share of samples that overturn; `None` without samples.
+    /// Share of samples that overturn; `None` without samples.
     fn probability(&self) -> Option<f64> {
         self.overturned.map(|share| share.share)
     }
 
-    /// Returns the share of samples with this index of [`OUTCOMES`]; `None` without samples.
+    /// Share of samples with this index of [`OUTCOMES`]; `None` without samples.
     fn part(&self, outcome: usize) -> Option<f64> {
         (self.samples > 0).then(|| self.outcomes[outcome] as f64 / self.samples as f64)
     }
@@ -261,9 +261,10 @@ struct Crossing {
 impl Crossing {
     /// Finds the crossings in a column of cells with ascending y.
     fn of(column: &[CellCounts], logarithmic: bool) -> Self {
-        let known = column.iter();
-        let known = known.filter_map(|cell| Some([cell.at[1], cell.probability()?]));
-        let known: Vec<[f64; 2]> = known.collect();
+        let known: Vec<[f64; 2]> = column
+            .iter()
+            .filter_map(|cell| Some([cell.at[1], cell.probability()?]))
+            .collect();
         let index = |level: f64| known.iter().position(|[_, share]| *share >= level);
         let ends = |level: f64| Some([index(level)?.checked_sub(1)?, index(level)?]);
         let line = |level: f64| {
@@ -306,7 +307,7 @@ impl CellsOfSamples<'_> {
         counts.chunks(values.len()).map(crossing).collect()
     }
 
-    /// Returns the share of cells that overturn as the answer of each sample; the scenario itself comes first.
+    /// Share of cells that overturn as the answer of each sample; the scenario itself comes first.
     fn parts(&self, rows: &[CellRow]) -> Vec<SampleRow<Share>> {
         let samples = rows.chunks(self.map.count()).enumerate();
         let part = |(sample, cells): (usize, &[CellRow])| {

@@ -177,7 +177,7 @@ pub(super) fn report(
     Ok(results.in_order(&FILES))
 }
 
-/// Returns the number of cells that survive in the scenario itself, but overturn with a probability of at least 5 %.
+/// Number of cells that survive in the scenario itself, but overturn with a probability of at least 5 %.
 fn survived_in_doubt(counts: &[CellCounts], own: &[CellRow]) -> usize {
     let survives = |row: &CellRow| {
         row.as_ref()
@@ -189,7 +189,7 @@ fn survived_in_doubt(counts: &[CellCounts], own: &[CellRow]) -> usize {
     counts.iter().zip(own).filter(in_doubt).count()
 }
 
-/// Returns the crossings at the ends and in the middle of the map.
+/// Crossings at the ends and in the middle of the map.
 fn select_columns(crossings: &[Crossing]) -> Vec<Crossing> {
     let last = crossings.len() - 1;
     let mut chosen = vec![0, last / 2, last];
@@ -216,7 +216,7 @@ impl Report for UncertainMapSummary {
 }
 
 impl Crossing {
-    /// Returns the cells between which the [`LEVELS`] are reached, in words.
+    /// Cells between which the [`LEVELS`] are reached, in words.
     fn in_words(&self) -> String {
         let level = |(level, (y, above)): (f64, (&Option<f64>, &Option<f64>))| {
             let percent = percent(level);
@@ -311,16 +311,19 @@ fn draw(
     chart.draw(cells, keys, vec![Mark::clipped(lines)])
 }
 
-/// Returns the columns of the page.
+/// Columns of the page.
 fn page_columns(counts: &[CellCounts]) -> impl Iterator<Item = CellNumbers> {
     let shares = SHARE.into_iter().enumerate().map(|(which, name)| {
         let of = |cell: &CellCounts| Some(cell.overturned?.numbers()[which]);
         (name, counts.iter().map(of).collect())
     });
-    let others = OUTCOMES.into_iter().enumerate().skip(1);
-    let others = others.map(|(which, name)| {
-        let parts = counts.iter().map(|cell| cell.part(which));
-        (name, parts.collect())
-    });
+    let others = OUTCOMES
+        .into_iter()
+        .enumerate()
+        .skip(1)
+        .map(|(which, name)| {
+            let parts = counts.iter().map(|cell| cell.part(which));
+            (name, parts.collect())
+        });
     shares.chain(others)
 }

@@ -35,7 +35,7 @@ pub struct KeyRange {
 }
 
 impl KeyRange {
-    /// Returns the values.
+    /// Values.
     pub fn values(&self) -> Vec<f64> {
         let range = Sequence::Range {
             from: self.from,
@@ -97,7 +97,7 @@ pub struct AlongOptions {
 }
 
 impl AlongOptions {
-    /// Returns the key, and the largest factor.
+    /// Key, and the largest factor.
     pub(in crate::studies) fn varied(&self) -> Varied<'_> {
         let KeyRange { key, from, to, .. } = &self.along;
         Varied {
@@ -134,7 +134,7 @@ impl<'a> Along<'a> {
     /// Makes the study of a scenario that starts from rest. At least one value must be allowed.
     ///
     /// # Errors
-    /// Returns the change that the scenario needs, in words.
+    /// Change that the scenario needs, in words.
     pub fn of(scenario: &'a Scenario, options: AlongOptions) -> Result<Self, String> {
         check(scenario)?;
         if options.no_impact && !scenario.motion.kind.has_mechanism {

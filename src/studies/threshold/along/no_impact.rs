@@ -26,13 +26,16 @@ pub(super) fn least_without_impact(
     scenario: &Scenario,
     factors: &Factors,
 ) -> Result<Option<f64>, String> {
-    let model = scenario.mechanisms_without_impacts();
-    let model = model.map_err(|error| error.to_string())?;
+    let model = scenario
+        .mechanisms_without_impacts()
+        .map_err(|error| error.to_string())?;
     let request = scenario.request_on(scenario.ground_motion(), &scenario.structure);
     let has_second = scenario.has_second_direction(&*model);
     let overturns = |factor: f64| {
-        let ground = scenario.ground_motion().scaled(factor);
-        let ground = ground.map_err(|error| error.to_string())?;
+        let ground = scenario
+            .ground_motion()
+            .scaled(factor)
+            .map_err(|error| error.to_string())?;
         let falls = |ground: &GroundMotion| {
             let sway = model.overturns_without_impact(ground, &request);
             sway.map(|sway| sway.is_some())

@@ -26,19 +26,22 @@ pub(super) fn draw(
         .zip(CURVES)
         .map(|((name, of), stroke)| {
             // Missing values interrupt the curve.
-            let points = points.iter();
-            let points = points.map(|point| (point.value, of(point).unwrap_or(f64::NAN)));
+            let points = points
+                .iter()
+                .map(|point| (point.value, of(point).unwrap_or(f64::NAN)));
             Mark::curve(name, stroke, points)
         });
     let is_known = |point: &(f64, f64)| point.1.is_finite();
     let curves: Vec<Mark> = curves
         .filter(|curve| curve.points().iter().any(is_known))
         .collect();
-    let circles = curves.iter().flat_map(|curve| {
-        let known = curve.points().iter().copied().filter(is_known);
-        known.map(|at| Mark::new(&curve.name, curve.stroke, Shape::Circle(at, 2.5)))
-    });
-    let circles: Vec<Mark> = circles.collect();
+    let circles: Vec<Mark> = curves
+        .iter()
+        .flat_map(|curve| {
+            let known = curve.points().iter().copied().filter(is_known);
+            known.map(|at| Mark::new(&curve.name, curve.stroke, Shape::Circle(at, 2.5)))
+        })
+        .collect();
     let labels = [key, "peak ground acceleration (g)"];
     let mut chart = Chart::around(figure, 405.0, labels, curves);
     chart.marks.extend(circles);

@@ -94,8 +94,11 @@ impl Along<'_> {
             point.direction.map(Direction::name)
         }));
         columns.push(column("why_not", |point: &Point| point.why_not.clone()));
-        let title = self.scenario.title.as_deref();
-        let title = title.unwrap_or("Threshold of overturning");
+        let title = self
+            .scenario
+            .title
+            .as_deref()
+            .unwrap_or("Threshold of overturning");
         let mut cases = PageCases::default();
         let text = cases.add_text(&self.scenario.to_json(), false);
         for row in rows {
@@ -119,7 +122,7 @@ impl Along<'_> {
     }
 }
 
-/// Returns limits of the model, and the number of values without a verdict, in words.
+/// Limits of the model, and the number of values without a verdict, in words.
 fn limits(
     remarks: &Remarks,
     without_verdict: usize,
@@ -144,9 +147,9 @@ impl Along<'_> {
                     ("survives up to", safe),
                     ("UNCERTAIN from", edge.uncertain_from.map(format_edge)),
                     (overturns, first),
-                ];
-                let parts = parts.into_iter();
-                let parts = parts.filter_map(|(what, at)| Some(format!("{what} factor {}", at?)));
+                ]
+                .into_iter()
+                .filter_map(|(what, at)| Some(format!("{what} factor {}", at?)));
                 let words = parts.collect::<Vec<_>>().join("; ");
                 let words = match edge.direction {
                     Direction::AsGiven => words,
@@ -166,14 +169,16 @@ impl Along<'_> {
         });
     }
 
-    /// Returns the answer that may be quoted: the least strength of all values.
+    /// Answer that may be quoted: the least strength of all values.
     fn answer(&self, rows: &[AlongRow]) -> ModelAnswer {
         let (scenario, along) = (self.scenario, &self.options.along);
-        let known = rows.iter().map(|row| {
-            let edge = row.edge.as_ref().ok()?;
-            Some((edge.survives_up_to? * row.peak_g?, row.value, edge))
-        });
-        let known: Option<Vec<_>> = known.collect();
+        let known: Option<Vec<_>> = rows
+            .iter()
+            .map(|row| {
+                let edge = row.edge.as_ref().ok()?;
+                Some((edge.survives_up_to? * row.peak_g?, row.value, edge))
+            })
+            .collect();
         let least = known
             .into_iter()
             .flatten()
@@ -212,7 +217,7 @@ impl Along<'_> {
             .unless_uncertain(scenario.uncertain.is_some())
     }
 
-    /// Returns the values without an answer, with the reasons.
+    /// Values without an answer, with the reasons.
     fn remarks(&self, rows: &[AlongRow]) -> Remarks {
         let edges = rows.iter().flat_map(|row| &row.edge);
         let mut remarks = Remarks::default();
@@ -249,13 +254,14 @@ impl Report for AlongSummary {
 }
 
 impl AlongSummary {
-    /// Returns the ranges of the thresholds, and the numbers of values without one, in words.
+    /// Ranges of the thresholds, and the numbers of values without one, in words.
     fn ranges(&self) -> String {
         let points = &self.values;
         // The lowest and the highest acceleration, with their values.
         let ends = |of: fn(&Point) -> Option<f64>| {
-            let known = points.iter();
-            let known = known.filter_map(|point| Some((of(point)?, point.value)));
+            let known = points
+                .iter()
+                .filter_map(|point| Some((of(point)?, point.value)));
             let least = known.clone().min_by(|a, b| a.0.total_cmp(&b.0));
             [least, known.max_by(|a, b| a.0.total_cmp(&b.0))]
         };

@@ -60,7 +60,7 @@ impl MovingPiece {
         }
     }
 
-    /// Returns the deviation of the arc of a point from its tangent in a step, over the step length.
+    /// Deviation of the arc of a point from its tangent in a step, over the step length.
     fn arc_deviation(&self, point: Vector2<f64>, step_s: f64) -> Vector2<f64> {
         let (arm, turn) = (point - self.centre, step_s * self.rate);
         arm * (-0.5 * turn * self.rate) - quarter_turn(arm) * (turn * turn * self.rate / 6.0)
@@ -129,7 +129,7 @@ pub struct LandingStepper<'a> {
 }
 
 impl<'a> LandingStepper<'a> {
-    /// Returns a stepper that starts from a state of the row in equilibrium, or released with initial rotations and rates.
+    /// Stepper that starts from a state of the row in equilibrium, or released with initial rotations and rates.
     ///
     /// # Errors
     /// If the initial rotations leave a closure error.
@@ -257,12 +257,12 @@ impl<'a> LandingStepper<'a> {
         self.turning = pivots;
     }
 
-    /// Returns whether the last step ended at an impact after too many impacts within the shortest step, so that the next landings are merged.
+    /// Whether the last step ended at an impact after too many impacts within the shortest step, so that the next landings are merged.
     fn has_impact_cluster(&self) -> bool {
         self.has_just_landed() && self.cluster.impacts > self.observer.input.settings.merged_after
     }
 
-    /// Returns whether the last step ended at an impact.
+    /// Whether the last step ended at an impact.
     fn has_just_landed(&self) -> bool {
         self.kicked_s == self.observer.time && self.observer.events.impacts() > 0
     }
@@ -274,7 +274,7 @@ impl<'a> LandingStepper<'a> {
         }
     }
 
-    /// Returns the blocks of a piece.
+    /// Blocks of a piece.
     fn blocks_of(&self, piece: usize) -> Range<usize> {
         let next = self.pieces.get(piece + 1);
         self.pieces[piece].first..next.map_or(self.load.free.len(), |next| next.first)
@@ -295,7 +295,7 @@ impl<'a> LandingStepper<'a> {
         self.ties.pull(centres_m, lasts_s, gain);
     }
 
-    /// Returns the change of velocity by gravity and ground over an interval, and the part of the ground alone.
+    /// Change of velocity by gravity and ground over an interval, and the part of the ground alone.
     fn impulse(&self, from_s: f64, to_s: f64) -> (Vector2<f64>, Vector2<f64>) {
         let ground = self.velocity.velocity_at(to_s) - self.velocity.velocity_at(from_s);
         let fall = Vector2::new(0.0, self.gravity * (to_s - from_s));
@@ -316,7 +316,7 @@ impl<'a> LandingStepper<'a> {
         ground
     }
 
-    /// Returns the interval of the kick of a step.
+    /// Interval of the kick of a step.
     fn kick_interval(&self, step: f64) -> (f64, f64) {
         (self.kicked_s, self.observer.time + 0.5 * step)
     }
@@ -390,7 +390,7 @@ impl<'a> LandingStepper<'a> {
         }
     }
 
-    /// Returns the work of the right support by the impulses of the last solution, and by tie forces during `lasts_s`.
+    /// Work of the right support by the impulses of the last solution, and by tie forces during `lasts_s`.
     fn work_of_right_support(&mut self, lasts_s: f64) -> f64 {
         let (true, Some(frame)) = (self.right.moves(), self.placement.frames.last()) else {
             return 0.0;
@@ -550,7 +550,7 @@ impl<'a> LandingStepper<'a> {
         }
     }
 
-    /// Returns whether a corner is in contact that was open at the beginning of the step.
+    /// Whether a corner is in contact that was open at the beginning of the step.
     fn has_landed(&self, joint: usize, edge: usize) -> bool {
         self.placement.gaps_m[joint][edge] == 0.0 && !self.closed[joint][edge]
     }

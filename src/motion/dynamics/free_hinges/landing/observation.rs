@@ -35,7 +35,7 @@ impl LandingStepper<'_> {
                 .y
     }
 
-    /// Returns the potential energy of the blocks, in J.
+    /// Potential energy of the blocks, in J.
     fn height(&self) -> f64 {
         if self.ties.are_none() {
             self.observer.potential
@@ -44,7 +44,7 @@ impl LandingStepper<'_> {
         }
     }
 
-    /// Returns the potential energy of the blocks plus the elastic energy of the ties above that at rest, in J.
+    /// Potential energy of the blocks plus the elastic energy of the ties above that at rest, in J.
     pub fn energy(&self) -> f64 {
         self.height_energy() + self.ties.energy_j()
     }
@@ -84,7 +84,7 @@ impl LandingStepper<'_> {
         }
     }
 
-    /// Returns whether the row may come to rest on hinges: it started on hinges, or its feet move differently.
+    /// Whether the row may come to rest on hinges: it started on hinges, or its feet move differently.
     fn may_end_on_hinges(&self) -> bool {
         self.rest.is_on_hinges() || self.right.moves()
     }
@@ -100,17 +100,17 @@ impl LandingStepper<'_> {
         self.observer.overturned |= self.rest.has_left(blocks, feet_m);
     }
 
-    /// Returns whether the row is in its initial position.
+    /// Whether the row is in its initial position.
     fn lies_at_rest(&self) -> bool {
         self.rest.has_contacts(&self.placement.gaps_m) && !self.right_support_is_displaced()
     }
 
-    /// Returns whether the right support is displaced relative to the left one.
+    /// Whether the right support is displaced relative to the left one.
     pub fn right_support_is_displaced(&self) -> bool {
         self.right.displacement_m.norm() > SHUT_RATIO * self.thinnest
     }
 
-    /// Returns the horizontal displacement of the centre of gravity relative to the middle of the feet, times the mass, in kg m.
+    /// Horizontal displacement of the centre of gravity relative to the middle of the feet, times the mass, in kg m.
     pub fn sway_kg_m(&self) -> f64 {
         let sway = self
             .rest

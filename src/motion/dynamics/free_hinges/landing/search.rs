@@ -92,7 +92,7 @@ impl LandingStepper<'_> {
         })
     }
 
-    /// Returns the step length at whose end a corner lands, by a linear model of its rate. The model uses the rates of the last two solved steps.
+    /// Step length at whose end a corner lands, by a linear model of its rate. The model uses the rates of the last two solved steps.
     fn landing(&self, fall: &ClosingCorner, step: f64, earlier: f64) -> f64 {
         let change = fall.rate_m_s - self.earlier_rates[fall.joint][fall.edge];
         let acceleration = change / (step - earlier);
@@ -108,7 +108,7 @@ impl LandingStepper<'_> {
         }
     }
 
-    /// Returns the open corner that lands first at the rates of the last solution; `None` if none closes.
+    /// Open corner that lands first at the rates of the last solution; `None` if none closes.
     fn first_landing(&self) -> Option<ClosingCorner> {
         let mut first: Option<ClosingCorner> = None;
         for (joint, rates) in self.program.open_joints() {

@@ -35,7 +35,7 @@ impl Dissipation {
 }
 
 impl SlidingStepper<'_> {
-    /// Returns the impact that begins in the solved step, without its energy; `None` if no corner lands.
+    /// Impact that begins in the solved step, without its energy; `None` if no corner lands.
     pub(super) fn find_landing(&self, step: f64) -> Option<Landing> {
         let (before, after) = (&self.modes_before, &self.program.modes);
         let lands = |joint: usize| {
@@ -71,7 +71,7 @@ impl SlidingStepper<'_> {
         })
     }
 
-    /// Returns the joints that open in an impact: they close in the impact or were closed before, and are open afterwards.
+    /// Joints that open in an impact: they close in the impact or were closed before, and are open afterwards.
     fn find_opening_joints(
         shut: &[Hinge],
         before: &[JointMode],
@@ -90,7 +90,7 @@ impl SlidingStepper<'_> {
         opened
     }
 
-    /// Returns the energy dissipated in the solved step: first at the corners that landed in the step before, then by all other impulses. `mean_m_s`
+    /// Energy dissipated in the solved step: first at the corners that landed in the step before, then by all other impulses. `mean_m_s`
     /// is the mean velocity of the right support.
     ///
     /// The work of an impulse is its product with the mean of the rates before and after. The sum over the steps of an impact does not depend on the
@@ -117,7 +117,7 @@ impl SlidingStepper<'_> {
         parts
     }
 
-    /// Returns the energy dissipated by friction in the solved step, with the rates at its end.
+    /// Energy dissipated by friction in the solved step, with the rates at its end.
     pub(super) fn step_friction_j(&self) -> f64 {
         let mut step_friction_j = 0.0;
         for (joint, impulse) in self.program.impulses.iter().enumerate() {

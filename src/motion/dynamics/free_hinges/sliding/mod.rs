@@ -87,7 +87,7 @@ pub struct SlidingStepper<'a> {
 }
 
 impl<'a> SlidingStepper<'a> {
-    /// Returns a stepper for a row that starts from a state in equilibrium, or is released at a placement, at rest or with rates.
+    /// Stepper for a row that starts from a state in equilibrium, or is released at a placement, at rest or with rates.
     pub fn new(
         (standing, placement, with_rates): (&RowState, &Placement, Option<&Release>),
         input: MotionInput<'a>,
@@ -167,7 +167,7 @@ impl<'a> SlidingStepper<'a> {
         }
     }
 
-    /// Returns the change of velocity by gravity and ground from the last kick to a time, and the part of the ground alone.
+    /// Change of velocity by gravity and ground from the last kick to a time, and the part of the ground alone.
     fn kick(&self, to_s: f64) -> (Vector2<f64>, Vector2<f64>) {
         let ground = self.velocity.velocity_at(to_s) - self.velocity.velocity_at(self.kicked_s);
         let fall = Vector2::new(0.0, self.gravity * (to_s - self.kicked_s));
@@ -222,7 +222,7 @@ impl<'a> SlidingStepper<'a> {
         }
     }
 
-    /// Returns the rates of the coordinates of a joint due to a velocity of the right support.
+    /// Rates of the coordinates of a joint due to a velocity of the right support.
     fn right_support_rates(&self, joint: usize, velocity_m_s: Vector2<f64>) -> Vector3<f64> {
         if self.right.moves() && joint + 1 == self.faces.len() {
             self.contacts[joint].rates_of_translation(&self.faces[joint], velocity_m_s)
@@ -291,8 +291,11 @@ impl<'a> SlidingStepper<'a> {
     }
 
     fn note_forces(&mut self, time_s: f64) {
-        let impulses = self.program.impulses.iter();
-        let impulses = impulses.map(|impulse| [impulse.z, impulse.x + impulse.y]);
+        let impulses = self
+            .program
+            .impulses
+            .iter()
+            .map(|impulse| [impulse.z, impulse.x + impulse.y]);
         self.friction_demand = self.observer.note_forces(impulses, time_s);
     }
 
@@ -354,13 +357,13 @@ impl<'a> SlidingStepper<'a> {
         tie_events
     }
 
-    /// Returns the record of slip.
+    /// Record of slip.
     fn sliding(&mut self) -> &mut Sliding {
         let sliding = self.observer.row_summary.sliding.as_mut();
         sliding.expect("joints may slip")
     }
 
-    /// Returns the slip of the row along the left and the right support, in metres.
+    /// Slip of the row along the left and the right support, in metres.
     fn support_slips_m(&self) -> [Vector2<f64>; 2] {
         let slide = |joint: usize, sign: f64| {
             let support = self.rest.placement.support_poses[usize::from(joint > 0)];
@@ -374,11 +377,13 @@ impl<'a> SlidingStepper<'a> {
         }
     }
 
-    /// Returns whether a block has turned too far, or is too far from its initial positions relative to both feet.
+    /// Whether a block has turned too far, or is too far from its initial positions relative to both feet.
     fn has_fallen(&self) -> bool {
         let [left, right] = self.support_slips_m();
-        let blocks = self.positions.iter();
-        let blocks = blocks.map(|position| (position.centre_m, position.rotation_rad));
+        let blocks = self
+            .positions
+            .iter()
+            .map(|position| (position.centre_m, position.rotation_rad));
         let feet_m = [left, right + self.right.displacement_m];
         self.rest.has_left(blocks, feet_m)
     }
@@ -435,18 +440,18 @@ impl<'a> SlidingStepper<'a> {
         }
     }
 
-    /// Returns whether the contacts are those of the initial position.
+    /// Whether the contacts are those of the initial position.
     fn has_initial_contacts(&self) -> bool {
         let mut modes = self.program.modes.iter().zip(&self.rest.touching);
         modes.all(|(mode, stood)| mode.pressed == *stood) && !self.right_support_is_displaced()
     }
 
-    /// Returns whether the right support is displaced relative to the left one.
+    /// Whether the right support is displaced relative to the left one.
     fn right_support_is_displaced(&self) -> bool {
         self.right.displacement_m.norm() > APART_RATIO * self.thinnest_m
     }
 
-    /// Returns the horizontal displacement of the centre of gravity relative to the middle of the feet, times the mass, without the slip of the row
+    /// Horizontal displacement of the centre of gravity relative to the middle of the feet, times the mass, without the slip of the row
     /// along the ground.
     fn sway_kg_m(&self) -> f64 {
         let on_ground = match (self.row.supports, self.row.supports_extend) {
@@ -454,8 +459,11 @@ impl<'a> SlidingStepper<'a> {
             (Supports::Both, both) => both,
         };
         // A block can slide off a support that ends at the joint, so slip on such a support is included.
-        let slides = self.support_slips_m().into_iter().zip(on_ground);
-        let slides = slides.filter(|(_, on_ground)| *on_ground);
+        let slides = self
+            .support_slips_m()
+            .into_iter()
+            .zip(on_ground)
+            .filter(|(_, on_ground)| *on_ground);
         let slid: f64 = slides.map(|(slide, _)| 0.5 * slide.x).sum();
         let mass = self.row.mass_kg();
         let sway = self.rest.mass_displacement_kg_m(&self.centres).x
@@ -465,7 +473,7 @@ impl<'a> SlidingStepper<'a> {
     }
 }
 
-/// Returns the kinetic energy of blocks with these velocities (x, y) and rotation rates, in J.
+/// Kinetic energy of blocks with these velocities (x, y) and rotation rates, in J.
 fn kinetic_j(row: &Row, velocities: &[Vector3<f64>]) -> f64 {
     let twice =
         row.blocks.iter().zip(velocities).map(|(block, v)| {
@@ -474,7 +482,7 @@ fn kinetic_j(row: &Row, velocities: &[Vector3<f64>]) -> f64 {
     0.5 * twice.sum::<f64>()
 }
 
-/// Returns the joint with this index at given positions of supports and blocks.
+/// Joint with this index at given positions of supports and blocks.
 fn contact(
     faces: &[Faces],
     supports: &[Position; 2],

@@ -20,7 +20,7 @@ impl MotionObserver<'_> {
         *worst = worst.max(energy / self.energy_unit);
     }
 
-    /// Returns the largest error of the energy balance up to now, over the largest energy of the motion or `barrier_j`, whichever is larger.
+    /// Largest error of the energy balance up to now, over the largest energy of the motion or `barrier_j`, whichever is larger.
     pub fn energy_error(&self, barrier_j: f64) -> f64 {
         let kinetic_j = self.row_summary.largest_kinetic_j;
         let least_j = LEAST_ENERGY_RATIO * self.energy_unit;
@@ -45,7 +45,7 @@ impl MotionObserver<'_> {
     }
 }
 
-/// Returns the summary if its energy balances.
+/// The summary if its energy balances.
 ///
 /// # Errors
 /// If the energy balance is wrong. The error names the model's table and proposes a step, in seconds.

@@ -51,7 +51,7 @@ impl MotionObserver<'_> {
         self.settle(self.time);
     }
 
-    /// Returns whether the row can still return at this time.
+    /// Whether the row can still return at this time.
     pub fn returns(&self) -> bool {
         self.before_fall.time_s == self.time
     }

@@ -96,13 +96,13 @@ pub struct MotionObserver<'a> {
     friction: FrictionDemands,
 }
 
-/// Returns right for a positive value, left for any other.
+/// Right for a positive value, left for any other.
 pub(super) fn side_of(value: f64) -> Sway {
     if value > 0.0 { Sway::Right } else { Sway::Left }
 }
 
 impl<'a> MotionObserver<'a> {
-    /// Returns the record of a motion that begins. `overturned_below_j` is the potential energy in J below which the row has overturned; `None` if
+    /// Record of a motion that begins. `overturned_below_j` is the potential energy in J below which the row has overturned; `None` if
     /// the stepper uses other criteria.
     pub fn new(
         input: MotionInput<'a>,
@@ -157,7 +157,7 @@ impl<'a> MotionObserver<'a> {
         }
     }
 
-    /// Returns the least normal force of a joint that counts in the friction demand, in N.
+    /// Least normal force of a joint that counts in the friction demand, in N.
     pub fn least_load_n(&self) -> f64 {
         LEAST_LOAD * self.energy_unit / self.input.row.size_m
     }
@@ -188,18 +188,18 @@ impl<'a> MotionObserver<'a> {
         (self.friction).add_step(demand, [self.time, lasts_s], moves);
     }
 
-    /// Returns whether there is a recorder that needs friction demands.
+    /// Whether there is a recorder that needs friction demands.
     pub fn wants_demand(&self) -> bool {
         let recorder = self.recorder.as_ref();
         recorder.is_some_and(|recorder| recorder.wants_demand())
     }
 
-    /// Returns whether there is a recorder.
+    /// Whether there is a recorder.
     pub const fn has_recorder(&self) -> bool {
         self.recorder.is_some()
     }
 
-    /// Returns whether there is a recorder that needs events.
+    /// Whether there is a recorder that needs events.
     pub fn reports_events(&self) -> bool {
         let recorder = self.recorder.as_ref();
         recorder.is_some_and(|recorder| recorder.wants_events())
@@ -325,12 +325,12 @@ impl<'a> MotionObserver<'a> {
         largest
     }
 
-    /// Returns the largest rotation of a block up to now, in radians.
+    /// Largest rotation of a block up to now, in radians.
     pub fn largest_rotation_rad(&self) -> f64 {
         self.peak_rotations_rad.iter().copied().fold(0.0, f64::max)
     }
 
-    /// Returns a sample without data of blocks and joints, and whether the recorder needs the thrust line.
+    /// Sample without data of blocks and joints, and whether the recorder needs the thrust line.
     pub(super) fn blank_sample(&mut self) -> (Sample, bool) {
         let mut sample = mem::take(&mut self.sample);
         let ground = self.input.ground;

@@ -48,7 +48,7 @@ impl RecentEnergy {
 }
 
 impl MotionObserver<'_> {
-    /// Returns the outcome of the motion and its time; `None` if the motion continues. `overturned_s` is the time of overturning, `at_rest_since_s` the
+    /// Outcome of the motion and its time; `None` if the motion continues. `overturned_s` is the time of overturning, `at_rest_since_s` the
     /// time since which the row rests.
     pub fn ending(
         &self,
@@ -91,7 +91,7 @@ impl MotionObserver<'_> {
         Some(end_s)
     }
 
-    /// Returns the outcome while no joint has opened or slipped; `None` afterwards.
+    /// Outcome while no joint has opened or slipped; `None` afterwards.
     fn outcome_with_closed_joints(&self) -> Option<Outcome> {
         let least_j = REST_ENERGY_RATIO * self.energy_unit;
         match self.has_rocked {
@@ -104,7 +104,7 @@ impl MotionObserver<'_> {
         }
     }
 
-    /// Returns whether the history ends too early to decide the outcome; see [`Outcome`].
+    /// Whether the history ends too early to decide the outcome; see [`Outcome`].
     pub(super) fn is_incomplete(&self) -> bool {
         if self.is_safe || self.elastic.vibrates_since_s.is_some() {
             return false;
@@ -117,7 +117,7 @@ impl MotionObserver<'_> {
         self.time < self.input.ground.end_s() || energy_ratio > SAFE
     }
 
-    /// Returns the energy barrier, in J; `None` if unknown, or if the row has slipped so much that its potential energy is not comparable.
+    /// Energy barrier, in J; `None` if unknown, or if the row has slipped so much that its potential energy is not comparable.
     pub(super) fn known_barrier_j(&self) -> Option<f64> {
         let sliding = self.row_summary.sliding.as_ref();
         let rubbed_j = sliding.map_or(0.0, |sliding| sliding.friction_j);
@@ -125,22 +125,22 @@ impl MotionObserver<'_> {
         self.input.barrier_j.filter(known)
     }
 
-    /// Returns the duration of small kinetic energy after which the row is at rest, in seconds.
+    /// Duration of small kinetic energy after which the row is at rest, in seconds.
     pub fn rest_time_s(&self) -> f64 {
         REST_TIME_RATIO * (self.input.row.size_m / self.input.gravity_m_s2).sqrt()
     }
 
-    /// Returns whether a row with small kinetic energy since `since_s` is at rest.
+    /// Whether a row with small kinetic energy since `since_s` is at rest.
     pub(crate) fn is_quiet(&self, since_s: f64) -> bool {
         self.time - since_s > self.rest_time_s()
     }
 
-    /// Returns the last time at which the row could still return, if the stepper has found that it has overturned.
+    /// Last time at which the row could still return, if the stepper has found that it has overturned.
     pub fn overturned_s(&self) -> Option<f64> {
         self.overturned.then_some(self.last_maximum.time)
     }
 
-    /// Returns the last time at which the row could still return, if its potential energy shows that it has overturned.
+    /// Last time at which the row could still return, if its potential energy shows that it has overturned.
     pub fn fallen_s(&self, potential: f64) -> Option<f64> {
         (potential < self.overturned_below_j).then_some(self.highest_s)
     }
