@@ -22,10 +22,9 @@ use std::time::{Duration, Instant};
 
 mod random;
 
-use archrock::studies::Counted;
 use archrock::{
-    Directions, EndCondition, Factors, GroundMotion, Model, Progress, Pulse, Request, Runner,
-    Scenario, Sway, Threshold, Verdict, threshold,
+    Counted, Directions, EndCondition, Factors, GroundMotion, Model, Progress, Pulse, Request,
+    Runner, Scenario, Sway, Threshold, Verdict, threshold,
 };
 use random::Random;
 

@@ -102,8 +102,8 @@ pub use mechanics::{
 pub use scenario::{Scenario, Structure};
 pub use studies::map::OverturningMap;
 pub use studies::threshold::{Factors, Threshold, threshold};
+pub use studies::{Counted, Progress, Runner};
 pub use studies::{Ending, NoHistory, Verdict};
-pub use studies::{Progress, Runner};
 
 /// The tasks of the document compile and run.
 #[cfg(doctest)]

@@ -113,7 +113,7 @@ pub struct Header {
     pub(super) row_format: u32,
     /// Version of the program.
     pub version: String,
-    /// The study: [`NAME`](super::runner::Study::NAME).
+    /// The study: [`NAME`](super::Study::NAME).
     pub study: String,
     /// Number of cases of the whole study.
     pub cases: usize,
@@ -121,7 +121,7 @@ pub struct Header {
     pub shard: Shard,
     /// The scenario, with every default filled in.
     pub scenario: String,
-    /// Options of the study: [`options`](super::runner::Study::options).
+    /// Options of the study: [`options`](super::Study::options).
     #[serde(default, skip_serializing_if = "Value::is_null")]
     pub options: Value,
     /// Other input of the cases: checksums of the files that the scenario names.

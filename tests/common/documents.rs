@@ -32,7 +32,7 @@ pub fn assert_generated(page: &str, written_by: &str, text: &str) {
     let first = lines.find(|(known, now)| known != now);
     assert!(
         known == text,
-        "{page} is not up to date, first in {first:?}: run ARCHROCK_GOLDEN=write cargo test --test all summaries keys"
+        "{page} is not up to date, first in {first:?}: run ARCHROCK_GOLDEN=write cargo test --test all -- summaries keys columns_have"
     );
 }
 

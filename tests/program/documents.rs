@@ -67,6 +67,37 @@ fn columns_have_the_meanings_of_the_program() {
     assert_generated("docs/results.md", written_by, &all);
 }
 
+/// Every path and every file in docs/architecture.md stands in the sources.
+#[test]
+fn the_architecture_names_what_exists() {
+    let mut sources = String::new();
+    let mut folders = ["src", "tests", "python"]
+        .map(|folder| repository().join(folder))
+        .to_vec();
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            sources += &format!("{}\n", path.display());
+            if path.is_dir() && !path.ends_with("target") {
+                folders.push(path);
+            } else if path.extension().is_some_and(|ending| ending == "rs") {
+                sources += &fs::read_to_string(&path).unwrap();
+            }
+        }
+    }
+    let page = fs::read_to_string(repository().join("docs/architecture.md")).unwrap();
+    let names = page.split('`').skip(1).step_by(2);
+    let names = names.filter(|name| name.contains("::") || name.ends_with(".rs"));
+    let mut count = 0;
+    for name in names.filter(|name| !name.contains(' ')) {
+        let last = name.rsplit("::").next().unwrap();
+        let last = last.trim_end_matches("()");
+        assert!(last.is_empty() || sources.contains(last), "{name}");
+        count += 1;
+    }
+    assert!(count > 50, "{count}");
+}
+
 /// The first lines of tables are those in docs/results.md, where `...` stands for the first column or columns.
 fn columns_are_those_of_the_page(results: &Path) {
     let page = fs::read_to_string(repository().join("docs/results.md")).unwrap();

@@ -1,5 +1,5 @@
 //! The keys that a scenario allows, as the reader describes them, and their reference in the documents, which is written from this description.
-//! `ARCHROCK_GOLDEN=write cargo test --test all summaries keys` writes it anew.
+//! `ARCHROCK_GOLDEN=write cargo test --test all -- summaries keys columns_have` writes it anew.
 
 use crate::common::documents::assert_generated;
 use crate::common::schema::violations;
