@@ -130,7 +130,10 @@ fn keep(answer: &Answer) -> usize {
 }
 
 fn answer_to(request: Request) -> Answer {
-    let files = request.files.into_iter().map(|(name, text)| (name, text.into_bytes()));
+    let files = request
+        .files
+        .into_iter()
+        .map(|(name, text)| (name, text.into_bytes()));
     let source = Source::of_text(&request.scenario, "scenario.toml").with_files(files);
     let kind = request.study.as_deref().map(StudyKind::of_name);
     let options = ReadOptions {
