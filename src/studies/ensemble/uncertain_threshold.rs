@@ -157,15 +157,14 @@ impl Study for FirstEdges<'_> {
         let edges = samples.answers();
         // A sample that never overturns counts with the largest factor.
         let strength = |edge: &FirstEdge| edge.factor.unwrap_or(edge.tried_to);
-        let influences = [(
-            InfluencedAnswer::FirstFactor,
-            samples.influence(false, strength),
-        )];
+        let influence = samples.influence(false, strength);
+        let influences = [(InfluencedAnswer::FirstFactor, influence)];
         let model = samples.model_check(edges.clone().map(|edge| edge.thrust_excess_ratio));
         let demands = edges.clone().map(|edge| edge.friction_demand);
         let study = format!("threshold FILE{}", self.factors.options());
+        let scenario = samples.scenario;
         let survivors = (study.as_str(), "surviving motions of samples");
-        let friction = SurvivorFriction::of(demands, samples.scenario, survivors);
+        let friction = SurvivorFriction::of(demands, scenario, survivors);
         let limits = (CHECKED, samples.no_verdict());
         let own = samples.own.as_ref().ok();
         let count = |condition: fn(&&_) -> bool| edges.clone().filter(condition).count();
@@ -174,9 +173,10 @@ impl Study for FirstEdges<'_> {
             .clone()
             .filter_map(|edge| edge.thrust_excess_ratio)
             .reduce(f64::max);
-        let quoted = lower_limit.quotable_answer(samples.scenario, excess);
-        let condition = SlipWords::of(samples.scenario).condition(friction.friction_demand, &study);
-        let quoted = quoted.with_friction(condition);
+        let condition = SlipWords::of(scenario).condition(friction.friction_demand, &study);
+        let quoted = lower_limit
+            .quotable_answer(scenario, excess)
+            .with_friction(condition);
         let report = UncertainThresholdSummary {
             all: SampleSummary::new(
                 (samples, &self.factors.varied()),
