@@ -169,14 +169,10 @@ impl Study for FirstEdges<'_> {
         let own = samples.own.as_ref().ok();
         let count = |condition: fn(&&_) -> bool| edges.clone().filter(condition).count();
         let lower_limit = LowerLimit::of(samples);
-        let excess = edges
-            .clone()
-            .filter_map(|edge| edge.thrust_excess_ratio)
-            .reduce(f64::max);
+        let excesses = edges.clone().filter_map(|edge| edge.thrust_excess_ratio);
         let condition = SlipWords::of(scenario).condition(friction.friction_demand, &study);
-        let quoted = lower_limit
-            .quotable_answer(scenario, excess)
-            .with_friction(condition);
+        let quoted = lower_limit.quotable_answer(scenario, excesses.reduce(f64::max));
+        let quoted = quoted.with_friction(condition);
         let report = UncertainThresholdSummary {
             all: SampleSummary::new(
                 (samples, &self.factors.varied()),
